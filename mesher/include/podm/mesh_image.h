@@ -1,0 +1,122 @@
+// The whole public API of the mesher: a label image in, a tetrahedral mesh with guarantees out.
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <functional>
+#include <map>
+#include <stop_token>
+#include <string>
+#include <vector>
+
+#include "podm/errors.h"
+#include "podm/label_image.h"
+#include "podm/tet_mesh.h"
+
+namespace podm {
+
+/// Radius-edge bound of every output cell: circumradius / shortest edge < kRadiusEdgeBound.
+/// sqrt(2 + sqrt(3)) = 1.93185 in the proof; the published bound 1.93 is kept.
+inline constexpr double kRadiusEdgeBound = 1.93;
+/// Every planar angle of every boundary facet exceeds this, in degrees.
+inline constexpr double kFacetAngleBound = 30.0;
+
+struct MeshingOptions {
+  /// Largest circumradius r_t of a cell, mm. 0: unbounded, the surface alone drives.
+  double radius_mm = 0;
+  /// r_t of single labels by label *value*, mm; these override `radius_mm`.
+  std::map<std::uint32_t, double> radius_of_mm;
+  /// Surface sampling distance, mm. 0: default_delta_mm().
+  double delta_mm = 0;
+  /// When positive: choose radius_mm so that the mesh has this many cells within 5 %; radius_mm must be 0.
+  std::uint64_t target_elements = 0;
+  Space space = Space::kRas;
+  int threads = 0;  ///< for the feature transform; 0: all cores. Refinement runs on one.
+  // Limits end the run with a valid Delaunay mesh that says what is unmet. 0: none.
+  std::uint64_t max_elements = 0;
+  double max_seconds = 0;
+  std::uint64_t max_memory_bytes = 0;  ///< of the mesh store
+};
+
+/// What a run is expected to cost, from the image and the options alone.
+struct Estimate {
+  double cells = 0;
+  double memory_bytes = 0;  ///< peak of the whole process
+};
+
+enum class StopReason { kComplete, kCancelled, kElementLimit, kTimeLimit, kMemoryLimit };
+std::string to_string(StopReason reason);
+
+struct Progress {
+  std::string phase;        ///< "transform", "refine", "extract"
+  double fraction = 0;      ///< of the phase, an estimate in [0,1]
+  std::uint64_t cells = 0;  ///< so far
+  double seconds = 0;       ///< since the start of the run
+};
+/// Called from the meshing thread a few times a second.
+using ProgressCallback = std::function<void(const Progress&)>;
+
+/// Cells and boundary facets that miss a guarantee; all zero when StopReason is kComplete.
+struct Guarantees {
+  std::uint64_t radius_edge = 0;     ///< cells with radius-edge >= kRadiusEdgeBound
+  std::uint64_t facet_angle = 0;     ///< boundary facets with an angle <= kFacetAngleBound
+  std::uint64_t radius = 0;          ///< cells with circumradius > r_t
+  std::uint64_t facet_vertices = 0;  ///< boundary facets with a vertex off the isosurface
+  std::uint64_t missing_labels = 0;  ///< labels of more than 1000 voxels without a cell
+  bool all_met() const {
+    return radius_edge + facet_angle + radius + facet_vertices + missing_labels == 0;
+  }
+};
+
+/// Extremes over the output, measured on the output coordinates (before a voxel-space transform).
+struct Quality {
+  double max_radius_edge = 0;
+  double min_facet_angle_deg = 0, max_facet_angle_deg = 0;
+  double min_dihedral_deg = 0, max_dihedral_deg = 0;
+  double max_radius_mm = 0, shortest_edge_mm = 0;
+};
+
+/// Operations by outcome and work done, exact counts.
+struct Counters {
+  std::array<std::uint64_t, 5> insertions_by_rule{};  ///< R1..R5
+  std::uint64_t removals = 0;                         ///< vertices removed by R6
+  std::uint64_t rejected = 0;                         ///< operations that broke the spacing floor
+  std::uint64_t stale_cells = 0;                      ///< poor element list entries that had died
+  std::uint64_t classified_cells = 0;
+  std::uint64_t conflict_tests = 0;
+  std::uint64_t exact_decisions = 0;  ///< conflict tests that the cached sphere left undecided
+  std::uint64_t cells_created = 0;
+};
+
+struct MeshingReport {
+  std::map<std::string, double> phases_s;  ///< transform, octree, initial, refine, extract
+  double radius_mm = 0;                    ///< as used; 0 when unbounded
+  double delta_mm = 0;                     ///< as used
+  StopReason stop_reason = StopReason::kComplete;
+  Guarantees guarantees;
+  Quality quality;
+  Counters counters;
+  std::map<std::uint32_t, std::uint64_t> cells_of_label;   ///< by label value
+  std::map<std::uint32_t, double> volume_of_label_mm3;     ///< by label value, of the mesh
+  std::uint64_t store_cells = 0;                           ///< cells of the whole virtual box
+  std::vector<std::string> warnings;
+};
+
+struct MeshingResult {
+  TetMesh mesh;
+  MeshingReport report;
+};
+
+/// Default surface sampling distance for an image and a radius (mm; radius 0: unbounded), mm.
+double default_delta_mm(const LabelImage& image, double radius_mm);
+
+/// Expected cells and memory of mesh_image with these options (target_elements resolved).
+Estimate estimate(const LabelImage& image, const MeshingOptions& options);
+
+/// Meshes `image`. Throws InputError on bad options or an image without foreground, std::bad_alloc when
+/// memory runs out. A stop request or a limit ends the run early with a valid mesh; see stop_reason.
+/// Rules and proofs: Foteinos, Chernikov, Chrisochoides, CGTA 47 (2014) 539-562.
+MeshingResult mesh_image(const LabelImage& image, const MeshingOptions& options,
+                         const ProgressCallback& progress = {}, std::stop_token stop = {});
+
+}  // namespace podm
