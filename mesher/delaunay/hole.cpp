@@ -1,0 +1,188 @@
+#include "delaunay/hole.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "geometry/predicates.h"
+#include "podm/errors.h"
+
+namespace podm {
+
+namespace {
+
+constexpr unsigned kNoApex = 0xffffffffu;
+
+std::uint64_t key_of(std::array<std::uint16_t, 3> local) {
+  if (local[0] > local[1]) std::swap(local[0], local[1]);
+  if (local[1] > local[2]) std::swap(local[1], local[2]);
+  if (local[0] > local[1]) std::swap(local[0], local[1]);
+  return (static_cast<std::uint64_t>(local[0]) << 32 | static_cast<std::uint64_t>(local[1]) << 16 |
+          local[2]) +
+         1;
+}
+
+}  // namespace
+
+std::uint16_t HoleFiller::local_of(Mesh& mesh, VertexId v) {
+  Vertex& vertex = mesh.vertex(v);
+  const unsigned local = vertex.local_index;
+  if (local < ids_.size() && ids_[local] == v) return vertex.local_index;
+  if (ids_.size() == 0xffff) throw InternalError("hole with more than 65535 vertices");
+  vertex.local_index = static_cast<std::uint16_t>(ids_.size());
+  ids_.push_back(v);
+  points_.push_back(vertex.point);
+  return vertex.local_index;
+}
+
+void HoleFiller::collect(Mesh& mesh, const Region& region, VertexId added) {
+  ids_.clear();
+  points_.clear();
+  open_.clear();
+  is_closed_.clear();
+  rebuild_table(8 * (region.boundary.size() + region.cells.size()));
+  for (const CellId c : region.cells) {
+    for (const VertexId v : mesh.cell(c).vertices) {
+      if (std::find(region.removed.begin(), region.removed.end(), v) == region.removed.end())
+        local_of(mesh, v);
+    }
+  }
+  if (added != kNoVertex) local_of(mesh, added);
+  for (const FacetId f : region.boundary) {
+    const Cell& cell = mesh.cell(cell_of(f));
+    const auto k = static_cast<unsigned>(index_in_cell(f));
+    OpenFacet facet{{}, cell.mirrors[k]};
+    for (unsigned i = 0; i < 3; ++i) {
+      facet.local[i] = local_of(mesh, cell.vertices[static_cast<unsigned>(kFacetVertices[k][i])]);
+    }
+    add_or_match(mesh, facet);
+  }
+}
+
+void HoleFiller::fill(Mesh& mesh, Pool& pool, Region& region, VertexId added) {
+  collect(mesh, region, added);
+  region.created.clear();
+  std::size_t reused = 0;
+  for (std::size_t i = 0; i < open_.size(); ++i) {
+    if (is_closed_[i]) continue;
+    const OpenFacet facet = open_[i];
+    is_closed_[i] = 1;
+    const unsigned apex = apex_of(mesh, facet);
+    const CellId id = reused < region.cells.size() ? region.cells[reused++] : pool.take_cell();
+    region.created.push_back(id);
+    Cell& cell = mesh.cell(id);
+    const std::array<std::uint16_t, 4> local{facet.local[0], facet.local[1], facet.local[2],
+                                             static_cast<std::uint16_t>(apex)};
+    for (unsigned k = 0; k < 4; ++k) cell.vertices[k] = ids_[local[k]];
+    cell.mirrors = {kNoFacet, kNoFacet, kNoFacet, facet.mirror};
+    mesh.refresh_sphere(id);
+    CellState& state = mesh.state(id);
+    state.stamp = static_cast<std::uint16_t>(state.stamp + 1) & 0x7fff;
+    state.in_region = 0;
+    state.label = kUnknownLabel;
+    if (facet.mirror != kNoFacet) {
+      mesh.cell(cell_of(facet.mirror)).mirrors[static_cast<unsigned>(index_in_cell(facet.mirror))] =
+          4 * id + 3;
+    }
+    for (unsigned k = 0; k < 3; ++k) {
+      const auto& turn = kFacetVertices[k];  // from inside the new cell; the hole sees it the other way round
+      add_or_match(mesh, {{local[static_cast<unsigned>(turn[0])], local[static_cast<unsigned>(turn[2])],
+                           local[static_cast<unsigned>(turn[1])]},
+                          4 * id + k});
+    }
+  }
+  for (; reused < region.cells.size(); ++reused) pool.release_cell(region.cells[reused]);
+}
+
+// A facet seen for the second time closes the hole there: glue its two sides.
+void HoleFiller::add_or_match(Mesh& mesh, const OpenFacet& facet) {
+  if (4 * (used_slots_ + 1) > 3 * table_.size()) throw InternalError("gift wrapping does not close");
+  const std::uint64_t key = key_of(facet.local);
+  Slot& slot = slot_of(key);
+  if (slot.key == 0) {
+    slot = {key, static_cast<std::uint32_t>(open_.size())};
+    ++used_slots_;
+    open_.push_back(facet);
+    is_closed_.push_back(0);
+    return;
+  }
+  if (is_closed_[slot.open]) throw InternalError("gift wrapping met a facet three times");
+  is_closed_[slot.open] = 1;
+  const FacetId other = open_[slot.open].mirror;
+  mesh.cell(cell_of(facet.mirror)).mirrors[static_cast<unsigned>(index_in_cell(facet.mirror))] = other;
+  if (other != kNoFacet) {
+    mesh.cell(cell_of(other)).mirrors[static_cast<unsigned>(index_in_cell(other))] = facet.mirror;
+  }
+}
+
+HoleFiller::Slot& HoleFiller::slot_of(std::uint64_t key) {
+  std::size_t i = (key * 0x9e3779b97f4a7c15ull) >> 40;
+  for (;; ++i) {
+    Slot& slot = table_[i & (table_.size() - 1)];
+    if (slot.key == 0 || slot.key == key) return slot;
+  }
+}
+
+void HoleFiller::rebuild_table(std::size_t size) {
+  std::size_t power = 256;
+  while (power < size) power *= 2;
+  table_.assign(power, Slot{});
+  used_slots_ = 0;
+}
+
+// Among the candidates on the inner side, the one whose sphere with the facet has its centre lowest along the
+// facet's axis, by rounded arithmetic. Marks the inner side exactly.
+unsigned HoleFiller::nearest_apex(const OpenFacet& facet) {
+  const Point& a = points_[facet.local[0]];
+  const Vector ab = points_[facet.local[1]] - a, ac = points_[facet.local[2]] - a;
+  const Vector normal = cross(ab, ac);
+  const double n2 = squared_length(normal);
+  // Foot of the axis, from a.
+  const Vector foot =
+      (0.5 / n2) * (squared_length(ab) * cross(ac, normal) + squared_length(ac) * cross(normal, ab));
+  // |ab|,|ac|,|x-a| times 16 u bounds the rounding of dot(normal, x-a) (each product of three differences).
+  const double bound = 16 * 0x1p-53 * std::sqrt(squared_length(ab) * squared_length(ac));
+  unsigned best = kNoApex;
+  double best_height = std::numeric_limits<double>::infinity();
+  is_inner_.assign(points_.size(), 0);
+  for (unsigned i = 0; i < points_.size(); ++i) {
+    if (i == facet.local[0] || i == facet.local[1] || i == facet.local[2]) continue;
+    const Vector x = points_[i] - a;
+    const double side = dot(normal, x);
+    const double s = squared_length(x);
+    if (side * side <= bound * bound * s) {
+      if (orientation(a, points_[facet.local[1]], points_[facet.local[2]], points_[i]) <= 0) continue;
+    } else if (side < 0) {
+      continue;
+    }
+    is_inner_[i] = 1;
+    const double height = (s - 2 * dot(foot, x)) / side;
+    if (best == kNoApex || height < best_height) {
+      best = i;
+      best_height = height;
+    }
+  }
+  return best;
+}
+
+unsigned HoleFiller::apex_of(const Mesh& mesh, const OpenFacet& facet) {
+  unsigned best = nearest_apex(facet);
+  if (best == kNoApex) throw InternalError("no vertex on the inner side of a hole's facet");
+  const Point &a = points_[facet.local[0]], &b = points_[facet.local[1]], &c = points_[facet.local[2]];
+  // The guess is now proved, or moved to a vertex inside its sphere. Spheres through the facet are nested on
+  // its inner side, so each move shrinks the set of vertices inside, and one pass over all candidates must
+  // end it.
+  Circumsphere sphere = circumsphere(a, b, c, points_[best], mesh.extent());
+  for (unsigned checked = 0, i = 0; checked < points_.size(); ++checked, i = (i + 1) % points_.size()) {
+    if (!is_inner_[i] || i == best) continue;
+    const Side side = side_of(sphere, points_[i]);
+    if (side == Side::kOutside) continue;
+    if (side == Side::kUndecided && !in_circumsphere(a, b, c, points_[best], points_[i])) continue;
+    best = i;
+    sphere = circumsphere(a, b, c, points_[best], mesh.extent());
+    checked = 0;
+  }
+  return best;
+}
+
+}  // namespace podm

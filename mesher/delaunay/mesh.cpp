@@ -1,0 +1,122 @@
+#include "delaunay/mesh.h"
+
+#include <algorithm>
+#include <cmath>
+#include <new>
+
+#include "geometry/predicates.h"
+
+namespace podm {
+
+namespace {
+
+// A tetrahedralisation of V vertices has at most about 6.8 V cells on average inputs of refinement; ids of
+// vertices are bounded by cells / 4, which leaves slack for sparse starts.
+std::size_t vertex_capacity_for(std::size_t cell_capacity) { return cell_capacity / 4 + 4096; }
+
+double largest_coordinate(const Box& b) {
+  return std::max({std::abs(b.low.x), std::abs(b.low.y), std::abs(b.low.z), std::abs(b.high.x),
+                   std::abs(b.high.y), std::abs(b.high.z)});
+}
+
+}  // namespace
+
+Mesh::Mesh(const Box& box, std::size_t cell_capacity)
+    : box_(box),
+      extent_(largest_coordinate(box)),
+      cells_(cell_capacity),
+      states_(cell_capacity),
+      vertices_(vertex_capacity_for(cell_capacity)) {
+  // Kuhn's six cells around the diagonal from corner 0 to corner 7 (bit 0: x, 1: y, 2: z). All eight corners
+  // are cospherical; the perturbation of predicates.h, which lowers the largest corner most, picks these.
+  take_new_vertices(8);
+  for (unsigned corner = 0; corner < 8; ++corner) {
+    vertices_[corner] = {{(corner & 1) ? box.high.x : box.low.x, (corner & 2) ? box.high.y : box.low.y,
+                          (corner & 4) ? box.high.z : box.low.z},
+                         0,
+                         0,
+                         VertexKind::kBox};
+  }
+  static constexpr std::array<std::array<VertexId, 2>, 6> kPaths{
+      {{1, 3}, {3, 2}, {2, 6}, {6, 4}, {4, 5}, {5, 1}}};
+  take_new_cells(6);
+  for (CellId c = 0; c < 6; ++c) {
+    // Neighbouring paths share an edge from 0 to 7; the ring turns counter-clockwise seen from 7.
+    cells_[c].vertices = {0, kPaths[c][0], kPaths[c][1], 7};
+    const CellId next = (c + 1) % 6, previous = (c + 5) % 6;
+    cells_[c].mirrors = {kNoFacet, 4 * next + 2, 4 * previous + 1, kNoFacet};
+    refresh_sphere(c);
+  }
+}
+
+void Mesh::refresh_sphere(CellId c) {
+  const auto& v = cells_[c].vertices;
+  cells_[c].sphere = circumsphere(point(v[0]), point(v[1]), point(v[2]), point(v[3]), extent_);
+}
+
+bool Mesh::is_in_conflict(CellId c, const Point& p) const {
+  const Side side = side_of(cells_[c].sphere, p);
+  if (side != Side::kUndecided) return side == Side::kInside;
+  const auto& v = cells_[c].vertices;
+  return in_circumsphere(point(v[0]), point(v[1]), point(v[2]), point(v[3]), p);
+}
+
+std::uint64_t Mesh::num_cells() const {
+  std::uint64_t count = 0;
+  for (CellId c = 0; c < cell_bound_; ++c) count += cells_[c].is_alive();
+  return count;
+}
+
+CellId Mesh::take_new_cells(std::uint32_t count) {
+  if (cell_bound_ + static_cast<std::size_t>(count) > cells_.capacity()) throw std::bad_alloc();
+  for (std::uint32_t i = 0; i < count; ++i) cells_[cell_bound_ + i].vertices[0] = kNoVertex;
+  cell_bound_ += count;
+  return cell_bound_ - count;
+}
+
+VertexId Mesh::take_new_vertices(std::uint32_t count) {
+  if (vertex_bound_ + static_cast<std::size_t>(count) > vertices_.capacity()) throw std::bad_alloc();
+  vertex_bound_ += count;
+  return vertex_bound_ - count;
+}
+
+CellId Pool::take_cell() {
+  if (!free_cells_.empty()) {
+    const CellId c = free_cells_.back();
+    free_cells_.pop_back();
+    return c;
+  }
+  if (next_cell_ == end_cell_) {
+    next_cell_ = mesh_.take_new_cells(kBlock);
+    end_cell_ = next_cell_ + kBlock;
+  }
+  return next_cell_++;
+}
+
+VertexId Pool::take_vertex() {
+  if (!free_vertices_.empty()) {
+    const VertexId v = free_vertices_.back();
+    free_vertices_.pop_back();
+    return v;
+  }
+  if (next_vertex_ == end_vertex_) {
+    next_vertex_ = mesh_.take_new_vertices(kBlock);
+    end_vertex_ = next_vertex_ + kBlock;
+  }
+  return next_vertex_++;
+}
+
+void Pool::release_cell(CellId c) {
+  mesh_.cell(c).vertices[0] = kNoVertex;
+  CellState& state = mesh_.state(c);
+  state.stamp = static_cast<std::uint16_t>(state.stamp + 1) & 0x7fff;
+  state.in_region = 0;
+  free_cells_.push_back(c);
+}
+
+void Pool::release_vertex(VertexId v) {
+  mesh_.vertex(v).kind = VertexKind::kUnused;
+  free_vertices_.push_back(v);
+}
+
+}  // namespace podm

@@ -1,0 +1,150 @@
+#include "delaunay/operation.h"
+
+#include <algorithm>
+#include <limits>
+
+namespace podm {
+
+template <class Locks>
+bool Operation<Locks>::lock_cell(CellId c) {
+  for (const VertexId v : mesh_.cell(c).vertices) {
+    if (!locks_.try_lock(mesh_.vertex(v))) return false;
+  }
+  return true;
+}
+
+template <class Locks>
+void Operation<Locks>::add_to_region(CellId c) {
+  mesh_.state(c).in_region = 1;
+  region_.cells.push_back(c);
+}
+
+template <class Locks>
+bool Operation<Locks>::is_in_conflict(CellId c, const Point& p) {
+  ++counters_.conflict_tests;
+  const Side side = side_of(mesh_.cell(c).sphere, p);
+  if (side != Side::kUndecided) return side == Side::kInside;
+  ++counters_.exact_decisions;
+  return mesh_.is_in_conflict(c, p);
+}
+
+template <class Locks>
+Outcome Operation<Locks>::plan_insertion(const Point& p, CellId start) {
+  is_cavity_ = true;
+  if (!lock_cell(start)) return Outcome::kLockConflict;
+  add_to_region(start);
+  for (std::size_t i = 0; i < region_.cells.size(); ++i) {
+    const CellId c = region_.cells[i];
+    const std::array<FacetId, 4> mirrors = mesh_.cell(c).mirrors;
+    for (unsigned k = 0; k < 4; ++k) {
+      if (mirrors[k] == kNoFacet) {
+        region_.boundary.push_back(4 * c + k);
+        continue;
+      }
+      const CellId neighbor = cell_of(mirrors[k]);
+      if (!lock_cell(neighbor)) return Outcome::kLockConflict;
+      if (mesh_.state(neighbor).in_region) continue;
+      if (is_in_conflict(neighbor, p)) {
+        add_to_region(neighbor);
+      } else {
+        region_.boundary.push_back(4 * c + k);
+      }
+    }
+  }
+  return Outcome::kCommitted;
+}
+
+template <class Locks>
+Outcome Operation<Locks>::plan_removal(VertexId v, CellId seed) {
+  is_cavity_ = false;
+  region_.removed.push_back(v);
+  // Cells around v that the region already has are passed through, so the walk keeps its own list.
+  std::vector<CellId> ball{seed};
+  if (!lock_cell(seed)) return Outcome::kLockConflict;
+  if (!mesh_.state(seed).in_region) add_to_region(seed);
+  for (std::size_t i = 0; i < ball.size(); ++i) {
+    const Cell& cell = mesh_.cell(ball[i]);
+    for (unsigned k = 0; k < 4; ++k) {
+      if (cell.vertices[k] == v || cell.mirrors[k] == kNoFacet) continue;
+      const CellId neighbor = cell_of(cell.mirrors[k]);
+      if (std::find(ball.begin(), ball.end(), neighbor) != ball.end()) continue;
+      if (!lock_cell(neighbor)) return Outcome::kLockConflict;
+      if (!mesh_.state(neighbor).in_region) add_to_region(neighbor);
+      ball.push_back(neighbor);
+    }
+  }
+  return Outcome::kCommitted;
+}
+
+template <class Locks>
+bool Operation<Locks>::removes(VertexId v) const {
+  return std::find(region_.removed.begin(), region_.removed.end(), v) != region_.removed.end();
+}
+
+template <class Locks>
+void Operation<Locks>::collect_boundary() {
+  region_.boundary.clear();
+  for (const CellId c : region_.cells) {
+    for (unsigned k = 0; k < 4; ++k) {
+      const FacetId mirror = mesh_.cell(c).mirrors[k];
+      if (mirror == kNoFacet || !mesh_.state(cell_of(mirror)).in_region)
+        region_.boundary.push_back(4 * c + k);
+    }
+  }
+}
+
+template <class Locks>
+double Operation<Locks>::squared_distance_to_region(const Point& p) const {
+  double nearest = std::numeric_limits<double>::infinity();
+  for_each_region_vertex([&](VertexId v, CellId) {
+    if (!removes(v)) nearest = std::min(nearest, squared_distance(mesh_.point(v), p));
+  });
+  return nearest;
+}
+
+template <class Locks>
+Outcome Operation<Locks>::commit_insertion(const Point& p, VertexKind kind, double min_distance) {
+  const bool is_star = is_cavity_ && star_.prepare(mesh_, region_, p);
+  const double nearest = is_star ? star_.squared_distance() : squared_distance_to_region(p);
+  if (nearest < min_distance * min_distance) return Outcome::kRejected;
+  inserted_ = pool_.take_vertex();
+  mesh_.vertex(inserted_) = {p, 0, 0, kind};
+  const std::size_t destroyed = region_.cells.size();
+  if (is_star) {
+    star_.fill(mesh_, pool_, region_, inserted_);
+  } else {
+    if (!is_cavity_) collect_boundary();
+    hole_.fill(mesh_, pool_, region_, inserted_);
+  }
+  counters_.cells_destroyed += destroyed;
+  finish();
+  return Outcome::kCommitted;
+}
+
+template <class Locks>
+void Operation<Locks>::commit_removals() {
+  collect_boundary();
+  counters_.cells_destroyed += region_.cells.size();
+  hole_.fill(mesh_, pool_, region_, kNoVertex);
+  finish();
+}
+
+template <class Locks>
+void Operation<Locks>::finish() {
+  counters_.cells_created += region_.created.size();
+  for (const VertexId v : region_.removed) pool_.release_vertex(v);
+  region_.clear();
+  locks_.unlock_all();
+}
+
+template <class Locks>
+void Operation<Locks>::rollback() {
+  for (const CellId c : region_.cells) mesh_.state(c).in_region = 0;
+  region_.clear();
+  region_.created.clear();
+  locks_.unlock_all();
+}
+
+template class Operation<NoLocks>;
+
+}  // namespace podm

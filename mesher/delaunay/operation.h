@@ -1,0 +1,83 @@
+// One operation on the triangulation: insert a vertex, remove vertices, or both at once.
+//
+// An operation is cautious. *Planning* reads, locks and collects the region: the cells that will die. For an
+// insertion these are the cells in conflict with the point (the cavity), for a removal the cells around the
+// vertex (its ball); an isosurface insertion with its R6 removals takes their union. *Committing* replaces
+// the region by new Delaunay cells. A plan that cannot be carried out is rolled back, with nothing written.
+//
+// Why one region serves all: a cell of the old triangulation stays Delaunay unless it holds a removed vertex
+// or conflicts with the new one, so the region's boundary facets are facets of the new triangulation too.
+#pragma once
+
+#include <cstdint>
+#include <vector>
+
+#include "delaunay/hole.h"
+#include "delaunay/mesh.h"
+#include "delaunay/star.h"
+#include "delaunay/vertex_locks.h"
+
+namespace podm {
+
+enum class Outcome { kCommitted, kLockConflict, kStaleCell, kRejected, kOutOfLeaf };
+
+struct OperationCounters {
+  std::uint64_t conflict_tests = 0, exact_decisions = 0, cells_created = 0, cells_destroyed = 0;
+};
+
+template <class Locks>
+class Operation {
+ public:
+  Operation(Mesh& mesh, Pool& pool) : mesh_(mesh), pool_(pool) {}
+
+  /// Digs the cavity of p from `start`, a cell in conflict with p.
+  /// kLockConflict: the caller must roll back. The plan may be extended by plan_removal.
+  Outcome plan_insertion(const Point& p, CellId start);
+  /// Adds the ball of v, a vertex of the cell `seed`, to the region.
+  Outcome plan_removal(VertexId v, CellId seed);
+  /// Calls visit(VertexId, CellId) for the vertices of every cell of the region, some more than once. `visit`
+  /// may extend the plan; the cells so added are visited too.
+  template <class Visit>
+  void for_each_region_vertex(Visit&& visit) const {
+    for (std::size_t i = 0; i < region_.cells.size(); ++i) {
+      const std::array<VertexId, 4> vertices = mesh_.cell(region_.cells[i]).vertices;
+      for (const VertexId v : vertices) visit(v, region_.cells[i]);
+    }
+  }
+  bool removes(VertexId v) const;
+
+  /// Carries the plan out; created() then lists the new cells.
+  /// kRejected: a vertex that stays lies nearer to p than `min_distance` (mm); nothing was written, roll
+  /// back.
+  Outcome commit_insertion(const Point& p, VertexKind kind, double min_distance);
+  void commit_removals();
+  /// Gives the plan up; nothing was written.
+  void rollback();
+
+  /// The vertex that the last committed insertion made.
+  VertexId inserted() const { return inserted_; }
+  const std::vector<CellId>& created() const { return region_.created; }
+  const OperationCounters& counters() const { return counters_; }
+
+ private:
+  bool lock_cell(CellId c);
+  void add_to_region(CellId c);
+  bool is_in_conflict(CellId c, const Point& p);
+  void collect_boundary();
+  double squared_distance_to_region(const Point& p) const;
+  void finish();
+
+  Mesh& mesh_;
+  Pool& pool_;
+  Locks locks_;
+  Region region_;
+  StarFiller star_;
+  HoleFiller hole_;
+  bool is_cavity_ = false;  // the region is one point's cavity, its boundary collected while digging
+  VertexId inserted_ = kNoVertex;
+  OperationCounters counters_;
+};
+
+extern template class Operation<NoLocks>;
+
+}  // namespace podm

@@ -1,0 +1,93 @@
+#include "delaunay/star.h"
+
+#include <limits>
+
+namespace podm {
+
+bool StarFiller::prepare(Mesh& mesh, const Region& region, const Point& p) {
+  if (region.boundary.size() > kMaxFacets) return false;
+  num_vertices_ = 0;
+  num_facets_ = 0;
+  squared_distance_ = std::numeric_limits<double>::infinity();
+  for (const FacetId f : region.boundary) {
+    const Cell& cell = mesh.cell(cell_of(f));
+    const auto k = static_cast<unsigned>(index_in_cell(f));
+    Facet& facet = facets_[num_facets_++];
+    facet.mirror = cell.mirrors[k];
+    for (unsigned i = 0; i < 3; ++i) {
+      const VertexId v = cell.vertices[static_cast<unsigned>(kFacetVertices[k][i])];
+      Vertex& vertex = mesh.vertex(v);
+      unsigned local = vertex.local_index;
+      if (local >= num_vertices_ || ids_[local] != v) {
+        if (num_vertices_ == kMaxVertices) return false;
+        local = num_vertices_++;
+        ids_[local] = v;
+        vertex.local_index = static_cast<std::uint16_t>(local);
+        const Vector e = vertex.point - p;
+        const double s = squared_length(e);
+        offsets_[local] = {e.x, e.y, e.z, s};
+        squared_distance_ = std::min(squared_distance_, s);
+      }
+      facet.vertices[i] = v;
+      facet.local[i] = static_cast<std::uint8_t>(local);
+    }
+  }
+  return true;
+}
+
+void StarFiller::compute_spheres(const Mesh& mesh, const Point& p) {
+  for (unsigned f = 0; f < num_facets_; ++f) {
+    const auto& a = offsets_[facets_[f].local[0]];
+    const auto& b = offsets_[facets_[f].local[1]];
+    const auto& c = offsets_[facets_[f].local[2]];
+    const RelativeSphere s =
+        relative_sphere({a[0], a[1], a[2]}, {b[0], b[1], b[2]}, {c[0], c[1], c[2]}, a[3], b[3], c[3]);
+    const Point center =
+        is_well_conditioned(s.determinant, s.squared_length)
+            ? p + s.center
+            : exact_circumcenter(mesh.point(facets_[f].vertices[0]), mesh.point(facets_[f].vertices[1]),
+                                 mesh.point(facets_[f].vertices[2]), p);
+    spheres_[0][f] = center.x;
+    spheres_[1][f] = center.y;
+    spheres_[2][f] = center.z;
+    spheres_[3][f] = certified_squared_radius(center, p, mesh.extent());
+  }
+}
+
+void StarFiller::fill(Mesh& mesh, Pool& pool, Region& region, VertexId apex) {
+  compute_spheres(mesh, mesh.point(apex));
+  region.created.clear();
+  // The dying cells' ids are reused at once: they are warm, and their neighbours are next to them.
+  std::size_t reused = 0;
+  for (unsigned f = 0; f < num_facets_; ++f) {
+    const Facet& facet = facets_[f];
+    const CellId id = reused < region.cells.size() ? region.cells[reused++] : pool.take_cell();
+    region.created.push_back(id);
+    Cell& cell = mesh.cell(id);
+    cell.sphere = {{spheres_[0][f], spheres_[1][f], spheres_[2][f]}, spheres_[3][f]};
+    cell.vertices = {facet.vertices[0], facet.vertices[1], facet.vertices[2], apex};
+    cell.mirrors[3] = facet.mirror;
+    CellState& state = mesh.state(id);
+    state.stamp = static_cast<std::uint16_t>(state.stamp + 1) & 0x7fff;
+    state.in_region = 0;
+    state.label = kUnknownLabel;
+    if (facet.mirror != kNoFacet) {
+      mesh.cell(cell_of(facet.mirror)).mirrors[static_cast<unsigned>(index_in_cell(facet.mirror))] =
+          4 * id + 3;
+    }
+    const unsigned a = facet.local[0], b = facet.local[1], c = facet.local[2];
+    facet_at_edge_[kMaxVertices * b + c] = 4 * id + 0;
+    facet_at_edge_[kMaxVertices * c + a] = 4 * id + 1;
+    facet_at_edge_[kMaxVertices * a + b] = 4 * id + 2;
+  }
+  for (unsigned f = 0; f < num_facets_; ++f) {
+    const unsigned a = facets_[f].local[0], b = facets_[f].local[1], c = facets_[f].local[2];
+    auto& mirrors = mesh.cell(region.created[f]).mirrors;
+    mirrors[0] = facet_at_edge_[kMaxVertices * c + b];
+    mirrors[1] = facet_at_edge_[kMaxVertices * a + c];
+    mirrors[2] = facet_at_edge_[kMaxVertices * b + a];
+  }
+  for (; reused < region.cells.size(); ++reused) pool.release_cell(region.cells[reused]);
+}
+
+}  // namespace podm

@@ -1,0 +1,45 @@
+// Filling a cavity with the star of its new vertex: one cell per boundary facet. The common case, and the
+// hottest code of the mesher.
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <vector>
+
+#include "delaunay/region.h"
+
+namespace podm {
+
+class StarFiller {
+ public:
+  /// Numbers the boundary's vertices and measures them from p. False if there are more than fit; then
+  /// HoleFiller must be used.
+  bool prepare(Mesh& mesh, const Region& region, const Point& p);
+  /// Of the prepared boundary to p, mm^2.
+  double squared_distance() const { return squared_distance_; }
+  /// Replaces the region by the star of `apex`, whose point is p. Cells get their spheres here.
+  void fill(Mesh& mesh, Pool& pool, Region& region, VertexId apex);
+
+ private:
+  static constexpr unsigned kMaxVertices = 64;
+  static constexpr unsigned kMaxFacets = 2 * kMaxVertices;
+
+  struct Facet {
+    std::array<VertexId, 3> vertices;
+    std::array<std::uint8_t, 3> local;
+    FacetId mirror;
+  };
+  void compute_spheres(const Mesh& mesh, const Point& p);
+
+  unsigned num_vertices_ = 0, num_facets_ = 0;
+  double squared_distance_ = 0;
+  std::array<VertexId, kMaxVertices> ids_;
+  alignas(64) std::array<std::array<double, 4>, kMaxVertices> offsets_;  // x-p and |x-p|^2
+  std::array<Facet, kMaxFacets> facets_;
+  alignas(64) std::array<std::array<double, kMaxFacets>, 4> spheres_;  // centre - p, squared radius
+  alignas(64) std::array<double, kMaxFacets> conditions_;              // L^6 / det^2
+  // cells_at_edge_[64 a + b]: the new facet whose cell holds directed boundary edge (a,b).
+  std::array<FacetId, kMaxVertices * kMaxVertices> facet_at_edge_;
+};
+
+}  // namespace podm

@@ -1,0 +1,65 @@
+// Test helper: triangulates given points one by one, finding each point's first conflict by scanning.
+#pragma once
+
+#include <algorithm>
+#include <array>
+#include <optional>
+#include <vector>
+
+#include "delaunay/operation.h"
+
+namespace podm::test {
+
+class Triangulator {
+ public:
+  explicit Triangulator(const Box& box, std::size_t capacity = 1 << 20)
+      : mesh(box, capacity), pool(mesh), operation(mesh, pool) {}
+
+  CellId conflicting_cell(const Point& p) const {
+    for (CellId c = mesh.cell_bound(); c-- > 0;) {
+      if (mesh.cell(c).is_alive() && mesh.is_in_conflict(c, p)) return c;
+    }
+    throw std::runtime_error("point outside the box");
+  }
+  std::optional<VertexId> insert(const Point& p, VertexKind kind = VertexKind::kCircumcenter) {
+    operation.plan_insertion(p, conflicting_cell(p));
+    if (operation.commit_insertion(p, kind, 1e-100) != Outcome::kCommitted) {
+      operation.rollback();
+      return std::nullopt;
+    }
+    return operation.inserted();
+  }
+  void remove(VertexId v) {
+    for (CellId c = 0; c < mesh.cell_bound(); ++c) {
+      const auto& cell = mesh.cell(c);
+      if (cell.is_alive() && std::count(cell.vertices.begin(), cell.vertices.end(), v) > 0) {
+        operation.plan_removal(v, c);
+        operation.commit_removals();
+        return;
+      }
+    }
+    throw std::runtime_error("vertex in no cell");
+  }
+  /// Every cell as four sorted points: equal for equal triangulations, whatever the ids.
+  std::vector<std::array<std::array<double, 3>, 4>> cells() const {
+    std::vector<std::array<std::array<double, 3>, 4>> all;
+    for (CellId c = 0; c < mesh.cell_bound(); ++c) {
+      if (!mesh.cell(c).is_alive()) continue;
+      std::array<std::array<double, 3>, 4> points;
+      for (unsigned i = 0; i < 4; ++i) {
+        const Point& p = mesh.point(mesh.cell(c).vertices[i]);
+        points[i] = {p.x, p.y, p.z};
+      }
+      std::sort(points.begin(), points.end());
+      all.push_back(points);
+    }
+    std::sort(all.begin(), all.end());
+    return all;
+  }
+
+  Mesh mesh;
+  Pool pool;
+  Operation<NoLocks> operation;
+};
+
+}  // namespace podm::test

@@ -1,0 +1,66 @@
+// is_valid: every cell positive, every mirror mutual over the same three vertices, every sphere honest, every
+// interior facet locally Delaunay. Locally Delaunay everywhere is globally Delaunay (Delaunay's lemma).
+#include <algorithm>
+#include <string>
+
+#include "delaunay/mesh.h"
+#include "geometry/predicates.h"
+
+namespace podm {
+
+namespace {
+
+std::array<VertexId, 3> sorted_facet(const Mesh& mesh, FacetId f) {
+  const auto& v = mesh.cell(cell_of(f)).vertices;
+  const auto& k = kFacetVertices[static_cast<std::size_t>(index_in_cell(f))];
+  std::array<VertexId, 3> facet{v[static_cast<std::size_t>(k[0])], v[static_cast<std::size_t>(k[1])],
+                                v[static_cast<std::size_t>(k[2])]};
+  std::sort(facet.begin(), facet.end());
+  return facet;
+}
+
+const char* fault_of_facet(const Mesh& mesh, CellId c, unsigned i) {
+  const FacetId mirror = mesh.cell(c).mirrors[i];
+  if (mirror == kNoFacet) return nullptr;
+  const Cell& other = mesh.cell(cell_of(mirror));
+  const auto j = static_cast<std::size_t>(index_in_cell(mirror));
+  if (cell_of(mirror) >= mesh.cell_bound() || !other.is_alive()) return "mirror in a dead cell";
+  if (other.mirrors[j] != 4 * c + i) return "mirror not mutual";
+  if (sorted_facet(mesh, 4 * c + i) != sorted_facet(mesh, mirror)) return "mirror over other vertices";
+  if (mesh.is_in_conflict(c, mesh.point(other.vertices[j]))) return "facet not locally Delaunay";
+  return nullptr;
+}
+
+const char* fault_of_cell(const Mesh& mesh, CellId c) {
+  const auto& v = mesh.cell(c).vertices;
+  for (const VertexId id : v) {
+    if (id >= mesh.vertex_bound() || mesh.vertex(id).kind == VertexKind::kUnused) return "unused vertex";
+  }
+  if (orientation(mesh.point(v[0]), mesh.point(v[1]), mesh.point(v[2]), mesh.point(v[3])) <= 0) {
+    return "not positively oriented";
+  }
+  if (mesh.state(c).in_region) return "left marked by an operation";
+  for (const VertexId id : v) {
+    const Side side = side_of(mesh.cell(c).sphere, mesh.point(id));
+    if (side != Side::kUndecided) return "circumsphere misses its vertex";
+  }
+  for (unsigned i = 0; i < 4; ++i) {
+    if (const char* fault = fault_of_facet(mesh, c, i)) return fault;
+  }
+  return nullptr;
+}
+
+}  // namespace
+
+bool is_valid(const Mesh& mesh, std::string* fault) {
+  for (CellId c = 0; c < mesh.cell_bound(); ++c) {
+    if (!mesh.cell(c).is_alive()) continue;
+    if (const char* found = fault_of_cell(mesh, c)) {
+      if (fault != nullptr) *fault = "cell " + std::to_string(c) + ": " + found;
+      return false;
+    }
+  }
+  return true;
+}
+
+}  // namespace podm

@@ -1,0 +1,76 @@
+// Circumspheres: computed once when a cell is made, cached, and good for nearly every conflict test.
+//
+// Error bound. Let u = 2^-53, p the cell's last vertex, e1..e3 the vectors from p to the others,
+// L = max |e_i|, det = e1.(e2 x e3), r the true circumradius, M the largest coordinate. The rounded formula
+// below puts the centre off by at most
+//     delta <= 90 u L^3 r / |det| + sqrt(3) u (M + r)
+// (numerator: 36 u L^4 a component, |det| off by 16 u L^3, L <= 2r; last term: storing centre + p). The power
+// of a point x changes by 2 delta (|x-c| + r) then, so that with delta <= tau r / 5
+//     |x-c|^2 < r^2 (1 - tau)  proves inside,   |x-c|^2 > r^2 (1 + tau)  proves outside.
+// With tau = 2^-20 this holds when L^3 <= 1e7 |det| and M <= 1e8 r: the sphere is *certified*. Other cells
+// (about one in 10^5) get the exact centre, rounded once (delta <= sqrt(3) u (M + r)). What even that cannot
+// certify has a squared radius of NaN, which leaves every test undecided, hence exact.
+#pragma once
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "geometry/point.h"
+#include "geometry/predicates.h"
+
+namespace podm {
+
+inline constexpr double kSphereTolerance = 1.0 / (1 << 20);  // tau
+
+struct Circumsphere {
+  Point center;
+  double squared_radius = 0;  // NaN: not certified
+};
+
+enum class Side { kInside, kOutside, kUndecided };
+
+inline Side side_of(const Circumsphere& s, const Point& p) {
+  const double d = squared_distance(s.center, p);
+  if (d < s.squared_radius * (1 - kSphereTolerance)) return Side::kInside;
+  if (d > s.squared_radius * (1 + kSphereTolerance)) return Side::kOutside;
+  return Side::kUndecided;
+}
+
+/// The rounded formula relative to the origin p, without certificate: centre - p and |det|, L^2.
+struct RelativeSphere {
+  Vector center;
+  double determinant, squared_length;  // det and L^2
+};
+inline RelativeSphere relative_sphere(const Vector& e1, const Vector& e2, const Vector& e3, double s1,
+                                      double s2, double s3) {
+  const Vector x1 = cross(e2, e3), x2 = cross(e3, e1), x3 = cross(e1, e2);
+  const double det = dot(e1, x1);
+  const double scale = 0.5 / det;
+  return {{scale * (s1 * x1.x + s2 * x2.x + s3 * x3.x), scale * (s1 * x1.y + s2 * x2.y + s3 * x3.y),
+           scale * (s1 * x1.z + s2 * x2.z + s3 * x3.z)},
+          det,
+          std::max(s1, std::max(s2, s3))};
+}
+inline bool is_well_conditioned(double det, double squared_length) {
+  return squared_length * squared_length * squared_length <= 1e14 * det * det;
+}
+
+/// `extent` is M, the largest coordinate in play.
+inline double certified_squared_radius(const Point& center, const Point& p, double extent) {
+  const double r2 = squared_distance(center, p);
+  return r2 * 1e16 >= extent * extent ? r2 : std::numeric_limits<double>::quiet_NaN();
+}
+
+/// Circumsphere of the positive cell (a,b,c,p).
+inline Circumsphere circumsphere(const Point& a, const Point& b, const Point& c, const Point& p,
+                                 double extent) {
+  const Vector e1 = a - p, e2 = b - p, e3 = c - p;
+  const RelativeSphere s =
+      relative_sphere(e1, e2, e3, squared_length(e1), squared_length(e2), squared_length(e3));
+  const Point center =
+      is_well_conditioned(s.determinant, s.squared_length) ? p + s.center : exact_circumcenter(a, b, c, p);
+  return {center, certified_squared_radius(center, p, extent)};
+}
+
+}  // namespace podm

@@ -1,0 +1,42 @@
+// Arrays that grow without moving: address space is reserved once, memory arrives at first touch, in huge
+// pages where the kernel grants them. No copy at growth, no page that was never used.
+#pragma once
+
+#include <sys/mman.h>
+
+#include <cstddef>
+#include <new>
+#include <type_traits>
+#include <utility>
+
+namespace podm {
+
+template <class T>
+class HugeArray {
+  static_assert(std::is_trivially_copyable_v<T>);
+
+ public:
+  /// Reserves room for `capacity` elements. Throws std::bad_alloc when not even addresses can be had.
+  explicit HugeArray(std::size_t capacity) : capacity_(capacity) {
+    void* memory = mmap(nullptr, capacity * sizeof(T), PROT_READ | PROT_WRITE,
+                        MAP_PRIVATE | MAP_ANONYMOUS | MAP_NORESERVE, -1, 0);
+    if (memory == MAP_FAILED) throw std::bad_alloc();
+    madvise(memory, capacity * sizeof(T), MADV_HUGEPAGE);  // a wish, not a need
+    data_ = static_cast<T*>(memory);
+  }
+  ~HugeArray() {
+    if (data_ != nullptr) munmap(data_, capacity_ * sizeof(T));
+  }
+  HugeArray(const HugeArray&) = delete;
+  HugeArray& operator=(const HugeArray&) = delete;
+
+  T& operator[](std::size_t i) { return data_[i]; }
+  const T& operator[](std::size_t i) const { return data_[i]; }
+  std::size_t capacity() const { return capacity_; }
+
+ private:
+  T* data_ = nullptr;
+  std::size_t capacity_ = 0;
+};
+
+}  // namespace podm
