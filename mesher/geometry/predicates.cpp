@@ -43,6 +43,7 @@ bool in_circumsphere(const Point& a, const Point& b, const Point& c, const Point
   const CGAL::Oriented_side side =
       CGAL::side_of_oriented_sphere(convert(a), convert(b), convert(c), convert(d), convert(p));
   if (side != CGAL::ON_ORIENTED_BOUNDARY) return side == CGAL::ON_POSITIVE_SIDE;
+  if (p == a || p == b || p == c || p == d) return false;
   return in_perturbed_circumsphere({&a, &b, &c, &d}, p);
 }
 

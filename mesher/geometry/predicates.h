@@ -13,6 +13,7 @@ int orientation(const Point& a, const Point& b, const Point& c, const Point& d);
 /// height |x|^2 of every point is lowered by an infinitesimal, infinitely larger for a lexicographically
 /// larger point (idea: Devillers and Teillaud, "Perturbations for Delaunay and weighted Delaunay 3D
 /// triangulations", CGTA 44 (2011)). Heights are generic then, so no flat cell is ever Delaunay off the hull.
+/// A point that coincides with a vertex is in no sphere.
 bool in_circumsphere(const Point& a, const Point& b, const Point& c, const Point& d, const Point& p);
 
 /// Circumcentre of a cell, computed exactly and rounded once. Slow; (a,b,c,d) must not be coplanar.

@@ -160,7 +160,10 @@ TEST(TriangulationEdge, CoincidentPointIsRejectedAndNothingChanges) {
   Triangulator t(kBox);
   for (const Point& p : random_points(2, 50, 9)) t.insert(p);
   const auto before = t.cells();
-  EXPECT_FALSE(t.insert(t.mesh.point(20)));
+  const Point p = t.mesh.point(20);
+  t.operation.plan_insertion(p, t.cell_around(20));
+  EXPECT_EQ(t.operation.commit_insertion(p, VertexKind::kIsosurface, 1e-9), Outcome::kRejected);
+  t.operation.rollback();
   EXPECT_EQ(t.cells(), before);
   EXPECT_TRUE(is_valid(t.mesh));
 }

@@ -29,16 +29,16 @@ class Triangulator {
     }
     return operation.inserted();
   }
-  void remove(VertexId v) {
+  CellId cell_around(VertexId v) const {
     for (CellId c = 0; c < mesh.cell_bound(); ++c) {
       const auto& cell = mesh.cell(c);
-      if (cell.is_alive() && std::count(cell.vertices.begin(), cell.vertices.end(), v) > 0) {
-        operation.plan_removal(v, c);
-        operation.commit_removals();
-        return;
-      }
+      if (cell.is_alive() && std::count(cell.vertices.begin(), cell.vertices.end(), v) > 0) return c;
     }
     throw std::runtime_error("vertex in no cell");
+  }
+  void remove(VertexId v) {
+    operation.plan_removal(v, cell_around(v));
+    operation.commit_removals();
   }
   /// Every cell as four sorted points: equal for equal triangulations, whatever the ids.
   std::vector<std::array<std::array<double, 3>, 4>> cells() const {
