@@ -32,6 +32,7 @@ template <class Locks>
 Outcome Operation<Locks>::plan_insertion(const Point& p, CellId start) {
   is_cavity_ = true;
   if (!lock_cell(start)) return Outcome::kLockConflict;
+  if (!is_in_conflict(start, p)) return Outcome::kRejected;
   add_to_region(start);
   for (std::size_t i = 0; i < region_.cells.size(); ++i) {
     const CellId c = region_.cells[i];

@@ -30,8 +30,8 @@ class Operation {
  public:
   Operation(Mesh& mesh, Pool& pool) : mesh_(mesh), pool_(pool) {}
 
-  /// Digs the cavity of p from `start`, a cell in conflict with p.
-  /// kLockConflict: the caller must roll back. The plan may be extended by plan_removal.
+  /// Digs the cavity of p from `start`, a cell in conflict with p. Unless committed (kRejected: `start` is
+  /// not in conflict) the caller must roll back. The plan may be extended by plan_removal.
   Outcome plan_insertion(const Point& p, CellId start);
   /// Adds the ball of v, a vertex of the cell `seed`, to the region.
   Outcome plan_removal(VertexId v, CellId seed);
@@ -45,6 +45,7 @@ class Operation {
     }
   }
   bool removes(VertexId v) const;
+  std::size_t num_removed() const { return region_.removed.size(); }
 
   /// Carries the plan out; created() then lists the new cells.
   /// kRejected: a vertex that stays lies nearer to p than `min_distance` (mm); nothing was written, roll

@@ -161,8 +161,19 @@ TEST(TriangulationEdge, CoincidentPointIsRejectedAndNothingChanges) {
   for (const Point& p : random_points(2, 50, 9)) t.insert(p);
   const auto before = t.cells();
   const Point p = t.mesh.point(20);
-  t.operation.plan_insertion(p, t.cell_around(20));
-  EXPECT_EQ(t.operation.commit_insertion(p, VertexKind::kIsosurface, 1e-9), Outcome::kRejected);
+  EXPECT_EQ(t.operation.plan_insertion(p, t.cell_around(20)), Outcome::kRejected);
+  t.operation.rollback();
+  EXPECT_EQ(t.cells(), before);
+  EXPECT_TRUE(is_valid(t.mesh));
+}
+
+TEST(TriangulationEdge, PointTooNearIsRejectedAndNothingChanges) {
+  Triangulator t(kBox);
+  for (const Point& p : random_points(2, 50, 9)) t.insert(p);
+  const auto before = t.cells();
+  const Point p = t.mesh.point(20) + Point{1e-6, 0, 0};
+  ASSERT_EQ(t.operation.plan_insertion(p, t.conflicting_cell(p)), Outcome::kCommitted);
+  EXPECT_EQ(t.operation.commit_insertion(p, VertexKind::kIsosurface, 1e-5), Outcome::kRejected);
   t.operation.rollback();
   EXPECT_EQ(t.cells(), before);
   EXPECT_TRUE(is_valid(t.mesh));

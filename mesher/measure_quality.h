@@ -1,0 +1,13 @@
+// What the finished mesh really is, measured on its output coordinates.
+#pragma once
+
+#include "podm/mesh_image.h"
+#include "refine/size_field.h"
+
+namespace podm {
+
+/// Fills quality, guarantees (but facet_vertices), cells and volumes by label. `mesh` is in mm.
+void measure_quality(const TetMesh& mesh, const LabelImage& image, const SizeField& sizes,
+                     MeshingReport& report);
+
+}  // namespace podm

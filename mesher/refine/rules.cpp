@@ -1,0 +1,133 @@
+#include "refine/rules.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "podm/mesh_image.h"
+
+namespace podm {
+
+namespace {
+
+constexpr double square(double x) { return x * x; }
+constexpr double kSquaredRatio = square(kRadiusEdgeBound * (1 - kMargin));
+
+}  // namespace
+
+Rules::Rules(Mesh& mesh, const Isosurface& isosurface, const Parameters& parameters)
+    : mesh_(mesh),
+      isosurface_(isosurface),
+      parameters_(parameters),
+      squared_delta_(square(parameters.delta_mm)),
+      squared_two_delta_(square(2 * parameters.delta_mm)) {}
+
+LabelIndex Rules::label_of(CellId c) const {
+  LabelIndex& label = mesh_.state(c).label;
+  if (label == kUnknownLabel) label = isosurface_.label_at(mesh_.cell(c).sphere.center);
+  return label;
+}
+
+Examination Rules::examine(CellId c) const {
+  const Cell& cell = mesh_.cell(c);
+  const Point& center = cell.sphere.center;
+  Examination t{c, center, cell.sphere.squared_radius, label_of(c), isosurface_.distance_lower_bound(center),
+                {}};
+  if (std::isnan(t.squared_radius))
+    t.squared_radius = squared_distance(center, mesh_.point(cell.vertices[0]));
+  if (square(t.isosurface_distance) > t.squared_radius) return t;
+  // A vertex on the isosurface lies within 2r of z: below r = delta/2 it silences R1, and R2 with it.
+  if (4 * t.squared_radius < squared_delta_) {
+    for (const VertexId v : cell.vertices) {
+      if (mesh_.vertex(v).kind == VertexKind::kIsosurface) return t;
+    }
+  }
+  t.nearest = isosurface_.closest_point(center, std::sqrt(t.squared_radius));
+  return t;
+}
+
+bool Rules::is_covered(const Point& z, VertexId by) const {
+  return mesh_.vertex(by).kind == VertexKind::kIsosurface &&
+         squared_distance(mesh_.point(by), z) < squared_delta_;
+}
+
+std::optional<Point> Rules::r1_sample(const Examination& t) const {
+  if (!t.nearest) return std::nullopt;
+  for (const VertexId v : mesh_.cell(t.cell).vertices) {
+    if (is_covered(*t.nearest, v)) return std::nullopt;
+  }
+  return t.nearest;
+}
+
+std::optional<Point> Rules::r2_center(const Examination& t) const {
+  if (!t.nearest || t.squared_radius < squared_two_delta_) return std::nullopt;
+  const Box& box = parameters_.clamp_box;
+  return Point{std::clamp(t.center.x, box.low.x, box.high.x), std::clamp(t.center.y, box.low.y, box.high.y),
+               std::clamp(t.center.z, box.low.z, box.high.z)};
+}
+
+// Some vertex off the isosurface, or an angle of at most 30 degrees: a side at most as long as the facet's
+// circumradius (side = 2 R sin(opposite angle)).
+bool Rules::needs_sample(CellId c, unsigned facet) const {
+  const auto& vertices = mesh_.cell(c).vertices;
+  std::array<const Point*, 3> p{};
+  for (unsigned i = 0; i < 3; ++i) {
+    const Vertex& v = mesh_.vertex(vertices[static_cast<unsigned>(kFacetVertices[facet][i])]);
+    if (v.kind != VertexKind::kIsosurface) return true;
+    p[i] = &v.point;
+  }
+  const Vector ab = *p[1] - *p[0], ac = *p[2] - *p[0], bc = *p[2] - *p[1];
+  const double a2 = squared_length(bc), b2 = squared_length(ac), c2 = squared_length(ab);
+  // R^2 = a2 b2 c2 / (4 |ab x ac|^2)
+  return std::min({a2, b2, c2}) * 4 * squared_length(cross(ab, ac)) <= a2 * b2 * c2 * (1 + kMargin);
+}
+
+// Whether the facet's dual edge meets the isosurface. Labels that differ prove it. Equal labels leave a
+// double crossing, which only a circumball that meets the isosurface can hold (a point of the dual edge lies,
+// with its empty ball, inside the union of both circumballs).
+bool Rules::is_restricted(const Examination& t, CellId neighbor) const {
+  if (label_of(neighbor) != t.label) return true;
+  const double length2 = squared_distance(t.center, mesh_.cell(neighbor).sphere.center);
+  return square(t.isosurface_distance) < length2 && square(t.isosurface_distance) <= t.squared_radius;
+}
+
+std::optional<SurfaceCenter> Rules::r3_surface_center(const Examination& t) const {
+  for (unsigned k = 0; k < 4; ++k) {
+    const FacetId mirror = mesh_.cell(t.cell).mirrors[k];
+    if (mirror == kNoFacet) continue;
+    const CellId neighbor = cell_of(mirror);
+    if (!is_restricted(t, neighbor) || !needs_sample(t.cell, k)) continue;
+    // From the smaller centre to the larger: the same point whichever cell asks.
+    const Point *from = &t.center, *to = &mesh_.cell(neighbor).sphere.center;
+    if (lexicographically_less(*to, *from)) std::swap(from, to);
+    const std::optional<Point> z = isosurface_.segment_intersection(*from, *to);
+    if (!z) continue;
+    for (const CellId start : {t.cell, neighbor}) {
+      if (mesh_.is_in_conflict(start, *z)) return SurfaceCenter{*z, start};
+    }
+  }
+  return std::nullopt;
+}
+
+bool Rules::has_poor_ratio(CellId c, double squared_radius) const {
+  const auto& v = mesh_.cell(c).vertices;
+  for (const auto& edge : kEdgeVertices) {
+    const double l2 = squared_distance(mesh_.point(v[static_cast<unsigned>(edge[0])]),
+                                       mesh_.point(v[static_cast<unsigned>(edge[1])]));
+    if (squared_radius >= kSquaredRatio * l2) return true;
+  }
+  return false;
+}
+
+std::optional<Rule> Rules::volume_rule(const Examination& t) const {
+  if (t.label == kBackground) return std::nullopt;
+  if (has_poor_ratio(t.cell, t.squared_radius)) return Rule::kR4;
+  if (t.squared_radius > parameters_.sizes.squared_radius(t.label) * (1 - kMargin)) return Rule::kR5;
+  return std::nullopt;
+}
+
+bool Rules::is_doomed(VertexId v, const Point& z) const {
+  return mesh_.vertex(v).kind == VertexKind::kCircumcenter &&
+         squared_distance(mesh_.point(v), z) < squared_two_delta_;
+}
+
+}  // namespace podm

@@ -1,0 +1,82 @@
+// Rules R1..R5: what should be done about one cell. Pure questions; worker.cpp does the work, R6 included.
+//
+// Foteinos, Chernikov, Chrisochoides, CGTA 47 (2014) 539-562. With t the cell, c its circumcentre, r its
+// circumradius, z the isosurface point nearest to c:
+//   R1  t meets the isosurface and no isosurface vertex is closer than delta to z    insert z
+//   R2  t meets the isosurface and r >= 2 delta                                      insert c
+//   R3  a restricted facet has a vertex off the isosurface or an angle < 30 degrees  insert its surface
+//   centre R4  c is inside and radius-edge >= 1.93                                          insert c R5  c is
+//   inside and r > r_t                                                      insert c R6  after R1 and R3:
+//   remove circumcentre vertices closer than 2 delta to z
+// Spacing s = min(delta, r_t / k), k = sqrt(2 + sqrt(3)): isosurface vertices stay s apart, all others k s
+// (I1..I3), so the process ends, on non-manifold interfaces too. Rules are tightened by kMargin, so that what
+// they guarantee survives the rounding of world coordinates.
+#pragma once
+
+#include <optional>
+
+#include "delaunay/mesh.h"
+#include "image/isosurface.h"
+#include "refine/size_field.h"
+
+namespace podm {
+
+inline constexpr double kMargin = 1e-9;  // relative
+
+enum class Rule { kR1, kR2, kR3, kR4, kR5 };
+
+struct Parameters {
+  double delta_mm = 0;
+  SizeField sizes;
+  Box clamp_box;          // circumcentres beyond it are moved onto it, see virtual_box.h
+  double spacing_mm = 0;  // s
+};
+
+/// What the rules need to know of a cell, asked of the oracle once.
+struct Examination {
+  CellId cell;
+  Point center;
+  double squared_radius;
+  LabelIndex label;              // at the centre
+  double isosurface_distance;    // a lower bound, from the centre
+  std::optional<Point> nearest;  // z, if the circumball meets the isosurface and R1 or R2 may care
+};
+
+struct SurfaceCenter {
+  Point point;
+  CellId start;  // a cell in conflict with it
+};
+
+class Rules {
+ public:
+  Rules(Mesh& mesh, const Isosurface& isosurface, const Parameters& parameters);
+
+  Examination examine(CellId c) const;
+
+  /// R1's point, unless a vertex of the cell itself already covers it. The caller must still look for
+  /// isosurface vertices closer than delta among the point's cavity: the nearest one would be joined to it by
+  /// a Gabriel edge, hence is among the cavity's vertices.
+  std::optional<Point> r1_sample(const Examination& t) const;
+  bool is_covered(const Point& z, VertexId by) const;
+  std::optional<Point> r2_center(const Examination& t) const;
+  std::optional<SurfaceCenter> r3_surface_center(const Examination& t) const;
+  /// R4 and R5 insert the circumcentre.
+  std::optional<Rule> volume_rule(const Examination& t) const;
+  /// R6.
+  bool is_doomed(VertexId v, const Point& z) const;
+
+  /// Label at the circumcentre, remembered in the store so that all cells around see the same.
+  LabelIndex label_of(CellId c) const;
+  bool has_poor_ratio(CellId c, double squared_radius) const;
+
+ private:
+  bool is_restricted(const Examination& t, CellId neighbor) const;
+  bool needs_sample(CellId c, unsigned facet) const;
+
+  Mesh& mesh_;
+  const Isosurface& isosurface_;
+  const Parameters& parameters_;
+  double squared_delta_, squared_two_delta_;
+};
+
+}  // namespace podm

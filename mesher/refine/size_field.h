@@ -1,0 +1,25 @@
+// The size bound r_t (rule R5): one circumradius per label.
+#pragma once
+
+#include <algorithm>
+#include <vector>
+
+#include "podm/label_image.h"
+
+namespace podm {
+
+class SizeField {
+ public:
+  /// `radius_mm[label index]`; infinity where only the surface drives.
+  explicit SizeField(std::vector<double> radius_mm) {
+    for (const double r : radius_mm) squared_.push_back(r * r);
+  }
+  double squared_radius(LabelIndex label) const { return squared_[label]; }
+  /// Of all labels but the background.
+  double smallest_squared_radius() const { return *std::min_element(squared_.begin() + 1, squared_.end()); }
+
+ private:
+  std::vector<double> squared_;
+};
+
+}  // namespace podm

@@ -1,0 +1,19 @@
+// Where refinement happens. R2 may want a circumcentre outside; it is moved onto the *clamp box*, the
+// object's bounds widened by 2 delta. That is safe: a ball that meets the isosurface and whose centre lies h
+// outside has a radius of at least h + 2 delta, so the moved centre is still at least 2 delta from every
+// vertex and inside the ball. The *virtual box* around it, whose eight corners are the first vertices, is
+// larger, so that no vertex ever lies on the hull.
+#pragma once
+
+#include "delaunay/mesh.h"
+
+namespace podm {
+
+inline Box grown(const Box& box, double margin) {
+  const Vector m{margin, margin, margin};
+  return {box.low - m, box.high + m};
+}
+inline Box clamp_box(const Box& object, double delta_mm) { return grown(object, 2 * delta_mm); }
+inline Box virtual_box(const Box& clamp) { return grown(clamp, 0.25 * distance(clamp.low, clamp.high)); }
+
+}  // namespace podm
