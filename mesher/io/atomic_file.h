@@ -1,0 +1,58 @@
+// A file that appears whole or not at all: the bytes go to a temporary beside the target, which takes the
+// target's place by rename once every byte is on the disk. Until then an older target stays as it was.
+#pragma once
+
+#include <cstddef>
+#include <cstring>
+#include <deque>
+#include <memory>
+#include <string>
+#include <string_view>
+#include <type_traits>
+
+namespace podm {
+
+class AtomicFile {
+ public:
+  /// Creates the temporary. Every member throws InputError naming `path` and the system's reason on failure.
+  explicit AtomicFile(const std::string& path);
+  /// Removes the temporary unless published.
+  ~AtomicFile();
+  AtomicFile(const AtomicFile&) = delete;
+  AtomicFile& operator=(const AtomicFile&) = delete;
+
+  void write(const void* bytes, std::size_t size);
+  void write(std::string_view text) { write(text.data(), text.size()); }
+
+  /// Appends the bytes of `value` as they lie in memory.
+  template <class T>
+  void put(const T& value) {
+    static_assert(std::is_trivially_copyable_v<T> && sizeof(T) <= kBufferBytes);
+    if (buffered_ + sizeof(T) > kBufferBytes) flush();
+    std::memcpy(buffer_.get() + buffered_, &value, sizeof(T));
+    buffered_ += sizeof(T);
+  }
+
+  /// Brings the bytes to the disk, still under the temporary's name. Nothing may be written afterwards.
+  void close();
+  /// Closes and gives the file its name.
+  void publish();
+
+ private:
+  static constexpr std::size_t kBufferBytes = 1 << 18;
+
+  void flush();
+  void write_through(const char* bytes, std::size_t size);
+
+  std::string path_;       // as the caller wrote it, for messages
+  std::string target_;     // path_ with symbolic links followed: a link is kept, its target replaced
+  std::string temporary_;  // empty once published
+  int descriptor_ = -1;
+  std::unique_ptr<char[]> buffer_;
+  std::size_t buffered_ = 0;
+};
+
+/// Publishes files that belong together: none gets its name before all of them are on the disk.
+void publish_together(std::deque<AtomicFile>& files);
+
+}  // namespace podm

@@ -1,0 +1,39 @@
+// What mesh files say about labels: a printable name for each, and the pairs of labels that facets separate.
+#pragma once
+
+#include <array>
+#include <string>
+#include <vector>
+
+#include "podm/tet_mesh.h"
+
+namespace podm {
+
+using LabelPair = std::array<LabelIndex, 2>;  ///< as in TetMesh::facet_labels
+
+/// Names without quotes, bars or control characters, no two alike: that of the label, or "label 3" by its
+/// value where it has none, and "outside" for the background.
+class LabelNames {
+ public:
+  explicit LabelNames(const std::vector<Label>& labels);
+  const std::string& operator[](LabelIndex label) const { return names_[label]; }
+  /// The label before what lies on its other side: "kidney|outside", "liver|kidney".
+  std::string of_pair(const LabelPair& pair) const;
+
+ private:
+  std::vector<std::string> names_;
+};
+
+/// The different pairs among the facets of a mesh, sorted; a pair's number is its position.
+class LabelPairs {
+ public:
+  explicit LabelPairs(const std::vector<LabelPair>& facet_labels);
+  std::size_t size() const { return pairs_.size(); }
+  const LabelPair& operator[](std::size_t number) const { return pairs_[number]; }
+  std::size_t number_of(const LabelPair& pair) const;
+
+ private:
+  std::vector<LabelPair> pairs_;
+};
+
+}  // namespace podm

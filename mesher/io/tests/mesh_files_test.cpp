@@ -1,0 +1,113 @@
+// Medit and Gmsh files read back give the mesh that was written.
+#include <gtest/gtest.h>
+
+#include "io/tests/kuhn_mesh.h"
+#include "io/tests/mesh_readers.h"
+#include "io/tests/scratch_folder.h"
+#include "podm/mesh_io.h"
+
+namespace podm {
+namespace {
+
+const std::vector<std::string> kNames{"", "liver", "label 3000000000", "left kidney/2"};
+
+std::vector<std::string> names_of(const std::vector<Label>& labels) {
+  std::vector<std::string> names;
+  for (const Label& label : labels) names.push_back(label.name);
+  names[0].clear();
+  return names;
+}
+
+class EverySpace : public testing::TestWithParam<Space> {
+ protected:
+  TetMesh make_mesh() const {
+    TetMesh mesh = make_test_mesh();
+    mesh.space = GetParam();
+    canonicalize(mesh);
+    return mesh;
+  }
+  const ScratchFolder folder_;
+};
+
+TEST_P(EverySpace, MeditRoundTrip) {
+  const TetMesh mesh = make_mesh();
+  write_mesh(mesh, folder_ / "a.mesh");
+  const TetMesh read = read_medit(folder_ / "a.mesh");
+  EXPECT_TRUE(same_mesh(read, mesh));
+  EXPECT_EQ(names_of(read.labels), kNames);
+}
+
+TEST_P(EverySpace, GmshRoundTrip) {
+  const TetMesh mesh = make_mesh();
+  write_mesh(mesh, folder_ / "a.msh");
+  const GmshFile read = read_gmsh(folder_ / "a.msh");
+  EXPECT_TRUE(same_mesh(read.mesh, mesh));
+  EXPECT_EQ(names_of(read.mesh.labels), kNames);
+}
+
+INSTANTIATE_TEST_SUITE_P(Spaces, EverySpace, testing::Values(Space::kRas, Space::kLps, Space::kVoxel),
+                         [](const auto& instance) { return to_string(instance.param); });
+
+// Each volume is bounded by exactly the surfaces that hold its label, signed by the side it is on.
+TEST(GmshFile, SurfacesOfVolumesAreSignedByTheirSide) {
+  const ScratchFolder folder;
+  const TetMesh mesh = make_test_mesh();
+  write_mesh(mesh, folder / "a.msh");
+  const GmshFile read = read_gmsh(folder / "a.msh");
+  ASSERT_EQ(read.surfaces_of_volume.size(), 3u);
+  std::set<std::array<LabelIndex, 2>> pairs;
+  for (const auto& pair : mesh.facet_labels) {
+    pairs.insert(pair);
+    if (pair[0] != kBackground) pairs.insert({pair[1], pair[0]});
+  }
+  std::size_t num_surfaces = 0;
+  for (const auto& [label, surfaces] : read.surfaces_of_volume) {
+    num_surfaces += surfaces.size();
+    for (const auto& pair : surfaces) {
+      EXPECT_EQ(pair[1], label);  // the side that the normal points out of
+      EXPECT_TRUE(pairs.count(pair));
+    }
+  }
+  EXPECT_EQ(num_surfaces, pairs.size());
+}
+
+// Gmsh's tags are positive ints; physical groups carry the values where they can.
+TEST(GmshFile, PhysicalGroupsAreTheLabelValuesWhereTheyFit) {
+  const ScratchFolder folder;
+  TetMesh mesh = make_test_mesh();
+  mesh.labels[2].value = 40;
+  write_mesh(mesh, folder / "a.msh");
+  const std::string text = read_bytes(folder / "a.msh");
+  for (const char* line : {"\n3 7 \"liver\"\n", "\n3 40 \"label 40\"\n", "\n3 2 \"left kidney/2\"\n"})
+    EXPECT_NE(text.find(line), std::string::npos) << line;
+  EXPECT_TRUE(same_mesh(read_gmsh(folder / "a.msh").mesh, mesh));
+}
+
+TEST(MeshFiles, LabelNamesAreMadePrintableAndDistinct) {
+  const ScratchFolder folder;
+  TetMesh mesh = make_test_mesh();
+  mesh.labels[1].name = "a \"b\"|\nc";
+  mesh.labels[2].name = "outside";
+  mesh.labels[3].name = "a 'b'/ c";
+  write_mesh(mesh, folder / "a.msh");
+  write_mesh(mesh, folder / "a.mesh");
+  const std::vector<std::string> expected{"", "a 'b'/ c", "outside 3000000000", "a 'b'/ c 2"};
+  EXPECT_EQ(names_of(read_gmsh(folder / "a.msh").mesh.labels), expected);
+  EXPECT_EQ(names_of(read_medit(folder / "a.mesh").labels), expected);
+}
+
+TEST(MeshFiles, TheSameMeshGivesTheSameBytes) {
+  const ScratchFolder folder;
+  TetMesh mesh = make_test_mesh(), other = shuffled(mesh, 11);
+  canonicalize(mesh);
+  canonicalize(other);
+  for (const std::string extension : {".vtu", ".mesh", ".msh"}) {
+    write_mesh(mesh, folder / ("a" + extension));
+    write_mesh(other, folder / ("b" + extension));
+    EXPECT_EQ(read_bytes(folder / ("a" + extension)), read_bytes(folder / ("b" + extension)));
+  }
+  EXPECT_EQ(read_bytes(folder / "a_facets.vtu"), read_bytes(folder / "b_facets.vtu"));
+}
+
+}  // namespace
+}  // namespace podm

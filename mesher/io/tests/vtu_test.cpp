@@ -1,0 +1,131 @@
+// VTU files as VTK's own reader sees them, through a script for the system's Python.
+#include <gtest/gtest.h>
+
+#include <cstdio>
+#include <map>
+#include <sstream>
+
+#include "io/tests/kuhn_mesh.h"
+#include "io/tests/mesh_readers.h"
+#include "io/tests/scratch_folder.h"
+#include "podm/mesh_io.h"
+
+namespace podm {
+namespace {
+
+struct VtuContent {
+  std::vector<std::array<double, 3>> points;
+  std::vector<std::vector<std::uint32_t>> cells;           // VTK's type of the cell, then its points
+  std::map<std::string, std::vector<std::string>> arrays;  // "cell label"
+  double area = 0, volume = 0;
+};
+
+VtuContent parse(const std::string& path) {
+  std::istringstream lines(read_bytes(path));
+  VtuContent content;
+  std::string line;
+  while (std::getline(lines, line)) {
+    std::istringstream words(line);
+    std::string kind, second, third;
+    words >> kind >> second >> third;
+    if (kind == "points") {
+      for (int n = std::stoi(second); n > 0 && std::getline(lines, line); --n) {
+        std::istringstream coordinates(line);
+        std::string x, y, z;
+        coordinates >> x >> y >> z;
+        content.points.push_back({std::stod(x), std::stod(y), std::stod(z)});
+      }
+    } else if (kind == "cells") {
+      for (int n = std::stoi(second); n > 0 && std::getline(lines, line); --n) {
+        std::istringstream numbers(line);
+        content.cells.emplace_back(std::istream_iterator<std::uint32_t>(numbers),
+                                   std::istream_iterator<std::uint32_t>());
+      }
+    } else if (kind == "area" || kind == "volume") {
+      (kind == "area" ? content.area : content.volume) = std::stod(second);
+    } else {
+      auto& values = content.arrays[kind + " " + second];
+      for (int n = std::stoi(third); n > 0 && std::getline(lines, line); --n) values.push_back(line);
+    }
+  }
+  return content;
+}
+
+class VtuFile : public testing::Test {
+ protected:
+  void SetUp() override {
+    const std::string probe = std::string(PODM_VTK_PYTHON) + " -c 'import vtk' 2>/dev/null";
+    if (std::system(probe.c_str()) != 0) GTEST_SKIP() << "needs the package python3-vtk9";
+  }
+  VtuContent read(const std::string& name) {
+    const std::string text = folder_ / (name + ".txt");
+    const std::string command =
+        std::string(PODM_VTK_PYTHON) + " " + PODM_VTU_TO_TEXT + " " + (folder_ / name) + " > " + text;
+    EXPECT_EQ(std::system(command.c_str()), 0);
+    return parse(text);
+  }
+  std::vector<std::string> values_of(const TetMesh& mesh, const std::vector<LabelIndex>& labels) {
+    std::vector<std::string> values;
+    for (const LabelIndex label : labels) values.push_back(std::to_string(mesh.labels[label].value));
+    return values;
+  }
+  const ScratchFolder folder_;
+};
+
+TEST_F(VtuFile, VtkReadsTheMeshThatWasWritten) {
+  TetMesh mesh = make_test_mesh();
+  mesh.space = Space::kLps;
+  canonicalize(mesh);
+  write_mesh(mesh, folder_ / "a.vtu");
+  const VtuContent content = read("a.vtu");
+
+  EXPECT_EQ(content.points, mesh.vertices);
+  std::vector<std::vector<std::uint32_t>> cells;
+  for (const auto& [a, b, c, d] : mesh.cells) cells.push_back({10, a, b, c, d});
+  EXPECT_EQ(content.cells, cells);
+  EXPECT_EQ(content.arrays.at("cell label"), values_of(mesh, mesh.cell_labels));
+  EXPECT_EQ(content.arrays.at("field space"), std::vector<std::string>{"LPS"});
+  EXPECT_EQ(content.arrays.at("field label_value"), (std::vector<std::string>{"0", "7", "3000000000", "2"}));
+  EXPECT_EQ(content.arrays.at("field label_name"),
+            (std::vector<std::string>{"outside", "liver", "label 3000000000", "left kidney/2"}));
+  double volume = 0;
+  for (LabelIndex label = 1; label < mesh.labels.size(); ++label) volume += volume_of_label(mesh, label);
+  EXPECT_NEAR(content.volume, volume, 1e-9 * volume);
+}
+
+TEST_F(VtuFile, TheFacetsLieBesideIt) {
+  TetMesh mesh = make_test_mesh();
+  canonicalize(mesh);
+  write_mesh(mesh, folder_ / "a.vtu");
+  const VtuContent content = read("a_facets.vtu");
+
+  const auto& vertex = content.arrays.at("point vertex");
+  ASSERT_EQ(vertex.size(), content.points.size());
+  EXPECT_LT(vertex.size(), mesh.vertices.size());
+  for (std::size_t i = 0; i < vertex.size(); ++i)
+    EXPECT_EQ(content.points[i], mesh.vertices.at(std::stoul(vertex[i])));
+  ASSERT_EQ(content.cells.size(), mesh.facets.size());
+  std::vector<LabelIndex> first, second;
+  for (std::size_t i = 0; i < mesh.facets.size(); ++i) {
+    ASSERT_EQ(content.cells[i][0], 5u);
+    for (int v = 0; v < 3; ++v) EXPECT_EQ(std::stoul(vertex[content.cells[i][v + 1]]), mesh.facets[i][v]);
+    first.push_back(mesh.facet_labels[i][0]);
+    second.push_back(mesh.facet_labels[i][1]);
+  }
+  EXPECT_EQ(content.arrays.at("cell label_a"), values_of(mesh, first));
+  EXPECT_EQ(content.arrays.at("cell label_b"), values_of(mesh, second));
+  EXPECT_EQ(content.arrays.at("field space"), std::vector<std::string>{"RAS"});
+  EXPECT_GT(content.area, 0);
+}
+
+TEST_F(VtuFile, AMeshWithoutFacetsIsAllowed) {
+  TetMesh mesh = make_test_mesh();
+  mesh.facets.clear();
+  mesh.facet_labels.clear();
+  write_mesh(mesh, folder_ / "a.vtu");
+  EXPECT_EQ(read("a.vtu").cells.size(), mesh.cells.size());
+  EXPECT_TRUE(read("a_facets.vtu").cells.empty());
+}
+
+}  // namespace
+}  // namespace podm

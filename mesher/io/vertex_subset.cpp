@@ -1,0 +1,21 @@
+#include "io/vertex_subset.h"
+
+#include <algorithm>
+
+namespace podm {
+
+void VertexSubset::assign(const std::vector<std::array<std::uint32_t, 3>>& facets) {
+  for (const std::uint32_t vertex : vertices_) position_[vertex] = kUnused;
+  vertices_.clear();
+  for (const auto& facet : facets) {
+    for (const std::uint32_t vertex : facet) {
+      if (position_[vertex] != kUnused) continue;
+      position_[vertex] = 0;
+      vertices_.push_back(vertex);
+    }
+  }
+  std::sort(vertices_.begin(), vertices_.end());
+  for (std::size_t i = 0; i < vertices_.size(); ++i) position_[vertices_[i]] = static_cast<std::uint32_t>(i);
+}
+
+}  // namespace podm

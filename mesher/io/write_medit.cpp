@@ -1,0 +1,77 @@
+// Medit (.mesh) ascii. References: a tetrahedron's is its label value, a triangle's numbers its label pair.
+#include <fmt/compile.h>
+#include <fmt/format.h>
+
+#include "io/atomic_file.h"
+#include "io/label_table.h"
+#include "io/mesh_formats.h"
+
+namespace podm {
+namespace {
+
+// Formats lines straight into a block of memory and hands full blocks to the file.
+class TextFile {
+ public:
+  explicit TextFile(AtomicFile& file) : file_(file) {}
+
+  template <class Format, class... Args>
+  void print(const Format& format, const Args&... args) {
+    fmt::format_to(std::back_inserter(block_), format, args...);
+    if (block_.size() >= kBlockBytes) flush();
+  }
+  void flush() {
+    file_.write(block_.data(), block_.size());
+    block_.clear();
+  }
+
+ private:
+  static constexpr std::size_t kBlockBytes = 1 << 16;
+  AtomicFile& file_;
+  fmt::memory_buffer block_;
+};
+
+void print_comments(TextFile& text, const TetMesh& mesh, const LabelPairs& pairs) {
+  const LabelNames names(mesh.labels);
+  text.print(FMT_COMPILE("# space {}\n"), to_string(mesh.space));
+  text.print(FMT_COMPILE("# tetrahedron reference: label value\n"));
+  for (std::size_t i = 1; i < mesh.labels.size(); ++i)
+    text.print(FMT_COMPILE("# label {} {}\n"), mesh.labels[i].value, names[static_cast<LabelIndex>(i)]);
+  text.print(
+      FMT_COMPILE(
+          "# triangle reference: pair of label values (outside: {}), the normal points to the first\n"),
+      mesh.labels[kBackground].value);
+  for (std::size_t i = 0; i < pairs.size(); ++i) {
+    const auto [a, b] = pairs[i];
+    text.print(FMT_COMPILE("# pair {} {} {} {}\n"), i + 1, mesh.labels[a].value, mesh.labels[b].value,
+               names.of_pair(pairs[i]));
+  }
+}
+
+}  // namespace
+
+void write_medit(const TetMesh& mesh, const std::string& path) {
+  AtomicFile file(path);
+  TextFile text(file);
+  const LabelPairs pairs(mesh.facet_labels);
+  text.print(FMT_COMPILE("MeshVersionFormatted 2\n"));  // 2: doubles
+  print_comments(text, mesh, pairs);
+  text.print(FMT_COMPILE("Dimension 3\nVertices\n{}\n"), mesh.vertices.size());
+  for (const auto& [x, y, z] : mesh.vertices) text.print(FMT_COMPILE("{} {} {} 0\n"), x, y, z);
+  text.print(FMT_COMPILE("Triangles\n{}\n"), mesh.facets.size());
+  for (std::size_t i = 0; i < mesh.facets.size(); ++i) {
+    const auto& [a, b, c] = mesh.facets[i];
+    const std::size_t reference = pairs.number_of(mesh.facet_labels[i]) + 1;
+    text.print(FMT_COMPILE("{} {} {} {}\n"), a + 1, b + 1, c + 1, reference);
+  }
+  text.print(FMT_COMPILE("Tetrahedra\n{}\n"), mesh.cells.size());
+  for (std::size_t i = 0; i < mesh.cells.size(); ++i) {
+    const auto& [a, b, c, d] = mesh.cells[i];
+    const std::uint32_t reference = mesh.labels[mesh.cell_labels[i]].value;
+    text.print(FMT_COMPILE("{} {} {} {} {}\n"), a + 1, b + 1, c + 1, d + 1, reference);
+  }
+  text.print(FMT_COMPILE("End\n"));
+  text.flush();
+  file.publish();
+}
+
+}  // namespace podm

@@ -1,0 +1,171 @@
+// VTK XML unstructured grids with appended raw binary data.
+//
+// An XML head declares the arrays and where each lies in the binary tail; there an array is its size in bytes
+// (UInt64) and its values. Cells and facets go to two files, because readers of tetrahedra (FEniCS, PyVista
+// filters, solvers) stumble over grids of mixed dimension.
+#include <fmt/format.h>
+
+#include <bit>
+#include <filesystem>
+#include <functional>
+#include <limits>
+
+#include "io/atomic_file.h"
+#include "io/label_table.h"
+#include "io/mesh_formats.h"
+#include "io/vertex_subset.h"
+
+namespace podm {
+namespace {
+
+static_assert(std::endian::native == std::endian::little, "the files declare little-endian data");
+
+constexpr int kVtkTriangle = 5, kVtkTetrahedron = 10;
+
+struct VtuArray {
+  std::string declaration;  // attributes, all but the offset
+  std::uint64_t bytes;
+  std::function<void(AtomicFile&)> write;
+};
+
+// `value_at(i)` for i in [0, count), as the C++ type Value, whose VTK name is `type`.
+template <class Value, class ValueAt>
+VtuArray make_array(const std::string& type, const std::string& name, std::size_t count, int components,
+                    ValueAt value_at) {
+  return {fmt::format(R"(type="{}" Name="{}" NumberOfComponents="{}")", type, name, components),
+          count * sizeof(Value), [count, value_at](AtomicFile& file) {
+            for (std::size_t i = 0; i < count; ++i) file.put(static_cast<Value>(value_at(i)));
+          }};
+}
+
+// Ids as Int32, half the file, unless some do not fit.
+template <class ValueAt>
+VtuArray make_id_array(const std::string& name, std::size_t count, bool wide, ValueAt value_at) {
+  return wide ? make_array<std::int64_t>("Int64", name, count, 1, value_at)
+              : make_array<std::int32_t>("Int32", name, count, 1, value_at);
+}
+
+struct VtuGrid {
+  std::size_t num_points = 0, num_cells = 0;
+  std::vector<VtuArray> point_data, cell_data, points, cells;  // the sections, in the file's order
+};
+
+template <class PointAt, class VertexAt>
+VtuGrid make_grid(std::size_t num_points, std::size_t num_cells, int vertices_a_cell, int cell_type,
+                  PointAt point_at, VertexAt vertex_at) {
+  VtuGrid grid{num_points, num_cells, {}, {}, {}, {}};
+  const std::size_t num_corners = num_cells * static_cast<std::size_t>(vertices_a_cell);
+  const bool wide = std::max(num_points, num_corners) > std::numeric_limits<std::int32_t>::max();
+  grid.points.push_back({R"(type="Float64" Name="Points" NumberOfComponents="3")",
+                         num_points * sizeof(std::array<double, 3>), [=](AtomicFile& file) {
+                           for (std::size_t i = 0; i < num_points; ++i) file.put(point_at(i));
+                         }});
+  grid.cells.push_back(make_id_array("connectivity", num_corners, wide, vertex_at));
+  grid.cells.push_back(make_id_array("offsets", num_cells, wide, [vertices_a_cell](std::size_t i) {
+    return (i + 1) * static_cast<std::size_t>(vertices_a_cell);
+  }));
+  grid.cells.push_back(make_array<std::uint8_t>("UInt8", "types", num_cells, 1,
+                                                [cell_type](std::size_t) { return cell_type; }));
+  return grid;
+}
+
+// The head's share of the field data: short, so inline. VTK spells a string as the codes of its characters.
+std::string field_data(const TetMesh& mesh) {
+  const auto codes = [](const std::string& text) {
+    std::string spelled;
+    for (const char c : text) spelled += fmt::format("{} ", static_cast<unsigned char>(c));
+    return spelled + "0 ";
+  };
+  const LabelNames names(mesh.labels);
+  std::string label_values, label_names;
+  for (std::size_t i = 0; i < mesh.labels.size(); ++i) {
+    label_values += fmt::format("{} ", mesh.labels[i].value);
+    label_names += codes(names[static_cast<LabelIndex>(i)]);
+  }
+  const auto array = [](const char* type, const char* name, std::size_t count, const std::string& values) {
+    return fmt::format(
+        "<DataArray type=\"{}\" Name=\"{}\" NumberOfTuples=\"{}\" format=\"ascii\">\n{}\n</DataArray>\n",
+        type, name, count, values);
+  };
+  return "<FieldData>\n" + array("String", "space", 1, codes(to_string(mesh.space))) +
+         array("UInt32", "label_value", mesh.labels.size(), label_values) +
+         array("String", "label_name", mesh.labels.size(), label_names) + "</FieldData>\n";
+}
+
+void write_grid(AtomicFile& file, const VtuGrid& grid, const std::string& field_data) {
+  file.write(
+      "<?xml version=\"1.0\"?>\n<VTKFile type=\"UnstructuredGrid\" version=\"1.0\" "
+      "byte_order=\"LittleEndian\" "
+      "header_type=\"UInt64\">\n<UnstructuredGrid>\n");
+  file.write(field_data);
+  file.write(
+      fmt::format("<Piece NumberOfPoints=\"{}\" NumberOfCells=\"{}\">\n", grid.num_points, grid.num_cells));
+  std::uint64_t offset = 0;
+  const auto declare = [&](const std::string& section, const std::vector<VtuArray>& arrays) {
+    file.write("<" + section + ">\n");
+    for (const VtuArray& array : arrays) {
+      file.write(
+          fmt::format("<DataArray {} format=\"appended\" offset=\"{}\"/>\n", array.declaration, offset));
+      offset += sizeof(array.bytes) + array.bytes;
+    }
+    file.write("</" + section + ">\n");
+  };
+  declare("PointData", grid.point_data);
+  declare("CellData", grid.cell_data);
+  declare("Points", grid.points);
+  declare("Cells", grid.cells);
+  file.write("</Piece>\n</UnstructuredGrid>\n<AppendedData encoding=\"raw\">\n_");
+  for (const auto* section : {&grid.point_data, &grid.cell_data, &grid.points, &grid.cells}) {
+    for (const VtuArray& array : *section) {
+      file.put(array.bytes);
+      array.write(file);
+    }
+  }
+  file.write("\n</AppendedData>\n</VTKFile>\n");
+}
+
+VtuGrid cell_grid(const TetMesh& mesh) {
+  VtuGrid grid = make_grid(
+      mesh.vertices.size(), mesh.cells.size(), 4, kVtkTetrahedron,
+      [&mesh](std::size_t i) { return mesh.vertices[i]; },
+      [&mesh](std::size_t i) { return mesh.cells[i / 4][i % 4]; });
+  grid.cell_data.push_back(
+      make_array<std::uint32_t>("UInt32", "label", mesh.cells.size(), 1,
+                                [&mesh](std::size_t i) { return mesh.labels[mesh.cell_labels[i]].value; }));
+  return grid;
+}
+
+VtuGrid facet_grid(const TetMesh& mesh, const VertexSubset& subset) {
+  VtuGrid grid = make_grid(
+      subset.vertices().size(), mesh.facets.size(), 3, kVtkTriangle,
+      [&mesh, &subset](std::size_t i) { return mesh.vertices[subset.vertices()[i]]; },
+      [&mesh, &subset](std::size_t i) { return subset.position(mesh.facets[i / 3][i % 3]); });
+  grid.point_data.push_back(
+      make_array<std::uint32_t>("UInt32", "vertex", subset.vertices().size(), 1,
+                                [&subset](std::size_t i) { return subset.vertices()[i]; }));
+  for (const int side : {0, 1}) {
+    grid.cell_data.push_back(make_array<std::uint32_t>(
+        "UInt32", side == 0 ? "label_a" : "label_b", mesh.facets.size(), 1,
+        [&mesh, side](std::size_t i) { return mesh.labels[mesh.facet_labels[i][side]].value; }));
+  }
+  return grid;
+}
+
+}  // namespace
+
+void write_vtu(const TetMesh& mesh, const std::string& path) {
+  const std::filesystem::path cells_path(path);
+  const auto facets_path = cells_path.parent_path() / (cells_path.stem().string() + "_facets.vtu");
+  std::deque<AtomicFile> files;
+  files.emplace_back(path);
+  files.emplace_back(facets_path.string());
+
+  const std::string labels_and_space = field_data(mesh);
+  write_grid(files[0], cell_grid(mesh), labels_and_space);
+  VertexSubset subset(mesh.vertices.size());
+  subset.assign(mesh.facets);
+  write_grid(files[1], facet_grid(mesh, subset), labels_and_space);
+  publish_together(files);
+}
+
+}  // namespace podm
