@@ -112,9 +112,7 @@ TEST(AtomicFile, NamesFileAndFault) {
 // While it lives, root, who may write everywhere, is nobody; anyone else is who they were.
 class OrdinaryUser {
  public:
-  OrdinaryUser() : user_(::geteuid()) {
-    if (user_ == 0) EXPECT_EQ(::seteuid(65534), 0);
-  }
+  OrdinaryUser() : user_(::geteuid()) { EXPECT_EQ(::seteuid(user_ == 0 ? 65534 : user_), 0); }
   ~OrdinaryUser() { EXPECT_EQ(::seteuid(user_), 0); }
 
  private:
