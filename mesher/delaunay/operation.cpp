@@ -17,6 +17,9 @@ template <class Locks>
 void Operation<Locks>::add_to_region(CellId c) {
   mesh_.state(c).in_region = 1;
   region_.cells.push_back(c);
+  for (const FacetId mirror : mesh_.cell(c).mirrors) {
+    if (mirror != kNoFacet) mesh_.prefetch(cell_of(mirror));  // read when the front gets to c
+  }
 }
 
 template <class Locks>

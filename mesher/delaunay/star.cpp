@@ -1,5 +1,6 @@
 #include "delaunay/star.h"
 
+#include <bit>
 #include <limits>
 
 namespace podm {
@@ -29,7 +30,7 @@ bool StarFiller::prepare(Mesh& mesh, const Region& region, const Point& p) {
         squared_distance_ = std::min(squared_distance_, s);
       }
       facet.vertices[i] = v;
-      facet.local[i] = static_cast<std::uint8_t>(local);
+      facet.local[i] = static_cast<std::uint16_t>(local);
     }
   }
   return true;
@@ -56,6 +57,9 @@ void StarFiller::compute_spheres(const Mesh& mesh, const Point& p) {
 
 void StarFiller::fill(Mesh& mesh, Pool& pool, Region& region, VertexId apex) {
   compute_spheres(mesh, mesh.point(apex));
+  row_bits_ = static_cast<unsigned>(std::bit_width(num_vertices_ - 1));
+  if (facet_at_edge_.size() < std::size_t{1} << (2 * row_bits_))
+    facet_at_edge_.resize(std::size_t{1} << (2 * row_bits_));
   region.created.clear();
   // The dying cells' ids are reused at once: they are warm, and their neighbours are next to them.
   std::size_t reused = 0;
@@ -76,16 +80,16 @@ void StarFiller::fill(Mesh& mesh, Pool& pool, Region& region, VertexId apex) {
           4 * id + 3;
     }
     const unsigned a = facet.local[0], b = facet.local[1], c = facet.local[2];
-    facet_at_edge_[kMaxVertices * b + c] = 4 * id + 0;
-    facet_at_edge_[kMaxVertices * c + a] = 4 * id + 1;
-    facet_at_edge_[kMaxVertices * a + b] = 4 * id + 2;
+    facet_at_edge_[(b << row_bits_) + c] = 4 * id + 0;
+    facet_at_edge_[(c << row_bits_) + a] = 4 * id + 1;
+    facet_at_edge_[(a << row_bits_) + b] = 4 * id + 2;
   }
   for (unsigned f = 0; f < num_facets_; ++f) {
     const unsigned a = facets_[f].local[0], b = facets_[f].local[1], c = facets_[f].local[2];
     auto& mirrors = mesh.cell(region.created[f]).mirrors;
-    mirrors[0] = facet_at_edge_[kMaxVertices * c + b];
-    mirrors[1] = facet_at_edge_[kMaxVertices * a + c];
-    mirrors[2] = facet_at_edge_[kMaxVertices * b + a];
+    mirrors[0] = facet_at_edge_[(c << row_bits_) + b];
+    mirrors[1] = facet_at_edge_[(a << row_bits_) + c];
+    mirrors[2] = facet_at_edge_[(b << row_bits_) + a];
   }
   for (; reused < region.cells.size(); ++reused) pool.release_cell(region.cells[reused]);
 }

@@ -21,12 +21,12 @@ class StarFiller {
   void fill(Mesh& mesh, Pool& pool, Region& region, VertexId apex);
 
  private:
-  static constexpr unsigned kMaxVertices = 64;
+  static constexpr unsigned kMaxVertices = 1024;
   static constexpr unsigned kMaxFacets = 2 * kMaxVertices;
 
   struct Facet {
     std::array<VertexId, 3> vertices;
-    std::array<std::uint8_t, 3> local;
+    std::array<std::uint16_t, 3> local;
     FacetId mirror;
   };
   void compute_spheres(const Mesh& mesh, const Point& p);
@@ -38,8 +38,10 @@ class StarFiller {
   std::array<Facet, kMaxFacets> facets_;
   alignas(64) std::array<std::array<double, kMaxFacets>, 4> spheres_;  // centre - p, squared radius
   alignas(64) std::array<double, kMaxFacets> conditions_;              // L^6 / det^2
-  // cells_at_edge_[64 a + b]: the new facet whose cell holds directed boundary edge (a,b).
-  std::array<FacetId, kMaxVertices * kMaxVertices> facet_at_edge_;
+  // facet_at_edge_[(a << row_bits_) + b]: the new facet over the directed boundary edge (a,b). Rows are as
+  // short as the number of vertices allows, so that the usual table lies in the first-level cache.
+  std::vector<FacetId> facet_at_edge_;
+  unsigned row_bits_ = 0;
 };
 
 }  // namespace podm

@@ -3,6 +3,7 @@
 // where the cache is warm.
 #pragma once
 
+#include <algorithm>
 #include <cstdint>
 #include <vector>
 
@@ -17,8 +18,18 @@ class PoorElementList {
     std::uint32_t stamp;
   };
   void push(CellId cell, std::uint32_t stamp) { entries_.push_back({cell, stamp}); }
+  /// Most entries at the bottom are stale. Dropping them whenever the list has doubled keeps it short.
+  bool is_due_for_cleaning() const { return entries_.size() >= next_cleaning_; }
+  void drop_stale(const Mesh& mesh) {
+    std::erase_if(entries_, [&](const Entry& e) { return mesh.state(e.cell).stamp != e.stamp; });
+    next_cleaning_ = std::max(kFirstCleaning, 2 * entries_.size());
+  }
   bool is_empty() const { return entries_.empty(); }
   std::size_t size() const { return entries_.size(); }
+  /// The cell whose turn comes a few turns from now, to be prefetched; the list must not be empty.
+  CellId upcoming() const {
+    return entries_[entries_.size() > kLookahead ? entries_.size() - kLookahead : 0].cell;
+  }
   Entry pop() {
     const Entry last = entries_.back();
     entries_.pop_back();
@@ -26,7 +37,10 @@ class PoorElementList {
   }
 
  private:
+  static constexpr std::size_t kLookahead = 3;
+  static constexpr std::size_t kFirstCleaning = 1 << 16;
   std::vector<Entry> entries_;
+  std::size_t next_cleaning_ = kFirstCleaning;
 };
 
 }  // namespace podm

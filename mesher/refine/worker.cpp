@@ -20,6 +20,7 @@ Worker<Locks>::Worker(Mesh& mesh, const Isosurface& isosurface, const Parameters
 
 template <class Locks>
 void Worker<Locks>::attempt() {
+  mesh_.prefetch(poor_.upcoming());
   const PoorElementList::Entry entry = poor_.pop();
   if (mesh_.state(entry.cell).stamp != entry.stamp) {
     ++counters_.stale_cells;
@@ -87,6 +88,7 @@ auto Worker<Locks>::commit(const Point& p, VertexKind kind, Rule rule) -> Sample
   counters_.removals += num_removed;
   ++counters_.insertions_by_rule[static_cast<std::size_t>(rule)];
   for (const CellId c : operation_.created()) give(c);
+  if (poor_.is_due_for_cleaning()) poor_.drop_stale(mesh_);
   return Sampled::kYes;
 }
 
