@@ -3,16 +3,40 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cstdint>
 #include <set>
+#include <string_view>
 
 namespace podm {
 namespace {
 
+// Whether `text` is UTF-8 of characters that XML allows beyond ASCII.
+bool is_utf8(std::string_view text) {
+  for (std::size_t i = 0; i < text.size();) {
+    const auto lead = static_cast<unsigned char>(text[i++]);
+    if (lead < 0x80) continue;
+    if (lead < 0xc2 || lead > 0xf4) return false;
+    const int num_following = lead < 0xe0 ? 1 : lead < 0xf0 ? 2 : 3;
+    std::uint32_t character = lead & (0x3f >> num_following);
+    for (int n = 0; n < num_following; ++n, ++i) {
+      if (i == text.size() || (text[i] & 0xc0) != 0x80) return false;
+      character = character << 6 | (text[i] & 0x3f);
+    }
+    constexpr std::array<std::uint32_t, 4> kSmallest{0, 0x80, 0x800, 0x10000};  // shorter forms exist below
+    if (character < kSmallest[num_following] || character > 0x10ffff) return false;
+    if ((character >= 0xd800 && character < 0xe000) || (character & 0xfffe) == 0xfffe) return false;
+  }
+  return true;
+}
+
 std::string printable(std::string name) {
+  const bool keep_beyond_ascii = is_utf8(name);
   for (char& c : name) {
+    const auto byte = static_cast<unsigned char>(c);
     if (c == '"') c = '\'';
     if (c == '|') c = '/';
-    if (static_cast<unsigned char>(c) < ' ' || c == '\x7f') c = ' ';
+    if (byte < ' ' || byte == 0x7f) c = ' ';
+    if (byte >= 0x80 && !keep_beyond_ascii) c = '?';
   }
   return name;
 }

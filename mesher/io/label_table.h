@@ -11,8 +11,8 @@ namespace podm {
 
 using LabelPair = std::array<LabelIndex, 2>;  ///< as in TetMesh::facet_labels
 
-/// Names without quotes, bars or control characters, no two alike: that of the label, or "label 3" by its
-/// value where it has none, and "outside" for the background.
+/// Names in UTF-8 without quotes, bars or control characters, no two alike: that of the label, or "label 3"
+/// by its value where it has none, and "outside" for the background.
 class LabelNames {
  public:
   explicit LabelNames(const std::vector<Label>& labels);

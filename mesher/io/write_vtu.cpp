@@ -69,27 +69,34 @@ VtuGrid make_grid(std::size_t num_points, std::size_t num_cells, int vertices_a_
   return grid;
 }
 
-// The head's share of the field data: short, so inline. VTK spells a string as the codes of its characters.
+std::string xml_escaped(const std::string& text) {  // LabelNames leaves no quotes
+  std::string escaped;
+  for (const char c : text) {
+    if (c == '&')
+      escaped += "&amp;";
+    else if (c == '<')
+      escaped += "&lt;";
+    else if (c == '>')  // VTK takes a bare one for the end of the element
+      escaped += "&gt;";
+    else
+      escaped += c;
+  }
+  return escaped;
+}
+
+// One number an array, the text in its name: string arrays, which VTK knows, make meshio refuse the file.
 std::string field_data(const TetMesh& mesh) {
-  const auto codes = [](const std::string& text) {
-    std::string spelled;
-    for (const char c : text) spelled += fmt::format("{} ", static_cast<unsigned char>(c));
-    return spelled + "0 ";
+  const auto array = [](const std::string& name, std::uint32_t value) {
+    return fmt::format(
+        R"(<DataArray type="UInt32" Name="{}" NumberOfTuples="1" format="ascii">{}</DataArray>)"
+        "\n",
+        xml_escaped(name), value);
   };
   const LabelNames names(mesh.labels);
-  std::string label_values, label_names;
-  for (std::size_t i = 0; i < mesh.labels.size(); ++i) {
-    label_values += fmt::format("{} ", mesh.labels[i].value);
-    label_names += codes(names[static_cast<LabelIndex>(i)]);
-  }
-  const auto array = [](const char* type, const char* name, std::size_t count, const std::string& values) {
-    return fmt::format(
-        "<DataArray type=\"{}\" Name=\"{}\" NumberOfTuples=\"{}\" format=\"ascii\">\n{}\n</DataArray>\n",
-        type, name, count, values);
-  };
-  return "<FieldData>\n" + array("String", "space", 1, codes(to_string(mesh.space))) +
-         array("UInt32", "label_value", mesh.labels.size(), label_values) +
-         array("String", "label_name", mesh.labels.size(), label_names) + "</FieldData>\n";
+  std::string text = "<FieldData>\n" + array("space:" + to_string(mesh.space), 1);
+  for (std::size_t i = 0; i < mesh.labels.size(); ++i)
+    text += array("label:" + names[static_cast<LabelIndex>(i)], mesh.labels[i].value);
+  return text + "</FieldData>\n";
 }
 
 void write_grid(AtomicFile& file, const VtuGrid& grid, const std::string& field_data) {

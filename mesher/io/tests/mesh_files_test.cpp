@@ -86,14 +86,22 @@ TEST(GmshFile, PhysicalGroupsAreTheLabelValuesWhereTheyFit) {
 TEST(MeshFiles, LabelNamesAreMadePrintableAndDistinct) {
   const ScratchFolder folder;
   TetMesh mesh = make_test_mesh();
-  mesh.labels[1].name = "a \"b\"|\nc";
-  mesh.labels[2].name = "outside";
-  mesh.labels[3].name = "a 'b'/ c";
-  write_mesh(mesh, folder / "a.msh");
-  write_mesh(mesh, folder / "a.mesh");
-  const std::vector<std::string> expected{"", "a 'b'/ c", "outside 3000000000", "a 'b'/ c 2"};
-  EXPECT_EQ(names_of(read_gmsh(folder / "a.msh").mesh.labels), expected);
-  EXPECT_EQ(names_of(read_medit(folder / "a.mesh").labels), expected);
+  const auto expect_names = [&](const std::array<std::string, 3>& given,
+                                const std::array<std::string, 3>& expected) {
+    for (int i = 0; i < 3; ++i) mesh.labels[i + 1].name = given[i];
+    write_mesh(mesh, folder / "a.msh");
+    write_mesh(mesh, folder / "a.mesh");
+    const std::vector<std::string> names{"", expected[0], expected[1], expected[2]};
+    EXPECT_EQ(names_of(read_gmsh(folder / "a.msh").mesh.labels), names);
+    EXPECT_EQ(names_of(read_medit(folder / "a.mesh").labels), names);
+  };
+  expect_names({"a \"b\"|\nc", "outside", "a 'b'/ c"}, {"a 'b'/ c", "outside 3000000000", "a 'b'/ c 2"});
+  expect_names({"b\xc3\xb8rn", "\xe8\x82\x9d", "\xf0\x9f\xab\x80"},  // UTF-8 stays
+               {"b\xc3\xb8rn", "\xe8\x82\x9d", "\xf0\x9f\xab\x80"});
+  expect_names({"m\xf8r", "cut \xe8\x82", "over\xc1\xa1long"},  // Latin-1, truncated, overlong
+               {"m?r", "cut ??", "over??long"});
+  expect_names({"low \xed\xa0\x80", "non \xef\xbf\xbf", "big \xf4\x90\x80\x80"},  // no characters
+               {"low ???", "non ???", "big ????"});
 }
 
 TEST(MeshFiles, TheSameMeshGivesTheSameBytes) {

@@ -33,15 +33,14 @@ def main():
     for i in range(grid.GetNumberOfCells()):
         cell = grid.GetCell(i)
         print(cell.GetCellType(), *(cell.GetPointId(j) for j in range(cell.GetNumberOfPoints())))
-    for kind, data in (
-        ("point", grid.GetPointData()),
-        ("cell", grid.GetCellData()),
-        ("field", grid.GetFieldData()),
-    ):
+    for kind, data in (("point", grid.GetPointData()), ("cell", grid.GetCellData())):
         for array in arrays(data):
             print(kind, array.GetName(), array.GetNumberOfValues())
             for value in values(array):
                 print(value)
+
+    for array in arrays(grid.GetFieldData()):
+        print("field", array.GetName() + "\t" + str(array.GetValue(0)))
 
     sizes = vtk.vtkCellSizeFilter()
     sizes.SetInputData(grid)
