@@ -1,0 +1,17 @@
+# What `cmake --install` puts in place: the program, the library and what find_package(podm) needs.
+include(CMakePackageConfigHelpers)
+
+set_target_properties(podm_library PROPERTIES EXPORT_NAME podm)
+install(TARGETS podm RUNTIME DESTINATION ${CMAKE_INSTALL_BINDIR})
+install(TARGETS podm_library podm_mesher podm_refine podm_delaunay podm_isosurface podm_image_io podm_io
+                podm_geometry podm_flags
+        EXPORT podmTargets ARCHIVE DESTINATION ${CMAKE_INSTALL_LIBDIR})
+install(DIRECTORY ${PROJECT_SOURCE_DIR}/mesher/include/podm DESTINATION ${CMAKE_INSTALL_INCLUDEDIR})
+
+set(PODM_CMAKE_DIR ${CMAKE_INSTALL_LIBDIR}/cmake/podm)
+install(EXPORT podmTargets NAMESPACE podm:: DESTINATION ${PODM_CMAKE_DIR})
+configure_package_config_file(${PROJECT_SOURCE_DIR}/cmake/podmConfig.cmake.in
+                              ${PROJECT_BINARY_DIR}/podmConfig.cmake INSTALL_DESTINATION ${PODM_CMAKE_DIR})
+write_basic_package_version_file(${PROJECT_BINARY_DIR}/podmConfigVersion.cmake COMPATIBILITY SameMinorVersion)
+install(FILES ${PROJECT_BINARY_DIR}/podmConfig.cmake ${PROJECT_BINARY_DIR}/podmConfigVersion.cmake
+        DESTINATION ${PODM_CMAKE_DIR})

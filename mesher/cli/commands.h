@@ -1,0 +1,14 @@
+// The commands of the program, one function each. They return the exit code: 0, or 1 when a guarantee or a
+// limit is unmet; faults are thrown.
+#pragma once
+
+#include "cli/options.h"
+
+namespace podm::cli {
+
+int run(const MeshCommand& command);
+int run(const InfoCommand& command);
+int run(const PhantomCommand& command);
+int run(const ShowText& show);
+
+}  // namespace podm::cli

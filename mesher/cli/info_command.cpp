@@ -1,0 +1,71 @@
+// podm info: what an image is, and how much of it each label fills.
+#include <fmt/format.h>
+
+#include <cmath>
+#include <nlohmann/json.hpp>
+
+#include "cli/commands.h"
+#include "cli/json_text.h"
+#include "cli/labelled_image.h"
+#include "cli/standard_output.h"
+
+namespace podm::cli {
+namespace {
+
+// The product of the spacings only where the axes are orthogonal.
+double voxel_volume_mm3(const LabelImage& image) {
+  const auto& a = image.voxel_to_ras;
+  return std::abs(a[0] * (a[5] * a[10] - a[6] * a[9]) - a[1] * (a[4] * a[10] - a[6] * a[8]) +
+                  a[2] * (a[4] * a[9] - a[5] * a[8]));
+}
+
+std::string as_text(const std::string& path, const LabelImage& image) {
+  const auto& affine = image.voxel_to_ras;
+  const double voxel_mm3 = voxel_volume_mm3(image);
+  const auto counts = count_voxels(image);
+  std::string text = fmt::format(
+      "image      {}\n"
+      "size       {} x {} x {} voxels\n"
+      "spacing    {} x {} x {} mm\n",
+      path, image.size[0], image.size[1], image.size[2], image.spacing[0], image.spacing[1],
+      image.spacing[2]);
+  for (std::size_t row = 0; row < 3; ++row)
+    text += fmt::format("{:<11}{:>12.6g} {:>12.6g} {:>12.6g} {:>12.6g}\n", row == 0 ? "affine" : "",
+                        affine[4 * row], affine[4 * row + 1], affine[4 * row + 2], affine[4 * row + 3]);
+  text += fmt::format("labels     {}\n{:>10} {:>12} {:>16}  {}\n", image.labels.size() - 1, "value", "voxels",
+                      "volume mm^3", "name");
+  for (std::size_t i = 0; i < image.labels.size(); ++i)
+    text += fmt::format("{:>10} {:>12} {:>16.6g}  {}\n", image.labels[i].value, counts[i],
+                        static_cast<double>(counts[i]) * voxel_mm3,
+                        i == kBackground ? "background" : image.labels[i].name);
+  return text;
+}
+
+nlohmann::ordered_json as_json(const std::string& path, const LabelImage& image) {
+  const double voxel_mm3 = voxel_volume_mm3(image);
+  const auto counts = count_voxels(image);
+  nlohmann::ordered_json labels = nlohmann::ordered_json::array();
+  for (std::size_t i = 1; i < image.labels.size(); ++i)
+    labels.push_back({{"value", image.labels[i].value},
+                      {"name", image.labels[i].name},
+                      {"voxels", counts[i]},
+                      {"volume_mm3", static_cast<double>(counts[i]) * voxel_mm3}});
+  return {{"path", path},
+          {"size", image.size},
+          {"spacing_mm", image.spacing},
+          {"affine", affine_rows(image)},
+          {"voxel_volume_mm3", voxel_mm3},
+          {"background", {{"value", image.labels[kBackground].value}, {"voxels", counts[kBackground]}}},
+          {"labels", labels}};
+}
+
+}  // namespace
+
+int run(const InfoCommand& command) {
+  const LabelImage image = read_labelled_image(command.image);
+  write_standard_output(command.json ? json_line(as_json(command.image.path, image))
+                                     : as_text(command.image.path, image));
+  return 0;
+}
+
+}  // namespace podm::cli

@@ -1,0 +1,61 @@
+#include "cli/labelled_image.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+
+#include "cli/nearest_name.h"
+#include "podm/errors.h"
+
+namespace podm::cli {
+namespace {
+
+bool is_called(const Label& label, const std::string& name_or_value) {
+  return label.name == name_or_value || fmt::format("{}", label.value) == name_or_value;
+}
+
+}  // namespace
+
+LabelImage read_labelled_image(const ImageArguments& arguments) {
+  std::map<std::uint32_t, std::string> names;  // before the image: a fault shows at once
+  if (!arguments.label_names_path.empty()) names = read_label_names(arguments.label_names_path);
+  LabelImage image = read_image(arguments.path, arguments.selection);
+  for (Label& label : image.labels) {
+    const auto named = names.find(label.value);
+    if (label.name.empty() && named != names.end()) label.name = named->second;
+  }
+  return image;
+}
+
+std::map<std::uint32_t, double> lengths_by_value(
+    const std::vector<std::pair<std::string, double>>& lengths_mm, const LabelImage& image,
+    const std::string& image_path) {
+  std::map<std::uint32_t, double> by_value;
+  for (const auto& [name_or_value, length_mm] : lengths_mm) {
+    bool found = false;
+    std::vector<std::string> names;
+    for (const Label& label : image.labels) {
+      if (&label == &image.labels[kBackground]) continue;
+      names.push_back(label.name);
+      if (!is_called(label, name_or_value)) continue;
+      by_value[label.value] = length_mm;
+      found = true;
+    }
+    if (!found)
+      throw InputError(
+          fmt::format("{}: no label '{}'{}", image_path, name_or_value, did_you_mean(name_or_value, names)));
+  }
+  return by_value;
+}
+
+std::vector<std::uint64_t> count_voxels(const LabelImage& image) {
+  std::vector<std::uint64_t> counts(image.labels.size());
+  for (const LabelIndex label : image.voxels) ++counts[label];
+  return counts;
+}
+
+std::string display_name(const Label& label) {
+  return label.name.empty() ? fmt::format("label {}", label.value) : label.name;
+}
+
+}  // namespace podm::cli

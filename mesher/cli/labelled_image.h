@@ -1,0 +1,30 @@
+// An image as the command line asks for it: selected labels, named from a table.
+#pragma once
+
+#include <cstdint>
+#include <map>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "cli/options.h"
+#include "podm/label_image.h"
+
+namespace podm::cli {
+
+/// Reads the image and gives names from the table to labels that have none yet.
+LabelImage read_labelled_image(const ImageArguments& arguments);
+
+/// Lengths by label value. A name stands for every label that bears it. Throws InputError, naming
+/// `image_path`, where a label is absent.
+std::map<std::uint32_t, double> lengths_by_value(
+    const std::vector<std::pair<std::string, double>>& lengths_mm, const LabelImage& image,
+    const std::string& image_path);
+
+/// Voxels of every label, by its position in `labels`.
+std::vector<std::uint64_t> count_voxels(const LabelImage& image);
+
+/// The name of a label, or "label 7" by its value where it has none.
+std::string display_name(const Label& label);
+
+}  // namespace podm::cli

@@ -1,0 +1,118 @@
+// podm mesh: outputs checked, image read, cost estimated, meshed, written, told.
+#include <fmt/format.h>
+
+#include <chrono>
+#include <cstdio>
+
+#include "cli/append_line.h"
+#include "cli/commands.h"
+#include "cli/json_text.h"
+#include "cli/labelled_image.h"
+#include "cli/mesh_run.h"
+#include "cli/process_memory.h"
+#include "cli/progress_display.h"
+#include "cli/record.h"
+#include "cli/stop_on_signal.h"
+#include "cli/summary.h"
+#include "podm/errors.h"
+#include "podm/mesh_io.h"
+
+namespace podm::cli {
+namespace {
+
+constexpr double kShareOfAvailableMemory = 0.8;
+constexpr double kBytesPerGib = 1024.0 * 1024 * 1024;
+constexpr std::uint64_t kTransformBytesPerVoxel = 4;
+
+// Seconds that `action` takes.
+template <class Action>
+double timed(const Action& action) {
+  const auto start = std::chrono::steady_clock::now();
+  action();
+  return std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+}
+
+// Hours of meshing must not end at a misspelt folder.
+void check_outputs(const MeshCommand& command) {
+  check_mesh_path(command.mesh_path);
+  if (!command.surface_path.empty()) check_surface_path(command.surface_path);
+  if (!command.record_path.empty()) check_appendable(command.record_path);
+}
+
+// Throws InputError with the estimate where a run would need more memory than `limit_bytes`. An element limit
+// below the estimate bounds the run instead.
+void refuse_what_cannot_fit(const MeshCommand& command, const LabelImage& image,
+                            const MeshingOptions& options, std::uint64_t limit_bytes) {
+  const Estimate expected = estimate(image, options);
+  if (options.max_elements > 0 && static_cast<double>(options.max_elements) < expected.cells) return;
+  if (expected.memory_bytes <= static_cast<double>(limit_bytes)) return;
+  throw InputError(fmt::format(
+      "{}: these options ask for about {:.2g} cells and {:.3g} GiB of memory, the limit is {:.3g} GiB; "
+      "use a larger radius or delta, or --max-memory-gib",
+      command.image.path, expected.cells, expected.memory_bytes / kBytesPerGib,
+      static_cast<double>(limit_bytes) / kBytesPerGib));
+}
+
+// What the process may still use once the image is read and its transform made is for the mesh store.
+std::uint64_t store_bytes(std::uint64_t limit_bytes, const LabelImage& image) {
+  const std::uint64_t others = resident_bytes() + kTransformBytesPerVoxel * image.num_voxels();
+  return others < limit_bytes ? limit_bytes - others : 1;
+}
+
+MeshingOptions resolve(const MeshCommand& command, const LabelImage& image) {
+  MeshingOptions options = command.meshing;
+  options.radius_of_mm = lengths_by_value(command.radius_of_mm, image, command.image.path);
+  const std::uint64_t limit_bytes =
+      command.max_memory_bytes > 0
+          ? command.max_memory_bytes
+          : static_cast<std::uint64_t>(kShareOfAvailableMemory *
+                                       static_cast<double>(available_memory_bytes()));
+  refuse_what_cannot_fit(command, image, options, limit_bytes);
+  options.max_memory_bytes = store_bytes(limit_bytes, image);
+  return options;
+}
+
+MeshingResult mesh_with_display(const LabelImage& image, const MeshingOptions& options, bool quiet) {
+  StopOnSignal stop;
+  using Style = ProgressDisplay::Style;
+  ProgressDisplay display(stderr, quiet ? Style::kNone : ProgressDisplay::style_for(stderr));
+  const auto progress = [&](const Progress& now) {
+    stop.poll();
+    display.show(now);
+  };
+  return mesh_image(image, options, progress, stop.token());
+}
+
+void write_outputs(const MeshCommand& command, const TetMesh& mesh) {
+  write_mesh(mesh, command.mesh_path);
+  if (!command.surface_path.empty()) write_surfaces(mesh, command.surface_path);
+}
+
+}  // namespace
+
+int run(const MeshCommand& command) {
+  check_outputs(command);
+  LabelImage image;
+  const double read_s = timed([&] { image = read_labelled_image(command.image); });
+  MeshRun run{.command = command,
+              .image = image,
+              .options = resolve(command, image),
+              .result = {},
+              .mesh_sha256 = {},
+              .read_s = read_s};
+  run.result = mesh_with_display(image, run.options, command.quiet);
+  run.write_s = timed([&] {
+    canonicalize(run.result.mesh);
+    run.mesh_sha256 = mesh_sha256(run.result.mesh);
+    write_outputs(command, run.result.mesh);
+  });
+  run.peak_rss_bytes = peak_resident_bytes();
+  if (!command.record_path.empty()) append_line(command.record_path, json_line(record(run)));
+  if (!command.quiet) fmt::print(stderr, "{}", summary(run));
+  for (const std::string& warning : run.result.report.warnings) fmt::print(stderr, "warning: {}\n", warning);
+  const auto unmet = run.unmet();
+  for (const std::string& sentence : unmet) fmt::print(stderr, "podm: {}\n", sentence);
+  return unmet.empty() ? 0 : 1;
+}
+
+}  // namespace podm::cli

@@ -1,0 +1,54 @@
+#include "cli/mesh_run.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+
+namespace podm::cli {
+
+std::map<std::string, double> MeshRun::phases_s() const {
+  std::map<std::string, double> phases = result.report.phases_s;
+  phases["read"] = read_s;
+  phases["write"] = write_s;
+  return phases;
+}
+
+double MeshRun::cells_per_second() const {
+  double seconds = read_s;
+  for (const auto& [phase, phase_s] : result.report.phases_s) seconds += phase_s;
+  return static_cast<double>(result.mesh.cells.size()) / seconds;
+}
+
+double MeshRun::refine_cells_per_second() const {
+  return static_cast<double>(result.mesh.cells.size()) / result.report.phases_s.at("refine");
+}
+
+std::vector<std::string> MeshRun::unmet() const {
+  std::vector<std::string> sentences;
+  const auto count = [&](std::uint64_t misses, const std::string& what) {
+    if (misses > 0) sentences.push_back(fmt::format("{} {}", misses, what));
+  };
+  const StopReason reason = result.report.stop_reason;
+  if (reason != StopReason::kComplete)
+    sentences.push_back(fmt::format("the run ended early: {}", to_string(reason)));
+  const Guarantees& misses = result.report.guarantees;
+  count(misses.radius_edge, fmt::format("cells have a radius-edge ratio of {} or more", kRadiusEdgeBound));
+  count(misses.facet_angle,
+        fmt::format("boundary facets have an angle of {} degrees or less", kFacetAngleBound));
+  count(misses.radius, "cells have a circumradius above the bound");
+  count(misses.facet_vertices, "boundary facets have a vertex off the isosurface");
+  count(misses.missing_labels, "labels of more than 1000 voxels have no cell");
+  return sentences;
+}
+
+std::vector<FacetCount> count_facets(const TetMesh& mesh) {
+  std::map<std::array<LabelIndex, 2>, std::uint64_t> by_pair;
+  for (const auto& pair : mesh.facet_labels) ++by_pair[pair];
+  std::vector<FacetCount> counts;
+  for (const auto& [pair, facets] : by_pair) counts.push_back({pair, facets});
+  std::stable_sort(counts.begin(), counts.end(),
+                   [](const FacetCount& a, const FacetCount& b) { return a.facets > b.facets; });
+  return counts;
+}
+
+}  // namespace podm::cli

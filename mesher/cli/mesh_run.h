@@ -1,0 +1,41 @@
+// A finished run of podm mesh: what its summary and its record tell of.
+#pragma once
+
+#include <cstdint>
+#include <map>
+#include <string>
+#include <vector>
+
+#include "cli/options.h"
+#include "podm/label_image.h"
+#include "podm/mesh_image.h"
+
+namespace podm::cli {
+
+struct MeshRun {
+  const MeshCommand& command;
+  const LabelImage& image;
+  MeshingOptions options;  ///< as handed to mesh_image()
+  MeshingResult result;
+  std::string mesh_sha256;
+  double read_s = 0, write_s = 0;
+  std::uint64_t peak_rss_bytes = 0;
+
+  /// Seconds by phase: those of the library between "read" and "write".
+  std::map<std::string, double> phases_s() const;
+  /// Cells over the seconds of all phases but writing: the elements per second of the paper's eq. (1).
+  double cells_per_second() const;
+  double refine_cells_per_second() const;
+  /// One sentence for each guarantee or limit that is unmet; none: the run is a success.
+  std::vector<std::string> unmet() const;
+};
+
+/// Facets between two labels.
+struct FacetCount {
+  std::array<LabelIndex, 2> labels;
+  std::uint64_t facets = 0;
+};
+/// By label pair, most facets first.
+std::vector<FacetCount> count_facets(const TetMesh& mesh);
+
+}  // namespace podm::cli

@@ -1,0 +1,52 @@
+#include "cli/option_values.h"
+
+#include <fmt/format.h>
+
+#include <charconv>
+#include <cmath>
+
+#include "podm/errors.h"
+
+namespace podm::cli {
+namespace {
+
+// The whole of `text` as a T, or false. Unlike strtod it knows no locale, no blanks and no leading '+'.
+template <class T>
+bool read_all(const std::string& text, T& value) {
+  const char* end = text.data() + text.size();
+  const auto [stopped, error] = std::from_chars(text.data(), end, value);
+  return error == std::errc() && stopped == end;
+}
+
+}  // namespace
+
+double parse_positive(const std::string& text, const std::string& option, const std::string& quantity) {
+  double value = 0;
+  if (!read_all(text, value) || !std::isfinite(value) || value <= 0)
+    throw InputError(fmt::format("{}: '{}' is not a positive {}", option, text, quantity));
+  return value;
+}
+
+std::uint64_t parse_integer(const std::string& text, const std::string& option, std::uint64_t low,
+                            std::uint64_t high) {
+  std::uint64_t value = 0;
+  if (!read_all(text, value) || value < low || value > high)
+    throw InputError(fmt::format("{}: '{}' is not an integer from {} to {}", option, text, low, high));
+  return value;
+}
+
+Space parse_space(const std::string& text, const std::string& option) {
+  for (const Space space : {Space::kRas, Space::kLps, Space::kVoxel})
+    if (text == to_string(space)) return space;
+  throw InputError(fmt::format("{}: '{}' is not a space, expected RAS, LPS or voxel", option, text));
+}
+
+std::pair<std::string, double> parse_label_length(const std::string& text, const std::string& option) {
+  const std::size_t equals = text.rfind('=');
+  if (equals == std::string::npos || equals == 0)
+    throw InputError(fmt::format("{}: '{}' is not LABEL=MM, as in liver=2 or 7=0.5", option, text));
+  const std::string label = text.substr(0, equals);
+  return {label, parse_positive(text.substr(equals + 1), option + " " + label, "length in mm")};
+}
+
+}  // namespace podm::cli

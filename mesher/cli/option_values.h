@@ -1,0 +1,25 @@
+// What the text of an option means. Every function throws InputError naming the option and the fault.
+#pragma once
+
+#include <cstdint>
+#include <string>
+#include <utility>
+
+#include "podm/tet_mesh.h"
+
+namespace podm::cli {
+
+/// A finite number above zero; `quantity` says what it should be, e.g. "length in mm".
+double parse_positive(const std::string& text, const std::string& option, const std::string& quantity);
+
+/// An integer in [low, high], decimal digits only.
+std::uint64_t parse_integer(const std::string& text, const std::string& option, std::uint64_t low,
+                            std::uint64_t high);
+
+/// "RAS", "LPS" or "voxel".
+Space parse_space(const std::string& text, const std::string& option);
+
+/// "liver=2" or "7=0.5": a label, by name or value, and a length in mm.
+std::pair<std::string, double> parse_label_length(const std::string& text, const std::string& option);
+
+}  // namespace podm::cli

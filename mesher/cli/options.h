@@ -1,0 +1,57 @@
+// The command line as data. Parsing reads no file and prints nothing.
+#pragma once
+
+#include <cstdint>
+#include <string>
+#include <utility>
+#include <variant>
+#include <vector>
+
+#include "podm/image_io.h"
+#include "podm/mesh_image.h"
+
+namespace podm::cli {
+
+/// An image and what is kept of it.
+struct ImageArguments {
+  std::string path;  ///< or "phantom:NAME[@SIZE]"
+  LabelSelection selection;
+  std::string label_names_path;  ///< empty: none
+};
+
+/// podm mesh
+struct MeshCommand {
+  ImageArguments image;
+  std::string mesh_path;
+  std::string surface_path;  ///< empty: no surfaces
+  std::string record_path;   ///< empty: no record
+  MeshingOptions meshing;    ///< but for the two fields below, which need the image or the machine
+  std::vector<std::pair<std::string, double>> radius_of_mm;  ///< by label name or value
+  std::uint64_t max_memory_bytes = 0;                        ///< of the process; 0: as the machine has
+  bool quiet = false;
+};
+
+/// podm info
+struct InfoCommand {
+  ImageArguments image;
+  bool json = false;
+};
+
+/// podm phantom
+struct PhantomCommand {
+  std::string name;
+  int size = 128;  ///< voxels along the longest axis
+  std::string output_path;
+};
+
+/// --help, --version: text for standard output.
+struct ShowText {
+  std::string text;
+};
+
+using Command = std::variant<MeshCommand, InfoCommand, PhantomCommand, ShowText>;
+
+/// Parses the arguments after the program's name. Throws InputError naming the option and the fault.
+Command parse_command_line(std::vector<std::string> arguments);
+
+}  // namespace podm::cli

@@ -1,0 +1,46 @@
+#include "cli/process_memory.h"
+
+#include <algorithm>
+#include <fstream>
+#include <limits>
+#include <string>
+
+#include "podm/errors.h"
+
+namespace podm::cli {
+namespace {
+
+// The value of a line "Key:   123 kB".
+std::uint64_t read_kib_as_bytes(const std::string& path, const std::string& key) {
+  std::ifstream file(path);
+  std::string line;
+  while (std::getline(file, line))
+    if (line.starts_with(key + ":")) return 1024 * std::stoull(line.substr(key.size() + 1));
+  throw InternalError(path + " has no line " + key);
+}
+
+// A file that holds one number; false if it is missing or says "max".
+bool read_number(const std::string& path, std::uint64_t& number) {
+  std::ifstream file(path);
+  return static_cast<bool>(file >> number);
+}
+
+std::uint64_t left_in_control_group() {
+  std::uint64_t most = 0, used = 0;
+  if (!read_number("/sys/fs/cgroup/memory.max", most) || !read_number("/sys/fs/cgroup/memory.current", used))
+    return std::numeric_limits<std::uint64_t>::max();
+  return most - std::min(most, used);
+}
+
+}  // namespace
+
+std::uint64_t available_memory_bytes() {
+  return std::min(read_kib_as_bytes("/proc/meminfo", "MemAvailable"), left_in_control_group());
+}
+
+std::uint64_t resident_bytes() { return read_kib_as_bytes("/proc/self/status", "VmRSS"); }
+
+// Not getrusage: its maximum survives exec, so that a large parent would be charged to this program.
+std::uint64_t peak_resident_bytes() { return read_kib_as_bytes("/proc/self/status", "VmHWM"); }
+
+}  // namespace podm::cli

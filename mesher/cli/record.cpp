@@ -1,0 +1,145 @@
+#include "cli/record.h"
+
+#include <fmt/format.h>
+
+#include "cli/input_sha256.h"
+#include "cli/json_text.h"
+
+namespace podm::cli {
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+Json ranges(const std::vector<std::pair<std::uint32_t, std::uint32_t>>& closed_ranges) {
+  Json array = Json::array();
+  for (const auto& [first, last] : closed_ranges) array.push_back({first, last});
+  return array;
+}
+
+Json selection_of(const LabelSelection& selection) {
+  Json merges = Json::array();
+  for (const auto& merge : selection.merges)
+    merges.push_back({{"values", merge.values}, {"name", merge.name}});
+  return {{"background", selection.background},
+          {"keep", ranges(selection.keep)},
+          {"drop", ranges(selection.drop)},
+          {"merge", merges}};
+}
+
+// As asked for; 0 means what it means in MeshingOptions.
+Json options_of(const MeshRun& run) {
+  const MeshingOptions& options = run.options;
+  Json radius_of = Json::object();
+  for (const auto& [value, radius_mm] : options.radius_of_mm) radius_of[std::to_string(value)] = radius_mm;
+  return {{"radius_mm", options.radius_mm},
+          {"radius_of_mm", radius_of},
+          {"delta_mm", options.delta_mm},
+          {"target_elements", options.target_elements},
+          {"space", to_string(options.space)},
+          {"max_elements", options.max_elements},
+          {"max_seconds", options.max_seconds},
+          {"max_memory_bytes", run.command.max_memory_bytes},
+          {"labels", selection_of(run.command.image.selection)}};
+}
+
+std::uint64_t committed(const Counters& counters) {
+  std::uint64_t operations = counters.removals;
+  for (const std::uint64_t insertions : counters.insertions_by_rule) operations += insertions;
+  return operations;
+}
+
+Json counters_of(const MeshingReport& report) {
+  const Counters& counters = report.counters;
+  Json insertions = Json::object();
+  for (std::size_t rule = 0; rule < counters.insertions_by_rule.size(); ++rule)
+    insertions[fmt::format("R{}", rule + 1)] = counters.insertions_by_rule[rule];
+  return {{"insertions", insertions},
+          {"removals", counters.removals},
+          {"classified_cells", counters.classified_cells},
+          {"conflict_tests", counters.conflict_tests},
+          {"exact_decisions", counters.exact_decisions},
+          {"cells_created", counters.cells_created},
+          {"store_cells", report.store_cells}};
+}
+
+Json quality_of(const Quality& quality) {
+  return {{"max_radius_edge", quality.max_radius_edge},
+          {"min_facet_angle_deg", quality.min_facet_angle_deg},
+          {"max_facet_angle_deg", quality.max_facet_angle_deg},
+          {"min_dihedral_deg", quality.min_dihedral_deg},
+          {"max_dihedral_deg", quality.max_dihedral_deg},
+          {"max_radius_mm", quality.max_radius_mm},
+          {"shortest_edge_mm", quality.shortest_edge_mm}};
+}
+
+Json guarantees_of(const Guarantees& misses) {
+  return {{"radius_edge", misses.radius_edge},
+          {"facet_angle", misses.facet_angle},
+          {"radius", misses.radius},
+          {"facet_vertices", misses.facet_vertices},
+          {"missing_labels", misses.missing_labels}};
+}
+
+Json labels_of(const MeshRun& run) {
+  const MeshingReport& report = run.result.report;
+  Json labels = Json::array();
+  for (const Label& label : run.image.labels) {
+    const auto cells = report.cells_of_label.find(label.value);
+    const auto volume = report.volume_of_label_mm3.find(label.value);
+    if (cells == report.cells_of_label.end() || volume == report.volume_of_label_mm3.end()) continue;
+    labels.push_back({{"value", label.value},
+                      {"name", label.name},
+                      {"cells", cells->second},
+                      {"volume_mm3", volume->second}});
+  }
+  return labels;
+}
+
+Json facet_pairs_of(const TetMesh& mesh) {
+  Json pairs = Json::array();
+  for (const FacetCount& count : count_facets(mesh))
+    pairs.push_back({{"labels", {mesh.labels[count.labels[0]].value, mesh.labels[count.labels[1]].value}},
+                     {"facets", count.facets}});
+  return pairs;
+}
+
+}  // namespace
+
+Json record(const MeshRun& run) {
+  const MeshingReport& report = run.result.report;
+  const TetMesh& mesh = run.result.mesh;
+  const std::string& path = run.command.image.path;
+  return {
+      {"schema", kRecordSchema},
+      {"program", "podm " PODM_VERSION},
+      {"algorithm", "podm"},
+      {"input",
+       {{"path", path}, {"sha256", input_sha256(path, run.image)}, {"affine", affine_rows(run.image)}}},
+      {"options", options_of(run)},
+      {"used", {{"radius_mm", report.radius_mm}, {"delta_mm", report.delta_mm}}},
+      {"seed", nullptr},  // one worker makes no random choice
+      {"threads", {{"asked", run.options.threads}, {"used", 1}, {"placement", "unpinned"}}},
+      {"phases_s", run.phases_s()},
+      {"cells", mesh.cells.size()},
+      {"vertices", mesh.vertices.size()},
+      {"boundary_facets", mesh.facets.size()},
+      {"labels", labels_of(run)},
+      {"facet_pairs", facet_pairs_of(mesh)},
+      {"cells_per_second", run.cells_per_second()},
+      {"refine_cells_per_second", run.refine_cells_per_second()},
+      {"peak_rss_bytes", run.peak_rss_bytes},
+      {"outcomes",
+       {{"committed", committed(report.counters)},
+        {"stale_cell", report.counters.stale_cells},
+        {"rejected", report.counters.rejected}}},
+      {"counters", counters_of(report)},
+      {"quality", quality_of(report.quality)},
+      {"guarantees", guarantees_of(report.guarantees)},
+      {"mesh_sha256", run.mesh_sha256},
+      {"verdicts", Json::object()},  // a verifier adds them
+      {"stop_reason", to_string(report.stop_reason)},
+      {"warnings", report.warnings},
+  };
+}
+
+}  // namespace podm::cli

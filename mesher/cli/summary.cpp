@@ -1,0 +1,90 @@
+#include "cli/summary.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+
+#include "cli/labelled_image.h"
+
+namespace podm::cli {
+namespace {
+
+constexpr std::size_t kLongestList = 20;  // an atlas has hundreds of labels; the record holds them all
+
+std::string more(std::size_t total, const std::string& what) {
+  return total > kLongestList ? fmt::format("  ... and {} more {}\n", total - kLongestList, what) : "";
+}
+
+std::string labels_text(const MeshRun& run) {
+  const MeshingReport& report = run.result.report;
+  std::vector<Label> labels(run.image.labels.begin() + 1, run.image.labels.end());
+  const auto cells_of = [&](const Label& label) {
+    const auto found = report.cells_of_label.find(label.value);
+    return found == report.cells_of_label.end() ? 0 : found->second;
+  };
+  std::stable_sort(labels.begin(), labels.end(),
+                   [&](const Label& a, const Label& b) { return cells_of(a) > cells_of(b); });
+  std::string text = fmt::format("cells by label, volume in mm^3\n");
+  for (std::size_t i = 0; i < std::min(labels.size(), kLongestList); ++i) {
+    const auto volume = report.volume_of_label_mm3.find(labels[i].value);
+    text += fmt::format("  {:>10} {:>14.6g}  {}\n", cells_of(labels[i]),
+                        volume == report.volume_of_label_mm3.end() ? 0.0 : volume->second,
+                        display_name(labels[i]));
+  }
+  return text + more(labels.size(), "labels");
+}
+
+std::string facets_text(const TetMesh& mesh) {
+  const auto name = [&](LabelIndex label) {
+    return label == kBackground ? std::string("outside") : display_name(mesh.labels[label]);
+  };
+  const auto counts = count_facets(mesh);
+  std::string text = "boundary facets by what they separate\n";
+  for (std::size_t i = 0; i < std::min(counts.size(), kLongestList); ++i)
+    text += fmt::format("  {:>10}  {} | {}\n", counts[i].facets, name(counts[i].labels[1]),
+                        name(counts[i].labels[0]));
+  return text + more(counts.size(), "pairs");
+}
+
+std::string quality_text(const Quality& quality) {
+  return fmt::format(
+      "quality    radius-edge ratio up to {:.4g} (bound {}), boundary facet angles {:.4g} to {:.4g} deg"
+      " (bound {}),\n"
+      "           dihedral angles {:.4g} to {:.4g} deg, circumradius up to {:.4g} mm, shortest edge {:.4g} "
+      "mm\n",
+      quality.max_radius_edge, kRadiusEdgeBound, quality.min_facet_angle_deg, quality.max_facet_angle_deg,
+      kFacetAngleBound, quality.min_dihedral_deg, quality.max_dihedral_deg, quality.max_radius_mm,
+      quality.shortest_edge_mm);
+}
+
+std::string time_text(const MeshRun& run) {
+  const auto phases = run.phases_s();
+  std::string text = "time      ";
+  for (const char* phase : {"read", "transform", "octree", "initial", "refine", "extract", "write"})
+    if (const auto found = phases.find(phase); found != phases.end())
+      text += fmt::format(" {} {:.2f} s", phase, found->second);
+  return text + fmt::format("\nspeed      {:.0f} cells/s in all but writing, {:.0f} cells/s refining\n",
+                            run.cells_per_second(), run.refine_cells_per_second());
+}
+
+}  // namespace
+
+std::string summary(const MeshRun& run) {
+  const TetMesh& mesh = run.result.mesh;
+  const MeshingReport& report = run.result.report;
+  std::string text =
+      fmt::format("{}: {} cells, {} vertices, {} boundary facets; {} space\n", run.command.mesh_path,
+                  mesh.cells.size(), mesh.vertices.size(), mesh.facets.size(), to_string(mesh.space));
+  text += labels_text(run) + facets_text(mesh) + quality_text(report.quality);
+  text += fmt::format("sizes      radius {}, delta {:.4g} mm\n",
+                      report.radius_mm > 0 ? fmt::format("{:.4g} mm", report.radius_mm) : "unbounded",
+                      report.delta_mm);
+  text += time_text(run);
+  text += fmt::format("memory     {:.3f} GiB at most\n",
+                      static_cast<double>(run.peak_rss_bytes) / (1024.0 * 1024 * 1024));
+  text += fmt::format("sha256     {}\n", run.mesh_sha256);
+  text += fmt::format("guarantees {}\n", report.guarantees.all_met() ? "all met" : "not met");
+  return text;
+}
+
+}  // namespace podm::cli

@@ -1,0 +1,27 @@
+# Installs BUILD below SCRATCH, then configures, builds and runs EXAMPLE against what was installed.
+file(REMOVE_RECURSE ${SCRATCH})
+
+function(run)
+  execute_process(COMMAND ${ARGN} COMMAND_ECHO STDOUT COMMAND_ERROR_IS_FATAL ANY)
+endfunction()
+
+run(${CMAKE_COMMAND} --install ${BUILD} --prefix ${SCRATCH}/prefix)
+run(${CMAKE_COMMAND} -S ${EXAMPLE} -B ${SCRATCH}/build -D CMAKE_PREFIX_PATH=${SCRATCH}/prefix
+    -D CMAKE_CXX_COMPILER=${COMPILER} -D CMAKE_BUILD_TYPE=Release)
+run(${CMAKE_COMMAND} --build ${SCRATCH}/build)
+run(${SCRATCH}/build/mesh_image phantom:spheres@24 5 ${SCRATCH}/example.vtu)
+run(${SCRATCH}/prefix/bin/podm mesh phantom:spheres@24 --radius 5 -o ${SCRATCH}/installed.vtu)
+
+# Nothing but the public headers is needed, so nothing else is installed.
+file(GLOB_RECURSE headers RELATIVE ${SCRATCH}/prefix/include ${SCRATCH}/prefix/include/*)
+foreach(header ${headers})
+  if(NOT header MATCHES "^podm/[a-z_]+\\.h$")
+    message(FATAL_ERROR "${header} is installed")
+  endif()
+endforeach()
+
+file(SHA256 ${SCRATCH}/example.vtu by_example)
+file(SHA256 ${SCRATCH}/installed.vtu by_program)
+if(NOT by_example STREQUAL by_program)
+  message(FATAL_ERROR "the library and the program differ")
+endif()

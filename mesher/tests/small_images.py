@@ -1,0 +1,40 @@
+"""Small image files written by hand, sound ones and faulty ones."""
+
+import struct
+
+UINT8, FLOAT32, RGB24 = 2, 16, 128  # NIfTI-1 datatype codes
+_BYTES = {UINT8: 1, FLOAT32: 4, RGB24: 3}
+
+
+def ball_voxels(size):
+    """Label 1 in the middle of a cube of `size` voxels, as bytes."""
+    middle = (size - 1) / 2
+    inside = lambda *ijk: sum((x - middle) ** 2 for x in ijk) <= (size / 3) ** 2
+    return bytes(inside(i, j, k) for k in range(size) for j in range(size) for i in range(size))
+
+
+def write_nifti(path, voxels, dimensions=(12, 12, 12), datatype=UINT8, affine=None, magic=b"n+1\0"):
+    """A NIfTI-1 file; `affine` is three rows of four numbers."""
+    header = bytearray(352)
+    struct.pack_into("<i", header, 0, 348)
+    struct.pack_into("<8h", header, 40, len(dimensions), *dimensions, *([1] * (7 - len(dimensions))))
+    struct.pack_into("<hh", header, 70, datatype, 8 * _BYTES[datatype])
+    struct.pack_into("<8f", header, 76, 1, *([1] * 7))
+    struct.pack_into("<f", header, 108, 352)
+    struct.pack_into("<f", header, 112, 1)
+    header[123] = 2  # mm
+    struct.pack_into("<h", header, 254, 1)
+    rows = affine or ((1, 0, 0, 0), (0, 1, 0, 0), (0, 0, 1, 0))
+    struct.pack_into("<12f", header, 280, *rows[0], *rows[1], *rows[2])
+    header[344:348] = magic
+    path.write_bytes(bytes(header) + voxels)
+    return path
+
+
+def write_metaimage(path, voxels, size=12, spacing="1 1 1"):
+    """A MetaImage file; `spacing` is written as it stands."""
+    header = (f"ObjectType = Image\nNDims = 3\nDimSize = {size} {size} {size}\nElementSpacing = {spacing}\n"
+              "ElementType = MET_UCHAR\nElementByteOrderMSB = False\nBinaryData = True\n"
+              "ElementDataFile = LOCAL\n")
+    path.write_bytes(header.encode() + voxels)
+    return path

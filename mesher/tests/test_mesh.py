@@ -1,0 +1,180 @@
+"""podm mesh: what it writes, tells and records, and how it ends early."""
+
+import json
+import re
+import signal
+import time
+import unittest
+
+from podm_process import PodmTestCase, run_podm, start_podm
+
+RECORD_NAMES = {"schema", "algorithm", "input", "options", "seed", "threads", "phases_s", "cells", "vertices",
+                "boundary_facets", "cells_per_second", "refine_cells_per_second", "peak_rss_bytes", "outcomes",
+                "counters", "quality", "guarantees", "mesh_sha256", "verdicts", "stop_reason", "warnings"}
+
+
+class Mesh(PodmTestCase):
+    def setUp(self):
+        super().setUp()
+        self.out = self.folder / "out.mesh"
+        self.runs = self.folder / "runs.jsonl"
+
+    def mesh(self, *arguments, image="phantom:spheres@32"):
+        return run_podm("mesh", image, "-o", self.out, "--record", self.runs, *arguments)
+
+    def test_a_phantom_meshes_and_its_record_agrees_with_the_file(self):
+        process = self.mesh("--radius", "6")
+        self.assert_exit(process, 0)
+        self.assertEqual(process.stdout, "")
+        mesh = self.assert_valid_mesh(self.out)
+        record = self.read_record(self.runs)
+        self.assertLessEqual(RECORD_NAMES, set(record))
+        self.assertEqual(record["schema"], 1)
+        self.assertEqual((record["cells"], record["vertices"], record["boundary_facets"]),
+                         (len(mesh.cells), len(mesh.vertices), len(mesh.facets)))
+        self.assertEqual(sum(label["cells"] for label in record["labels"]), len(mesh.cells))
+        self.assertEqual(sum(pair["facets"] for pair in record["facet_pairs"]), len(mesh.facets))
+        self.assertEqual(set(record["guarantees"].values()), {0})
+        self.assertEqual(record["stop_reason"], "complete")
+        self.assertRegex(record["mesh_sha256"], r"^[0-9a-f]{64}$")
+        self.assertRegex(record["input"]["sha256"], r"^[0-9a-f]{64}$")
+        self.assertIn(record["mesh_sha256"], process.stderr)
+        self.assertEqual(record["used"]["radius_mm"], 6)
+        self.assertLessEqual(record["quality"]["max_radius_mm"], 6)
+
+    def test_speeds_follow_from_the_phases(self):
+        self.assert_exit(self.mesh(), 0)
+        record = self.read_record(self.runs)
+        phases = record["phases_s"]
+        self.assertLessEqual({"read", "transform", "refine", "extract", "write"}, set(phases))
+        self.assertGreaterEqual(min(phases.values()), 0)
+        counted = sum(phases.values()) - phases["write"]
+        self.assertAlmostEqual(record["cells_per_second"] * counted / record["cells"], 1, places=6)
+        self.assertAlmostEqual(record["refine_cells_per_second"] * phases["refine"] / record["cells"], 1, places=6)
+        self.assertGreater(record["peak_rss_bytes"], 1 << 20)
+
+    def test_the_same_run_twice_gives_the_same_mesh(self):
+        for _ in range(2):
+            self.assert_exit(self.mesh("--radius", "5"), 0)
+        first, second = map(json.loads, self.runs.read_text().splitlines())
+        self.assertEqual(first["mesh_sha256"], second["mesh_sha256"])
+        self.assertEqual(first["input"], second["input"])
+
+    def test_radius_of_one_label_by_name_and_by_value(self):
+        info = json.loads(run_podm("info", "--json", "phantom:abdomen@32").stdout)
+        label = max((one for one in info["labels"] if one["name"]), key=lambda one: one["voxels"])
+        for key in ("name", "value"):
+            self.assert_exit(self.mesh("--radius-of", f"{label[key]}=4", image="phantom:abdomen@32"), 0)
+        first, second = map(json.loads, self.runs.read_text().splitlines())
+        self.assertEqual(first["options"]["radius_of_mm"], {str(label["value"]): 4})
+        self.assertEqual(first["mesh_sha256"], second["mesh_sha256"])
+
+    def test_target_elements_are_met_within_five_per_cent(self):
+        for target in (20000, 60000):
+            self.assert_exit(self.mesh("--target-elements", target), 0)
+        for line, target in zip(self.runs.read_text().splitlines(), (20000, 60000)):
+            self.assertLessEqual(abs(json.loads(line)["cells"] - target), 0.05 * target)
+
+    def test_surfaces_are_written_for_each_label(self):
+        for extension in ("stl", "ply"):
+            self.assert_exit(self.mesh("--surface", self.folder / f"s.{extension}"), 0)
+            labels = json.loads(self.runs.read_text().splitlines()[-1])["labels"]
+            written = [path for path in self.folder.glob(f"s_*.{extension}") if path.stat().st_size > 0]
+            self.assertEqual(len(written), len(labels))
+
+    def test_spaces_differ_by_the_affine_only(self):
+        meshes = {}
+        for space in ("RAS", "LPS", "voxel"):
+            self.assert_exit(self.mesh("--space", space), 0)
+            meshes[space] = self.assert_valid_mesh(self.out)
+        self.assertEqual(len({len(mesh.cells) for mesh in meshes.values()}), 1)
+        box = lambda mesh: [(min(c), max(c)) for c in zip(*mesh.vertices.values())]
+        (ras_x, ras_y, ras_z), (lps_x, lps_y, lps_z) = box(meshes["RAS"]), box(meshes["LPS"])
+        self.assertEqual(lps_x, (-ras_x[1], -ras_x[0]))
+        self.assertEqual(lps_y, (-ras_y[1], -ras_y[0]))
+        self.assertEqual(lps_z, ras_z)
+        for low, high in box(meshes["voxel"]):
+            self.assertGreaterEqual(low, -1)
+            self.assertLessEqual(high, 32)
+
+
+class Display(PodmTestCase):
+    def mesh(self, *arguments):
+        return run_podm("mesh", "phantom:spheres@24", "-o", self.folder / "out.vtu", *arguments)
+
+    def test_plain_lines_where_there_is_no_terminal(self):
+        process = self.mesh()
+        self.assert_exit(process, 0)
+        self.assertNotIn("\r", process.stderr)
+        self.assertNotIn("\x1b", process.stderr)
+        self.assertRegex(process.stderr, r"(?m)^refine +\d+ %")
+        for word in ("cells by label", "boundary facets", "quality", "time", "speed", "memory", "sha256", "guarantees"):
+            self.assertIn(word, process.stderr)
+
+    def test_quiet(self):
+        process = self.mesh("--quiet")
+        self.assert_exit(process, 0)
+        self.assertEqual((process.stdout, process.stderr), ("", ""))
+
+    def test_a_bar_on_a_terminal_which_the_summary_does_not_share_a_line_with(self):
+        import os, pty, subprocess
+        from podm_process import PROGRAM
+        ours, theirs = pty.openpty()
+        process = subprocess.Popen([PROGRAM, "mesh", "phantom:spheres@24", "-o", str(self.folder / "out.vtu")],
+                                   stderr=theirs, env={**os.environ, "TERM": "xterm"})
+        os.close(theirs)
+        text = b""
+        try:
+            while block := os.read(ours, 4096):
+                text += block
+        except OSError:  # the terminal's other end is closed
+            pass
+        os.close(ours)
+        self.assertEqual(process.wait(), 0)
+        self.assertRegex(text, rb"\r\x1b\[K\[#*\.*\] refine")
+        self.assertRegex(text, rb"\r\x1b\[K[^\r\n]*out\.vtu: \d+ cells")
+
+
+class EarlyEnd(PodmTestCase):
+    def setUp(self):
+        super().setUp()
+        self.out = self.folder / "out.mesh"
+        self.runs = self.folder / "runs.jsonl"
+
+    def arguments(self, *more):
+        return ["mesh", "phantom:abdomen@64", "-o", self.out, "--record", self.runs, *more]
+
+    def assert_ended_early(self, return_code, stderr, reason):
+        self.assertEqual(return_code, 1, stderr)
+        self.assertIn(f"ended early: {reason}", stderr)
+        self.assertEqual(self.read_record(self.runs)["stop_reason"], reason)
+        self.assert_valid_mesh(self.out)
+        self.assertEqual({path.name for path in self.folder.iterdir()}, {self.out.name, self.runs.name})
+
+    def test_signals_leave_a_valid_mesh(self):
+        for number in (signal.SIGINT, signal.SIGTERM):
+            with self.subTest(signal=number):
+                self.runs.unlink(missing_ok=True)
+                process = start_podm(*self.arguments("--target-elements", "20000000", "--max-memory-gib", "1000"))
+                for line in process.stderr:  # refinement has begun
+                    if re.match(r"refine", line):
+                        break
+                time.sleep(0.3)
+                process.send_signal(number)
+                stderr = process.communicate(timeout=60)[1]
+                self.assert_ended_early(process.returncode, stderr, "cancelled")
+
+    def test_element_limit(self):
+        process = run_podm(*self.arguments("--max-elements", "30000", "--radius", "0.5"))
+        self.assert_ended_early(process.returncode, process.stderr, "element limit")
+        self.assertLessEqual(self.read_record(self.runs)["cells"], 30000)
+
+    def test_time_limit(self):
+        started = time.monotonic()
+        process = run_podm(*self.arguments("--max-seconds", "1", "--radius", "0.5", "--max-memory-gib", "1000"))
+        self.assert_ended_early(process.returncode, process.stderr, "time limit")
+        self.assertLess(time.monotonic() - started, 60)
+
+
+if __name__ == "__main__":
+    unittest.main()
