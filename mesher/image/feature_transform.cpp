@@ -1,0 +1,248 @@
+#include "image/feature_transform.h"
+
+#include <algorithm>
+#include <array>
+#include <atomic>
+#include <string>
+#include <thread>
+#include <vector>
+
+#include "podm/errors.h"
+
+namespace podm {
+
+namespace {
+
+using VoxelIndex = FeatureTransform::VoxelIndex;
+constexpr VoxelIndex kNone = FeatureTransform::kNone;
+
+// Lines along y and z are worked on in tiles of neighbours in x: whole cache lines travel.
+constexpr int kTileWidth = 32;
+
+constexpr double square(double x) { return x * x; }
+
+// The parabolas cost + (spacing * (i - position))^2 of one line that are lowest somewhere.
+class LowerEnvelope {
+ public:
+  LowerEnvelope(int length, double spacing)
+      : sites_(static_cast<std::size_t>(length)), squared_spacing_(square(spacing)) {}
+
+  void clear() { count_ = 0; }
+
+  /// Adds the site at `position`, beyond all earlier ones.
+  void add(int position, double cost, VoxelIndex feature) {
+    const Site site{static_cast<double>(position), cost, feature};
+    while (count_ >= 2 && is_hidden(sites_[count_ - 2], sites_[count_ - 1], site)) --count_;
+    sites_[count_++] = site;
+  }
+
+  /// Calls write(i, site) for i in [0, length) with the lowest site there, the first of equals.
+  template <class Write>
+  void for_each_lowest(int length, Write&& write) const {
+    for (std::size_t i = 0, s = 0; i < static_cast<std::size_t>(length); ++i) {
+      while (s + 1 < count_ && height(sites_[s + 1], i) < height(sites_[s], i)) ++s;
+      write(static_cast<int>(i), sites_[s]);
+    }
+  }
+
+  bool is_empty() const { return count_ == 0; }
+
+  struct Site {
+    double position, cost;
+    VoxelIndex feature;
+  };
+
+ private:
+  double height(const Site& s, std::size_t i) const {
+    return s.cost + squared_spacing_ * square(static_cast<double>(i) - s.position);
+  }
+
+  // Whether b, between a and c, is nowhere lower than both.
+  bool is_hidden(const Site& a, const Site& b, const Site& c) const {
+    const double ab = b.position - a.position, bc = c.position - b.position, ac = ab + bc;
+    return ac * b.cost - bc * a.cost - ab * c.cost > ab * bc * ac * squared_spacing_;
+  }
+
+  std::vector<Site> sites_;
+  std::size_t count_ = 0;
+  double squared_spacing_;
+};
+
+// Buffers of one thread.
+struct Workspace {
+  Workspace(const LabelImage& image)
+      : is_surface(static_cast<std::size_t>(image.size[0])),
+        tile(static_cast<std::size_t>(kTileWidth) *
+             static_cast<std::size_t>(std::max(image.size[1], image.size[2]))),
+        along_y(image.size[1], image.spacing[1]),
+        along_z(image.size[2], image.spacing[2]) {}
+
+  std::vector<std::uint8_t> is_surface;
+  std::vector<VoxelIndex> tile;
+  LowerEnvelope along_y, along_z;
+};
+
+class Transformer {
+ public:
+  Transformer(const LabelImage& image, HugeArray<VoxelIndex>& features)
+      : voxels_(image.voxels.data()),
+        features_(features),
+        num_x_(image.size[0]),
+        num_y_(image.size[1]),
+        num_z_(image.size[2]),
+        row_(static_cast<std::size_t>(image.size[0])),
+        slice_(row_ * static_cast<std::size_t>(image.size[1])),
+        spacing_(image.spacing),
+        inverse_row_(1.0 / image.size[0]) {}
+
+  // Features become x of the nearest surface voxel in the x-line, then y * num_x + x of that in the slice.
+  void transform_slice(int z, Workspace& work) {
+    for (int y = 0; y < num_y_; ++y) {
+      mark_surface(y, z, work.is_surface.data());
+      find_nearest_in_row(work.is_surface.data(), &features_[row_start(y, z)]);
+    }
+    const std::size_t start = row_start(0, z);
+    for (int x = 0; x < num_x_; x += kTileWidth) {
+      transform_tile(
+          start + static_cast<std::size_t>(x), row_, num_y_, work,
+          [&](int c, int y, VoxelIndex f) {
+            work.along_y.add(y, square(spacing_[0] * (x + c - static_cast<double>(f))),
+                             static_cast<VoxelIndex>(y) * static_cast<VoxelIndex>(num_x_) + f);
+          },
+          work.along_y);
+    }
+  }
+
+  // Features of the lines along z at this y become voxel indices.
+  void transform_depth(int y, Workspace& work) {
+    for (int x = 0; x < num_x_; x += kTileWidth) {
+      transform_tile(
+          row_start(y, 0) + static_cast<std::size_t>(x), slice_, num_z_, work,
+          [&](int c, int z, VoxelIndex f) {
+            // Exact: (f + 0.5) / num_x is at least 0.5 / num_x from an integer, far more than it is rounded
+            // by.
+            const double fy = static_cast<double>(static_cast<VoxelIndex>((f + 0.5) * inverse_row_));
+            const double fx = f - fy * num_x_;
+            work.along_z.add(z, square(spacing_[0] * (x + c - fx)) + square(spacing_[1] * (y - fy)),
+                             static_cast<VoxelIndex>(static_cast<std::size_t>(z) * slice_) + f);
+          },
+          work.along_z);
+    }
+  }
+
+ private:
+  std::size_t row_start(int y, int z) const {
+    return static_cast<std::size_t>(z) * slice_ + static_cast<std::size_t>(y) * row_;
+  }
+
+  void mark_surface(int y, int z, std::uint8_t* is_surface) const {
+    const std::size_t start = row_start(y, z);
+    const LabelIndex* row = voxels_ + start;
+    for (int x = 0; x < num_x_; ++x) is_surface[x] = 0;
+    mark_differing(row, y > 0 ? row - row_ : nullptr, is_surface);
+    mark_differing(row, y + 1 < num_y_ ? row + row_ : nullptr, is_surface);
+    mark_differing(row, z > 0 ? row - slice_ : nullptr, is_surface);
+    mark_differing(row, z + 1 < num_z_ ? row + slice_ : nullptr, is_surface);
+    for (int x = 0; x + 1 < num_x_; ++x) {
+      const std::uint8_t differ = row[x] != row[x + 1];
+      is_surface[x] |= differ;
+      is_surface[x + 1] |= differ;
+    }
+    is_surface[0] |= row[0] != kBackground;
+    is_surface[num_x_ - 1] |= row[num_x_ - 1] != kBackground;
+  }
+
+  // `other` null: outside the grid.
+  void mark_differing(const LabelIndex* row, const LabelIndex* other, std::uint8_t* is_surface) const {
+    if (other == nullptr) {
+      for (int x = 0; x < num_x_; ++x) is_surface[x] |= row[x] != kBackground;
+    } else {
+      for (int x = 0; x < num_x_; ++x) is_surface[x] |= row[x] != other[x];
+    }
+  }
+
+  void find_nearest_in_row(const std::uint8_t* is_surface, VoxelIndex* nearest) const {
+    int begin = 0;  // of the voxels whose nearest is still unknown
+    VoxelIndex last = kNone;
+    for (int x = 0; x < num_x_; ++x) {
+      if (!is_surface[x]) continue;
+      const VoxelIndex here = static_cast<VoxelIndex>(x);
+      const int middle = last == kNone ? 0 : static_cast<int>((last + here) / 2) + 1;
+      std::fill(nearest + begin, nearest + std::max(begin, middle), last);
+      std::fill(nearest + std::max(begin, middle), nearest + x + 1, here);
+      begin = x + 1;
+      last = here;
+    }
+    std::fill(nearest + begin, nearest + num_x_, last);
+  }
+
+  // Replaces the features of up to kTileWidth lines of `length` voxels, `stride` apart, by the lowest sites
+  // of their envelopes. `add(c, i, feature)` adds voxel i of line c to the envelope.
+  template <class Add>
+  void transform_tile(std::size_t start, std::size_t stride, int length, Workspace& work, Add&& add,
+                      LowerEnvelope& envelope) {
+    const int width = std::min(kTileWidth, num_x_ - static_cast<int>(start % row_));
+    VoxelIndex* const tile = work.tile.data();
+    for (int i = 0; i < length; ++i) {
+      const VoxelIndex* from = &features_[start + static_cast<std::size_t>(i) * stride];
+      for (int c = 0; c < width; ++c) tile[c * length + i] = from[c];
+    }
+    for (int c = 0; c < width; ++c) {
+      VoxelIndex* const line = tile + c * length;
+      envelope.clear();
+      for (int i = 0; i < length; ++i) {
+        if (line[i] != kNone) add(c, i, line[i]);
+      }
+      if (envelope.is_empty()) continue;
+      envelope.for_each_lowest(length,
+                               [&](int i, const LowerEnvelope::Site& site) { line[i] = site.feature; });
+    }
+    for (int i = 0; i < length; ++i) {
+      VoxelIndex* to = &features_[start + static_cast<std::size_t>(i) * stride];
+      for (int c = 0; c < width; ++c) to[c] = tile[c * length + i];
+    }
+  }
+
+  const LabelIndex* voxels_;
+  HugeArray<VoxelIndex>& features_;
+  int num_x_, num_y_, num_z_;
+  std::size_t row_, slice_;  // voxels
+  std::array<double, 3> spacing_;
+  double inverse_row_;
+};
+
+// Calls work(i, workspace) for i in [0, count), each workspace on a thread of its own.
+template <class Work>
+void for_each_in_parallel(int count, std::vector<Workspace>& workspaces, Work&& work) {
+  std::atomic<int> next{0};
+  const auto run = [&](Workspace& workspace) {
+    for (int i = next++; i < count; i = next++) work(i, workspace);
+  };
+  std::vector<std::jthread> others;
+  for (std::size_t t = 1; t < workspaces.size(); ++t) others.emplace_back([&, t] { run(workspaces[t]); });
+  run(workspaces[0]);
+}
+
+std::size_t checked_num_voxels(const LabelImage& image) {
+  if (image.num_voxels() > kNone) {
+    throw InputError("image: " + std::to_string(image.num_voxels()) +
+                     " voxels; the feature transform takes at most 4294967295");
+  }
+  return image.num_voxels();
+}
+
+}  // namespace
+
+FeatureTransform::FeatureTransform(const LabelImage& image, int threads)
+    : features_(checked_num_voxels(image)) {
+  const int available = threads > 0 ? threads : static_cast<int>(std::thread::hardware_concurrency());
+  const int used = std::clamp(available, 1, std::max(image.size[1], image.size[2]));
+  std::vector<Workspace> workspaces(static_cast<std::size_t>(used), Workspace(image));
+  Transformer transformer(image, features_);
+  for_each_in_parallel(image.size[2], workspaces,
+                       [&](int z, Workspace& work) { transformer.transform_slice(z, work); });
+  for_each_in_parallel(image.size[1], workspaces,
+                       [&](int y, Workspace& work) { transformer.transform_depth(y, work); });
+}
+
+}  // namespace podm

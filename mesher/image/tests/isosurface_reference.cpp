@@ -1,0 +1,169 @@
+#include "isosurface_reference.h"
+
+#include <algorithm>
+#include <cmath>
+#include <functional>
+#include <limits>
+#include <map>
+#include <set>
+
+namespace podm::test {
+
+namespace {
+
+// Voxels whose centre, relative to the grid's centre and in mm, `label` maps to.
+LabelImage voxelised(std::array<int, 3> size, std::array<double, 3> spacing,
+                     const std::function<LabelIndex(const Point&)>& label) {
+  LabelImage image = empty_image(size, spacing);
+  for (int k = 0; k < size[2]; ++k)
+    for (int j = 0; j < size[1]; ++j)
+      for (int i = 0; i < size[0]; ++i)
+        image.voxels[image.index(i, j, k)] =
+            label({(i - 0.5 * (size[0] - 1)) * spacing[0], (j - 0.5 * (size[1] - 1)) * spacing[1],
+                   (k - 0.5 * (size[2] - 1)) * spacing[2]});
+  return image;
+}
+
+LabelIndex label_of_voxel(const LabelImage& image, int i, int j, int k) {
+  const bool is_in =
+      i >= 0 && j >= 0 && k >= 0 && i < image.size[0] && j < image.size[1] && k < image.size[2];
+  return is_in ? image.voxels[image.index(i, j, k)] : kBackground;
+}
+
+}  // namespace
+
+double uniform(Random& random, double low, double high) {
+  return std::uniform_real_distribution<double>(low, high)(random);
+}
+
+LabelImage empty_image(std::array<int, 3> size, std::array<double, 3> spacing) {
+  LabelImage image;
+  image.size = size;
+  image.spacing = spacing;
+  image.voxels.assign(image.num_voxels(), kBackground);
+  return image;
+}
+
+LabelImage random_image(Random& random, std::array<int, 3> size, std::array<double, 3> spacing,
+                        unsigned num_labels, double coherence) {
+  LabelImage image = empty_image(size, spacing);
+  for (int k = 0; k < size[2]; ++k)
+    for (int j = 0; j < size[1]; ++j)
+      for (int i = 0; i < size[0]; ++i) {
+        LabelIndex label = static_cast<LabelIndex>(random() % num_labels);
+        if (uniform(random, 0, 1) < coherence) {
+          const auto axis = random() % 3;
+          label = label_of_voxel(image, i - (axis == 0), j - (axis == 1), k - (axis == 2));
+        }
+        image.voxels[image.index(i, j, k)] = label;
+      }
+  return image;
+}
+
+std::vector<Phantom> smooth_phantoms() {
+  const auto radius = [](const Point& p) { return std::sqrt(squared_length(p)); };
+  return {
+      {"sphere",
+       voxelised({24, 25, 22}, {1, 1, 1}, [&](const Point& p) { return LabelIndex(radius(p) < 8.3); })},
+      {"flat sphere",
+       voxelised({26, 26, 15}, {0.6, 0.6, 1.4}, [&](const Point& p) { return LabelIndex(radius(p) < 6.1); })},
+      {"slab", voxelised({18, 14, 12}, {1, 0.7, 1.3},
+                         [](const Point& p) { return LabelIndex(std::fabs(p.x + 0.4 * p.y) < 3.2); })},
+      {"torus", voxelised({30, 30, 12}, {1, 1, 1.2},
+                          [](const Point& p) {
+                            const double to_axis = std::hypot(p.x, p.y) - 8.5;
+                            return LabelIndex(std::hypot(to_axis, p.z) < 3.6);
+                          })},
+      {"two halves", voxelised({24, 24, 24}, {1, 1, 1},
+                               [&](const Point& p) {
+                                 return LabelIndex(radius(p) < 9.2 ? (p.x + 0.3 * p.z < 0.2 ? 1 : 2) : 0);
+                               })},
+      {"cut sphere",
+       voxelised({16, 24, 24}, {1, 1, 1}, [&](const Point& p) { return LabelIndex(radius(p) < 9.6); })},
+  };
+}
+
+Point random_point(Random& random, const LabelImage& image, double margin) {
+  const auto along = [&](std::size_t a) {
+    return uniform(random, -0.5 - margin, image.size[a] - 0.5 + margin) * image.spacing[a];
+  };
+  const double x = along(0), y = along(1), z = along(2);
+  return {x, y, z};
+}
+
+ReferenceLabel reference_label(const LabelImage& image, const Point& p) {
+  const std::array<double, 3> u = {p.x / image.spacing[0], p.y / image.spacing[1], p.z / image.spacing[2]};
+  std::array<int, 3> base;
+  std::array<double, 3> f;
+  for (std::size_t a = 0; a < 3; ++a) {
+    base[a] = static_cast<int>(std::floor(u[a]));
+    f[a] = u[a] - base[a];
+  }
+  std::map<LabelIndex, double> weights;
+  for (int c = 0; c < 8; ++c) {
+    const int i = c & 1, j = c >> 1 & 1, k = c >> 2;
+    weights[label_of_voxel(image, base[0] + i, base[1] + j, base[2] + k)] +=
+        (i ? f[0] : 1 - f[0]) * (j ? f[1] : 1 - f[1]) * (k ? f[2] : 1 - f[2]);
+  }
+  ReferenceLabel best{0, -1};
+  double weight = -1, next = 0;
+  for (const auto& [label, w] : weights) {
+    if (w > weight) {
+      next = std::max(next, weight);
+      weight = w;
+      best.label = label;
+    } else {
+      next = std::max(next, w);
+    }
+  }
+  best.lead = weight - next;
+  return best;
+}
+
+std::vector<Point> sample_isosurface(const LabelImage& image, int per_voxel) {
+  std::vector<Point> points;
+  const auto label = [&](const Point& p) { return reference_label(image, p).label; };
+  const auto add_changes = [&](const Point& a, const Point& b) {
+    if (label(a) == label(b)) return;
+    Point low = a, high = b;
+    for (int i = 0; i < 40; ++i) {
+      const Point middle = 0.5 * (low + high);
+      (label(middle) == label(a) ? low : high) = middle;
+    }
+    points.push_back(low);
+  };
+  // Off the voxel centres, where lines would run along block faces.
+  const double step = 1.0 / per_voxel;
+  const auto coordinate = [&](int n, std::size_t axis) {
+    return (-1 + (n + 0.37) * step) * image.spacing[axis];
+  };
+  const auto count = [&](std::size_t axis) { return (image.size[axis] + 1) * per_voxel; };
+  for (int k = 0; k < count(2); ++k)
+    for (int j = 0; j < count(1); ++j)
+      for (int i = 0; i < count(0); ++i) {
+        const Point p{coordinate(i, 0), coordinate(j, 1), coordinate(k, 2)};
+        add_changes(p, p + Vector{step * image.spacing[0], 0, 0});
+        add_changes(p, p + Vector{0, step * image.spacing[1], 0});
+        add_changes(p, p + Vector{0, 0, step * image.spacing[2]});
+      }
+  return points;
+}
+
+double distance_to_nearest(const std::vector<Point>& points, const Point& p) {
+  double squared = std::numeric_limits<double>::infinity();
+  for (const Point& q : points) squared = std::min(squared, squared_distance(p, q));
+  return std::sqrt(squared);
+}
+
+bool is_on_isosurface(const LabelImage& image, const Point& p, double voxels) {
+  std::set<LabelIndex> labels{reference_label(image, p).label};
+  for (int i = -1; i <= 1; ++i)
+    for (int j = -1; j <= 1; ++j)
+      for (int k = -1; k <= 1; ++k) {
+        const Vector d{i * image.spacing[0], j * image.spacing[1], k * image.spacing[2]};
+        labels.insert(reference_label(image, p + voxels * d).label);
+      }
+  return labels.size() > 1;
+}
+
+}  // namespace podm::test

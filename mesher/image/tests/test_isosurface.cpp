@@ -1,0 +1,211 @@
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "image/isosurface.h"
+#include "isosurface_reference.h"
+
+namespace podm::test {
+namespace {
+
+constexpr double kOnSurfaceVoxels = 1e-6;
+
+std::vector<LabelImage> noisy_images() {
+  Random random(11);
+  std::vector<LabelImage> images;
+  for (const unsigned num_labels : {2u, 3u, 9u}) {
+    for (const double coherence : {0.0, 0.9, 0.98}) {
+      images.push_back(random_image(random, {9, 8, 10}, {1, 1, 1}, num_labels, coherence));
+      images.push_back(random_image(random, {12, 7, 5}, {0.6, 0.6, 1.3}, num_labels, coherence));
+    }
+  }
+  images.push_back(random_image(random, {1, 6, 7}, {1, 2, 1}, 3, 0.5));
+  images.push_back(random_image(random, {5, 1, 1}, {1, 1, 1}, 2, 0.0));
+  images.push_back(empty_image({6, 6, 6}, {1, 1, 1}));
+  images.push_back(empty_image({7, 7, 7}, {1, 1, 0.5}));
+  images.back().voxels[images.back().index(3, 3, 3)] = 1;
+  images.push_back(empty_image({7, 5, 4}, {1, 1, 1}));
+  std::fill(images.back().voxels.begin(), images.back().voxels.end(), LabelIndex{1});
+  return images;
+}
+
+double shortest_voxel_side(const LabelImage& image) {
+  return std::min({image.spacing[0], image.spacing[1], image.spacing[2]});
+}
+
+TEST(IsosurfaceLabel, EqualsTheDefinition) {
+  Random random(3);
+  for (const LabelImage& image : noisy_images()) {
+    const Isosurface isosurface(image, 1);
+    for (int n = 0; n < 3000; ++n) {
+      const Point p = random_point(random, image, n % 10 == 0 ? 30 : 1);
+      const ReferenceLabel expected = reference_label(image, p);
+      if (expected.lead > 1e-12) {
+        ASSERT_EQ(isosurface.label_at(p), expected.label);
+      }
+    }
+  }
+}
+
+// Spacing 1: weights at quarters of a voxel are exact, so are ties.
+TEST(IsosurfaceLabel, TiesGoToTheSmallerLabel) {
+  Random random(4);
+  for (const unsigned num_labels : {2u, 3u, 9u}) {
+    const LabelImage image = random_image(random, {6, 6, 6}, {1, 1, 1}, num_labels, 0.5);
+    const Isosurface isosurface(image, 1);
+    for (double z = -1.5; z <= 6.5; z += 0.25)
+      for (double y = -1.5; y <= 6.5; y += 0.25)
+        for (double x = -1.5; x <= 6.5; x += 0.25)
+          ASSERT_EQ(isosurface.label_at({x, y, z}), reference_label(image, {x, y, z}).label)
+              << x << ' ' << y << ' ' << z;
+  }
+}
+
+TEST(IsosurfaceDistance, NeverExceedsTheDistanceToAnySurfacePoint) {
+  Random random(5);
+  std::vector<LabelImage> images = noisy_images();
+  for (Phantom& phantom : smooth_phantoms()) images.push_back(std::move(phantom.image));
+  for (const LabelImage& image : images) {
+    const Isosurface isosurface(image, 1);
+    const std::vector<Point> surface = sample_isosurface(image, 4);
+    for (int n = 0; n < 400; ++n) {
+      const Point p = random_point(random, image, n % 10 == 0 ? 30 : 2);
+      const double bound = isosurface.distance_lower_bound(p);
+      ASSERT_GE(bound, 0);
+      ASSERT_LE(bound, distance_to_nearest(surface, p) * (1 + 1e-12));
+    }
+  }
+}
+
+TEST(IsosurfaceDistance, IsCloseInTheGrid) {
+  for (const Phantom& phantom : smooth_phantoms()) {
+    const Isosurface isosurface(phantom.image, 1);
+    const std::vector<Point> surface = sample_isosurface(phantom.image, 2);
+    const double voxel_diagonal =
+        std::hypot(phantom.image.spacing[0], phantom.image.spacing[1], phantom.image.spacing[2]);
+    Random random(6);
+    for (int n = 0; n < 300; ++n) {
+      const Point p = random_point(random, phantom.image, 0);
+      EXPECT_GE(isosurface.distance_lower_bound(p), distance_to_nearest(surface, p) - 2 * voxel_diagonal);
+    }
+  }
+}
+
+TEST(ClosestPoint, LiesOnTheIsosurfaceWithinTheRadius) {
+  Random random(7);
+  for (const LabelImage& image : noisy_images()) {
+    const Isosurface isosurface(image, 1);
+    for (int n = 0; n < 500; ++n) {
+      const Point p = random_point(random, image, 2);
+      const double radius = uniform(random, 0, 4);
+      const auto z = isosurface.closest_point(p, radius);
+      if (!z) continue;
+      ASSERT_LE(distance(p, *z), radius * (1 + 1e-12));
+      ASSERT_GE(distance(p, *z), isosurface.distance_lower_bound(p) * (1 - 1e-9));
+      ASSERT_TRUE(is_on_isosurface(image, *z, kOnSurfaceVoxels));
+    }
+  }
+}
+
+// Voxelised, "smooth" has facets and steps of voxel size; the nearest of them is missed by at most:
+constexpr double kNearestTolerance = 0.05;      // voxel sides, beyond the true distance, at the median...
+constexpr double kWorstNearestTolerance = 0.5;  // ... and ever
+
+TEST(ClosestPoint, IsNearestOnSmoothPhantoms) {
+  for (const Phantom& phantom : smooth_phantoms()) {
+    SCOPED_TRACE(phantom.name);
+    const Isosurface isosurface(phantom.image, 1);
+    const std::vector<Point> surface = sample_isosurface(phantom.image, 6);
+    const double side = shortest_voxel_side(phantom.image);
+    Random random(8);
+    std::vector<double> excess;
+    for (int n = 0; n < 1000; ++n) {
+      const Point p = random_point(random, phantom.image, 1);
+      const double nearest = distance_to_nearest(surface, p);
+      const auto z = isosurface.closest_point(p, 1e9);
+      ASSERT_TRUE(z);
+      excess.push_back((distance(p, *z) - nearest) / side);
+    }
+    std::sort(excess.begin(), excess.end());
+    std::printf("%s: median %g, p90 %g p99 %g max %g\n", phantom.name.c_str(), excess[500], excess[900],
+                excess[990], excess[999]);
+    EXPECT_LE(excess[500], kNearestTolerance);
+    EXPECT_LE(excess.back(), kWorstNearestTolerance);
+  }
+}
+
+TEST(ClosestPoint, IsNeverMissedOnSmoothPhantoms) {
+  Random random(9);
+  for (const Phantom& phantom : smooth_phantoms()) {
+    const Isosurface isosurface(phantom.image, 1);
+    const std::vector<Point> surface = sample_isosurface(phantom.image, 4);
+    for (int n = 0; n < 1000; ++n) {
+      const Point p = random_point(random, phantom.image, 1);
+      const double radius = distance_to_nearest(surface, p) / 0.95;
+      EXPECT_TRUE(isosurface.closest_point(p, radius)) << phantom.name << ' ' << radius;
+    }
+  }
+}
+
+TEST(SegmentIntersection, IsTheFirstChangeWhereLabelsDiffer) {
+  Random random(10);
+  for (const LabelImage& image : noisy_images()) {
+    const Isosurface isosurface(image, 1);
+    for (int n = 0; n < 2000; ++n) {
+      const Point a = random_point(random, image, n % 10 == 0 ? 1000 : 1), b = random_point(random, image, 1);
+      const auto z = isosurface.segment_intersection(a, b);
+      if (!z) {
+        ASSERT_EQ(isosurface.label_at(a), isosurface.label_at(b));
+        continue;
+      }
+      const double length = distance(a, b), t = distance(a, *z) / length;
+      ASSERT_NEAR(distance(a, *z) + distance(*z, b), length, 1e-9 * length);
+      // Just before it the label is still that of a, just after it is another.
+      const double step = kOnSurfaceVoxels * shortest_voxel_side(image) / length;
+      if (t < step || t > 1 - step) continue;
+      ASSERT_EQ(isosurface.label_at(a + (t - step) * (b - a)), isosurface.label_at(a));
+      ASSERT_TRUE(is_on_isosurface(image, *z, kOnSurfaceVoxels));
+      for (int i = 1; i < 20; ++i) {
+        ASSERT_EQ(isosurface.label_at(a + (i / 20.0) * (t - step) * (b - a)), isosurface.label_at(a));
+      }
+    }
+  }
+}
+
+TEST(SegmentIntersection, FindsDoubleCrossings) {
+  LabelImage image = empty_image({9, 9, 9}, {1, 1, 1});
+  image.voxels[image.index(4, 4, 4)] = 1;
+  const Isosurface isosurface(image, 1);
+  const auto z = isosurface.segment_intersection({-100, 4, 4}, {100, 4, 4});
+  ASSERT_TRUE(z);
+  EXPECT_NEAR(z->x, 3.5, 1e-9);
+  EXPECT_FALSE(isosurface.segment_intersection({-100, 4.6, 4}, {100, 4.6, 4}));
+  EXPECT_FALSE(isosurface.segment_intersection({-100, -100, 4}, {-100, 100, 4}));
+}
+
+TEST(Isosurface, AnswersDoNotDependOnThreads) {
+  Random random(12);
+  const LabelImage image = random_image(random, {23, 19, 17}, {0.6, 0.7, 1.4}, 4, 0.97);
+  const Isosurface one(image, 1), many(image, 3);
+  for (int n = 0; n < 2000; ++n) {
+    const Point a = random_point(random, image, 2), b = random_point(random, image, 2);
+    ASSERT_EQ(one.label_at(a), many.label_at(a));
+    ASSERT_EQ(one.distance_lower_bound(a), many.distance_lower_bound(a));
+    ASSERT_EQ(one.closest_point(a, 5), many.closest_point(a, 5));
+    ASSERT_EQ(one.segment_intersection(a, b), many.segment_intersection(a, b));
+  }
+}
+
+TEST(Isosurface, OfAnEmptyImageIsEmpty) {
+  const LabelImage image = empty_image({4, 4, 4}, {1, 1, 1});
+  const Isosurface isosurface(image, 1);
+  EXPECT_EQ(isosurface.label_at({1, 1, 1}), kBackground);
+  EXPECT_EQ(isosurface.distance_lower_bound({1, 1, 1}), std::numeric_limits<double>::infinity());
+  EXPECT_FALSE(isosurface.closest_point({1, 1, 1}, 1e9));
+  EXPECT_FALSE(isosurface.segment_intersection({-9, 1, 1}, {9, 2, 1}));
+}
+
+}  // namespace
+}  // namespace podm::test
