@@ -19,6 +19,15 @@ constexpr int kMaxPhantomSize = 4096;
 constexpr double kBytesPerGib = 1024.0 * 1024 * 1024;
 constexpr int kHelpColumn = 30;
 
+// What stands beside an option's name in the help: its type alone. The description tells the rest.
+class HelpFormatter : public CLI::Formatter {
+ public:
+  std::string make_option_opts(const CLI::Option* option) const override {
+    const std::string type = option->get_type_name();
+    return type.empty() ? "" : " " + type;
+  }
+};
+
 // An option taking one value, given once or, when `many`, any number of times; `take(text, name)` stores it.
 template <class Take>
 CLI::Option* add_value(CLI::App& app, const std::string& names, const std::string& type, bool many,
@@ -218,7 +227,9 @@ Command parse_command_line(std::vector<std::string> arguments) {
   InfoCommand info;
   PhantomCommand phantom;
   CLI::App program("Tetrahedral meshes with guarantees from segmented images.", "podm");
+  program.formatter(std::make_shared<HelpFormatter>());
   program.get_formatter()->column_width(kHelpColumn);
+  program.set_help_flag("-h,--help", "print this help and leave");
   program.set_version_flag("--version", "podm " PODM_VERSION "\n", "print the version and leave");
   program.allow_extras()->require_subcommand(0, 1);
   program.footer(

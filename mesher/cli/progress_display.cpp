@@ -22,7 +22,7 @@ std::string describe(const Progress& progress) {
 
 std::string bar(double fraction) {
   const auto filled = static_cast<std::size_t>(fraction * kBarWidth);
-  return "[" + std::string(filled, '#') + std::string(kBarWidth - filled, '.') + "] ";
+  return fmt::format("[{:#<{}}{:.<{}}] ", "", filled, "", kBarWidth - filled);
 }
 
 }  // namespace
