@@ -28,10 +28,11 @@ struct VtuArray {
   std::function<void(AtomicFile&)> write;
 };
 
-// `value_at(i)` for i in [0, count), as the C++ type Value, whose VTK name is `type`.
+// `value_at(i)` for i in [0, count), as the C++ type Value; VTK sees `components` numbers of type `type` in
+// it.
 template <class Value, class ValueAt>
-VtuArray make_array(const std::string& type, const std::string& name, std::size_t count, int components,
-                    ValueAt value_at) {
+VtuArray make_array(const std::string& type, const std::string& name, std::size_t count, ValueAt value_at,
+                    int components = 1) {
   return {fmt::format(R"(type="{}" Name="{}" NumberOfComponents="{}")", type, name, components),
           count * sizeof(Value), [count, value_at](AtomicFile& file) {
             for (std::size_t i = 0; i < count; ++i) file.put(static_cast<Value>(value_at(i)));
@@ -41,8 +42,8 @@ VtuArray make_array(const std::string& type, const std::string& name, std::size_
 // Ids as Int32, half the file, unless some do not fit.
 template <class ValueAt>
 VtuArray make_id_array(const std::string& name, std::size_t count, bool wide, ValueAt value_at) {
-  return wide ? make_array<std::int64_t>("Int64", name, count, 1, value_at)
-              : make_array<std::int32_t>("Int32", name, count, 1, value_at);
+  return wide ? make_array<std::int64_t>("Int64", name, count, value_at)
+              : make_array<std::int32_t>("Int32", name, count, value_at);
 }
 
 struct VtuGrid {
@@ -56,10 +57,7 @@ VtuGrid make_grid(std::size_t num_points, std::size_t num_cells, int vertices_a_
   VtuGrid grid{num_points, num_cells, {}, {}, {}, {}};
   const std::size_t num_corners = num_cells * static_cast<std::size_t>(vertices_a_cell);
   const bool wide = std::max(num_points, num_corners) > std::numeric_limits<std::int32_t>::max();
-  grid.points.push_back({R"(type="Float64" Name="Points" NumberOfComponents="3")",
-                         num_points * sizeof(std::array<double, 3>), [=](AtomicFile& file) {
-                           for (std::size_t i = 0; i < num_points; ++i) file.put(point_at(i));
-                         }});
+  grid.points.push_back(make_array<std::array<double, 3>>("Float64", "Points", num_points, point_at, 3));
   grid.cells.push_back(make_id_array("connectivity", num_corners, wide, vertex_at));
   grid.cells.push_back(make_id_array("offsets", num_cells, wide, [vertices_a_cell](std::size_t i) {
     return (i + 1) * static_cast<std::size_t>(vertices_a_cell);
@@ -137,7 +135,7 @@ VtuGrid cell_grid(const TetMesh& mesh) {
       [&mesh](std::size_t i) { return mesh.vertices[i]; },
       [&mesh](std::size_t i) { return mesh.cells[i / 4][i % 4]; });
   grid.cell_data.push_back(
-      make_array<std::uint32_t>("UInt32", "label", mesh.cells.size(), 1,
+      make_array<std::uint32_t>("UInt32", "label", mesh.cells.size(),
                                 [&mesh](std::size_t i) { return mesh.labels[mesh.cell_labels[i]].value; }));
   return grid;
 }
@@ -148,11 +146,11 @@ VtuGrid facet_grid(const TetMesh& mesh, const VertexSubset& subset) {
       [&mesh, &subset](std::size_t i) { return mesh.vertices[subset.vertices()[i]]; },
       [&mesh, &subset](std::size_t i) { return subset.position(mesh.facets[i / 3][i % 3]); });
   grid.point_data.push_back(
-      make_array<std::uint32_t>("UInt32", "vertex", subset.vertices().size(), 1,
+      make_array<std::uint32_t>("UInt32", "vertex", subset.vertices().size(),
                                 [&subset](std::size_t i) { return subset.vertices()[i]; }));
   for (const int side : {0, 1}) {
     grid.cell_data.push_back(make_array<std::uint32_t>(
-        "UInt32", side == 0 ? "label_a" : "label_b", mesh.facets.size(), 1,
+        "UInt32", side == 0 ? "label_a" : "label_b", mesh.facets.size(),
         [&mesh, side](std::size_t i) { return mesh.labels[mesh.facet_labels[i][side]].value; }));
   }
   return grid;

@@ -45,7 +45,7 @@ void BM_MeshSha256(benchmark::State& state) {
 }
 BENCHMARK(BM_MeshSha256)->Unit(benchmark::kMillisecond);
 
-// To the disk and back from fsync; see UseRealTime against the processor's time.
+// Includes the wait until the file is on the disk: the real time less the processor's.
 void BM_WriteMesh(benchmark::State& state, const char* name) {
   const ScratchFolder folder;
   for (auto _ : state) write_mesh(canonical_mesh(), folder / name);
