@@ -62,8 +62,8 @@ VtuGrid make_grid(std::size_t num_points, std::size_t num_cells, int vertices_a_
   grid.cells.push_back(make_id_array("offsets", num_cells, wide, [vertices_a_cell](std::size_t i) {
     return (i + 1) * static_cast<std::size_t>(vertices_a_cell);
   }));
-  grid.cells.push_back(make_array<std::uint8_t>("UInt8", "types", num_cells, 1,
-                                                [cell_type](std::size_t) { return cell_type; }));
+  grid.cells.push_back(
+      make_array<std::uint8_t>("UInt8", "types", num_cells, [cell_type](std::size_t) { return cell_type; }));
   return grid;
 }
 
