@@ -9,20 +9,16 @@
 #include "cli/json_text.h"
 #include "cli/labelled_image.h"
 #include "cli/mesh_run.h"
+#include "cli/meshing_options.h"
 #include "cli/process_memory.h"
 #include "cli/progress_display.h"
 #include "cli/record.h"
 #include "cli/stop_on_signal.h"
 #include "cli/summary.h"
-#include "podm/errors.h"
 #include "podm/mesh_io.h"
 
 namespace podm::cli {
 namespace {
-
-constexpr double kShareOfAvailableMemory = 0.8;
-constexpr double kBytesPerGib = 1024.0 * 1024 * 1024;
-constexpr std::uint64_t kTransformBytesPerVoxel = 4;
 
 // Seconds that `action` takes.
 template <class Action>
@@ -39,39 +35,6 @@ void check_outputs(const MeshCommand& command) {
   if (!command.record_path.empty()) check_appendable(command.record_path);
 }
 
-// Throws InputError with the estimate where a run would need more memory than `limit_bytes`. An element limit
-// below the estimate bounds the run instead.
-void refuse_what_cannot_fit(const MeshCommand& command, const LabelImage& image,
-                            const MeshingOptions& options, std::uint64_t limit_bytes) {
-  const Estimate expected = estimate(image, options);
-  if (options.max_elements > 0 && static_cast<double>(options.max_elements) < expected.cells) return;
-  if (expected.memory_bytes <= static_cast<double>(limit_bytes)) return;
-  throw InputError(fmt::format(
-      "{}: these options ask for about {:.2g} cells and {:.3g} GiB of memory, the limit is {:.3g} GiB; "
-      "use a larger radius or delta, or --max-memory-gib",
-      command.image.path, expected.cells, expected.memory_bytes / kBytesPerGib,
-      static_cast<double>(limit_bytes) / kBytesPerGib));
-}
-
-// What the process may still use once the image is read and its transform made is for the mesh store.
-std::uint64_t store_bytes(std::uint64_t limit_bytes, const LabelImage& image) {
-  const std::uint64_t others = resident_bytes() + kTransformBytesPerVoxel * image.num_voxels();
-  return others < limit_bytes ? limit_bytes - others : 1;
-}
-
-MeshingOptions resolve(const MeshCommand& command, const LabelImage& image) {
-  MeshingOptions options = command.meshing;
-  options.radius_of_mm = lengths_by_value(command.radius_of_mm, image, command.image.path);
-  const std::uint64_t limit_bytes =
-      command.max_memory_bytes > 0
-          ? command.max_memory_bytes
-          : static_cast<std::uint64_t>(kShareOfAvailableMemory *
-                                       static_cast<double>(available_memory_bytes()));
-  refuse_what_cannot_fit(command, image, options, limit_bytes);
-  options.max_memory_bytes = store_bytes(limit_bytes, image);
-  return options;
-}
-
 MeshingResult mesh_with_display(const LabelImage& image, const MeshingOptions& options, bool quiet) {
   StopOnSignal stop;
   using Style = ProgressDisplay::Style;
@@ -84,6 +47,7 @@ MeshingResult mesh_with_display(const LabelImage& image, const MeshingOptions& o
 }
 
 void write_outputs(const MeshCommand& command, const TetMesh& mesh) {
+  if (mesh.cells.empty()) return;  // MeshRun::unmet() tells
   write_mesh(mesh, command.mesh_path);
   if (!command.surface_path.empty()) write_surfaces(mesh, command.surface_path);
 }
@@ -96,7 +60,7 @@ int run(const MeshCommand& command) {
   const double read_s = timed([&] { image = read_labelled_image(command.image); });
   MeshRun run{.command = command,
               .image = image,
-              .options = resolve(command, image),
+              .options = meshing_options(command, image),
               .result = {},
               .mesh_sha256 = {},
               .read_s = read_s};

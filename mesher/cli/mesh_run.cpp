@@ -26,18 +26,19 @@ double MeshRun::refine_cells_per_second() const {
 std::vector<std::string> MeshRun::unmet() const {
   std::vector<std::string> sentences;
   const auto count = [&](std::uint64_t misses, const std::string& what) {
-    if (misses > 0) sentences.push_back(fmt::format("{} {}", misses, what));
+    if (misses > 0) sentences.push_back(fmt::format("{}: {}", what, misses));
   };
   const StopReason reason = result.report.stop_reason;
   if (reason != StopReason::kComplete)
     sentences.push_back(fmt::format("the run ended early: {}", to_string(reason)));
+  if (result.mesh.cells.empty()) sentences.push_back("the mesh has no cell, so that none is written");
   const Guarantees& misses = result.report.guarantees;
-  count(misses.radius_edge, fmt::format("cells have a radius-edge ratio of {} or more", kRadiusEdgeBound));
+  count(misses.radius_edge, fmt::format("cells with a radius-edge ratio of {} or more", kRadiusEdgeBound));
   count(misses.facet_angle,
-        fmt::format("boundary facets have an angle of {} degrees or less", kFacetAngleBound));
-  count(misses.radius, "cells have a circumradius above the bound");
-  count(misses.facet_vertices, "boundary facets have a vertex off the isosurface");
-  count(misses.missing_labels, "labels of more than 1000 voxels have no cell");
+        fmt::format("boundary facets with an angle of {} degrees or less", kFacetAngleBound));
+  count(misses.radius, "cells with a circumradius above the bound");
+  count(misses.facet_vertices, "boundary facets with a vertex off the isosurface");
+  count(misses.missing_labels, "labels of more than 1000 voxels without a cell");
   return sentences;
 }
 

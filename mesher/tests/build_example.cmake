@@ -5,9 +5,12 @@ function(run)
   execute_process(COMMAND ${ARGN} COMMAND_ECHO STDOUT COMMAND_ERROR_IS_FATAL ANY)
 endfunction()
 
+if(SANITIZE)  # what links sanitized libraries must be sanitized as well
+  set(flags -D CMAKE_CXX_FLAGS=-fsanitize=${SANITIZE})
+endif()
 run(${CMAKE_COMMAND} --install ${BUILD} --prefix ${SCRATCH}/prefix)
 run(${CMAKE_COMMAND} -S ${EXAMPLE} -B ${SCRATCH}/build -D CMAKE_PREFIX_PATH=${SCRATCH}/prefix
-    -D CMAKE_CXX_COMPILER=${COMPILER} -D CMAKE_BUILD_TYPE=Release)
+    -D CMAKE_CXX_COMPILER=${COMPILER} -D CMAKE_BUILD_TYPE=Release ${flags})
 run(${CMAKE_COMMAND} --build ${SCRATCH}/build)
 run(${SCRATCH}/build/mesh_image phantom:spheres@24 5 ${SCRATCH}/example.vtu)
 run(${SCRATCH}/prefix/bin/podm mesh phantom:spheres@24 --radius 5 -o ${SCRATCH}/installed.vtu)

@@ -1,0 +1,63 @@
+#include "cli/meshing_options.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+
+#include "cli/labelled_image.h"
+#include "cli/process_memory.h"
+#include "podm/errors.h"
+
+namespace podm::cli {
+namespace {
+
+constexpr double kShareOfAvailableMemory = 0.8;
+constexpr double kBytesPerGib = 1024.0 * 1024 * 1024;
+constexpr std::uint64_t kTransformBytesPerVoxel = 4;
+
+void refuse_coarse_sampling(const MeshCommand& command, const LabelImage& image) {
+  double longest_mm = 0;
+  for (std::size_t axis = 0; axis < 3; ++axis)
+    longest_mm = std::max(longest_mm, image.size[axis] * image.spacing[axis]);
+  if (command.meshing.delta_mm > longest_mm)
+    throw InputError(fmt::format("{}: --delta {:g} mm is longer than the image, {:g} mm", command.image.path,
+                                 command.meshing.delta_mm, longest_mm));
+}
+
+// An element limit below the estimate bounds the run instead.
+void refuse_what_cannot_fit(const std::string& image_path, const LabelImage& image,
+                            const MeshingOptions& options, std::uint64_t limit_bytes) {
+  const Estimate expected = estimate(image, options);
+  if (options.max_elements > 0 && static_cast<double>(options.max_elements) < expected.cells) return;
+  if (expected.memory_bytes <= static_cast<double>(limit_bytes)) return;
+  throw InputError(fmt::format(
+      "{}: these options ask for about {:.2g} cells and {:.3g} GiB of memory, the limit is {:.3g} GiB; "
+      "use a larger radius or delta, or --max-memory-gib",
+      image_path, expected.cells, expected.memory_bytes / kBytesPerGib,
+      static_cast<double>(limit_bytes) / kBytesPerGib));
+}
+
+std::uint64_t memory_limit_bytes(const MeshCommand& command) {
+  if (command.max_memory_bytes > 0) return command.max_memory_bytes;
+  return static_cast<std::uint64_t>(kShareOfAvailableMemory * static_cast<double>(available_memory_bytes()));
+}
+
+// What the image and its transform leave of the limit is for the mesh store.
+std::uint64_t store_bytes(std::uint64_t limit_bytes, const LabelImage& image) {
+  const std::uint64_t others = resident_bytes() + kTransformBytesPerVoxel * image.num_voxels();
+  return others < limit_bytes ? limit_bytes - others : 1;
+}
+
+}  // namespace
+
+MeshingOptions meshing_options(const MeshCommand& command, const LabelImage& image) {
+  MeshingOptions options = command.meshing;
+  options.radius_of_mm = lengths_by_value(command.radius_of_mm, image, command.image.path);
+  refuse_coarse_sampling(command, image);
+  const std::uint64_t limit_bytes = memory_limit_bytes(command);
+  refuse_what_cannot_fit(command.image.path, image, options, limit_bytes);
+  options.max_memory_bytes = store_bytes(limit_bytes, image);
+  return options;
+}
+
+}  // namespace podm::cli
