@@ -14,6 +14,11 @@ SIZE = 12
 BALL = small_images.ball_voxels(SIZE)
 
 
+def file_size_limit(size):
+    """Stands in for a disk that is full: no file grows past `size` bytes."""
+    return lambda: resource.setrlimit(resource.RLIMIT_FSIZE, (size, size))
+
+
 class BadImage(PodmTestCase):
     def assert_image_refused(self, path, *words):
         self.assert_refused(["info", path], path.name, *words)
@@ -160,31 +165,24 @@ class BadOutput(PodmTestCase):
         self.assert_refused(self.mesh("-o", locked / "out.vtu"), "locked/out.vtu")
 
     def test_a_disk_that_fills_while_writing(self):
-        def full_after_4_kib():
-            resource.setrlimit(resource.RLIMIT_FSIZE, (4096, 4096))
         for extension in ("vtu", "mesh", "msh"):
             with self.subTest(extension=extension):
                 name = f"out.{extension}"
-                self.assert_refused(self.mesh("-o", self.folder / name, "--quiet"), name, preexec_fn=full_after_4_kib)
+                self.assert_refused(self.mesh("-o", self.folder / name, "--quiet"), name, preexec_fn=file_size_limit(4096))
         self.assert_refused(["phantom", "abdomen", "--size", "64", "-o", self.folder / "p.nii"], "p.nii",
-                            preexec_fn=full_after_4_kib)
+                            preexec_fn=file_size_limit(4096))
 
     def test_an_older_file_survives_a_disk_that_fills(self):
         (self.folder / "out.mesh").write_text("older")
-        def full_after_4_kib():
-            resource.setrlimit(resource.RLIMIT_FSIZE, (4096, 4096))
-        self.assert_refused(self.mesh("-o", self.folder / "out.mesh"), "out.mesh", preexec_fn=full_after_4_kib)
+        self.assert_refused(self.mesh("-o", self.folder / "out.mesh"), "out.mesh", preexec_fn=file_size_limit(4096))
         self.assertEqual((self.folder / "out.mesh").read_text(), "older")
 
     def test_a_record_that_does_not_fit_is_not_cut(self):
         record = self.folder / "runs.jsonl"
-        older = '{"older": 1}\n' * 10
-        record.write_text(older)
-        def full_soon():
-            resource.setrlimit(resource.RLIMIT_FSIZE, (1 << 20, 1 << 20))
-        record.write_text("x" * ((1 << 20) - 20) + "\n")
+        limit = 1 << 20  # the mesh fits, the line does not
+        record.write_text("x" * (limit - 20) + "\n")
         before = record.read_bytes()
-        process = run_podm(*self.mesh("-o", self.folder / "out.mesh", "--record", record), preexec_fn=full_soon)
+        process = run_podm(*self.mesh("-o", self.folder / "out.mesh", "--record", record), preexec_fn=file_size_limit(limit))
         self.assert_exit(process, 2)
         self.assertIn("runs.jsonl", process.stderr)
         self.assertEqual(record.read_bytes(), before)

@@ -1,9 +1,10 @@
 """The command line itself: help, version, and what it refuses before it reads anything."""
 
 import re
+import subprocess
 import unittest
 
-from podm_process import PodmTestCase, run_podm
+from podm_process import PROGRAM, PodmTestCase, run_podm
 
 OPTIONS = {
     "mesh": ["--output", "--radius", "--radius-of", "--delta", "--target-elements", "--labels", "--merge", "--drop",
@@ -53,8 +54,6 @@ class Help(PodmTestCase):
 
     def test_standard_output_that_is_full_is_a_fault(self):
         with open("/dev/full", "w") as full:
-            import subprocess
-            from podm_process import PROGRAM
             process = subprocess.run([PROGRAM, "--help"], stdout=full, stderr=subprocess.PIPE, text=True)
         self.assertEqual(process.returncode, 2)
         self.assertIn("standard output", process.stderr)
