@@ -12,6 +12,7 @@ namespace {
 // delta^2, A counted in voxel faces (which overestimates a smooth area by about 1.5).
 constexpr double kVolumeCells = 4.5;
 constexpr double kSurfaceCells = 4.0;
+constexpr double kMaxDeltaVoxels = 2;
 constexpr double kBytesPerCell = 110;
 constexpr double kBytesPerVoxel = 6;
 
@@ -66,7 +67,7 @@ double cells_at(const LabelImage& image, const Geometry& g, const MeshingOptions
 
 double default_delta_mm(const LabelImage& image, double radius_mm) {
   const double voxel = std::cbrt(image.spacing[0] * image.spacing[1] * image.spacing[2]);
-  return radius_mm > 0 ? std::min(voxel, radius_mm / 2) : voxel;
+  return radius_mm > 0 ? std::min(kMaxDeltaVoxels * voxel, radius_mm / 2) : voxel;
 }
 
 Estimate estimate(const LabelImage& image, const MeshingOptions& options) {
@@ -75,13 +76,14 @@ Estimate estimate(const LabelImage& image, const MeshingOptions& options) {
   return {cells, cells * kBytesPerCell + static_cast<double>(image.num_voxels()) * kBytesPerVoxel};
 }
 
-double radius_for_cells(const LabelImage& image, const MeshingOptions& options, double cells) {
+double radius_for_cells(const LabelImage& image, double cells) {
   const Geometry g = measure(image);
-  MeshingOptions trial = options;
-  double low = 1e-6, high = 1e6;  // mm; cells_at falls with the radius
+  double low = 1e-9, high = 1e9;  // mm; the number of cells falls with the radius
   while (high / low > 1.001) {
-    trial.radius_mm = std::sqrt(low * high);
-    (cells_at(image, g, trial) > cells ? low : high) = trial.radius_mm;
+    const double radius = std::sqrt(low * high), delta = radius / 2;
+    const double expected = kVolumeCells * g.volume_mm3 / (radius * radius * radius) +
+                            kSurfaceCells * g.area_mm2 / (delta * delta);
+    (expected > cells ? low : high) = radius;
   }
   return high;
 }

@@ -7,10 +7,10 @@
 
 namespace podm {
 
-/// Bounds of the labelled voxels, mm, half a voxel wider than their centres... one voxel to be safe.
+/// Bounds of the foreground, mm: centres of the labelled voxels and one voxel more on every side.
 Box foreground_bounds(const LabelImage& image);
 
-/// The uniform radius at which estimate() gives this many cells, mm.
-double radius_for_cells(const LabelImage& image, const MeshingOptions& options, double cells);
+/// The uniform radius, mm, at which this many cells are expected, with delta half of it.
+double radius_for_cells(const LabelImage& image, double cells);
 
 }  // namespace podm

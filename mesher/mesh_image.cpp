@@ -79,8 +79,9 @@ class Run {
     report.phases_s["transform"] = seconds_since(start);
 
     const Clock::time_point refine_start = Clock::now();
-    Refinement refinement = options_.target_elements > 0 ? refine_to_target(isosurface, report)
-                                                         : refine(isosurface, options_.radius_mm, report);
+    Refinement refinement = options_.target_elements > 0
+                                ? refine_to_target(isosurface, report)
+                                : refine(isosurface, options_.radius_mm, delta(), report);
     report.phases_s["refine"] = seconds_since(refine_start);
     report.stop_reason = refinement.stop_reason;
     report.counters = refinement.counters;
@@ -94,10 +95,9 @@ class Run {
     if (progress_) progress_({phase, std::clamp(fraction, 0.0, 1.0), cells, seconds_since(start_)});
   }
 
-  Refinement refine(const Isosurface& isosurface, double radius_mm, MeshingReport& report) {
+  Refinement refine(const Isosurface& isosurface, double radius_mm, double delta_mm, MeshingReport& report) {
     report.radius_mm = radius_mm;
-    report.delta_mm =
-        options_.delta_mm > 0 ? options_.delta_mm : default_delta_mm(image_, smallest_radius(radius_mm));
+    report.delta_mm = delta_mm;
     MeshingOptions resolved = options_;
     resolved.radius_mm = radius_mm;
     resolved.delta_mm = report.delta_mm;
@@ -115,33 +115,34 @@ class Run {
                 size_field(image_, options_, radius_mm), cell_capacity(options_), executor);
   }
 
-  double smallest_radius(double radius_mm) const {
-    double smallest = radius_mm > 0 ? radius_mm : kInfinity;
+  double delta() const {
+    if (options_.delta_mm > 0) return options_.delta_mm;
+    double smallest = options_.radius_mm > 0 ? options_.radius_mm : kInfinity;
     for (const auto& [value, radius] : options_.radius_of_mm) smallest = std::min(smallest, radius);
-    return std::isinf(smallest) ? 0 : smallest;
+    return default_delta_mm(image_, std::isinf(smallest) ? 0 : smallest);
   }
 
-  // A cheap coarse run calibrates the m^3 law, then full runs are corrected until they are within 5 %.
+  // A cheap coarse run calibrates the power law cells ~ radius^exponent, then full runs are corrected by it
+  // until they are close. Unless given, delta follows the radius, or the interfaces alone could exceed the
+  // target.
   Refinement refine_to_target(const Isosurface& isosurface, MeshingReport& report) {
     const auto target = static_cast<double>(options_.target_elements);
-    double radius = radius_for_cells(image_, options_, target / 8);
-    double exponent = -3, last_radius = 0, last_cells = 0;
-    for (int tries = 0;; ++tries) {
-      Refinement refinement = refine(isosurface, radius, report);
-      const double cells = static_cast<double>(count_labelled_cells(*refinement.mesh, isosurface));
-      const bool is_close = std::abs(cells / target - 1) <= 0.04;
-      if (is_close || tries == kMaxTargetRuns || refinement.stop_reason != StopReason::kComplete) {
-        if (!is_close && refinement.stop_reason == StopReason::kComplete) {
-          report.warnings.push_back("the target number of elements was not met within 5 %");
-        }
+    double radius = radius_for_cells(image_, target / 8), last_radius = 0, last_cells = 0;
+    for (int runs = 1;; ++runs) {
+      Refinement refinement =
+          refine(isosurface, radius, options_.delta_mm > 0 ? options_.delta_mm : radius / 2, report);
+      const auto cells =
+          std::max(1.0, static_cast<double>(count_labelled_cells(*refinement.mesh, isosurface)));
+      const bool is_met = std::abs(cells / target - 1) <= kTargetTolerance;
+      if (is_met || runs == kMaxTargetRuns || refinement.stop_reason != StopReason::kComplete) {
+        if (!is_met) report.warnings.push_back("the target number of elements was not met within 5 %");
         return refinement;
       }
-      if (last_radius > 0 && radius != last_radius && cells != last_cells) {
-        exponent = std::clamp(std::log(cells / last_cells) / std::log(radius / last_radius), -4.0, -1.0);
-      }
+      const double exponent =
+          last_radius > 0 ? std::log(cells / last_cells) / std::log(radius / last_radius) : kFirstExponent;
       last_radius = radius;
-      last_cells = std::max(cells, 1.0);
-      radius *= std::pow(target / last_cells, 1 / exponent);
+      last_cells = cells;
+      radius *= std::pow(target / cells, 1 / std::clamp(exponent, -4.0, -0.5));
     }
   }
 
@@ -158,7 +159,9 @@ class Run {
     if (is_voxel) convert_to_voxel_space(result.mesh, image_);
   }
 
-  static constexpr int kMaxTargetRuns = 6;
+  static constexpr int kMaxTargetRuns = 8;
+  static constexpr double kTargetTolerance = 0.045;  // of the 5 % promised
+  static constexpr double kFirstExponent = -2.6;     // between the surface's -2 and the volume's -3
   const LabelImage& image_;
   const MeshingOptions& options_;
   const ProgressCallback& progress_;

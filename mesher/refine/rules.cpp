@@ -10,6 +10,8 @@ namespace podm {
 namespace {
 
 constexpr double square(double x) { return x * x; }
+// The nearest point that the oracle finds is the true one up to a small error.
+constexpr double kNearestTrust = 0.9;
 constexpr double kSquaredRatio = square(kRadiusEdgeBound * (1 - kMargin));
 
 }  // namespace
@@ -41,7 +43,9 @@ Examination Rules::examine(CellId c) const {
       if (mesh_.vertex(v).kind == VertexKind::kIsosurface) return t;
     }
   }
-  t.nearest = isosurface_.closest_point(center, std::sqrt(t.squared_radius));
+  const double radius = std::sqrt(t.squared_radius);
+  t.nearest = isosurface_.closest_point(center, radius);
+  t.isosurface_distance = kNearestTrust * (t.nearest ? distance(center, *t.nearest) : radius);
   return t;
 }
 
@@ -81,13 +85,11 @@ bool Rules::needs_sample(CellId c, unsigned facet) const {
   return std::min({a2, b2, c2}) * 4 * squared_length(cross(ab, ac)) <= a2 * b2 * c2 * (1 + kMargin);
 }
 
-// Whether the facet's dual edge meets the isosurface. Labels that differ prove it. Equal labels leave a
-// double crossing, which only a circumball that meets the isosurface can hold (a point of the dual edge lies,
-// with its empty ball, inside the union of both circumballs).
-bool Rules::is_restricted(const Examination& t, CellId neighbor) const {
+// Whether the facet's dual edge may meet the isosurface. Labels that differ prove it. Equal labels leave a
+// double crossing, which only a dual edge longer than the distance to the isosurface can hold.
+bool Rules::may_be_restricted(const Examination& t, CellId neighbor) const {
   if (label_of(neighbor) != t.label) return true;
-  const double length2 = squared_distance(t.center, mesh_.cell(neighbor).sphere.center);
-  return square(t.isosurface_distance) < length2 && square(t.isosurface_distance) <= t.squared_radius;
+  return square(t.isosurface_distance) < squared_distance(t.center, mesh_.cell(neighbor).sphere.center);
 }
 
 std::optional<SurfaceCenter> Rules::r3_surface_center(const Examination& t) const {
@@ -95,7 +97,7 @@ std::optional<SurfaceCenter> Rules::r3_surface_center(const Examination& t) cons
     const FacetId mirror = mesh_.cell(t.cell).mirrors[k];
     if (mirror == kNoFacet) continue;
     const CellId neighbor = cell_of(mirror);
-    if (!is_restricted(t, neighbor) || !needs_sample(t.cell, k)) continue;
+    if (!may_be_restricted(t, neighbor) || !needs_sample(t.cell, k)) continue;
     // From the smaller centre to the larger: the same point whichever cell asks.
     const Point *from = &t.center, *to = &mesh_.cell(neighbor).sphere.center;
     if (lexicographically_less(*to, *from)) std::swap(from, to);

@@ -70,7 +70,7 @@ class Rules {
   bool has_poor_ratio(CellId c, double squared_radius) const;
 
  private:
-  bool is_restricted(const Examination& t, CellId neighbor) const;
+  bool may_be_restricted(const Examination& t, CellId neighbor) const;
   bool needs_sample(CellId c, unsigned facet) const;
 
   Mesh& mesh_;

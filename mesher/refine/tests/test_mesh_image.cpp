@@ -1,0 +1,175 @@
+// The public API: guarantees on every image, frames, sizes, limits and refusals.
+#include <gtest/gtest.h>
+
+#include <limits>
+#include <map>
+#include <numbers>
+#include <set>
+
+#include "images.h"
+#include "podm/mesh_image.h"
+
+namespace podm::test {
+namespace {
+
+double volume_of(const TetMesh& mesh, std::size_t c) {
+  std::array<std::array<double, 3>, 4> p;
+  for (unsigned i = 0; i < 4; ++i) p[i] = mesh.vertices[mesh.cells[c][i]];
+  std::array<std::array<double, 3>, 3> e;
+  for (unsigned i = 0; i < 3; ++i) {
+    for (unsigned a = 0; a < 3; ++a) e[i][a] = p[i + 1][a] - p[0][a];
+  }
+  return (e[0][0] * (e[1][1] * e[2][2] - e[1][2] * e[2][1]) -
+          e[0][1] * (e[1][0] * e[2][2] - e[1][2] * e[2][0]) +
+          e[0][2] * (e[1][0] * e[2][1] - e[1][1] * e[2][0])) /
+         6;
+}
+
+double total_volume(const TetMesh& mesh) {
+  double sum = 0;
+  for (std::size_t c = 0; c < mesh.cells.size(); ++c) sum += volume_of(mesh, c);
+  return sum;
+}
+
+MeshingOptions radius(double mm) {
+  MeshingOptions options;
+  options.radius_mm = mm;
+  options.threads = 1;
+  return options;
+}
+
+class MeshImage : public testing::TestWithParam<NamedImage> {};
+
+TEST_P(MeshImage, MeetsEveryGuarantee) {
+  const LabelImage image = GetParam().make();
+  const MeshingResult result = mesh_image(image, radius(1));
+  EXPECT_EQ(result.report.stop_reason, StopReason::kComplete);
+  EXPECT_TRUE(result.report.guarantees.all_met());
+  EXPECT_EQ(result.report.counters.rejected, 0u);
+  EXPECT_FALSE(result.mesh.cells.empty());
+  for (std::size_t c = 0; c < result.mesh.cells.size(); ++c) ASSERT_GT(volume_of(result.mesh, c), 0);
+}
+
+TEST_P(MeshImage, BoundsEveryLabelByClosedSurfaces) {
+  const MeshingResult result = mesh_image(GetParam().make(), radius(2));
+  // Around each label every directed facet edge meets its reverse as often.
+  std::map<LabelIndex, std::map<std::pair<std::uint32_t, std::uint32_t>, int>> edges;
+  for (std::size_t f = 0; f < result.mesh.facets.size(); ++f) {
+    const auto& [low, high] = result.mesh.facet_labels[f];
+    EXPECT_LT(low, high);
+    for (unsigned i = 0; i < 3; ++i) {
+      const auto a = result.mesh.facets[f][i], b = result.mesh.facets[f][(i + 1) % 3];
+      const int outwards = a < b ? 1 : -1;  // seen from the second label
+      edges[high][{std::min(a, b), std::max(a, b)}] += outwards;
+      edges[low][{std::min(a, b), std::max(a, b)}] -= outwards;
+    }
+  }
+  for (const auto& [label, directed] : edges) {
+    for (const auto& [edge, sum] : directed) ASSERT_EQ(sum, 0) << "label index " << label;
+  }
+}
+
+INSTANTIATE_TEST_SUITE_P(Images, MeshImage, testing::ValuesIn(images()),
+                         [](const auto& image) { return std::string(image.param.name); });
+
+TEST(MeshImageGeometry, BallHasItsVolume) {
+  const MeshingResult result = mesh_image(ball(40, 15), radius(2));
+  EXPECT_NEAR(total_volume(result.mesh), 4.0 / 3 * std::numbers::pi * 15 * 15 * 15, 150);
+}
+
+TEST(MeshImageGeometry, FramesAgreeAndStayPositive) {
+  LabelImage image = ball(16, 6);
+  image.voxel_to_ras = {0, -1, 0, 5, -1, 0, 0, 6, 0, 0, -1, 7};  // a rotation with a mirror
+  std::map<Space, MeshingResult> results;
+  for (const Space space : {Space::kRas, Space::kLps, Space::kVoxel}) {
+    MeshingOptions options = radius(2);
+    options.space = space;
+    results[space] = mesh_image(image, options);
+    EXPECT_EQ(results[space].mesh.space, space);
+    for (std::size_t c = 0; c < results[space].mesh.cells.size(); ++c) {
+      ASSERT_GT(volume_of(results[space].mesh, c), 0);
+    }
+  }
+  const auto& ras = results[Space::kRas].mesh.vertices;
+  const auto& lps = results[Space::kLps].mesh.vertices;
+  const auto& voxel = results[Space::kVoxel].mesh.vertices;
+  ASSERT_EQ(ras.size(), voxel.size());
+  for (std::size_t v = 0; v < ras.size(); ++v) {
+    EXPECT_DOUBLE_EQ(lps[v][0], -ras[v][0]);
+    EXPECT_DOUBLE_EQ(lps[v][2], ras[v][2]);
+    EXPECT_NEAR(ras[v][0], 5 - voxel[v][1], 1e-12);
+    EXPECT_NEAR(ras[v][1], 6 - voxel[v][0], 1e-12);
+    EXPECT_NEAR(ras[v][2], 7 - voxel[v][2], 1e-12);
+  }
+}
+
+TEST(MeshImageSizes, LabelsHaveTheirOwnRadius) {
+  const LabelImage image =
+      make_image({20, 20, 20}, {1, 1, 1}, 2, [](int i, int, int) { return i < 10 ? 1 : 2; });
+  MeshingOptions options = radius(4);
+  options.delta_mm = 1.2;
+  options.radius_of_mm[20] = 0.8;
+  const MeshingResult result = mesh_image(image, options);
+  EXPECT_TRUE(result.report.guarantees.all_met());
+  EXPECT_GT(result.report.cells_of_label.at(20), 3 * result.report.cells_of_label.at(10));
+}
+
+TEST(MeshImageSizes, TargetIsMetWithinFivePercent) {
+  for (const std::uint64_t target : {20000u, 100000u}) {
+    MeshingOptions options;
+    options.target_elements = target;
+    const MeshingResult result = mesh_image(ball(40, 15), options);
+    EXPECT_NEAR(static_cast<double>(result.mesh.cells.size()), static_cast<double>(target),
+                0.05 * static_cast<double>(target));
+  }
+}
+
+TEST(MeshImageRuns, AreRepeatable) {
+  const LabelImage image = ball(24, 9);
+  const MeshingResult first = mesh_image(image, radius(1.5)), second = mesh_image(image, radius(1.5));
+  EXPECT_EQ(first.mesh.cells, second.mesh.cells);
+  EXPECT_EQ(first.mesh.vertices, second.mesh.vertices);
+}
+
+TEST(MeshImageRuns, LimitsAndCancellationLeaveAMeshThatSaysSo) {
+  const LabelImage image = ball(40, 15);
+  MeshingOptions elements = radius(0.3), time = radius(0.3), memory = radius(0.3);
+  elements.max_elements = 20000;
+  time.max_seconds = 0.2;
+  memory.max_memory_bytes = 1 << 20;
+  EXPECT_EQ(mesh_image(image, elements).report.stop_reason, StopReason::kElementLimit);
+  EXPECT_EQ(mesh_image(image, time).report.stop_reason, StopReason::kTimeLimit);
+  EXPECT_EQ(mesh_image(image, memory).report.stop_reason, StopReason::kMemoryLimit);
+  std::stop_source stop;
+  const ProgressCallback cancel = [&](const Progress& progress) {
+    if (progress.phase == "refine") stop.request_stop();
+  };
+  const MeshingResult cancelled = mesh_image(image, radius(0.3), cancel, stop.get_token());
+  EXPECT_EQ(cancelled.report.stop_reason, StopReason::kCancelled);
+  for (std::size_t c = 0; c < cancelled.mesh.cells.size(); ++c) ASSERT_GT(volume_of(cancelled.mesh, c), 0);
+}
+
+TEST(MeshImageRefusals, BadOptionsAndEmptyImages) {
+  const LabelImage image = ball(10, 3);
+  for (const double bad :
+       {-1.0, std::numeric_limits<double>::quiet_NaN(), std::numeric_limits<double>::infinity()}) {
+    EXPECT_THROW(mesh_image(image, radius(bad)), InputError);
+    MeshingOptions delta = radius(1);
+    delta.delta_mm = bad;
+    EXPECT_THROW(mesh_image(image, delta), InputError);
+    MeshingOptions label = radius(1);
+    label.radius_of_mm[10] = bad;
+    EXPECT_THROW(mesh_image(image, label), InputError);
+  }
+  MeshingOptions absent = radius(1);
+  absent.radius_of_mm[77] = 1;
+  EXPECT_THROW(mesh_image(image, absent), InputError);
+  MeshingOptions both = radius(1);
+  both.target_elements = 1000;
+  EXPECT_THROW(mesh_image(image, both), InputError);
+  const LabelImage empty = make_image({4, 4, 4}, {1, 1, 1}, 1, [](int, int, int) { return 0; });
+  EXPECT_THROW(mesh_image(empty, radius(1)), InputError);
+}
+
+}  // namespace
+}  // namespace podm::test
