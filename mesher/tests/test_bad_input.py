@@ -168,13 +168,15 @@ class BadOutput(PodmTestCase):
         for extension in ("vtu", "mesh", "msh"):
             with self.subTest(extension=extension):
                 name = f"out.{extension}"
-                self.assert_refused(self.mesh("-o", self.folder / name, "--quiet"), name, preexec_fn=file_size_limit(4096))
+                self.assert_refused(self.mesh("-o", self.folder / name, "--quiet"), name,
+                                    preexec_fn=file_size_limit(4096))
         self.assert_refused(["phantom", "abdomen", "--size", "64", "-o", self.folder / "p.nii"], "p.nii",
                             preexec_fn=file_size_limit(4096))
 
     def test_an_older_file_survives_a_disk_that_fills(self):
         (self.folder / "out.mesh").write_text("older")
-        self.assert_refused(self.mesh("-o", self.folder / "out.mesh"), "out.mesh", preexec_fn=file_size_limit(4096))
+        self.assert_refused(self.mesh("-o", self.folder / "out.mesh"), "out.mesh",
+                            preexec_fn=file_size_limit(4096))
         self.assertEqual((self.folder / "out.mesh").read_text(), "older")
 
     def test_a_record_that_does_not_fit_is_not_cut(self):
@@ -182,7 +184,8 @@ class BadOutput(PodmTestCase):
         limit = 1 << 20  # the mesh fits, the line does not
         record.write_text("x" * (limit - 20) + "\n")
         before = record.read_bytes()
-        process = run_podm(*self.mesh("-o", self.folder / "out.mesh", "--record", record), preexec_fn=file_size_limit(limit))
+        process = run_podm(*self.mesh("-o", self.folder / "out.mesh", "--record", record),
+                           preexec_fn=file_size_limit(limit))
         self.assert_exit(process, 2)
         self.assertIn("runs.jsonl", process.stderr)
         self.assertEqual(record.read_bytes(), before)

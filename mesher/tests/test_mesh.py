@@ -112,7 +112,8 @@ class Display(PodmTestCase):
         self.assertNotIn("\r", process.stderr)
         self.assertNotIn("\x1b", process.stderr)
         self.assertRegex(process.stderr, r"(?m)^refine +\d+ %")
-        for word in ("cells by label", "boundary facets", "quality", "time", "speed", "memory", "sha256", "guarantees"):
+        for word in ("cells by label", "boundary facets", "quality", "time", "speed", "memory", "sha256",
+                     "guarantees"):
             self.assertIn(word, process.stderr)
 
     def test_quiet(self):

@@ -7,9 +7,9 @@ import unittest
 from podm_process import PROGRAM, PodmTestCase, run_podm
 
 OPTIONS = {
-    "mesh": ["--output", "--radius", "--radius-of", "--delta", "--target-elements", "--labels", "--merge", "--drop",
-             "--background", "--label-names", "--space", "--surface", "--record", "--max-elements", "--max-seconds",
-             "--max-memory-gib", "--threads", "--quiet"],
+    "mesh": ["--output", "--radius", "--radius-of", "--delta", "--target-elements", "--labels", "--merge",
+             "--drop", "--background", "--label-names", "--space", "--surface", "--record", "--max-elements",
+             "--max-seconds", "--max-memory-gib", "--threads", "--quiet"],
     "info": ["--labels", "--merge", "--drop", "--background", "--label-names", "--json"],
     "phantom": ["--size", "--output"],
 }
@@ -104,7 +104,8 @@ class Usage(PodmTestCase):
         self.assert_refused(["phantom", "spheres", "--size", "0", "-o", self.folder / "p.nii"], "--size")
 
     def test_options_that_exclude_each_other_and_repetitions(self):
-        self.assert_refused(self.mesh("--radius", "2", "--target-elements", "1000"), "--radius", "--target-elements")
+        self.assert_refused(self.mesh("--radius", "2", "--target-elements", "1000"), "--radius",
+                            "--target-elements")
         self.assert_refused(self.mesh("--radius", "2", "--radius", "3"), "--radius")
 
 
