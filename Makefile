@@ -1,0 +1,42 @@
+# Thin rules over CMake, the programs in build/bin/ and scripts/. `make` alone lists them.
+
+MARCH = $(if $(NATIVE),native,x86-64-v3)
+CMAKE_FLAGS ?=
+FIGURES = results/runs/figures
+
+.DEFAULT_GOAL := help
+.PHONY: help setup build test experiments figures clean
+
+help:
+	@echo "make experiments   mesh the inputs of experiments/first_mesh.toml at three sizes; table and results/runs/"
+	@echo "make test          all tests"
+	@echo "make figures       mesh the abdomen phantom and draw it cut open: $(FIGURES)/"
+	@echo "make build         the programs, in build/bin/"
+	@echo "make setup         install the Debian 12 packages needed (root or sudo; otherwise says what to run)"
+	@echo "make clean         remove build folders; results stay"
+	@echo
+	@echo "Each makes what it needs, setup and build included."
+	@echo "  NATIVE=1         compile for this machine's processor instead of any x86-64-v3 one"
+	@echo "  DATA=FOLDER      (make test) also run the tests on the real images in FOLDER"
+	@echo "  CMAKE_FLAGS=...  more flags for CMake"
+
+setup:
+	@scripts/setup
+
+build: setup
+	cmake -S . -B build -G Ninja -DPODM_MARCH=$(MARCH) $(CMAKE_FLAGS)
+	cmake --build build
+
+test: build
+	$(if $(DATA),PODM_TEST_IMAGES="$(abspath $(DATA))") ctest --test-dir build -j2 --output-on-failure
+
+experiments: build
+	build/bin/podm-bench run experiments/first_mesh.toml
+
+figures: build
+	mkdir -p $(FIGURES)
+	build/bin/podm mesh phantom:abdomen@256 --target-elements 400000 -o $(FIGURES)/abdomen.vtu
+	/usr/bin/python3 scripts/render_mesh.py $(FIGURES)/abdomen.vtu -o $(FIGURES)/abdomen_cut.png
+
+clean:
+	rm -rf build build-*
