@@ -1,0 +1,54 @@
+#!/bin/sh
+# Keeps the arrows between the parts of the tree: prints file:line of each include that breaks one; exits 1 then.
+set -euf  # no file name patterns: those of may_include are for `case`
+cd "$(dirname "$0")/.."
+
+# Folders whose files a file of folder $1 may include besides its own; include/ holds podm/*.h.
+may_include() {
+  case $1 in
+    mesher/geometry | mesher/runtime | mesher/include) ;;
+    mesher/image) echo mesher/geometry mesher/runtime mesher/include ;;
+    mesher/delaunay) echo mesher/geometry mesher/runtime mesher/include ;;
+    mesher/refine) echo mesher/delaunay mesher/image mesher/geometry mesher/runtime mesher/include ;;
+    mesher/io | examples/*) echo mesher/include ;;
+    mesher | mesher/*) echo "mesher mesher/*" ;;  # the algorithms, the command line, whole-mesher tests
+    harness | verifiers) ;;                       # they know the mesher as a program and by its files
+  esac
+}
+
+# The part of the tree that a file belongs to. Tests and benchmarks of the mesher see all of it.
+part_of() {
+  case $1 in
+    mesher/*/tests/*) echo mesher/tests ;;
+    mesher/*/*) echo "$1" | cut -d/ -f1-2 ;;
+    examples/*) echo "$1" | cut -d/ -f1-2 ;;
+    *) echo "${1%%/*}" ;;
+  esac
+}
+
+# The file of ours that `#include "$2"` in file $1 means; nothing when it is not ours.
+resolve() {
+  for folder in "$(dirname "$1")" mesher mesher/include harness verifiers; do
+    [ ! -f "$folder/$2" ] || { realpath --relative-to=. "$folder/$2"; return; }
+  done
+}
+
+is_allowed() {  # $1 includes $2, both parts of the tree
+  [ "$1" != "$2" ] || return 0
+  for pattern in $(may_include "$1"); do
+    # shellcheck disable=SC2254  # a pattern
+    case $2 in $pattern) return 0 ;; esac
+  done
+  return 1
+}
+
+includes=$(git grep -nE '^[[:space:]]*#[[:space:]]*include[[:space:]]*"' -- '*.h' '*.cpp')
+violations=$(echo "$includes" | while IFS=: read -r file line text; do
+  name=${text#*\"}
+  target=$(resolve "$file" "${name%%\"*}")
+  [ -n "$target" ] || continue
+  from=$(part_of "$file")
+  to=$(part_of "$target")
+  is_allowed "$from" "$to" || echo "$file:$line: $from may not include $target"
+done)
+[ -z "$violations" ] || { echo "$violations"; exit 1; }
