@@ -23,23 +23,18 @@ class Extractor {
   Extractor(Mesh& mesh, const Isosurface& isosurface, TetMesh& out)
       : mesh_(mesh), isosurface_(isosurface), out_(out), out_ids_(mesh.vertex_bound(), kNoVertex) {}
 
-  // Counts first, so that nothing is copied while growing.
+  // Counts first, so that the cells are not copied while growing; facets are few.
   void reserve() {
-    std::size_t cells = 0, facets = 0;
-    for (CellId c = 0; c < mesh_.cell_bound(); ++c) {
-      if (label_of(c) == kBackground) continue;
-      ++cells;
-      for (unsigned k = 0; k < 4; ++k) facets += is_written_here(c, k);
-    }
+    std::size_t cells = 0;
+    for (CellId c = 0; c < mesh_.cell_bound(); ++c) cells += label_of(c) != kBackground;
     out_.cells.reserve(cells);
     out_.cell_labels.reserve(cells);
-    out_.facets.reserve(facets);
-    out_.facet_labels.reserve(facets);
   }
 
   std::uint64_t add_all() {
     std::uint64_t facets_off_isosurface = 0;
     for (CellId c = 0; c < mesh_.cell_bound(); ++c) {
+      prefetch_around(c + kLookahead);
       const LabelIndex label = label_of(c);
       if (label == kBackground) continue;
       const auto& v = mesh_.cell(c).vertices;
@@ -53,6 +48,16 @@ class Extractor {
   }
 
  private:
+  static constexpr CellId kLookahead = 8;
+  void prefetch_around(CellId c) const {
+    if (c >= mesh_.cell_bound()) return;
+    for (const FacetId mirror : mesh_.cell(c).mirrors) {
+      if (mirror != kNoFacet) mesh_.prefetch(cell_of(mirror));
+    }
+    for (const VertexId v : mesh_.cell(c).vertices) {
+      if (v != kNoVertex) __builtin_prefetch(&out_ids_[v]);
+    }
+  }
   // Dead cells count as background.
   LabelIndex label_of(CellId c) {
     if (!mesh_.cell(c).is_alive()) return kBackground;
