@@ -1,0 +1,131 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// CGAL's 3D mesh generation as a peer of podm: a label image in, counts and the seconds of the meshing call
+// out.
+#include <CGAL/Exact_predicates_inexact_constructions_kernel.h>
+#include <CGAL/Image_3.h>
+#include <CGAL/Labeled_mesh_domain_3.h>
+#include <CGAL/Mesh_complex_3_in_triangulation_3.h>
+#include <CGAL/Mesh_criteria_3.h>
+#include <CGAL/Mesh_triangulation_3.h>
+#include <CGAL/make_mesh_3.h>
+#include <CGAL/tags.h>
+#include <CGAL/version.h>
+#include <sys/resource.h>
+#include <tbb/global_control.h>
+
+#include <CLI/CLI.hpp>
+#include <algorithm>
+#include <chrono>
+#include <cstddef>
+#include <cstdint>
+#include <exception>
+#include <iostream>
+#include <nlohmann/json.hpp>
+#include <stdexcept>
+#include <string>
+
+namespace {
+
+using Kernel = CGAL::Exact_predicates_inexact_constructions_kernel;
+using Domain = CGAL::Labeled_mesh_domain_3<Kernel>;
+using Json = nlohmann::ordered_json;
+
+#ifdef CGAL_MESH_3_USE_LAZY_UNSORTED_REFINEMENT_QUEUE
+constexpr const char* kQueue = "unsorted";
+#else
+constexpr const char* kQueue = "sorted";
+#endif
+// What podm guarantees, asked of CGAL.
+constexpr double kFacetAngleDeg = 30;
+constexpr double kRadiusEdgeBound = 1.93;
+
+struct Options {
+  std::string image_path;
+  double cell_size_mm = 0;  // 0: unbounded, the surface alone drives
+  double facet_distance_mm = 0;
+  std::size_t threads = 0;  // 0: Sequential_tag
+};
+
+CGAL::Image_3 read_image(const std::string& path) {
+  CGAL::Image_3 image;
+  if (!image.read(path)) throw std::runtime_error(path + ": not an INR image that CGAL can read");
+  return image;
+}
+
+std::uint64_t peak_resident_bytes() {
+  rusage usage{};
+  getrusage(RUSAGE_SELF, &usage);
+  return static_cast<std::uint64_t>(usage.ru_maxrss) * 1024;
+}
+
+// Refinement alone: no perturbation, no exudation, no smoothing.
+template <class Concurrency>
+Json mesh(const Domain& domain, const Options& options) {
+  using Triangulation = typename CGAL::Mesh_triangulation_3<Domain, CGAL::Default, Concurrency>::type;
+  using Complex = CGAL::Mesh_complex_3_in_triangulation_3<Triangulation>;
+  using Criteria = CGAL::Mesh_criteria_3<Triangulation>;
+  namespace params = CGAL::parameters;
+
+  const Criteria criteria(
+      params::facet_angle = kFacetAngleDeg, params::facet_distance = options.facet_distance_mm,
+      params::cell_radius_edge_ratio = kRadiusEdgeBound, params::cell_size = options.cell_size_mm);
+  const auto start = std::chrono::steady_clock::now();
+  const Complex complex =
+      CGAL::make_mesh_3<Complex>(domain, criteria, params::no_perturb(), params::no_exude());
+  const std::chrono::duration<double> elapsed = std::chrono::steady_clock::now() - start;
+
+  Json result;
+  result["cells"] = complex.number_of_cells_in_complex();
+  result["vertices"] = complex.triangulation().number_of_vertices();
+  result["boundary_facets"] = complex.number_of_facets_in_complex();
+  result["seconds"] = elapsed.count();
+  result["peak_rss_bytes"] = peak_resident_bytes();
+  return result;
+}
+
+Json run(const Options& options) {
+  const CGAL::Image_3 image = read_image(options.image_path);
+  const Domain domain = Domain::create_labeled_image_mesh_domain(image);
+  const tbb::global_control limit(tbb::global_control::max_allowed_parallelism,
+                                  std::max<std::size_t>(options.threads, 1));
+  Json result = options.threads == 0 ? mesh<CGAL::Sequential_tag>(domain, options)
+                                     : mesh<CGAL::Parallel_tag>(domain, options);
+  result["options"] = {{"image", options.image_path},
+                       {"cell_size_mm", options.cell_size_mm},
+                       {"facet_distance_mm", options.facet_distance_mm},
+                       {"facet_angle_deg", kFacetAngleDeg},
+                       {"cell_radius_edge_ratio", kRadiusEdgeBound},
+                       {"threads", options.threads},
+                       {"queue", kQueue},
+                       {"cgal", CGAL_VERSION_STR}};
+  return result;
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  Options options;
+  CLI::App app("CGAL's mesh generation of a label image, timed. Prints one JSON line.");
+  app.add_option("IMAGE", options.image_path, "label image, .inr or .inr.gz")
+      ->required()
+      ->check(CLI::ExistingFile);
+  app.add_option("--cell-size", options.cell_size_mm,
+                 "largest circumradius of a cell, mm [default: unbounded]")
+      ->check(CLI::PositiveNumber);
+  app.add_option("--facet-distance", options.facet_distance_mm,
+                 "largest distance of a facet to the surface, mm")
+      ->required()
+      ->check(CLI::PositiveNumber);
+  app.add_option("--threads", options.threads, "0: CGAL's Sequential_tag [default: 0]");
+  try {
+    app.parse(argc, argv);
+  } catch (const CLI::ParseError& error) {
+    return app.exit(error) == 0 ? 0 : 2;
+  }
+  try {
+    std::cout << run(options) << std::endl;
+  } catch (const std::exception& error) {
+    std::cerr << "cgal_mesh3: " << error.what() << '\n';
+    return 2;
+  }
+}
