@@ -1,0 +1,40 @@
+// Running a program as a child process and measuring what it took.
+#pragma once
+
+#include <cstdint>
+#include <functional>
+#include <string>
+#include <vector>
+
+namespace podm::bench {
+
+/// Asked a few times a second; true ends the child.
+using StopQuery = std::function<bool()>;
+
+struct ProcessRequest {
+  std::vector<std::string> arguments;    ///< the program first; looked up in PATH unless it has a slash
+  std::string stdout_path, stderr_path;  ///< overwritten; empty: thrown away
+  double timeout_s = 0;                  ///< killed after it; 0: never
+};
+
+struct ProcessOutcome {
+  enum class End { kExited, kSignalled, kTimedOut, kInterrupted, kNotStarted };
+  End end = End::kNotStarted;
+  int exit_code = 0;        ///< when kExited
+  int signal = 0;           ///< when kSignalled
+  std::string start_error;  ///< when kNotStarted: the system's reason
+  double wall_s = 0, user_s = 0, system_s = 0;
+  std::uint64_t peak_rss_bytes = 0;
+
+  bool succeeded() const { return end == End::kExited && exit_code == 0; }
+  /// How it ended, e.g. "exit code 2" or "killed by signal 11 (Segmentation fault)".
+  std::string describe() const;
+};
+
+/// Runs to the end, the time limit or a stop request; the latter two kill the child and its descendants.
+ProcessOutcome run_process(const ProcessRequest& request, const StopQuery& stop_requested = {});
+
+/// The end of a text file, at most `max_bytes` of it; empty when there is none.
+std::string read_tail(const std::string& path, std::size_t max_bytes);
+
+}  // namespace podm::bench

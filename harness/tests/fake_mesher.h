@@ -1,0 +1,59 @@
+// Folders and shell scripts that stand for the mesher, made by a test and gone with it.
+#pragma once
+
+#include <gtest/gtest.h>
+
+#include <filesystem>
+#include <fstream>
+#include <string>
+
+namespace podm::bench {
+
+class TemporaryFolder {
+ public:
+  TemporaryFolder() : path_(testing::TempDir() + "podm_harness_XXXXXX") {
+    if (mkdtemp(path_.data()) == nullptr) throw std::runtime_error("cannot make " + path_);
+  }
+  ~TemporaryFolder() { std::filesystem::remove_all(path_); }
+  TemporaryFolder(const TemporaryFolder&) = delete;
+  TemporaryFolder& operator=(const TemporaryFolder&) = delete;
+
+  std::string operator/(const std::string& name) const { return path_ + "/" + name; }
+  const std::string& path() const { return path_; }
+
+  /// Writes a file and returns its path.
+  std::string write(const std::string& name, const std::string& text) const {
+    std::ofstream(*this / name) << text;
+    return *this / name;
+  }
+  /// Writes a shell script that can be run and returns its path.
+  std::string script(const std::string& name, const std::string& body) const {
+    const std::string path = write(name, "#!/bin/sh\n" + body);
+    std::filesystem::permissions(path, std::filesystem::perms::owner_all);
+    return path;
+  }
+
+ private:
+  std::string path_;
+};
+
+/// What a healthy mesher records; `cells` a second are refined in 2 s of meshing and 5 s of writing.
+inline const std::string kGoodRecord =
+    R"({"schema":1,"input":{"path":"image.nii","sha256":"00"},"cells":1000,"vertices":300,)"
+    R"("refine_cells_per_second":1000.0,"phases_s":{"read":0.5,"refine":1.0,"extract":0.5,"write":5.0},)"
+    R"("guarantees":{"radius_edge":0,"facet_angle":0},"stop_reason":"complete"})";
+
+/// A script for `podm`: answers `info` with 10 x 10 x 10 voxels; `mesh` runs `mesh_body`, where $record is
+/// the file asked for by --record and $output that of -o.
+inline std::string fake_mesher(const TemporaryFolder& folder, const std::string& mesh_body) {
+  return folder.script("podm", R"(
+[ "$1" = info ] && { echo '{"size":[10,10,10]}'; exit 0; }
+echo "$@" > "$(dirname "$0")/arguments"
+while [ $# -gt 0 ]; do
+  case $1 in --record) record=$2;; -o) output=$2;; esac
+  shift
+done
+)" + mesh_body);
+}
+
+}  // namespace podm::bench

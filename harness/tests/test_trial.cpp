@@ -1,0 +1,159 @@
+// What becomes of a trial whose mesher does well, fails, hangs, lies or is not there.
+#include <gtest/gtest.h>
+
+#include "fake_mesher.h"
+#include "trial.h"
+
+namespace podm::bench {
+namespace {
+
+Trial some_trial() {
+  Trial trial;
+  trial.name = "some";
+  trial.image = "image.nii";
+  trial.radius_mm = 2.5;
+  trial.timeout_s = 20;
+  return trial;
+}
+
+class TrialTest : public testing::Test {
+ protected:
+  TrialResult run(const std::string& mesh_body, const Trial& trial = some_trial()) {
+    return run_trial(trial, fake_mesher(folder_, mesh_body), folder_.path());
+  }
+  static std::string write_record(const std::string& record) {
+    return "echo '" + record + "' > \"$record\"\n";
+  }
+  static std::string good_record_but(const std::string& from, const std::string& to) {
+    std::string record = kGoodRecord;
+    record.replace(record.find(from), from.size(), to);
+    return write_record(record);
+  }
+  TemporaryFolder folder_;
+};
+
+TEST_F(TrialTest, GoodRunIsOkWithItsRecordAndImageSize) {
+  const TrialResult result = run(write_record(kGoodRecord));
+  EXPECT_EQ(result.status, Status::kOk);
+  EXPECT_EQ(result.reason, "");
+  EXPECT_EQ(result.record, nlohmann::ordered_json::parse(kGoodRecord));
+  EXPECT_EQ(result.image_size, nlohmann::ordered_json({10, 10, 10}));
+  EXPECT_GT(result.process.peak_rss_bytes, 0u);
+}
+
+TEST_F(TrialTest, OptionsOfTheTrialReachTheMesher) {
+  Trial trial = some_trial();
+  trial.delta_mm = 0.25;
+  trial.threads = 3;
+  run(write_record(kGoodRecord), trial);
+  const std::string arguments = " " + read_tail(folder_ / "arguments", 1000);
+  for (const char* expected :
+       {" mesh image.nii ", " --radius 2.5 ", " --delta 0.25 ", " --threads 3 ", " --quiet"})
+    EXPECT_NE(arguments.find(expected), std::string::npos) << expected << " in " << arguments;
+  EXPECT_EQ(arguments.find("--target-elements"), std::string::npos);
+
+  trial = some_trial();
+  trial.radius_mm = 0;
+  trial.target_elements = 12345;
+  run(write_record(kGoodRecord), trial);
+  const std::string others = read_tail(folder_ / "arguments", 1000);
+  EXPECT_NE(others.find("--target-elements 12345 "), std::string::npos);
+  EXPECT_EQ(others.find("--radius"), std::string::npos);
+}
+
+TEST_F(TrialTest, MissedGuaranteeIsUnmetAndNamed) {
+  for (const char* exit_code : {"exit 1", "exit 0"}) {  // the record counts, whatever the exit code says
+    const TrialResult result = run(good_record_but(R"("facet_angle":0)", R"("facet_angle":7)") + exit_code);
+    EXPECT_EQ(result.status, Status::kUnmet);
+    EXPECT_EQ(result.reason, "facet_angle 7");
+    EXPECT_TRUE(result.record.is_object());
+  }
+}
+
+TEST_F(TrialTest, RunThatEndedEarlyIsUnmet) {
+  const TrialResult result = run(good_record_but(R"("complete")", R"("time limit")") + "exit 1");
+  EXPECT_EQ(result.status, Status::kUnmet);
+  EXPECT_NE(result.reason.find("time limit"), std::string::npos);
+}
+
+TEST_F(TrialTest, ExitCodeOneAloneIsUnmet) {
+  const TrialResult result = run(write_record(kGoodRecord) + "exit 1");
+  EXPECT_EQ(result.status, Status::kUnmet);
+  EXPECT_NE(result.reason, "");
+}
+
+TEST_F(TrialTest, FailingExitCodeKeepsWhatTheMesherSaid) {
+  const TrialResult result = run(write_record(kGoodRecord) + "echo 'podm: no foreground' >&2; exit 2");
+  EXPECT_EQ(result.status, Status::kFailed);
+  EXPECT_EQ(result.reason, "exit code 2");
+  EXPECT_EQ(result.stderr_tail, "podm: no foreground\n");
+  EXPECT_TRUE(result.record.is_null());
+}
+
+TEST_F(TrialTest, OnlyTheEndOfLongMessagesIsKept) {
+  const TrialResult result = run("i=0; while [ $i -lt 5000 ]; do echo line $i >&2; i=$((i+1)); done; exit 3");
+  EXPECT_LT(result.stderr_tail.size(), 10000u);
+  EXPECT_TRUE(result.stderr_tail.ends_with("line 4999\n"));
+}
+
+TEST_F(TrialTest, CrashNamesTheSignal) {
+  const TrialResult result = run("kill -ABRT $$");
+  EXPECT_EQ(result.status, Status::kFailed);
+  EXPECT_NE(result.reason.find("signal 6"), std::string::npos) << result.reason;
+}
+
+TEST_F(TrialTest, HangIsTimedOut) {
+  Trial trial = some_trial();
+  trial.timeout_s = 0.3;
+  const TrialResult result = run("sleep 30", trial);
+  EXPECT_EQ(result.status, Status::kTimedOut);
+  EXPECT_NE(result.reason, "");
+}
+
+TEST_F(TrialTest, MissingOrUnusableRecordFails) {
+  const std::string unusable[] = {
+      "",                                                    // no record
+      write_record("not JSON"),                              //
+      write_record(""),                                      //
+      write_record("[1,2]"),                                 //
+      write_record(kGoodRecord.substr(0, 40)),               // cut short
+      good_record_but(R"("schema":1)", R"("schema":999)"),   // of another time
+      good_record_but(R"("cells":1000)", R"("cells":"x")"),  //
+      good_record_but(R"("vertices":300,)", ""),             //
+      good_record_but(R"("read":0.5)", R"("read":"soon")"),  //
+      good_record_but(R"("refine_cells_per_second":1000.0)", R"("refine_cells_per_second":null)"),
+  };
+  for (const std::string& body : unusable) {
+    std::filesystem::remove(folder_ / "record.jsonl");
+    const TrialResult result = run(body);
+    EXPECT_EQ(result.status, Status::kFailed) << body;
+    EXPECT_NE(result.reason.find("record"), std::string::npos) << body;
+    EXPECT_TRUE(result.record.is_null()) << body;
+  }
+}
+
+TEST_F(TrialTest, MissingMesherFails) {
+  const TrialResult result = run_trial(some_trial(), folder_ / "absent", folder_.path());
+  EXPECT_EQ(result.status, Status::kFailed);
+  EXPECT_NE(result.reason.find(folder_ / "absent"), std::string::npos);
+}
+
+TEST_F(TrialTest, AbsentImageIsSkippedOnlyWhenItMayBeAbsent) {
+  Trial trial = some_trial();
+  trial.image = folder_ / "absent.nii";
+  trial.if_exists = true;
+  EXPECT_EQ(run(write_record(kGoodRecord), trial).status, Status::kSkipped);
+  trial.image = folder_.write("present.nii", "");
+  EXPECT_EQ(run(write_record(kGoodRecord), trial).status, Status::kOk);
+  trial.image = "phantom:abdomen";
+  EXPECT_EQ(run(write_record(kGoodRecord), trial).status, Status::kOk);
+}
+
+TEST_F(TrialTest, StopRequestInterrupts) {
+  const TrialResult result =
+      run_trial(some_trial(), fake_mesher(folder_, "sleep 30"), folder_.path(), [] { return true; });
+  EXPECT_EQ(result.status, Status::kInterrupted);
+}
+
+}  // namespace
+}  // namespace podm::bench

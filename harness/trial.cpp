@@ -1,0 +1,144 @@
+#include "trial.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <fstream>
+
+namespace podm::bench {
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+constexpr std::size_t kTailBytes = 2000;
+constexpr double kInfoTimeoutS = 120;
+constexpr int kExitUnmet = 1;
+
+std::vector<std::string> mesh_command(const Trial& trial, const std::string& podm,
+                                      const std::string& folder) {
+  std::vector<std::string> command{podm, "mesh", trial.image};
+  const auto add = [&](const char* option, const std::string& value) {
+    command.insert(command.end(), {option, value});
+  };
+  if (trial.radius_mm > 0) add("--radius", fmt::format("{}", trial.radius_mm));
+  if (trial.delta_mm > 0) add("--delta", fmt::format("{}", trial.delta_mm));
+  if (trial.target_elements > 0) add("--target-elements", fmt::format("{}", trial.target_elements));
+  add("--threads", fmt::format("{}", trial.threads));
+  add("-o", folder + "/mesh.vtu");
+  add("--record", folder + "/record.jsonl");
+  command.push_back("--quiet");
+  return command;
+}
+
+// The record names the image by path and hash; how many voxels it has is for memory per cell.
+Json read_image_size(const Trial& trial, const std::string& podm, const std::string& folder) {
+  const std::string path = folder + "/info.json";
+  const ProcessOutcome info = run_process({.arguments = {podm, "info", trial.image, "--json"},
+                                           .stdout_path = path,
+                                           .stderr_path = {},
+                                           .timeout_s = kInfoTimeoutS});
+  if (!info.succeeded()) return nullptr;  // meshing tells why
+  std::ifstream file(path);
+  const Json image = Json::parse(file, nullptr, false);
+  return image.is_object() ? image.value("size", Json()) : Json();
+}
+
+// Why `record` cannot be used; empty: it can. Asks only for what is read here and in the table.
+std::string fault_of(const Json& record) {
+  if (!record.is_object()) return "is not a JSON object";
+  if (record.value("schema", Json()) != kRecordSchema)
+    return fmt::format("is not of schema {}", kRecordSchema);
+  const auto at = [&](const char* key) { return record.value(key, Json()); };
+  const Json phases = at("phases_s");
+  if (!phases.is_object() ||
+      !std::all_of(phases.begin(), phases.end(), [](const Json& s) { return s.is_number(); }))
+    return "has no seconds by phase";
+  for (const char* count : {"cells", "vertices"})
+    if (!at(count).is_number_unsigned()) return fmt::format("has no count '{}'", count);
+  if (!at("refine_cells_per_second").is_number()) return "has no number 'refine_cells_per_second'";
+  if (!at("guarantees").is_object()) return "has no 'guarantees'";
+  if (!at("stop_reason").is_string()) return "has no 'stop_reason'";
+  return {};
+}
+
+// Guarantees by name with the number of their misses, e.g. "radius_edge 3, facet_angle 1".
+std::string unmet(const Json& record) {
+  std::string text;
+  for (const auto& [name, misses] : record["guarantees"].items())
+    if (misses != 0) text += fmt::format("{}{} {}", text.empty() ? "" : ", ", name, misses.dump());
+  if (record["stop_reason"] != "complete")
+    text += fmt::format("{}stopped: {}", text.empty() ? "" : ", ", record["stop_reason"].get<std::string>());
+  return text;
+}
+
+void judge(TrialResult& result, const std::string& record_path) {
+  using End = ProcessOutcome::End;
+  const ProcessOutcome& process = result.process;
+  result.reason = process.describe();
+  if (process.end == End::kTimedOut) result.status = Status::kTimedOut;
+  if (process.end == End::kInterrupted) result.status = Status::kInterrupted;
+  if (process.end != End::kExited || (process.exit_code != 0 && process.exit_code != kExitUnmet)) return;
+
+  std::ifstream file(record_path);
+  if (!file) {
+    result.reason += ", without a record";
+    return;
+  }
+  Json record = Json::parse(file, nullptr, false);
+  if (const std::string fault = fault_of(record); !fault.empty()) {
+    result.reason += ", with a record that " + fault;
+    return;
+  }
+  const std::string misses = unmet(record);
+  result.record = std::move(record);
+  if (process.exit_code == 0 && misses.empty()) {
+    result.status = Status::kOk;
+    result.reason.clear();
+    return;
+  }
+  result.status = Status::kUnmet;
+  if (!misses.empty()) result.reason = misses;
+}
+
+}  // namespace
+
+std::string to_string(Status status) {
+  switch (status) {
+    case Status::kOk:
+      return "ok";
+    case Status::kUnmet:
+      return "unmet";
+    case Status::kFailed:
+      return "failed";
+    case Status::kTimedOut:
+      return "timed_out";
+    case Status::kInterrupted:
+      return "interrupted";
+    case Status::kSkipped:
+      break;
+  }
+  return "skipped";
+}
+
+TrialResult run_trial(const Trial& trial, const std::string& podm, const std::string& scratch_folder,
+                      const StopQuery& stop_requested) {
+  TrialResult result;
+  if (trial.if_exists && !image_exists(trial)) {
+    result.status = Status::kSkipped;
+    result.reason = trial.image + " is not there";
+    return result;
+  }
+  result.image_size = read_image_size(trial, podm, scratch_folder);
+  result.command = mesh_command(trial, podm, scratch_folder);
+  const std::string stderr_path = scratch_folder + "/stderr.txt";
+  result.process = run_process({.arguments = result.command,
+                                .stdout_path = {},
+                                .stderr_path = stderr_path,
+                                .timeout_s = trial.timeout_s},
+                               stop_requested);
+  judge(result, scratch_folder + "/record.jsonl");
+  if (result.status != Status::kOk) result.stderr_tail = read_tail(stderr_path, kTailBytes);
+  return result;
+}
+
+}  // namespace podm::bench
