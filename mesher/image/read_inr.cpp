@@ -1,0 +1,116 @@
+// INRIMAGE-4: a text header padded to a multiple of 256 bytes, then the voxels.
+#include <algorithm>
+#include <bit>
+#include <charconv>
+#include <map>
+#include <sstream>
+
+#include "image/read_formats.h"
+
+namespace podm {
+
+namespace {
+
+constexpr std::size_t kHeaderUnit = 256;
+constexpr const char* kMagic = "#INRIMAGE-4#{";
+
+struct Header {
+  std::map<std::string, std::string> fields;
+  std::size_t size = 0;
+};
+
+Header parse_header(const std::string& path, const std::vector<unsigned char>& bytes) {
+  const std::string magic(kMagic);
+  if (bytes.size() < kHeaderUnit || !std::equal(magic.begin(), magic.end(), bytes.begin())) {
+    refuse(path, "not an INRIMAGE-4 file (wrong magic)");
+  }
+  constexpr std::size_t kLongestHeader = 256 * kHeaderUnit;
+  const std::string text(bytes.begin(),
+                         bytes.begin() + static_cast<std::ptrdiff_t>(std::min(bytes.size(), kLongestHeader)));
+  const std::size_t end = text.find("##}");
+  if (end == std::string::npos) refuse(path, "the INR header has no end");
+  Header header;
+  header.size = (end + 3 + kHeaderUnit - 1) / kHeaderUnit * kHeaderUnit;
+  std::istringstream lines(text.substr(magic.size(), end - magic.size()));
+  for (std::string line; std::getline(lines, line);) {
+    const std::size_t equals = line.find('=');
+    if (line.empty() || line[0] == '#' || equals == std::string::npos) continue;
+    std::string value = line.substr(equals + 1);
+    while (!value.empty() && (value.back() == '\r' || value.back() == ' ')) value.pop_back();
+    header.fields[line.substr(0, equals)] = value;
+  }
+  return header;
+}
+
+template <class Number>
+Number number(const std::string& path, const Header& header, const std::string& key, Number otherwise) {
+  const auto field = header.fields.find(key);
+  if (field == header.fields.end()) return otherwise;
+  Number value{};
+  const std::string& text = field->second;
+  const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
+  if (error != std::errc{}) refuse(path, "INR header: " + key + " is not a number ('" + text + "')");
+  return value;
+}
+
+VoxelType voxel_type(const std::string& path, const Header& header) {
+  const auto field = header.fields.find("TYPE");
+  const std::string type = field == header.fields.end() ? "" : field->second;
+  const int bits = number(path, header, "PIXSIZE", 0);
+  if (type == "unsigned fixed" && bits == 8) return VoxelType::kUint8;
+  if (type == "unsigned fixed" && bits == 16) return VoxelType::kUint16;
+  if (type == "unsigned fixed" && bits == 32) return VoxelType::kUint32;
+  if (type == "signed fixed" && bits == 8) return VoxelType::kInt8;
+  if (type == "signed fixed" && bits == 16) return VoxelType::kInt16;
+  if (type == "signed fixed" && bits == 32) return VoxelType::kInt32;
+  if (type == "float" && bits == 32) return VoxelType::kFloat;
+  if (type == "float" && bits == 64) return VoxelType::kDouble;
+  refuse(path, "INR header: unknown voxel type ('" + type + "', " + std::to_string(bits) + " bits)");
+}
+
+bool is_big_endian(const std::string& path, const Header& header) {
+  const auto field = header.fields.find("CPU");
+  if (field == header.fields.end()) refuse(path, "INR header: CPU is missing");
+  if (field->second == "sun" || field->second == "sgi") return true;
+  if (field->second == "decm" || field->second == "alpha" || field->second == "pc") return false;
+  refuse(path, "INR header: unknown CPU '" + field->second + "'");
+}
+
+void swap_bytes(std::vector<unsigned char>& bytes, std::size_t width) {
+  for (std::size_t i = 0; i + width <= bytes.size(); i += width) {
+    std::reverse(bytes.begin() + static_cast<std::ptrdiff_t>(i),
+                 bytes.begin() + static_cast<std::ptrdiff_t>(i + width));
+  }
+}
+
+}  // namespace
+
+RawImage read_inr(const std::string& path) {
+  static_assert(std::endian::native == std::endian::little);
+  std::vector<unsigned char> bytes = read_bytes(path);
+  const Header header = parse_header(path, bytes);
+  RawImage raw;
+  raw.path = path;
+  raw.size = {number(path, header, "XDIM", 0), number(path, header, "YDIM", 0),
+              number(path, header, "ZDIM", 0)};
+  if (number(path, header, "VDIM", 1) != 1) refuse(path, "one value a voxel is needed (VDIM is not 1)");
+  raw.type = voxel_type(path, header);
+  const std::size_t needed = checked_num_voxels(path, raw.size) * bytes_of(raw.type);
+  if (bytes.size() - std::min(bytes.size(), header.size) < needed) {
+    refuse(path, "truncated: the header announces " + std::to_string(needed) + " bytes of voxels");
+  }
+  bytes.erase(bytes.begin(), bytes.begin() + static_cast<std::ptrdiff_t>(header.size));
+  bytes.resize(needed);
+  if (is_big_endian(path, header)) swap_bytes(bytes, bytes_of(raw.type));
+  raw.bytes = std::move(bytes);
+  const std::array<const char*, 3> spacing{"VX", "VY", "VZ"}, offset{"TX", "TY", "TZ"};
+  for (std::size_t axis = 0; axis < 3; ++axis) {
+    const double s = number(path, header, spacing[axis], 1.0);
+    if (!(s > 0)) refuse(path, std::string("INR header: ") + spacing[axis] + " is not positive");
+    raw.voxel_to_ras[5 * axis] = s;
+    raw.voxel_to_ras[4 * axis + 3] = number(path, header, offset[axis], 0.0);
+  }
+  return raw;
+}
+
+}  // namespace podm
