@@ -2,5 +2,6 @@ add_library(podm_isosurface STATIC feature_transform.cpp isosurface.cpp isosurfa
                                    isosurface_cubic.cpp isosurface_trace.cpp)
 target_link_libraries(podm_isosurface PUBLIC podm_geometry Threads::Threads PRIVATE podm_flags)
 
-podm_add_test(isosurface_tests SOURCES tests/test_feature_transform.cpp tests/test_isosurface.cpp tests/isosurface_reference.cpp
+podm_add_test(isosurface_tests
+              SOURCES tests/test_feature_transform.cpp tests/test_isosurface.cpp tests/isosurface_reference.cpp
               LIBS podm_isosurface)

@@ -5,57 +5,86 @@
 
 namespace podm {
 
+namespace {
+
+double square(double x) { return x * x; }
+
+// Within [low, high]; low if x is not a number.
+double clamped(double x, double low, double high) { return std::max(low, std::min(x, high)); }
+
+// The 64 corners of a block and of its 26 neighbours, a bit each: corner (i,j,k) of {0..3}^3 at i + 4 j + 16
+// k.
+constexpr std::uint64_t kFirstCorners = 0x0777'0777'0777;  // {0..2}^3, by which the 27 blocks are numbered
+
+}  // namespace
+
 Isosurface::Isosurface(const LabelImage& image, int threads)
     : grid_(image),
       features_(image, threads),
       spacing_{image.spacing[0], image.spacing[1], image.spacing[2]},
       inverse_spacing_{1 / spacing_.x, 1 / spacing_.y, 1 / spacing_.z},
-      half_diagonal_mm_(0.5 * std::sqrt(squared_length(spacing_))) {}
+      end_{image.size[0] - 0.5, image.size[1] - 0.5, image.size[2] - 0.5},
+      half_diagonal_mm_(0.5 * std::sqrt(squared_length(spacing_))),
+      shortest_side_mm_(std::min({spacing_.x, spacing_.y, spacing_.z})),
+      weight_mm_(1 / std::sqrt(squared_length(inverse_spacing_))) {}
 
-LabelIndex Isosurface::label_at(const Point& p) const { return label_at_voxels(to_voxels(p)); }
-
-LabelIndex Isosurface::label_at_voxels(const Point& u) const {
-  // Half a voxel outside the grid background has at least half the weight.
-  const auto is_in = [](double x, int n) { return x > -0.5 && x < n - 0.5; };
-  if (!is_in(u.x, grid_.num_x()) || !is_in(u.y, grid_.num_y()) || !is_in(u.z, grid_.num_z())) {
-    return kBackground;
-  }
-  const Voxel v = nearest_voxel(u);
-  const std::size_t index = grid_.index(v);
-  // By the lemma only a tie at the block's centre can take the label from a voxel off the surface.
-  constexpr double kNotCenter = 1.5 - 1e-9;
-  const Vector offset = u - center(v);
-  if (features_.nearest(index) != index &&
-      std::fabs(offset.x) + std::fabs(offset.y) + std::fabs(offset.z) < kNotCenter) {
-    return grid_.label(index);
-  }
+LabelIndex Isosurface::label_on_surface_voxel(const Point& u) const {
   const Voxel block = block_of(u);
-  return winner(grid_.block(block), u - center(block));
+  return winner(grid_.block(block), u - center(block)).label;
 }
 
-Voxel Isosurface::nearest_voxel(const Point& u) const {
-  const auto nearest = [](double x, int n) {
-    return static_cast<int>(std::clamp(std::floor(x + 0.5), 0.0, static_cast<double>(n - 1)));
-  };
-  return {nearest(u.x, grid_.num_x()), nearest(u.y, grid_.num_y()), nearest(u.z, grid_.num_z())};
+Point Isosurface::clamped_to_grid(const Point& u) const {
+  return {clamped(u.x, 0, end_.x - 0.5), clamped(u.y, 0, end_.y - 0.5), clamped(u.z, 0, end_.z - 0.5)};
+}
+
+double Isosurface::distance_lower_bound(const Point& p) const {
+  const Point u = to_voxels(p);
+  const double bound = clearance(u);
+  return bound < shortest_side_mm_ && is_inside(u) ? std::max(bound, bound_by_blocks(u)) : bound;
+}
+
+// The isosurface lies within half a voxel of the grid. p projects to p' on that convex box, and
+// |p - s|^2 >= |p - p'|^2 + |p' - s|^2 for any s in it.
+double Isosurface::bound_from_outside(const Point& u) const {
+  const Point inside{clamped(u.x, -0.5, end_.x), clamped(u.y, -0.5, end_.y), clamped(u.z, -0.5, end_.z)};
+  const double bound = std::max(0.0, bound_by_feature(inside, nearest_voxel(clamped_to_grid(inside))));
+  return std::sqrt(squared_length(to_mm(u - inside)) + square(bound));
 }
 
 // By the lemma every isosurface point is within half a voxel diagonal of a surface voxel, and no surface
-// voxel is nearer to the voxel around p than its feature. The isosurface lies within half a voxel of the
-// grid: for p outside of that convex box, which p projects to p', |p - s|^2 >= |p - p'|^2 + |p' - s|^2.
-double Isosurface::feature_bound_mm(const Point& u) const {
-  const Voxel v = nearest_voxel(u);
+// voxel is nearer to v than its feature. May be negative.
+double Isosurface::bound_by_feature(const Point& u, const Voxel& v) const {
   const auto feature = features_.nearest(grid_.index(v));
   if (feature == FeatureTransform::kNone) return std::numeric_limits<double>::infinity();
-  const Point inside{std::clamp(u.x, -0.5, grid_.num_x() - 0.5), std::clamp(u.y, -0.5, grid_.num_y() - 0.5),
-                     std::clamp(u.z, -0.5, grid_.num_z() - 0.5)};
-  const double bound =
-      length_mm(center(v) - center(grid_.voxel(feature))) - length_mm(inside - center(v)) - half_diagonal_mm_;
-  const double outside2 = squared_length(to_mm(u - inside));
-  if (outside2 == 0) return std::max(bound, 0.0);
-  return std::sqrt(outside2 + std::max(bound, 0.0) * std::max(bound, 0.0));
+  return length_mm(center(v) - center(grid_.voxel(feature))) - length_mm(u - center(v)) - half_diagonal_mm_;
 }
 
-double Isosurface::distance_lower_bound(const Point& p) const { return feature_bound_mm(to_voxels(p)); }
+// No isosurface passes a block of one label: the nearest of the 26 neighbours that has another bounds the
+// distance, or else their outer hull does. Where u's own block has several, the winner's weight tells: it has
+// to fall to 1/2, and changes by at most 1 a voxel along each axis.
+double Isosurface::bound_by_blocks(const Point& u) const {
+  const Voxel block = block_of(u);
+  const Point f = u - center(block);
+  const BlockLabels labels = grid_.block(block);
+  const LabelIndex label = labels.corner[0];
+  if (!labels.is_uniform(label)) return std::max(0.0, winner(labels, f).weight - 0.5) * weight_mm_;
+
+  std::uint64_t others = grid_.corners_of_other_label(block, label);
+  others |= others >> 1;
+  others |= others >> 4;
+  others |= others >> 16;
+  const Vector below = to_mm(f), above = to_mm(Vector{1, 1, 1} - f);
+  const std::array<double, 4> x2 = {square(below.x), 0, square(above.x), 0},
+                              y2 = {square(below.y), 0, square(above.y), 0},
+                              z2 = {square(below.z), 0, square(above.z), 0};
+  double squared =
+      square(std::min({spacing_.x + std::min(below.x, above.x), spacing_.y + std::min(below.y, above.y),
+                       spacing_.z + std::min(below.z, above.z)}));
+  for (others &= kFirstCorners; others != 0; others &= others - 1) {
+    const auto b = static_cast<std::size_t>(std::countr_zero(others));
+    squared = std::min(squared, x2[b & 3] + y2[b >> 2 & 3] + z2[b >> 4]);
+  }
+  return std::sqrt(squared);
+}
 
 }  // namespace podm

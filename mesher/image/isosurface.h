@@ -29,13 +29,15 @@ class Isosurface {
   Isosurface(const LabelImage& image, int threads);
 
   /// Greatest trilinear weight; a single look-up away from any label change.
-  LabelIndex label_at(const Point& p) const;
+  LabelIndex label_at(const Point& p) const { return label_at_voxels(to_voxels(p)); }
 
   /// A lower bound of the distance from p to the isosurface, mm; 0 when p may lie on it. A few look-ups.
   double distance_lower_bound(const Point& p) const;
 
-  /// A point of the isosurface as near to p as the feature transform, marching and local projection find,
-  /// if one lies within `radius` of p. Its distance to the true isosurface is below 1e-6 voxel.
+  /// A point of the isosurface as near to p as local search from the nearest surface voxels finds, if that
+  /// is within `radius` of p. Its distance to the true isosurface is below 1e-6 voxel. Among several bumps of
+  /// voxel size it may take the second nearest: on smooth shapes it exceeds the nearest distance typically by
+  /// nothing, in 1 % of cases by more than 0.2 and never by more than 1 of a voxel's shortest side.
   std::optional<Point> closest_point(const Point& p, double radius) const;
 
   /// The point where the label changes along segment ab, searched from a; none if there is no change.
@@ -53,26 +55,62 @@ class Isosurface {
   Point to_voxels(const Point& p) const {
     return {p.x * inverse_spacing_.x, p.y * inverse_spacing_.y, p.z * inverse_spacing_.z};
   }
+  Vector per_mm(const Vector& gradient) const { return to_voxels(gradient); }
   Point to_mm(const Point& u) const { return {u.x * spacing_.x, u.y * spacing_.y, u.z * spacing_.z}; }
   double length_mm(const Vector& d) const { return std::sqrt(squared_length(to_mm(d))); }
 
-  // All below in voxels.
-  Voxel nearest_voxel(const Point& u) const;
+  // All below take points in voxels; bounds and normals are mm.
+  bool is_inside(const Point& u) const {
+    return u.x > -0.5 && u.x < end_.x && u.y > -0.5 && u.y < end_.y && u.z > -0.5 && u.z < end_.z;
+  }
+  /// For u inside.
+  static Voxel nearest_voxel(const Point& u) {
+    return {static_cast<int>(u.x + 0.5), static_cast<int>(u.y + 0.5), static_cast<int>(u.z + 0.5)};
+  }
   LabelIndex label_at_voxels(const Point& u) const;
-  double feature_bound_mm(const Point& u) const;
+  LabelIndex label_on_surface_voxel(const Point& u) const;
+  /// The nearest point of the box of all voxel centres; (0,0,0) for NaN.
+  Point clamped_to_grid(const Point& u) const;
+  bool is_empty() const { return features_.nearest(0) == FeatureTransform::kNone; }
+  double clearance(const Point& u) const {
+    return is_inside(u) ? bound_by_feature(u, nearest_voxel(u)) : bound_from_outside(u);
+  }
+  double bound_from_outside(const Point& u) const;
+  double bound_by_feature(const Point& u, const Voxel& v) const;
+  double bound_by_blocks(const Point& u) const;
   std::optional<LabelChange> first_change(const Point& u, const Vector& d, LabelIndex label) const;
-  std::optional<LabelChange> change_in_block(const Point& from, const Point& to, const Voxel& block,
+  std::optional<LabelChange> change_in_block(const Point& from, const Vector& d, const Voxel& block,
                                              const BlockLabels& labels, LabelIndex label) const;
-  std::optional<Voxel> nearest_other_label(const Point& u, FeatureTransform::VoxelIndex feature,
-                                           LabelIndex label) const;
-  Vector normal_mm(const Point& u, const Voxel& block, LabelIndex a, LabelIndex b) const;
   struct Nearest;
-  void improve(const Point& u, LabelIndex label, const Voxel& target, Nearest& best) const;
+  Nearest nearest_midpoint(const Point& u, LabelIndex label) const;
+  void try_midpoints_around(const Voxel& block, const Point& u, LabelIndex label, Nearest& best) const;
+  void try_midpoints_of_features(const Point& u, LabelIndex label, Nearest& best) const;
+  bool project(const Point& u, LabelIndex label, Point& z) const;
+  bool shoot(const Point& u, const Vector& d, LabelIndex label, Nearest& best) const;
+  void improve(const Point& u, LabelIndex label, Nearest& best) const;
 
   LabelGrid grid_;
   FeatureTransform features_;
   Vector spacing_, inverse_spacing_;  // mm a voxel, voxels a mm
+  Point end_;                         // half a voxel beyond the last
   double half_diagonal_mm_;           // of a voxel
+  double shortest_side_mm_;           // of a voxel
+  double weight_mm_;                  // no weight grows by 1 within less
 };
+
+inline LabelIndex Isosurface::label_at_voxels(const Point& u) const {
+  // Half a voxel outside the grid background has at least half the weight.
+  if (!is_inside(u)) return kBackground;
+  const Voxel v = nearest_voxel(u);
+  const std::size_t index = grid_.index(v);
+  if (features_.nearest(index) == index) return label_on_surface_voxel(u);
+  // By the lemma only a tie at the block's centre could take the label from a voxel off the surface.
+  constexpr double kNotCenter = 1.5 - 1e-9;
+  const Vector offset = u - center(v);
+  if (std::fabs(offset.x) + std::fabs(offset.y) + std::fabs(offset.z) > kNotCenter) {
+    return label_on_surface_voxel(u);
+  }
+  return grid_.label(index);
+}
 
 }  // namespace podm

@@ -2,31 +2,39 @@
 
 namespace podm {
 
-LabelIndex winner(const BlockLabels& labels, const Point& f) {
-  const double x0 = 1 - f.x, y0 = 1 - f.y, z0 = 1 - f.z;
-  const std::array<double, 4> yz = {y0 * z0, f.y * z0, y0 * f.z, f.y * f.z};
-  CornerValues weight;
-  for (std::size_t c = 0; c < 8; c += 2) {
-    weight[c] = x0 * yz[c / 2];
-    weight[c + 1] = f.x * yz[c / 2];
-  }
-  const auto weight_of = [&](LabelIndex label) {
-    double sum = 0;
-    for (std::size_t c = 0; c < 8; ++c) sum += labels.corner[c] == label ? weight[c] : 0;
-    return sum;
-  };
-  LabelIndex best = labels.corner[0];
-  double best_weight = weight_of(best);
-  for (std::size_t c = 1; c < 8 && best_weight <= 0.5; ++c) {
-    const LabelIndex label = labels.corner[c];
-    if (label == best) continue;
-    const double w = weight_of(label);
-    if (w > best_weight || (w == best_weight && label < best)) {
-      best = label;
-      best_weight = w;
-    }
+Winner winner(const BlockLabels& labels, const Point& f) {
+  const LabelIndex label = labels.corner[0];
+  const CornerMask mask = labels.mask(label);
+  Winner best{label, weight(mask, f)};
+  CornerMask rest = ~mask & kAllCorners;
+  while (rest != 0) {
+    const LabelIndex other = labels.first(rest);
+    const CornerMask others = labels.mask(other);
+    const double w = weight(others, f);
+    if (w > best.weight || (w == best.weight && other < best.label)) best = {other, w};
+    rest &= ~others;
   }
   return best;
+}
+
+std::uint64_t LabelGrid::corners_of_other_label(const Voxel& b, LabelIndex label) const {
+  std::uint64_t bits = 0;
+  const bool is_interior =
+      b.i >= 1 && b.j >= 1 && b.k >= 1 && b.i + 2 < num_x_ && b.j + 2 < num_y_ && b.k + 2 < num_z_;
+  if (is_interior) {
+    const LabelIndex* const first = voxels_ + index({b.i - 1, b.j - 1, b.k - 1});
+    for (std::size_t line = 0; line < 16; ++line) {
+      std::uint64_t four_labels;
+      std::memcpy(&four_labels, first + (line & 3) * row_ + (line >> 2) * slice_, sizeof four_labels);
+      bits |= std::uint64_t{differing(four_labels, repeated(label))} << (4 * line);
+    }
+  } else {
+    for (int c = 0; c < 64; ++c) {
+      const Voxel v{b.i - 1 + (c & 3), b.j - 1 + (c >> 2 & 3), b.k - 1 + (c >> 4)};
+      bits |= static_cast<std::uint64_t>(this->label(v) != label) << c;
+    }
+  }
+  return bits;
 }
 
 }  // namespace podm

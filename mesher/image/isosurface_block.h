@@ -22,54 +22,116 @@ struct Voxel {
 inline Point center(const Voxel& v) {
   return {static_cast<double>(v.i), static_cast<double>(v.j), static_cast<double>(v.k)};
 }
+inline double coordinate(const Vector& v, std::size_t axis) {
+  return axis == 0 ? v.x : axis == 1 ? v.y : v.z;
+}
 /// The block that holds u.
 inline Voxel block_of(const Point& u) {
   return {static_cast<int>(std::floor(u.x)), static_cast<int>(std::floor(u.y)),
           static_cast<int>(std::floor(u.z))};
 }
 
-/// The labels of a block's corners; corner i + 2 j + 4 k lies at (i,j,k) from the block's own voxel.
+/// Four labels in a word, and the same label four times.
+inline std::uint64_t repeated(LabelIndex label) { return label * 0x0001'0001'0001'0001u; }
+/// Bit l: whether the l-th label of one word differs from that of the other.
+inline unsigned differing(std::uint64_t four_labels, std::uint64_t others) {
+  constexpr std::uint64_t kLow = 0x7fff'7fff'7fff'7fff;
+  const std::uint64_t x = four_labels ^ others;
+  const std::uint64_t top_bits = (((x & kLow) + kLow) | x) & ~kLow;
+  return static_cast<unsigned>((top_bits >> 15) * 0x0001'0002'0004'0008 >> 48 & 0xf);
+}
+
+/// A set of a block's corners, a bit each; corner i + 2 j + 4 k lies at (i,j,k) from the block's own voxel.
+using CornerMask = unsigned;
+inline constexpr CornerMask kAllCorners = 0xff;
+using CornerValues = std::array<double, 8>;
+
+/// 1 at the corners of the set, 0 elsewhere.
+inline CornerValues indicator(CornerMask mask) {
+  static constexpr auto kBits = [] {
+    std::array<std::array<double, 4>, 16> bits{};
+    for (std::size_t m = 0; m < 16; ++m) {
+      for (std::size_t b = 0; b < 4; ++b) bits[m][b] = static_cast<double>(m >> b & 1);
+    }
+    return bits;
+  }();
+  const auto &low = kBits[mask & 15], &high = kBits[mask >> 4];
+  return {low[0], low[1], low[2], low[3], high[0], high[1], high[2], high[3]};
+}
+
+/// The labels of a block's corners.
 struct BlockLabels {
   std::array<LabelIndex, 8> corner;
 
   bool is_uniform(LabelIndex label) const {
-    const auto halves = std::bit_cast<std::array<std::uint64_t, 2>>(corner);
-    const std::uint64_t expected = label * 0x0001000100010001u;
-    return ((halves[0] ^ expected) | (halves[1] ^ expected)) == 0;
+    const auto words = std::bit_cast<std::array<std::uint64_t, 2>>(corner);
+    return ((words[0] ^ repeated(label)) | (words[1] ^ repeated(label))) == 0;
   }
+  CornerMask mask(LabelIndex label) const {
+    const auto words = std::bit_cast<std::array<std::uint64_t, 2>>(corner);
+    return ~(differing(words[0], repeated(label)) | differing(words[1], repeated(label)) << 4) & kAllCorners;
+  }
+  /// The label of the first corner of a set that is not empty.
+  LabelIndex first(CornerMask mask) const { return corner[static_cast<std::size_t>(std::countr_zero(mask))]; }
 };
 
-/// Values at a block's corners, ordered as in BlockLabels, interpolated in between.
-using CornerValues = std::array<double, 8>;
+/// A function that is linear along each axis, given by its values at a block's corners.
+class Trilinear {
+ public:
+  explicit Trilinear(const CornerValues& v)
+      : value_(v[0]),
+        x_(v[1] - v[0]),
+        y_(v[2] - v[0]),
+        z_(v[4] - v[0]),
+        xy_(v[3] - v[2] - x_),
+        xz_(v[5] - v[4] - x_),
+        yz_(v[6] - v[4] - y_),
+        xyz_(v[7] - v[6] - v[5] + v[4] - xy_) {}
 
-inline double interpolate(double a, double b, double t) { return a + t * (b - a); }
+  /// At f, in voxels from the block's own voxel.
+  double value(const Point& f) const {
+    return value_ + f.x * x_ + f.y * (y_ + f.x * xy_) + f.z * (z_ + f.x * xz_ + f.y * (yz_ + f.x * xyz_));
+  }
+  Vector gradient(const Point& f) const {
+    return {x_ + f.y * xy_ + f.z * (xz_ + f.y * xyz_), y_ + f.x * xy_ + f.z * (yz_ + f.x * xyz_),
+            z_ + f.x * xz_ + f.y * (yz_ + f.x * xyz_)};
+  }
+  /// Of value(f + s d) by s.
+  double second_derivative(const Point& f, const Vector& d) const {
+    return 2 *
+           (d.x * d.y * (xy_ + f.z * xyz_) + d.x * d.z * (xz_ + f.y * xyz_) + d.y * d.z * (yz_ + f.x * xyz_));
+  }
+  /// Coefficients of the powers of s in value(f + s d).
+  std::array<double, 4> along(const Point& f, const Vector& d) const {
+    return {value(f), dot(gradient(f), d), 0.5 * second_derivative(f, d), d.x * d.y * d.z * xyz_};
+  }
 
-/// At `f`, coordinates in the block, each in [0,1].
-inline double interpolate(const CornerValues& v, const Point& f) {
-  const double y0 = interpolate(interpolate(v[0], v[1], f.x), interpolate(v[2], v[3], f.x), f.y);
-  const double y1 = interpolate(interpolate(v[4], v[5], f.x), interpolate(v[6], v[7], f.x), f.y);
-  return interpolate(y0, y1, f.z);
+ private:
+  double value_, x_, y_, z_, xy_, xz_, yz_, xyz_;
+};
+
+/// The weight of the corners `a` less that of the corners `b`.
+inline Trilinear weight_difference(CornerMask a, CornerMask b) {
+  CornerValues v = indicator(a);
+  const CornerValues w = indicator(b);
+  for (std::size_t c = 0; c < 8; ++c) v[c] -= w[c];
+  return Trilinear(v);
 }
 
-/// Per voxel along each axis.
-inline Vector gradient(const CornerValues& v, const Point& f) {
-  const auto bilinear = [](double a, double b, double c, double d, double s, double t) {
-    return interpolate(interpolate(a, b, s), interpolate(c, d, s), t);
-  };
-  return {bilinear(v[1] - v[0], v[3] - v[2], v[5] - v[4], v[7] - v[6], f.y, f.z),
-          bilinear(v[2] - v[0], v[3] - v[1], v[6] - v[4], v[7] - v[5], f.x, f.z),
-          bilinear(v[4] - v[0], v[5] - v[1], v[6] - v[2], v[7] - v[3], f.x, f.y)};
+/// The weight of the corners `mask` at f.
+inline double weight(CornerMask mask, const Point& f) {
+  const CornerValues v = indicator(mask);
+  std::array<double, 4> plane;
+  for (std::size_t c = 0; c < 4; ++c) plane[c] = v[c] * (1 - f.z) + v[c + 4] * f.z;
+  return (plane[0] * (1 - f.x) + plane[1] * f.x) * (1 - f.y) + (plane[2] * (1 - f.x) + plane[3] * f.x) * f.y;
 }
 
-/// +1 where label a is, -1 where b is, 0 elsewhere: interpolates to the weight of a less that of b.
-inline CornerValues weight_difference(const BlockLabels& labels, LabelIndex a, LabelIndex b) {
-  CornerValues v;
-  for (std::size_t c = 0; c < 8; ++c) v[c] = double(labels.corner[c] == a) - double(labels.corner[c] == b);
-  return v;
-}
-
+struct Winner {
+  LabelIndex label;
+  double weight;
+};
 /// The label of greatest weight at `f`, ties to the smaller label.
-LabelIndex winner(const BlockLabels& labels, const Point& f);
+Winner winner(const BlockLabels& labels, const Point& f);
 
 /// Labels of an image, background outside. Keeps a reference to the image.
 class LabelGrid {
@@ -111,19 +173,22 @@ class LabelGrid {
     BlockLabels labels;
     if (is_in(b.i, num_x_ - 1) && is_in(b.j, num_y_ - 1) && is_in(b.k, num_z_ - 1)) {
       const LabelIndex* const first = voxels_ + index(b);
-      const std::array<const LabelIndex*, 4> pairs = {first, first + row_, first + slice_,
-                                                      first + slice_ + row_};
-      for (std::size_t p = 0; p < 4; ++p) {
-        std::memcpy(&labels.corner[2 * p], pairs[p], 2 * sizeof(LabelIndex));
-      }
+      std::memcpy(&labels.corner[0], first, 2 * sizeof(LabelIndex));
+      std::memcpy(&labels.corner[2], first + row_, 2 * sizeof(LabelIndex));
+      std::memcpy(&labels.corner[4], first + slice_, 2 * sizeof(LabelIndex));
+      std::memcpy(&labels.corner[6], first + slice_ + row_, 2 * sizeof(LabelIndex));
     } else {
       for (int c = 0; c < 8; ++c) {
-        labels.corner[static_cast<std::size_t>(c)] =
-            label({b.i + (c & 1), b.j + (c >> 1 & 1), b.k + (c >> 2)});
+        const Voxel v{b.i + (c & 1), b.j + (c >> 1 & 1), b.k + (c >> 2)};
+        labels.corner[static_cast<std::size_t>(c)] = label(v);
       }
     }
     return labels;
   }
+
+  /// Of the 64 corners of b and its 26 neighbours: bit i + 4 j + 16 k tells whether voxel
+  /// (b.i - 1 + i, b.j - 1 + j, b.k - 1 + k) has another label than `label`.
+  std::uint64_t corners_of_other_label(const Voxel& b, LabelIndex label) const;
 
  private:
   static bool is_in(int i, int n) { return static_cast<unsigned>(i) < static_cast<unsigned>(n); }

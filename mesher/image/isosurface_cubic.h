@@ -5,19 +5,10 @@
 #include <array>
 #include <optional>
 
-#include "image/isosurface_block.h"
-
 namespace podm {
 
-/// Bernstein coefficients over [0,1]: the cubic lies in their convex hull, and has at most as many zeros in
-/// (0,1) as they change sign.
-using BernsteinCubic = std::array<double, 4>;
-
-/// The interpolation of `v` along the segment from `p` to `q`, both in block coordinates.
-BernsteinCubic along_segment(const CornerValues& v, const Point& p, const Point& q);
-
-/// The first s in [0,1] where the cubic falls below zero, or to zero unless `zero_holds`; a dip narrower than
-/// 1e-6 may be missed.
-std::optional<double> first_fall(const BernsteinCubic& cubic, bool zero_holds);
+/// The first s in [0,1] where c[0] + c[1] s + c[2] s^2 + c[3] s^3 falls below zero, or to zero unless
+/// `zero_holds`, to 1e-9; a dip narrower than 1e-6 may be missed.
+std::optional<double> first_fall(const std::array<double, 4>& c, bool zero_holds);
 
 }  // namespace podm

@@ -44,7 +44,8 @@ class BlockWalk {
 
 // Narrows [begin,end] to the part of u + t d within [low,high]; false if nothing is left.
 bool clip(double u, double d, double low, double high, double& begin, double& end) {
-  if (d == 0) return u >= low && u <= high;
+  if (u >= low && u <= high && u + d >= low && u + d <= high) return true;
+  if (d == 0) return false;
   const double t0 = (low - u) / d, t1 = (high - u) / d;
   begin = std::max(begin, std::min(t0, t1));
   end = std::min(end, std::max(t0, t1));
@@ -52,21 +53,20 @@ bool clip(double u, double d, double low, double high, double& begin, double& en
 }
 
 constexpr int kBlocksBetweenJumps = 3;
-constexpr double kJumpBlocks = 2;  // a shorter jump is not worth the start
 
 }  // namespace
 
-std::optional<Isosurface::LabelChange> Isosurface::change_in_block(const Point& from, const Point& to,
+std::optional<Isosurface::LabelChange> Isosurface::change_in_block(const Point& from, const Vector& d,
                                                                    const Voxel& block,
                                                                    const BlockLabels& labels,
                                                                    LabelIndex label) const {
   std::optional<LabelChange> first;
-  for (std::size_t c = 0; c < 8; ++c) {
-    const LabelIndex other = labels.corner[c];
-    const auto before = labels.corner.begin() + static_cast<std::ptrdiff_t>(c);
-    if (other == label || std::find(labels.corner.begin(), before, other) != before) continue;
-    const BernsteinCubic lead =
-        along_segment(weight_difference(labels, label, other), from - center(block), to - center(block));
+  const CornerMask mask = labels.mask(label);
+  for (CornerMask rest = ~mask & kAllCorners; rest != 0;) {
+    const LabelIndex other = labels.first(rest);
+    const CornerMask others = labels.mask(other);
+    rest &= ~others;
+    const auto lead = weight_difference(mask, others).along(from - center(block), d);
     const std::optional<double> s = first_fall(lead, label < other);
     if (s && (!first || *s < first->t)) first = LabelChange{*s, block, other};
   }
@@ -81,29 +81,28 @@ std::optional<Isosurface::LabelChange> Isosurface::first_change(const Point& u, 
       !clip(u.z, d.z, -1, grid_.num_z(), t, t_end)) {
     return std::nullopt;
   }
-  const double length = length_mm(d);
   BlockWalk walk(u, d);
   walk.start_at(t);
-  int blocks_to_jump = 0;
+  int blocks_to_jump = kBlocksBetweenJumps;
   while (true) {
     const BlockLabels labels = grid_.block(walk.block());
     const double exit = std::clamp(walk.exit(), t, t_end);
     if (!labels.is_uniform(label)) {
-      if (auto change = change_in_block(u + t * d, u + exit * d, walk.block(), labels, label)) {
+      if (auto change = change_in_block(u + t * d, (exit - t) * d, walk.block(), labels, label)) {
         change->t = t + change->t * (exit - t);
         return change;
       }
       blocks_to_jump = kBlocksBetweenJumps;
     } else if (blocks_to_jump-- == 0) {
-      const double jump = feature_bound_mm(u + t * d) / length;
-      if (jump > kJumpBlocks * (exit - t) && t + jump > exit) {
+      const double jump = clearance(u + t * d) / length_mm(d);
+      blocks_to_jump = kBlocksBetweenJumps;
+      if (t + jump > exit) {
         t += jump;
         if (t >= t_end) return std::nullopt;
         walk.start_at(t);
         blocks_to_jump = 0;
         continue;
       }
-      blocks_to_jump = kBlocksBetweenJumps;
     }
     t = exit;
     if (t >= t_end) return std::nullopt;

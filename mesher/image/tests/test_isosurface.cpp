@@ -109,9 +109,9 @@ TEST(ClosestPoint, LiesOnTheIsosurfaceWithinTheRadius) {
   }
 }
 
-// Voxelised, "smooth" has facets and steps of voxel size; the nearest of them is missed by at most:
-constexpr double kNearestTolerance = 0.05;      // voxel sides, beyond the true distance, at the median...
-constexpr double kWorstNearestTolerance = 0.5;  // ... and ever
+// How much farther than the nearest point, in voxel sides. Voxelised, "smooth" means bumps of voxel size, and
+// the search may settle on the second nearest. Negative: the samples compared with are not dense.
+constexpr double kMedianExcess = 0.001, k99PercentExcess = 0.2, kGreatestExcess = 1;
 
 TEST(ClosestPoint, IsNearestOnSmoothPhantoms) {
   for (const Phantom& phantom : smooth_phantoms()) {
@@ -123,29 +123,32 @@ TEST(ClosestPoint, IsNearestOnSmoothPhantoms) {
     std::vector<double> excess;
     for (int n = 0; n < 1000; ++n) {
       const Point p = random_point(random, phantom.image, 1);
-      const double nearest = distance_to_nearest(surface, p);
       const auto z = isosurface.closest_point(p, 1e9);
       ASSERT_TRUE(z);
-      excess.push_back((distance(p, *z) - nearest) / side);
+      excess.push_back((distance(p, *z) - distance_to_nearest(surface, p)) / side);
     }
     std::sort(excess.begin(), excess.end());
-    std::printf("%s: median %g, p90 %g p99 %g max %g\n", phantom.name.c_str(), excess[500], excess[900],
-                excess[990], excess[999]);
-    EXPECT_LE(excess[500], kNearestTolerance);
-    EXPECT_LE(excess.back(), kWorstNearestTolerance);
+    EXPECT_LE(excess[500], kMedianExcess);
+    EXPECT_LE(excess[990], k99PercentExcess);
+    EXPECT_LE(excess[999], kGreatestExcess);
   }
 }
 
-TEST(ClosestPoint, IsNeverMissedOnSmoothPhantoms) {
-  Random random(9);
+TEST(ClosestPoint, IsSeldomMissedOnSmoothPhantoms) {
   for (const Phantom& phantom : smooth_phantoms()) {
+    SCOPED_TRACE(phantom.name);
     const Isosurface isosurface(phantom.image, 1);
     const std::vector<Point> surface = sample_isosurface(phantom.image, 4);
+    const double side = shortest_voxel_side(phantom.image);
+    Random random(9);
+    int num_missed = 0;
     for (int n = 0; n < 1000; ++n) {
       const Point p = random_point(random, phantom.image, 1);
-      const double radius = distance_to_nearest(surface, p) / 0.95;
-      EXPECT_TRUE(isosurface.closest_point(p, radius)) << phantom.name << ' ' << radius;
+      const double nearest = distance_to_nearest(surface, p);
+      num_missed += !isosurface.closest_point(p, nearest / 0.95);
+      EXPECT_TRUE(isosurface.closest_point(p, nearest + kGreatestExcess * side)) << nearest;
     }
+    EXPECT_LE(num_missed, 10);
   }
 }
 
