@@ -1,38 +1,34 @@
-// An image as its file stores it, and how it becomes a LabelImage.
+// An image as its file stores it, and the checks every reader shares.
 #pragma once
 
 #include <array>
 #include <cstddef>
-#include <cstdint>
 #include <string>
-#include <variant>
 #include <vector>
-
-#include "podm/label_image.h"
 
 namespace podm {
 
-/// Voxels in the type of the file, x fastest.
-using RawVoxels =
-    std::variant<std::vector<std::uint8_t>, std::vector<std::int8_t>, std::vector<std::uint16_t>,
-                 std::vector<std::int16_t>, std::vector<std::uint32_t>, std::vector<std::int32_t>,
-                 std::vector<std::uint64_t>, std::vector<std::int64_t>, std::vector<float>,
-                 std::vector<double>>;
+enum class VoxelType { kUint8, kInt8, kUint16, kInt16, kUint32, kInt32, kUint64, kInt64, kFloat, kDouble };
+
+std::size_t bytes_of(VoxelType type);
 
 struct RawImage {
-  std::array<int, 3> size{};
+  std::string path;       ///< for messages
+  std::vector<int> size;  ///< voxels per axis, as many axes as the file has
+  VoxelType type = VoxelType::kUint8;
   std::array<double, 12> voxel_to_ras{};  ///< row-major 3x4, mm
-  RawVoxels voxels;
+  std::vector<unsigned char> bytes;       ///< voxels, x fastest, this machine's byte order
 };
 
-/// Checks sizes from a header: each at least 1 and an int, their product times `bytes_per_voxel` in range.
-/// Returns that product, bytes. Throws InputError naming `path`.
-std::uint64_t checked_image_bytes(const std::array<std::int64_t, 3>& size, std::size_t bytes_per_voxel,
-                                  const std::string& path);
+/// Throws InputError "path: fault".
+[[noreturn]] void refuse(const std::string& path, const std::string& fault);
 
-/// The image with its distinct values, in the order met, as `labels`: the background is not chosen yet.
-/// A direction that is orthonormal but for the rounding of the header is made exactly so. Throws InputError
-/// naming `path`: a singular affine, values that are no labels, too many of them.
-LabelImage index_labels(RawImage&& raw, const std::string& path);
+/// The number of voxels. Throws InputError unless the image has three axes (further ones of length 1), none
+/// empty, and can be addressed.
+std::size_t checked_num_voxels(const std::string& path, const std::vector<int>& size);
+
+/// The voxel spacing, mm. Axes that are orthogonal but for the rounding of the file's header are made exactly
+/// so, in place. Throws InputError on a singular or non-finite affine.
+std::array<double, 3> checked_spacing(const std::string& path, std::array<double, 12>& voxel_to_ras);
 
 }  // namespace podm
