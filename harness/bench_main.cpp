@@ -83,15 +83,15 @@ std::vector<Trial> chosen_trials(const Experiment& experiment, const RunCommand&
 int run(const RunCommand& command) {
   const Experiment experiment = read_experiment(command.experiment_path);
   const auto trials = chosen_trials(experiment, command);
-  std::error_code error;
+  std::error_code error;  // RecordFile tells when there is no folder
   fs::create_directories(command.results_folder, error);
   const std::string rows_path = fmt::format("{}/{}.jsonl", command.results_folder, experiment.name);
   RecordFile rows(rows_path);
   std::signal(SIGINT, on_signal);
   std::signal(SIGTERM, on_signal);
 
-  fmt::print(stderr, "{}: {} trials, about {:g} minutes in all\n", experiment.title, trials.size(),
-             experiment.expected_minutes);
+  fmt::print(stderr, "{}: {} of {} trials; all take about {:g} minutes\n", experiment.title, trials.size(),
+             experiment.trials.size(), experiment.expected_minutes);
   bool all_well = true;
   std::vector<std::pair<Trial, TrialResult>> results;
   for (const Trial& trial : trials) {

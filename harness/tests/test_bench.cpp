@@ -95,6 +95,13 @@ TEST_F(BenchTest, FailedTrialIsRecordedTheOthersStillRunAndTheExitCodeTells) {
   EXPECT_EQ(files_in_results(), 1u);
 }
 
+TEST_F(BenchTest, InterruptEndsTheTrialRecordsItAndStops) {
+  EXPECT_EQ(run_with("kill -INT $PPID; sleep 30"), 1);  // what Ctrl-C sends to podm-bench
+  EXPECT_EQ(trials_recorded(), (std::vector<std::string>{"one"}));
+  EXPECT_NE(printed("out").find("interrupted"), std::string::npos);
+  EXPECT_EQ(files_in_results(), 1u);
+}
+
 TEST_F(BenchTest, BadUsageAndInputExitWithTwoAndRecordNothing) {
   const std::string path = folder_ / "exp.toml";
   EXPECT_EQ(bench({}), 2);
