@@ -1,5 +1,6 @@
 // Label tables: ITK-SNAP's (IDX R G B A VIS MSH "NAME") and plain "value name ..." lines as MRIcron ships
 // them.
+#include <cctype>
 #include <fstream>
 #include <sstream>
 
@@ -17,6 +18,7 @@ std::string name_in(const std::string& rest) {
   std::istringstream words(rest);
   std::string name;
   words >> name;
+  if (name == "\"\"") name.clear();
   return name;
 }
 
@@ -33,7 +35,8 @@ std::map<std::uint32_t, std::string> read_label_names(const std::string& path) {
     std::istringstream words(line);
     std::int64_t value = -1;
     std::string rest;
-    if (!(words >> value) || value < 0 || value > 0xffffffffll || !std::getline(words, rest)) {
+    if (!(words >> value) || value < 0 || value > 0xffffffffll || !std::getline(words, rest) ||
+        std::isspace(static_cast<unsigned char>(rest.front())) == 0) {
       throw InputError(path + ":" + std::to_string(number) + ": expected a label value and its name");
     }
     const std::string name = name_in(rest);

@@ -1,10 +1,13 @@
-// The texts of --labels, --drop and --merge.
+#include "image/label_selection.h"
+
 #include <algorithm>
 #include <charconv>
+#include <map>
+#include <set>
 #include <string_view>
 
+#include "image/raw_image.h"
 #include "podm/errors.h"
-#include "podm/image_io.h"
 
 namespace podm {
 
@@ -31,6 +34,65 @@ std::vector<std::string_view> split_at_commas(std::string_view text) {
   return parts;
 }
 
+bool covers(const std::vector<Range>& ranges, std::uint32_t value) {
+  return std::any_of(ranges.begin(), ranges.end(),
+                     [&](const Range& range) { return range.first <= value && value <= range.second; });
+}
+
+std::set<std::uint32_t> values_with_voxels(const LabelImage& image) {
+  std::vector<char> is_used(image.labels.size(), 0);
+  for (const LabelIndex voxel : image.voxels) is_used[voxel] = 1;
+  std::set<std::uint32_t> values;
+  for (std::size_t i = 0; i < is_used.size(); ++i)
+    if (is_used[i]) values.insert(image.labels[i].value);
+  return values;
+}
+
+// What each value becomes that the image has and the selection keeps; the background's value has no place in
+// it.
+class SelectedLabels {
+ public:
+  SelectedLabels(const LabelImage& image, const LabelSelection& selection, const std::string& path)
+      : path_(path), background_(selection.background), present_(values_with_voxels(image)) {
+    expect_labels(selection.keep, "--labels");
+    expect_labels(selection.drop, "--drop");
+    std::set<std::uint32_t> merged;
+    for (const LabelSelection::Merge& merge : selection.merges)
+      for (const std::uint32_t value : merge.values) {
+        expect_label(value, "--merge");
+        if (!merged.insert(value).second)
+          refuse(path, "--merge: label " + std::to_string(value) + " is merged twice");
+      }
+    for (const Label& label : image.labels)
+      if (present_.contains(label.value) && label.value != background_ &&
+          !covers(selection.drop, label.value) &&
+          (selection.keep.empty() || covers(selection.keep, label.value)))
+        becomes_[label.value] = label;
+    for (const LabelSelection::Merge& merge : selection.merges)
+      for (const std::uint32_t value : merge.values)
+        if (const auto kept = becomes_.find(value); kept != becomes_.end())
+          kept->second = {merge.values.front(), merge.name};
+  }
+
+  const std::map<std::uint32_t, Label>& by_value() const { return becomes_; }
+
+ private:
+  void expect_label(std::uint32_t value, const std::string& option) const {
+    const std::string label = option + ": label " + std::to_string(value);
+    if (value == background_) refuse(path_, label + " is the background");
+    if (!present_.contains(value)) refuse(path_, label + " is not in the image");
+  }
+  void expect_labels(const std::vector<Range>& ranges, const std::string& option) const {
+    for (const auto& [first, last] : ranges)
+      if (first == last) expect_label(first, option);
+  }
+
+  const std::string& path_;
+  std::uint32_t background_;
+  std::set<std::uint32_t> present_;
+  std::map<std::uint32_t, Label> becomes_;
+};
+
 }  // namespace
 
 std::vector<Range> parse_label_ranges(const std::string& text, const std::string& option) {
@@ -55,6 +117,29 @@ LabelSelection::Merge parse_merge(const std::string& text) {
   for (const std::string_view part : split_at_commas(std::string_view(text).substr(0, equals)))
     merge.values.push_back(parse_value(part, "--merge"));
   return merge;
+}
+
+void select_labels(LabelImage& image, const LabelSelection& selection, const std::string& path) {
+  const SelectedLabels selected(image, selection, path);
+  std::map<std::uint32_t, std::string> names;  // of the final labels, by value
+  for (const auto& [value, label] : selected.by_value()) names[label.value] = label.name;
+  if (names.empty()) refuse(path, "no foreground: every voxel is background or deselected");
+  if (names.size() >= kMaxLabels)
+    refuse(path, "a label image is needed: more than " + std::to_string(kMaxLabels - 1) + " labels");
+
+  std::vector<Label> labels{{selection.background, {}}};
+  std::map<std::uint32_t, LabelIndex> new_index;
+  for (const auto& [value, name] : names) {
+    new_index[value] = static_cast<LabelIndex>(labels.size());
+    labels.push_back({value, name});
+  }
+  std::vector<LabelIndex> replacement(image.labels.size(), kBackground);
+  for (std::size_t i = 0; i < replacement.size(); ++i)
+    if (const auto label = selected.by_value().find(image.labels[i].value);
+        label != selected.by_value().end())
+      replacement[i] = new_index.at(label->second.value);
+  for (LabelIndex& voxel : image.voxels) voxel = replacement[voxel];
+  image.labels = std::move(labels);
 }
 
 }  // namespace podm

@@ -1,27 +1,16 @@
-// One reader a format family; read_image.cpp picks.
+// One reader a format family; read_image.cpp picks. Each throws InputError naming the file and the fault.
 #pragma once
 
 #include <string>
-#include <vector>
 
 #include "image/raw_image.h"
 
 namespace podm {
 
-/// Throws InputError unless `path` is a regular file that is not empty.
-void check_exists(const std::string& path);
-
-/// The whole file, decompressed if its name ends in .gz. Throws InputError on a missing, unreadable or
-/// truncated file.
-std::vector<unsigned char> read_bytes(const std::string& path);
-
 RawImage read_inr(const std::string& path);
-/// NIfTI, NRRD and MetaImage through ITK.
+/// NIfTI-1 in one file, with any affine: the sform if there is one, else the qform, else the voxel sizes.
+RawImage read_nifti(const std::string& path);
+/// NRRD and MetaImage, their voxels in the same file or in one beside it.
 RawImage read_with_itk(const std::string& path);
-/// NIfTI that ITK 5.2 refuses because its directions are not orthonormal.
-RawImage read_with_libnifti(const std::string& path);
-
-/// Whether the name ends in .nii, .nii.gz, .hdr or .img.
-bool is_nifti_name(const std::string& path);
 
 }  // namespace podm

@@ -5,6 +5,7 @@
 #include <map>
 #include <sstream>
 
+#include "image/input_file.h"
 #include "image/read_formats.h"
 
 namespace podm {
@@ -12,40 +13,37 @@ namespace podm {
 namespace {
 
 constexpr std::size_t kHeaderUnit = 256;
+constexpr std::size_t kLongestHeader = 256 * kHeaderUnit;
 constexpr const char* kMagic = "#INRIMAGE-4#{";
 
-struct Header {
-  std::map<std::string, std::string> fields;
-  std::size_t size = 0;
-};
+using Header = std::map<std::string, std::string>;
 
-Header parse_header(const std::string& path, const std::vector<unsigned char>& bytes) {
-  const std::string magic(kMagic);
-  if (bytes.size() < kHeaderUnit || !std::equal(magic.begin(), magic.end(), bytes.begin())) {
-    refuse(path, "not an INRIMAGE-4 file (wrong magic)");
+Header read_header(InputFile& file, const std::string& path) {
+  std::string text;
+  std::size_t end = std::string::npos;
+  while (end == std::string::npos) {
+    if (text.size() == kLongestHeader) refuse(path, "the INR header has no end");
+    text.resize(text.size() + kHeaderUnit);
+    file.read(&text[text.size() - kHeaderUnit], kHeaderUnit);
+    if (!text.starts_with(kMagic)) refuse(path, "not an INRIMAGE-4 file (wrong magic)");
+    end = text.find("##}");
   }
-  constexpr std::size_t kLongestHeader = 256 * kHeaderUnit;
-  const std::string text(bytes.begin(),
-                         bytes.begin() + static_cast<std::ptrdiff_t>(std::min(bytes.size(), kLongestHeader)));
-  const std::size_t end = text.find("##}");
-  if (end == std::string::npos) refuse(path, "the INR header has no end");
   Header header;
-  header.size = (end + 3 + kHeaderUnit - 1) / kHeaderUnit * kHeaderUnit;
-  std::istringstream lines(text.substr(magic.size(), end - magic.size()));
+  std::istringstream lines(text.substr(0, end));
   for (std::string line; std::getline(lines, line);) {
     const std::size_t equals = line.find('=');
     if (line.empty() || line[0] == '#' || equals == std::string::npos) continue;
     std::string value = line.substr(equals + 1);
     while (!value.empty() && (value.back() == '\r' || value.back() == ' ')) value.pop_back();
-    header.fields[line.substr(0, equals)] = value;
+    header[line.substr(0, equals)] = value;
   }
   return header;
 }
 
 template <class Number>
 Number number(const std::string& path, const Header& header, const std::string& key, Number otherwise) {
-  const auto field = header.fields.find(key);
-  if (field == header.fields.end()) return otherwise;
+  const auto field = header.find(key);
+  if (field == header.end()) return otherwise;
   Number value{};
   const std::string& text = field->second;
   const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
@@ -54,8 +52,8 @@ Number number(const std::string& path, const Header& header, const std::string& 
 }
 
 VoxelType voxel_type(const std::string& path, const Header& header) {
-  const auto field = header.fields.find("TYPE");
-  const std::string type = field == header.fields.end() ? "" : field->second;
+  const auto field = header.find("TYPE");
+  const std::string type = field == header.end() ? "" : field->second;
   const int bits = number(path, header, "PIXSIZE", 0);
   if (type == "unsigned fixed" && bits == 8) return VoxelType::kUint8;
   if (type == "unsigned fixed" && bits == 16) return VoxelType::kUint16;
@@ -69,8 +67,8 @@ VoxelType voxel_type(const std::string& path, const Header& header) {
 }
 
 bool is_big_endian(const std::string& path, const Header& header) {
-  const auto field = header.fields.find("CPU");
-  if (field == header.fields.end()) refuse(path, "INR header: CPU is missing");
+  const auto field = header.find("CPU");
+  if (field == header.end()) refuse(path, "INR header: CPU is missing");
   if (field->second == "sun" || field->second == "sgi") return true;
   if (field->second == "decm" || field->second == "alpha" || field->second == "pc") return false;
   refuse(path, "INR header: unknown CPU '" + field->second + "'");
@@ -87,8 +85,8 @@ void swap_bytes(std::vector<unsigned char>& bytes, std::size_t width) {
 
 RawImage read_inr(const std::string& path) {
   static_assert(std::endian::native == std::endian::little);
-  std::vector<unsigned char> bytes = read_bytes(path);
-  const Header header = parse_header(path, bytes);
+  InputFile file(path);
+  const Header header = read_header(file, path);
   RawImage raw;
   raw.path = path;
   raw.size = {number(path, header, "XDIM", 0), number(path, header, "YDIM", 0),
@@ -96,13 +94,11 @@ RawImage read_inr(const std::string& path) {
   if (number(path, header, "VDIM", 1) != 1) refuse(path, "one value a voxel is needed (VDIM is not 1)");
   raw.type = voxel_type(path, header);
   const std::size_t needed = checked_num_voxels(path, raw.size) * bytes_of(raw.type);
-  if (bytes.size() - std::min(bytes.size(), header.size) < needed) {
-    refuse(path, "truncated: the header announces " + std::to_string(needed) + " bytes of voxels");
-  }
-  bytes.erase(bytes.begin(), bytes.begin() + static_cast<std::ptrdiff_t>(header.size));
-  bytes.resize(needed);
-  if (is_big_endian(path, header)) swap_bytes(bytes, bytes_of(raw.type));
-  raw.bytes = std::move(bytes);
+  file.expect_room_for(needed);
+  raw.bytes.resize(needed);
+  file.read(raw.bytes.data(), needed);
+  file.expect_end();
+  if (is_big_endian(path, header)) swap_bytes(raw.bytes, bytes_of(raw.type));
   const std::array<const char*, 3> spacing{"VX", "VY", "VZ"}, offset{"TX", "TY", "TZ"};
   for (std::size_t axis = 0; axis < 3; ++axis) {
     const double s = number(path, header, spacing[axis], 1.0);

@@ -1,25 +1,21 @@
-// NIfTI, NRRD and MetaImage through ITK's readers, guarded: these libraries fill what is missing with zeros,
-// so the data's true size is checked first.
+// NRRD and MetaImage through ITK's readers, guarded: the true size of the voxel data is checked first.
 #include <itkMetaImageIO.h>
-#include <itkNiftiImageIO.h>
 #include <itkNrrdImageIO.h>
 
-#include <filesystem>
+#include <algorithm>
+#include <limits>
 
 #include "image/read_formats.h"
+#include "image/voxel_data.h"
 
 namespace podm {
 
 namespace {
 
-bool ends_with(const std::string& path, const std::string& ending) {
-  return path.size() >= ending.size() &&
-         path.compare(path.size() - ending.size(), ending.size(), ending) == 0;
-}
+bool is_nrrd(const std::string& path) { return path.ends_with(".nrrd") || path.ends_with(".nhdr"); }
 
 itk::ImageIOBase::Pointer reader_for(const std::string& path) {
-  if (is_nifti_name(path)) return itk::NiftiImageIO::New().GetPointer();
-  if (ends_with(path, ".nrrd") || ends_with(path, ".nhdr")) return itk::NrrdImageIO::New().GetPointer();
+  if (is_nrrd(path)) return itk::NrrdImageIO::New().GetPointer();
   return itk::MetaImageIO::New().GetPointer();
 }
 
@@ -68,27 +64,6 @@ std::array<double, 12> voxel_to_ras(const itk::ImageIOBase& io) {
   return a;
 }
 
-// A compressed file can hold a thousand times its size, no more (deflate's limit is 1032).
-void check_plausible(const std::string& path, std::size_t bytes_needed) {
-  constexpr std::size_t kLargestRatio = 1100;
-  std::error_code error;
-  const std::uintmax_t size = std::filesystem::file_size(path, error);
-  if (!error && !ends_with(path, ".mhd") && !ends_with(path, ".nhdr") && !ends_with(path, ".hdr") &&
-      bytes_needed / kLargestRatio > size) {
-    refuse(path, "truncated: the header announces " + std::to_string(bytes_needed) + " bytes of voxels");
-  }
-}
-
-void check_nifti_data(const std::string& path, std::size_t bytes_needed) {
-  const std::size_t found = read_bytes(path).size();
-  constexpr std::size_t kSmallestHeader = 348;
-  const std::size_t header = ends_with(path, ".img") || ends_with(path, ".img.gz") ? 0 : kSmallestHeader;
-  if (found < header + bytes_needed) {
-    refuse(path, "truncated: the header announces " + std::to_string(bytes_needed) +
-                     " bytes of voxels, the file holds " + std::to_string(found - std::min(found, header)));
-  }
-}
-
 std::string one_line(std::string text) {
   const std::size_t colon = text.rfind("): ");
   if (colon != std::string::npos) text = text.substr(colon + 3);
@@ -99,15 +74,10 @@ std::string one_line(std::string text) {
 
 }  // namespace
 
-bool is_nifti_name(const std::string& path) {
-  for (const char* ending : {".nii", ".nii.gz", ".hdr", ".img", ".img.gz"}) {
-    if (ends_with(path, ending)) return true;
-  }
-  return false;
-}
-
 RawImage read_with_itk(const std::string& path) {
+  const VoxelData data = is_nrrd(path) ? find_nrrd_voxels(path) : find_meta_voxels(path);
   const itk::ImageIOBase::Pointer io = reader_for(path);
+  constexpr itk::SizeValueType kLongestAxis = std::numeric_limits<int>::max();
   RawImage raw;
   raw.path = path;
   try {
@@ -116,12 +86,12 @@ RawImage read_with_itk(const std::string& path) {
     io->SetFileName(path);
     io->ReadImageInformation();
     for (unsigned axis = 0; axis < io->GetNumberOfDimensions(); ++axis) {
-      raw.size.push_back(static_cast<int>(std::min<itk::SizeValueType>(io->GetDimensions(axis), 1u << 30)));
+      raw.size.push_back(
+          static_cast<int>(std::min<itk::SizeValueType>(io->GetDimensions(axis), kLongestAxis)));
     }
     raw.type = voxel_type(path, *io);
     const std::size_t needed = checked_num_voxels(path, raw.size) * bytes_of(raw.type);
-    check_plausible(path, needed);
-    if (is_nifti_name(path) && !ends_with(path, ".hdr")) check_nifti_data(path, needed);
+    expect_voxel_bytes(path, data, needed);
     raw.voxel_to_ras = voxel_to_ras(*io);
     raw.bytes.resize(needed);
     itk::ImageIORegion region(io->GetNumberOfDimensions());
@@ -132,9 +102,7 @@ RawImage read_with_itk(const std::string& path) {
     io->SetIORegion(region);
     io->Read(raw.bytes.data());
   } catch (const itk::ExceptionObject& error) {
-    const std::string text = one_line(error.GetDescription());
-    if (is_nifti_name(path) && text.find("orthonormal") != std::string::npos) return read_with_libnifti(path);
-    refuse(path, "cannot be read (" + text + ")");
+    refuse(path, "cannot be read (" + one_line(error.GetDescription()) + ")");
   }
   return raw;
 }

@@ -1,0 +1,280 @@
+// Bad input: each fault is refused with a message "FILE: fault" that says what it is.
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <functional>
+#include <limits>
+
+#include "image/tests/image_files.h"
+#include "podm/errors.h"
+#include "podm/image_io.h"
+
+namespace podm {
+namespace {
+
+const std::string kVoxels = bytes_of_values(two_voxels());
+
+struct BadFile {
+  const char* fault;
+  const char* name;
+  std::function<std::string()> bytes;
+  const char* message;  // a part of it
+};
+
+std::string changed_nifti(const std::function<void(nifti_1_header&)>& change,
+                          const std::string& voxels = kVoxels) {
+  nifti_1_header header = nifti_header();
+  change(header);
+  return nifti_file(header, voxels);
+}
+
+template <class T>
+std::string nifti_of(short datatype, std::vector<T> voxels) {
+  return changed_nifti(
+      [&](nifti_1_header& h) {
+        h.datatype = datatype;
+        h.bitpix = 8 * sizeof(T);
+      },
+      bytes_of_values(voxels));
+}
+
+std::string cut(const std::string& bytes, std::size_t less) { return bytes.substr(0, bytes.size() - less); }
+
+std::string compressed_mha(const std::string& stream) {
+  return mha_header("CompressedData = True\nCompressedDataSize = " + std::to_string(stream.size()) + "\n" +
+                    kMhaFields + kMhaLocal) +
+         stream;
+}
+
+// Voxels that do not compress, so that a cut stream loses some.
+std::string noise(std::size_t bytes) {
+  std::string text(bytes, '\0');
+  std::uint32_t state = 1;
+  for (char& c : text) c = static_cast<char>((state = state * 1664525u + 1013904223u) >> 24);
+  return text;
+}
+
+std::string replaced(std::string text, const std::string& what, const std::string& by) {
+  const std::size_t at = text.find(what);
+  return at == std::string::npos ? throw std::logic_error("no '" + what + "'")
+                                 : text.replace(at, what.size(), by);
+}
+
+class Refused : public testing::TestWithParam<BadFile> {};
+
+TEST_P(Refused, NamingFileAndFault) {
+  const TemporaryFolder folder;
+  const BadFile& bad = GetParam();
+  const std::string path = folder.write(bad.name, bad.bytes());
+  try {
+    read_image(path);
+    FAIL() << "was read";
+  } catch (const InputError& error) {
+    const std::string text = error.what();
+    EXPECT_EQ(text.substr(0, path.size() + 2), path + ": ");
+    EXPECT_NE(text.find(bad.message), std::string::npos) << text;
+    EXPECT_EQ(text.find('\n'), std::string::npos) << text;
+  }
+}
+
+const std::string kNrrdRaw = nrrd_header(kNrrdFields + "encoding: raw\n");
+const std::string kNrrdGzip = nrrd_header(kNrrdFields + "encoding: gzip\n");
+const std::string kMha = mha_header(kMhaFields + kMhaLocal);
+const std::string kInr = inr_header("VX=1\nVY=2\nVZ=3\n");
+
+std::vector<BadFile> bad_nifti_files() {
+  return {
+      {"Empty", "a.nii", [] { return std::string(); }, "empty"},
+      {"WrongMagic", "a.nii", [] { return std::string(1000, 'x'); }, "magic"},
+      {"TruncatedHeader", "a.nii", [] { return nifti_file(nifti_header(), kVoxels).substr(0, 100); }, ""},
+      {"TruncatedVoxels", "a.nii", [] { return nifti_file(nifti_header(), cut(kVoxels, 1)); }, "truncated"},
+      {"TruncatedZippedVoxels", "a.nii.gz",
+       [] { return deflated(nifti_file(nifti_header(), cut(kVoxels, 1))); }, "truncated"},
+      {"TruncatedGzip", "a.nii.gz", [] { return cut(deflated(nifti_file(nifti_header(), kVoxels)), 12); },
+       "truncated"},
+      {"DamagedGzip", "a.nii.gz",
+       [] {
+         std::string file = deflated(nifti_file(nifti_header(), kVoxels));
+         file[file.size() - 6] ^= 1;  // in the checksum
+         return file;
+       },
+       "damaged"},
+      {"TwoDimensions", "a.nii",
+       [] {
+         return changed_nifti(
+             [](auto& h) {
+               h.dim[0] = 2;
+               h.dim[3] = 1;
+             },
+             cut(kVoxels, 18));
+       },
+       "3-D"},
+      {"FourDimensions", "a.nii",
+       [] {
+         return changed_nifti(
+             [](auto& h) {
+               h.dim[0] = 4;
+               h.dim[4] = 2;
+             },
+             kVoxels + kVoxels);
+       },
+       "3-D"},
+      {"Colour", "a.nii",
+       [] {
+         return changed_nifti(
+             [](auto& h) {
+               h.datatype = DT_RGB24;
+               h.bitpix = 24;
+             },
+             kVoxels + kVoxels + kVoxels);
+       },
+       "one"},
+      {"ZeroSpacing", "a.nii",
+       [] {
+         return changed_nifti([](auto& h) {
+           h.srow_x[0] = 0;
+           h.pixdim[1] = 0;
+         });
+       },
+       ""},
+      {"NanSpacing", "a.nii", [] { return changed_nifti([](auto& h) { h.srow_x[0] = std::nanf(""); }); }, ""},
+      {"SingularAffine", "a.nii",
+       [] {
+         return changed_nifti([](auto& h) {
+           h.srow_y[1] = 0;
+           h.srow_x[1] = 2;
+         });
+       },
+       "singular"},
+      {"ShearedAndTruncated", "a.nii",
+       [] { return changed_nifti([](auto& h) { h.srow_x[1] = 0.5F; }, cut(kVoxels, 1)); }, "truncated"},
+      {"ShearedAndHuge", "a.nii",
+       [] {
+         return changed_nifti([](auto& h) {
+           h.srow_x[1] = 0.5F;
+           h.dim[1] = h.dim[2] = h.dim[3] = 32767;
+         });
+       },
+       "truncated"},
+      {"HugeDimensions", "a.nii",
+       [] { return changed_nifti([](auto& h) { h.dim[1] = h.dim[2] = h.dim[3] = 32767; }); }, "truncated"},
+      {"HugeZippedDimensions", "a.nii.gz",
+       [] { return deflated(changed_nifti([](auto& h) { h.dim[1] = h.dim[2] = h.dim[3] = 32767; })); },
+       "truncated"},
+      {"VoxelsPastTheEnd", "a.nii", [] { return changed_nifti([](auto& h) { h.vox_offset = 360; }); },
+       "truncated"},
+      {"NoForeground", "a.nii", [] { return nifti_file(nifti_header(), std::string(24, '\0')); },
+       "foreground"},
+      {"Negative", "a.nii",
+       [] { return nifti_of<std::int16_t>(DT_INT16, std::vector<std::int16_t>(24, -3)); }, "label"},
+      {"Fraction", "a.nii", [] { return nifti_of<float>(DT_FLOAT32, std::vector<float>(24, 1.5F)); },
+       "label"},
+      {"NotANumber", "a.nii",
+       [] { return nifti_of<float>(DT_FLOAT32, std::vector<float>(24, std::nanf(""))); }, "label"},
+      {"PastTheLargestValue", "a.nii",
+       [] { return nifti_of<double>(DT_FLOAT64, std::vector<double>(24, 4294967296.0)); }, "label"},
+      {"TooManyLabels", "a.nii",
+       [] {
+         std::vector<std::uint32_t> voxels(41 * 41 * 41);
+         for (std::size_t i = 0; i < voxels.size(); ++i) voxels[i] = static_cast<std::uint32_t>(i);
+         return changed_nifti(
+             [](auto& h) {
+               h.dim[1] = h.dim[2] = h.dim[3] = 41;
+               h.datatype = DT_UINT32;
+               h.bitpix = 32;
+             },
+             bytes_of_values(voxels));
+       },
+       "65535 different values"},
+      {"UnknownFormat", "a.png", [] { return std::string("x"); }, "format"},
+  };
+}
+
+std::vector<BadFile> bad_other_files() {
+  return {
+      {"NrrdWrongMagic", "a.nrrd", [] { return replaced(kNrrdRaw, "NRRD", "NORD") + kVoxels; }, "magic"},
+      {"NrrdTruncated", "a.nrrd", [] { return kNrrdRaw + cut(kVoxels, 1); }, "truncated"},
+      {"NrrdTruncatedGzip", "a.nrrd", [] { return kNrrdGzip + cut(deflated(kVoxels), 10); }, "truncated"},
+      {"NrrdShortGzip", "a.nrrd", [] { return kNrrdGzip + deflated(cut(kVoxels, 1)); }, "truncated"},
+      {"NrrdHuge", "a.nrrd", [] { return replaced(kNrrdRaw, "2 3 4", "2000000 2000000 2000000") + kVoxels; },
+       ""},
+      {"NrrdTooMany", "a.nrrd", [] { return replaced(kNrrdRaw, "2 3 4", "20000 20000 200") + kVoxels; },
+       "truncated"},
+      {"NrrdTooManyBeside", "a.nhdr",
+       [] {
+         return nrrd_header(replaced(kNrrdFields, "2 3 4", "20000 20000 20") +
+                            "encoding: raw\ndata file: a.nhdr\n");
+       },
+       "truncated"},
+      {"NrrdVoxelsMissing", "a.nhdr",
+       [] { return nrrd_header(kNrrdFields + "encoding: raw\ndata file: missing.raw\n"); }, "missing.raw"},
+      {"NrrdTwoDimensions", "a.nrrd",
+       [] { return nrrd_header("type: uchar\ndimension: 2\nsizes: 4 6\nencoding: raw\n") + kVoxels; }, "3-D"},
+      {"NrrdNanSpacing", "a.nrrd", [] { return replaced(kNrrdRaw, "(0,2,0)", "(0,nan,0)") + kVoxels; }, ""},
+      {"MhaWrongMagic", "a.mha", [] { return std::string(1000, 'x'); }, "magic"},
+      {"MhaTruncated", "a.mha", [] { return kMha + cut(kVoxels, 1); }, "truncated"},
+      {"MhaTruncatedZlib", "a.mha", [] { return compressed_mha(cut(deflated(kVoxels, 15), 5)); },
+       "truncated"},
+      {"MhaShortZlib", "a.mha", [] { return compressed_mha(deflated(cut(kVoxels, 1), 15)); }, "truncated"},
+      {"MhaHuge", "a.mha", [] { return replaced(kMha, "2 3 4", "2000 2000 2000") + kVoxels; }, "truncated"},
+      {"MhaTooManyBeside", "a.mhd",
+       [] {
+         return replaced(mha_header(kMhaFields), "2 3 4", "20000 20000 20") + "ElementDataFile = a.mhd\n";
+       },
+       "truncated"},
+      {"MhaVoxelsMissing", "a.mhd", [] { return mha_header(kMhaFields) + "ElementDataFile = missing.raw\n"; },
+       "missing.raw"},
+      {"MhaVector", "a.mha",
+       [] {
+         return mha_header("ElementNumberOfChannels = 3\n" + kMhaFields + kMhaLocal) + kVoxels + kVoxels +
+                kVoxels;
+       },
+       "one value"},
+      {"MhaZeroSpacing", "a.mha",
+       [] { return replaced(kMha, "ElementSpacing = 1 2 3", "ElementSpacing = 1 0 3") + kVoxels; },
+       "spacing"},
+      {"MhaSingular", "a.mha",
+       [] { return replaced(kMha, "1 0 0 0 1 0 0 0 1", "1 0 0 1 0 0 0 0 1") + kVoxels; }, "singular"},
+      {"InrWrongMagic", "a.inr", [] { return std::string(1000, 'x'); }, "magic"},
+      {"InrTruncated", "a.inr", [] { return kInr + cut(kVoxels, 1); }, "truncated"},
+      {"InrTruncatedGzip", "a.inr.gz", [] { return cut(deflated(kInr + noise(24)), 12); }, "truncated"},
+      {"InrHuge", "a.inr",
+       [] { return inr_header("", "XDIM=2000000\nYDIM=2000000\nZDIM=2000000\nVDIM=1\n") + kVoxels; }, ""},
+      {"InrNegativeSize", "a.inr",
+       [] { return inr_header("", "XDIM=-2\nYDIM=3\nZDIM=4\nVDIM=1\n") + kVoxels; }, "no voxels"},
+      {"InrVector", "a.inr",
+       [] { return inr_header("", "XDIM=2\nYDIM=3\nZDIM=4\nVDIM=3\n") + kVoxels + kVoxels + kVoxels; },
+       "VDIM"},
+      {"InrZeroSpacing", "a.inr", [] { return inr_header("VX=0\nVY=2\nVZ=3\n") + kVoxels; }, "VX"},
+      {"InrNoEnd", "a.inr", [] { return replaced(kInr, "##}", "   ") + kVoxels; }, "end"},
+      {"InrUnknownType", "a.inr",
+       [] {
+         return inr_header("", "XDIM=2\nYDIM=3\nZDIM=4\n", "TYPE=packed\nPIXSIZE=8 bits\nCPU=decm\n") +
+                kVoxels;
+       },
+       "type"},
+  };
+}
+
+std::string fault_name(const testing::TestParamInfo<BadFile>& param_info) { return param_info.param.fault; }
+
+INSTANTIATE_TEST_SUITE_P(Nifti, Refused, testing::ValuesIn(bad_nifti_files()), fault_name);
+INSTANTIATE_TEST_SUITE_P(Other, Refused, testing::ValuesIn(bad_other_files()), fault_name);
+
+TEST(ReadImageRefused, MissingFileAndFolder) {
+  const TemporaryFolder folder;
+  const std::string in_folder = folder.write("x", "x");
+  for (const std::string& path :
+       {in_folder + "missing.nii.gz", in_folder + "missing.inr", in_folder + "missing.mha"})
+    EXPECT_THROW(read_image(path), InputError) << path;
+  EXPECT_THROW(read_image("/"), InputError);
+}
+
+TEST(ReadImageRefused, PhantomsThatAreNone) {
+  for (const char* name :
+       {"phantom:", "phantom:nothing", "phantom:torus@", "phantom:torus@x", "phantom:torus@-5"})
+    EXPECT_THROW(read_image(name), InputError) << name;
+}
+
+}  // namespace
+}  // namespace podm
