@@ -14,3 +14,12 @@ podm_add_test(image_io_tests
               SOURCES tests/test_label_names.cpp tests/test_label_selection.cpp tests/test_read_image_formats.cpp
                       tests/test_read_image_real.cpp tests/test_read_image_refused.cpp
               LIBS podm_image_io ZLIB::ZLIB)
+
+if(PODM_BUILD_FUZZERS)
+  foreach(target fuzz_read_image fuzz_label_options)
+    add_executable(${target} fuzz/${target}.cpp)
+    target_link_libraries(${target} PRIVATE podm_image_io podm_flags)
+    target_link_options(${target} PRIVATE -fsanitize=fuzzer)
+  endforeach()
+  target_compile_options(podm_image_io PRIVATE -fsanitize=fuzzer-no-link)
+endif()
