@@ -6,6 +6,7 @@
 #include <numbers>
 
 #include "geometry/circumsphere.h"
+#include "geometry/predicates.h"
 #include "geometry/tetrahedron.h"
 
 namespace podm {
@@ -50,6 +51,10 @@ void measure_cells(const TetMesh& mesh, const SizeField& sizes, MeshingReport& r
   for (std::size_t c = 0; c < mesh.cells.size(); ++c) {
     std::array<Point, 4> p;
     for (unsigned i = 0; i < 4; ++i) p[i] = point_of(mesh, mesh.cells[c][i]);
+    if (orientation(p[0], p[1], p[2], p[3]) <= 0) {
+      ++report.guarantees.orientation;
+      continue;
+    }
     const Circumsphere sphere = circumsphere(p[0], p[1], p[2], p[3], 0);
     double shortest2 = std::numeric_limits<double>::infinity();
     for (const auto& e : kEdgeVertices) {

@@ -38,6 +38,7 @@ std::vector<std::string> MeshRun::unmet() const {
         fmt::format("boundary facets with an angle of {} degrees or less", kFacetAngleBound));
   count(misses.radius, "cells with a circumradius above the bound");
   count(misses.facet_vertices, "boundary facets with a vertex off the isosurface");
+  count(misses.orientation, "cells that rounding made flat or turned over");
   count(misses.missing_labels, "labels of more than 1000 voxels without a cell");
   return sentences;
 }

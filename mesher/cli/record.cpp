@@ -73,11 +73,9 @@ Json quality_of(const Quality& quality) {
 }
 
 Json guarantees_of(const Guarantees& misses) {
-  return {{"radius_edge", misses.radius_edge},
-          {"facet_angle", misses.facet_angle},
-          {"radius", misses.radius},
-          {"facet_vertices", misses.facet_vertices},
-          {"missing_labels", misses.missing_labels}};
+  return {{"radius_edge", misses.radius_edge}, {"facet_angle", misses.facet_angle},
+          {"radius", misses.radius},           {"facet_vertices", misses.facet_vertices},
+          {"orientation", misses.orientation}, {"missing_labels", misses.missing_labels}};
 }
 
 Json labels_of(const MeshRun& run) {

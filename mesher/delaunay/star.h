@@ -37,7 +37,6 @@ class StarFiller {
   alignas(64) std::array<std::array<double, 4>, kMaxVertices> offsets_;  // x-p and |x-p|^2
   std::array<Facet, kMaxFacets> facets_;
   alignas(64) std::array<std::array<double, kMaxFacets>, 4> spheres_;  // centre - p, squared radius
-  alignas(64) std::array<double, kMaxFacets> conditions_;              // L^6 / det^2
   // facet_at_edge_[(a << row_bits_) + b]: the new facet over the directed boundary edge (a,b). Rows are as
   // short as the number of vertices allows, so that the usual table lies in the first-level cache.
   std::vector<FacetId> facet_at_edge_;

@@ -87,6 +87,7 @@ class Isosurface {
   void try_midpoints_of_features(const Point& u, LabelIndex label, Nearest& best) const;
   bool project(const Point& u, LabelIndex label, Point& z) const;
   bool shoot(const Point& u, const Vector& d, LabelIndex label, Nearest& best) const;
+  Point beside_midpoint(const Point& u, LabelIndex label, const Point& midpoint) const;
   void improve(const Point& u, LabelIndex label, Nearest& best) const;
 
   LabelGrid grid_;

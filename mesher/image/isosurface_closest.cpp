@@ -25,6 +25,9 @@ constexpr double kOvershoot = 1.01;
 constexpr int kMaxImprovements = 5;
 constexpr double kImproved = 1 - 1e-3;  // of the squared distance
 
+constexpr double kAside = 0.01;  // voxels
+constexpr double kIrregular = 1e4;
+
 constexpr double square(double x) { return x * x; }
 
 // The edges between the 64 corners of a block and its neighbours, by their first corner.
@@ -178,14 +181,30 @@ void Isosurface::improve(const Point& u, LabelIndex label, Nearest& best) const 
   }
 }
 
+// Midpoints lie on a lattice, and vertices of a lattice make flat cells that rounding can turn inside out.
+// Where the nearest point is a midpoint, take a point of the isosurface a little beside it, as irregular as u
+// itself.
+Point Isosurface::beside_midpoint(const Point& u, LabelIndex label, const Point& midpoint) const {
+  const Vector aside =
+      kAside * Vector{std::sin(kIrregular * u.x), std::sin(kIrregular * u.y), std::sin(kIrregular * u.z)};
+  const Vector d = kOvershoot * (midpoint + aside - u);
+  const auto change = first_change(u, d, label);
+  return to_mm(change ? u + change->t * d : midpoint);
+}
+
 std::optional<Point> Isosurface::closest_point(const Point& p, double radius) const {
   if (is_empty()) return std::nullopt;
   const Point u = to_voxels(p);
   const LabelIndex label = label_at_voxels(u);
   Nearest best = nearest_midpoint(u, label);
   Point z = best.u;
+  const Point midpoint = best.u;
   if (!project(u, label, z) || !shoot(u, kOvershoot * (z - u), label, best)) improve(u, label, best);
   if (!(best.squared_mm <= square(radius))) return std::nullopt;
+  if (best.u == midpoint) {
+    const Point beside = beside_midpoint(u, label, midpoint);
+    if (squared_distance(beside, p) <= square(radius)) return beside;
+  }
   return to_mm(best.u);
 }
 

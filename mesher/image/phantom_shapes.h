@@ -1,8 +1,7 @@
-// Implicit shapes for the phantoms: negative inside, in mm.
+// Implicit shapes for the phantoms: negative inside, coordinates in mm. Only the sign counts.
 #pragma once
 
-#include <algorithm>
-#include <cmath>
+#include <cstdint>
 #include <functional>
 #include <string>
 #include <vector>
@@ -17,64 +16,55 @@ struct Shape {
   Point low, high;
 };
 
+/// Part of a phantom. Parts of a list may share a label; later ones cover earlier ones.
 struct Organ {
   std::uint32_t label;
   std::string name;
-  Shape shape;  // later organs of a list cover earlier ones
+  Shape shape;
 };
 
-inline Shape superellipsoid(const Point& c, const Vector& r, double power_xy, double power_z) {
-  return {[=](const Point& p) {
-            const double x = std::abs(p.x - c.x) / r.x, y = std::abs(p.y - c.y) / r.y,
-                         z = std::abs(p.z - c.z) / r.z;
-            return std::pow(x, power_xy) + std::pow(y, power_xy) + std::pow(z, power_z) - 1;
-          },
-          c - r, c + r};
-}
+Shape ellipsoid(const Point& centre, const Vector& radii);
 
-inline Shape ellipsoid(const Point& c, const Vector& r) {
-  return {[=](const Point& p) {
-            const double x = (p.x - c.x) / r.x, y = (p.y - c.y) / r.y, z = (p.z - c.z) / r.z;
-            return x * x + y * y + z * z - 1;
-          },
-          c - r, c + r};
-}
+/// An ellipsoid's upper half on an elliptic cylinder that goes down to z = `floor`.
+Shape dome(const Point& centre, const Vector& radii, double floor);
 
-inline double distance_to_segment(const Point& p, const Point& a, const Point& b) {
-  const Vector ab = b - a;
-  const double t = std::clamp(dot(p - a, ab) / squared_length(ab), 0.0, 1.0);
-  return distance(p, a + t * ab);
-}
+/// A torus around the z axis through the origin.
+Shape torus(double ring_radius, double tube_radius);
 
-/// A tube of one radius along a polyline.
-inline Shape tube(const std::vector<Point>& path, double radius) {
-  Point low = path[0], high = path[0];
-  for (const Point& p : path) {
-    low = {std::min(low.x, p.x), std::min(low.y, p.y), std::min(low.z, p.z)};
-    high = {std::max(high.x, p.x), std::max(high.y, p.y), std::max(high.z, p.z)};
-  }
-  const Vector r{radius, radius, radius};
-  return {[=](const Point& p) {
-            double nearest = 1e9;
-            for (std::size_t i = 0; i + 1 < path.size(); ++i) {
-              nearest = std::min(nearest, distance_to_segment(p, path[i], path[i + 1]));
-            }
-            return nearest - radius;
-          },
-          low - r, high + r};
-}
+/// How far slab() goes from an ellipse (0) towards a rectangle (1), seen along z.
+inline constexpr double kSlabSquareness = 0.42;
+/// Nearly elliptic seen along z, flat at top and bottom with a rounded rim.
+Shape slab(const Point& centre, const Vector& half_extent);
+/// Of the slab's outline around the origin: the point `angle` radians from -y towards +x.
+Point on_slab_outline(const Vector& half_extent, double angle, double z);
 
-/// A point on an ellipse around the z axis, tilted by `rise` mm from back to front.
-inline Point on_ellipse(double angle, double rx, double ry, double z, double rise) {
-  return {rx * std::sin(angle), -ry * std::cos(angle), z + rise * (1 - std::cos(angle)) / 2};
-}
+/// A point of a tube's axis and the tube's radius there.
+struct Knot {
+  Point at;
+  double radius;
+};
 
-inline Shape without(const Shape& a, const Shape& b) {
-  return {[=](const Point& p) { return std::max(a.value(p), -b.value(p)); }, a.low, a.high};
-}
+/// A tube of balls whose centres and radii go linearly from knot to knot.
+Shape tube(const std::vector<Knot>& knots);
+Shape tube(const std::vector<Point>& path, double radius);
 
-inline Shape within(const Shape& a, const Shape& b) {
-  return {[=](const Point& p) { return std::max(a.value(p), b.value(p)); }, a.low, a.high};
-}
+/// A smooth curve through the knots (Catmull-Rom), as knots at most about 5 mm apart.
+std::vector<Knot> smooth(const std::vector<Knot>& knots);
+std::vector<Knot> smooth(const std::vector<Point>& path, double radius);
+/// Every radius larger by `mm`, which may be negative.
+std::vector<Knot> widened(std::vector<Knot> knots, double mm);
+/// Radii that swell and shrink by `amplitude` once every `period` mm of the way.
+std::vector<Knot> waved(std::vector<Knot> knots, double amplitude, double period);
+
+/// The half space y > `level`.
+Shape in_front_of(double level);
+/// The half space z > `level`.
+Shape above(double level);
+
+Shape within(const Shape& a, const Shape& b);   ///< intersection
+Shape without(const Shape& a, const Shape& b);  ///< difference
+Shape mirrored(const Shape& shape);             ///< in the plane x = 0
+/// Turned about the line through `centre` along y, from z towards x.
+Shape leaning(const Shape& shape, const Point& centre, double degrees);
 
 }  // namespace podm

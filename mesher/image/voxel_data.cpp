@@ -120,9 +120,19 @@ VoxelData find_meta_voxels(const std::string& path) {
   if (const std::string skip = header.field("headersize"); !skip.empty() && skip != "0")
     refuse(path, "'HeaderSize' is not supported");
   if (lower(header.field("binarydata")) == "false") refuse(path, "voxels written as text are not supported");
+  for (const char* key : {"dimsize", "elementtype"})  // ITK prints what it misses
+    if (header.field(key).empty()) refuse(path, std::string("the MetaImage header has no '") + key + "'");
   const bool is_compressed = lower(header.field("compresseddata")) == "true";
-  if (lower(file) == "local") return {path, header.bytes, is_compressed};
-  return {beside(path, file), 0, is_compressed};
+  const bool is_local = lower(file) == "local";
+  const VoxelData data{is_local ? path : beside(path, file), is_local ? header.bytes : 0, is_compressed};
+  // ITK reads as many bytes as the header says, whatever the stream needs.
+  const std::string stream_bytes = header.field("compresseddatasize");
+  const std::uint64_t size = file_bytes(data.path);
+  if (is_compressed && !stream_bytes.empty() &&
+      stream_bytes != std::to_string(size - std::min(size, data.offset)))
+    refuse(path,
+           "the file is truncated (CompressedDataSize = " + stream_bytes + " is not the size of its stream)");
+  return data;
 }
 
 void expect_voxel_bytes(const std::string& path, const VoxelData& data, std::uint64_t needed) {

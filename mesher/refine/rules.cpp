@@ -29,20 +29,21 @@ LabelIndex Rules::label_of(CellId c) const {
   return label;
 }
 
+// A vertex on the isosurface lies within 2r of z: below r = delta/2 it silences R1, and R2 with it.
+bool Rules::is_settled(const Cell& cell, double squared_radius) const {
+  return 4 * squared_radius < squared_delta_ &&
+         std::any_of(cell.vertices.begin(), cell.vertices.end(),
+                     [&](VertexId v) { return mesh_.vertex(v).kind == VertexKind::kIsosurface; });
+}
+
 Examination Rules::examine(CellId c) const {
   const Cell& cell = mesh_.cell(c);
   const Point& center = cell.sphere.center;
-  Examination t{c, center, cell.sphere.squared_radius, label_of(c), isosurface_.distance_lower_bound(center),
-                {}};
+  Examination t{c, center, cell.sphere.squared_radius, label_of(c), 0, {}};
   if (std::isnan(t.squared_radius))
     t.squared_radius = squared_distance(center, mesh_.point(cell.vertices[0]));
-  if (square(t.isosurface_distance) > t.squared_radius) return t;
-  // A vertex on the isosurface lies within 2r of z: below r = delta/2 it silences R1, and R2 with it.
-  if (4 * t.squared_radius < squared_delta_) {
-    for (const VertexId v : cell.vertices) {
-      if (mesh_.vertex(v).kind == VertexKind::kIsosurface) return t;
-    }
-  }
+  t.isosurface_distance = isosurface_.distance_lower_bound(center);
+  if (square(t.isosurface_distance) > t.squared_radius || is_settled(cell, t.squared_radius)) return t;
   const double radius = std::sqrt(t.squared_radius);
   t.nearest = isosurface_.closest_point(center, radius);
   t.isosurface_distance = kNearestTrust * (t.nearest ? distance(center, *t.nearest) : radius);

@@ -71,6 +71,7 @@ class Rules {
 
  private:
   bool may_be_restricted(const Examination& t, CellId neighbor) const;
+  bool is_settled(const Cell& cell, double squared_radius) const;
   bool needs_sample(CellId c, unsigned facet) const;
 
   Mesh& mesh_;

@@ -49,7 +49,10 @@ void Worker<Locks>::apply_first_rule(CellId c) {
 // The point and its R6 removals are one operation.
 template <class Locks>
 auto Worker<Locks>::insert_on_isosurface(const Point& z, CellId start, Rule rule) -> Sampled {
-  if (operation_.plan_insertion(z, start) != Outcome::kCommitted) return give_up();
+  if (operation_.plan_insertion(z, start) != Outcome::kCommitted) {
+    operation_.rollback();  // the ball only touches the isosurface at z
+    return Sampled::kNo;
+  }
   bool is_covered = false;
   if (rule == Rule::kR1) {
     operation_.for_each_region_vertex(

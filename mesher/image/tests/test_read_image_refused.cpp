@@ -215,6 +215,13 @@ std::vector<BadFile> bad_other_files() {
       {"MhaTruncated", "a.mha", [] { return kMha + cut(kVoxels, 1); }, "truncated"},
       {"MhaTruncatedZlib", "a.mha", [] { return compressed_mha(cut(deflated(kVoxels, 15), 5)); },
        "truncated"},
+      {"MhaZlibLongerThanAnnounced", "a.mha",
+       [] {
+         return replaced(compressed_mha(deflated(kVoxels, 15)), "CompressedDataSize = 1",
+                         "CompressedDataSize = 0");
+       },
+       "truncated"},
+      {"MhaNoSize", "a.mha", [] { return replaced(kMha, "DimSize = 2 3 4\n", "") + kVoxels; }, "dimsize"},
       {"MhaShortZlib", "a.mha", [] { return compressed_mha(deflated(cut(kVoxels, 1), 15)); }, "truncated"},
       {"MhaHuge", "a.mha", [] { return replaced(kMha, "2 3 4", "2000 2000 2000") + kVoxels; }, "truncated"},
       {"MhaTooManyBeside", "a.mhd",

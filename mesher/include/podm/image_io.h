@@ -24,7 +24,7 @@ struct LabelSelection {
 
 /// Parses "1,3-7". Throws InputError naming `option` and the fault.
 std::vector<std::pair<std::uint32_t, std::uint32_t>> parse_label_ranges(const std::string& text,
-                                                                       const std::string& option);
+                                                                        const std::string& option);
 /// Parses "2,3=kidney".
 LabelSelection::Merge parse_merge(const std::string& text);
 

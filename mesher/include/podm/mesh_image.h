@@ -62,9 +62,10 @@ struct Guarantees {
   std::uint64_t facet_angle = 0;     ///< boundary facets with an angle <= kFacetAngleBound
   std::uint64_t radius = 0;          ///< cells with circumradius > r_t
   std::uint64_t facet_vertices = 0;  ///< boundary facets with a vertex off the isosurface
+  std::uint64_t orientation = 0;     ///< cells that rounding to output coordinates made flat or turned over
   std::uint64_t missing_labels = 0;  ///< labels of more than 1000 voxels without a cell
   bool all_met() const {
-    return radius_edge + facet_angle + radius + facet_vertices + missing_labels == 0;
+    return radius_edge + facet_angle + radius + facet_vertices + orientation + missing_labels == 0;
   }
 };
 
@@ -96,9 +97,9 @@ struct MeshingReport {
   Guarantees guarantees;
   Quality quality;
   Counters counters;
-  std::map<std::uint32_t, std::uint64_t> cells_of_label;   ///< by label value
-  std::map<std::uint32_t, double> volume_of_label_mm3;     ///< by label value, of the mesh
-  std::uint64_t store_cells = 0;                           ///< cells of the whole virtual box
+  std::map<std::uint32_t, std::uint64_t> cells_of_label;  ///< by label value
+  std::map<std::uint32_t, double> volume_of_label_mm3;    ///< by label value, of the mesh
+  std::uint64_t store_cells = 0;                          ///< cells of the whole virtual box
   std::vector<std::string> warnings;
 };
 

@@ -18,10 +18,10 @@ std::string to_string(Space space);
 
 /// Every cell is positively oriented: with vertices (a,b,c,d), dot(cross(b-a, c-a), d-a) > 0.
 struct TetMesh {
-  std::vector<std::array<double, 3>> vertices;        ///< coordinates in `space`
-  std::vector<std::array<std::uint32_t, 4>> cells;    ///< vertex positions
-  std::vector<LabelIndex> cell_labels;                ///< one a cell, position in `labels`, never background
-  std::vector<std::array<std::uint32_t, 3>> facets;   ///< boundary and interface facets, each once
+  std::vector<std::array<double, 3>> vertices;       ///< coordinates in `space`
+  std::vector<std::array<std::uint32_t, 4>> cells;   ///< vertex positions
+  std::vector<LabelIndex> cell_labels;               ///< one a cell, position in `labels`, never background
+  std::vector<std::array<std::uint32_t, 3>> facets;  ///< boundary and interface facets, each once
   /// One a facet: the labels on its two sides, smaller index first; 0 is outside. The facet's normal
   /// (right-hand rule) points out of the cell of the *second* label, towards the first.
   std::vector<std::array<LabelIndex, 2>> facet_labels;
