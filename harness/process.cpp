@@ -26,6 +26,7 @@ using Clock = std::chrono::steady_clock;
 using End = ProcessOutcome::End;
 
 constexpr int kPollMs = 100;  // how late a stop request or the time limit may be seen; an end is seen at once
+constexpr int kPollWithoutDescriptorMs = 1;  // an end is then seen this late
 
 double seconds_since(Clock::time_point start) {
   return std::chrono::duration<double>(Clock::now() - start).count();
@@ -72,17 +73,24 @@ class SpawnSetup {
   posix_spawnattr_t attributes_;
 };
 
+// Leaves the child to be waited for.
+bool has_ended(pid_t pid) {
+  siginfo_t info{};
+  return waitid(P_PID, static_cast<id_t>(pid), &info, WEXITED | WNOHANG | WNOWAIT) == 0 && info.si_pid == pid;
+}
+
 // kExited when the child ended by itself, otherwise why it has to be killed.
 End wait_for_end(pid_t pid, double timeout_s, Clock::time_point start, const StopQuery& stop_requested) {
-  const int descriptor = pidfd_open(pid, 0);
+  const int descriptor = pidfd_open(pid, 0);  // -1, which poll() passes over: in a sandbox, or too many files
+  const int poll_ms = descriptor < 0 ? kPollWithoutDescriptorMs : kPollMs;
   pollfd child{.fd = descriptor, .events = POLLIN, .revents = 0};
   End end = End::kExited;
-  while (poll(&child, 1, kPollMs) <= 0) {
+  while (poll(&child, 1, poll_ms) <= 0 && !has_ended(pid)) {
     if (stop_requested && stop_requested()) end = End::kInterrupted;
     if (timeout_s > 0 && seconds_since(start) >= timeout_s) end = End::kTimedOut;
     if (end != End::kExited) break;
   }
-  close(descriptor);
+  if (descriptor >= 0) close(descriptor);
   return end;
 }
 

@@ -1,5 +1,9 @@
+#include <fcntl.h>
 #include <gtest/gtest.h>
+#include <sys/resource.h>
+#include <unistd.h>
 
+#include <cerrno>
 #include <chrono>
 #include <csignal>
 #include <thread>
@@ -71,6 +75,23 @@ TEST(Process, TimeLimitKillsTheChildAndItsChildren) {
   for (int tries = 0; tries < 100 && is_running(); ++tries)
     std::this_thread::sleep_for(std::chrono::milliseconds(20));
   EXPECT_FALSE(is_running());
+}
+
+TEST(Process, EndIsSeenWhenNoDescriptorIsLeft) {
+  rlimit before{};
+  ASSERT_EQ(getrlimit(RLIMIT_NOFILE, &before), 0);
+  rlimit few = before;
+  few.rlim_cur = 64;
+  ASSERT_EQ(setrlimit(RLIMIT_NOFILE, &few), 0);
+  std::vector<int> taken;  // the child's are closed when it starts its program
+  for (int file; (file = open("/dev/null", O_RDONLY | O_CLOEXEC)) >= 0;) taken.push_back(file);
+  const int error = errno;
+  const ProcessOutcome outcome = run_process(shell("exit 3"));
+  for (const int file : taken) close(file);
+  setrlimit(RLIMIT_NOFILE, &before);
+  ASSERT_EQ(error, EMFILE);
+  EXPECT_EQ(outcome.end, End::kExited);
+  EXPECT_EQ(outcome.exit_code, 3);
 }
 
 TEST(Process, StopRequestEndsTheChildEarly) {
