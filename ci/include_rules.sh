@@ -26,7 +26,7 @@ part_of() {
   esac
 }
 
-# The file of ours that `#include "$2"` in file $1 means; nothing when it is not ours.
+# The file of ours that `#include "$2"` or <$2> in file $1 means; nothing when it is not ours.
 resolve() {
   for folder in "$(dirname "$1")" mesher mesher/include harness verifiers; do
     [ ! -f "$folder/$2" ] || { realpath --relative-to=. "$folder/$2"; return; }
@@ -42,10 +42,10 @@ is_allowed() {  # $1 includes $2, both parts of the tree
   return 1
 }
 
-includes=$(git grep -nE '^[[:space:]]*#[[:space:]]*include[[:space:]]*"' -- '*.h' '*.cpp')
+includes=$(git grep -nE '^[[:space:]]*#[[:space:]]*include[[:space:]]*["<]' -- '*.h' '*.cpp')
 violations=$(echo "$includes" | while IFS=: read -r file line text; do
-  name=${text#*\"}
-  target=$(resolve "$file" "${name%%\"*}")
+  name=${text#*[\"<]}
+  target=$(resolve "$file" "${name%%[\">]*}")
   [ -n "$target" ] || continue
   from=$(part_of "$file")
   to=$(part_of "$target")
