@@ -1,6 +1,7 @@
 // Analytic phantoms: images for machines without data, at any resolution and of one physical size.
 #include <algorithm>
 #include <array>
+#include <cmath>
 #include <map>
 #include <thread>
 
@@ -18,50 +19,76 @@ constexpr int kMarginVoxels = 2;
 
 struct Phantom {
   std::vector<Organ> organs;
-  Vector half_extent_mm;
+  Vector half_extent_mm;          // around the origin, holds every organ
+  double relative_z_spacing = 1;  // to the spacing along x and y
 };
 
 std::vector<Organ> spheres() {
-  return {
-      {1, "shell", ellipsoid({-20, 0, 0}, {60, 60, 60})},
-      {2, "core", ellipsoid({-20, 0, 0}, {35, 35, 35})},
-      {3, "neighbour", without(ellipsoid({62, 0, 0}, {36, 36, 36}), ellipsoid({-20, 0, 0}, {60, 60, 60}))}};
+  const Shape shell = ellipsoid({-20, 0, 0}, {60, 60, 60});
+  return {{1, "shell", shell},
+          {2, "core", ellipsoid({-20, 0, 0}, {35, 35, 35})},
+          {3, "neighbour", without(ellipsoid({62, 0, 0}, {36, 36, 36}), shell)}};
 }
 
-std::vector<Organ> torus() {
-  const Shape ring{[](const Point& p) { return std::hypot(std::hypot(p.x, p.y) - 60, p.z) - 22; },
-                   {-82, -82, -22},
-                   {82, 82, 22}};
-  return {{1, "ring", ring}, {2, "ball", ellipsoid({0, 0, 0}, {30, 30, 30})}};
+std::vector<Organ> torus_and_ball() {
+  return {{1, "ring", torus(60, 22)}, {2, "ball", ellipsoid({0, 0, 0}, {30, 30, 30})}};
 }
 
 Phantom phantom_of(const std::string& name) {
-  if (name == "abdomen") return {abdomen_organs(), {165, 112, 97}};
+  if (name == "abdomen") return {abdomen_organs(), kAbdomenHalfExtent, 1.25};
   if (name == "spheres") return {spheres(), {98, 60, 60}};
-  if (name == "torus") return {torus(), {82, 82, 30}};
+  if (name == "torus") return {torus_and_ball(), {82, 82, 30}};
   std::string known;
   for (const std::string& n : phantom_names()) known += " " + n;
   throw InputError("phantom:" + name + ": unknown phantom (known:" + known + ")");
 }
 
-bool holds(const Shape& shape, const Point& p) {
-  return p.x >= shape.low.x && p.x <= shape.high.x && p.y >= shape.low.y && p.y <= shape.high.y &&
-         p.z >= shape.low.z && p.z <= shape.high.z && shape.value(p) < 0;
+/// Positions of voxel centres along one axis.
+struct Axis {
+  double first, spacing;
+  int size;
+
+  double at(int i) const { return first + spacing * i; }
+  /// The first position not below `low`, and the first one above `high`, within the axis.
+  int first_not_below(double low) const {
+    return static_cast<int>(std::clamp(std::ceil((low - first) / spacing), 0.0, static_cast<double>(size)));
+  }
+  int end_of(double high) const {
+    return static_cast<int>(
+        std::clamp(std::floor((high - first) / spacing) + 1, 0.0, static_cast<double>(size)));
+  }
+};
+
+Axis axis_of(const LabelImage& image, std::size_t axis) {
+  return {image.voxel_to_ras[4 * axis + 3], image.spacing[axis], image.size[axis]};
 }
 
-void fill_slice(LabelImage& image, const std::vector<Organ>& organs,
-                const std::vector<LabelIndex>& index_of_organ, int k) {
-  const auto& a = image.voxel_to_ras;
-  for (int j = 0; j < image.size[1]; ++j) {
-    for (int i = 0; i < image.size[0]; ++i) {
-      const Point p{a[0] * i + a[3], a[5] * j + a[7], a[10] * k + a[11]};
-      for (std::size_t o = organs.size(); o-- > 0;) {
-        if (!holds(organs[o].shape, p)) continue;
-        image.voxels[image.index(i, j, k)] = index_of_organ[o];
-        break;
-      }
+/// An organ ready for voxels.
+struct Paint {
+  Shape shape;
+  LabelIndex label;
+};
+
+// From the last paint to the first, each on the voxels that are still background.
+void fill_row(LabelIndex* row, const std::vector<const Paint*>& paints, const Axis& x, double y, double z) {
+  for (auto paint = paints.rbegin(); paint != paints.rend(); ++paint) {
+    const Shape& shape = (*paint)->shape;
+    if (y < shape.low.y || y > shape.high.y) continue;
+    const int end = x.end_of(shape.high.x);
+    for (int i = x.first_not_below(shape.low.x); i < end; ++i) {
+      if (row[i] == kBackground && shape.value({x.at(i), y, z}) < 0) row[i] = (*paint)->label;
     }
   }
+}
+
+void fill_slice(LabelImage& image, const std::vector<Paint>& paints, int k) {
+  const Axis x = axis_of(image, 0), y = axis_of(image, 1);
+  const double z = axis_of(image, 2).at(k);
+  std::vector<const Paint*> met;
+  for (const Paint& paint : paints) {
+    if (z >= paint.shape.low.z && z <= paint.shape.high.z) met.push_back(&paint);
+  }
+  for (int j = 0; j < y.size; ++j) fill_row(&image.voxels[image.index(0, j, k)], met, x, y.at(j), z);
 }
 
 void fill(LabelImage& image, const std::vector<Organ>& organs) {
@@ -73,14 +100,14 @@ void fill(LabelImage& image, const std::vector<Organ>& organs) {
     index[value] = static_cast<LabelIndex>(image.labels.size());
     image.labels.push_back({value, name});
   }
-  std::vector<LabelIndex> index_of_organ;
-  for (const Organ& organ : organs) index_of_organ.push_back(index[organ.label]);
+  std::vector<Paint> paints;
+  for (const Organ& organ : organs) paints.push_back({organ.shape, index[organ.label]});
   image.voxels.assign(image.num_voxels(), kBackground);
   const int num_threads = static_cast<int>(std::max(1u, std::thread::hardware_concurrency()));
   std::vector<std::jthread> threads;
   for (int t = 0; t < num_threads; ++t) {
     threads.emplace_back([&, t] {
-      for (int k = t; k < image.size[2]; k += num_threads) fill_slice(image, organs, index_of_organ, k);
+      for (int k = t; k < image.size[2]; k += num_threads) fill_slice(image, paints, k);
     });
   }
 }
@@ -99,11 +126,13 @@ LabelImage make_phantom(const std::string& name, int size) {
                                    phantom.half_extent_mm.z};
   const double spacing = 2 * *std::max_element(half.begin(), half.end()) / (size - 2 * kMarginVoxels);
   LabelImage image;
-  image.spacing = {spacing, spacing, spacing};
+  image.spacing = {spacing, spacing, phantom.relative_z_spacing * spacing};
   for (std::size_t axis = 0; axis < 3; ++axis) {
-    image.size[axis] = static_cast<int>(std::ceil(2 * half[axis] / spacing)) + 2 * kMarginVoxels;
-    image.voxel_to_ras[5 * axis] = spacing;
-    image.voxel_to_ras[4 * axis + 3] = -0.5 * (image.size[axis] - 1) * spacing;
+    constexpr double kRoundOff = 1e-9;  // else the longest axis might get a voxel too many
+    const double voxels = std::ceil(2 * half[axis] / image.spacing[axis] - kRoundOff);
+    image.size[axis] = static_cast<int>(voxels) + 2 * kMarginVoxels;
+    image.voxel_to_ras[5 * axis] = image.spacing[axis];
+    image.voxel_to_ras[4 * axis + 3] = -0.5 * (image.size[axis] - 1) * image.spacing[axis];
   }
   fill(image, phantom.organs);
   return image;

@@ -7,7 +7,9 @@
 
 namespace podm {
 
-/// About 330 x 225 x 195 mm around the origin, RAS: x right, y anterior, z superior.
+inline constexpr Vector kAbdomenHalfExtent{165, 112, 97};  ///< mm
+
+/// Organs within kAbdomenHalfExtent of the origin, in RAS: x right, y anterior, z superior.
 std::vector<Organ> abdomen_organs();
 
 }  // namespace podm

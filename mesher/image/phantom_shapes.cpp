@@ -53,12 +53,10 @@ Shape ellipsoid(const Point& centre, const Vector& radii) {
           centre - radii, centre + radii};
 }
 
-Shape dome(const Point& centre, const Vector& radii, double floor) {
+Shape dome(const Point& centre, const Vector& radii) {
   Shape shape = ellipsoid(centre, radii);
-  shape.value = [=, half = shape.value](const Point& p) {
-    return half({p.x, p.y, std::max(p.z, centre.z)});
-  };
-  shape.low.z = floor;
+  shape.value = [=, half = shape.value](const Point& p) { return half({p.x, p.y, std::max(p.z, centre.z)}); };
+  shape.low.z = -kEverywhere;
   return shape;
 }
 
@@ -74,7 +72,7 @@ Shape slab(const Point& centre, const Vector& half_extent) {
             const double x = (p.x - centre.x) / half_extent.x, y = (p.y - centre.y) / half_extent.y,
                          z = (p.z - centre.z) / half_extent.z;
             const double xx = x * x, yy = y * y, z4 = z * z * z * z;
-            return xx + yy - kSlabSquareness * xx * yy + z4 * z4 - 1;
+            return xx + yy - kSlabSquareness * std::min(xx, 1.0) * std::min(yy, 1.0) + z4 * z4 - 1;
           },
           centre - half_extent, centre + half_extent};
 }

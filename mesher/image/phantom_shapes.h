@@ -25,8 +25,8 @@ struct Organ {
 
 Shape ellipsoid(const Point& centre, const Vector& radii);
 
-/// An ellipsoid's upper half on an elliptic cylinder that goes down to z = `floor`.
-Shape dome(const Point& centre, const Vector& radii, double floor);
+/// An ellipsoid's upper half on an elliptic cylinder without a lower end.
+Shape dome(const Point& centre, const Vector& radii);
 
 /// A torus around the z axis through the origin.
 Shape torus(double ring_radius, double tube_radius);

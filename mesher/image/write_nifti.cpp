@@ -1,12 +1,18 @@
 // NIfTI-1 label images.
-#include <nifti/nifti1.h>
+#include <fcntl.h>
+#include <nifti/nifti1_io.h>
 #include <unistd.h>
 #include <zlib.h>
 
+#include <algorithm>
+#include <array>
+#include <cerrno>
 #include <cmath>
 #include <cstdio>
 #include <cstring>
-#include <filesystem>
+#include <limits>
+#include <system_error>
+#include <utility>
 
 #include "podm/errors.h"
 #include "podm/image_io.h"
@@ -16,80 +22,156 @@ namespace podm {
 namespace {
 
 constexpr std::size_t kDataOffset = 352;
+constexpr int kLongestAxis = std::numeric_limits<short>::max();
 
-bool ends_with(const std::string& path, const std::string& ending) {
-  return path.size() >= ending.size() &&
-         path.compare(path.size() - ending.size(), ending.size(), ending) == 0;
+[[noreturn]] void fail(const std::string& path, const std::string& fault) {
+  throw InputError(path + ": " + fault);
 }
 
-nifti_1_header header_of(const LabelImage& image, int bytes) {
-  nifti_1_header h{};
-  h.sizeof_hdr = 348;
-  h.dim[0] = 3;
-  for (int axis = 0; axis < 3; ++axis)
-    h.dim[axis + 1] = static_cast<short>(image.size[static_cast<std::size_t>(axis)]);
-  for (int axis = 4; axis < 8; ++axis) h.dim[axis] = 1;
-  h.datatype = static_cast<short>(bytes == 1 ? DT_UINT8 : bytes == 2 ? DT_UINT16 : DT_UINT32);
-  h.bitpix = static_cast<short>(8 * bytes);
-  h.pixdim[0] = 1;
-  for (std::size_t axis = 0; axis < 3; ++axis) h.pixdim[axis + 1] = static_cast<float>(image.spacing[axis]);
-  h.vox_offset = kDataOffset;
-  h.scl_slope = 1;
-  h.xyzt_units = NIFTI_UNITS_MM;
-  h.sform_code = NIFTI_XFORM_SCANNER_ANAT;
-  for (std::size_t column = 0; column < 4; ++column) {
-    h.srow_x[column] = static_cast<float>(image.voxel_to_ras[column]);
-    h.srow_y[column] = static_cast<float>(image.voxel_to_ras[4 + column]);
-    h.srow_z[column] = static_cast<float>(image.voxel_to_ras[8 + column]);
-  }
-  std::memcpy(h.magic, "n+1", 4);
-  return h;
+[[noreturn]] void fail_to_write(const std::string& path, int error_number) {
+  fail(path, "cannot write: " + std::generic_category().message(error_number));
 }
 
-int bytes_a_voxel(const LabelImage& image) {
+struct VoxelFormat {
+  short datatype;
+  std::size_t bytes;
+};
+
+// int32 rather than uint32 where it will do: more programs read it.
+VoxelFormat smallest_format(const LabelImage& image) {
   std::uint32_t largest = 0;
   for (const Label& label : image.labels) largest = std::max(largest, label.value);
-  return largest < 256 ? 1 : largest < 65536 ? 2 : 4;
+  if (largest <= std::numeric_limits<std::uint8_t>::max()) return {DT_UINT8, 1};
+  if (largest <= std::numeric_limits<std::uint16_t>::max()) return {DT_UINT16, 2};
+  if (largest <= std::numeric_limits<std::int32_t>::max()) return {DT_INT32, 4};
+  return {DT_UINT32, 4};
 }
 
-bool write_all(gzFile file, const LabelImage& image) {
-  const int bytes = bytes_a_voxel(image);
-  const nifti_1_header header = header_of(image, bytes);
-  const std::array<char, kDataOffset - sizeof(header)> extension{};
-  if (gzwrite(file, &header, sizeof(header)) != static_cast<int>(sizeof(header))) return false;
-  if (gzwrite(file, extension.data(), extension.size()) != static_cast<int>(extension.size())) return false;
-  std::vector<unsigned char> row(static_cast<std::size_t>(image.size[0]) * static_cast<std::size_t>(bytes));
-  for (std::size_t begin = 0; begin < image.voxels.size(); begin += static_cast<std::size_t>(image.size[0])) {
-    for (std::size_t i = 0; i < static_cast<std::size_t>(image.size[0]); ++i) {
-      const std::uint32_t value = image.labels[image.voxels[begin + i]].value;
-      std::memcpy(row.data() + i * static_cast<std::size_t>(bytes), &value, static_cast<std::size_t>(bytes));
-    }
-    if (gzwrite(file, row.data(), static_cast<unsigned>(row.size())) != static_cast<int>(row.size()))
-      return false;
+// The quaternion form holds rotations and spacings alone: the columns must be orthogonal.
+bool has_orthogonal_columns(const std::array<double, 12>& m) {
+  constexpr double kLargestCosine = 1e-6;
+  const auto product = [&](std::size_t a, std::size_t b) {
+    return m[a] * m[b] + m[4 + a] * m[4 + b] + m[8 + a] * m[8 + b];
+  };
+  for (const auto& [a, b] : {std::pair<std::size_t, std::size_t>{0, 1}, {0, 2}, {1, 2}}) {
+    if (std::abs(product(a, b)) > kLargestCosine * std::sqrt(product(a, a) * product(b, b))) return false;
   }
   return true;
+}
+
+void set_affine(nifti_1_header& header, const LabelImage& image) {
+  mat44 affine{};
+  for (std::size_t row = 0; row < 3; ++row) {
+    for (std::size_t column = 0; column < 4; ++column) {
+      affine.m[row][column] = static_cast<float>(image.voxel_to_ras[4 * row + column]);
+    }
+  }
+  affine.m[3][3] = 1;
+  std::memcpy(header.srow_x, affine.m[0], sizeof header.srow_x);
+  std::memcpy(header.srow_y, affine.m[1], sizeof header.srow_y);
+  std::memcpy(header.srow_z, affine.m[2], sizeof header.srow_z);
+  header.sform_code = NIFTI_XFORM_SCANNER_ANAT;
+  header.pixdim[0] = 1;
+  for (std::size_t axis = 0; axis < 3; ++axis) {
+    header.pixdim[axis + 1] = static_cast<float>(image.spacing[axis]);
+  }
+  if (!has_orthogonal_columns(image.voxel_to_ras)) return;
+  header.qform_code = NIFTI_XFORM_SCANNER_ANAT;
+  nifti_mat44_to_quatern(affine, &header.quatern_b, &header.quatern_c, &header.quatern_d, &header.qoffset_x,
+                         &header.qoffset_y, &header.qoffset_z, nullptr, nullptr, nullptr, &header.pixdim[0]);
+}
+
+nifti_1_header header_of(const LabelImage& image, const VoxelFormat& format) {
+  nifti_1_header header{};
+  header.sizeof_hdr = sizeof header;
+  header.dim[0] = 3;
+  for (std::size_t axis = 0; axis < 3; ++axis) header.dim[axis + 1] = static_cast<short>(image.size[axis]);
+  for (std::size_t axis = 4; axis < 8; ++axis) header.dim[axis] = 1;
+  header.datatype = format.datatype;
+  header.bitpix = static_cast<short>(8 * format.bytes);
+  header.vox_offset = kDataOffset;
+  header.scl_slope = 1;
+  header.xyzt_units = NIFTI_UNITS_MM;
+  set_affine(header, image);
+  std::memcpy(header.magic, "n+1", sizeof header.magic);
+  return header;
+}
+
+/// A file beside `path`, compressed or not, that takes its name when all of it is on the disk.
+class PendingFile {
+ public:
+  PendingFile(const std::string& path, bool is_compressed)
+      : path_(path), temporary_(path + ".tmp" + std::to_string(::getpid())) {
+    descriptor_ = ::open(temporary_.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC, 0666);
+    if (descriptor_ < 0) fail_to_write(path_, errno);
+    // The stream gets a descriptor of its own: gzclose() would take the one that fsync() needs.
+    stream_ = ::gzdopen(::dup(descriptor_), is_compressed ? "wb6" : "wbT");
+    if (stream_ == nullptr) {
+      const int error_number = errno;
+      discard();
+      fail_to_write(path_, error_number);
+    }
+  }
+  ~PendingFile() {
+    if (stream_ != nullptr) ::gzclose(stream_);
+    discard();
+  }
+  PendingFile(const PendingFile&) = delete;
+  PendingFile& operator=(const PendingFile&) = delete;
+
+  void write(const void* bytes, std::size_t size) {
+    errno = 0;
+    if (::gzfwrite(bytes, 1, size, stream_) != size) fail_to_write(path_, errno != 0 ? errno : EIO);
+  }
+
+  void publish() {
+    errno = 0;
+    const bool is_closed = ::gzclose(std::exchange(stream_, nullptr)) == Z_OK;
+    if (!is_closed || ::fsync(descriptor_) != 0) fail_to_write(path_, errno != 0 ? errno : EIO);
+    if (std::rename(temporary_.c_str(), path_.c_str()) != 0) fail_to_write(path_, errno);
+    temporary_.clear();
+  }
+
+ private:
+  void discard() {
+    if (!temporary_.empty()) ::unlink(temporary_.c_str());
+    ::close(descriptor_);
+  }
+
+  std::string path_;
+  std::string temporary_;  // empty once published
+  int descriptor_ = -1;
+  gzFile stream_ = nullptr;
+};
+
+void write_voxels(PendingFile& file, const LabelImage& image, std::size_t bytes) {
+  const auto row_length = static_cast<std::size_t>(image.size[0]);
+  std::vector<char> row(row_length * bytes);
+  for (std::size_t begin = 0; begin < image.voxels.size(); begin += row_length) {
+    for (std::size_t i = 0; i < row_length; ++i) {
+      const std::uint32_t value = image.labels[image.voxels[begin + i]].value;
+      std::memcpy(row.data() + i * bytes, &value, bytes);  // little-endian: the low bytes come first
+    }
+    file.write(row.data(), row.size());
+  }
 }
 
 }  // namespace
 
 void write_nifti(const LabelImage& image, const std::string& path) {
-  const bool is_compressed = ends_with(path, ".nii.gz");
-  if (!is_compressed && !ends_with(path, ".nii"))
-    throw InputError(path + ": a NIfTI image ends in .nii or .nii.gz");
-  for (const int size : image.size) {
-    if (size > 32767) throw InputError(path + ": NIfTI-1 holds at most 32767 voxels along an axis");
+  const bool is_compressed = path.ends_with(".nii.gz");
+  if (!is_compressed && !path.ends_with(".nii")) fail(path, "a NIfTI image ends in .nii or .nii.gz");
+  if (*std::max_element(image.size.begin(), image.size.end()) > kLongestAxis) {
+    fail(path, "NIfTI-1 holds at most " + std::to_string(kLongestAxis) + " voxels along an axis");
   }
-  const std::string aside = path + ".tmp" + std::to_string(getpid());
-  const gzFile file = gzopen(aside.c_str(), is_compressed ? "wb6" : "wbT");
-  if (file == nullptr) throw InputError(path + ": cannot be written");
-  const bool is_written = write_all(file, image);
-  const bool is_closed = gzclose(file) == Z_OK;
-  std::error_code error;
-  if (is_written && is_closed) std::filesystem::rename(aside, path, error);
-  if (!is_written || !is_closed || error) {
-    std::filesystem::remove(aside, error);
-    throw InputError(path + ": writing failed (disk full?)");
-  }
+  const VoxelFormat format = smallest_format(image);
+  const nifti_1_header header = header_of(image, format);
+  const std::array<char, kDataOffset - sizeof header> no_extension{};
+  PendingFile file(path, is_compressed);
+  file.write(&header, sizeof header);
+  file.write(no_extension.data(), no_extension.size());
+  write_voxels(file, image, format.bytes);
+  file.publish();
 }
 
 }  // namespace podm
