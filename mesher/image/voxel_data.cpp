@@ -123,7 +123,7 @@ VoxelData find_meta_voxels(const std::string& path) {
   for (const char* key : {"dimsize", "elementtype"})  // ITK prints what it misses
     if (header.field(key).empty()) refuse(path, std::string("the MetaImage header has no '") + key + "'");
   const bool is_compressed = lower(header.field("compresseddata")) == "true";
-  const bool is_local = lower(file) == "local";
+  const bool is_local = file == "LOCAL" || file == "Local" || file == "local";  // as ITK has it
   const VoxelData data{is_local ? path : beside(path, file), is_local ? header.bytes : 0, is_compressed};
   // ITK reads as many bytes as the header says, whatever the stream needs.
   const std::string stream_bytes = header.field("compresseddatasize");

@@ -221,6 +221,8 @@ std::vector<BadFile> bad_other_files() {
                          "CompressedDataSize = 0");
        },
        "truncated"},
+      {"MhaUnknownLocal", "a.mha",
+       [] { return mha_header(kMhaFields) + "ElementDataFile = LOCaL\n" + kVoxels; }, "LOCaL"},
       {"MhaNoSize", "a.mha", [] { return replaced(kMha, "DimSize = 2 3 4\n", "") + kVoxels; }, "dimsize"},
       {"MhaShortZlib", "a.mha", [] { return compressed_mha(deflated(cut(kVoxels, 1), 15)); }, "truncated"},
       {"MhaHuge", "a.mha", [] { return replaced(kMha, "2 3 4", "2000 2000 2000") + kVoxels; }, "truncated"},
