@@ -63,18 +63,18 @@ Outcome Operation<Locks>::plan_removal(VertexId v, CellId seed) {
   is_cavity_ = false;
   region_.removed.push_back(v);
   // Cells around v that the region already has are passed through, so the walk keeps its own list.
-  std::vector<CellId> ball{seed};
+  ball_.assign(1, seed);
   if (!lock_cell(seed)) return Outcome::kLockConflict;
   if (!mesh_.state(seed).in_region) add_to_region(seed);
-  for (std::size_t i = 0; i < ball.size(); ++i) {
-    const Cell& cell = mesh_.cell(ball[i]);
+  for (std::size_t i = 0; i < ball_.size(); ++i) {
+    const Cell& cell = mesh_.cell(ball_[i]);
     for (unsigned k = 0; k < 4; ++k) {
       if (cell.vertices[k] == v || cell.mirrors[k] == kNoFacet) continue;
       const CellId neighbor = cell_of(cell.mirrors[k]);
-      if (std::find(ball.begin(), ball.end(), neighbor) != ball.end()) continue;
+      if (std::find(ball_.begin(), ball_.end(), neighbor) != ball_.end()) continue;
       if (!lock_cell(neighbor)) return Outcome::kLockConflict;
       if (!mesh_.state(neighbor).in_region) add_to_region(neighbor);
-      ball.push_back(neighbor);
+      ball_.push_back(neighbor);
     }
   }
   return Outcome::kCommitted;

@@ -72,6 +72,7 @@ class Operation {
   Pool& pool_;
   Locks locks_;
   Region region_;
+  std::vector<CellId> ball_;  // scratch of plan_removal
   StarFiller star_;
   HoleFiller hole_;
   bool is_cavity_ = false;  // the region is one point's cavity, its boundary collected while digging
