@@ -11,8 +11,9 @@ target_link_libraries(podm_image_io PUBLIC podm_geometry PRIVATE podm_flags ${IT
                                                                  ZLIB::ZLIB Threads::Threads)
 
 podm_add_test(image_io_tests
-              SOURCES tests/test_label_names.cpp tests/test_label_selection.cpp tests/test_read_image_formats.cpp
-                      tests/test_read_image_real.cpp tests/test_read_image_refused.cpp
+              SOURCES tests/test_label_names.cpp tests/test_label_selection.cpp tests/test_phantom.cpp
+                      tests/test_read_image_formats.cpp tests/test_read_image_real.cpp
+                      tests/test_read_image_refused.cpp tests/test_write_nifti.cpp
               LIBS podm_image_io ZLIB::ZLIB)
 
 if(PODM_BUILD_FUZZERS)

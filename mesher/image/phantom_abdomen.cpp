@@ -56,7 +56,7 @@ void add_muscles(std::vector<Organ>& organs) {
 
 void add_bones(std::vector<Organ>& organs) {
   constexpr double kLevel = 34, kY = -48;  // height of vertebra and disc, the middle of the bodies
-  const Shape clip = body(5);
+  const Shape clip = body(7);              // short of the skin
   for (int level = -3; level <= 3; ++level) {
     const double z = kLevel * level;
     organs.push_back({10, "disc", within(ellipsoid({0, kY, z - kLevel / 2}, {24, 20, 9}), clip)});
@@ -143,15 +143,6 @@ void add_kidney(std::vector<Organ>& organs, std::uint32_t label, const char* nam
 }
 
 void add_stomach_and_bowel(std::vector<Organ>& organs) {
-  constexpr double kWall = 3.5;
-  const auto stomach = smooth(
-      {{{-60, 0, 42}, 22}, {{-74, 10, 34}, 25}, {{-66, 36, 12}, 23}, {{-34, 50, 0}, 18}, {{2, 46, 2}, 11}});
-  organs.push_back({22, "stomach wall", within(tube(stomach), cavity())});
-  const Shape inside = tube(widened(stomach, -kWall));
-  organs.push_back({23, "stomach fluid", inside});
-  organs.push_back(
-      {24, "stomach gas", within(inside, in_front_of(34))});  // rises: the patient lies on the back
-
   organs.push_back({26, "duodenum",
                     tube(smooth({{6, 46, 2},
                                  {34, 40, 0},
@@ -162,14 +153,23 @@ void add_stomach_and_bowel(std::vector<Organ>& organs) {
                                  {-36, 16, -38}},
                                 10))});
 
+  constexpr double kWall = 3.5;
+  const auto stomach = smooth(
+      {{{-60, 0, 42}, 22}, {{-74, 10, 34}, 25}, {{-66, 36, 12}, 23}, {{-34, 50, 4}, 17}, {{2, 46, 4}, 11}});
+  organs.push_back({22, "stomach wall", within(tube(stomach), cavity())});
+  const Shape inside = tube(widened(stomach, -kWall));
+  organs.push_back({23, "stomach fluid", inside});
+  organs.push_back(
+      {24, "stomach gas", within(inside, in_front_of(34))});  // rises: the patient lies on the back
+
   const auto small_bowel = smooth({{-36, 16, -38},
                                    {-58, 28, -40},
                                    {-30, 36, -42},
                                    {20, 28, -42},
                                    {60, 34, -46},
                                    {58, 58, -52},
-                                   {10, 56, -50},
-                                   {-52, 58, -46},
+                                   {10, 56, -52},
+                                   {-52, 55, -52},
                                    {-70, 42, -64},
                                    {-40, 28, -70},
                                    {16, 34, -72},
@@ -187,10 +187,10 @@ void add_stomach_and_bowel(std::vector<Organ>& organs) {
                                    {88, 42, -26},
                                    {46, 70, -20},
                                    {0, 74, -18},
-                                   {-48, 70, -8},
-                                   {-86, 46, 4},
-                                   {-106, 16, 6},
-                                   {-110, -6, -16},
+                                   {-48, 73, -22},
+                                   {-92, 43, -24},
+                                   {-110, 16, -14},
+                                   {-110, -8, -32},
                                    {-108, -10, -50},
                                    {-92, -8, -92}},
                                   16),
@@ -207,7 +207,7 @@ void add_vessels(std::vector<Organ>& organs) {
   for (const double side : {-1.0, 1.0}) {
     add(31, "aorta",
         {{{-10, -18, -50}, 7.5}, {{-10 + 20 * side, -20, -72}, 6}, {{-8 + 42 * side, -20, -92}, 6}});
-    add(31, "aorta", {{{-12, -18, 8}, 3.5}, {{22 * side, -32, 2}, 3.5}, {{60 * side, -40, 0 - 5 * side}, 3}});
+    add(31, "aorta", {{{-12, -18, 8}, 3.5}, {{22 * side, -32, 2}, 3.5}, {{60 * side, -40, -5 * side}, 3}});
   }
   add(31, "aorta", {{{-12, -12, 14}, 4}, {{-10, 2, 2}, 4}, {{-6, 18, -26}, 3.5}, {{0, 26, -56}, 3}});
   add(32, "vena cava", {{{22, -10, 90}, 12}, {{20, -15, 30}, 12}, {{20, -17, -52}, 11}});
@@ -239,11 +239,11 @@ std::vector<Organ> abdomen_organs() {
   add_spleen(organs);
   add_kidney(organs, 17, "right kidney", kRightKidney);
   add_kidney(organs, 18, "left kidney", kLeftKidney);
-  add_stomach_and_bowel(organs);
   organs.push_back(
       {25, "pancreas",
        tube(smooth({{{32, 10, -16}, 14}, {{8, 14, -2}, 8}, {{-32, 8, 6}, 9}, {{-80, -6, 24}, 6}}))});
   add_vessels(organs);
+  add_stomach_and_bowel(organs);
   return organs;
 }
 

@@ -100,9 +100,12 @@ nifti_1_header header_of(const LabelImage& image, const VoxelFormat& format) {
 /// A file beside `path`, compressed or not, that takes its name when all of it is on the disk.
 class PendingFile {
  public:
-  PendingFile(const std::string& path, bool is_compressed)
-      : path_(path), temporary_(path + ".tmp" + std::to_string(::getpid())) {
-    descriptor_ = ::open(temporary_.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC, 0666);
+  PendingFile(const std::string& path, bool is_compressed) : path_(path) {
+    int suffix = 0;
+    do {  // a killed run may have left such a file
+      temporary_ = path + ".tmp" + std::to_string(::getpid()) + "-" + std::to_string(suffix++);
+      descriptor_ = ::open(temporary_.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC, 0666);
+    } while (descriptor_ < 0 && errno == EEXIST);
     if (descriptor_ < 0) fail_to_write(path_, errno);
     // The stream gets a descriptor of its own: gzclose() would take the one that fsync() needs.
     stream_ = ::gzdopen(::dup(descriptor_), is_compressed ? "wb6" : "wbT");
