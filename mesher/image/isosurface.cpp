@@ -26,6 +26,7 @@ Isosurface::Isosurface(const LabelImage& image, int threads)
       end_{image.size[0] - 0.5, image.size[1] - 0.5, image.size[2] - 0.5},
       half_diagonal_mm_(0.5 * std::sqrt(squared_length(spacing_))),
       shortest_side_mm_(std::min({spacing_.x, spacing_.y, spacing_.z})),
+      longest_side_mm_(std::max({spacing_.x, spacing_.y, spacing_.z})),
       weight_mm_(1 / std::sqrt(squared_length(inverse_spacing_))) {}
 
 LabelIndex Isosurface::label_on_surface_voxel(const Point& u) const {

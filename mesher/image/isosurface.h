@@ -84,6 +84,8 @@ class Isosurface {
   struct Nearest;
   Nearest nearest_midpoint(const Point& u, LabelIndex label) const;
   void try_midpoints_around(const Voxel& block, const Point& u, LabelIndex label, Nearest& best) const;
+  void try_midpoints_of(FeatureTransform::VoxelIndex index, const Point& u, LabelIndex label,
+                        Nearest& best) const;
   void try_midpoints_of_features(const Point& u, LabelIndex label, Nearest& best) const;
   bool project(const Point& u, LabelIndex label, Point& z) const;
   bool shoot(const Point& u, const Vector& d, LabelIndex label, Nearest& best) const;
@@ -92,11 +94,11 @@ class Isosurface {
 
   LabelGrid grid_;
   FeatureTransform features_;
-  Vector spacing_, inverse_spacing_;  // mm a voxel, voxels a mm
-  Point end_;                         // half a voxel beyond the last
-  double half_diagonal_mm_;           // of a voxel
-  double shortest_side_mm_;           // of a voxel
-  double weight_mm_;                  // no weight grows by 1 within less
+  Vector spacing_, inverse_spacing_;           // mm a voxel, voxels a mm
+  Point end_;                                  // half a voxel beyond the last
+  double half_diagonal_mm_;                    // of a voxel
+  double shortest_side_mm_, longest_side_mm_;  // of a voxel
+  double weight_mm_;                           // no weight grows by 1 within less
 };
 
 inline LabelIndex Isosurface::label_at_voxels(const Point& u) const {

@@ -78,26 +78,36 @@ void Isosurface::try_midpoints_around(const Voxel& block, const Point& u, LabelI
   best.other = grid_.label(block_of(beyond));
 }
 
-// Scans the edges of the features of the voxels around u.
+// Scans the edges of the features of the voxels around u, the nearest voxel's first: it rules most others
+// out.
 void Isosurface::try_midpoints_of_features(const Point& u, LabelIndex label, Nearest& best) const {
   const Voxel block = block_of(clamped_to_grid(u));
-  auto last = FeatureTransform::kNone;
+  auto last = features_.nearest(grid_.index(nearest_voxel(clamped_to_grid(u))));
+  try_midpoints_of(last, u, label, best);
   for (int c = 0; c < 8; ++c) {
     const Point corner = center({block.i + (c & 1), block.j + (c >> 1 & 1), block.k + (c >> 2)});
-    const auto index = features_.nearest(grid_.index(nearest_voxel(clamped_to_grid(corner))));
-    if (index == last) continue;
-    last = index;
-    const Voxel feature = grid_.voxel(index);
-    const LabelIndex own = grid_.label(index);
-    for (const Voxel& step : {Voxel{-1, 0, 0}, Voxel{1, 0, 0}, Voxel{0, -1, 0}, Voxel{0, 1, 0},
-                              Voxel{0, 0, -1}, Voxel{0, 0, 1}}) {
-      const Point middle = center(feature) + 0.5 * center(step);
-      const double squared = squared_length(to_mm(middle - u));
-      if (squared >= best.squared_mm) continue;
-      const Voxel neighbor{feature.i + step.i, feature.j + step.j, feature.k + step.k};
-      const LabelIndex other = grid_.label(neighbor);
-      if (other != own) best = {middle, squared, block_of(middle), own == label ? other : own};
-    }
+    const auto feature = features_.nearest(grid_.index(nearest_voxel(clamped_to_grid(corner))));
+    if (feature == last) continue;
+    last = feature;
+    try_midpoints_of(feature, u, label, best);
+  }
+}
+
+// Midpoints lie half a side from the feature, so one that is too far has none to offer.
+void Isosurface::try_midpoints_of(FeatureTransform::VoxelIndex index, const Point& u, LabelIndex label,
+                                  Nearest& best) const {
+  const Voxel feature = grid_.voxel(index);
+  const double excess_mm = length_mm(center(feature) - u) - 0.5 * longest_side_mm_;
+  if (excess_mm > 0 && square(excess_mm) >= best.squared_mm) return;
+  const LabelIndex own = grid_.label(index);
+  for (const Voxel& step :
+       {Voxel{-1, 0, 0}, Voxel{1, 0, 0}, Voxel{0, -1, 0}, Voxel{0, 1, 0}, Voxel{0, 0, -1}, Voxel{0, 0, 1}}) {
+    const Point middle = center(feature) + 0.5 * center(step);
+    const double squared = squared_length(to_mm(middle - u));
+    if (squared >= best.squared_mm) continue;
+    const Voxel neighbor{feature.i + step.i, feature.j + step.j, feature.k + step.k};
+    const LabelIndex other = grid_.label(neighbor);
+    if (other != own) best = {middle, squared, block_of(middle), own == label ? other : own};
   }
 }
 

@@ -52,8 +52,12 @@ VoxelType voxel_type(const std::string& path, const itk::ImageIOBase& io) {
 }
 
 // ITK's world is LPS.
-std::array<double, 12> voxel_to_ras(const itk::ImageIOBase& io) {
+std::array<double, 12> voxel_to_ras(const std::string& path, const itk::ImageIOBase& io) {
   std::array<double, 12> a{};
+  for (unsigned axis = 0; axis < 3; ++axis) {
+    if (!(io.GetSpacing(axis) > 0))
+      refuse(path, "the voxel spacing is not positive (axis " + std::to_string(axis) + ")");
+  }
   for (unsigned row = 0; row < 3; ++row) {
     const double flip = row < 2 ? -1 : 1;
     for (unsigned column = 0; column < 3; ++column) {
@@ -92,7 +96,7 @@ RawImage read_with_itk(const std::string& path) {
     raw.type = voxel_type(path, *io);
     const std::size_t needed = checked_num_voxels(path, raw.size) * bytes_of(raw.type);
     expect_voxel_bytes(path, data, needed);
-    raw.voxel_to_ras = voxel_to_ras(*io);
+    raw.voxel_to_ras = voxel_to_ras(path, *io);
     raw.bytes.resize(needed);
     itk::ImageIORegion region(io->GetNumberOfDimensions());
     for (unsigned axis = 0; axis < io->GetNumberOfDimensions(); ++axis) {

@@ -6,7 +6,7 @@ namespace podm {
 
 namespace {
 
-constexpr int kAttemptsBetweenChecks = 1 << 12;  // about a millisecond
+constexpr int kAttemptsBetweenChecks = 1 << 8;  // well below a millisecond
 constexpr auto kObservationInterval = std::chrono::milliseconds(200);
 // The most cells one operation is allowed to need beyond what it frees: a bound on ids, not on work.
 constexpr std::size_t kReserveCells = 1 << 16;

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 #include <functional>
+#include <ostream>
 #include <random>
 #include <vector>
 
@@ -16,6 +17,7 @@ inline const Box kBox{{-10, -10, -10}, {10, 10, 10}};
 struct PointSet {
   const char* name;
   std::function<std::vector<Point>()> make;
+  friend std::ostream& operator<<(std::ostream& out, const PointSet& x) { return out << x.name; }
 };
 
 inline std::vector<Point> random_points(unsigned seed, int n, double scale, Point center = {0, 0, 0}) {

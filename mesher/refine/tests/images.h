@@ -3,6 +3,7 @@
 
 #include <cmath>
 #include <functional>
+#include <ostream>
 #include <random>
 #include <string>
 #include <vector>
@@ -37,6 +38,7 @@ inline LabelImage ball(int n, double radius) {
 struct NamedImage {
   const char* name;
   std::function<LabelImage()> make;
+  friend std::ostream& operator<<(std::ostream& out, const NamedImage& x) { return out << x.name; }
 };
 
 inline std::vector<NamedImage> images() {
