@@ -8,8 +8,8 @@ namespace podm {
 
 namespace {
 
-// Calibrated on runs of the phantoms, see results/reference: cells = kVolumeCells V / r^3 + kSurfaceCells A /
-// delta^2, A counted in voxel faces (which overestimates a smooth area by about 1.5).
+// Fitted to a few runs, right to about 30 %: cells = kVolumeCells V / r^3 + kSurfaceCells A / delta^2, with A
+// counted in voxel faces.
 constexpr double kVolumeCells = 4.5;
 constexpr double kSurfaceCells = 4.0;
 constexpr double kMaxDeltaVoxels = 2;
