@@ -1,0 +1,55 @@
+// What a claim's check answers. One check_*.cpp a claim, one ClaimResult each; the reports are made of them.
+#pragma once
+
+#include <cstdint>
+#include <nlohmann/json.hpp>
+#include <string>
+#include <vector>
+
+#include "mesh.h"
+
+namespace podm::verify {
+
+enum class Verdict { kPass, kFail, kNotRun };
+
+std::string to_string(Verdict verdict);  ///< "pass", "fail", "not_run"
+
+/// One place where a claim does not hold, or comes closest to not holding.
+struct Witness {
+  std::string statement;           ///< which of the claim's statements it breaks: "no duplicate cells"
+  std::vector<CellId> cells;       ///< 0-based
+  std::vector<VertexId> vertices;  ///< 0-based
+  std::vector<Point> points;       ///< where to look
+  double value = 0;                ///< the measured quantity; larger `severity` is worse
+  double severity = 0;
+  LabelValue label = 0;
+};
+
+/// Counts of values in equal bins over [low, high); what lies outside goes to the first or last bin.
+struct Histogram {
+  std::string name;  ///< "radius_edge_ratio"
+  std::string unit;  ///< "", "degrees", "mm"
+  double low = 0, high = 0;
+  double minimum = 0, maximum = 0;  ///< of all values
+  std::vector<std::uint64_t> counts;
+};
+
+inline constexpr std::size_t kMaxWitnesses = 10;
+
+struct ClaimResult {
+  std::string claim;  ///< "radius_edge"
+  Verdict verdict = Verdict::kNotRun;
+  std::string reason;  ///< why not run; else one line for people: "0 of 2943112 cells at or over 1.93"
+  std::string method;  ///< "interval filter, then exact rationals"
+  std::uint64_t num_checked = 0;     ///< facts decided: cells, facets, pairs
+  std::uint64_t num_exact = 0;       ///< of these, the ones the filter left to exact arithmetic
+  std::uint64_t num_violations = 0;  ///< of the claim; 0 exactly when the verdict is pass
+  std::uint64_t num_warnings = 0;    ///< things stated but not claimed, such as orphan vertices
+  std::vector<Witness> worst;        ///< at most kMaxWitnesses, worst first; on a pass the closest calls
+  std::vector<CellId> bad_cells;     ///< every cell in a violation, ascending, each once: for --extract-bad
+  std::vector<Histogram> histograms;
+  nlohmann::json details = nlohmann::json::object();  ///< further numbers, by name with units
+  double seconds = 0;                                 ///< wall time, filled by the caller
+};
+
+}  // namespace podm::verify

@@ -1,0 +1,28 @@
+// Every claim that podm-verify knows: one check_*.cpp each, whose opening comment states it.
+#pragma once
+
+#include "claim.h"
+#include "geometry/adjacency.h"
+#include "image/image.h"
+#include "options.h"
+#include "schedule.h"
+
+namespace podm::verify {
+
+// All but structure may rely on ids in range and finite coordinates: they are not run on a mesh without.
+ClaimResult check_structure(const Mesh& mesh, const Adjacency& adjacency, const Options& options);
+ClaimResult check_delaunay(const Mesh& mesh, const Adjacency& adjacency, const Options& options);
+ClaimResult check_radius_edge(const Mesh& mesh, const Options& options);
+ClaimResult check_boundary_angles(const Mesh& mesh, const Adjacency& adjacency, const Options& options);
+ClaimResult check_size(const Mesh& mesh, const Options& options);
+/// `schedule` null: only what can be said without one, that label interfaces match.
+ClaimResult check_conformity(const Mesh& mesh, const Adjacency& adjacency, const Schedule* schedule,
+                             const Options& options);
+ClaimResult check_labels(const Mesh& mesh, const Image& image, const Options& options);
+/// `image` null: components and Euler numbers are reported without the image's beside them.
+ClaimResult check_surface(const Mesh& mesh, const Adjacency& adjacency, const Image* image,
+                          const Options& options);
+ClaimResult check_fidelity(const Mesh& mesh, const Adjacency& adjacency, const Image& image,
+                           const Options& options);
+
+}  // namespace podm::verify

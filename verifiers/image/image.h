@@ -1,0 +1,26 @@
+// The segmented image that a mesh is compared with, read by the verifier's own code.
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <string>
+#include <vector>
+
+#include "mesh.h"
+
+namespace podm::verify {
+
+/// Voxels x fastest. Outside the grid every voxel is background (0).
+struct Image {
+  std::string path;
+  std::array<int, 3> size{};
+  std::array<double, 3> spacing{};        ///< mm: column norms of voxel_to_ras
+  std::array<double, 12> voxel_to_ras{};  ///< row-major 3x4, voxel indices to world mm
+  std::vector<std::uint32_t> voxels;      ///< label values
+};
+
+/// NIfTI, NRRD, MetaImage (ITK, libnifti for oblique NIfTI), INRIMAGE, ".gz" of NIfTI and INR. Throws
+/// InputError.
+Image read_image(const std::string& path);
+
+}  // namespace podm::verify

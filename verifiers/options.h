@@ -1,0 +1,27 @@
+// What the verifier is asked to prove: claims, bounds, inputs.
+#pragma once
+
+#include <map>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "mesh.h"
+
+namespace podm::verify {
+
+struct Options {
+  std::string mesh_path;
+  std::string image_path;           ///< empty: claims about the image are not run
+  std::string schedule_path;        ///< leaf grid and schedule of a PDR or PDR.PODM run; empty: none
+  std::vector<std::string> claims;  ///< names asked for; empty: all
+  double radius_edge_bound = 1.93;
+  double angle_bound_deg = 30;
+  std::optional<double> radius_mm;          ///< circumradius bound r_t of every label not in `radius_of`
+  std::map<LabelValue, double> radius_of;   ///< label -> mm
+  std::optional<Space> space;               ///< overrides what the file states
+  int threads = 0;                          ///< 0: all cores
+  std::string json_path, extract_bad_path;  ///< empty: not written; json_path "-": standard output
+};
+
+}  // namespace podm::verify

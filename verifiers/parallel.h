@@ -1,0 +1,37 @@
+// Loops over ranges on several threads; results do not depend on the number of threads.
+#pragma once
+
+#include <algorithm>
+#include <cstddef>
+#include <exception>
+#include <mutex>
+#include <thread>
+#include <vector>
+
+namespace podm::verify {
+
+/// Calls body(begin, end, thread) for disjoint ranges that cover [0, count), one range a thread and in order:
+/// ranges of thread t come before those of t+1, so that partial results joined by thread are the serial ones.
+/// The first exception thrown by a body is thrown again here.
+template <class Body>
+void parallel_ranges(std::size_t count, int threads, Body body) {
+  const auto num_threads =
+      std::clamp<std::size_t>(static_cast<std::size_t>(threads), 1, std::max<std::size_t>(count, 1));
+  std::exception_ptr failure;
+  std::mutex failure_mutex;
+  const auto run = [&](std::size_t thread) {
+    try {
+      body(count * thread / num_threads, count * (thread + 1) / num_threads, thread);
+    } catch (...) {
+      const std::scoped_lock lock(failure_mutex);
+      if (!failure) failure = std::current_exception();
+    }
+  };
+  std::vector<std::jthread> helpers;
+  for (std::size_t thread = 1; thread < num_threads; ++thread) helpers.emplace_back(run, thread);
+  run(0);
+  helpers.clear();  // joins
+  if (failure) std::rethrow_exception(failure);
+}
+
+}  // namespace podm::verify

@@ -1,0 +1,16 @@
+// The one door to mesh files of any format.
+#pragma once
+
+#include <string>
+
+#include "mesh.h"
+
+namespace podm::verify {
+
+/// Reads a mesh by its extension (".gz" after it is allowed) and checks that the content agrees: .vtu, .vtk,
+/// .mesh, .meshb, .msh (2.2, 4.1), .node or .ele (each finds the other). For "x.vtu", facets are read from
+/// "x_facets.vtu" beside it where that exists. Throws InputError with file, place and fault; memory stays
+/// within a small multiple of the file's (uncompressed) size whatever its counts say.
+Mesh read_mesh(const std::string& path);
+
+}  // namespace podm::verify
