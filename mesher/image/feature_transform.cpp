@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <atomic>
+#include <optional>
 #include <string>
 #include <thread>
 #include <vector>
@@ -211,6 +212,44 @@ class Transformer {
   double inverse_row_;
 };
 
+// The words of surface voxels, see Neighborhood.
+class NeighborhoodFinder {
+ public:
+  explicit NeighborhoodFinder(const LabelImage& image) : image_(image) {}
+
+  std::uint32_t bits(std::size_t voxel) const {
+    const auto row = static_cast<std::size_t>(image_.size[0]), rows = static_cast<std::size_t>(image_.size[1]);
+    const int x = static_cast<int>(voxel % row), y = static_cast<int>(voxel / row % rows),
+              z = static_cast<int>(voxel / row / rows);
+    const LabelIndex own = image_.voxels[voxel];
+    std::uint32_t bits = 0;
+    std::optional<LabelIndex> other;
+    bool has_two_labels = true;
+    for (int k = -1; k <= 1; ++k) {
+      for (int j = -1; j <= 1; ++j) {
+        for (int i = -1; i <= 1; ++i) {
+          const LabelIndex label = label_at(x + i, y + j, z + k);
+          if (label == own) continue;
+          bits |= 1u << Neighborhood::position(i, j, k);
+          has_two_labels = has_two_labels && other.value_or(label) == label;
+          other = label;
+        }
+      }
+    }
+    return bits | static_cast<std::uint32_t>(has_two_labels) << 30;
+  }
+
+ private:
+  LabelIndex label_at(int x, int y, int z) const {
+    const auto is_in = [](int i, int n) { return static_cast<unsigned>(i) < static_cast<unsigned>(n); };
+    return is_in(x, image_.size[0]) && is_in(y, image_.size[1]) && is_in(z, image_.size[2])
+               ? image_.voxels[image_.index(x, y, z)]
+               : kBackground;
+  }
+
+  const LabelImage& image_;
+};
+
 // Calls work(i, workspace) for i in [0, count), each workspace on a thread of its own.
 template <class Work>
 void for_each_in_parallel(int count, std::vector<Workspace>& workspaces, Work&& work) {
@@ -226,23 +265,28 @@ void for_each_in_parallel(int count, std::vector<Workspace>& workspaces, Work&& 
 std::size_t checked_num_voxels(const LabelImage& image) {
   if (image.num_voxels() > kNone) {
     throw InputError("image: " + std::to_string(image.num_voxels()) +
-                     " voxels; the feature transform takes at most 4294967295");
+                     " voxels; the feature transform takes at most 2147483647");
   }
   return image.num_voxels();
 }
 
 }  // namespace
 
-FeatureTransform::FeatureTransform(const LabelImage& image, int threads)
-    : features_(checked_num_voxels(image)) {
+FeatureTransform::FeatureTransform(const LabelImage& image, int threads) : words_(checked_num_voxels(image)) {
   const int available = threads > 0 ? threads : static_cast<int>(std::thread::hardware_concurrency());
   const int used = std::clamp(available, 1, std::max(image.size[1], image.size[2]));
   std::vector<Workspace> workspaces(static_cast<std::size_t>(used), Workspace(image));
-  Transformer transformer(image, features_);
+  Transformer transformer(image, words_);
   for_each_in_parallel(image.size[2], workspaces,
                        [&](int z, Workspace& work) { transformer.transform_slice(z, work); });
   for_each_in_parallel(image.size[1], workspaces,
                        [&](int y, Workspace& work) { transformer.transform_depth(y, work); });
+  const NeighborhoodFinder finder(image);
+  for_each_in_parallel(image.size[2], workspaces, [&](int z, Workspace&) {
+    for (std::size_t v = image.index(0, 0, z); v < image.index(0, 0, z + 1); ++v) {
+      if (words_[v] == v) words_[v] = kSurface | finder.bits(v);
+    }
+  });
 }
 
 }  // namespace podm

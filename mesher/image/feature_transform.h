@@ -4,6 +4,9 @@
 // axis: the nearest surface voxel within the x-line, then within the slice, then within the grid, each pass
 // from the lower envelope of the parabolas that the previous pass left along its lines (Maurer, Qi, Raghavan,
 // PAMI 25 (2003) 265-270; Felzenszwalb, Huttenlocher, Theory of Computing 8 (2012) 415-428).
+//
+// A surface voxel is its own feature, which leaves its word free: it tells which of the 26 voxels around have
+// another label. So one or two look-ups, of a voxel and of its feature, give the shape of the isosurface.
 #pragma once
 
 #include <cstddef>
@@ -14,22 +17,60 @@
 
 namespace podm {
 
+/// Which voxels around a surface voxel have another label than its own.
+class Neighborhood {
+ public:
+  constexpr explicit Neighborhood(std::uint32_t bits) : bits_(bits) {}
+
+  /// Bit of the voxel that is (i,j,k) away, each -1, 0 or 1.
+  static constexpr unsigned position(int i, int j, int k) {
+    return static_cast<unsigned>(13 + i + 3 * j + 9 * k);
+  }
+  constexpr bool differs(unsigned position) const { return (bits_ >> position & 1) != 0; }
+  /// The eight corners of the block whose lowest corner is (i,j,k) away, each -1 or 0: a bit for each that
+  /// differs, corner i + 2 j + 4 k.
+  constexpr unsigned differing_corners(int i, int j, int k) const {
+    const std::uint32_t b = bits_ >> position(i, j, k);
+    return (b & 0x3) | (b >> 1 & 0xc) | (b >> 5 & 0x30) | (b >> 6 & 0xc0);
+  }
+  /// The edges between two of the 27 voxels that differ in this sense, along axis 0, 1 or 2: a bit at the
+  /// position of each edge's first voxel.
+  constexpr std::uint32_t differing_edges(unsigned axis) const {
+    constexpr std::uint32_t kStart[] = {0x36db6db, 0x0fc7e3f, 0x003ffff};
+    constexpr unsigned kStep[] = {1, 3, 9};
+    return (bits_ ^ bits_ >> kStep[axis]) & kStart[axis];
+  }
+  /// Whether all that differ have one label.
+  constexpr bool has_two_labels() const { return (bits_ >> 30 & 1) != 0; }
+
+ private:
+  std::uint32_t bits_;  // 27 positions; bit 30: two labels
+};
+
 class FeatureTransform {
  public:
   /// Position of a voxel in LabelImage::voxels.
   using VoxelIndex = std::uint32_t;
   /// What an image of one label has everywhere.
-  static constexpr VoxelIndex kNone = ~VoxelIndex{0};
+  static constexpr VoxelIndex kNone = 0x7fffffff;
 
   /// Runs on `threads` threads (0: all cores); the result is the same for any number.
-  /// Throws InputError if the image has more than 2^32 - 1 voxels.
+  /// Throws InputError if the image has more than 2^31 - 1 voxels.
   FeatureTransform(const LabelImage& image, int threads);
 
   /// The surface voxel whose centre is nearest to the centre of `voxel`.
-  VoxelIndex nearest(std::size_t voxel) const { return features_[voxel]; }
+  VoxelIndex nearest(std::size_t voxel) const {
+    const std::uint32_t word = words_[voxel];
+    return (word & kSurface) != 0 ? static_cast<VoxelIndex>(voxel) : word;
+  }
+  void prefetch(std::size_t voxel) const { __builtin_prefetch(&words_[voxel]); }
+  bool is_surface(std::size_t voxel) const { return (words_[voxel] & kSurface) != 0; }
+  /// Of a surface voxel.
+  Neighborhood neighborhood(std::size_t voxel) const { return Neighborhood(words_[voxel]); }
 
  private:
-  HugeArray<VoxelIndex> features_;
+  static constexpr std::uint32_t kSurface = 0x80000000;
+  HugeArray<std::uint32_t> words_;  // the feature, or kSurface and the neighbourhood
 };
 
 }  // namespace podm

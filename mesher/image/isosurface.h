@@ -25,11 +25,20 @@ namespace podm {
 class Isosurface {
  public:
   /// Runs the feature transform on `threads` threads (0: all cores). Keeps a reference to `image`.
-  /// Throws InputError if the image has more than 2^32 - 1 voxels.
+  /// Throws InputError if the image has more than 2^31 - 1 voxels.
   Isosurface(const LabelImage& image, int threads);
 
   /// Greatest trilinear weight; a single look-up away from any label change.
   LabelIndex label_at(const Point& p) const { return label_at_voxels(to_voxels(p)); }
+
+  /// Asks for the cache lines that the questions about p begin with.
+  void prefetch(const Point& p) const {
+    const Point u = to_voxels(p);
+    if (!is_inside(u)) return;
+    const std::size_t index = grid_.index(nearest_voxel(u));
+    features_.prefetch(index);
+    grid_.prefetch(index);
+  }
 
   /// A lower bound of the distance from p to the isosurface, mm; 0 when p may lie on it. A few look-ups.
   double distance_lower_bound(const Point& p) const;
@@ -82,15 +91,13 @@ class Isosurface {
   std::optional<LabelChange> change_in_block(const Point& from, const Vector& d, const Voxel& block,
                                              const BlockLabels& labels, LabelIndex label) const;
   struct Nearest;
-  Nearest nearest_midpoint(const Point& u, LabelIndex label) const;
-  void try_midpoints_around(const Voxel& block, const Point& u, LabelIndex label, Nearest& best) const;
-  void try_midpoints_of(FeatureTransform::VoxelIndex index, const Point& u, LabelIndex label,
-                        Nearest& best) const;
-  void try_midpoints_of_features(const Point& u, LabelIndex label, Nearest& best) const;
-  bool project(const Point& u, LabelIndex label, Point& z) const;
-  bool shoot(const Point& u, const Vector& d, LabelIndex label, Nearest& best) const;
-  Point beside_midpoint(const Point& u, LabelIndex label, const Point& midpoint) const;
-  void improve(const Point& u, LabelIndex label, Nearest& best) const;
+  class Sheet;
+  Nearest nearest_midpoint(const Point& u) const;
+  void try_midpoints_of(FeatureTransform::VoxelIndex index, const Point& u, Nearest& best) const;
+  bool pull(Sheet& sheet, Point& z, int max_pulls) const;
+  bool try_midpoints_around(const Point& u, Nearest& best) const;
+  std::optional<Vector> tangent_step(Sheet& sheet, const Point& u, const Point& z) const;
+  void descend(Sheet& sheet, const Point& u, Nearest& best) const;
 
   LabelGrid grid_;
   FeatureTransform features_;
@@ -106,7 +113,7 @@ inline LabelIndex Isosurface::label_at_voxels(const Point& u) const {
   if (!is_inside(u)) return kBackground;
   const Voxel v = nearest_voxel(u);
   const std::size_t index = grid_.index(v);
-  if (features_.nearest(index) == index) return label_on_surface_voxel(u);
+  if (features_.is_surface(index)) return label_on_surface_voxel(u);
   // By the lemma only a tie at the block's centre could take the label from a voxel off the surface.
   constexpr double kNotCenter = 1.5 - 1e-9;
   const Vector offset = u - center(v);

@@ -166,6 +166,7 @@ class LabelGrid {
     return {static_cast<int>(in_slice - j * row_), static_cast<int>(j), static_cast<int>(k)};
   }
 
+  void prefetch(std::size_t index) const { __builtin_prefetch(voxels_ + index); }
   LabelIndex label(std::size_t index) const { return voxels_[index]; }
   LabelIndex label(const Voxel& v) const { return contains(v) ? voxels_[index(v)] : kBackground; }
 

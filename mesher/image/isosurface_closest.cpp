@@ -1,7 +1,7 @@
 // The isosurface point nearest to a point u. Start: the midpoint of two neighbouring voxels of different
-// labels is on the isosurface; take the nearest one. Then project u on the tangent plane there, and there
-// again, until it stays; a shot from u finds where exactly the label changes. Where that is no nearer
-// (creases, several labels), shots from u along the normals at the nearest point so far try to improve it.
+// labels is on the isosurface; take the nearest one among the features of the voxels around u. Then descend:
+// step along the tangent plane towards the foot of u, pull the result back to the isosurface, and keep it if it
+// is nearer to u, otherwise try a shorter step.
 #include <algorithm>
 #include <limits>
 
@@ -9,213 +9,245 @@
 
 namespace podm {
 
-struct Isosurface::Nearest {
-  Point u;
-  double squared_mm = std::numeric_limits<double>::infinity();
-  Voxel block;       // that holds u
-  LabelIndex other;  // that the label changes to
-};
-
 namespace {
 
-constexpr int kMaxProjections = 10;
-constexpr int kUndampedProjections = 3;  // later ones go half way: on a crease they would swing for ever
-constexpr double kSettled = 0.01;        // voxel sides; the distance is settled to about the square of it
-constexpr double kOvershoot = 1.01;
-constexpr int kMaxImprovements = 5;
-constexpr double kImproved = 1 - 1e-3;  // of the squared distance
-
-constexpr double kAside = 0.01;  // voxels
+constexpr int kMaxSteps = 8;             // tried, taken or not
+constexpr double kShorter = 0.35;        // of a step that leads no nearer
+constexpr double kSettled = 0.01;        // voxel sides: twice what a step may bring in distance, to be taken
+constexpr double kTowards = 1e-3;        // of the way to u
+constexpr int kPullsToStep = 2, kMaxPulls = 8;
+constexpr double kOnIsosurface = 1e-7;   // voxels
+constexpr double kAside = 0.01;          // voxels
 constexpr double kIrregular = 1e4;
 
 constexpr double square(double x) { return x * x; }
 
-// The edges between the 64 corners of a block and its neighbours, by their first corner.
-constexpr std::uint64_t kEdgesX = 0x7777'7777'7777'7777;
-constexpr std::uint64_t kEdgesY = 0x0fff'0fff'0fff'0fff;
-constexpr std::uint64_t kEdgesZ = 0x0000'ffff'ffff'ffff;
+// For two labels the isosurface is where the weights of a block's corners, some against all others, balance.
+const Trilinear& balance(CornerMask corners) {
+  static const std::vector<Trilinear> kBalances = [] {
+    std::vector<Trilinear> all;
+    for (CornerMask mask = 0; mask <= kAllCorners; ++mask) all.push_back(weight_difference(mask, ~mask & kAllCorners));
+    return all;
+  }();
+  return kBalances[corners];
+}
 
 }  // namespace
 
-// Scans the edges of a block and of its 26 neighbours.
-void Isosurface::try_midpoints_around(const Voxel& block, const Point& u, LabelIndex label,
-                                      Nearest& best) const {
-  const std::uint64_t others = grid_.corners_of_other_label(block, label);
-  if (others == 0) return;
-  const Point origin = center(block) - Vector{1, 1, 1};
-  std::array<std::array<double, 4>, 3> corner2, middle2;  // squared mm from u along each axis
-  for (std::size_t i = 0; i < 4; ++i) {
-    const double at = static_cast<double>(i);
-    const Vector to_corner = to_mm(u - origin - Vector{at, at, at});
-    const Vector to_middle = to_corner - 0.5 * spacing_;
-    for (std::size_t a = 0; a < 3; ++a) {
-      corner2[a][i] = square(coordinate(to_corner, a));
-      middle2[a][i] = square(coordinate(to_middle, a));
-    }
-  }
-  std::size_t nearest = 64;
-  Vector nearest_step;
-  const auto scan = [&](std::uint64_t edges, const Vector& step, const auto& x2, const auto& y2,
-                        const auto& z2) {
-    for (; edges != 0; edges &= edges - 1) {
-      const auto e = static_cast<std::size_t>(std::countr_zero(edges));
-      const double squared = x2[e & 3] + y2[e >> 2 & 3] + z2[e >> 4];
-      if (squared >= best.squared_mm) continue;
-      best.squared_mm = squared;
-      nearest = e;
-      nearest_step = step;
-    }
-  };
-  scan((others ^ others >> 1) & kEdgesX, {1, 0, 0}, middle2[0], corner2[1], corner2[2]);
-  scan((others ^ others >> 4) & kEdgesY, {0, 1, 0}, corner2[0], middle2[1], corner2[2]);
-  scan((others ^ others >> 16) & kEdgesZ, {0, 0, 1}, corner2[0], corner2[1], middle2[2]);
-  if (nearest == 64) return;
-  const Point first = origin + Vector{static_cast<double>(nearest & 3), static_cast<double>(nearest >> 2 & 3),
-                                      static_cast<double>(nearest >> 4)};
-  const Point beyond = (others >> nearest & 1) != 0 ? first : first + nearest_step;
-  best.u = first + 0.5 * nearest_step;
-  best.block = block_of(first);
-  best.other = grid_.label(block_of(beyond));
-}
+// The function that vanishes on the isosurface around a point: the weight of the label of a surface voxel less
+// the greatest weight of another label.
+class Isosurface::Sheet {
+ public:
+  Sheet(const Isosurface& isosurface, const Voxel& surface_voxel)
+      : isosurface_(isosurface),
+        center_(surface_voxel),
+        around_(isosurface.features_.neighborhood(isosurface.grid_.index(surface_voxel))) {}
 
-// Scans the edges of the features of the voxels around u, the nearest voxel's first: it rules most others
-// out.
-void Isosurface::try_midpoints_of_features(const Point& u, LabelIndex label, Nearest& best) const {
-  const Voxel block = block_of(clamped_to_grid(u));
-  auto last = features_.nearest(grid_.index(nearest_voxel(clamped_to_grid(u))));
-  try_midpoints_of(last, u, label, best);
-  for (int c = 0; c < 8; ++c) {
-    const Point corner = center({block.i + (c & 1), block.j + (c >> 1 & 1), block.k + (c >> 2)});
-    const auto feature = features_.nearest(grid_.index(nearest_voxel(clamped_to_grid(corner))));
-    if (feature == last) continue;
-    last = feature;
-    try_midpoints_of(feature, u, label, best);
+  /// Goes to the sheet at u; false if no isosurface is in its block, or none of u's nearest voxel.
+  bool move_to(const Point& u) {
+    const Voxel block = block_of(u);
+    if (!is_beside_center(block) && !recenter(u)) return false;
+    const CornerMask others = around_.differing_corners(block.i - center_.i, block.j - center_.j, block.k - center_.k);
+    if (others == 0) return false;
+    origin_ = podm::center(block);
+    at_ = u - origin_;
+    if (around_.has_two_labels()) {
+      lead_ = &balance(others);
+    } else {
+      own_lead_ = lead_of_many(block, others);
+      lead_ = &*own_lead_;
+    }
+    return true;
   }
-}
+  double value() const { return lead_->value(at_); }
+  Vector gradient() const { return lead_->gradient(at_); }
+  double second_derivative(const Vector& d) const { return lead_->second_derivative(at_, d); }
+
+ private:
+  bool is_beside_center(const Voxel& block) const {
+    const auto is_beside = [](int b, int c) { return static_cast<unsigned>(c - b) <= 1; };
+    return is_beside(block.i, center_.i) && is_beside(block.j, center_.j) && is_beside(block.k, center_.k);
+  }
+  bool recenter(const Point& u) {
+    if (!isosurface_.is_inside(u)) return false;
+    const Voxel nearest = nearest_voxel(u);
+    const std::size_t index = isosurface_.grid_.index(nearest);
+    if (!isosurface_.features_.is_surface(index)) return false;
+    center_ = nearest;
+    around_ = isosurface_.features_.neighborhood(index);
+    return true;
+  }
+  Trilinear lead_of_many(const Voxel& block, CornerMask others) const {
+    const BlockLabels labels = isosurface_.grid_.block(block);
+    CornerMask strongest = 0;
+    double greatest = -1;
+    for (CornerMask rest = others; rest != 0;) {
+      const CornerMask corners = labels.mask(labels.first(rest));
+      rest &= ~corners;
+      const double w = weight(corners, at_);
+      if (w > greatest) {
+        greatest = w;
+        strongest = corners;
+      }
+    }
+    return weight_difference(strongest, ~others & kAllCorners);
+  }
+
+  const Isosurface& isosurface_;
+  Voxel center_;
+  Neighborhood around_;
+  Point origin_{};
+  Vector at_{};
+  const Trilinear* lead_ = nullptr;
+  std::optional<Trilinear> own_lead_;
+};
+
+struct Isosurface::Nearest {
+  Point u;
+  double squared_mm = std::numeric_limits<double>::infinity();
+  Voxel surface_voxel;  // beside u
+};
 
 // Midpoints lie half a side from the feature, so one that is too far has none to offer.
-void Isosurface::try_midpoints_of(FeatureTransform::VoxelIndex index, const Point& u, LabelIndex label,
-                                  Nearest& best) const {
+void Isosurface::try_midpoints_of(FeatureTransform::VoxelIndex index, const Point& u, Nearest& best) const {
   const Voxel feature = grid_.voxel(index);
-  const double excess_mm = length_mm(center(feature) - u) - 0.5 * longest_side_mm_;
-  if (excess_mm > 0 && square(excess_mm) >= best.squared_mm) return;
-  const LabelIndex own = grid_.label(index);
-  for (const Voxel& step :
-       {Voxel{-1, 0, 0}, Voxel{1, 0, 0}, Voxel{0, -1, 0}, Voxel{0, 1, 0}, Voxel{0, 0, -1}, Voxel{0, 0, 1}}) {
-    const Point middle = center(feature) + 0.5 * center(step);
-    const double squared = squared_length(to_mm(middle - u));
-    if (squared >= best.squared_mm) continue;
-    const Voxel neighbor{feature.i + step.i, feature.j + step.j, feature.k + step.k};
-    const LabelIndex other = grid_.label(neighbor);
-    if (other != own) best = {middle, squared, block_of(middle), own == label ? other : own};
-  }
+  const Vector d = to_mm(center(feature) - u);
+  const double squared = squared_length(d);
+  if (squared >= square(std::sqrt(best.squared_mm) + 0.5 * longest_side_mm_)) return;
+  const Neighborhood around = features_.neighborhood(index);
+  const auto try_one = [&](int i, int j, int k, double offset, double side) {
+    if (!around.differs(Neighborhood::position(i, j, k))) return;
+    const double to_midpoint = squared + offset * side + square(0.5 * side);
+    if (to_midpoint >= best.squared_mm) return;
+    best = {center(feature) + 0.5 * Vector{static_cast<double>(i), static_cast<double>(j), static_cast<double>(k)},
+            to_midpoint, feature};
+  };
+  try_one(-1, 0, 0, -d.x, spacing_.x);
+  try_one(1, 0, 0, d.x, spacing_.x);
+  try_one(0, -1, 0, -d.y, spacing_.y);
+  try_one(0, 1, 0, d.y, spacing_.y);
+  try_one(0, 0, -1, -d.z, spacing_.z);
+  try_one(0, 0, 1, d.z, spacing_.z);
 }
 
-// The nearest, or one that no other within a block's reach of it beats.
-Isosurface::Nearest Isosurface::nearest_midpoint(const Point& u, LabelIndex label) const {
-  Nearest nearest;
-  if (is_inside(u)) try_midpoints_around(block_of(u), u, label, nearest);
-  if (nearest.squared_mm > square(shortest_side_mm_)) {
-    try_midpoints_of_features(u, label, nearest);
-    for (double before = 0; before != nearest.squared_mm;) {
-      before = nearest.squared_mm;
-      try_midpoints_around(block_of(nearest.u), u, label, nearest);
+// Among the 54 edges of the 27 voxels around the surface voxel of `best`.
+bool Isosurface::try_midpoints_around(const Point& u, Nearest& best) const {
+  const Voxel middle = best.surface_voxel;
+  const Vector d = to_mm(center(middle) - u);
+  // Squared mm from u along each axis, of the voxels and of the midpoints between them.
+  std::array<std::array<double, 3>, 3> voxel2, midpoint2;
+  for (std::size_t a = 0; a < 3; ++a) {
+    for (std::size_t i = 0; i < 3; ++i) {
+      const double to_voxel = coordinate(d, a) + (static_cast<double>(i) - 1) * coordinate(spacing_, a);
+      voxel2[a][i] = square(to_voxel);
+      midpoint2[a][i] = square(to_voxel + 0.5 * coordinate(spacing_, a));
     }
   }
-  return nearest;
+  const Neighborhood around = features_.neighborhood(grid_.index(middle));
+  bool is_better = false;
+  for (unsigned axis = 0; axis < 3; ++axis) {
+    const auto &x2 = axis == 0 ? midpoint2[0] : voxel2[0], &y2 = axis == 1 ? midpoint2[1] : voxel2[1],
+               &z2 = axis == 2 ? midpoint2[2] : voxel2[2];
+    for (std::uint32_t edges = around.differing_edges(axis); edges != 0; edges &= edges - 1) {
+      const auto e = static_cast<unsigned>(std::countr_zero(edges));
+      const unsigned i = e % 3, j = e / 3 % 3, k = e / 9;
+      const double squared = x2[i] + y2[j] + z2[k];
+      if (squared >= best.squared_mm * (1 - 1e-12)) continue;
+      const Voxel first{middle.i - 1 + static_cast<int>(i), middle.j - 1 + static_cast<int>(j), middle.k - 1 + static_cast<int>(k)};
+      const Vector step{axis == 0 ? 1.0 : 0, axis == 1 ? 1.0 : 0, axis == 2 ? 1.0 : 0};
+      best = {center(first) + 0.5 * step, squared, grid_.contains(first) ? first : Voxel{first.i + (axis == 0), first.j + (axis == 1), first.k + (axis == 2)}};
+      is_better = true;
+    }
+  }
+  return is_better;
 }
 
-// Moves z to the foot of u on the isosurface; false where it has no normal.
-bool Isosurface::project(const Point& u, LabelIndex label, Point& z) const {
-  Voxel block;
-  std::optional<Trilinear> lead;
-  Point last = z;
-  for (int i = 0; i < kMaxProjections; ++i) {
-    if (const Voxel b = block_of(z); !lead || b != block) {
-      const BlockLabels labels = grid_.block(b);
-      const CornerMask mask = labels.mask(label), others = ~mask & kAllCorners;
-      if (mask == 0 || others == 0) {  // beyond the end of the interface
-        z = 0.5 * (z + last);
-        continue;
-      }
-      block = b;
-      lead = weight_difference(mask, labels.mask(labels.first(others)));
-    }
-    const Point f = z - center(block);
-    const Vector gradient = lead->gradient(f), normal = per_mm(per_mm(gradient));  // a voxel; voxels a mm^2
-    const double length2 = dot(gradient, normal);
+// Of the features of the voxels around u, the nearest voxel's first: it rules most others out.
+Isosurface::Nearest Isosurface::nearest_midpoint(const Point& u) const {
+  const Point inside = clamped_to_grid(u);
+  const Voxel block = block_of(inside), nearest = nearest_voxel(inside);
+  const int first = (nearest.i - block.i) | (nearest.j - block.j) << 1 | (nearest.k - block.k) << 2;
+  Nearest best;
+  auto last = FeatureTransform::kNone;
+  for (int c = 0; c < 8; ++c) {
+    const int corner = c ^ first;
+    const Voxel v{block.i + (corner & 1), block.j + (corner >> 1 & 1), block.k + (corner >> 2)};
+    if (!grid_.contains(v)) continue;
+    const auto feature = features_.nearest(grid_.index(v));
+    if (feature == last) continue;
+    last = feature;
+    try_midpoints_of(feature, u, best);
+  }
+  while (try_midpoints_around(u, best)) {}
+  return best;
+}
+
+// Moves z along the gradient until the sheet's value says that it is on the isosurface, to `tolerance` voxels.
+bool Isosurface::pull(Sheet& sheet, Point& z, int max_pulls) const {
+  for (int i = 0; i < max_pulls; ++i) {
+    if (!sheet.move_to(z)) return false;
+    const Vector gradient = sheet.gradient(), normal = per_mm(per_mm(gradient));
+    const double length2 = dot(gradient, normal), value = sheet.value();
     if (length2 == 0) return false;
-    // Stationary: u - z = multiplier * normal. The rest of u - z lies in the tangent plane; a step along it
-    // is right on a plane, and shortened where the isosurface bends away.
-    const double multiplier = dot(gradient, u - z) / length2;
-    const Vector tangent = u - z - multiplier * normal;
-    const double tangent2 = squared_length(to_mm(tangent));
-    const double bend = multiplier * lead->second_derivative(f, tangent);
-    double part = tangent2 / std::max(tangent2 + bend, 0.5 * tangent2);
-    if (!(part <= 2)) part = 0;
-    if (i >= kUndampedProjections) part *= 0.5;
-    const Vector step = part * tangent - (lead->value(f) / length2) * normal;
-    last = z;
-    z = z + step;
-    if (squared_length(to_mm(step)) < square(kSettled * shortest_side_mm_)) break;
+    z = z - (value / length2) * normal;
+    if (square(value) < square(kOnIsosurface) * squared_length(gradient)) return sheet.move_to(z);
   }
-  return true;
+  return max_pulls == kPullsToStep && sheet.move_to(z);
 }
 
-// Whether the label changes along u + t d, t in [0,1], clearly nearer to u than at `best`, which is updated.
-bool Isosurface::shoot(const Point& u, const Vector& d, LabelIndex label, Nearest& best) const {
-  const auto change = first_change(u, d, label);
-  if (!change) return false;
-  const Point z = u + change->t * d;
-  const double squared = squared_length(to_mm(z - u));
-  if (squared >= best.squared_mm) return false;
-  const bool is_clearly_nearer = squared < kImproved * best.squared_mm;
-  best = {z, squared, change->block, change->to};
-  return is_clearly_nearer;
+// The step along the tangent plane at z towards the foot of u. A midpoint lies on an edge of four blocks: the one
+// that holds the way to u counts.
+std::optional<Vector> Isosurface::tangent_step(Sheet& sheet, const Point& u, const Point& z) const {
+  if (!sheet.move_to(z + kTowards * (u - z)) && !sheet.move_to(z)) return std::nullopt;
+  const Vector gradient = sheet.gradient(), normal = per_mm(per_mm(gradient));  // a voxel; voxels a mm^2
+  const double length2 = dot(gradient, normal);
+  if (length2 == 0) return std::nullopt;
+  // Stationary: u - z = multiplier * normal. The rest of u - z lies in the tangent plane; a step along it is
+  // right on a plane, and shortened where the isosurface bends away.
+  const double multiplier = dot(gradient, u - z) / length2;
+  const Vector tangent = u - z - multiplier * normal;
+  const double tangent2 = squared_length(to_mm(tangent));
+  const double bend = multiplier * sheet.second_derivative(tangent);
+  double part = tangent2 / std::max(tangent2 + bend, 0.5 * tangent2);
+  if (!(part <= 2)) part = 1;
+  return part * tangent;
 }
 
-// Shoots as far as the best so far, against the normal there, or else half-way between.
-void Isosurface::improve(const Point& u, LabelIndex label, Nearest& best) const {
-  for (int i = 0; i < kMaxImprovements && best.squared_mm > 0; ++i) {
-    const BlockLabels labels = grid_.block(best.block);
-    const Vector normal = per_mm(
-        weight_difference(labels.mask(label), labels.mask(best.other)).gradient(best.u - center(best.block)));
-    if (squared_length(normal) == 0) return;
-    const auto reach = [&](const Vector& mm) {
-      return to_voxels(std::sqrt(best.squared_mm / squared_length(mm)) * mm);
-    };
-    const Vector against = reach(-1.0 * normal);
-    if (shoot(u, against, label, best)) continue;
-    const Vector between = to_mm(against + (best.u - u));
-    if (squared_length(between) == 0 || !shoot(u, reach(between), label, best)) return;
+// From a point of the isosurface to the foot of u.
+void Isosurface::descend(Sheet& sheet, const Point& u, Nearest& best) const {
+  std::optional<Vector> step = tangent_step(sheet, u, best.u);
+  for (int i = 0; step && i < kMaxSteps; ++i) {
+    // What the step may bring in squared distance.
+    const double settled = kSettled * shortest_side_mm_ * std::sqrt(best.squared_mm);
+    if (squared_length(to_mm(*step)) < settled) return;
+    Point z = best.u + *step;
+    const bool is_on_isosurface = pull(sheet, z, kPullsToStep);
+    const double squared = squared_length(to_mm(z - u));
+    if (is_on_isosurface && squared < best.squared_mm - 0.1 * settled) {
+      best.u = z;
+      best.squared_mm = squared;
+      step = tangent_step(sheet, u, z);
+    } else {
+      step = kShorter * *step;
+    }
   }
-}
-
-// Midpoints lie on a lattice, and vertices of a lattice make flat cells that rounding can turn inside out.
-// Where the nearest point is a midpoint, take a point of the isosurface a little beside it, as irregular as u
-// itself.
-Point Isosurface::beside_midpoint(const Point& u, LabelIndex label, const Point& midpoint) const {
-  const Vector aside =
-      kAside * Vector{std::sin(kIrregular * u.x), std::sin(kIrregular * u.y), std::sin(kIrregular * u.z)};
-  const Vector d = kOvershoot * (midpoint + aside - u);
-  const auto change = first_change(u, d, label);
-  return to_mm(change ? u + change->t * d : midpoint);
 }
 
 std::optional<Point> Isosurface::closest_point(const Point& p, double radius) const {
   if (is_empty()) return std::nullopt;
   const Point u = to_voxels(p);
-  const LabelIndex label = label_at_voxels(u);
-  Nearest best = nearest_midpoint(u, label);
+  const Nearest start = nearest_midpoint(u);
+  Nearest best = start;
+  Sheet sheet(*this, start.surface_voxel);
+  descend(sheet, u, best);
   Point z = best.u;
-  const Point midpoint = best.u;
-  if (!project(u, label, z) || !shoot(u, kOvershoot * (z - u), label, best)) improve(u, label, best);
-  if (!(best.squared_mm <= square(radius))) return std::nullopt;
-  if (best.u == midpoint) {
-    const Point beside = beside_midpoint(u, label, midpoint);
-    if (squared_distance(beside, p) <= square(radius)) return beside;
-  }
-  return to_mm(best.u);
+  // Midpoints lie on a lattice, and vertices of a lattice make flat cells that rounding can turn inside out:
+  // take a point of the isosurface a little beside it, as irregular as u itself.
+  if (best.u == start.u)
+    z = z + kAside * Vector{std::sin(kIrregular * u.x), std::sin(kIrregular * u.y), std::sin(kIrregular * u.z)};
+  if (!pull(sheet, z, kMaxPulls)) z = start.u;
+  if (!(squared_length(to_mm(z - u)) <= square(radius))) return std::nullopt;
+  return to_mm(z);
 }
 
 }  // namespace podm

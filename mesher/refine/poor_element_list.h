@@ -26,9 +26,9 @@ class PoorElementList {
   }
   bool is_empty() const { return entries_.empty(); }
   std::size_t size() const { return entries_.size(); }
-  /// The cell whose turn comes a few turns from now, to be prefetched; the list must not be empty.
-  CellId upcoming() const {
-    return entries_[entries_.size() > kLookahead ? entries_.size() - kLookahead : 0].cell;
+  /// The cell whose turn comes `turns` from now, to be prefetched; the list must not be empty.
+  CellId upcoming(std::size_t turns) const {
+    return entries_[entries_.size() > turns ? entries_.size() - 1 - turns : 0].cell;
   }
   Entry pop() {
     const Entry last = entries_.back();
@@ -37,7 +37,6 @@ class PoorElementList {
   }
 
  private:
-  static constexpr std::size_t kLookahead = 3;
   static constexpr std::size_t kFirstCleaning = 1 << 16;
   std::vector<Entry> entries_;
   std::size_t next_cleaning_ = kFirstCleaning;

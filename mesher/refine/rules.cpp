@@ -39,13 +39,14 @@ bool Rules::is_settled(const Cell& cell, double squared_radius) const {
 Examination Rules::examine(CellId c) const {
   const Cell& cell = mesh_.cell(c);
   const Point& center = cell.sphere.center;
-  Examination t{c, center, cell.sphere.squared_radius, label_of(c), 0, {}};
+  Examination t{c, center, cell.sphere.squared_radius, label_of(c), 0, true, {}};
   if (std::isnan(t.squared_radius))
     t.squared_radius = squared_distance(center, mesh_.point(cell.vertices[0]));
   t.isosurface_distance = isosurface_.distance_lower_bound(center);
   if (square(t.isosurface_distance) > t.squared_radius || is_settled(cell, t.squared_radius)) return t;
   const double radius = std::sqrt(t.squared_radius);
   t.nearest = isosurface_.closest_point(center, radius);
+  t.is_distance_proven = false;
   t.isosurface_distance = kNearestTrust * (t.nearest ? distance(center, *t.nearest) : radius);
   return t;
 }
@@ -86,11 +87,11 @@ bool Rules::needs_sample(CellId c, unsigned facet) const {
   return std::min({a2, b2, c2}) * 4 * squared_length(cross(ab, ac)) <= a2 * b2 * c2 * (1 + kMargin);
 }
 
-// Whether the facet's dual edge may meet the isosurface. Labels that differ prove it. Equal labels leave a
-// double crossing, which only a dual edge longer than the distance to the isosurface can hold.
+// Whether the facet's dual edge may meet the isosurface: only if it is longer than the distance to it. Labels
+// that differ show it where that distance is not proven.
 bool Rules::may_be_restricted(const Examination& t, CellId neighbor) const {
-  if (label_of(neighbor) != t.label) return true;
-  return square(t.isosurface_distance) < squared_distance(t.center, mesh_.cell(neighbor).sphere.center);
+  if (square(t.isosurface_distance) < squared_distance(t.center, mesh_.cell(neighbor).sphere.center)) return true;
+  return !t.is_distance_proven && label_of(neighbor) != t.label;
 }
 
 std::optional<SurfaceCenter> Rules::r3_surface_center(const Examination& t) const {

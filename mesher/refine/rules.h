@@ -39,6 +39,7 @@ struct Examination {
   double squared_radius;
   LabelIndex label;              // at the centre
   double isosurface_distance;    // a lower bound, from the centre
+  bool is_distance_proven;       // else it rests on the nearest point found
   std::optional<Point> nearest;  // z, if the circumball meets the isosurface and R1 or R2 may care
 };
 
@@ -52,6 +53,8 @@ class Rules {
   Rules(Mesh& mesh, const Isosurface& isosurface, const Parameters& parameters);
 
   Examination examine(CellId c) const;
+  /// Asks for what examine(c) will read, the cell itself apart.
+  void prefetch(CellId c) const { isosurface_.prefetch(mesh_.cell(c).sphere.center); }
 
   /// R1's point, unless a vertex of the cell itself already covers it. The caller must still look for
   /// isosurface vertices closer than delta among the point's cavity: the nearest one would be joined to it by

@@ -20,7 +20,8 @@ Worker<Locks>::Worker(Mesh& mesh, const Isosurface& isosurface, const Parameters
 
 template <class Locks>
 void Worker<Locks>::attempt() {
-  mesh_.prefetch(poor_.upcoming());
+  mesh_.prefetch(poor_.upcoming(4));
+  rules_.prefetch(poor_.upcoming(2));
   const PoorElementList::Entry entry = poor_.pop();
   if (mesh_.state(entry.cell).stamp != entry.stamp) {
     ++counters_.stale_cells;
