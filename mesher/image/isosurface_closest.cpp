@@ -15,7 +15,7 @@ constexpr int kMaxSteps = 8;             // tried, taken or not
 constexpr double kShorter = 0.35;        // of a step that leads no nearer
 constexpr double kSettled = 0.01;        // voxel sides: twice what a step may bring in distance, to be taken
 constexpr double kTowards = 1e-3;        // of the way to u
-constexpr int kPullsToStep = 2, kMaxPulls = 8;
+constexpr int kPullsToStep = 1, kMaxPulls = 8;
 constexpr double kOnIsosurface = 1e-7;   // voxels
 constexpr double kAside = 0.01;          // voxels
 constexpr double kIrregular = 1e4;
