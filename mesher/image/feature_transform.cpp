@@ -218,7 +218,8 @@ class NeighborhoodFinder {
   explicit NeighborhoodFinder(const LabelImage& image) : image_(image) {}
 
   std::uint32_t bits(std::size_t voxel) const {
-    const auto row = static_cast<std::size_t>(image_.size[0]), rows = static_cast<std::size_t>(image_.size[1]);
+    const auto row = static_cast<std::size_t>(image_.size[0]),
+               rows = static_cast<std::size_t>(image_.size[1]);
     const int x = static_cast<int>(voxel % row), y = static_cast<int>(voxel / row % rows),
               z = static_cast<int>(voxel / row / rows);
     const LabelIndex own = image_.voxels[voxel];

@@ -1,7 +1,7 @@
 // The isosurface point nearest to a point u. Start: the midpoint of two neighbouring voxels of different
 // labels is on the isosurface; take the nearest one among the features of the voxels around u. Then descend:
-// step along the tangent plane towards the foot of u, pull the result back to the isosurface, and keep it if it
-// is nearer to u, otherwise try a shorter step.
+// step along the tangent plane towards the foot of u, pull the result back to the isosurface, and keep it if
+// it is nearer to u, otherwise try a shorter step.
 #include <algorithm>
 #include <limits>
 
@@ -11,13 +11,13 @@ namespace podm {
 
 namespace {
 
-constexpr int kMaxSteps = 8;             // tried, taken or not
-constexpr double kShorter = 0.35;        // of a step that leads no nearer
-constexpr double kSettled = 0.01;        // voxel sides: twice what a step may bring in distance, to be taken
-constexpr double kTowards = 1e-3;        // of the way to u
+constexpr int kMaxSteps = 8;       // tried, taken or not
+constexpr double kShorter = 0.35;  // of a step that leads no nearer
+constexpr double kSettled = 0.01;  // voxel sides: twice what a step may bring in distance, to be taken
+constexpr double kTowards = 1e-3;  // of the way to u
 constexpr int kPullsToStep = 1, kMaxPulls = 8;
-constexpr double kOnIsosurface = 1e-7;   // voxels
-constexpr double kAside = 0.01;          // voxels
+constexpr double kOnIsosurface = 1e-7;  // voxels
+constexpr double kAside = 0.01;         // voxels
 constexpr double kIrregular = 1e4;
 
 constexpr double square(double x) { return x * x; }
@@ -26,7 +26,8 @@ constexpr double square(double x) { return x * x; }
 const Trilinear& balance(CornerMask corners) {
   static const std::vector<Trilinear> kBalances = [] {
     std::vector<Trilinear> all;
-    for (CornerMask mask = 0; mask <= kAllCorners; ++mask) all.push_back(weight_difference(mask, ~mask & kAllCorners));
+    for (CornerMask mask = 0; mask <= kAllCorners; ++mask)
+      all.push_back(weight_difference(mask, ~mask & kAllCorners));
     return all;
   }();
   return kBalances[corners];
@@ -34,8 +35,8 @@ const Trilinear& balance(CornerMask corners) {
 
 }  // namespace
 
-// The function that vanishes on the isosurface around a point: the weight of the label of a surface voxel less
-// the greatest weight of another label.
+// The function that vanishes on the isosurface around a point: the weight of the label of a surface voxel
+// less the greatest weight of another label.
 class Isosurface::Sheet {
  public:
   Sheet(const Isosurface& isosurface, const Voxel& surface_voxel)
@@ -47,7 +48,8 @@ class Isosurface::Sheet {
   bool move_to(const Point& u) {
     const Voxel block = block_of(u);
     if (!is_beside_center(block) && !recenter(u)) return false;
-    const CornerMask others = around_.differing_corners(block.i - center_.i, block.j - center_.j, block.k - center_.k);
+    const CornerMask others =
+        around_.differing_corners(block.i - center_.i, block.j - center_.j, block.k - center_.k);
     if (others == 0) return false;
     origin_ = podm::center(block);
     at_ = u - origin_;
@@ -119,7 +121,8 @@ void Isosurface::try_midpoints_of(FeatureTransform::VoxelIndex index, const Poin
     if (!around.differs(Neighborhood::position(i, j, k))) return;
     const double to_midpoint = squared + offset * side + square(0.5 * side);
     if (to_midpoint >= best.squared_mm) return;
-    best = {center(feature) + 0.5 * Vector{static_cast<double>(i), static_cast<double>(j), static_cast<double>(k)},
+    best = {center(feature) +
+                0.5 * Vector{static_cast<double>(i), static_cast<double>(j), static_cast<double>(k)},
             to_midpoint, feature};
   };
   try_one(-1, 0, 0, -d.x, spacing_.x);
@@ -153,9 +156,13 @@ bool Isosurface::try_midpoints_around(const Point& u, Nearest& best) const {
       const unsigned i = e % 3, j = e / 3 % 3, k = e / 9;
       const double squared = x2[i] + y2[j] + z2[k];
       if (squared >= best.squared_mm * (1 - 1e-12)) continue;
-      const Voxel first{middle.i - 1 + static_cast<int>(i), middle.j - 1 + static_cast<int>(j), middle.k - 1 + static_cast<int>(k)};
+      const Voxel first{middle.i - 1 + static_cast<int>(i), middle.j - 1 + static_cast<int>(j),
+                        middle.k - 1 + static_cast<int>(k)};
       const Vector step{axis == 0 ? 1.0 : 0, axis == 1 ? 1.0 : 0, axis == 2 ? 1.0 : 0};
-      best = {center(first) + 0.5 * step, squared, grid_.contains(first) ? first : Voxel{first.i + (axis == 0), first.j + (axis == 1), first.k + (axis == 2)}};
+      best = {center(first) + 0.5 * step, squared,
+              grid_.contains(first)
+                  ? first
+                  : Voxel{first.i + (axis == 0), first.j + (axis == 1), first.k + (axis == 2)}};
       is_better = true;
     }
   }
@@ -178,11 +185,13 @@ Isosurface::Nearest Isosurface::nearest_midpoint(const Point& u) const {
     last = feature;
     try_midpoints_of(feature, u, best);
   }
-  while (try_midpoints_around(u, best)) {}
+  while (try_midpoints_around(u, best)) {
+  }
   return best;
 }
 
-// Moves z along the gradient until the sheet's value says that it is on the isosurface, to `tolerance` voxels.
+// Moves z along the gradient until the sheet's value says that it is on the isosurface, to `tolerance`
+// voxels.
 bool Isosurface::pull(Sheet& sheet, Point& z, int max_pulls) const {
   for (int i = 0; i < max_pulls; ++i) {
     if (!sheet.move_to(z)) return false;
@@ -195,8 +204,8 @@ bool Isosurface::pull(Sheet& sheet, Point& z, int max_pulls) const {
   return max_pulls == kPullsToStep && sheet.move_to(z);
 }
 
-// The step along the tangent plane at z towards the foot of u. A midpoint lies on an edge of four blocks: the one
-// that holds the way to u counts.
+// The step along the tangent plane at z towards the foot of u. A midpoint lies on an edge of four blocks: the
+// one that holds the way to u counts.
 std::optional<Vector> Isosurface::tangent_step(Sheet& sheet, const Point& u, const Point& z) const {
   if (!sheet.move_to(z + kTowards * (u - z)) && !sheet.move_to(z)) return std::nullopt;
   const Vector gradient = sheet.gradient(), normal = per_mm(per_mm(gradient));  // a voxel; voxels a mm^2
@@ -244,7 +253,8 @@ std::optional<Point> Isosurface::closest_point(const Point& p, double radius) co
   // Midpoints lie on a lattice, and vertices of a lattice make flat cells that rounding can turn inside out:
   // take a point of the isosurface a little beside it, as irregular as u itself.
   if (best.u == start.u)
-    z = z + kAside * Vector{std::sin(kIrregular * u.x), std::sin(kIrregular * u.y), std::sin(kIrregular * u.z)};
+    z = z +
+        kAside * Vector{std::sin(kIrregular * u.x), std::sin(kIrregular * u.y), std::sin(kIrregular * u.z)};
   if (!pull(sheet, z, kMaxPulls)) z = start.u;
   if (!(squared_length(to_mm(z - u)) <= square(radius))) return std::nullopt;
   return to_mm(z);

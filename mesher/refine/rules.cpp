@@ -90,7 +90,8 @@ bool Rules::needs_sample(CellId c, unsigned facet) const {
 // Whether the facet's dual edge may meet the isosurface: only if it is longer than the distance to it. Labels
 // that differ show it where that distance is not proven.
 bool Rules::may_be_restricted(const Examination& t, CellId neighbor) const {
-  if (square(t.isosurface_distance) < squared_distance(t.center, mesh_.cell(neighbor).sphere.center)) return true;
+  if (square(t.isosurface_distance) < squared_distance(t.center, mesh_.cell(neighbor).sphere.center))
+    return true;
   return !t.is_distance_proven && label_of(neighbor) != t.label;
 }
 
