@@ -1,0 +1,53 @@
+// Where the coordinates of a mesh file lie in an image.
+#pragma once
+
+#include <gmpxx.h>
+
+#include <array>
+
+#include "image/image.h"
+#include "mesh.h"
+
+namespace podm::verify {
+
+/// Row-major 3x4 from the coordinates of a mesh in `space` to voxel indices, exactly. A mesh that states no
+/// space is taken to be RAS.
+std::array<mpq_class, 12> exact_mesh_to_voxels(const Image& image, Space space);
+
+class ImageFrame {
+ public:
+  ImageFrame(const Image& image, Space space);
+
+  /// In extended precision: the matrix is rounded once, so each result errs by less than 2^-60 of the sum of
+  /// its terms' magnitudes, and by half an ulp.
+  Point to_voxels(const Point& p) const { return apply(mesh_to_voxels_, p); }
+  /// RAS, mm.
+  Point to_world(const Point& p) const { return apply(mesh_to_world_, p); }
+  Point voxels_to_world(const Point& u) const { return apply(voxels_to_world_, u); }
+  Point world_to_voxels(const Point& p) const { return apply(world_to_voxels_, p); }
+  /// Of a vector, without the offset.
+  Point world_to_voxels_vector(const Point& d) const;
+  /// Takes a gradient by voxel coordinates to the gradient by mm.
+  Point gradient_in_world(const Point& g) const;
+
+  double voxel_volume_mm3() const;
+  /// The largest movement of a voxel coordinate when each mesh coordinate moves by at most the given one.
+  Point voxel_movement(const Point& mesh_movement) const;
+
+  using Matrix = std::array<long double, 12>;
+
+ private:
+  static Point apply(const Matrix& m, const Point& p) {
+    Point q;
+    for (std::size_t r = 0; r < 3; ++r)
+      q[r] = static_cast<double>(m[4 * r] * p[0] + m[4 * r + 1] * p[1] + m[4 * r + 2] * p[2] + m[4 * r + 3]);
+    return q;
+  }
+
+  Matrix mesh_to_voxels_, mesh_to_world_, voxels_to_world_, world_to_voxels_;
+};
+
+/// "RAS", "LPS", "voxel"; "RAS (assumed, the file does not say)".
+std::string describe(Space space);
+
+}  // namespace podm::verify

@@ -1,0 +1,122 @@
+#include "image/label_function.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace podm::verify {
+
+namespace {
+
+// Of corner x + 2y + 4z.
+double corner_weight(std::size_t corner, const Point& f) {
+  return ((corner & 1) != 0 ? f[0] : 1 - f[0]) * ((corner & 2) != 0 ? f[1] : 1 - f[1]) *
+         ((corner & 4) != 0 ? f[2] : 1 - f[2]);
+}
+
+bool is_uniform(const std::array<std::uint32_t, 8>& corners) {
+  return std::all_of(corners.begin() + 1, corners.end(), [&](std::uint32_t l) { return l == corners[0]; });
+}
+
+}  // namespace
+
+double LabelWeights::weight_of(std::uint32_t label) const {
+  for (std::size_t i = 0; i < count; ++i)
+    if (labels[i] == label) return weights[i];
+  return 0;
+}
+
+std::size_t LabelWeights::best() const {
+  std::size_t best = 0;
+  for (std::size_t i = 1; i < count; ++i)
+    if (weights[i] > weights[best] || (weights[i] == weights[best] && labels[i] < labels[best])) best = i;
+  return best;
+}
+
+LabelFunction::LabelFunction(const Image& image)
+    : image_(image),
+      row_(static_cast<std::size_t>(image.size[0])),
+      slice_(row_ * static_cast<std::size_t>(image.size[1])) {}
+
+// Beyond a voxel from the grid all eight voxels are background.
+bool LabelFunction::is_near(const Point& u) const {
+  return u[0] > -1 && u[0] < image_.size[0] && u[1] > -1 && u[1] < image_.size[1] && u[2] > -1 &&
+         u[2] < image_.size[2];
+}
+
+LabelFunction::Place LabelFunction::place(const Point& u) {
+  Place p;
+  for (std::size_t axis = 0; axis < 3; ++axis) {
+    const double floor = std::floor(u[axis]);
+    p.block[axis] = static_cast<int>(floor);
+    p.f[axis] = u[axis] - floor;
+  }
+  return p;
+}
+
+std::array<std::uint32_t, 8> LabelFunction::corners(const std::array<int, 3>& b) const {
+  std::array<std::uint32_t, 8> labels{};
+  const auto& n = image_.size;
+  if (b[0] >= 0 && b[1] >= 0 && b[2] >= 0 && b[0] < n[0] - 1 && b[1] < n[1] - 1 && b[2] < n[2] - 1) {
+    const std::uint32_t* first = image_.voxels.data() + static_cast<std::size_t>(b[2]) * slice_ +
+                                 static_cast<std::size_t>(b[1]) * row_ + static_cast<std::size_t>(b[0]);
+    return {first[0],      first[1],          first[row_],          first[row_ + 1],
+            first[slice_], first[slice_ + 1], first[slice_ + row_], first[slice_ + row_ + 1]};
+  }
+  for (int c = 0; c < 8; ++c) {
+    const int i = b[0] + (c & 1), j = b[1] + (c >> 1 & 1), k = b[2] + (c >> 2);
+    if (i >= 0 && j >= 0 && k >= 0 && i < n[0] && j < n[1] && k < n[2])
+      labels[static_cast<std::size_t>(c)] =
+          image_.voxels[static_cast<std::size_t>(k) * slice_ + static_cast<std::size_t>(j) * row_ +
+                        static_cast<std::size_t>(i)];
+  }
+  return labels;
+}
+
+std::uint32_t LabelFunction::label_at(const Point& u) const {
+  const LabelWeights weights = weights_at(u);
+  return weights.labels[weights.best()];
+}
+
+LabelWeights LabelFunction::weights_at(const Point& u) const {
+  LabelWeights result;
+  if (!is_near(u)) {
+    result.weights[0] = 1;
+    result.count = 1;
+    return result;
+  }
+  const Place p = place(u);
+  const auto labels = corners(p.block);
+  if (is_uniform(labels)) {
+    result.labels[0] = labels[0];
+    result.weights[0] = 1;
+    result.count = 1;
+    return result;
+  }
+  for (std::size_t c = 0; c < 8; ++c) {
+    std::size_t i = 0;
+    while (i < result.count && result.labels[i] != labels[c]) ++i;
+    if (i == result.count) result.labels[result.count++] = labels[c];
+    result.weights[i] += corner_weight(c, p.f);
+  }
+  return result;
+}
+
+Point LabelFunction::gradient_of_difference(const Point& u, std::uint32_t a, std::uint32_t b) const {
+  Point gradient{};
+  if (!is_near(u)) return gradient;
+  const Place p = place(u);
+  const auto labels = corners(p.block);
+  for (std::size_t c = 0; c < 8; ++c) {
+    const double sign = labels[c] == a ? 1 : labels[c] == b ? -1 : 0;
+    if (sign == 0) continue;
+    for (std::size_t axis = 0; axis < 3; ++axis) {
+      Point unit = p.f;
+      const bool is_high = (c >> axis & 1) != 0;
+      unit[axis] = is_high ? 1 : 0;  // this axis's factor becomes 1, the slope of it is the sign
+      gradient[axis] += (is_high ? sign : -sign) * corner_weight(c, unit);
+    }
+  }
+  return gradient;
+}
+
+}  // namespace podm::verify

@@ -1,0 +1,140 @@
+// From a path to label values: pick the format's reader, make voxels label values, settle the affine.
+#include <algorithm>
+#include <cmath>
+#include <cstring>
+
+#include "image/image.h"
+#include "image/raw_image.h"
+
+namespace podm::verify {
+
+namespace {
+
+using Matrix = std::array<std::array<double, 3>, 3>;  // by rows
+
+RawImage read_raw(const std::string& path) {
+  const auto ends_in = [&](std::initializer_list<const char*> endings) {
+    return std::any_of(endings.begin(), endings.end(), [&](const char* e) { return path.ends_with(e); });
+  };
+  if (ends_in({".nii", ".nii.gz"})) return read_nifti(path);
+  if (ends_in({".nrrd", ".nhdr"})) return read_nrrd(path);
+  if (ends_in({".mha", ".mhd"})) return read_meta(path);
+  if (ends_in({".inr", ".inr.gz"})) return read_inr(path);
+  refuse(path, "unknown image format (known: .nii .nii.gz .nrrd .nhdr .mha .mhd .inr .inr.gz)");
+}
+
+template <class Voxel>
+std::uint32_t label_value(const std::string& path, Voxel voxel) {
+  constexpr double kEnd = 4294967296.0;
+  const auto value = static_cast<double>(voxel);
+  if (!(value >= 0 && value < kEnd) || std::floor(value) != value)
+    refuse(path, "a label image is needed: value " + std::to_string(value) +
+                     " is no label (integers, 0 to 2^32-1)");
+  return static_cast<std::uint32_t>(value);
+}
+
+template <class Voxel>
+std::vector<std::uint32_t> labels_from(const std::string& path, RawImage& raw) {
+  std::vector<std::uint32_t> labels(raw.bytes.size() / sizeof(Voxel));
+  for (std::size_t i = 0; i < labels.size(); ++i) {
+    unsigned char* const bytes = raw.bytes.data() + i * sizeof(Voxel);
+    if (raw.is_swapped) std::reverse(bytes, bytes + sizeof(Voxel));
+    Voxel voxel;
+    std::memcpy(&voxel, bytes, sizeof voxel);
+    labels[i] = label_value(path, voxel);
+  }
+  return labels;
+}
+
+std::vector<std::uint32_t> labels_from(const std::string& path, RawImage& raw) {
+  switch (raw.type) {
+    case VoxelType::kUint8:
+      return labels_from<std::uint8_t>(path, raw);
+    case VoxelType::kInt8:
+      return labels_from<std::int8_t>(path, raw);
+    case VoxelType::kUint16:
+      return labels_from<std::uint16_t>(path, raw);
+    case VoxelType::kInt16:
+      return labels_from<std::int16_t>(path, raw);
+    case VoxelType::kUint32:
+      return labels_from<std::uint32_t>(path, raw);
+    case VoxelType::kInt32:
+      return labels_from<std::int32_t>(path, raw);
+    case VoxelType::kUint64:
+      return labels_from<std::uint64_t>(path, raw);
+    case VoxelType::kInt64:
+      return labels_from<std::int64_t>(path, raw);
+    case VoxelType::kFloat:
+      return labels_from<float>(path, raw);
+    case VoxelType::kDouble:
+      break;
+  }
+  return labels_from<double>(path, raw);
+}
+
+double determinant(const Matrix& m) {
+  return m[0][0] * (m[1][1] * m[2][2] - m[1][2] * m[2][1]) -
+         m[0][1] * (m[1][0] * m[2][2] - m[1][2] * m[2][0]) +
+         m[0][2] * (m[1][0] * m[2][1] - m[1][1] * m[2][0]);
+}
+
+// One step of Newton's iteration for the orthonormal matrix nearest to m: the mean of m and its inverse
+// transposed. From a distance e it comes within e^2.
+Matrix step_to_orthonormal(const Matrix& m) {
+  const double d = determinant(m);
+  Matrix mean{};
+  for (std::size_t i = 0; i < 3; ++i)
+    for (std::size_t j = 0; j < 3; ++j) {
+      const std::size_t i1 = (i + 1) % 3, i2 = (i + 2) % 3, j1 = (j + 1) % 3, j2 = (j + 2) % 3;
+      mean[i][j] = (m[i][j] + (m[i1][j1] * m[i2][j2] - m[i1][j2] * m[i2][j1]) / d) / 2;
+    }
+  return mean;
+}
+
+double distance_to_orthonormal(const Matrix& m) {
+  double largest = 0;
+  for (std::size_t i = 0; i < 3; ++i)
+    for (std::size_t j = 0; j < 3; ++j) {
+      const double product = m[0][i] * m[0][j] + m[1][i] * m[1][j] + m[2][i] * m[2][j];
+      largest = std::max(largest, std::abs(product - (i == j ? 1 : 0)));
+    }
+  return largest;
+}
+
+// Headers state directions in single precision or six digits. A direction that is orthonormal but for that
+// is meant to be so, and taken as the nearest that is: nothing else says where voxels are to 1e-7 of the
+// image's width. Further from orthonormal it is shear, and kept.
+void settle_affine(const std::string& path, Image& image) {
+  constexpr double kHeaderRounding = 1e-5, kSmallestDeterminant = 1e-6;
+  auto& a = image.voxel_to_ras;
+  Matrix direction{};
+  for (std::size_t axis = 0; axis < 3; ++axis) {
+    image.spacing[axis] = std::hypot(a[axis], a[4 + axis], a[8 + axis]);
+    if (!(image.spacing[axis] > 0) || !std::isfinite(image.spacing[axis]) || !std::isfinite(a[4 * axis + 3]))
+      refuse(path, "the voxel spacing is not positive or the affine not finite (axis " +
+                       std::to_string(axis) + ")");
+    for (std::size_t row = 0; row < 3; ++row) direction[row][axis] = a[4 * row + axis] / image.spacing[axis];
+  }
+  if (!(std::abs(determinant(direction)) > kSmallestDeterminant))
+    refuse(path, "the affine is singular (its axes lie in a plane)");
+  if (distance_to_orthonormal(direction) >= kHeaderRounding) return;
+  for (int step = 0; step < 3; ++step) direction = step_to_orthonormal(direction);
+  for (std::size_t row = 0; row < 3; ++row)
+    for (std::size_t axis = 0; axis < 3; ++axis)
+      a[4 * row + axis] = direction[row][axis] * image.spacing[axis];
+}
+
+}  // namespace
+
+Image read_image(const std::string& path) {
+  RawImage raw = read_raw(path);
+  Image image;
+  image.path = path;
+  for (std::size_t axis = 0; axis < 3; ++axis) image.size[axis] = static_cast<int>(raw.size[axis]);
+  image.voxel_to_ras = raw.voxel_to_ras;
+  settle_affine(path, image);
+  image.voxels = labels_from(path, raw);
+  return image;
+}
+
+}  // namespace podm::verify

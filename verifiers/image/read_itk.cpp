@@ -1,0 +1,171 @@
+// NRRD and MetaImage: ITK reads the headers. The voxels are read here, since ITK fills what is missing with
+// zeros or leaves it uninitialized.
+#include <itkMetaImageIO.h>
+#include <itkNrrdImageIO.h>
+
+#include <bit>
+#include <filesystem>
+#include <map>
+
+#include "image/byte_source.h"
+#include "image/raw_image.h"
+
+namespace podm::verify {
+
+namespace {
+
+std::string lower(std::string text) {
+  for (char& c : text) c = static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
+  return text;
+}
+
+std::string trimmed(const std::string& text) {
+  const std::size_t begin = text.find_first_not_of(" \t\r"), end = text.find_last_not_of(" \t\r");
+  return begin == std::string::npos ? "" : text.substr(begin, end + 1 - begin);
+}
+
+// Lines "key SEPARATOR value" up to and with the line of key `last`.
+class TextHeader {
+ public:
+  TextHeader(const std::string& path, char separator, const std::string& last) {
+    constexpr std::uint64_t kLongest = 1 << 20;
+    file_bytes(path);
+    std::ifstream file(path, std::ios::binary);
+    for (std::string line, key = "-"; key != last && std::getline(file, line);) {
+      bytes_ += line.size() + 1;
+      if (bytes_ > kLongest) refuse(path, "the header has no end");
+      const std::size_t at = line.find(separator);
+      key = lower(trimmed(line.substr(0, at)));
+      if (at != std::string::npos && !key.starts_with('#')) fields_[key] = trimmed(line.substr(at + 1));
+    }
+  }
+  std::string operator[](const std::string& key) const {
+    const auto found = fields_.find(key);
+    return found == fields_.end() ? "" : found->second;
+  }
+  std::uint64_t bytes() const { return bytes_; }
+
+ private:
+  std::map<std::string, std::string> fields_;  // keys in lower case
+  std::uint64_t bytes_ = 0;
+};
+
+// Of a file named in the header of `path`.
+std::string beside(const std::string& path, const std::string& name) {
+  const std::string file = (std::filesystem::path(path).parent_path() / name).string();
+  std::error_code error;
+  if (!std::filesystem::is_regular_file(file, error))
+    refuse(path, "its voxels are missing (no file '" + name + "' beside it)");
+  return file;
+}
+
+// What ITK does not tell, or not of every file.
+struct Voxels {
+  ByteSource source;
+  bool is_big_endian;
+};
+
+Voxels nrrd_voxels(const std::string& path) {
+  std::array<char, 4> magic{};
+  std::ifstream(path, std::ios::binary).read(magic.data(), magic.size());
+  file_bytes(path);
+  if (std::string(magic.data(), magic.size()) != "NRRD") refuse(path, "not a NRRD file (wrong magic)");
+  const TextHeader header(path, ':', "");
+  for (const char* key : {"line skip", "lineskip", "byte skip", "byteskip"})
+    if (!header[key].empty() && header[key] != "0")
+      refuse(path, std::string("'") + key + "' is not supported");
+  const std::string encoding = lower(header["encoding"]), file = header["data file"] + header["datafile"];
+  if (encoding != "gzip" && encoding != "gz" && encoding != "raw")
+    refuse(path, "encoding '" + encoding + "' is not supported (raw and gzip are)");
+  const Compression compression = encoding == "raw" ? Compression::kNone : Compression::kStream;
+  const bool is_big_endian = lower(header["endian"]) == "big";
+  if (file.empty()) return {{path, path, header.bytes(), compression}, is_big_endian};
+  return {{path, beside(path, file), 0, compression}, is_big_endian};
+}
+
+Voxels meta_voxels(const std::string& path) {
+  const TextHeader header(path, '=', "elementdatafile");
+  const std::string file = header["elementdatafile"];
+  if (header["ndims"].empty() || file.empty()) refuse(path, "not a MetaImage file (wrong magic)");
+  if (header["ndims"] != "3") refuse(path, "a 3-D image is needed (NDims = " + header["ndims"] + ")");
+  if (!header["headersize"].empty() && header["headersize"] != "0")
+    refuse(path, "'HeaderSize' is not supported");
+  if (lower(header["binarydata"]) == "false") refuse(path, "voxels written as text are not supported");
+  for (const char* key : {"dimsize", "elementtype"})  // ITK prints what it misses
+    if (header[key].empty()) refuse(path, std::string("the MetaImage header has no '") + key + "'");
+  const bool is_compressed = lower(header["compresseddata"]) == "true";
+  const Compression compression = is_compressed ? Compression::kStream : Compression::kNone;
+  const bool is_big_endian =
+      lower(header["binarydatabyteordermsb"]) == "true" || lower(header["elementbyteordermsb"]) == "true";
+  if (file == "LOCAL" || file == "Local" || file == "local")  // the spellings that ITK knows
+    return {{path, path, header.bytes(), compression}, is_big_endian};
+  return {{path, beside(path, file), 0, compression}, is_big_endian};
+}
+
+VoxelType voxel_type(const std::string& path, const itk::ImageIOBase& io) {
+  using Io = itk::ImageIOBase;
+  static const std::map<Io::IOComponentEnum, VoxelType> kTypes{
+      {Io::UCHAR, VoxelType::kUint8},   {Io::CHAR, VoxelType::kInt8},
+      {Io::USHORT, VoxelType::kUint16}, {Io::SHORT, VoxelType::kInt16},
+      {Io::UINT, VoxelType::kUint32},   {Io::INT, VoxelType::kInt32},
+      {Io::ULONG, VoxelType::kUint64},  {Io::ULONGLONG, VoxelType::kUint64},
+      {Io::LONG, VoxelType::kInt64},    {Io::LONGLONG, VoxelType::kInt64},
+      {Io::FLOAT, VoxelType::kFloat},   {Io::DOUBLE, VoxelType::kDouble}};
+  if (io.GetNumberOfComponents() != 1)
+    refuse(path, "one value a voxel is needed, this image has " + std::to_string(io.GetNumberOfComponents()));
+  const auto known = kTypes.find(io.GetComponentType());
+  if (known == kTypes.end()) refuse(path, "unknown voxel type");
+  return known->second;
+}
+
+// ITK's world is LPS.
+std::array<double, 12> voxel_to_ras(const std::string& path, const itk::ImageIOBase& io) {
+  std::array<double, 12> a{};
+  for (unsigned row = 0; row < 3; ++row) {
+    if (!(io.GetSpacing(row) > 0))
+      refuse(path, "the voxel spacing is not positive (axis " + std::to_string(row) + ")");
+    const double flip = row < 2 ? -1 : 1;
+    for (unsigned column = 0; column < 3; ++column)
+      a[4 * row + column] = flip * io.GetDirection(column)[row] * io.GetSpacing(column);
+    a[4 * row + 3] = flip * io.GetOrigin(row);
+  }
+  return a;
+}
+
+std::string one_line(std::string text) {
+  const std::size_t place = text.rfind("): ");  // ends what ITK says of its own source
+  if (place != std::string::npos) text = text.substr(place + 3);
+  for (char& c : text) c = c == '\n' ? ' ' : c;
+  return trimmed(text);
+}
+
+RawImage read(const std::string& path, itk::ImageIOBase& io, Voxels voxels) {
+  RawImage raw;
+  try {
+    if (!io.CanReadFile(path.c_str()))
+      refuse(path, "not a file of the format its name promises (wrong magic or header)");
+    io.SetFileName(path);
+    io.ReadImageInformation();
+  } catch (const itk::ExceptionObject& error) {
+    refuse(path, "cannot be read (" + one_line(error.GetDescription()) + ")");
+  }
+  for (unsigned axis = 0; axis < io.GetNumberOfDimensions(); ++axis)
+    raw.size.push_back(static_cast<std::int64_t>(io.GetDimensions(axis)));
+  raw.type = voxel_type(path, io);
+  raw.is_swapped = voxels.is_big_endian != (std::endian::native == std::endian::big);
+  if (raw.size.size() >= 3) raw.voxel_to_ras = voxel_to_ras(path, io);
+  read_voxels(path, raw, voxels.source);
+  return raw;
+}
+
+}  // namespace
+
+RawImage read_nrrd(const std::string& path) {
+  return read(path, *itk::NrrdImageIO::New(), nrrd_voxels(path));
+}
+
+RawImage read_meta(const std::string& path) {
+  return read(path, *itk::MetaImageIO::New(), meta_voxels(path));
+}
+
+}  // namespace podm::verify

@@ -1,0 +1,105 @@
+#include "image/label_function.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <map>
+#include <random>
+
+#include "image/image_frame.h"
+
+namespace podm::verify {
+namespace {
+
+Image random_image(unsigned seed, unsigned labels) {
+  std::mt19937 random(seed);
+  Image image;
+  image.size = {4, 3, 5};
+  image.spacing = {1, 1, 1};
+  image.voxel_to_ras = {1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0};
+  image.voxels.resize(60);
+  for (auto& v : image.voxels) v = random() % labels;
+  return image;
+}
+
+std::uint32_t voxel(const Image& image, int i, int j, int k) {
+  if (i < 0 || j < 0 || k < 0 || i >= image.size[0] || j >= image.size[1] || k >= image.size[2]) return 0;
+  return image.voxels[static_cast<std::size_t>((k * image.size[1] + j) * image.size[0] + i)];
+}
+
+TEST(LabelFunction, IsTheGreatestSumOfHatFunctions) {
+  std::mt19937 random(3);
+  std::uniform_real_distribution<double> anywhere(-2, 6);
+  const Image image = random_image(1, 4);
+  const LabelFunction function(image);
+  for (int trial = 0; trial < 20000; ++trial) {
+    const Point u{anywhere(random), anywhere(random), anywhere(random)};
+    std::map<std::uint32_t, double> weights;
+    for (int k = -3; k < 8; ++k)
+      for (int j = -3; j < 8; ++j)
+        for (int i = -3; i < 8; ++i)
+          weights[voxel(image, i, j, k)] += std::max(0.0, 1 - std::abs(u[0] - i)) *
+                                            std::max(0.0, 1 - std::abs(u[1] - j)) *
+                                            std::max(0.0, 1 - std::abs(u[2] - k));
+    const LabelWeights found = function.weights_at(u);
+    for (const auto& [label, weight] : weights) {
+      EXPECT_NEAR(found.weight_of(label), weight, 1e-12);
+      EXPECT_LE(weight, weights[function.label_at(u)] + 1e-12);
+    }
+  }
+}
+
+TEST(LabelFunction, TiesGoToTheSmallerLabelAndOutsideIsBackground) {
+  Image image = random_image(1, 2);
+  for (std::size_t i = 0; i < image.voxels.size(); ++i) image.voxels[i] = i % 4 < 2 ? 9 : 5;
+  const LabelFunction function(image);
+  EXPECT_EQ(function.label_at({1.5, 1, 1}), 5U);
+  EXPECT_EQ(function.label_at({1.4999, 1, 1}), 9U);
+  EXPECT_EQ(function.label_at({-0.4999, 1, 1}), 9U);
+  EXPECT_EQ(function.label_at({-0.5, 1, 1}), 0U);
+  EXPECT_EQ(function.label_at({1e300, -1e300, 1}), 0U);
+}
+
+TEST(LabelFunction, GradientIsThatOfTheWeights) {
+  std::mt19937 random(5);
+  std::uniform_real_distribution<double> fraction(0.1, 0.9);
+  const Image image = random_image(2, 3);
+  const LabelFunction function(image);
+  constexpr double kStep = 1e-6;
+  for (int trial = 0; trial < 1000; ++trial) {
+    Point u;
+    for (std::size_t axis = 0; axis < 3; ++axis)
+      u[axis] = static_cast<int>(random() % static_cast<unsigned>(image.size[axis])) + fraction(random);
+    const Point gradient = function.gradient_of_difference(u, 1, 2);
+    for (std::size_t axis = 0; axis < 3; ++axis) {
+      Point low = u, high = u;
+      low[axis] -= kStep;
+      high[axis] += kStep;
+      const auto difference = [&](const Point& p) {
+        const LabelWeights w = function.weights_at(p);
+        return w.weight_of(1) - w.weight_of(2);
+      };
+      EXPECT_NEAR(gradient[axis], (difference(high) - difference(low)) / (2 * kStep), 1e-8);
+    }
+  }
+}
+
+TEST(ImageFrame, GoesThereAndBackInEverySpace) {
+  Image image = random_image(1, 2);
+  image.voxel_to_ras = {-0.7, 0.2, 0, 30, 0.1, 0.9, 0.3, -200, 0, 0, 2.5, 7};
+  for (const Space space : {Space::kUnstated, Space::kRas, Space::kLps, Space::kVoxel}) {
+    const ImageFrame frame(image, space);
+    const Point u{1.25, -3, 2}, world = frame.voxels_to_world(u);
+    Point in_mesh = world;
+    if (space == Space::kLps) in_mesh = {-world[0], -world[1], world[2]};
+    if (space == Space::kVoxel) in_mesh = u;
+    for (std::size_t axis = 0; axis < 3; ++axis) {
+      EXPECT_NEAR(frame.to_voxels(in_mesh)[axis], u[axis], 1e-12);
+      EXPECT_NEAR(frame.to_world(in_mesh)[axis], world[axis], 1e-12);
+    }
+  }
+  EXPECT_NEAR(ImageFrame(image, Space::kVoxel).voxel_volume_mm3(), 2.5 * (0.63 + 0.02), 1e-12);
+}
+
+}  // namespace
+}  // namespace podm::verify

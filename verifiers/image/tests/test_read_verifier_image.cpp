@@ -1,0 +1,190 @@
+// Every format gives the same small image, its affine honoured; real ones as other readers measured them
+// (PODM_TEST_IMAGES names their folder).
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <cstdlib>
+#include <map>
+
+#include "image/image.h"
+#include "image/image_frame.h"
+#include "made_files.h"
+
+namespace podm::verify {
+namespace {
+
+using Affine = std::array<double, 12>;
+
+const Affine kPlain{1, 0, 0, 0, 0, 2, 0, 0, 0, 0, 3, 0};
+const Affine kFromLps{-1, 0, 0, -10, 0, -2, 0, -20, 0, 0, 3, 30};
+
+void expect_small_image(const std::string& path, const Affine& affine) {
+  const Image image = read_image(path);
+  EXPECT_EQ(image.path, path);
+  EXPECT_EQ(image.size, (std::array<int, 3>{2, 3, 4}));
+  EXPECT_EQ(image.voxels, two_voxels<std::uint32_t>());
+  for (std::size_t axis = 0; axis < 3; ++axis)
+    EXPECT_NEAR(image.spacing[axis], std::hypot(affine[axis], affine[4 + axis], affine[8 + axis]), 1e-12);
+  for (std::size_t i = 0; i < 12; ++i) EXPECT_NEAR(image.voxel_to_ras[i], affine[i], 1e-6) << i;
+}
+
+TEST(ReadVerifierImage, Nifti) {
+  const Folder folder;
+  expect_small_image(folder.write("a.nii", nifti_file(kVoxels)), kPlain);
+  expect_small_image(folder.write("a.nii.gz", deflated(nifti_file(kVoxels))), kPlain);
+  expect_small_image(folder.write("b.nii", nifti_file(kVoxels, [](auto& h) { h.dim[0] = 4; })), kPlain);
+}
+
+TEST(ReadVerifierImage, GzipOfSeveralMembers) {
+  const Folder folder;
+  const std::string file = nifti_file(kVoxels);
+  expect_small_image(folder.write("a.nii.gz", deflated(file.substr(0, 360)) + deflated(file.substr(360))),
+                     kPlain);
+}
+
+TEST(ReadVerifierImage, NiftiQformHalfATurnAboutZ) {
+  const Folder folder;
+  const std::string file = nifti_file(kVoxels, [](auto& h) {
+    h.sform_code = 0;
+    h.qform_code = NIFTI_XFORM_SCANNER_ANAT;
+    h.quatern_d = 1;
+    h.qoffset_x = 4;
+  });
+  expect_small_image(folder.write("a.nii", file), {-1, 0, 0, 4, 0, -2, 0, 0, 0, 0, 3, 0});
+}
+
+TEST(ReadVerifierImage, ShearIsHonouredAndUnitsAre) {
+  const Folder folder;
+  const auto sheared = nifti_file(kVoxels, [](auto& h) {
+    h.srow_x[1] = 0.5F;
+    h.srow_z[3] = -8;
+    h.qform_code = NIFTI_XFORM_SCANNER_ANAT;  // without the shear: the sform comes first
+  });
+  expect_small_image(folder.write("a.nii", sheared), {1, 0.5, 0, 0, 0, 2, 0, 0, 0, 0, 3, -8});
+  const auto metres = nifti_file(kVoxels, [](auto& h) { h.xyzt_units = NIFTI_UNITS_METER; });
+  expect_small_image(folder.write("b.nii", metres), {1e3, 0, 0, 0, 0, 2e3, 0, 0, 0, 0, 3e3, 0});
+}
+
+TEST(ReadVerifierImage, DirectionRoundedToSixDigitsIsIsometric) {
+  const Folder folder;
+  const Image image = read_image(folder.write("a.nii", nifti_file(kVoxels, [](auto& h) {
+                                                h.srow_x[0] = h.srow_y[1] = 0.866025F;
+                                                h.srow_x[1] = -0.5F;
+                                                h.srow_y[0] = 0.5F;
+                                              })));
+  const auto& a = image.voxel_to_ras;
+  EXPECT_NEAR(a[0] * a[1] + a[4] * a[5] + a[8] * a[9], 0, 1e-15);
+  EXPECT_NEAR(a[0], std::sqrt(0.75), 2e-6);
+}
+
+TEST(ReadVerifierImage, Inr) {
+  const Folder folder;
+  const std::string file = inr_header("VX=1\nVY=2\nVZ=3\nTX=-4\n") + kVoxels;
+  const Affine affine{1, 0, 0, -4, 0, 2, 0, 0, 0, 0, 3, 0};
+  expect_small_image(folder.write("a.inr", file), affine);
+  expect_small_image(folder.write("a.inr.gz", deflated(file)), affine);
+}
+
+TEST(ReadVerifierImage, Nrrd) {
+  const Folder folder;
+  expect_small_image(folder.write("a.nrrd", kNrrdHeader + "encoding: raw\n\n" + kVoxels), kFromLps);
+  expect_small_image(folder.write("b.nrrd", kNrrdHeader + "encoding: gzip\n\n" + deflated(kVoxels)),
+                     kFromLps);
+  folder.write("c.raw", kVoxels);
+  expect_small_image(folder.write("c.nhdr", kNrrdHeader + "encoding: raw\ndata file: c.raw\n\n"), kFromLps);
+}
+
+TEST(ReadVerifierImage, MetaImage) {
+  const Folder folder;
+  const std::string local = "ElementDataFile = LOCAL\n", zipped = deflated(kVoxels, 15);
+  expect_small_image(folder.write("a.mha", kMetaHeader + local + kVoxels), kFromLps);
+  expect_small_image(
+      folder.write("b.mha", "CompressedData = True\nCompressedDataSize = " + std::to_string(zipped.size()) +
+                                "\n" + kMetaHeader + local + zipped),
+      kFromLps);
+  folder.write("c.raw", kVoxels);
+  expect_small_image(folder.write("c.mhd", kMetaHeader + "ElementDataFile = c.raw\n"), kFromLps);
+}
+
+template <class T>
+void expect_type(const Folder& folder, int datatype) {
+  const std::string file = nifti_file(bytes_of_values(two_voxels<T>()),
+                                      [&](auto& h) { h.datatype = static_cast<short>(datatype); });
+  expect_small_image(folder.write("a.nii", file), kPlain);
+}
+
+TEST(ReadVerifierImage, EveryTypeThatHoldsLabels) {
+  const Folder folder;
+  expect_type<std::int8_t>(folder, DT_INT8);
+  expect_type<std::uint16_t>(folder, DT_UINT16);
+  expect_type<std::int16_t>(folder, DT_INT16);
+  expect_type<std::uint32_t>(folder, DT_UINT32);
+  expect_type<std::int32_t>(folder, DT_INT32);
+  expect_type<std::uint64_t>(folder, DT_UINT64);
+  expect_type<std::int64_t>(folder, DT_INT64);
+  expect_type<float>(folder, DT_FLOAT32);
+  expect_type<double>(folder, DT_FLOAT64);
+}
+
+TEST(ReadVerifierImage, BytesOfTheOtherOrder) {
+  const Folder folder;
+  auto voxels = two_voxels<std::uint16_t>();
+  for (auto& v : voxels) v = static_cast<std::uint16_t>(v << 8);
+  const std::string bytes = bytes_of_values(voxels);
+  expect_small_image(folder.write("a.inr", inr_header("VX=1\nVY=2\nVZ=3\n",
+                                                      "XDIM=2\nYDIM=3\nZDIM=4\nVDIM=1\nTYPE=unsigned "
+                                                      "fixed\nPIXSIZE=16 bits\nCPU=sun\n") +
+                                               bytes),
+                     kPlain);
+  const std::string nrrd =
+      replaced(replaced(kNrrdHeader, "uchar", "ushort"), "endian: little", "endian: big") +
+      "encoding: raw\n\n";
+  expect_small_image(folder.write("a.nrrd", nrrd + bytes), kFromLps);
+  const std::string meta = replaced(replaced(kMetaHeader, "UCHAR", "USHORT"), "MSB = False", "MSB = True") +
+                           "ElementDataFile = LOCAL\n";
+  expect_small_image(folder.write("a.mha", meta + bytes), kFromLps);
+}
+
+struct Measured {
+  const char* file;
+  std::array<int, 3> size;
+  std::size_t labels, labelled_voxels;
+  double labelled_mm3;
+};
+
+class RealVerifierImage : public testing::TestWithParam<Measured> {};
+
+TEST_P(RealVerifierImage, IsReadAsMeasured) {
+  const char* folder = std::getenv("PODM_TEST_IMAGES");
+  if (folder == nullptr) GTEST_SKIP() << "PODM_TEST_IMAGES is not set";
+  const Measured& measured = GetParam();
+  const Image image = read_image((std::filesystem::path(folder) / measured.file).string());
+  EXPECT_EQ(image.size, measured.size);
+  std::map<std::uint32_t, std::size_t> counts;
+  for (const std::uint32_t label : image.voxels) ++counts[label];
+  EXPECT_EQ(counts.size(), measured.labels + 1);
+  const std::size_t labelled = image.voxels.size() - counts[0];
+  EXPECT_EQ(labelled, measured.labelled_voxels);
+  EXPECT_NEAR(static_cast<double>(labelled) * ImageFrame(image, Space::kRas).voxel_volume_mm3(),
+              measured.labelled_mm3, 5e-6 * measured.labelled_mm3);
+}
+
+INSTANTIATE_TEST_SUITE_P(
+    All, RealVerifierImage,
+    testing::Values(Measured{"abdomen_ct_spl.nrrd", {256, 256, 113}, 95, 1446889, 1.90752e6},
+                    Measured{"head_mri_colin27.nii.gz", {181, 217, 181}, 6, 4040490, 4.04049e6},
+                    Measured{"brain_mri_spl.nrrd", {256, 256, 256}, 312, 1724004, 1.72400e6},
+                    Measured{"liver_cgal.inr.gz", {438, 353, 165}, 4, 3492286, 1.77371e6},
+                    Measured{"abdomen_ct_slab.nii.gz", {512, 512, 20}, 31, 739420, 1.41033e6},
+                    Measured{"abdomen_ct_small.nii.gz", {122, 101, 30}, 41, 110225, 2.97608e6},
+                    Measured{"abdomen_mr_small.nii.gz", {117, 91, 20}, 23, 44034, 1.18892e6},
+                    Measured{"abdomen_mr_small.mha", {117, 91, 20}, 23, 44034, 1.18892e6}),
+    [](const auto& param_info) {
+      std::string name = param_info.param.file;
+      for (char& c : name)
+        if (!std::isalnum(static_cast<unsigned char>(c))) c = '_';
+      return name;
+    });
+
+}  // namespace
+}  // namespace podm::verify
