@@ -12,6 +12,9 @@ double square(double x) { return x * x; }
 // Within [low, high]; low if x is not a number.
 double clamped(double x, double low, double high) { return std::max(low, std::min(x, high)); }
 
+// Of a block's sides, that its 26 neighbours reach beyond any of its points in the worst direction.
+constexpr double kMostByBlocks = 1.5;
+
 // The 64 corners of a block and of its 26 neighbours, a bit each: corner (i,j,k) of {0..3}^3 at i + 4 j + 16
 // k.
 constexpr std::uint64_t kFirstCorners = 0x0777'0777'0777;  // {0..2}^3, by which the 27 blocks are numbered
@@ -38,10 +41,11 @@ Point Isosurface::clamped_to_grid(const Point& u) const {
   return {clamped(u.x, 0, end_.x - 0.5), clamped(u.y, 0, end_.y - 0.5), clamped(u.z, 0, end_.z - 0.5)};
 }
 
-double Isosurface::distance_lower_bound(const Point& p) const {
+double Isosurface::distance_lower_bound(const Point& p, double radius) const {
   const Point u = to_voxels(p);
   const double bound = clearance(u);
-  return bound < shortest_side_mm_ && is_inside(u) ? std::max(bound, bound_by_blocks(u)) : bound;
+  const bool may_blocks_tell = bound <= radius && radius < kMostByBlocks * shortest_side_mm_ && is_inside(u);
+  return may_blocks_tell ? std::max(bound, bound_by_blocks(u)) : std::max(bound, 0.0);
 }
 
 // The isosurface lies within half a voxel of the grid. p projects to p' on that convex box, and

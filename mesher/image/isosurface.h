@@ -40,13 +40,23 @@ class Isosurface {
     grid_.prefetch(index);
   }
 
-  /// A lower bound of the distance from p to the isosurface, mm; 0 when p may lie on it. A few look-ups.
-  double distance_lower_bound(const Point& p) const;
+  /// A lower bound of the distance from p to the isosurface, mm; 0 when p may lie on it. One or two look-ups,
+  /// and some more where only that can tell whether the distance is above `radius`.
+  double distance_lower_bound(const Point& p, double radius) const;
 
-  /// A point of the isosurface as near to p as local search from the nearest surface voxels finds, if that
-  /// is within `radius` of p. Its distance to the true isosurface is below 1e-6 voxel. Among several bumps of
-  /// voxel size it may take the second nearest: on smooth shapes it exceeds the nearest distance typically by
-  /// nothing, in 1 % of cases by more than 0.2 and never by more than 1 of a voxel's shortest side.
+  /// The isosurface point nearest to p, as found by local search from the nearest surface voxels, if within
+  /// `radius` of p. Among several bumps of voxel size the search may take the second nearest: on smooth
+  /// shapes it exceeds the nearest distance typically by nothing, in 1 % of cases by more than 0.2 and never
+  /// by more than 1 of a voxel's shortest side.
+  struct NearPoint {
+    Point point;  // to about a hundredth of a voxel
+    Voxel surface_voxel;
+    bool is_midpoint;  // of two neighbouring voxels
+  };
+  std::optional<NearPoint> near_point(const Point& p, double radius) const;
+  /// The same, less than 1e-6 voxel from the isosurface, for p's near point. May be a little beyond `radius`.
+  Point settled(const NearPoint& near, const Point& p) const;
+  /// Both at once, within the radius.
   std::optional<Point> closest_point(const Point& p, double radius) const;
 
   /// The point where the label changes along segment ab, searched from a; none if there is no change.
@@ -92,8 +102,8 @@ class Isosurface {
                                              const BlockLabels& labels, LabelIndex label) const;
   struct Nearest;
   class Sheet;
-  Nearest nearest_midpoint(const Point& u) const;
-  void try_midpoints_of(FeatureTransform::VoxelIndex index, const Point& u, Nearest& best) const;
+  double squared_distance_to_midpoint(Neighborhood around, const Vector& d) const;
+  Voxel feature_near(const Point& u) const;
   bool pull(Sheet& sheet, Point& z, int max_pulls) const;
   bool try_midpoints_around(const Point& u, Nearest& best) const;
   std::optional<Vector> tangent_step(Sheet& sheet, const Point& u, const Point& z) const;

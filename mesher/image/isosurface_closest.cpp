@@ -61,6 +61,7 @@ class Isosurface::Sheet {
     }
     return true;
   }
+  const Voxel& center() const { return center_; }
   double value() const { return lead_->value(at_); }
   Vector gradient() const { return lead_->gradient(at_); }
   double second_derivative(const Vector& d) const { return lead_->second_derivative(at_, d); }
@@ -104,37 +105,73 @@ class Isosurface::Sheet {
   std::optional<Trilinear> own_lead_;
 };
 
-struct Isosurface::Nearest {
-  Point u;
-  double squared_mm = std::numeric_limits<double>::infinity();
-  Voxel surface_voxel;  // beside u
-};
-
-// Midpoints lie half a side from the feature, so one that is too far has none to offer.
-void Isosurface::try_midpoints_of(FeatureTransform::VoxelIndex index, const Point& u, Nearest& best) const {
-  const Voxel feature = grid_.voxel(index);
-  const Vector d = to_mm(center(feature) - u);
-  const double squared = squared_length(d);
-  if (squared >= square(std::sqrt(best.squared_mm) + 0.5 * longest_side_mm_)) return;
-  const Neighborhood around = features_.neighborhood(index);
-  const auto try_one = [&](int i, int j, int k, double offset, double side) {
-    if (!around.differs(Neighborhood::position(i, j, k))) return;
-    const double to_midpoint = squared + offset * side + square(0.5 * side);
-    if (to_midpoint >= best.squared_mm) return;
-    best = {center(feature) +
-                0.5 * Vector{static_cast<double>(i), static_cast<double>(j), static_cast<double>(k)},
-            to_midpoint, feature};
-  };
-  try_one(-1, 0, 0, -d.x, spacing_.x);
-  try_one(1, 0, 0, d.x, spacing_.x);
-  try_one(0, -1, 0, -d.y, spacing_.y);
-  try_one(0, 1, 0, d.y, spacing_.y);
-  try_one(0, 0, -1, -d.z, spacing_.z);
-  try_one(0, 0, 1, d.z, spacing_.z);
+// The squared distance from u, which lies -d mm from a surface voxel, to the nearest midpoint between it and
+// a 6-neighbour of another label.
+double Isosurface::squared_distance_to_midpoint(Neighborhood around, const Vector& d) const {
+  constexpr std::array<unsigned, 3> kStep{1, 3, 9};
+  constexpr unsigned kCenter = Neighborhood::position(0, 0, 0);
+  double least = std::numeric_limits<double>::infinity();
+  for (std::size_t a = 0; a < 3; ++a) {
+    const double along = coordinate(d, a), side = coordinate(spacing_, a);
+    const unsigned towards_u = along > 0 ? kCenter - kStep[a] : kCenter + kStep[a];
+    const double quarter = 0.25 * side * side, reach = std::fabs(along) * side;
+    if (around.differs(towards_u)) {
+      least = std::min(least, quarter - reach);
+    } else if (around.differs(2 * kCenter - towards_u)) {
+      least = std::min(least, quarter + reach);
+    }
+  }
+  return squared_length(d) + least;
 }
 
-// Among the 54 edges of the 27 voxels around the surface voxel of `best`.
+// The feature of a voxel around u that has the nearest midpoint beside it. The nearest voxel comes first:
+// midpoints lie at most half a side from the feature, so it rules most others out.
+Voxel Isosurface::feature_near(const Point& u) const {
+  const Point inside = clamped_to_grid(u);
+  const Voxel block = block_of(inside), nearest = nearest_voxel(inside);
+  if (features_.is_surface(grid_.index(nearest))) return nearest;
+  const int first = (nearest.i - block.i) | (nearest.j - block.j) << 1 | (nearest.k - block.k) << 2;
+  Voxel best;
+  double best2 = std::numeric_limits<double>::infinity(), too_far2 = best2;
+  auto last = FeatureTransform::kNone;
+  for (int c = 0; c < 8; ++c) {
+    const int corner = c ^ first;
+    const Voxel v{block.i + (corner & 1), block.j + (corner >> 1 & 1), block.k + (corner >> 2)};
+    if (!grid_.contains(v)) continue;
+    const auto index = features_.nearest(grid_.index(v));
+    if (index == last) continue;
+    last = index;
+    const Voxel feature = grid_.voxel(index);
+    const Vector d = to_mm(center(feature) - u);
+    if (squared_length(d) >= too_far2) continue;
+    const double squared = squared_distance_to_midpoint(features_.neighborhood(index), d);
+    if (squared >= best2) continue;
+    best = feature;
+    best2 = squared;
+    too_far2 = square(std::sqrt(squared) + 0.5 * longest_side_mm_);
+  }
+  return best;
+}
+
+struct Isosurface::Nearest {
+  Voxel surface_voxel;  // beside u
+  Point u{};
+  double squared_mm = std::numeric_limits<double>::infinity();
+};
+
+// Takes the nearest midpoint of the 54 edges of the 27 voxels around the surface voxel of `best`, if it is
+// nearer.
 bool Isosurface::try_midpoints_around(const Point& u, Nearest& best) const {
+  struct Position {
+    std::uint8_t i, j, k;
+  };
+  static constexpr auto kPositions = [] {
+    std::array<Position, 27> positions{};
+    for (std::uint8_t e = 0; e < 27; ++e)
+      positions[e] = {static_cast<std::uint8_t>(e % 3), static_cast<std::uint8_t>(e / 3 % 3),
+                      static_cast<std::uint8_t>(e / 9)};
+    return positions;
+  }();
   const Voxel middle = best.surface_voxel;
   const Vector d = to_mm(center(middle) - u);
   // Squared mm from u along each axis, of the voxels and of the midpoints between them.
@@ -147,47 +184,27 @@ bool Isosurface::try_midpoints_around(const Point& u, Nearest& best) const {
     }
   }
   const Neighborhood around = features_.neighborhood(grid_.index(middle));
-  bool is_better = false;
+  double nearest2 = best.squared_mm * (1 - 1e-12);
+  unsigned nearest = 27, nearest_axis = 0;
   for (unsigned axis = 0; axis < 3; ++axis) {
     const auto &x2 = axis == 0 ? midpoint2[0] : voxel2[0], &y2 = axis == 1 ? midpoint2[1] : voxel2[1],
                &z2 = axis == 2 ? midpoint2[2] : voxel2[2];
     for (std::uint32_t edges = around.differing_edges(axis); edges != 0; edges &= edges - 1) {
       const auto e = static_cast<unsigned>(std::countr_zero(edges));
-      const unsigned i = e % 3, j = e / 3 % 3, k = e / 9;
-      const double squared = x2[i] + y2[j] + z2[k];
-      if (squared >= best.squared_mm * (1 - 1e-12)) continue;
-      const Voxel first{middle.i - 1 + static_cast<int>(i), middle.j - 1 + static_cast<int>(j),
-                        middle.k - 1 + static_cast<int>(k)};
-      const Vector step{axis == 0 ? 1.0 : 0, axis == 1 ? 1.0 : 0, axis == 2 ? 1.0 : 0};
-      best = {center(first) + 0.5 * step, squared,
-              grid_.contains(first)
-                  ? first
-                  : Voxel{first.i + (axis == 0), first.j + (axis == 1), first.k + (axis == 2)}};
-      is_better = true;
+      const double squared = x2[kPositions[e].i] + y2[kPositions[e].j] + z2[kPositions[e].k];
+      if (squared >= nearest2) continue;
+      nearest2 = squared;
+      nearest = e;
+      nearest_axis = axis;
     }
   }
-  return is_better;
-}
-
-// Of the features of the voxels around u, the nearest voxel's first: it rules most others out.
-Isosurface::Nearest Isosurface::nearest_midpoint(const Point& u) const {
-  const Point inside = clamped_to_grid(u);
-  const Voxel block = block_of(inside), nearest = nearest_voxel(inside);
-  const int first = (nearest.i - block.i) | (nearest.j - block.j) << 1 | (nearest.k - block.k) << 2;
-  Nearest best;
-  auto last = FeatureTransform::kNone;
-  for (int c = 0; c < 8; ++c) {
-    const int corner = c ^ first;
-    const Voxel v{block.i + (corner & 1), block.j + (corner >> 1 & 1), block.k + (corner >> 2)};
-    if (!grid_.contains(v)) continue;
-    const auto feature = features_.nearest(grid_.index(v));
-    if (feature == last) continue;
-    last = feature;
-    try_midpoints_of(feature, u, best);
-  }
-  while (try_midpoints_around(u, best)) {
-  }
-  return best;
+  if (nearest == 27) return false;
+  const Position at = kPositions[nearest];
+  const Voxel first{middle.i - 1 + at.i, middle.j - 1 + at.j, middle.k - 1 + at.k};
+  const Voxel step{nearest_axis == 0, nearest_axis == 1, nearest_axis == 2};
+  const Voxel second{first.i + step.i, first.j + step.j, first.k + step.k};
+  best = {grid_.contains(first) ? first : second, center(first) + 0.5 * center(step), nearest2};
+  return true;
 }
 
 // Moves z along the gradient until the sheet's value says that it is on the isosurface, to `tolerance`
@@ -242,22 +259,36 @@ void Isosurface::descend(Sheet& sheet, const Point& u, Nearest& best) const {
   }
 }
 
-std::optional<Point> Isosurface::closest_point(const Point& p, double radius) const {
+std::optional<Isosurface::NearPoint> Isosurface::near_point(const Point& p, double radius) const {
   if (is_empty()) return std::nullopt;
   const Point u = to_voxels(p);
-  const Nearest start = nearest_midpoint(u);
-  Nearest best = start;
-  Sheet sheet(*this, start.surface_voxel);
+  Nearest best{feature_near(u)};
+  while (try_midpoints_around(u, best)) {
+  }
+  const Point midpoint = best.u;
+  Sheet sheet(*this, best.surface_voxel);
   descend(sheet, u, best);
-  Point z = best.u;
-  // Midpoints lie on a lattice, and vertices of a lattice make flat cells that rounding can turn inside out:
-  // take a point of the isosurface a little beside it, as irregular as u itself.
-  if (best.u == start.u)
+  if (!(best.squared_mm <= square(radius))) return std::nullopt;
+  return NearPoint{to_mm(best.u), sheet.center(), best.u == midpoint};
+}
+
+// Midpoints lie on a lattice, and vertices of a lattice make flat cells that rounding can turn inside out:
+// take a point of the isosurface a little beside it, as irregular as p itself.
+Point Isosurface::settled(const NearPoint& near, const Point& p) const {
+  const Point u = to_voxels(p), start = to_voxels(near.point);
+  Sheet sheet(*this, near.surface_voxel);
+  Point z = start;
+  if (near.is_midpoint)
     z = z +
         kAside * Vector{std::sin(kIrregular * u.x), std::sin(kIrregular * u.y), std::sin(kIrregular * u.z)};
-  if (!pull(sheet, z, kMaxPulls)) z = start.u;
-  if (!(squared_length(to_mm(z - u)) <= square(radius))) return std::nullopt;
-  return to_mm(z);
+  return pull(sheet, z, kMaxPulls) ? to_mm(z) : near.point;
+}
+
+std::optional<Point> Isosurface::closest_point(const Point& p, double radius) const {
+  const auto near = near_point(p, radius);
+  if (!near) return std::nullopt;
+  const Point z = settled(*near, p);
+  return squared_distance(z, p) <= square(radius) ? z : near->point;
 }
 
 }  // namespace podm

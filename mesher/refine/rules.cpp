@@ -42,12 +42,12 @@ Examination Rules::examine(CellId c) const {
   Examination t{c, center, cell.sphere.squared_radius, label_of(c), 0, true, {}};
   if (std::isnan(t.squared_radius))
     t.squared_radius = squared_distance(center, mesh_.point(cell.vertices[0]));
-  t.isosurface_distance = isosurface_.distance_lower_bound(center);
-  if (square(t.isosurface_distance) > t.squared_radius || is_settled(cell, t.squared_radius)) return t;
   const double radius = std::sqrt(t.squared_radius);
-  t.nearest = isosurface_.closest_point(center, radius);
+  t.isosurface_distance = isosurface_.distance_lower_bound(center, radius);
+  if (t.isosurface_distance > radius || is_settled(cell, t.squared_radius)) return t;
+  t.nearest = isosurface_.near_point(center, radius);
   t.is_distance_proven = false;
-  t.isosurface_distance = kNearestTrust * (t.nearest ? distance(center, *t.nearest) : radius);
+  t.isosurface_distance = kNearestTrust * (t.nearest ? distance(center, t.nearest->point) : radius);
   return t;
 }
 
@@ -59,9 +59,9 @@ bool Rules::is_covered(const Point& z, VertexId by) const {
 std::optional<Point> Rules::r1_sample(const Examination& t) const {
   if (!t.nearest) return std::nullopt;
   for (const VertexId v : mesh_.cell(t.cell).vertices) {
-    if (is_covered(*t.nearest, v)) return std::nullopt;
+    if (is_covered(t.nearest->point, v)) return std::nullopt;
   }
-  return t.nearest;
+  return isosurface_.settled(*t.nearest, t.center);
 }
 
 std::optional<Point> Rules::r2_center(const Examination& t) const {

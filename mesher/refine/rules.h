@@ -37,10 +37,11 @@ struct Examination {
   CellId cell;
   Point center;
   double squared_radius;
-  LabelIndex label;              // at the centre
-  double isosurface_distance;    // a lower bound, from the centre
-  bool is_distance_proven;       // else it rests on the nearest point found
-  std::optional<Point> nearest;  // z, if the circumball meets the isosurface and R1 or R2 may care
+  LabelIndex label;            // at the centre
+  double isosurface_distance;  // a lower bound, from the centre
+  bool is_distance_proven;     // else it rests on the nearest point found
+  std::optional<Isosurface::NearPoint>
+      nearest;  // z, if the circumball meets the isosurface and R1 or R2 may care
 };
 
 struct SurfaceCenter {

@@ -72,7 +72,8 @@ TEST(IsosurfaceDistance, NeverExceedsTheDistanceToAnySurfacePoint) {
     const std::vector<Point> surface = sample_isosurface(image, 4);
     for (int n = 0; n < 400; ++n) {
       const Point p = random_point(random, image, n % 10 == 0 ? 30 : 2);
-      const double bound = isosurface.distance_lower_bound(p);
+      const double radius = uniform(random, 0, 3) * shortest_voxel_side(image);
+      const double bound = isosurface.distance_lower_bound(p, radius);
       ASSERT_GE(bound, 0);
       ASSERT_LE(bound, distance_to_nearest(surface, p) * (1 + 1e-12));
     }
@@ -88,7 +89,7 @@ TEST(IsosurfaceDistance, IsCloseInTheGrid) {
     Random random(6);
     for (int n = 0; n < 300; ++n) {
       const Point p = random_point(random, phantom.image, 0);
-      EXPECT_GE(isosurface.distance_lower_bound(p), distance_to_nearest(surface, p) - 2 * voxel_diagonal);
+      EXPECT_GE(isosurface.distance_lower_bound(p, 5), distance_to_nearest(surface, p) - 2 * voxel_diagonal);
     }
   }
 }
@@ -103,7 +104,7 @@ TEST(ClosestPoint, LiesOnTheIsosurfaceWithinTheRadius) {
       const auto z = isosurface.closest_point(p, radius);
       if (!z) continue;
       ASSERT_LE(distance(p, *z), radius * (1 + 1e-12));
-      ASSERT_GE(distance(p, *z), isosurface.distance_lower_bound(p) * (1 - 1e-9));
+      ASSERT_GE(distance(p, *z), isosurface.distance_lower_bound(p, radius) * (1 - 1e-9));
       ASSERT_TRUE(is_on_isosurface(image, *z, kOnSurfaceVoxels));
     }
   }
@@ -195,7 +196,7 @@ TEST(Isosurface, AnswersDoNotDependOnThreads) {
   for (int n = 0; n < 2000; ++n) {
     const Point a = random_point(random, image, 2), b = random_point(random, image, 2);
     ASSERT_EQ(one.label_at(a), many.label_at(a));
-    ASSERT_EQ(one.distance_lower_bound(a), many.distance_lower_bound(a));
+    ASSERT_EQ(one.distance_lower_bound(a, 1), many.distance_lower_bound(a, 1));
     ASSERT_EQ(one.closest_point(a, 5), many.closest_point(a, 5));
     ASSERT_EQ(one.segment_intersection(a, b), many.segment_intersection(a, b));
   }
@@ -205,7 +206,7 @@ TEST(Isosurface, OfAnEmptyImageIsEmpty) {
   const LabelImage image = empty_image({4, 4, 4}, {1, 1, 1});
   const Isosurface isosurface(image, 1);
   EXPECT_EQ(isosurface.label_at({1, 1, 1}), kBackground);
-  EXPECT_EQ(isosurface.distance_lower_bound({1, 1, 1}), std::numeric_limits<double>::infinity());
+  EXPECT_EQ(isosurface.distance_lower_bound({1, 1, 1}, 1), std::numeric_limits<double>::infinity());
   EXPECT_FALSE(isosurface.closest_point({1, 1, 1}, 1e9));
   EXPECT_FALSE(isosurface.segment_intersection({-9, 1, 1}, {9, 2, 1}));
 }
