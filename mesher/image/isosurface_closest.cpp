@@ -129,7 +129,6 @@ double Isosurface::squared_distance_to_midpoint(Neighborhood around, const Vecto
 Voxel Isosurface::feature_near(const Point& u) const {
   const Point inside = clamped_to_grid(u);
   const Voxel block = block_of(inside), nearest = nearest_voxel(inside);
-  if (features_.is_surface(grid_.index(nearest))) return nearest;
   const int first = (nearest.i - block.i) | (nearest.j - block.j) << 1 | (nearest.k - block.k) << 2;
   Voxel best;
   double best2 = std::numeric_limits<double>::infinity(), too_far2 = best2;
@@ -275,20 +274,25 @@ std::optional<Isosurface::NearPoint> Isosurface::near_point(const Point& p, doub
 // Midpoints lie on a lattice, and vertices of a lattice make flat cells that rounding can turn inside out:
 // take a point of the isosurface a little beside it, as irregular as p itself.
 Point Isosurface::settled(const NearPoint& near, const Point& p) const {
-  const Point u = to_voxels(p), start = to_voxels(near.point);
+  const Point u = to_voxels(p);
+  Point z = to_voxels(near.point);
+  if (near.is_midpoint) {
+    const Vector irregular{std::sin(kIrregular * u.x), std::sin(kIrregular * u.y),
+                           std::sin(kIrregular * u.z)};
+    z = z + kAside * irregular;
+  }
   Sheet sheet(*this, near.surface_voxel);
-  Point z = start;
-  if (near.is_midpoint)
-    z = z +
-        kAside * Vector{std::sin(kIrregular * u.x), std::sin(kIrregular * u.y), std::sin(kIrregular * u.z)};
-  return pull(sheet, z, kMaxPulls) ? to_mm(z) : near.point;
+  if (pull(sheet, z, kMaxPulls)) return to_mm(z);
+  Nearest midpoint{near.surface_voxel};
+  try_midpoints_around(u, midpoint);
+  return to_mm(midpoint.u);
 }
 
 std::optional<Point> Isosurface::closest_point(const Point& p, double radius) const {
   const auto near = near_point(p, radius);
   if (!near) return std::nullopt;
   const Point z = settled(*near, p);
-  return squared_distance(z, p) <= square(radius) ? z : near->point;
+  return squared_distance(z, p) <= square(radius) ? std::optional(z) : std::nullopt;
 }
 
 }  // namespace podm
