@@ -124,32 +124,41 @@ double Isosurface::squared_distance_to_midpoint(Neighborhood around, const Vecto
   return squared_length(d) + least;
 }
 
-// The feature of a voxel around u that has the nearest midpoint beside it. The nearest voxel comes first:
-// midpoints lie at most half a side from the feature, so it rules most others out.
+// The feature of a voxel around u that has the nearest midpoint beside it. All look-ups are asked for before
+// the first is needed.
 Voxel Isosurface::feature_near(const Point& u) const {
   const Point inside = clamped_to_grid(u);
-  const Voxel block = block_of(inside), nearest = nearest_voxel(inside);
-  const int first = (nearest.i - block.i) | (nearest.j - block.j) << 1 | (nearest.k - block.k) << 2;
-  Voxel best;
-  double best2 = std::numeric_limits<double>::infinity(), too_far2 = best2;
-  auto last = FeatureTransform::kNone;
-  for (int c = 0; c < 8; ++c) {
-    const int corner = c ^ first;
-    const Voxel v{block.i + (corner & 1), block.j + (corner >> 1 & 1), block.k + (corner >> 2)};
-    if (!grid_.contains(v)) continue;
-    const auto index = features_.nearest(grid_.index(v));
-    if (index == last) continue;
-    last = index;
-    const Voxel feature = grid_.voxel(index);
-    const Vector d = to_mm(center(feature) - u);
-    if (squared_length(d) >= too_far2) continue;
-    const double squared = squared_distance_to_midpoint(features_.neighborhood(index), d);
-    if (squared >= best2) continue;
-    best = feature;
-    best2 = squared;
-    too_far2 = square(std::sqrt(squared) + 0.5 * longest_side_mm_);
+  const Voxel low = block_of(inside);
+  const Voxel high{std::min(low.i + 1, grid_.num_x() - 1), std::min(low.j + 1, grid_.num_y() - 1),
+                   std::min(low.k + 1, grid_.num_z() - 1)};
+  std::array<FeatureTransform::VoxelIndex, 8> features;
+  for (unsigned c = 0; c < 8; ++c) {
+    features[c] = features_.nearest(
+        grid_.index({c & 1 ? high.i : low.i, c & 2 ? high.j : low.j, c & 4 ? high.k : low.k}));
+    features_.prefetch(features[c]);
   }
-  return best;
+  std::array<Voxel, 8> voxels;
+  std::array<double, 8> squared;
+  double least2 = std::numeric_limits<double>::infinity();
+  for (std::size_t c = 0; c < 8; ++c) {
+    voxels[c] = grid_.voxel(features[c]);
+    squared[c] = squared_length(to_mm(center(voxels[c]) - u));
+    least2 = std::min(least2, squared[c]);
+  }
+  // Midpoints lie at most half a side from the feature: none that is two halves farther than the nearest
+  // counts.
+  const double too_far2 = square(std::sqrt(least2) + longest_side_mm_);
+  std::size_t best = 0;
+  double best2 = std::numeric_limits<double>::infinity();
+  for (std::size_t c = 0; c < 8; ++c) {
+    if (squared[c] > too_far2 || (c > 0 && features[c] == features[c - 1])) continue;
+    const double midpoint2 =
+        squared_distance_to_midpoint(features_.neighborhood(features[c]), to_mm(center(voxels[c]) - u));
+    if (midpoint2 >= best2) continue;
+    best = c;
+    best2 = midpoint2;
+  }
+  return voxels[best];
 }
 
 struct Isosurface::Nearest {

@@ -62,10 +62,17 @@ std::array<mpq_class, 12> exact_mesh_to_voxels(const Image& image, Space space) 
 }
 
 ImageFrame::ImageFrame(const Image& image, Space space)
-    : mesh_to_voxels_(rounded(exact_mesh_to_voxels(image, space))),
+    : space_(space),
+      mesh_to_voxels_(rounded(exact_mesh_to_voxels(image, space))),
       mesh_to_world_(rounded(exact_mesh_to_world(image, space))),
       voxels_to_world_(rounded(exact(image.voxel_to_ras))),
       world_to_voxels_(rounded(exact_mesh_to_voxels(image, Space::kRas))) {}
+
+Point ImageFrame::voxels_to_mesh(const Point& u) const {
+  if (space_ == Space::kVoxel) return u;
+  const Point p = voxels_to_world(u);
+  return space_ == Space::kLps ? Point{-p[0], -p[1], p[2]} : p;
+}
 
 Point ImageFrame::world_to_voxels_vector(const Point& d) const {
   Point q;
@@ -90,11 +97,11 @@ double ImageFrame::voxel_volume_mm3() const {
                                       a[2] * (a[4] * a[9] - a[5] * a[8])));
 }
 
-Point ImageFrame::voxel_movement(const Point& mesh_movement) const {
+Point ImageFrame::voxel_movement(const Point& world_movement) const {
   Point q{};
   for (std::size_t r = 0; r < 3; ++r)
     for (std::size_t c = 0; c < 3; ++c)
-      q[r] += static_cast<double>(std::abs(mesh_to_voxels_[4 * r + c])) * mesh_movement[c];
+      q[r] += static_cast<double>(std::abs(world_to_voxels_[4 * r + c])) * world_movement[c];
   return q;
 }
 

@@ -24,6 +24,7 @@ class ImageFrame {
   /// RAS, mm.
   Point to_world(const Point& p) const { return apply(mesh_to_world_, p); }
   Point voxels_to_world(const Point& u) const { return apply(voxels_to_world_, u); }
+  Point voxels_to_mesh(const Point& u) const;
   Point world_to_voxels(const Point& p) const { return apply(world_to_voxels_, p); }
   /// Of a vector, without the offset.
   Point world_to_voxels_vector(const Point& d) const;
@@ -31,8 +32,8 @@ class ImageFrame {
   Point gradient_in_world(const Point& g) const;
 
   double voxel_volume_mm3() const;
-  /// The largest movement of a voxel coordinate when each mesh coordinate moves by at most the given one.
-  Point voxel_movement(const Point& mesh_movement) const;
+  /// The largest movement of each voxel coordinate when the world coordinates move by at most the given ones.
+  Point voxel_movement(const Point& world_movement) const;
 
   using Matrix = std::array<long double, 12>;
 
@@ -44,6 +45,7 @@ class ImageFrame {
     return q;
   }
 
+  Space space_;
   Matrix mesh_to_voxels_, mesh_to_world_, voxels_to_world_, world_to_voxels_;
 };
 

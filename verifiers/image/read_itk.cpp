@@ -65,6 +65,9 @@ struct Voxels {
   bool is_big_endian;
 };
 
+// As ITK takes it.
+bool is_true(const std::string& flag) { return !flag.empty() && std::string("tT1").find(flag[0]) != std::string::npos; }
+
 Voxels nrrd_voxels(const std::string& path) {
   std::array<char, 4> magic{};
   std::ifstream(path, std::ios::binary).read(magic.data(), magic.size());
@@ -90,13 +93,13 @@ Voxels meta_voxels(const std::string& path) {
   if (header["ndims"] != "3") refuse(path, "a 3-D image is needed (NDims = " + header["ndims"] + ")");
   if (!header["headersize"].empty() && header["headersize"] != "0")
     refuse(path, "'HeaderSize' is not supported");
-  if (lower(header["binarydata"]) == "false") refuse(path, "voxels written as text are not supported");
+  if (!header["binarydata"].empty() && !is_true(header["binarydata"])) refuse(path, "voxels written as text are not supported");
   for (const char* key : {"dimsize", "elementtype"})  // ITK prints what it misses
     if (header[key].empty()) refuse(path, std::string("the MetaImage header has no '") + key + "'");
-  const bool is_compressed = lower(header["compresseddata"]) == "true";
+  const bool is_compressed = is_true(header["compresseddata"]);
   const Compression compression = is_compressed ? Compression::kStream : Compression::kNone;
   const bool is_big_endian =
-      lower(header["binarydatabyteordermsb"]) == "true" || lower(header["elementbyteordermsb"]) == "true";
+      is_true(header["binarydatabyteordermsb"]) || is_true(header["elementbyteordermsb"]);
   if (file == "LOCAL" || file == "Local" || file == "local")  // the spellings that ITK knows
     return {{path, path, header.bytes(), compression}, is_big_endian};
   return {{path, beside(path, file), 0, compression}, is_big_endian};
