@@ -10,6 +10,11 @@
 
 namespace podm::verify {
 
+/// What Options::threads asks for; 0 means all cores.
+inline int num_threads(int asked) {
+  return asked > 0 ? asked : std::max(1, static_cast<int>(std::thread::hardware_concurrency()));
+}
+
 /// Calls body(begin, end, thread) for disjoint ranges that cover [0, count), one range a thread and in order:
 /// ranges of thread t come before those of t+1, so that partial results joined by thread are the serial ones.
 /// The first exception thrown by a body is thrown again here.

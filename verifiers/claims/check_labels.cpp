@@ -1,0 +1,200 @@
+// Claim: labels. The labels of the mesh are those of the image.
+//
+//   1. Each cell's label is the image's label at its circumcentre: of the eight voxels around that point the
+//      label with the greatest trilinear weight, ties to the smaller, background (0) outside the grid.
+//   2. Each label of the mesh is one of the image's.
+//   3. Each label that has more than 1000 voxels in the image has a cell.
+//
+// Foundation: weights are continuous and change by at most 1 a voxel along each axis, so two weights' order
+// at a point holds for all points nearer than half their difference (label_function.h); the circumcentre is
+// known up to a bound (check_labels_circumcenter.h). Where weights are as close as that, the label at the
+// circumcentre of the written coordinates is decided by rational arithmetic. A cell with another label than
+// that one is still none the less right if its label wins within the bound: the mesher decided before the
+// affine and the file rounded its coordinates. Such cells are counted ("within_rounding") and not judged.
+// Cost: O(cells) and a pass over the voxels; 24 bytes a vertex, 8 a voxel of the mesh's box.
+// Does not prove: that the label is the image's elsewhere in the cell. Volume and overlap (Dice, by voxel
+// centres within the grid) of each label are reported for that, not judged. Statement 1 is the promise of
+// meshers of the PODM family; a mesh from elsewhere need not keep it.
+#include <fmt/format.h>
+
+#include "claims/check_labels_circumcenter.h"
+#include "claims/check_labels_overlap.h"
+#include "claims/claims.h"
+#include "claims/worst_witnesses.h"
+#include "image/label_function.h"
+#include "parallel.h"
+
+namespace podm::verify {
+
+namespace {
+
+constexpr std::uint64_t kVoxelsThatMustBeMeshed = 1000;
+
+struct Tally {
+  std::uint64_t exact = 0, within_rounding = 0;
+  std::vector<CellId> wrong;
+  WorstWitnesses violations, closest;
+
+  void add(const Tally& other) {
+    exact += other.exact;
+    within_rounding += other.within_rounding;
+    wrong.insert(wrong.end(), other.wrong.begin(), other.wrong.end());
+    violations.add(other.violations);
+    closest.add(other.closest);
+  }
+};
+
+class CellLabels {
+ public:
+  CellLabels(const Mesh& mesh, const Image& image, Space space, int threads)
+      : mesh_(mesh),
+        frame_(image, space),
+        locator_(mesh, image, frame_, threads),
+        exact_label_(mesh, image, space),
+        label_function_(image) {}
+
+  void check(CellId cell, Tally& tally) const {
+    const LocatedPoint center = locator_.circumcenter(cell);
+    const LabelWeights weights = label_function_.weights_at(center.voxels);
+    const std::size_t best = weights.best();
+    const LabelValue stated = mesh_.cell_labels[cell];
+    const double lead = lead_of(stated, weights, best);
+    const double slack = 2 * (center.error + LabelFunction::kWeightError);
+    if (lead > slack) {
+      keep(tally.closest, cell, center, lead, -lead);
+    } else if (-lead > slack) {
+      tally.wrong.push_back(cell);
+      keep(tally.violations, cell, center, lead, -lead);
+    } else {
+      decide_exactly(cell, center, tally);
+    }
+  }
+
+  const ImageFrame& frame() const { return frame_; }
+  const std::vector<Point>& points() const { return locator_.points(); }
+
+ private:
+  // By how much the stated label's weight exceeds every other's.
+  static double lead_of(LabelValue stated, const LabelWeights& weights, std::size_t best) {
+    double own = 0, other = 0;
+    for (std::size_t i = 0; i < weights.count; ++i) {
+      const bool is_own = static_cast<LabelValue>(weights.labels[i]) == stated;
+      (is_own ? own : other) = std::max(is_own ? own : other, weights.weights[i]);
+    }
+    return static_cast<LabelValue>(weights.labels[best]) == stated ? own - other
+                                                                   : own - weights.weights[best];
+  }
+
+  void decide_exactly(CellId cell, const LocatedPoint& center, Tally& tally) const {
+    ++tally.exact;
+    const std::optional<std::uint32_t> label = exact_label_(cell);
+    if (!label) {  // no circumcentre
+      tally.wrong.push_back(cell);
+      keep(tally.violations, cell, center, -1, 1);
+    } else if (static_cast<LabelValue>(*label) != mesh_.cell_labels[cell]) {
+      ++tally.within_rounding;
+    } else {
+      keep(tally.closest, cell, center, 0, 0);
+    }
+  }
+
+  void keep(WorstWitnesses& list, CellId cell, const LocatedPoint& center, double lead,
+            double severity) const {
+    if (!list.wants(severity)) return;
+    Witness witness;
+    witness.statement = "the label is the image's at the circumcentre";
+    witness.cells = {cell};
+    witness.vertices.assign(mesh_.cells[cell].begin(), mesh_.cells[cell].end());
+    witness.points = {frame_.voxels_to_mesh(center.voxels)};
+    witness.value = lead;
+    witness.severity = severity;
+    witness.label = mesh_.cell_labels[cell];
+    list.add(witness);
+  }
+
+  const Mesh& mesh_;
+  ImageFrame frame_;
+  CircumcenterLocator locator_;
+  ExactCircumcenterLabel exact_label_;
+  LabelFunction label_function_;
+};
+
+// Statements 2 and 3; the table of volumes and overlaps.
+void judge_labels(const Mesh& mesh, const std::map<LabelValue, LabelOverlap>& overlaps, double voxel_mm3,
+                  ClaimResult& result) {
+  auto table = nlohmann::json::array(), absent = nlohmann::json::array(), unknown = nlohmann::json::array();
+  for (const auto& [label, overlap] : overlaps) {
+    const auto name = mesh.label_names.find(label);
+    const bool is_meshed = overlap.mesh_mm3 > 0;
+    table.push_back({{"label", label},
+                     {"name", name == mesh.label_names.end() ? "" : name->second},
+                     {"image_voxels", overlap.image_voxels},
+                     {"mesh_voxels", overlap.mesh_voxels},
+                     {"dice", overlap.image_voxels + overlap.mesh_voxels == 0 ? 0 : overlap.dice()},
+                     {"image_mm3", static_cast<double>(overlap.image_voxels) * voxel_mm3},
+                     {"mesh_mm3", overlap.mesh_mm3}});
+    Witness witness;
+    witness.label = label;
+    if (overlap.image_voxels == 0) {
+      unknown.push_back(label);
+      witness.statement = "the image has each label of the mesh";
+      witness.value = overlap.mesh_mm3;
+    } else if (!is_meshed) {
+      absent.push_back({{"label", label}, {"voxels", overlap.image_voxels}});
+      if (overlap.image_voxels <= kVoxelsThatMustBeMeshed) {
+        ++result.num_warnings;
+        continue;
+      }
+      witness.statement = "each label of more than 1000 voxels has a cell";
+      witness.value = static_cast<double>(overlap.image_voxels);
+    } else {
+      continue;
+    }
+    witness.severity = 1 + witness.value;
+    ++result.num_violations;
+    result.worst.push_back(witness);
+  }
+  result.details["labels"] = table;
+  result.details["labels_absent_in_mesh"] = absent;
+  result.details["labels_unknown_to_image"] = unknown;
+}
+
+}  // namespace
+
+ClaimResult check_labels(const Mesh& mesh, const Image& image, const Options& options) {
+  ClaimResult result;
+  result.claim = "labels";
+  result.method = "trilinear weights within a derived error bound, then exact rationals";
+  if (mesh.cells.empty() || mesh.cell_labels.size() != mesh.cells.size()) {
+    result.reason = mesh.cells.empty() ? "the mesh has no cells" : "the mesh states no cell labels";
+    return result;
+  }
+  const int threads = num_threads(options.threads);
+  const Space space = options.space.value_or(mesh.space);
+  const CellLabels labels(mesh, image, space, threads);
+  std::vector<Tally> parts(static_cast<std::size_t>(threads));
+  parallel_ranges(mesh.cells.size(), threads, [&](std::size_t begin, std::size_t end, std::size_t thread) {
+    for (std::size_t cell = begin; cell < end; ++cell) labels.check(static_cast<CellId>(cell), parts[thread]);
+  });
+  Tally tally;
+  for (const Tally& part : parts) tally.add(part);
+
+  const double voxel_mm3 = labels.frame().voxel_volume_mm3();
+  judge_labels(mesh, find_overlaps(mesh, image, labels.points(), voxel_mm3, threads), voxel_mm3, result);
+  result.num_checked = mesh.cells.size();
+  result.num_exact = tally.exact;
+  result.num_violations += tally.wrong.size();
+  result.bad_cells = tally.wrong;
+  result.details["space"] = describe(space);
+  result.details["within_rounding"] = tally.within_rounding;
+  result.reason = fmt::format(
+      "{} of {} cells have another label than the image at their circumcentre ({} within rounding)",
+      tally.wrong.size(), mesh.cells.size(), tally.within_rounding);
+  const auto& witnesses = result.num_violations > 0 ? tally.violations : tally.closest;
+  result.worst.insert(result.worst.end(), witnesses.worst_first().begin(), witnesses.worst_first().end());
+  result.worst.resize(std::min(result.worst.size(), kMaxWitnesses));
+  result.verdict = result.num_violations == 0 ? Verdict::kPass : Verdict::kFail;
+  return result;
+}
+
+}  // namespace podm::verify

@@ -1,0 +1,29 @@
+// Volume of each label, and how much of it the mesh and the image have in common.
+#pragma once
+
+#include <map>
+#include <vector>
+
+#include "image/image.h"
+#include "mesh.h"
+
+namespace podm::verify {
+
+struct LabelOverlap {
+  std::uint64_t image_voxels = 0;
+  std::uint64_t mesh_voxels = 0;  ///< voxels of the grid whose centre lies in a cell of the label
+  std::uint64_t both = 0;
+  double mesh_mm3 = 0;  ///< sum of the cells' volumes, in extended precision
+
+  double dice() const {
+    return 2 * static_cast<double>(both) / static_cast<double>(image_voxels + mesh_voxels);
+  }
+};
+
+/// `points`: the vertices in the image frame (voxel indices times spacing). A centre that lies on a facet
+/// belongs to the later cell of those that have it, whatever the number of threads. Without the background.
+std::map<LabelValue, LabelOverlap> find_overlaps(const Mesh& mesh, const Image& image,
+                                                 const std::vector<Point>& points, double voxel_volume_mm3,
+                                                 int threads);
+
+}  // namespace podm::verify

@@ -1,0 +1,203 @@
+// Claim: surface. The boundary of each label's cells, and of all cells together, is a closed and oriented
+// surface.
+//
+//   1. Each edge of the boundary is passed as often in one direction as in the other by the boundary's
+//   facets,
+//      turned outwards from their cells.
+//   2. Where the file lists facets with the labels on their two sides, these are the facets between different
+//      labels, each once, with the labels of the cells there and all turned alike.
+// A label's boundary are the facets between one of its cells and a cell of another label, or none. Cells of
+// label 0 count as outside. A mesh without labels counts as one label.
+//
+// Foundation: all combinatorial, on vertex ids; no coordinates, hence no rounding.
+// Cost: O(cells), about 40 bytes a cell.
+// Reported and not judged, since no mesher of multi-label images promises it: non-manifold edges (passed four
+// times or more) and vertices (more than one fan of facets), those where three or more labels meet (the
+// background counted) apart; components (of cells, across facets) and the Euler number (of the label's closed
+// cell complex) beside the image's for 6-connected labels (26 for the rest) and for 26-connected ones (6 for
+// the rest). Listed facets without labels are compared too, and what differs is a warning.
+// Does not prove: that the surface does not pass through itself (structure's "no overlap" does).
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <set>
+
+#include "claims/check_surface_boundary.h"
+#include "claims/check_surface_listed.h"
+#include "claims/check_surface_topology.h"
+#include "claims/claims.h"
+#include "claims/worst_witnesses.h"
+#include "image/image_topology.h"
+#include "parallel.h"
+
+namespace podm::verify {
+
+namespace {
+
+nlohmann::json to_json(const BoundaryCounts& counts, const MeshTopology& topology) {
+  return {{"cells", topology.cells},
+          {"components", topology.components},
+          {"euler", topology.euler},
+          {"boundary_facets", counts.facets},
+          {"unbalanced_edges", counts.unbalanced_edges},
+          {"non_manifold_edges", counts.non_manifold_edges},
+          {"non_manifold_edges_on_triple_lines", counts.non_manifold_edges_on_triple_lines},
+          {"non_manifold_vertices", counts.non_manifold_vertices},
+          {"non_manifold_vertices_on_triple_lines", counts.non_manifold_vertices_on_triple_lines}};
+}
+
+nlohmann::json to_json(const Topology& topology) {
+  return {{"voxels", topology.voxels},
+          {"components_6", topology.components_6},
+          {"components_26", topology.components_26},
+          {"euler_6", topology.euler_6},
+          {"euler_26", topology.euler_26}};
+}
+
+const char* statement(FindingKind kind) {
+  switch (kind) {
+    case FindingKind::kUnbalancedEdge:
+      return "each boundary edge is passed as often in one direction as in the other";
+    case FindingKind::kNonManifoldEdge:
+      return "non-manifold edge (reported, not judged)";
+    case FindingKind::kNonManifoldVertex:
+      break;
+  }
+  return "non-manifold vertex (reported, not judged)";
+}
+
+class Report {
+ public:
+  Report(const Mesh& mesh, const CellLabelPlaces& places) : mesh_(mesh), places_(places) {}
+
+  void add(const Finding& finding) {
+    const bool is_violation = finding.kind == FindingKind::kUnbalancedEdge;
+    if (is_violation) bad_cells_.insert(finding.cells.begin(), finding.cells.end());
+    Witness witness;
+    witness.statement = statement(finding.kind);
+    witness.cells = finding.cells;
+    witness.vertices = finding.vertices;
+    for (const VertexId v : finding.vertices) witness.points.push_back(mesh_.vertices[v]);
+    witness.value = static_cast<double>(finding.cells.size());
+    witness.severity = is_violation ? 3 : finding.is_on_triple_line ? 0 : 1;
+    witness.label = places_.labels[finding.label];
+    witnesses_.add(witness);
+  }
+
+  void add(const char* listed_statement, const std::vector<std::uint32_t>& facets) {
+    for (const std::uint32_t f : facets) {
+      if (!witnesses_.wants(2)) return;
+      Witness witness;
+      witness.statement = listed_statement;
+      for (const VertexId v : mesh_.facets[f]) {
+        witness.vertices.push_back(v);
+        if (v < mesh_.vertices.size()) witness.points.push_back(mesh_.vertices[v]);
+      }
+      witness.value = f;
+      witness.severity = 2;
+      witnesses_.add(witness);
+    }
+  }
+
+  void finish(ClaimResult& result) const {
+    result.worst = witnesses_.worst_first();
+    result.bad_cells.assign(bad_cells_.begin(), bad_cells_.end());
+  }
+
+ private:
+  const Mesh& mesh_;
+  const CellLabelPlaces& places_;
+  WorstWitnesses witnesses_;
+  std::set<CellId> bad_cells_;
+};
+
+// Statement 2. Without labels the list may be of anything: all that differs is a warning.
+std::uint64_t judge_listed(const Mesh& mesh, const ListedFacets& listed, Report& report,
+                           ClaimResult& result) {
+  if (listed.listed == 0) return 0;
+  result.details["listed_facets"] = {{"listed", listed.listed},
+                                     {"missing", listed.missing},
+                                     {"stray", listed.stray.size()},
+                                     {"mislabelled", listed.mislabelled.size()},
+                                     {"turned", listed.turned.size()}};
+  const std::uint64_t faults =
+      listed.missing + listed.stray.size() + listed.mislabelled.size() + listed.turned.size();
+  if (mesh.facet_labels.empty()) {
+    result.num_warnings += faults;
+    return 0;
+  }
+  report.add("each listed facet lies between two labels and is listed once", listed.stray);
+  report.add("each listed facet has the labels of its cells", listed.mislabelled);
+  report.add("the listed facets are turned alike", listed.turned);
+  return faults;
+}
+
+nlohmann::json labels_table(const Mesh& mesh, const CellLabelPlaces& places, const BoundaryFindings& boundary,
+                            const std::vector<MeshTopology>& topology, const ImageTopology* image) {
+  auto table = nlohmann::json::array();
+  for (LabelPlace place = 1; place < places.labels.size(); ++place) {
+    auto row = to_json(boundary.of_label[place], topology[place]);
+    const LabelValue label = places.labels[place];
+    row["label"] = label;
+    if (const auto name = mesh.label_names.find(label); name != mesh.label_names.end())
+      row["name"] = name->second;
+    if (image != nullptr && label >= 0 && label <= std::numeric_limits<std::uint32_t>::max()) {
+      const auto found = image->of_label.find(static_cast<std::uint32_t>(label));
+      row["image"] = to_json(found == image->of_label.end() ? Topology{} : found->second);
+    }
+    table.push_back(row);
+  }
+  return table;
+}
+
+}  // namespace
+
+ClaimResult check_surface(const Mesh& mesh, const Adjacency& adjacency, const Image* image,
+                          const Options& options) {
+  ClaimResult result;
+  result.claim = "surface";
+  result.method = "combinatorial, on vertex ids";
+  const CellLabelPlaces places(mesh);
+  const int threads = num_threads(options.threads);
+  const std::vector<Side> sides = find_sides(mesh, adjacency, places, threads);
+  if (sides.empty()) {
+    result.reason = "the mesh has no cells of a label";
+    return result;
+  }
+  const SidesOfVertex sides_of(sides, mesh.vertices.size());
+  const BoundaryFindings boundary =
+      inspect_boundary(sides, sides_of, mesh.vertices.size(), places.labels.size(), threads);
+  const std::vector<MeshTopology> topology = find_mesh_topology(mesh, adjacency, places, boundary, threads);
+
+  Report report(mesh, places);
+  for (const Finding& finding : boundary.findings) report.add(finding);
+  BoundaryCounts sum;
+  for (const BoundaryCounts& counts : boundary.of_label) sum.add(counts);
+  const std::uint64_t listed_faults =
+      judge_listed(mesh, inspect_listed_facets(mesh, places, sides, sides_of), report, result);
+  result.num_checked = sides.size();
+  result.num_violations = sum.unbalanced_edges + listed_faults;
+  result.num_warnings += sum.non_manifold_edges + sum.non_manifold_edges_on_triple_lines +
+                         sum.non_manifold_vertices + sum.non_manifold_vertices_on_triple_lines;
+  report.finish(result);
+
+  std::optional<ImageTopology> image_topology;
+  if (image != nullptr) image_topology = find_topology(*image, threads);
+  result.details["labels"] =
+      labels_table(mesh, places, boundary, topology, image_topology ? &*image_topology : nullptr);
+  result.details["all"] = to_json(boundary.of_label[kAllLabels], topology[kAllLabels]);
+  if (image_topology) result.details["all"]["image"] = to_json(image_topology->all);
+  result.details["connectivity"] =
+      "mesh: cells across facets; image: 6 for the label with 26 for the rest, and 26 with 6";
+  result.reason = fmt::format(
+      "{} boundary edges of {} labels not closed and oriented, {} listed facets wrong; non-manifold edges {} "
+      "+ "
+      "{} on triple lines, vertices {} + {}",
+      sum.unbalanced_edges, places.labels.size() - 1, listed_faults, sum.non_manifold_edges,
+      sum.non_manifold_edges_on_triple_lines, sum.non_manifold_vertices,
+      sum.non_manifold_vertices_on_triple_lines);
+  result.verdict = result.num_violations == 0 ? Verdict::kPass : Verdict::kFail;
+  return result;
+}
+
+}  // namespace podm::verify

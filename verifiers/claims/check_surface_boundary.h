@@ -1,0 +1,78 @@
+// The boundary of each label's cells: its facet sides, and what is found around each vertex and edge of it.
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <vector>
+
+#include "geometry/adjacency.h"
+#include "mesh.h"
+
+namespace podm::verify {
+
+/// Labels by their place among those of the mesh, ascending; 0 is the background: label 0 and outside.
+using LabelPlace = std::uint32_t;
+
+struct CellLabelPlaces {
+  std::vector<LabelValue> labels;  ///< labels[0] = 0
+  std::vector<LabelPlace> of_cell;
+
+  /// A mesh without labels counts as one of a single label, 1.
+  explicit CellLabelPlaces(const Mesh& mesh);
+};
+
+/// A facet seen from a cell whose other side has another label. `vertices` turn counter-clockwise seen from
+/// outside the cell, if it is positive.
+struct Side {
+  std::array<VertexId, 3> vertices{};
+  LabelPlace label = 0, across = 0;
+  CellId cell = 0;
+};
+
+std::vector<Side> find_sides(const Mesh& mesh, const Adjacency& adjacency, const CellLabelPlaces& places,
+                             int threads);
+
+/// The sides that have each vertex, ascending.
+class SidesOfVertex {
+ public:
+  SidesOfVertex(const std::vector<Side>& sides, std::size_t num_vertices);
+  const std::uint32_t* begin(VertexId v) const { return sides_.data() + begin_[v]; }
+  const std::uint32_t* end(VertexId v) const { return sides_.data() + begin_[v + 1]; }
+
+ private:
+  std::vector<std::uint32_t> begin_, sides_;
+};
+
+/// Of the boundary of one label's cells, or of all cells'.
+struct BoundaryCounts {
+  std::uint64_t facets = 0;
+  std::uint64_t unbalanced_edges = 0;  ///< not passed as often in one direction as in the other
+  // Passed four times or more; on triple lines three or more labels meet, the background counted.
+  std::uint64_t non_manifold_edges = 0, non_manifold_edges_on_triple_lines = 0;
+  // On no such edge, but its sides make more than one fan.
+  std::uint64_t non_manifold_vertices = 0, non_manifold_vertices_on_triple_lines = 0;
+
+  void add(const BoundaryCounts& other);
+};
+
+enum class FindingKind { kUnbalancedEdge, kNonManifoldEdge, kNonManifoldVertex };
+
+struct Finding {
+  FindingKind kind = FindingKind::kUnbalancedEdge;
+  LabelPlace label = 0;  ///< kAllLabels: of the boundary of all cells together
+  bool is_on_triple_line = false;
+  std::vector<VertexId> vertices;  ///< one, or two of an edge
+  std::vector<CellId> cells;       ///< whose sides meet there
+};
+
+inline constexpr LabelPlace kAllLabels = 0;  ///< the background has no boundary of its own to speak of
+
+struct BoundaryFindings {
+  std::vector<BoundaryCounts> of_label;  ///< by LabelPlace; kAllLabels: all together
+  std::vector<Finding> findings;         ///< every unbalanced edge; of the other kinds the first few
+};
+
+BoundaryFindings inspect_boundary(const std::vector<Side>& sides, const SidesOfVertex& sides_of,
+                                  std::size_t num_vertices, std::size_t num_labels, int threads);
+
+}  // namespace podm::verify

@@ -1,0 +1,80 @@
+#include "claims/check_surface_listed.h"
+
+#include <algorithm>
+
+namespace podm::verify {
+
+namespace {
+
+// Whether b is a rotated.
+bool turn_alike(const std::array<VertexId, 3>& a, const std::array<VertexId, 3>& b) {
+  const std::size_t shift = a[0] == b[0] ? 0 : a[0] == b[1] ? 1 : 2;
+  return a[1] == b[(shift + 1) % 3];
+}
+
+class Lister {
+ public:
+  Lister(const Mesh& mesh, const CellLabelPlaces& places, const std::vector<Side>& sides,
+         const SidesOfVertex& sides_of)
+      : mesh_(mesh), places_(places), sides_(sides), sides_of_(sides_of), is_listed_(sides.size(), false) {}
+
+  ListedFacets inspect() {
+    for (std::uint32_t f = 0; f < mesh_.facets.size(); ++f) inspect(f);
+    for (std::size_t s = 0; s < sides_.size(); ++s)
+      if (!is_listed_[s] && is_first_of_facet(s)) ++result_.missing;
+    result_.listed = mesh_.facets.size();
+    result_.turned = std::move(straight_.size() < reversed_.size() ? straight_ : reversed_);
+    return std::move(result_);
+  }
+
+ private:
+  // A facet between two labels has two sides; the one of the greater label stands for it.
+  bool is_first_of_facet(std::size_t s) const { return sides_[s].across < sides_[s].label; }
+
+  void inspect(std::uint32_t f) {
+    auto sorted = mesh_.facets[f];
+    std::sort(sorted.begin(), sorted.end());
+    if (sorted[2] >= mesh_.vertices.size()) return result_.stray.push_back(f);
+    const Side *inner = nullptr, *outer = nullptr;  // of the second label's cell, of the first's
+    bool is_new = false;
+    for (const auto* s = sides_of_.begin(sorted[0]); s != sides_of_.end(sorted[0]); ++s) {
+      const Side& side = sides_[*s];
+      auto vertices = side.vertices;
+      std::sort(vertices.begin(), vertices.end());
+      if (vertices != sorted) continue;
+      is_new = is_new || !is_listed_[*s];
+      is_listed_[*s] = true;
+      if (has_labels(side, f, 0, 1)) inner = &side;
+      if (has_labels(side, f, 1, 0)) outer = &side;
+    }
+    if (!is_new) return result_.stray.push_back(f);
+    if (mesh_.facet_labels.empty()) return;
+    if (inner == nullptr && outer == nullptr) return result_.mislabelled.push_back(f);
+    const bool is_straight = inner != nullptr ? turn_alike(mesh_.facets[f], inner->vertices)
+                                              : !turn_alike(mesh_.facets[f], outer->vertices);
+    (is_straight ? straight_ : reversed_).push_back(f);
+  }
+
+  bool has_labels(const Side& side, std::uint32_t f, std::size_t across, std::size_t own) const {
+    if (mesh_.facet_labels.empty()) return false;
+    const auto& stated = mesh_.facet_labels[f];
+    return places_.labels[side.label] == stated[own] && places_.labels[side.across] == stated[across];
+  }
+
+  const Mesh& mesh_;
+  const CellLabelPlaces& places_;
+  const std::vector<Side>& sides_;
+  const SidesOfVertex& sides_of_;
+  std::vector<bool> is_listed_;
+  std::vector<std::uint32_t> straight_, reversed_;
+  ListedFacets result_;
+};
+
+}  // namespace
+
+ListedFacets inspect_listed_facets(const Mesh& mesh, const CellLabelPlaces& places,
+                                   const std::vector<Side>& sides, const SidesOfVertex& sides_of) {
+  return Lister(mesh, places, sides, sides_of).inspect();
+}
+
+}  // namespace podm::verify

@@ -1,0 +1,22 @@
+// The triangles that a mesh file lists, against the facets between cells of different labels.
+#pragma once
+
+#include <cstdint>
+#include <vector>
+
+#include "claims/check_surface_boundary.h"
+
+namespace podm::verify {
+
+struct ListedFacets {
+  std::uint64_t listed = 0;
+  std::uint64_t missing = 0;               ///< facets between different labels that the file does not list
+  std::vector<std::uint32_t> stray;        ///< listed, but not between different labels, or listed before
+  std::vector<std::uint32_t> mislabelled;  ///< listed with other labels than the cells have
+  std::vector<std::uint32_t> turned;       ///< normal not from the second label to the first, unlike most
+};
+
+ListedFacets inspect_listed_facets(const Mesh& mesh, const CellLabelPlaces& places,
+                                   const std::vector<Side>& sides, const SidesOfVertex& sides_of);
+
+}  // namespace podm::verify

@@ -1,0 +1,22 @@
+// Components and Euler numbers of the labels of a mesh.
+#pragma once
+
+#include <cstdint>
+#include <vector>
+
+#include "claims/check_surface_boundary.h"
+
+namespace podm::verify {
+
+struct MeshTopology {
+  std::uint64_t cells = 0;
+  std::uint64_t components = 0;  ///< cells connected across facets
+  std::int64_t euler = 0;        ///< V - E + F - C of the cells and all that bounds them
+};
+
+/// By LabelPlace; kAllLabels: all cells but the background's together. About 28 bytes a cell while it runs.
+std::vector<MeshTopology> find_mesh_topology(const Mesh& mesh, const Adjacency& adjacency,
+                                             const CellLabelPlaces& places, const BoundaryFindings& boundary,
+                                             int threads);
+
+}  // namespace podm::verify

@@ -1,0 +1,37 @@
+// The worst few of many witnesses; among equals the first cells.
+#pragma once
+
+#include <algorithm>
+#include <tuple>
+#include <utility>
+#include <vector>
+
+#include "claim.h"
+
+namespace podm::verify {
+
+class WorstWitnesses {
+ public:
+  /// False when a witness of this severity would not be kept, if they come in the order of cells.
+  bool wants(double severity) const {
+    return kept_.size() < kMaxWitnesses || severity > kept_.back().severity;
+  }
+  void add(Witness witness) {
+    kept_.insert(std::upper_bound(kept_.begin(), kept_.end(), witness, is_before), std::move(witness));
+    if (kept_.size() > kMaxWitnesses) kept_.pop_back();
+  }
+  void add(const WorstWitnesses& other) {
+    for (const Witness& witness : other.kept_) add(witness);
+  }
+  bool empty() const { return kept_.empty(); }
+  const std::vector<Witness>& worst_first() const { return kept_; }
+
+ private:
+  static bool is_before(const Witness& a, const Witness& b) {
+    if (a.severity != b.severity) return a.severity > b.severity;
+    return std::tie(a.cells, a.vertices) < std::tie(b.cells, b.vertices);
+  }
+  std::vector<Witness> kept_;
+};
+
+}  // namespace podm::verify
