@@ -1,0 +1,20 @@
+// The readers behind read_mesh(), one a format. Each throws InputError with file, place and fault.
+#pragma once
+
+#include "mesh.h"
+#include "readers/mesh_file.h"
+
+namespace podm::verify {
+
+Mesh read_vtu(const MeshFile& file);
+/// Adds to `mesh` the facets of the file that our mesher writes beside the one of the cells: triangles of
+/// points of its own, the point array "vertex" telling which vertex of the mesh each is.
+void read_vtu_facets(const MeshFile& file, Mesh& mesh);
+Mesh read_legacy_vtk(const MeshFile& file);
+Mesh read_medit(const MeshFile& file);
+Mesh read_medit_binary(const MeshFile& file);
+Mesh read_gmsh(const MeshFile& file);
+/// `faces` may be null: facets are then not known.
+Mesh read_tetgen(const MeshFile& nodes, const MeshFile& elements, const MeshFile* faces);
+
+}  // namespace podm::verify

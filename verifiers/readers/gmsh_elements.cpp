@@ -1,0 +1,100 @@
+#include "readers/gmsh_elements.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <limits>
+
+#include "readers/mesh_parts.h"
+
+namespace podm::verify {
+namespace {
+
+constexpr std::int64_t kTriangle = 2, kTetrahedron = 4, kQuadraticTriangle = 9, kQuadraticTetrahedron = 11;
+
+// Position: the type; types 1 to 38. Higher orders that Gmsh writes by other numbers are rare.
+constexpr std::array<std::uint8_t, 39> kNodes{0,  2,  3, 4,  4,  8,  6,  5,  3,  6,  9,  10, 27,
+                                              18, 14, 1, 8,  20, 15, 13, 9,  10, 12, 15, 15, 21,
+                                              4,  5,  6, 20, 35, 56, 22, 28, 0,  0,  16, 25, 36};
+
+std::string name_of_type(std::int64_t type) {
+  switch (type) {
+    case 1:
+      return "lines";
+    case 3:
+      return "quadrilaterals";
+    case 5:
+      return "hexahedra";
+    case 6:
+      return "wedges";
+    case 7:
+      return "pyramids";
+    case 15:
+      return "vertices";
+    default:
+      return fmt::format("elements of Gmsh type {}", type);
+  }
+}
+
+}  // namespace
+
+std::size_t gmsh_nodes_of(std::int64_t type) {
+  return type < 0 || type >= static_cast<std::int64_t>(kNodes.size()) ? 0 : kNodes[type];
+}
+
+void GmshNodeTags::finish(const MeshFile& file) {
+  if (tags_.empty()) return;
+  if (!std::is_sorted(tags_.begin(), tags_.end())) std::sort(tags_.begin(), tags_.end());
+  const auto twice = std::adjacent_find(tags_.begin(), tags_.end(),
+                                        [](const auto& a, const auto& b) { return a.first == b.first; });
+  if (twice != tags_.end()) file.refuse("$Nodes", fmt::format("node tag {} is given twice", twice->first));
+  const std::uint64_t first = tags_.front().first, span = tags_.back().first - first;
+  if (span / 4 > tags_.size()) return;
+  table_.assign(span + 1, kNone);
+  for (const auto& [tag, vertex] : tags_) table_[tag - first] = vertex;
+}
+
+VertexId GmshNodeTags::find(std::uint64_t tag) const {
+  if (tags_.empty()) return kNone;
+  if (!table_.empty()) {
+    const std::uint64_t place = tag - tags_.front().first;  // wraps round for smaller tags
+    return place < table_.size() ? table_[place] : kNone;
+  }
+  const auto found = std::lower_bound(tags_.begin(), tags_.end(), std::pair{tag, VertexId{0}});
+  return found != tags_.end() && found->first == tag ? found->second : kNone;
+}
+
+void GmshElements::make_room(std::int64_t type, std::size_t count) {
+  if (type != kTetrahedron && type != kQuadraticTetrahedron) return;
+  check_counts(file_, "$Elements", 0, mesh_.cells.size() + count);
+  podm::verify::make_room(mesh_.cells, count);
+  podm::verify::make_room(physical_, count);
+  podm::verify::make_room(entities_, count);
+}
+
+void GmshElements::add(std::int64_t type, std::span<const std::uint64_t> nodes, const GmshGroup& group) {
+  const auto vertex = [&](std::size_t i) { return tags_.find(nodes[i]); };
+  if (type == kTetrahedron || type == kQuadraticTetrahedron) {
+    mesh_.cells.push_back({vertex(0), vertex(1), vertex(2), vertex(3)});
+    physical_.push_back(group.physical);
+    entities_.push_back(group.entity);
+    has_physical_ |= group.physical != 0;
+    if (type == kQuadraticTetrahedron) ++mesh_.other_cells[kQuadraticTetrahedra];
+  } else if (type == kTriangle || type == kQuadraticTriangle) {
+    mesh_.facets.push_back({vertex(0), vertex(1), vertex(2)});
+    facet_entities_.push_back(group.entity);
+    if (type == kQuadraticTriangle) ++mesh_.other_cells[kQuadraticTriangles];
+  } else {
+    ++mesh_.other_cells[name_of_type(type)];
+  }
+}
+
+void GmshElements::finish() {
+  check_counts(file_, "$Elements", 0, mesh_.cells.size());
+  if (mesh_.cells.empty()) return;
+  mesh_.cell_labels = std::move(has_physical_ ? physical_ : entities_);
+  mesh_.cell_label_array = has_physical_ ? "gmsh:physical" : "gmsh:geometrical";
+}
+
+}  // namespace podm::verify

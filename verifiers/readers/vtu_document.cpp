@@ -1,0 +1,248 @@
+// The XML goes through expat in chunks; the text of arrays is not copied but located, and appended data,
+// which need not be XML, is where the parser stops. Format: VTK file formats, "XML file formats".
+#include "readers/vtu_document.h"
+
+#include <expat.h>
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <charconv>
+#include <limits>
+#include <memory>
+#include <string_view>
+
+#include "errors.h"
+#include "readers/mesh_parts.h"
+
+namespace podm::verify {
+namespace {
+
+constexpr std::size_t kChunkBytes = 1 << 18, kLongestTag = 1 << 20;
+constexpr std::size_t kDeepest = 32;
+
+struct FreeParser {
+  void operator()(XML_Parser parser) const { XML_ParserFree(parser); }
+};
+
+struct TypeName {
+  std::string_view name;
+  NumberType type;
+};
+constexpr TypeName kTypes[] = {
+    {"Int8", NumberType::kInt8},       {"UInt8", NumberType::kUInt8},   {"Int16", NumberType::kInt16},
+    {"UInt16", NumberType::kUInt16},   {"Int32", NumberType::kInt32},   {"UInt32", NumberType::kUInt32},
+    {"Int64", NumberType::kInt64},     {"UInt64", NumberType::kUInt64}, {"Float32", NumberType::kFloat32},
+    {"Float64", NumberType::kFloat64},
+};
+
+bool is_blank(std::string_view text) { return text.find_first_not_of(" \t\r\n") == std::string_view::npos; }
+
+bool is_facet_or_cell_label(const std::string& name) {
+  return name == "label_a" || name == "label_b" || label_array_rank(name);
+}
+
+class VtuParser {
+ public:
+  explicit VtuParser(const MeshFile& file) : file_(file), parser_(XML_ParserCreate(nullptr)) {
+    if (!parser_) throw std::bad_alloc();
+    XML_SetUserData(parser_.get(), this);
+    XML_SetElementHandler(
+        parser_.get(),
+        [](void* self, const char* name, const char** attributes) {
+          static_cast<VtuParser*>(self)->guarded([&](VtuParser& p) { p.on_start(name, attributes); });
+        },
+        [](void* self, const char*) {
+          static_cast<VtuParser*>(self)->guarded([](VtuParser& p) { p.on_end(); });
+        });
+    XML_SetStartDoctypeDeclHandler(parser_.get(), [](void* self, const char*, const char*, const char*, int) {
+      static_cast<VtuParser*>(self)->guarded(
+          [](VtuParser& p) { p.refuse("a document type is declared; VTU files have none"); });
+    });
+  }
+
+  VtuDocument parse() {
+    const std::string_view bytes = file_.bytes();
+    for (std::size_t begin = 0; begin < bytes.size() && !document_.appended_begin; begin += kChunkBytes) {
+      const std::string_view chunk = bytes.substr(begin, kChunkBytes);
+      const std::size_t end = begin + chunk.size();
+      const auto status = XML_Parse(parser_.get(), chunk.data(), static_cast<int>(chunk.size()),
+                                    end == bytes.size() ? XML_TRUE : XML_FALSE);
+      if (failure_) std::rethrow_exception(failure_);
+      if (status == XML_STATUS_ERROR && !document_.appended_begin)
+        refuse(XML_ErrorString(XML_GetErrorCode(parser_.get())));
+      if (end - position() > kLongestTag && !document_.appended_begin)
+        refuse(fmt::format("a tag of more than {} bytes", kLongestTag));
+    }
+    check_end();
+    return std::move(document_);
+  }
+
+ private:
+  // No exception may pass through expat: it is kept and the parser stopped.
+  template <class Handle>
+  void guarded(Handle handle) {
+    if (failure_) return;
+    try {
+      handle(*this);
+    } catch (...) {
+      failure_ = std::current_exception();
+      XML_StopParser(parser_.get(), XML_FALSE);
+    }
+  }
+
+  std::size_t position() const { return static_cast<std::size_t>(XML_GetCurrentByteIndex(parser_.get())); }
+  std::size_t after_tag() const {
+    return position() + static_cast<std::size_t>(XML_GetCurrentByteCount(parser_.get()));
+  }
+  std::size_t line() const { return XML_GetCurrentLineNumber(parser_.get()); }
+  [[noreturn]] void refuse(const std::string& fault) const {
+    file_.refuse(fmt::format("line {}", line()), fault);
+  }
+
+  void on_start(std::string_view name, const char** attributes) {
+    if (elements_.size() >= kDeepest) refuse("elements nest too deep");
+    if (elements_.empty() && name != "VTKFile") refuse("the root element is not VTKFile");
+    if (array_ != nullptr) end_text();
+    elements_.emplace_back(name);
+    attributes_ = attributes;
+    if (name == "VTKFile") {
+      on_file();
+    } else if (name == "Piece") {
+      document_.pieces.push_back({line(), number("NumberOfPoints"), number("NumberOfCells"), {}, {}, {}, {}});
+    } else if (name == "DataArray" || name == "Array") {
+      on_array();
+    } else if (name == "AppendedData") {
+      on_appended_data();
+    }
+    text_begin_ = after_tag();
+  }
+
+  void on_end() {
+    if (array_ != nullptr) end_text();
+    if (array_depth_ == elements_.size()) array_ = nullptr;
+    elements_.pop_back();
+    text_begin_ = after_tag();
+  }
+
+  void on_file() {
+    if (attribute("type") != "UnstructuredGrid")
+      refuse(fmt::format("VTKFile of type '{}', not UnstructuredGrid", attribute("type")));
+    const std::string_view order = attribute("byte_order"), header = attribute("header_type"),
+                           compressor = attribute("compressor");
+    if (!order.empty() && order != "LittleEndian" && order != "BigEndian")
+      refuse(fmt::format("byte_order '{}' is not known", order));
+    document_.is_big_endian = order == "BigEndian";
+    if (!header.empty() && header != "UInt32" && header != "UInt64")
+      refuse(fmt::format("header_type '{}' is neither UInt32 nor UInt64", header));
+    document_.has_wide_headers = header == "UInt64";
+    if (!compressor.empty() && compressor != "vtkZLibDataCompressor")
+      refuse(fmt::format("compressor '{}' is not supported, only vtkZLibDataCompressor is", compressor));
+    document_.is_zlib = !compressor.empty();
+  }
+
+  // The list that an array of the current section belongs to; null where no array of that name is needed.
+  std::vector<VtuArray>* list_of(const std::string& name) {
+    const std::string_view section = elements_.size() > 1 ? elements_[elements_.size() - 2] : "";
+    if (section == "FieldData")
+      return name.starts_with("space:") || name.starts_with("label:") ? &document_.field_data : nullptr;
+    if (document_.pieces.empty()) return nullptr;
+    VtuPiece& piece = document_.pieces.back();
+    if (section == "Points") return &piece.points;
+    if (section == "Cells") return &piece.cells;
+    if (section == "CellData") return is_facet_or_cell_label(name) ? &piece.cell_data : nullptr;
+    if (section == "PointData") return name == "vertex" ? &piece.point_data : nullptr;
+    return nullptr;
+  }
+
+  void on_array() {
+    if (array_ != nullptr) refuse("an array within an array");
+    VtuArray array;
+    array.name = attribute("Name");
+    std::vector<VtuArray>* list = list_of(array.name);
+    const auto* type = std::find_if(std::begin(kTypes), std::end(kTypes),
+                                    [&](const TypeName& t) { return t.name == attribute("type"); });
+    if (list == nullptr) return;
+    array.line = line();
+    if (type == std::end(kTypes))
+      refuse(fmt::format("DataArray '{}' of type '{}': no number type", array.name, attribute("type")));
+    array.type = type->type;
+    if (!attribute("NumberOfComponents").empty()) array.num_components = number("NumberOfComponents");
+    const std::string_view format = attribute("format");
+    if (format == "appended") {
+      array.format = VtuArray::Format::kAppended;
+      array.begin = number("offset");
+    } else if (format == "binary") {
+      array.format = VtuArray::Format::kInlineBase64;
+    } else if (!format.empty() && format != "ascii") {
+      refuse(fmt::format("DataArray '{}': format '{}' is not known", array.name, format));
+    }
+    list->push_back(std::move(array));
+    array_ = &list->back();
+    array_depth_ = elements_.size();
+  }
+
+  // Text of the array between two tags: what stands in child elements (VTK's InformationKey) is not the
+  // array's.
+  void end_text() {
+    const bool is_own = elements_.size() == array_depth_ && array_->format != VtuArray::Format::kAppended;
+    if (!is_own || position() <= text_begin_) return;
+    if (is_blank(file_.bytes().substr(text_begin_, position() - text_begin_))) return;
+    if (array_->end != 0) refuse(fmt::format("DataArray '{}': its text is in several parts", array_->name));
+    array_->begin = text_begin_;
+    array_->end = position();
+  }
+
+  void on_appended_data() {
+    const std::string_view encoding = attribute("encoding");
+    if (encoding != "raw" && encoding != "base64")
+      refuse(fmt::format("AppendedData: encoding '{}' is neither raw nor base64", encoding));
+    document_.is_appended_base64 = encoding == "base64";
+    const std::string_view bytes = file_.bytes();
+    const std::size_t mark = bytes.find_first_not_of(" \t\r\n", after_tag());
+    if (mark == std::string_view::npos || bytes[mark] != '_') refuse("AppendedData does not begin with '_'");
+    document_.appended_begin = mark + 1;
+    XML_StopParser(parser_.get(), XML_FALSE);
+  }
+
+  // Behind appended data there is no parser: a file that was cut off shows by its last tag.
+  void check_end() const {
+    const std::string_view bytes = file_.bytes();
+    constexpr std::string_view kLastTag = "</VTKFile>";
+    const std::size_t last = bytes.find_last_not_of(std::string_view(" \t\r\n\0", 5));
+    if (!bytes.substr(0, last + 1).ends_with(kLastTag))
+      file_.refuse(MeshFile::byte_at(bytes.size()), fmt::format("the file does not end with {}", kLastTag));
+  }
+
+  std::string_view attribute(std::string_view name) const {
+    for (const char** a = attributes_; *a != nullptr; a += 2)
+      if (name == a[0]) return a[1];
+    return "";
+  }
+
+  std::uint64_t number(const char* name) const {
+    const std::string_view text = attribute(name);
+    std::uint64_t value = 0;
+    const auto [after, error] = std::from_chars(text.data(), text.data() + text.size(), value);
+    if (error != std::errc() || after != text.data() + text.size())
+      refuse(fmt::format("{}: {}=\"{}\" is not a count", elements_.back(), name, text.substr(0, 40)));
+    return value;
+  }
+
+  const MeshFile& file_;
+  std::unique_ptr<XML_ParserStruct, FreeParser> parser_;
+  std::exception_ptr failure_;
+  VtuDocument document_;
+  std::vector<std::string> elements_;  // open ones, outermost first
+  const char** attributes_ = nullptr;  // of the element that starts
+  VtuArray* array_ = nullptr;          // open one that is kept
+  std::size_t array_depth_ = 0;
+  std::size_t text_begin_ = 0;
+};
+
+}  // namespace
+
+std::string VtuArray::place() const { return fmt::format("line {}, DataArray '{}'", line, name); }
+
+VtuDocument parse_vtu(const MeshFile& file) { return VtuParser(file).parse(); }
+
+}  // namespace podm::verify
