@@ -75,13 +75,13 @@ Point InterfaceFacets::closest(std::uint32_t i, const Point& p) const {
 }
 
 int InterfaceFacets::num_parts(const std::array<Point, 3>& t) const {
-  constexpr int kMostParts = 4096;
+  constexpr double kMostParts = 8192;
   double longest = 0;
   for (std::size_t i = 0; i < 3; ++i) {
     const Point d = frame_.world_to_voxels_vector(minus(t[(i + 1) % 3], t[i]));
     longest = std::max(longest, std::sqrt(dot(d, d)));
   }
-  return 2 * static_cast<int>(std::floor(std::min(longest, kMostParts * 1.0)) + 1);
+  return static_cast<int>(std::floor(std::min(2 * longest, kMostParts))) + 1;
 }
 
 }  // namespace podm::verify

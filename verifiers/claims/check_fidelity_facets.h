@@ -27,13 +27,13 @@ class InterfaceFacets {
   /// mm^2.
   double area(std::uint32_t i) const;
 
-  /// Calls visit(point, share) for points spread evenly, their neighbours less than half a voxel apart, the
-  /// vertices, the middles of the edges and points of the edges among them; the shares of a facet sum to 1.
+  /// Calls visit(point, share) for points spread evenly, their neighbours less than half a voxel apart,
+  /// vertices and points of the edges among them; the shares of a facet sum to 1.
   template <class Visit>
   void sample(std::uint32_t i, Visit visit) const;
 
  private:
-  /// Into how many parts edges are cut, an even number.
+  /// Into how many parts edges are cut.
   int num_parts(const std::array<Point, 3>& triangle) const;
 
   const ImageFrame& frame_;

@@ -9,7 +9,10 @@ namespace {
 
 constexpr double kVoxelError = 1e-6;  // of bisection
 constexpr double kSameWeight = 1e-4;  // labels whose weights are this close meet at a point
+constexpr double kLittleWeight = 0.02, kLittleBeyond = 1.01;
 constexpr int kMaxProjections = 3;
+// A step along an axis is tried unless it is this much longer than the distance found.
+constexpr double kStepSquared = 4 * 4;
 
 Point along(const Point& a, const Point& b, double t) {
   return {a[0] + t * (b[0] - a[0]), a[1] + t * (b[1] - a[1]), a[2] + t * (b[2] - a[2])};
@@ -64,6 +67,11 @@ IsosurfaceDistance::IsosurfaceDistance(const Image& image, const ImageFrame& fra
       midpoints_(midpoints),
       label_function_(image),
       tree_(midpoints, first_ids(midpoints.all().size())) {
+  for (std::size_t axis = 0; axis < 3; ++axis)
+    for (const double sign : {-1.0, 1.0}) {
+      Point& step = steps_[2 * axis + (sign > 0 ? 1 : 0)];
+      for (std::size_t row = 0; row < 3; ++row) step[row] = sign * image.voxel_to_ras[4 * row + axis];
+    }
   std::map<std::uint32_t, std::vector<std::uint32_t>> ids;
   for (std::uint32_t i = 0; i < midpoints.all().size(); ++i)
     for (const std::uint32_t label : midpoints.all()[i].labels)
@@ -98,7 +106,12 @@ IsosurfaceDistance::Answer IsosurfaceDistance::search(const Point& p, const Poin
   best.squared = squared_distance(p, known);
   Point target;
   if (project(p, p, region, target)) try_segment(p, target, region, best);
-  try_segment(p, known, region, best);
+  try_segment(p, along(p, known, kLittleBeyond), region, best);  // on `known` itself there is a tie
+  // Of flat voxels the isosurface may pass near without a midpoint near: look along each axis.
+  for (const Point& step : steps_) {
+    const Point neighbor{p[0] + step[0], p[1] + step[1], p[2] + step[2]};
+    if (squared_distance(p, neighbor) < kStepSquared * best.squared) try_segment(p, neighbor, region, best);
+  }
   for (int i = 0; i < kMaxProjections && project(p, best.point, region, target); ++i)
     if (!try_segment(p, target, region, best)) break;
   best.labels = label_function_.weights_at(frame_.world_to_voxels(best.point));
@@ -143,8 +156,8 @@ bool IsosurfaceDistance::project(const Point& p, const Point& at, const Region& 
   if (!(squared > 0)) return false;
   const double value = weights.weights[first] - weights.weights[second] + g[0] * (p[0] - at[0]) +
                        g[1] * (p[1] - at[1]) + g[2] * (p[2] - at[2]);
-  constexpr double kBeyond = 2;
-  for (std::size_t axis = 0; axis < 3; ++axis) target[axis] = p[axis] - kBeyond * value / squared * g[axis];
+  const double beyond = 2 * value + std::copysign(kLittleWeight, value);
+  for (std::size_t axis = 0; axis < 3; ++axis) target[axis] = p[axis] - beyond / squared * g[axis];
   return true;
 }
 

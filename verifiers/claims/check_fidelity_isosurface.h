@@ -4,8 +4,9 @@
 // the label changes midway. These midpoints are the known points of the isosurface, less than a voxel from
 // each other along it. From the nearest one a search goes on to nearer points: wherever a segment's ends have
 // different labels, a point of the isosurface lies between, and bisection finds it. The search tries the
-// segment to the midpoint, then the normals of the surface found. Every answer is a point of the isosurface
-// to 1e-6 of a voxel, so that the distance is never taken too small; it may be taken too large, by little.
+// segment to the midpoint, a voxel's length along each axis, and the normals of the surface found. Every
+// answer is a point of the isosurface to 1e-6 of a voxel, so that the distance is never taken too small; it
+// may be taken too large, by little.
 #pragma once
 
 #include <map>
@@ -59,6 +60,7 @@ class IsosurfaceDistance {
   const ImageFrame& frame_;
   const Midpoints& midpoints_;
   LabelFunction label_function_;
+  std::array<Point, 6> steps_{};  // a voxel along each axis, to and fro
   NearestTree<Midpoints> tree_;
   std::map<std::uint32_t, NearestTree<Midpoints>> tree_of_label_;
 };

@@ -24,12 +24,15 @@ int clamped(double x, int low, int high) {
   return static_cast<int>(std::clamp(x, static_cast<double>(low), static_cast<double>(high)));
 }
 
+// A voxel centre this near to a cell, in voxels, counts as inside: rounding shall not lose those on facets.
+constexpr double kRounding = 1e-9;
+
 // Voxels whose index lies within [low, high], of those of `within`.
 Box voxels_between(const Point& low, const Point& high, const Box& within) {
   Box box;
   for (std::size_t axis = 0; axis < 3; ++axis) {
-    box.first[axis] = clamped(std::ceil(low[axis]), within.first[axis], within.last[axis] + 1);
-    box.last[axis] = clamped(std::floor(high[axis]), within.first[axis] - 1, within.last[axis]);
+    box.first[axis] = clamped(std::ceil(low[axis] - kRounding), within.first[axis], within.last[axis] + 1);
+    box.last[axis] = clamped(std::floor(high[axis] + kRounding), within.first[axis] - 1, within.last[axis]);
   }
   return box;
 }
@@ -47,7 +50,8 @@ class Tetrahedron {
         for (double& x : n) x = -x;
         offset = -offset;
       }
-      planes_[i] = {n[0], n[1], n[2], offset};
+      const double norm = std::sqrt(n[0] * n[0] + n[1] * n[1] + n[2] * n[2]);
+      planes_[i] = {n[0], n[1], n[2], offset - kRounding * norm};
     }
   }
 
