@@ -61,7 +61,7 @@ class Extractor {
   // Dead cells count as background.
   LabelIndex label_of(CellId c) {
     if (!mesh_.cell(c).is_alive()) return kBackground;
-    LabelIndex& label = mesh_.state(c).label;
+    LabelIndex& label = mesh_.label(c);
     if (label == kUnknownLabel) label = isosurface_.label_at(mesh_.cell(c).sphere.center);
     return label;
   }
@@ -119,7 +119,7 @@ std::uint64_t count_labelled_cells(Mesh& mesh, const Isosurface& isosurface) {
   std::uint64_t count = 0;
   for (CellId c = 0; c < mesh.cell_bound(); ++c) {
     if (!mesh.cell(c).is_alive()) continue;
-    const LabelIndex label = mesh.state(c).label;
+    const LabelIndex label = mesh.label(c);
     const LabelIndex known = label != kUnknownLabel ? label : isosurface.label_at(mesh.cell(c).sphere.center);
     count += known != kBackground;
   }

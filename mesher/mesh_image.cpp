@@ -108,11 +108,12 @@ class Run {
       limits.deadline = start_ + std::chrono::duration_cast<Clock::duration>(
                                      std::chrono::duration<double>(options_.max_seconds));
     }
-    SerialExecutor executor(limits, stop_, [&](std::uint64_t cells) {
+    Watch watch(limits, stop_, [&](std::uint64_t cells) {
       announce("refine", static_cast<double>(cells) / expected, cells);
     });
+    const Crew crew{std::max(1, options_.threads), options_.contention, options_.seed};
     return podm(isosurface, foreground_bounds(image_), report.delta_mm,
-                size_field(image_, options_, radius_mm), cell_capacity(options_), executor);
+                size_field(image_, options_, radius_mm), cell_capacity(options_), crew, watch);
   }
 
   double delta() const {
@@ -185,6 +186,20 @@ std::string to_string(StopReason reason) {
       return "memory limit";
   }
   throw InternalError("unknown stop reason");
+}
+
+std::string to_string(Contention contention) {
+  switch (contention) {
+    case Contention::kAggressive:
+      return "aggressive";
+    case Contention::kRandom:
+      return "random";
+    case Contention::kGlobal:
+      return "global";
+    case Contention::kLocal:
+      return "local";
+  }
+  throw InternalError("unknown contention manager");
 }
 
 MeshingResult mesh_image(const LabelImage& image, const MeshingOptions& options,

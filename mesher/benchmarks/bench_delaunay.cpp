@@ -14,14 +14,14 @@ namespace {
 class UniformRefinement {
  public:
   explicit UniformRefinement(double radius) : squared_radius_(radius * radius), min_distance_(radius / 2) {
-    for (CellId c = 0; c < 6; ++c) poor_.push_back({c, mesh.state(c).stamp});
+    for (CellId c = 0; c < 6; ++c) poor_.push_back({c, mesh.stamp(c)});
   }
 
   void refine() {
     while (!poor_.empty()) {
       const auto [c, stamp] = poor_.back();
       poor_.pop_back();
-      if (mesh.state(c).stamp != stamp) continue;
+      if (mesh.stamp(c) != stamp) continue;
       const Circumsphere& sphere = mesh.cell(c).sphere;
       if (sphere.squared_radius <= squared_radius_) continue;
       const Point p = moved_off_the_hull(sphere.center);
@@ -31,13 +31,13 @@ class UniformRefinement {
         continue;
       }
       ++num_insertions;
-      for (const CellId made : operation.created()) poor_.push_back({made, mesh.state(made).stamp});
+      for (const CellId made : operation.created()) poor_.push_back({made, mesh.stamp(made)});
     }
   }
 
   Mesh mesh{{{0, 0, 0}, {1, 1, 1}}, 1 << 22};
   Pool pool{mesh};
-  Operation<NoLocks> operation{mesh, pool};
+  Operation<NoLocks> operation{mesh, pool, 0};
   std::int64_t num_insertions = 0;
 
  private:

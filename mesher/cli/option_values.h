@@ -5,6 +5,7 @@
 #include <string>
 #include <utility>
 
+#include "podm/mesh_image.h"
 #include "podm/tet_mesh.h"
 
 namespace podm::cli {
@@ -18,6 +19,9 @@ std::uint64_t parse_integer(const std::string& text, const std::string& option, 
 
 /// "RAS", "LPS" or "voxel".
 Space parse_space(const std::string& text, const std::string& option);
+
+/// "aggressive", "random", "global" or "local".
+Contention parse_contention(const std::string& text, const std::string& option);
 
 /// "liver=2" or "7=0.5": a label, by name or value, and a length in mm.
 std::pair<std::string, double> parse_label_length(const std::string& text, const std::string& option);

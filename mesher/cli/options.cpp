@@ -160,10 +160,17 @@ void add_mesh_command(CLI::App& program, MeshCommand& command) {
           into(command.record_path));
   app.option_defaults()->group("Run");
   add_one(app, "--threads", "N",
-          "threads of the feature transform; refinement runs on one [default: all cores]",
+          "threads of all phases; 1 makes the same mesh every time\n"
+          "[default: one for refinement, all cores for the feature transform]",
           [&command](const std::string& text, const std::string& name) {
             command.meshing.threads = static_cast<int>(parse_integer(text, name, 1, kMaxThreads));
           });
+  add_one(
+      app, "--contention", "MANAGER",
+      "what a thread does that meets another's lock: aggressive, random, global or local\n[default: local]",
+      [&command](const std::string& text, const std::string& name) {
+        command.meshing.contention = parse_contention(text, name);
+      });
   app.add_flag("--quiet", command.quiet, "neither progress nor summary [default: both, on standard error]");
 }
 

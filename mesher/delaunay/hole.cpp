@@ -70,20 +70,12 @@ void HoleFiller::fill(Mesh& mesh, Pool& pool, Region& region, VertexId added) {
     const unsigned apex = apex_of(mesh, facet);
     const CellId id = reused < region.cells.size() ? region.cells[reused++] : pool.take_cell();
     region.created.push_back(id);
-    Cell& cell = mesh.cell(id);
     const std::array<std::uint16_t, 4> local{facet.local[0], facet.local[1], facet.local[2],
                                              static_cast<std::uint16_t>(apex)};
-    for (unsigned k = 0; k < 4; ++k) cell.vertices[k] = ids_[local[k]];
-    cell.mirrors = {kNoFacet, kNoFacet, kNoFacet, facet.mirror};
+    mesh.renew(id, {ids_[local[0]], ids_[local[1]], ids_[local[2]], ids_[local[3]]});
+    mesh.cell(id).mirrors = {kNoFacet, kNoFacet, kNoFacet, facet.mirror};
     mesh.refresh_sphere(id);
-    CellState& state = mesh.state(id);
-    state.stamp = static_cast<std::uint16_t>(state.stamp + 1) & 0x7fff;
-    state.in_region = 0;
-    state.label = kUnknownLabel;
-    if (facet.mirror != kNoFacet) {
-      mesh.cell(cell_of(facet.mirror)).mirrors[static_cast<unsigned>(index_in_cell(facet.mirror))] =
-          4 * id + 3;
-    }
+    mesh.set_mirror(facet.mirror, 4 * id + 3);
     for (unsigned k = 0; k < 3; ++k) {
       const auto& turn = kFacetVertices[k];  // from inside the new cell; the hole sees it the other way round
       add_or_match(mesh, {{local[static_cast<unsigned>(turn[0])], local[static_cast<unsigned>(turn[2])],
@@ -109,10 +101,8 @@ void HoleFiller::add_or_match(Mesh& mesh, const OpenFacet& facet) {
   if (is_closed_[slot.open]) throw InternalError("gift wrapping met a facet three times");
   is_closed_[slot.open] = 1;
   const FacetId other = open_[slot.open].mirror;
-  mesh.cell(cell_of(facet.mirror)).mirrors[static_cast<unsigned>(index_in_cell(facet.mirror))] = other;
-  if (other != kNoFacet) {
-    mesh.cell(cell_of(other)).mirrors[static_cast<unsigned>(index_in_cell(other))] = facet.mirror;
-  }
+  mesh.set_mirror(facet.mirror, other);
+  mesh.set_mirror(other, facet.mirror);
 }
 
 HoleFiller::Slot& HoleFiller::slot_of(std::uint64_t key) {

@@ -14,6 +14,14 @@ namespace {
 // vertices are bounded by cells / 4, which leaves slack for sparse starts.
 std::size_t vertex_capacity_for(std::size_t cell_capacity) { return cell_capacity / 4 + 4096; }
 
+std::uint32_t take(std::atomic<std::uint32_t>& bound, std::uint32_t count, std::size_t capacity) {
+  std::uint32_t first = bound.load(std::memory_order_relaxed);
+  do {
+    if (first + static_cast<std::size_t>(count) > capacity) throw std::bad_alloc();
+  } while (!bound.compare_exchange_weak(first, first + count, std::memory_order_relaxed));
+  return first;
+}
+
 double largest_coordinate(const Box& b) {
   return std::max({std::abs(b.low.x), std::abs(b.low.y), std::abs(b.low.z), std::abs(b.high.x),
                    std::abs(b.high.y), std::abs(b.high.z)});
@@ -63,21 +71,18 @@ bool Mesh::is_in_conflict(CellId c, const Point& p) const {
 
 std::uint64_t Mesh::num_cells() const {
   std::uint64_t count = 0;
-  for (CellId c = 0; c < cell_bound_; ++c) count += cells_[c].is_alive();
+  for (CellId c = 0; c < cell_bound(); ++c) count += cells_[c].is_alive();
   return count;
 }
 
 CellId Mesh::take_new_cells(std::uint32_t count) {
-  if (cell_bound_ + static_cast<std::size_t>(count) > cells_.capacity()) throw std::bad_alloc();
-  for (std::uint32_t i = 0; i < count; ++i) cells_[cell_bound_ + i].vertices[0] = kNoVertex;
-  cell_bound_ += count;
-  return cell_bound_ - count;
+  const CellId first = take(cell_bound_, count, cells_.capacity());
+  for (std::uint32_t i = 0; i < count; ++i) cells_[first + i].vertices[0] = kNoVertex;
+  return first;
 }
 
 VertexId Mesh::take_new_vertices(std::uint32_t count) {
-  if (vertex_bound_ + static_cast<std::size_t>(count) > vertices_.capacity()) throw std::bad_alloc();
-  vertex_bound_ += count;
-  return vertex_bound_ - count;
+  return take(vertex_bound_, count, vertices_.capacity());
 }
 
 CellId Pool::take_cell() {
@@ -107,10 +112,7 @@ VertexId Pool::take_vertex() {
 }
 
 void Pool::release_cell(CellId c) {
-  mesh_.cell(c).vertices[0] = kNoVertex;
-  CellState& state = mesh_.state(c);
-  state.stamp = static_cast<std::uint16_t>(state.stamp + 1) & 0x7fff;
-  state.in_region = 0;
+  mesh_.renew(c, {kNoVertex, kNoVertex, kNoVertex, kNoVertex});
   free_cells_.push_back(c);
 }
 

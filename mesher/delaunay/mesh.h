@@ -2,6 +2,7 @@
 #pragma once
 
 #include <array>
+#include <atomic>
 #include <cstdint>
 #include <string>
 #include <vector>
@@ -11,6 +12,7 @@
 #include "geometry/tetrahedron.h"
 #include "podm/label_image.h"
 #include "runtime/huge_array.h"
+#include "runtime/shared_word.h"
 
 namespace podm {
 
@@ -50,8 +52,7 @@ static_assert(sizeof(Cell) == 64);
 inline constexpr LabelIndex kUnknownLabel = 0xffff;
 
 struct CellState {
-  std::uint16_t stamp : 15 = 0;      // changes whenever the id is reused, so that a stale list entry is seen
-  std::uint16_t in_region : 1 = 0;   // scratch of the operation that holds the locks
+  std::uint16_t stamp_and_mark = 0;  // Mesh::stamp and Mesh::is_marked
   LabelIndex label = kUnknownLabel;  // of the image at the circumcentre, once asked for
 };
 static_assert(sizeof(CellState) == 4);
@@ -68,11 +69,44 @@ class Mesh {
 
   Cell& cell(CellId c) { return cells_[c]; }
   const Cell& cell(CellId c) const { return cells_[c]; }
-  CellState& state(CellId c) { return states_[c]; }
-  const CellState& state(CellId c) const { return states_[c]; }
+  LabelIndex& label(CellId c) { return states_[c].label; }
+  LabelIndex label(CellId c) const { return states_[c].label; }
   Vertex& vertex(VertexId v) { return vertices_[v]; }
   const Vertex& vertex(VertexId v) const { return vertices_[v]; }
   const Point& point(VertexId v) const { return vertices_[v].point; }
+
+  /// Changes whenever the id is reused, so that a stale list entry is seen. Relaxed: without locks it is a
+  /// guess.
+  std::uint16_t stamp(CellId c) const {
+    return load(states_[c].stamp_and_mark, std::memory_order_relaxed) & kStampBits;
+  }
+  /// The vertices as someone without locks sees them. Acquire, and release in renew(): who sees a vertex of
+  /// the new cell sees the new stamp too.
+  std::array<VertexId, 4> glimpse_vertices(CellId c) const {
+    const auto& v = cells_[c].vertices;
+    return {load(v[0], std::memory_order_acquire), load(v[1], std::memory_order_acquire),
+            load(v[2], std::memory_order_acquire), load(v[3], std::memory_order_acquire)};
+  }
+  /// Scratch of the operation that holds the locks: the cell is in its region.
+  bool is_marked(CellId c) const { return (states_[c].stamp_and_mark & kMark) != 0; }
+  void mark(CellId c, bool is_marked) {
+    const auto stamp = static_cast<std::uint16_t>(states_[c].stamp_and_mark & kStampBits);
+    store(states_[c].stamp_and_mark, static_cast<std::uint16_t>(is_marked ? stamp | kMark : stamp),
+          std::memory_order_relaxed);
+  }
+  /// Puts a new cell in the slot c, or none (vertices kNoVertex). Its sphere and mirrors are the caller's to
+  /// set.
+  void renew(CellId c, const std::array<VertexId, 4>& vertices) {
+    CellState& state = states_[c];
+    store(state.stamp_and_mark, static_cast<std::uint16_t>((state.stamp_and_mark + 1) & kStampBits),
+          std::memory_order_relaxed);
+    state.label = kUnknownLabel;
+    for (unsigned i = 0; i < 4; ++i) store(cells_[c].vertices[i], vertices[i], std::memory_order_release);
+  }
+  /// Tells the facet `of` that `mirror` lies on its other side. Nothing is beyond the box.
+  void set_mirror(FacetId of, FacetId mirror) {
+    if (of != kNoFacet) cells_[cell_of(of)].mirrors[static_cast<unsigned>(index_in_cell(of))] = mirror;
+  }
 
   /// Asks for a cell's cache lines before they are needed.
   void prefetch(CellId c) const {
@@ -81,8 +115,8 @@ class Mesh {
   }
 
   /// Ids below these have been handed out; some may be free again.
-  CellId cell_bound() const { return cell_bound_; }
-  VertexId vertex_bound() const { return vertex_bound_; }
+  CellId cell_bound() const { return cell_bound_.load(std::memory_order_relaxed); }
+  VertexId vertex_bound() const { return vertex_bound_.load(std::memory_order_relaxed); }
   std::size_t cell_capacity() const { return cells_.capacity(); }
   double extent() const { return extent_; }  // the largest coordinate, M of circumsphere.h
   const Box& box() const { return box_; }
@@ -91,7 +125,7 @@ class Mesh {
   bool is_in_conflict(CellId c, const Point& p) const;  // exact, unique by perturbation
   std::uint64_t num_cells() const;
 
-  /// Throws std::bad_alloc when the capacity is used up.
+  /// Throws std::bad_alloc when the capacity is used up. Any worker may call at any time.
   CellId take_new_cells(std::uint32_t count);
   VertexId take_new_vertices(std::uint32_t count);
 
@@ -101,8 +135,10 @@ class Mesh {
   HugeArray<Cell> cells_;
   HugeArray<CellState> states_;
   HugeArray<Vertex> vertices_;
-  CellId cell_bound_ = 0;
-  VertexId vertex_bound_ = 0;
+  static constexpr std::uint16_t kStampBits = 0x7fff, kMark = 0x8000;
+  // Relaxed: an id is handed on under locks, or with a list entry under a mutex.
+  std::atomic<CellId> cell_bound_ = 0;
+  std::atomic<VertexId> vertex_bound_ = 0;
 };
 
 /// One worker's free ids: its own dead slots first (warm in its cache), then blocks from the store.

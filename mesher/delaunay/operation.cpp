@@ -6,6 +6,21 @@
 namespace podm {
 
 template <class Locks>
+Outcome Operation<Locks>::reserve(CellId c, std::uint32_t stamp) {
+  if constexpr (Locks::kIsShared) {
+    for (const VertexId v : mesh_.glimpse_vertices(c)) {
+      if (v == kNoVertex || !locks_.try_lock(mesh_.vertex(v))) {
+        locks_.unlock_all();
+        return v == kNoVertex ? Outcome::kStaleCell : Outcome::kLockConflict;
+      }
+    }
+  }
+  if (mesh_.stamp(c) == stamp) return Outcome::kCommitted;
+  locks_.unlock_all();
+  return Outcome::kStaleCell;
+}
+
+template <class Locks>
 bool Operation<Locks>::lock_cell(CellId c) {
   for (const VertexId v : mesh_.cell(c).vertices) {
     if (!locks_.try_lock(mesh_.vertex(v))) return false;
@@ -15,7 +30,7 @@ bool Operation<Locks>::lock_cell(CellId c) {
 
 template <class Locks>
 void Operation<Locks>::add_to_region(CellId c) {
-  mesh_.state(c).in_region = 1;
+  mesh_.mark(c, true);
   region_.cells.push_back(c);
   for (const FacetId mirror : mesh_.cell(c).mirrors) {
     if (mirror != kNoFacet) mesh_.prefetch(cell_of(mirror));  // read when the front gets to c
@@ -34,8 +49,8 @@ bool Operation<Locks>::is_in_conflict(CellId c, const Point& p) {
 template <class Locks>
 Outcome Operation<Locks>::plan_insertion(const Point& p, CellId start) {
   is_cavity_ = true;
-  if (!lock_cell(start)) return Outcome::kLockConflict;
   if (!is_in_conflict(start, p)) return Outcome::kRejected;
+  if (!lock_cell(start)) return Outcome::kLockConflict;
   add_to_region(start);
   for (std::size_t i = 0; i < region_.cells.size(); ++i) {
     const CellId c = region_.cells[i];
@@ -46,9 +61,9 @@ Outcome Operation<Locks>::plan_insertion(const Point& p, CellId start) {
         continue;
       }
       const CellId neighbor = cell_of(mirrors[k]);
-      if (!lock_cell(neighbor)) return Outcome::kLockConflict;
-      if (mesh_.state(neighbor).in_region) continue;
+      if (mesh_.is_marked(neighbor)) continue;
       if (is_in_conflict(neighbor, p)) {
+        if (!lock_cell(neighbor)) return Outcome::kLockConflict;
         add_to_region(neighbor);
       } else {
         region_.boundary.push_back(4 * c + k);
@@ -65,7 +80,7 @@ Outcome Operation<Locks>::plan_removal(VertexId v, CellId seed) {
   // Cells around v that the region already has are passed through, so the walk keeps its own list.
   ball_.assign(1, seed);
   if (!lock_cell(seed)) return Outcome::kLockConflict;
-  if (!mesh_.state(seed).in_region) add_to_region(seed);
+  if (!mesh_.is_marked(seed)) add_to_region(seed);
   for (std::size_t i = 0; i < ball_.size(); ++i) {
     const Cell& cell = mesh_.cell(ball_[i]);
     for (unsigned k = 0; k < 4; ++k) {
@@ -73,7 +88,7 @@ Outcome Operation<Locks>::plan_removal(VertexId v, CellId seed) {
       const CellId neighbor = cell_of(cell.mirrors[k]);
       if (std::find(ball_.begin(), ball_.end(), neighbor) != ball_.end()) continue;
       if (!lock_cell(neighbor)) return Outcome::kLockConflict;
-      if (!mesh_.state(neighbor).in_region) add_to_region(neighbor);
+      if (!mesh_.is_marked(neighbor)) add_to_region(neighbor);
       ball_.push_back(neighbor);
     }
   }
@@ -91,8 +106,7 @@ void Operation<Locks>::collect_boundary() {
   for (const CellId c : region_.cells) {
     for (unsigned k = 0; k < 4; ++k) {
       const FacetId mirror = mesh_.cell(c).mirrors[k];
-      if (mirror == kNoFacet || !mesh_.state(cell_of(mirror)).in_region)
-        region_.boundary.push_back(4 * c + k);
+      if (mirror == kNoFacet || !mesh_.is_marked(cell_of(mirror))) region_.boundary.push_back(4 * c + k);
     }
   }
 }
@@ -112,7 +126,9 @@ Outcome Operation<Locks>::commit_insertion(const Point& p, VertexKind kind, doub
   const double nearest = is_star ? star_.squared_distance() : squared_distance_to_region(p);
   if (nearest < min_distance * min_distance) return Outcome::kRejected;
   inserted_ = pool_.take_vertex();
-  mesh_.vertex(inserted_) = {p, 0, 0, kind};
+  Vertex& vertex = mesh_.vertex(inserted_);  // its lock may be tried by who has a stale entry
+  vertex.point = p;
+  vertex.kind = kind;
   const std::size_t destroyed = region_.cells.size();
   if (is_star) {
     star_.fill(mesh_, pool_, region_, inserted_);
@@ -138,17 +154,16 @@ void Operation<Locks>::finish() {
   counters_.cells_created += region_.created.size();
   for (const VertexId v : region_.removed) pool_.release_vertex(v);
   region_.clear();
-  locks_.unlock_all();
 }
 
 template <class Locks>
 void Operation<Locks>::rollback() {
-  for (const CellId c : region_.cells) mesh_.state(c).in_region = 0;
+  for (const CellId c : region_.cells) mesh_.mark(c, false);
   region_.clear();
   region_.created.clear();
-  locks_.unlock_all();
 }
 
 template class Operation<NoLocks>;
+template class Operation<VertexLocks>;
 
 }  // namespace podm

@@ -1,9 +1,10 @@
 // One operation on the triangulation: insert a vertex, remove vertices, or both at once.
 //
-// An operation is cautious. *Planning* reads, locks and collects the region: the cells that will die. For an
-// insertion these are the cells in conflict with the point (the cavity), for a removal the cells around the
-// vertex (its ball); an isosurface insertion with its R6 removals takes their union. *Committing* replaces
-// the region by new Delaunay cells. A plan that cannot be carried out is rolled back, with nothing written.
+// An operation is cautious. *Reserving* locks the cell that asks for it. *Planning* reads, locks and collects
+// the region: the cells that will die. For an insertion these are the cells in conflict with the point (the
+// cavity), for a removal the cells around the vertex (its ball); an isosurface insertion with its R6 removals
+// takes their union. *Committing* replaces the region by new Delaunay cells. A plan that cannot be carried
+// out is rolled back, with nothing written. *Releasing* unlocks all.
 //
 // Why one region serves all: a cell of the old triangulation stays Delaunay unless it holds a removed vertex
 // or conflicts with the new one, so the region's boundary facets are facets of the new triangulation too.
@@ -28,10 +29,17 @@ struct OperationCounters {
 template <class Locks>
 class Operation {
  public:
-  Operation(Mesh& mesh, Pool& pool) : mesh_(mesh), pool_(pool) {}
+  Operation(Mesh& mesh, Pool& pool, WorkerId self) : mesh_(mesh), pool_(pool), locks_(self) {}
 
-  /// Digs the cavity of p from `start`, a cell in conflict with p. Unless committed (kRejected: `start` is
-  /// not in conflict) the caller must roll back. The plan may be extended by plan_removal.
+  /// Locks the cell c of that stamp, so that it and its neighbours may be read. kStaleCell: it has died.
+  /// kLockConflict: conflicting_worker() tells with whom. Unless committed nothing is held.
+  Outcome reserve(CellId c, std::uint32_t stamp);
+  void release() { locks_.unlock_all(); }
+  WorkerId conflicting_worker() const { return locks_.conflicting_worker(); }
+
+  /// Digs the cavity of p from `start`, a cell in conflict with p, reserved or beside it. Unless committed
+  /// (kRejected: `start` is not in conflict; kLockConflict) the caller must roll back. The plan may be
+  /// extended by plan_removal.
   Outcome plan_insertion(const Point& p, CellId start);
   /// Adds the ball of v, a vertex of the cell `seed`, to the region.
   Outcome plan_removal(VertexId v, CellId seed);
@@ -52,7 +60,7 @@ class Operation {
   /// back.
   Outcome commit_insertion(const Point& p, VertexKind kind, double min_distance);
   void commit_removals();
-  /// Gives the plan up; nothing was written.
+  /// Gives the plan up; nothing was written. Locks are kept until release().
   void rollback();
 
   /// The vertex that the last committed insertion made.
@@ -81,5 +89,6 @@ class Operation {
 };
 
 extern template class Operation<NoLocks>;
+extern template class Operation<VertexLocks>;
 
 }  // namespace podm

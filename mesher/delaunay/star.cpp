@@ -67,18 +67,11 @@ void StarFiller::fill(Mesh& mesh, Pool& pool, Region& region, VertexId apex) {
     const Facet& facet = facets_[f];
     const CellId id = reused < region.cells.size() ? region.cells[reused++] : pool.take_cell();
     region.created.push_back(id);
+    mesh.renew(id, {facet.vertices[0], facet.vertices[1], facet.vertices[2], apex});
     Cell& cell = mesh.cell(id);
     cell.sphere = {{spheres_[0][f], spheres_[1][f], spheres_[2][f]}, spheres_[3][f]};
-    cell.vertices = {facet.vertices[0], facet.vertices[1], facet.vertices[2], apex};
     cell.mirrors[3] = facet.mirror;
-    CellState& state = mesh.state(id);
-    state.stamp = static_cast<std::uint16_t>(state.stamp + 1) & 0x7fff;
-    state.in_region = 0;
-    state.label = kUnknownLabel;
-    if (facet.mirror != kNoFacet) {
-      mesh.cell(cell_of(facet.mirror)).mirrors[static_cast<unsigned>(index_in_cell(facet.mirror))] =
-          4 * id + 3;
-    }
+    mesh.set_mirror(facet.mirror, 4 * id + 3);
     const unsigned a = facet.local[0], b = facet.local[1], c = facet.local[2];
     facet_at_edge_[(b << row_bits_) + c] = 4 * id + 0;
     facet_at_edge_[(c << row_bits_) + a] = 4 * id + 1;

@@ -39,7 +39,7 @@ const char* fault_of_cell(const Mesh& mesh, CellId c) {
   if (orientation(mesh.point(v[0]), mesh.point(v[1]), mesh.point(v[2]), mesh.point(v[3])) <= 0) {
     return "not positively oriented";
   }
-  if (mesh.state(c).in_region) return "left marked by an operation";
+  if (mesh.is_marked(c)) return "left marked by an operation";
   for (const VertexId id : v) {
     const Side side = side_of(mesh.cell(c).sphere, mesh.point(id));
     if (side != Side::kUndecided) return "circumsphere misses its vertex";

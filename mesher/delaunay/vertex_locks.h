@@ -1,15 +1,66 @@
-// The place of the vertex locks in the protocol: an operation try-locks every vertex of every cell it touches
-// before it writes anything, and releases all of them at its end.
+// Vertex locks: all atomics of the locking protocol, and the reason for each memory order.
+//
+// An operation try-locks every vertex of every cell it is going to replace before it writes anything, and
+// keeps them to its end. That guards the cells around the region too, without their far vertices: a cell has
+// four vertices, so two workers that each hold three of them share one, which cannot be. Hence whoever holds
+// three vertices of a cell may read it and write its mirrors and label, and nobody can replace it meanwhile.
+// And two regions that are locked at the same time have no facet in common: each facet of the result borders
+// cells of only one of them or an unchanged cell, so it is locally Delaunay by that operation's own work, and
+// a triangulation of the box whose facets all are is the Delaunay triangulation.
 #pragma once
+
+#include <cstdint>
+#include <vector>
 
 #include "delaunay/mesh.h"
 
 namespace podm {
 
+using WorkerId = std::uint32_t;
+inline constexpr WorkerId kNoWorker = 0xffffffffu;
+
 /// The locks of a run that nobody shares: every attempt succeeds and costs nothing.
-struct NoLocks {
+class NoLocks {
+ public:
+  static constexpr bool kIsShared = false;
+  explicit NoLocks(WorkerId) {}
   static constexpr bool try_lock(Vertex&) { return true; }
   static constexpr void unlock_all() {}
+  static constexpr WorkerId conflicting_worker() { return kNoWorker; }
+};
+
+/// What one worker holds. A vertex's lock word is 0 when free, else the holder's id + 1.
+class VertexLocks {
+ public:
+  static constexpr bool kIsShared = true;
+  explicit VertexLocks(WorkerId self) : mine_(self + 1) {}
+
+  /// True when the vertex is held, also from before. Else conflicting_worker() tells who holds it.
+  bool try_lock(Vertex& v) {
+    const std::atomic_ref<std::uint32_t> lock(v.lock);
+    // Relaxed: only we write our own id, so seeing it needs nobody else's writes.
+    std::uint32_t holder = lock.load(std::memory_order_relaxed);
+    if (holder == mine_) return true;
+    // Acquire: sees what the last holder wrote. Relaxed on failure: nothing but the id is used.
+    if (holder == 0 &&
+        lock.compare_exchange_strong(holder, mine_, std::memory_order_acquire, std::memory_order_relaxed)) {
+      held_.push_back(&v);
+      return true;
+    }
+    conflicting_worker_ = holder - 1;
+    return false;
+  }
+  void unlock_all() {
+    // Release: the next holder sees what we wrote.
+    for (Vertex* v : held_) std::atomic_ref<std::uint32_t>(v->lock).store(0, std::memory_order_release);
+    held_.clear();
+  }
+  WorkerId conflicting_worker() const { return conflicting_worker_; }
+
+ private:
+  std::uint32_t mine_;
+  WorkerId conflicting_worker_ = kNoWorker;
+  std::vector<Vertex*> held_;
 };
 
 }  // namespace podm

@@ -1,10 +1,12 @@
-// Executors run workers; they alone know of time, limits and waiting. This one runs a single worker on the
-// calling thread.
+// What executors have in common: they run workers until no poor cell is left or something ends the run early.
+// They alone know of time, limits, threads and waiting. This file's runs a single worker on the calling
+// thread.
 #pragma once
 
 #include <chrono>
 #include <cstdint>
 #include <functional>
+#include <optional>
 #include <stop_token>
 
 #include "podm/mesh_image.h"
@@ -18,19 +20,38 @@ struct Limits {
   std::chrono::steady_clock::time_point deadline = std::chrono::steady_clock::time_point::max();
 };
 
-class SerialExecutor {
+/// Looks at a run from outside, between operations.
+class Watch {
  public:
+  static constexpr int kAttemptsBetweenChecks = 1 << 8;  // of each worker, well below a millisecond
+
   /// `observe(cells)` is called a few times a second.
-  SerialExecutor(const Limits& limits, std::stop_token stop, std::function<void(std::uint64_t)> observe)
+  Watch(const Limits& limits, std::stop_token stop, std::function<void(std::uint64_t)> observe)
       : limits_(limits), stop_(std::move(stop)), observe_(std::move(observe)) {}
 
-  /// Runs until the worker's poor element list is empty or something ends the run, always between operations.
-  StopReason run(Worker<NoLocks>& worker, const Mesh& mesh);
+  /// Why the run has to end, with `cells` in the store and `num_workers` at work; nothing if it has not. Any
+  /// thread may call.
+  std::optional<StopReason> reason_to_stop(std::uint64_t cells, const Mesh& mesh,
+                                           std::size_t num_workers) const;
+  /// One thread calls.
+  void observe(std::uint64_t cells);
 
  private:
   Limits limits_;
   std::stop_token stop_;
   std::function<void(std::uint64_t)> observe_;
+  std::chrono::steady_clock::time_point next_observation_ = std::chrono::steady_clock::now();
+};
+
+class SerialExecutor {
+ public:
+  explicit SerialExecutor(Watch& watch) : watch_(watch) {}
+
+  /// Runs until the worker's poor element list is empty or something ends the run, always between operations.
+  StopReason run(Worker<NoLocks>& worker, const Mesh& mesh);
+
+ private:
+  Watch& watch_;
 };
 
 }  // namespace podm

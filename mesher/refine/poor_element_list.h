@@ -15,14 +15,24 @@ class PoorElementList {
  public:
   struct Entry {
     CellId cell;
-    std::uint32_t stamp;
+    std::uint16_t stamp;
   };
-  void push(CellId cell, std::uint32_t stamp) { entries_.push_back({cell, stamp}); }
+  void push(CellId cell, std::uint16_t stamp) { entries_.push_back({cell, stamp}); }
   /// Most entries at the bottom are stale. Dropping them whenever the list has doubled keeps it short.
   bool is_due_for_cleaning() const { return entries_.size() >= next_cleaning_; }
   void drop_stale(const Mesh& mesh) {
-    std::erase_if(entries_, [&](const Entry& e) { return mesh.state(e.cell).stamp != e.stamp; });
+    std::erase_if(entries_, [&](const Entry& e) { return mesh.stamp(e.cell) != e.stamp; });
     next_cleaning_ = std::max(kFirstCleaning, 2 * entries_.size());
+  }
+  /// Removes the older half, of which the live entries are returned, at most `max`.
+  std::vector<Entry> take_oldest(std::size_t max, const Mesh& mesh) {
+    std::vector<Entry> taken;
+    std::size_t scanned = 0;
+    for (; scanned < entries_.size() / 2 && taken.size() < max; ++scanned) {
+      if (mesh.stamp(entries_[scanned].cell) == entries_[scanned].stamp) taken.push_back(entries_[scanned]);
+    }
+    entries_.erase(entries_.begin(), entries_.begin() + static_cast<std::ptrdiff_t>(scanned));
+    return taken;
   }
   bool is_empty() const { return entries_.empty(); }
   std::size_t size() const { return entries_.size(); }

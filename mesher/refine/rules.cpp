@@ -24,7 +24,7 @@ Rules::Rules(Mesh& mesh, const Isosurface& isosurface, const Parameters& paramet
       squared_two_delta_(square(2 * parameters.delta_mm)) {}
 
 LabelIndex Rules::label_of(CellId c) const {
-  LabelIndex& label = mesh_.state(c).label;
+  LabelIndex& label = mesh_.label(c);
   if (label == kUnknownLabel) label = isosurface_.label_at(mesh_.cell(c).sphere.center);
   return label;
 }

@@ -11,91 +11,111 @@ constexpr double kSpacingFloor = 0.1;
 }  // namespace
 
 template <class Locks>
-Worker<Locks>::Worker(Mesh& mesh, const Isosurface& isosurface, const Parameters& parameters)
+Worker<Locks>::Worker(Mesh& mesh, const Isosurface& isosurface, const Parameters& parameters, WorkerId self)
     : mesh_(mesh),
       rules_(mesh, isosurface, parameters),
       pool_(mesh),
-      operation_(mesh, pool_),
+      operation_(mesh, pool_, self),
       min_distance_(kSpacingFloor * parameters.spacing_mm) {}
 
 template <class Locks>
-void Worker<Locks>::attempt() {
+Outcome Worker<Locks>::attempt() {
   mesh_.prefetch(poor_.upcoming(4));
-  rules_.prefetch(poor_.upcoming(2));
+  if constexpr (!Locks::kIsShared)
+    rules_.prefetch(poor_.upcoming(2));  // reads the cell, which takes its locks
   const PoorElementList::Entry entry = poor_.pop();
-  if (mesh_.state(entry.cell).stamp != entry.stamp) {
+  if (mesh_.stamp(entry.cell) != entry.stamp) {
     ++counters_.stale_cells;
-    return;
+    return Outcome::kStaleCell;
   }
-  ++counters_.classified_cells;
-  apply_first_rule(entry.cell);
+  Outcome outcome = operation_.reserve(entry.cell, entry.stamp);
+  if (outcome == Outcome::kCommitted) {
+    ++counters_.classified_cells;
+    const auto start =
+        Locks::kIsShared ? std::chrono::steady_clock::now() : std::chrono::steady_clock::time_point();
+    outcome = apply_first_rule(entry.cell);
+    operation_.release();
+    if (outcome == Outcome::kLockConflict) counters_.rollback += std::chrono::steady_clock::now() - start;
+  }
+  if (outcome == Outcome::kLockConflict) {
+    ++counters_.lock_conflicts;
+    poor_.push(entry.cell, entry.stamp);
+  } else if (outcome == Outcome::kStaleCell) {
+    ++counters_.stale_cells;
+  }
+  return outcome;
 }
 
 template <class Locks>
-void Worker<Locks>::apply_first_rule(CellId c) {
+Outcome Worker<Locks>::apply_first_rule(CellId c) {
   const Examination t = rules_.examine(c);
   if (const auto z = rules_.r1_sample(t)) {
-    if (insert_on_isosurface(*z, c, Rule::kR1) == Sampled::kYes) return;
+    const Sampled sampled = insert_on_isosurface(*z, c, Rule::kR1);
+    if (sampled == Sampled::kYes) return Outcome::kCommitted;
+    if (sampled == Sampled::kLockConflict) return Outcome::kLockConflict;
   }
   if (const auto p = rules_.r2_center(t)) return insert_circumcenter(*p, c, Rule::kR2);
   if (const auto center = rules_.r3_surface_center(t)) {
-    const std::uint32_t stamp = mesh_.state(c).stamp;
+    const std::uint16_t stamp = mesh_.stamp(c);
     const Sampled sampled = insert_on_isosurface(center->point, center->start, Rule::kR3);
-    if (sampled == Sampled::kYes && mesh_.state(c).stamp == stamp) give(c);
-    return;
+    if (sampled == Sampled::kLockConflict) return Outcome::kLockConflict;
+    if (sampled == Sampled::kYes && mesh_.stamp(c) == stamp) give(c);
+    return Outcome::kCommitted;
   }
-  if (const auto rule = rules_.volume_rule(t)) insert_circumcenter(t.center, c, *rule);
+  if (const auto rule = rules_.volume_rule(t)) return insert_circumcenter(t.center, c, *rule);
+  return Outcome::kCommitted;
 }
 
 // The point and its R6 removals are one operation.
 template <class Locks>
 auto Worker<Locks>::insert_on_isosurface(const Point& z, CellId start, Rule rule) -> Sampled {
-  if (operation_.plan_insertion(z, start) != Outcome::kCommitted) {
-    operation_.rollback();  // the ball only touches the isosurface at z
-    return Sampled::kNo;
-  }
+  Outcome planned = operation_.plan_insertion(z, start);
   bool is_covered = false;
-  if (rule == Rule::kR1) {
+  if (planned == Outcome::kCommitted && rule == Rule::kR1) {
     operation_.for_each_region_vertex(
         [&](VertexId v, CellId) { is_covered = is_covered || rules_.is_covered(z, v); });
   }
-  if (is_covered) {
-    operation_.rollback();
-    return Sampled::kCovered;
+  if (planned == Outcome::kCommitted && !is_covered) {
+    operation_.for_each_region_vertex([&](VertexId v, CellId seed) {
+      if (planned == Outcome::kCommitted && rules_.is_doomed(v, z) && !operation_.removes(v))
+        planned = operation_.plan_removal(v, seed);
+    });
+    if (planned == Outcome::kCommitted)
+      return commit(z, VertexKind::kIsosurface, rule) == Outcome::kCommitted ? Sampled::kYes : Sampled::kNo;
   }
-  operation_.for_each_region_vertex([&](VertexId v, CellId seed) {
-    if (rules_.is_doomed(v, z) && !operation_.removes(v)) operation_.plan_removal(v, seed);
-  });
-  return commit(z, VertexKind::kIsosurface, rule);
+  operation_.rollback();
+  if (planned == Outcome::kLockConflict) return Sampled::kLockConflict;
+  return is_covered ? Sampled::kCovered : Sampled::kNo;  // no: the ball only touches the isosurface at z
 }
 
 template <class Locks>
-void Worker<Locks>::insert_circumcenter(const Point& p, CellId start, Rule rule) {
-  if (operation_.plan_insertion(p, start) == Outcome::kCommitted) {
-    commit(p, VertexKind::kCircumcenter, rule);
-  } else {
-    give_up();
-  }
+Outcome Worker<Locks>::insert_circumcenter(const Point& p, CellId start, Rule rule) {
+  const Outcome planned = operation_.plan_insertion(p, start);
+  if (planned == Outcome::kCommitted) return commit(p, VertexKind::kCircumcenter, rule);
+  if (planned == Outcome::kRejected) return give_up();
+  operation_.rollback();
+  return planned;
 }
 
 template <class Locks>
-auto Worker<Locks>::give_up() -> Sampled {
+Outcome Worker<Locks>::give_up() {
   operation_.rollback();
   ++counters_.rejected;
-  return Sampled::kNo;
+  return Outcome::kRejected;
 }
 
 template <class Locks>
-auto Worker<Locks>::commit(const Point& p, VertexKind kind, Rule rule) -> Sampled {
+Outcome Worker<Locks>::commit(const Point& p, VertexKind kind, Rule rule) {
   const std::size_t num_removed = operation_.num_removed();
   if (operation_.commit_insertion(p, kind, min_distance_) != Outcome::kCommitted) return give_up();
   counters_.removals += num_removed;
   ++counters_.insertions_by_rule[static_cast<std::size_t>(rule)];
   for (const CellId c : operation_.created()) give(c);
   if (poor_.is_due_for_cleaning()) poor_.drop_stale(mesh_);
-  return Sampled::kYes;
+  return Outcome::kCommitted;
 }
 
 template class Worker<NoLocks>;
+template class Worker<VertexLocks>;
 
 }  // namespace podm

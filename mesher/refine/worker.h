@@ -3,6 +3,7 @@
 #pragma once
 
 #include <array>
+#include <chrono>
 #include <cstdint>
 
 #include "delaunay/operation.h"
@@ -13,18 +14,32 @@ namespace podm {
 
 struct WorkerCounters {
   std::array<std::uint64_t, 5> insertions_by_rule{};
-  std::uint64_t removals = 0, rejected = 0, stale_cells = 0, classified_cells = 0;
+  std::uint64_t removals = 0, rejected = 0, stale_cells = 0, classified_cells = 0, lock_conflicts = 0;
+  std::chrono::steady_clock::duration rollback{};  // time in attempts that ended in a lock conflict
 };
 
 template <class Locks>
 class Worker {
  public:
-  Worker(Mesh& mesh, const Isosurface& isosurface, const Parameters& parameters);
+  Worker(Mesh& mesh, const Isosurface& isosurface, const Parameters& parameters, WorkerId self);
 
-  void give(CellId c) { poor_.push(c, mesh_.state(c).stamp); }
+  void give(CellId c) { poor_.push(c, mesh_.stamp(c)); }
+  void give(const std::vector<PoorElementList::Entry>& entries) {
+    for (const auto& entry : entries) poor_.push(entry.cell, entry.stamp);
+  }
   bool has_work() const { return !poor_.is_empty(); }
+  std::size_t num_listed() const { return poor_.size(); }
+  /// Takes the oldest cells off the list, for another worker; about half of them, at most `max`.
+  std::vector<PoorElementList::Entry> share(std::size_t max) { return poor_.take_oldest(max, mesh_); }
+
   /// Takes one entry of the poor element list and applies the first rule that its cell breaks.
-  void attempt();
+  ///   kCommitted     a vertex was inserted, or the cell breaks no rule
+  ///   kStaleCell     the cell has died
+  ///   kLockConflict  nothing was changed and the entry is back on the list; see conflicting_worker()
+  ///   kRejected      the insertion would have broken the spacing floor
+  /// No lock is held before or after.
+  Outcome attempt();
+  WorkerId conflicting_worker() const { return operation_.conflicting_worker(); }
 
   const WorkerCounters& counters() const { return counters_; }
   const OperationCounters& operation_counters() const { return operation_.counters(); }
@@ -35,12 +50,12 @@ class Worker {
   }
 
  private:
-  enum class Sampled { kNo, kCovered, kYes };
-  void apply_first_rule(CellId c);
+  enum class Sampled { kNo, kCovered, kYes, kLockConflict };
+  Outcome apply_first_rule(CellId c);
   Sampled insert_on_isosurface(const Point& z, CellId start, Rule rule);
-  void insert_circumcenter(const Point& p, CellId start, Rule rule);
-  Sampled commit(const Point& p, VertexKind kind, Rule rule);
-  Sampled give_up();
+  Outcome insert_circumcenter(const Point& p, CellId start, Rule rule);
+  Outcome commit(const Point& p, VertexKind kind, Rule rule);
+  Outcome give_up();
 
   Mesh& mesh_;
   Rules rules_;
@@ -52,5 +67,6 @@ class Worker {
 };
 
 extern template class Worker<NoLocks>;
+extern template class Worker<VertexLocks>;
 
 }  // namespace podm

@@ -13,7 +13,7 @@ namespace podm::test {
 class Triangulator {
  public:
   explicit Triangulator(const Box& box, std::size_t capacity = 1 << 20)
-      : mesh(box, capacity), pool(mesh), operation(mesh, pool) {}
+      : mesh(box, capacity), pool(mesh), operation(mesh, pool, 0) {}
 
   CellId conflicting_cell(const Point& p) const {
     for (CellId c = mesh.cell_bound(); c-- > 0;) {

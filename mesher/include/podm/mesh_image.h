@@ -21,6 +21,10 @@ inline constexpr double kRadiusEdgeBound = 1.93;
 /// Every planar angle of every boundary facet exceeds this, in degrees.
 inline constexpr double kFacetAngleBound = 30.0;
 
+/// What a worker does that finds a vertex locked by another; see refine/contention_manager.h.
+enum class Contention { kAggressive, kRandom, kGlobal, kLocal };
+std::string to_string(Contention contention);
+
 struct MeshingOptions {
   /// Largest circumradius r_t of a cell, mm. 0: unbounded, the surface alone drives.
   double radius_mm = 0;
@@ -31,7 +35,11 @@ struct MeshingOptions {
   /// When positive: choose radius_mm so that the mesh has this many cells within 5 %; radius_mm must be 0.
   std::uint64_t target_elements = 0;
   Space space = Space::kRas;
-  int threads = 0;  ///< for the feature transform; 0: all cores. Refinement runs on one.
+  /// Of all phases. With one thread the same input makes the same mesh to the bit, with more one of the same
+  /// guarantees. 0: all cores for the feature transform, one for refinement.
+  int threads = 0;
+  Contention contention = Contention::kLocal;
+  std::uint64_t seed = 1;  ///< of what is random: pauses of Contention::kRandom
   // Limits end the run with a valid Delaunay mesh that says what is unmet. 0: none.
   std::uint64_t max_elements = 0;
   double max_seconds = 0;
@@ -87,6 +95,9 @@ struct Counters {
   std::uint64_t conflict_tests = 0;
   std::uint64_t exact_decisions = 0;  ///< conflict tests that the cached sphere left undecided
   std::uint64_t cells_created = 0;
+  std::uint64_t lock_conflicts = 0;  ///< attempts rolled back
+  // Seconds that workers lost, summed over them.
+  double contention_s = 0, begging_s = 0, rollback_s = 0;
 };
 
 struct MeshingReport {

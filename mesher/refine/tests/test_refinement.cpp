@@ -13,15 +13,23 @@ namespace {
 
 constexpr double kRadius = 2.5;
 
-class Refined : public testing::TestWithParam<NamedImage> {
+// One thread without locks, and more threads than this machine may have cores, by contention manager.
+const std::vector<Crew> kCrews{{1, Contention::kLocal, 1},
+                               {2, Contention::kLocal, 1},
+                               {7, Contention::kLocal, 1},
+                               {7, Contention::kGlobal, 1},
+                               {7, Contention::kRandom, 1}};
+
+class Refined : public testing::TestWithParam<std::tuple<NamedImage, Crew>> {
  protected:
   Refined()
-      : image_(GetParam().make()),
+      : image_(std::get<NamedImage>(GetParam()).make()),
         isosurface_(image_, 1),
         delta_(default_delta_mm(image_, kRadius)),
         sizes_(std::vector<double>(image_.labels.size(), kRadius)) {
-    SerialExecutor executor({}, {}, [](std::uint64_t) {});
-    refinement_ = podm(isosurface_, foreground_bounds(image_), delta_, sizes_, 1 << 22, executor);
+    Watch watch({}, {}, [](std::uint64_t) {});
+    refinement_ = podm(isosurface_, foreground_bounds(image_), delta_, sizes_, 1 << 22,
+                       std::get<Crew>(GetParam()), watch);
   }
   double spacing() const { return std::min(delta_, kRadius / std::sqrt(2 + std::sqrt(3.0))); }
 
@@ -75,8 +83,16 @@ TEST_P(Refined, NoFreeVertexStaysNearTheIsosurfaceVertices) {
   }
 }
 
-INSTANTIATE_TEST_SUITE_P(Images, Refined, testing::ValuesIn(images()),
-                         [](const auto& image) { return std::string(image.param.name); });
+std::string name_of(const testing::TestParamInfo<std::tuple<NamedImage, Crew>>& test) {
+  const auto& [image, crew] = test.param;
+  std::string name = image.name;
+  name += '_';
+  name += std::to_string(crew.threads);
+  return name += to_string(crew.contention);
+}
+
+INSTANTIATE_TEST_SUITE_P(Images, Refined,
+                         testing::Combine(testing::ValuesIn(images()), testing::ValuesIn(kCrews)), name_of);
 
 }  // namespace
 }  // namespace podm::test

@@ -1,0 +1,19 @@
+// Words that a worker may read while another, which holds the locks that guard them, writes. Such a reader
+// only guesses: it locks what the guess names and then looks again (Operation::reserve).
+#pragma once
+
+#include <atomic>
+
+namespace podm {
+
+// Not const in std::atomic_ref of C++20; a load writes nothing.
+template <class T>
+T load(const T& word, std::memory_order order) {
+  return std::atomic_ref<T>(const_cast<T&>(word)).load(order);
+}
+template <class T>
+void store(T& word, T value, std::memory_order order) {
+  std::atomic_ref<T>(word).store(value, order);
+}
+
+}  // namespace podm
