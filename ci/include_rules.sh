@@ -28,7 +28,7 @@ part_of() {
 
 # The file of ours that `#include "$2"` or <$2> in file $1 means; nothing when it is not ours.
 resolve() {
-  for folder in "$(dirname "$1")" mesher mesher/include harness verifiers; do
+  for folder in "$(dirname "$1")" "${1%%/*}" mesher mesher/include harness verifiers; do  # its own part's first
     [ ! -f "$folder/$2" ] || { realpath --relative-to=. "$folder/$2"; return; }
   done
 }
