@@ -7,7 +7,7 @@ namespace podm::verify {
 
 namespace {
 
-constexpr double kVoxelError = 1e-6;  // of bisection
+constexpr double kVoxelError = 1e-5;  // of bisection
 constexpr double kSameWeight = 1e-4;  // labels whose weights are this close meet at a point
 constexpr double kLittleWeight = 0.02, kLittleBeyond = 1.01;
 constexpr int kMaxProjections = 3;
@@ -118,10 +118,13 @@ IsosurfaceDistance::Answer IsosurfaceDistance::search(const Point& p, const Poin
   return best;
 }
 
-// Finds a change between p and `end`; false unless it is nearer than the best by more than a thousandth.
+// Finds a change between p and `end`, or the part of it that is of use; false unless it is nearer than the
+// best by more than a thousandth.
 bool IsosurfaceDistance::try_segment(const Point& p, const Point& end, const Region& region,
                                      Answer& best) const {
-  const Point u = frame_.world_to_voxels(p), v = frame_.world_to_voxels(end);
+  const double useful = kLittleBeyond * std::sqrt(best.squared / squared_distance(p, end));
+  const Point last = useful < 1 ? along(p, end, useful) : end;
+  const Point u = frame_.world_to_voxels(p), v = frame_.world_to_voxels(last);
   const std::uint32_t side = region.side(label_function_.label_at(u));
   if (region.side(label_function_.label_at(v)) == side) return false;
   const double length = std::sqrt(squared_distance(u, v));
@@ -130,7 +133,7 @@ bool IsosurfaceDistance::try_segment(const Point& p, const Point& end, const Reg
     const double middle = 0.5 * (low + high);
     (region.side(label_function_.label_at(along(u, v, middle))) == side ? low : high) = middle;
   }
-  const Point change = along(p, end, high);
+  const Point change = along(p, last, high);
   const double squared = squared_distance(p, change);
   if (!(squared < best.squared)) return false;
   const bool is_much_nearer = squared < 0.998 * best.squared;

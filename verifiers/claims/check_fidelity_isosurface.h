@@ -5,7 +5,7 @@
 // each other along it. From the nearest one a search goes on to nearer points: wherever a segment's ends have
 // different labels, a point of the isosurface lies between, and bisection finds it. The search tries the
 // segment to the midpoint, a voxel's length along each axis, and the normals of the surface found. Every
-// answer is a point of the isosurface to 1e-6 of a voxel, so that the distance is never taken too small; it
+// answer is a point of the isosurface to 1e-5 of a voxel, so that the distance is never taken too small; it
 // may be taken too large, by little.
 #pragma once
 
