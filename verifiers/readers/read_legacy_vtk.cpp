@@ -100,6 +100,7 @@ class LegacyVtkReader {
 
   void read_cells() {
     const std::size_t count = read_count("the number of cells"), size = read_count("the size of the cells");
+    has_cells_ = true;
     num_cells_ = has_offsets_ ? std::max<std::size_t>(count, 1) - 1 : count;  // one offset more than cells
     if (!has_offsets_) {
       piece_.layout = CellLayout::kInterleaved;
@@ -245,7 +246,7 @@ class LegacyVtkReader {
     Mesh mesh;
     mesh.format = fmt::format("legacy VTK {}, {}", version_.substr(0, 8), is_binary_ ? "binary" : "ascii");
     piece_.place = "UNSTRUCTURED_GRID";
-    if (!has_points_) file_.refuse(piece_.place, "no POINTS");
+    if (!has_points_ || !has_cells_) file_.refuse(piece_.place, has_points_ ? "no CELLS" : "no POINTS");
     if (piece_.types.size() != num_cells_) {
       file_.refuse(piece_.place,
                    fmt::format("CELL_TYPES names {} cells, CELLS {}", piece_.types.size(), num_cells_));
@@ -258,7 +259,7 @@ class LegacyVtkReader {
   Cursor cursor_;
   std::string version_;
   bool is_binary_ = false, has_offsets_ = false;
-  bool is_cell_data_ = false, has_points_ = false;
+  bool is_cell_data_ = false, has_points_ = false, has_cells_ = false;
   std::size_t num_cells_ = 0;
   std::size_t num_tuples_ = 0;  // of the CELL_DATA or POINT_DATA at hand
   VtkPiece piece_;

@@ -1,0 +1,198 @@
+// Every variant of every format gives the mesh that was written.
+#include <fmt/format.h>
+#include <gtest/gtest.h>
+
+#include "readers/read_mesh.h"
+#include "readers/tests/mesh_writers.h"
+#include "readers/tests/test_mesh.h"
+
+namespace podm::verify {
+namespace {
+
+class ReadMesh : public testing::Test {
+ protected:
+  Mesh read(const std::string& name, const std::string& bytes) const {
+    write_bytes(folder_ / name, bytes);
+    return read_mesh(folder_ / name);
+  }
+  // Cells, labels and facets, plain and gzipped.
+  void expect_read(const std::string& name, const std::string& bytes, const std::string& label_array) const {
+    SCOPED_TRACE(name);
+    for (const bool is_gzipped : {false, true}) {
+      const Mesh mesh = is_gzipped ? read(name + ".gz", gzipped(bytes)) : read(name, bytes);
+      expect_same_cells(mesh, written_);
+      expect_same_facets(mesh, written_);
+      EXPECT_EQ(mesh.cell_label_array, label_array);
+      EXPECT_EQ(mesh.format.ends_with(", gzip"), is_gzipped);
+      EXPECT_EQ(mesh.space, Space::kUnstated);
+      EXPECT_TRUE(mesh.other_cells.empty());
+    }
+  }
+
+  const TestFolder folder_;
+  const Mesh written_ = make_test_mesh();
+};
+
+std::vector<VtuOptions> all_vtu_options() {
+  std::vector<VtuOptions> all;
+  for (const auto encoding :
+       {VtuOptions::kAscii, VtuOptions::kInline, VtuOptions::kAppendedRaw, VtuOptions::kAppendedBase64})
+    for (int bits = 0; bits < 16; ++bits)
+      for (const char* id_type : {"Int32", "Int64", "UInt32", "UInt64"})
+        for (const char* label_type : {"UInt8", "Int16", "Float64"})
+          all.push_back({encoding, (bits & 1) != 0, (bits & 2) != 0, (bits & 4) != 0, id_type,
+                         (bits & 8) != 0 ? "Float32" : "Float64", label_type, 1, 64});
+  return all;
+}
+
+TEST_F(ReadMesh, VtuOfEveryEncodingTypeAndByteOrder) {
+  for (const VtuOptions& options : all_vtu_options()) {
+    const Mesh mesh = read("a.vtu", vtu_text(written_, options));
+    expect_same_cells(mesh, written_);
+    EXPECT_EQ(mesh.cell_label_array, "label");
+    ASSERT_FALSE(HasFailure()) << mesh.format << options.id_type << options.label_type << options.real_type;
+  }
+}
+
+TEST_F(ReadMesh, VtuGzipped) {
+  expect_same_cells(read("a.vtu.gz", gzipped(vtu_text(written_, {}))), written_);
+}
+
+// Ids count from the points of their piece, which are appended to those of the pieces before.
+TEST_F(ReadMesh, VtuPiecesAreAppended) {
+  const std::size_t num_vertices = written_.vertices.size();
+  Mesh expected = written_;
+  expected.vertices.insert(expected.vertices.end(), written_.vertices.begin(), written_.vertices.end());
+  for (VertexId& id : expected.cells.back()) id += static_cast<VertexId>(num_vertices);
+  for (const auto encoding : {VtuOptions::kAscii, VtuOptions::kInline, VtuOptions::kAppendedRaw}) {
+    VtuOptions options;
+    options.encoding = encoding;
+    options.num_pieces = 2;
+    expect_same_cells(read("a.vtu", vtu_text(written_, options)), expected);
+  }
+}
+
+TEST_F(ReadMesh, LegacyVtk) {
+  for (const bool is_binary : {false, true})
+    for (const bool has_offsets : {false, true})
+      expect_read("a.vtk", legacy_vtk_text(written_, is_binary, has_offsets), "label");
+}
+
+TEST_F(ReadMesh, MeditText) { expect_read("a.mesh", medit_text(written_), "medit:ref"); }
+
+TEST_F(ReadMesh, MeditBinaryOfEveryVersionAndByteOrder) {
+  for (int version = 1; version <= 4; ++version)
+    for (const bool is_big_endian : {false, true})
+      expect_read("a.meshb", medit_bytes(written_, version, is_big_endian), "medit:ref");
+}
+
+TEST_F(ReadMesh, Gmsh2) {
+  expect_read("a.msh", gmsh_v2_text(written_), "gmsh:physical");
+  for (const bool is_big_endian : {false, true})
+    expect_read("a.msh", gmsh_v2_bytes(written_, is_big_endian), "gmsh:physical");
+}
+
+TEST_F(ReadMesh, Gmsh4) {
+  expect_read("a.msh", gmsh_v4_text(written_), "gmsh:physical");
+  for (const int size_bytes : {4, 8})
+    for (const bool is_big_endian : {false, true})
+      expect_read("a.msh", gmsh_v4_bytes(written_, size_bytes, is_big_endian), "gmsh:physical");
+}
+
+TEST_F(ReadMesh, GmshNodeTagsMayStartAnywhereAndHaveGaps) {
+  expect_read("a.msh", gmsh_v4_text(written_, 100, 1), "gmsh:physical");
+  expect_read("a.msh", gmsh_v4_text(written_, 5, 1000000007), "gmsh:physical");
+}
+
+TEST_F(ReadMesh, TetgenFromEitherFileAndEitherBase) {
+  for (const int base : {0, 1}) {
+    write_bytes(folder_ / "a.face", tetgen_faces(written_, base));
+    write_bytes(folder_ / "a.ele", tetgen_elements(written_, base));
+    for (const bool is_gzipped : {false, true}) {
+      const std::string nodes = tetgen_nodes(written_, base);
+      std::filesystem::remove(folder_ / "a.node");
+      write_bytes(folder_ / (is_gzipped ? "a.node.gz" : "a.node"), is_gzipped ? gzipped(nodes) : nodes);
+      for (const char* name : {"a.ele", is_gzipped ? "a.node.gz" : "a.node"}) {
+        const Mesh mesh = read_mesh(folder_ / name);
+        expect_same_cells(mesh, written_);
+        expect_same_facets(mesh, written_);
+        EXPECT_EQ(mesh.format.substr(0, 15), fmt::format("TetGen, {}-based", base));
+      }
+      std::filesystem::remove(folder_ / "a.node.gz");
+    }
+  }
+}
+
+TEST_F(ReadMesh, ExtensionsInCapitals) { expect_same_cells(read("A.VTU", vtu_text(written_, {})), written_); }
+
+// Whether coordinates and ids make sense is for the structure claim to say: readers pass them on.
+TEST_F(ReadMesh, CoordinatesThatAreNotFinite) {
+  const Mesh mesh = read("a.mesh",
+                         "MeshVersionFormatted 2 Dimension 3 Vertices 2 nan inf -inf 0 1e999 -1e-999 +2.5 0\n"
+                         "Tetrahedra 0 End");
+  ASSERT_EQ(mesh.vertices.size(), 2u);
+  const Point &a = mesh.vertices[0], &b = mesh.vertices[1];
+  EXPECT_TRUE(std::isnan(a[0]));
+  EXPECT_EQ(a[1], HUGE_VAL);
+  EXPECT_EQ(a[2], -HUGE_VAL);
+  EXPECT_EQ(b, (Point{HUGE_VAL, 0, 2.5}));
+}
+
+TEST_F(ReadMesh, IdsThatNameNoVertex) {
+  const std::string head = "MeshVersionFormatted 2 Dimension 3 Vertices 1 0 0 0 0 Tetrahedra 1 ";
+  const Mesh medit = read("a.mesh", head + "0 -5 9 9999999999 3 End");
+  EXPECT_EQ(medit.cells[0], (std::array<VertexId, 4>{kNone, kNone, 8, kNone}));
+
+  Mesh wrong = written_;
+  wrong.cells[1][2] = 600;
+  for (const char* type : {"Int32", "Int64", "UInt64"}) {
+    VtuOptions options;
+    options.id_type = type;
+    EXPECT_EQ(read("a.vtu", vtu_text(wrong, options)).cells, wrong.cells);
+  }
+  VtuOptions pieces;  // there 600 might be a vertex of another piece
+  pieces.num_pieces = 2;
+  EXPECT_EQ(read("a.vtu", vtu_text(wrong, pieces)).cells[1][2], kNone);
+  EXPECT_EQ(read("a.msh", gmsh_v4_text(wrong)).cells[1][2], kNone);  // a tag, not an id
+}
+
+TEST_F(ReadMesh, OtherCellsAreCountedAndQuadraticOnesReadByTheirCorners) {
+  const std::string vtk =
+      "# vtk DataFile Version 2.0\nt\nASCII\nDATASET UNSTRUCTURED_GRID\nPOINTS 10 float\n" +
+      std::string("0 0 0 1 0 0 0 1 0 0 0 1 0 0 0 0 0 0 0 0 0 0 0 0 0 0 0 0 0 0\n") +
+      "CELLS 5 34\n8 0 1 2 3 4 5 6 7\n10 3 2 1 0 4 5 6 7 8 9\n2 0 1\n4 0 1 2 3\n5 0 1 2 3 4\n"
+      "CELL_TYPES 5\n12 24 3 10 14\nCELL_DATA 5\nFIELD f 1\nMaterialID 1 5 float\n1 2 3 4 5\n";
+  const Mesh mesh = read("a.vtk", vtk);
+  EXPECT_EQ(mesh.cells, (std::vector<std::array<VertexId, 4>>{{3, 2, 1, 0}, {0, 1, 2, 3}}));
+  EXPECT_EQ(mesh.cell_labels, (std::vector<LabelValue>{2, 4}));
+  EXPECT_EQ(mesh.cell_label_array, "MaterialID");
+  EXPECT_EQ(
+      mesh.other_cells,
+      (std::map<std::string, std::size_t>{
+          {"hexahedra", 1}, {"lines", 1}, {"pyramids", 1}, {"quadratic tetrahedra (corners read)", 1}}));
+}
+
+TEST_F(ReadMesh, GmshElementsWithoutPhysicalGroupHaveTheirEntityAsLabel) {
+  const Mesh mesh = read("a.msh",
+                         "$MeshFormat\n2.2 0 8\n$EndMeshFormat\n$Other\nany $thing\n$EndOther\n"
+                         "$Nodes\n4\n1 0 0 0\n2 1 0 0\n3 0 1 0\n4 0 0 1\n$EndNodes\n"
+                         "$Elements\n2\n1 15 2 0 1 1\n2 4 3 0 12 99 1 2 3 4\n$EndElements\n");
+  EXPECT_EQ(mesh.cell_labels, (std::vector<LabelValue>{12}));
+  EXPECT_EQ(mesh.cell_label_array, "gmsh:geometrical");
+  EXPECT_EQ(mesh.other_cells, (std::map<std::string, std::size_t>{{"vertices", 1}}));
+}
+
+// An array of fractions is no label array whatever its name.
+TEST_F(ReadMesh, LabelsAreIntegers) {
+  std::string vtk = legacy_vtk_text(written_, false, false);
+  vtk.replace(vtk.find("label int"), 9, "material float");
+  EXPECT_EQ(read("a.vtk", vtk).cell_label_array, "material");
+  vtk.replace(vtk.rfind("7"), 1, "7.5");
+  const Mesh mesh = read("a.vtk", vtk);
+  EXPECT_EQ(mesh.cell_label_array, "");
+  EXPECT_TRUE(mesh.cell_labels.empty());
+  EXPECT_EQ(mesh.cells, written_.cells);
+}
+
+}  // namespace
+}  // namespace podm::verify
