@@ -17,21 +17,22 @@ constexpr int kZlibOrGzip = 32 + MAX_WBITS;
 
 }  // namespace
 
-std::uint64_t file_bytes(const std::string& path) {
+std::uint64_t file_bytes(const std::string& path, const std::string& file) {
   std::error_code error;
-  const auto status = std::filesystem::status(path, error);
-  if (!std::filesystem::exists(status)) refuse(path, "no such file");
-  if (!std::filesystem::is_regular_file(status)) refuse(path, "not a regular file");
-  const std::uint64_t bytes = std::filesystem::file_size(path, error);
-  if (error) refuse(path, "cannot be opened (" + error.message() + ")");
-  if (bytes == 0) refuse(path, "the file is empty");
+  const std::string name = file == path ? "" : "'" + file + "': ";
+  const auto status = std::filesystem::status(file, error);
+  if (!std::filesystem::exists(status)) refuse(path, name + "no such file");
+  if (!std::filesystem::is_regular_file(status)) refuse(path, name + "not a regular file");
+  const std::uint64_t bytes = std::filesystem::file_size(file, error);
+  if (error) refuse(path, name + "cannot be opened (" + error.message() + ")");
+  if (bytes == 0) refuse(path, name + "the file is empty");
   return bytes;
 }
 
 ByteSource::ByteSource(const std::string& path, const std::string& file, std::uint64_t offset,
                        Compression compression)
     : path_(path), file_(file, std::ios::binary) {
-  const std::uint64_t bytes = file_bytes(file);
+  const std::uint64_t bytes = file_bytes(path, file);
   if (!file_) refuse(path, "cannot be opened for reading");
   const auto start = static_cast<std::streamoff>(std::min(offset, bytes));
   file_.seekg(start);

@@ -49,7 +49,7 @@ class ByteSource {
   bool is_finished_ = false;  // the stream has met its end
 };
 
-/// Bytes of a regular file. Throws InputError naming `path`: missing, not a file, empty.
-std::uint64_t file_bytes(const std::string& path);
+/// Bytes of the regular file `file`, part of the image `path`. Throws InputError: missing, not a file, empty.
+std::uint64_t file_bytes(const std::string& path, const std::string& file);
 
 }  // namespace podm::verify

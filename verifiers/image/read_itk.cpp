@@ -29,7 +29,7 @@ class TextHeader {
  public:
   TextHeader(const std::string& path, char separator, const std::string& last) {
     constexpr std::uint64_t kLongest = 1 << 20;
-    file_bytes(path);
+    file_bytes(path, path);
     std::ifstream file(path, std::ios::binary);
     for (std::string line, key = "-"; key != last && std::getline(file, line);) {
       bytes_ += line.size() + 1;
@@ -66,12 +66,14 @@ struct Voxels {
 };
 
 // As ITK takes it.
-bool is_true(const std::string& flag) { return !flag.empty() && std::string("tT1").find(flag[0]) != std::string::npos; }
+bool is_true(const std::string& flag) {
+  return !flag.empty() && std::string("tT1").find(flag[0]) != std::string::npos;
+}
 
 Voxels nrrd_voxels(const std::string& path) {
   std::array<char, 4> magic{};
   std::ifstream(path, std::ios::binary).read(magic.data(), magic.size());
-  file_bytes(path);
+  file_bytes(path, path);
   if (std::string(magic.data(), magic.size()) != "NRRD") refuse(path, "not a NRRD file (wrong magic)");
   const TextHeader header(path, ':', "");
   for (const char* key : {"line skip", "lineskip", "byte skip", "byteskip"})
@@ -93,7 +95,8 @@ Voxels meta_voxels(const std::string& path) {
   if (header["ndims"] != "3") refuse(path, "a 3-D image is needed (NDims = " + header["ndims"] + ")");
   if (!header["headersize"].empty() && header["headersize"] != "0")
     refuse(path, "'HeaderSize' is not supported");
-  if (!header["binarydata"].empty() && !is_true(header["binarydata"])) refuse(path, "voxels written as text are not supported");
+  if (!header["binarydata"].empty() && !is_true(header["binarydata"]))
+    refuse(path, "voxels written as text are not supported");
   for (const char* key : {"dimsize", "elementtype"})  // ITK prints what it misses
     if (header[key].empty()) refuse(path, std::string("the MetaImage header has no '") + key + "'");
   const bool is_compressed = is_true(header["compresseddata"]);

@@ -129,6 +129,18 @@ std::vector<BadFile> bad_files() {
 INSTANTIATE_TEST_SUITE_P(All, RefuseVerifierImage, testing::ValuesIn(bad_files()),
                          [](const auto& param_info) { return param_info.param.fault; });
 
+TEST(RefuseVerifierImage, AnEmptyFileOfVoxelsIsAFaultOfTheImage) {
+  const Folder folder;
+  folder.write("a.raw", "");
+  const std::string path = folder.write("a.mhd", kMetaHeader + "ElementDataFile = a.raw\n");
+  try {
+    read_image(path);
+    FAIL() << "was read";
+  } catch (const InputError& error) {
+    EXPECT_TRUE(std::string(error.what()).starts_with(path + ": '")) << error.what();
+  }
+}
+
 TEST(RefuseVerifierImage, MissingFileAndFolder) {
   const Folder folder;
   EXPECT_THROW(read_image("no/such/file.nii"), InputError);
