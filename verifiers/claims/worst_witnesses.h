@@ -23,7 +23,6 @@ class WorstWitnesses {
   void add(const WorstWitnesses& other) {
     for (const Witness& witness : other.kept_) add(witness);
   }
-  bool empty() const { return kept_.empty(); }
   const std::vector<Witness>& worst_first() const { return kept_; }
 
  private:
