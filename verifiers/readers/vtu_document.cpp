@@ -142,7 +142,8 @@ class VtuParser {
 
   // The list that an array of the current section belongs to; null where no array of that name is needed.
   std::vector<VtuArray>* list_of(const std::string& name) {
-    const std::string_view section = elements_.size() > 1 ? elements_[elements_.size() - 2] : "";
+    if (elements_.size() < 2) return nullptr;
+    const std::string& section = elements_[elements_.size() - 2];
     if (section == "FieldData")
       return name.starts_with("space:") || name.starts_with("label:") ? &document_.field_data : nullptr;
     if (document_.pieces.empty()) return nullptr;

@@ -1,0 +1,9 @@
+// Legacy VTK files.
+#include "readers/fuzz/fuzz_mesh_file.h"
+
+extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
+  const std::string_view bytes = podm::verify::text_of(data, size);
+  podm::verify::write_fuzz_file("a.vtk", bytes);
+  podm::verify::read_fuzz_file("a.vtk", size);
+  return 0;
+}
