@@ -16,11 +16,11 @@ std::string to_string(Verdict verdict);  ///< "pass", "fail", "not_run"
 
 /// One place where a claim does not hold, or comes closest to not holding.
 struct Witness {
-  std::string statement;           ///< which of the claim's statements it breaks: "no duplicate cells"
-  std::vector<CellId> cells;       ///< 0-based
-  std::vector<VertexId> vertices;  ///< 0-based
-  std::vector<Point> points;       ///< where to look
-  double value = 0;                ///< the measured quantity; larger `severity` is worse
+  std::string statement{};           ///< which of the claim's statements it breaks: "no duplicate cells"
+  std::vector<CellId> cells{};       ///< 0-based
+  std::vector<VertexId> vertices{};  ///< 0-based
+  std::vector<Point> points{};       ///< where to look
+  double value = 0;                  ///< the measured quantity; larger `severity` is worse
   double severity = 0;
   LabelValue label = 0;
 };

@@ -17,8 +17,8 @@ struct Options {
   std::vector<std::string> claims;  ///< names asked for; empty: all
   double radius_edge_bound = 1.93;
   double angle_bound_deg = 30;
-  std::optional<double> radius_mm;          ///< circumradius bound r_t of every label not in `radius_of`
-  std::map<LabelValue, double> radius_of;   ///< label -> mm
+  std::optional<double> radius_mm;         ///< circumradius bound r_t of every label not in `radius_of`
+  std::map<LabelValue, double> radius_of;  ///< label -> mm
   /// Fidelity: 95 % of either surface lies within this many voxels of the other, and all of the mesh's within
   /// sqrt(3) times as many of the image's.
   double fidelity_bound_voxels = 1;

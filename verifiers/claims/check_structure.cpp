@@ -1,0 +1,196 @@
+// Claim structure.
+//   Statements  there are cells; their vertex ids are in range and coordinates finite; every cell is
+//   positively
+//               oriented; no two cells have the same vertices; no two vertices the same coordinates; every
+//               facet belongs to at most two cells, on opposite sides of it; no two cells overlap; no vertex
+//               hangs on a facet or edge. Warning: vertices that no cell uses.
+//   Rests on    exact orientation signs; what the overlap test rests on is said in check_structure_overlap.h.
+//   A mesh
+//               whose cells are all negative is told apart: it is sound but left-handed, and the other
+//               statements are judged for its mirror image.
+//   Cost        about linear.
+//   Not proved  that the surface is a manifold (claim surface) or the shape right (claims labels, fidelity).
+#include <fmt/format.h>
+
+#include <cmath>
+
+#include "claims/check_structure_overlap.h"
+#include "claims/claims.h"
+#include "geometry/measures.h"
+
+namespace podm::verify {
+
+namespace {
+
+Tally check_references(const Mesh& mesh, int threads) {
+  Tally tally = tally_over(mesh.cells.size(), threads, {}, [&](std::size_t c, Tally& t) {
+    ++t.num_checked;
+    for (const VertexId v : mesh.cells[c]) {
+      if (v < mesh.vertices.size()) continue;
+      t.violation(
+          {.statement = "vertex ids are in range", .cells = {static_cast<CellId>(c)}, .vertices = {v}});
+      return;
+    }
+  });
+  tally.add(tally_over(mesh.vertices.size(), threads, {}, [&](std::size_t v, Tally& t) {
+    const Point& p = mesh.vertices[v];
+    ++t.num_checked;
+    if (std::isfinite(p[0]) && std::isfinite(p[1]) && std::isfinite(p[2])) return;
+    t.violation({.statement = "coordinates are finite", .vertices = {static_cast<VertexId>(v)}});
+  }));
+  if (mesh.cells.empty()) tally.violation({.statement = "there are cells"});
+  return tally;
+}
+
+struct Orientations {
+  std::uint64_t positive = 0, negative = 0, flat = 0;
+  std::vector<std::int8_t> of_cell;
+  bool is_left_handed() const { return positive == 0 && negative > 0; }
+};
+
+Orientations find_orientations(const Mesh& mesh, int threads) {
+  Orientations all;
+  all.of_cell.resize(mesh.cells.size());
+  parallel_ranges(mesh.cells.size(), threads, [&](std::size_t begin, std::size_t end, std::size_t) {
+    for (std::size_t c = begin; c < end; ++c) {
+      const CellPoints p = points_of(mesh, static_cast<CellId>(c));
+      all.of_cell[c] = static_cast<std::int8_t>(orientation(p[0], p[1], p[2], p[3]));
+    }
+  });
+  for (const std::int8_t sign : all.of_cell) ++(sign > 0 ? all.positive : sign < 0 ? all.negative : all.flat);
+  return all;
+}
+
+Tally check_orientations(const Mesh& mesh, const Orientations& orientations, int threads) {
+  return tally_over(mesh.cells.size(), threads, {}, [&](std::size_t i, Tally& t) {
+    const auto c = static_cast<CellId>(i);
+    ++t.num_checked;
+    if (orientations.of_cell[c] > 0) return;
+    const CellPoints p = points_of(mesh, c);
+    t.violation(
+        {.statement = orientations.of_cell[c] == 0 ? "no cell is flat" : "cells are positively oriented",
+         .cells = {c},
+         .vertices = {mesh.cells[c].begin(), mesh.cells[c].end()},
+         .points = {p.begin(), p.end()}});
+  });
+}
+
+VertexId far_vertex(const Mesh& mesh, FacetId f) { return mesh.cells[f / 4][f % 4]; }
+
+// Two cells at a facet: different ones, and on opposite sides. Cells of equal orientation are, when they see
+// the facet's vertices turn in opposite senses.
+void check_pair(const Mesh& mesh, const Orientations& orientations, FacetId f, FacetId mirror, Tally& t) {
+  const auto vertices_of = [&](FacetId g) {
+    std::array<VertexId, 3> v{};
+    for (std::size_t k = 0; k < 3; ++k)
+      v[k] = mesh.cells[g / 4][static_cast<std::size_t>(kFacetVertices[g % 4][k])];
+    return v;
+  };
+  const auto a = vertices_of(f), b = vertices_of(mirror);
+  const auto at = static_cast<std::size_t>(std::find(b.begin(), b.end(), a[0]) - b.begin());
+  const bool is_same_turn = b[(at + 1) % 3] == a[1];
+  const bool is_same_sign = orientations.of_cell[f / 4] == orientations.of_cell[mirror / 4];
+  ++t.num_checked;
+  if (is_same_turn != is_same_sign) return;
+  const bool is_duplicate = far_vertex(mesh, f) == far_vertex(mesh, mirror);
+  t.violation({.statement = is_duplicate ? "no two cells have the same vertices"
+                                         : "the two cells of a facet are on opposite sides",
+               .cells = {f / 4, mirror / 4},
+               .vertices = {a.begin(), a.end()},
+               .points = {mesh.vertices[a[0]], mesh.vertices[a[1]], mesh.vertices[a[2]]}});
+}
+
+Tally check_facets(const Mesh& mesh, const Adjacency& adjacency, const Orientations& orientations,
+                   int threads) {
+  Tally tally = tally_over(adjacency.mirror.size(), threads, {}, [&](std::size_t f, Tally& t) {
+    const FacetId mirror = adjacency.mirror[f];
+    if (mirror == kNone || mirror < f) return;
+    check_pair(mesh, orientations, static_cast<FacetId>(f), mirror, t);
+  });
+  for (const auto& group : adjacency.crowded) {
+    Witness witness{.statement = "a facet has at most two cells", .value = static_cast<double>(group.size())};
+    witness.severity = witness.value;
+    for (const FacetId f : group) witness.cells.push_back(f / 4);
+    for (const int k : kFacetVertices[group[0] % 4])
+      witness.vertices.push_back(mesh.cells[group[0] / 4][static_cast<std::size_t>(k)]);
+    for (const VertexId v : witness.vertices) witness.points.push_back(mesh.vertices[v]);
+    tally.violation(std::move(witness));
+  }
+  return tally;
+}
+
+Tally check_coincident_vertices(const Mesh& mesh) {
+  std::vector<VertexId> order(mesh.vertices.size());
+  for (VertexId v = 0; v < order.size(); ++v) order[v] = v;
+  std::sort(order.begin(), order.end(), [&](VertexId a, VertexId b) {
+    return std::tie(mesh.vertices[a], a) < std::tie(mesh.vertices[b], b);  // -0 equals 0
+  });
+  Tally tally;
+  for (std::size_t i = 0; i + 1 < order.size(); ++i) {
+    ++tally.num_checked;
+    if (mesh.vertices[order[i]] != mesh.vertices[order[i + 1]]) continue;
+    tally.violation({.statement = "no two vertices have the same coordinates",
+                     .vertices = {order[i], order[i + 1]},
+                     .points = {mesh.vertices[order[i]]}});
+  }
+  return tally;
+}
+
+std::uint64_t count_orphans(const Mesh& mesh) {
+  std::vector<std::uint8_t> used(mesh.vertices.size(), 0);
+  for (const auto& cell : mesh.cells)
+    for (const VertexId v : cell) used[v] = 1;
+  return static_cast<std::uint64_t>(std::count(used.begin(), used.end(), 0));
+}
+
+std::string sentence(const ClaimResult& result, const Mesh& mesh, bool is_left_handed) {
+  if (result.num_violations == 0)
+    return fmt::format("{} cells, {} vertices, all sound; {} vertices unused", mesh.cells.size(),
+                       mesh.vertices.size(), result.num_warnings);
+  if (is_left_handed && result.num_violations == mesh.cells.size())
+    return "all cells are negatively oriented: the mesh is sound but left-handed";
+  return fmt::format("{} violations, first: not so that {}", result.num_violations,
+                     result.worst[0].statement);
+}
+
+}  // namespace
+
+ClaimResult check_structure(const Mesh& mesh, const Adjacency& adjacency, const Options& options) {
+  Tally tally = check_references(mesh, options.threads);
+  const bool can_go_on = tally.num_violations == 0;
+  bool is_left_handed = false;
+  std::uint64_t num_orphans = 0;
+  nlohmann::json details = nlohmann::json::object();
+  if (can_go_on) {
+    const Orientations orientations = find_orientations(mesh, options.threads);
+    is_left_handed = orientations.is_left_handed();
+    details = {{"positive_cells", orientations.positive},
+               {"negative_cells", orientations.negative},
+               {"flat_cells", orientations.flat},
+               {"is_left_handed", is_left_handed}};
+    const bool is_consistent = orientations.flat == 0 && (is_left_handed || orientations.negative == 0);
+    const auto add = [&](const char* name, const Tally& part) {
+      details["violations"][name] = part.num_violations;
+      tally.add(part);
+    };
+    add("orientation", check_orientations(mesh, orientations, options.threads));
+    add("facets", check_facets(mesh, adjacency, orientations, options.threads));
+    add("coincident_vertices", check_coincident_vertices(mesh));
+    if (is_consistent) {
+      add("overlap", check_overlap(mesh, adjacency, is_left_handed, options.threads));
+      add("hanging_vertices", check_hanging_vertices(mesh, adjacency, options.threads));
+    } else {
+      details["overlap"] = "not judged: cells are inverted or flat";
+    }
+    num_orphans = count_orphans(mesh);
+  }
+  ClaimResult result = result_of("structure", tally);
+  result.method = "combinatorial, exact orientations and separating planes";
+  result.num_warnings = num_orphans;
+  result.details = std::move(details);
+  result.details["orphan_vertices"] = num_orphans;
+  result.reason = sentence(result, mesh, is_left_handed);
+  return result;
+}
+
+}  // namespace podm::verify

@@ -1,0 +1,98 @@
+// What the threads of a check count, each for its own range; added up in the order of ranges.
+#pragma once
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <utility>
+#include <vector>
+
+#include "claim.h"
+#include "claims/worst_witnesses.h"
+#include "parallel.h"
+
+namespace podm::verify {
+
+/// A histogram being filled.
+class Bins {
+ public:
+  Bins(std::string name, std::string unit, double low, double high, std::size_t num_bins) {
+    histogram_.name = std::move(name);
+    histogram_.unit = std::move(unit);
+    histogram_.low = low;
+    histogram_.high = high;
+    histogram_.counts.assign(num_bins, 0);
+    histogram_.minimum = std::numeric_limits<double>::infinity();
+    histogram_.maximum = -std::numeric_limits<double>::infinity();
+  }
+  void add(double value) {
+    histogram_.minimum = std::min(histogram_.minimum, value);
+    histogram_.maximum = std::max(histogram_.maximum, value);
+    const double last = static_cast<double>(histogram_.counts.size()) - 1;
+    const double bin = (value - histogram_.low) / (histogram_.high - histogram_.low) * (last + 1);
+    ++histogram_.counts[bin >= 0 ? static_cast<std::size_t>(std::min(bin, last)) : 0];
+  }
+  void add(const Bins& other) {
+    histogram_.minimum = std::min(histogram_.minimum, other.histogram_.minimum);
+    histogram_.maximum = std::max(histogram_.maximum, other.histogram_.maximum);
+    for (std::size_t b = 0; b < histogram_.counts.size(); ++b)
+      histogram_.counts[b] += other.histogram_.counts[b];
+  }
+  const Histogram& histogram() const { return histogram_; }
+
+ private:
+  Histogram histogram_;
+};
+
+struct Tally {
+  std::uint64_t num_checked = 0, num_exact = 0, num_violations = 0, num_ties = 0;
+  WorstWitnesses worst;
+  std::vector<CellId> bad_cells;
+  std::vector<Bins> bins;
+
+  void violation(Witness witness) {
+    ++num_violations;
+    bad_cells.insert(bad_cells.end(), witness.cells.begin(), witness.cells.end());
+    if (worst.wants(witness.severity)) worst.add(std::move(witness));
+  }
+  void add(const Tally& other) {
+    num_checked += other.num_checked;
+    num_exact += other.num_exact;
+    num_violations += other.num_violations;
+    num_ties += other.num_ties;
+    worst.add(other.worst);
+    bad_cells.insert(bad_cells.end(), other.bad_cells.begin(), other.bad_cells.end());
+    for (std::size_t b = 0; b < bins.size(); ++b) bins[b].add(other.bins[b]);
+  }
+};
+
+/// Calls body(i, tally) for every i in [0, count), on several threads; each begins with a copy of `empty`.
+template <class Body>
+Tally tally_over(std::size_t count, int threads, const Tally& empty, const Body& body) {
+  std::vector<Tally> parts(static_cast<std::size_t>(std::max(threads, 1)), empty);
+  parallel_ranges(count, threads, [&](std::size_t begin, std::size_t end, std::size_t thread) {
+    for (std::size_t i = begin; i < end; ++i) body(i, parts[thread]);
+  });
+  Tally sum = empty;
+  for (const Tally& part : parts) sum.add(part);
+  return sum;
+}
+
+/// A claim's result but for method, reason and details.
+inline ClaimResult result_of(const std::string& claim, const Tally& tally) {
+  ClaimResult result;
+  result.claim = claim;
+  result.verdict = tally.num_violations == 0 ? Verdict::kPass : Verdict::kFail;
+  result.num_checked = tally.num_checked;
+  result.num_exact = tally.num_exact;
+  result.num_violations = tally.num_violations;
+  result.worst = tally.worst.worst_first();
+  result.bad_cells = tally.bad_cells;
+  std::sort(result.bad_cells.begin(), result.bad_cells.end());
+  result.bad_cells.erase(std::unique(result.bad_cells.begin(), result.bad_cells.end()),
+                         result.bad_cells.end());
+  for (const Bins& bins : tally.bins) result.histograms.push_back(bins.histogram());
+  return result;
+}
+
+}  // namespace podm::verify

@@ -1,0 +1,132 @@
+// podm-verify: proves or refutes claims about a tetrahedral mesh file.
+#include <fmt/format.h>
+#include <unistd.h>
+
+#include <CLI/CLI.hpp>
+#include <cstdio>
+#include <exception>
+#include <new>
+
+#include "errors.h"
+#include "parallel.h"
+#include "report/reports.h"
+#include "run_claims.h"
+
+namespace podm::verify {
+namespace {
+
+constexpr int kSuccess = 0, kClaimNotMet = 1, kBadInput = 2, kInternal = 3;
+
+struct Command {
+  Options options;
+  std::vector<std::string> radius_of;
+  std::string claims, space;
+  bool quiet = false;
+};
+
+void declare_options(CLI::App& app, Command& command) {
+  Options& options = command.options;
+  app.add_option("MESH", options.mesh_path, "VTU, legacy VTK, Medit, Gmsh 2.2 or 4.1, TetGen; also .gz")
+      ->required();
+  app.add_option("--image", options.image_path,
+                 "the segmented image, for the claims labels, surface and fidelity");
+  app.add_option("--schedule", options.schedule_path,
+                 "leaf grid and schedule of a run, for the claim conformity");
+  app.add_option("--claims", command.claims,
+                 "claims to check, e.g. structure,delaunay [default: all whose inputs are given]");
+  app.add_option("--radius-edge", options.radius_edge_bound, "bound of the radius-edge ratio")
+      ->check(CLI::PositiveNumber)
+      ->capture_default_str();
+  app.add_option("--angle", options.angle_bound_deg, "bound of the angles of boundary facets, degrees")
+      ->check(CLI::Range(0.0, 60.0))
+      ->capture_default_str();
+  app.add_option("--radius", options.radius_mm, "bound of the circumradius, mm [default: none]")
+      ->check(CLI::PositiveNumber);
+  app.add_option("--radius-of", command.radius_of, "LABEL=MM, the same for one label value; repeatable");
+  app.add_option("--fidelity-voxels", options.fidelity_bound_voxels, "bound of the claim fidelity, voxels")
+      ->check(CLI::PositiveNumber)
+      ->capture_default_str();
+  app.add_option("--space", command.space, "RAS, LPS or voxel [default: what the mesh file says]")
+      ->check(CLI::IsMember({"RAS", "LPS", "voxel"}));
+  app.add_option("--threads", options.threads, "[default: all cores]")->check(CLI::Range(1, 4096));
+  app.add_option("--json", options.json_path, "write the report as JSON to this file, - for standard output");
+  app.add_option("--extract-bad", options.extract_bad_path, "write the cells in violation to this .vtu file");
+  app.add_flag("--quiet", command.quiet, "no report for people");
+  app.set_version_flag("--version", "podm-verify " PODM_VERSION);
+  app.footer(
+      "Exit codes: 0 all claims pass, 1 some fail or could not be decided, 2 bad usage or input, 3 "
+      "internal.");
+}
+
+void finish_options(Command& command) {
+  Options& options = command.options;
+  options.threads = num_threads(options.threads);
+  options.claims = CLI::detail::split(command.claims, ',');
+  std::erase(options.claims, std::string());
+  if (command.space == "RAS") options.space = Space::kRas;
+  if (command.space == "LPS") options.space = Space::kLps;
+  if (command.space == "voxel") options.space = Space::kVoxel;
+  for (const std::string& text : command.radius_of) {
+    const std::size_t equals = text.find('=');
+    LabelValue label = 0;
+    double radius = 0;
+    if (equals == std::string::npos || !CLI::detail::lexical_cast(text.substr(0, equals), label) ||
+        !CLI::detail::lexical_cast(text.substr(equals + 1), radius) || !(radius > 0))
+      throw InputError(fmt::format("--radius-of: '{}' is not LABEL=MM, as in 7=0.5", text));
+    options.radius_of[label] = radius;
+  }
+  const std::string& bad = options.extract_bad_path;
+  if (!bad.empty() && !bad.ends_with(".vtu"))
+    throw InputError(fmt::format("--extract-bad: '{}' does not end in .vtu", bad));
+}
+
+int verify(const Command& command) {
+  const Options& options = command.options;
+  const std::vector<std::string> claims = chosen_claims(options);
+  const Inputs inputs = read_inputs(options);
+  const bool shows_progress = !command.quiet && isatty(STDERR_FILENO) != 0;
+  const std::vector<ClaimResult> results = run_claims(inputs, options, claims, [&](const std::string& claim) {
+    if (shows_progress) fmt::print(stderr, "checking {} ...\r", claim);
+  });
+  if (!command.quiet)
+    fmt::print(options.json_path == "-" ? stderr : stdout, "{}", terminal_report(inputs, options, results));
+  if (!options.json_path.empty())
+    write_text(options.json_path, json_report(inputs, options, results).dump(1) + "\n");
+  if (!options.extract_bad_path.empty()) write_bad_cells(options.extract_bad_path, inputs.mesh, results);
+  const auto passes = [](const ClaimResult& result) { return result.verdict == Verdict::kPass; };
+  return std::all_of(results.begin(), results.end(), passes) ? kSuccess : kClaimNotMet;
+}
+
+int main_or_throw(int argc, char** argv) {
+  CLI::App app("Proves or refutes claims about a tetrahedral mesh file, exactly.", "podm-verify");
+  Command command;
+  declare_options(app, command);
+  try {
+    app.parse(argc, argv);
+  } catch (const CLI::ParseError& error) {
+    return app.exit(error) == 0 ? kSuccess : kBadInput;
+  }
+  finish_options(command);
+  return verify(command);
+}
+
+int complain(const std::string& fault, int exit_code) {
+  fmt::print(stderr, "podm-verify: {}\n", fault);
+  return exit_code;
+}
+
+}  // namespace
+}  // namespace podm::verify
+
+int main(int argc, char** argv) {
+  using namespace podm::verify;
+  try {
+    return main_or_throw(argc, argv);
+  } catch (const InputError& error) {
+    return complain(error.what(), kBadInput);
+  } catch (const std::bad_alloc&) {
+    return complain("out of memory", kInternal);
+  } catch (const std::exception& error) {
+    return complain(std::string("internal error: ") + error.what(), kInternal);
+  }
+}

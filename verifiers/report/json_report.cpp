@@ -1,0 +1,116 @@
+#include <openssl/evp.h>
+#include <sys/resource.h>
+
+#include <cmath>
+#include <fstream>
+#include <memory>
+
+#include "errors.h"
+#include "report/reports.h"
+
+namespace podm::verify {
+
+namespace {
+
+using Json = nlohmann::json;
+
+std::string sha256_of(const std::string& path) {
+  std::ifstream file(path, std::ios::binary);
+  const std::unique_ptr<EVP_MD_CTX, void (*)(EVP_MD_CTX*)> context(EVP_MD_CTX_new(), EVP_MD_CTX_free);
+  EVP_DigestInit_ex(context.get(), EVP_sha256(), nullptr);
+  std::vector<char> block(1 << 20);
+  while (file.read(block.data(), static_cast<std::streamsize>(block.size())) || file.gcount() > 0)
+    EVP_DigestUpdate(context.get(), block.data(), static_cast<std::size_t>(file.gcount()));
+  if (!file.eof()) throw InputError(path + ": cannot be read again for its hash");
+  std::array<unsigned char, EVP_MAX_MD_SIZE> digest;
+  unsigned length = 0;
+  EVP_DigestFinal_ex(context.get(), digest.data(), &length);
+  std::string text;
+  for (unsigned i = 0; i < length; ++i) {
+    text += "0123456789abcdef"[digest[i] >> 4];
+    text += "0123456789abcdef"[digest[i] & 15];
+  }
+  return text;
+}
+
+Json finite(double x) { return std::isfinite(x) ? Json(x) : Json(nullptr); }
+
+Json file_of(const std::string& path) {
+  return path.empty() ? Json(nullptr) : Json{{"path", path}, {"sha256", sha256_of(path)}};
+}
+
+Json witness_of(const Witness& witness) {
+  Json points = Json::array();
+  for (const Point& p : witness.points) points.push_back({finite(p[0]), finite(p[1]), finite(p[2])});
+  return {{"statement", witness.statement}, {"cells", witness.cells},
+          {"vertices", witness.vertices},   {"points", points},
+          {"value", finite(witness.value)}, {"label", witness.label}};
+}
+
+Json histogram_of(const Histogram& histogram) {
+  return {{"name", histogram.name},
+          {"unit", histogram.unit},
+          {"low", histogram.low},
+          {"high", histogram.high},
+          {"minimum", finite(histogram.minimum)},
+          {"maximum", finite(histogram.maximum)},
+          {"counts", histogram.counts}};
+}
+
+Json claim_of(const ClaimResult& result) {
+  Json worst = Json::array(), histograms = Json::array();
+  for (const Witness& witness : result.worst) worst.push_back(witness_of(witness));
+  for (const Histogram& histogram : result.histograms) histograms.push_back(histogram_of(histogram));
+  return {{"verdict", to_string(result.verdict)},
+          {"reason", result.reason},
+          {"method", result.method},
+          {"num_checked", result.num_checked},
+          {"num_exact", result.num_exact},
+          {"num_violations", result.num_violations},
+          {"num_warnings", result.num_warnings},
+          {"worst", worst},
+          {"histograms", histograms},
+          {"details", result.details},
+          {"seconds", result.seconds}};
+}
+
+Json options_of(const Options& options) {
+  Json radius_of = Json::object();
+  for (const auto& [label, radius] : options.radius_of) radius_of[std::to_string(label)] = radius;
+  return {{"radius_edge_bound", options.radius_edge_bound},
+          {"angle_bound_deg", options.angle_bound_deg},
+          {"radius_mm", options.radius_mm ? Json(*options.radius_mm) : Json(nullptr)},
+          {"radius_of_mm", radius_of},
+          {"fidelity_bound_voxels", options.fidelity_bound_voxels},
+          {"threads", options.threads}};
+}
+
+std::uint64_t peak_resident_bytes() {
+  rusage usage{};
+  getrusage(RUSAGE_SELF, &usage);
+  return static_cast<std::uint64_t>(usage.ru_maxrss) * 1024;
+}
+
+}  // namespace
+
+Json json_report(const Inputs& inputs, const Options& options, const std::vector<ClaimResult>& results) {
+  const Mesh& mesh = inputs.mesh;
+  Json claims = Json::object();
+  for (const ClaimResult& result : results) claims[result.claim] = claim_of(result);
+  Json mesh_json = file_of(mesh.path);
+  mesh_json["format"] = mesh.format;
+  mesh_json["cells"] = mesh.cells.size();
+  mesh_json["vertices"] = mesh.vertices.size();
+  mesh_json["cell_label_array"] = mesh.cell_label_array;
+  mesh_json["other_cells"] = mesh.other_cells;
+  return {{"schema", "podm-verify/1"},
+          {"program", "podm-verify " PODM_VERSION},
+          {"mesh", mesh_json},
+          {"image", file_of(options.image_path)},
+          {"schedule", file_of(options.schedule_path)},
+          {"options", options_of(options)},
+          {"claims", claims},
+          {"peak_rss_bytes", peak_resident_bytes()}};
+}
+
+}  // namespace podm::verify

@@ -1,0 +1,29 @@
+// What a run of the verifier tells: lines for people, JSON for programs, the offending cells for a viewer.
+#pragma once
+
+#include <cstdint>
+#include <nlohmann/json.hpp>
+#include <string>
+#include <vector>
+
+#include "run_claims.h"
+
+namespace podm::verify {
+
+/// A line a claim, with the worst witness of those that fail, and a summary.
+std::string terminal_report(const Inputs& inputs, const Options& options,
+                            const std::vector<ClaimResult>& results);
+
+/// Schema podm-verify/1 (results/schema/podm-verify.schema.json). Numbers that are not finite are null.
+nlohmann::json json_report(const Inputs& inputs, const Options& options,
+                           const std::vector<ClaimResult>& results);
+
+/// Writes the cells that violate some claim as VTU, appended raw, with the cell arrays `cell` (position in
+/// the mesh file), `label` and one of 0 and 1 for each claim that fails. The file appears whole or not at
+/// all. Throws InputError.
+void write_bad_cells(const std::string& path, const Mesh& mesh, const std::vector<ClaimResult>& results);
+
+/// Writes `text` to a file, whole or not at all, or to standard output for "-". Throws InputError.
+void write_text(const std::string& path, const std::string& text);
+
+}  // namespace podm::verify

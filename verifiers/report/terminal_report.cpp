@@ -1,0 +1,51 @@
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include "report/reports.h"
+
+namespace podm::verify {
+
+namespace {
+
+std::string witness_text(const Witness& witness) {
+  std::string text = fmt::format("      not so that {}", witness.statement);
+  if (!witness.cells.empty()) text += fmt::format("; cell {}", fmt::join(witness.cells, ", "));
+  if (!witness.vertices.empty()) text += fmt::format("; vertices {}", fmt::join(witness.vertices, ", "));
+  if (witness.value != 0) text += fmt::format("; value {:.9g}", witness.value);
+  if (!witness.points.empty()) text += fmt::format("; at ({:.9g})", fmt::join(witness.points[0], ", "));
+  return text + "\n";
+}
+
+std::string left_out(const Options& options, const std::vector<ClaimResult>& results) {
+  if (!options.claims.empty()) return "";
+  std::vector<std::string> names;
+  for (const ClaimName& claim : all_claims()) {
+    const auto is_run = [&](const ClaimResult& result) { return result.claim == claim.name; };
+    if (std::none_of(results.begin(), results.end(), is_run))
+      names.push_back(std::string(claim.name) +
+                      (claim.needs == Needs::kImage ? " (needs --image)" : " (needs --radius)"));
+  }
+  return names.empty() ? "" : fmt::format("left out: {}\n", fmt::join(names, ", "));
+}
+
+}  // namespace
+
+std::string terminal_report(const Inputs& inputs, const Options& options,
+                            const std::vector<ClaimResult>& results) {
+  const Mesh& mesh = inputs.mesh;
+  std::string text = fmt::format("{}: {}; {} tetrahedra, {} vertices\n", mesh.path, mesh.format,
+                                 mesh.cells.size(), mesh.vertices.size());
+  for (const auto& [name, count] : mesh.other_cells)
+    text += fmt::format("  also holds {} {}, not checked\n", count, name);
+  std::size_t num_passed = 0;
+  for (const ClaimResult& result : results) {
+    num_passed += result.verdict == Verdict::kPass;
+    text += fmt::format("{:>7}  {:<16} {} ({:.2f} s)\n", to_string(result.verdict), result.claim,
+                        result.reason, result.seconds);
+    if (result.verdict == Verdict::kFail && !result.worst.empty()) text += witness_text(result.worst[0]);
+  }
+  return text + left_out(options, results) +
+         fmt::format("{} of {} claims pass\n", num_passed, results.size());
+}
+
+}  // namespace podm::verify

@@ -1,0 +1,119 @@
+#include "run_claims.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <chrono>
+#include <cmath>
+
+#include "claims/claims.h"
+#include "errors.h"
+#include "readers/read_mesh.h"
+
+namespace podm::verify {
+
+namespace {
+
+bool is_given(Needs needs, const Options& options) {
+  switch (needs) {
+    case Needs::kNothing:
+      return true;
+    case Needs::kImage:
+      return !options.image_path.empty();
+    case Needs::kBound:
+      return options.radius_mm || !options.radius_of.empty();
+  }
+  return false;
+}
+
+// What all claims but structure rest on.
+bool has_sound_references(const Mesh& mesh) {
+  const auto is_finite = [](const Point& p) {
+    return std::isfinite(p[0]) && std::isfinite(p[1]) && std::isfinite(p[2]);
+  };
+  const auto is_in_range = [&](const std::array<VertexId, 4>& cell) {
+    return std::all_of(cell.begin(), cell.end(), [&](VertexId v) { return v < mesh.vertices.size(); });
+  };
+  return !mesh.cells.empty() && std::all_of(mesh.vertices.begin(), mesh.vertices.end(), is_finite) &&
+         std::all_of(mesh.cells.begin(), mesh.cells.end(), is_in_range);
+}
+
+ClaimResult not_run(const std::string& claim, const std::string& reason) {
+  ClaimResult result;
+  result.claim = claim;
+  result.reason = reason;
+  return result;
+}
+
+ClaimResult run_claim(const std::string& claim, const Inputs& inputs, const Adjacency& adjacency,
+                      const Options& options) {
+  const Mesh& mesh = inputs.mesh;
+  const Image* image = inputs.image ? &*inputs.image : nullptr;
+  if (claim == "radius_edge") return check_radius_edge(mesh, options);
+  if (claim == "boundary_angles") return check_boundary_angles(mesh, adjacency, options);
+  if (claim == "size") return check_size(mesh, options);
+  if (claim == "delaunay") return check_delaunay(mesh, adjacency, options);
+  if (claim == "conformity")
+    return check_conformity(mesh, adjacency, inputs.schedule ? &*inputs.schedule : nullptr, options);
+  if (claim == "surface") return check_surface(mesh, adjacency, image, options);
+  if (image == nullptr) return not_run(claim, "no image given (--image)");
+  if (claim == "labels") return check_labels(mesh, *image, options);
+  return check_fidelity(mesh, adjacency, *image, options);
+}
+
+}  // namespace
+
+const std::vector<ClaimName>& all_claims() {
+  static const std::vector<ClaimName> kAll{
+      {"structure", Needs::kNothing}, {"radius_edge", Needs::kNothing}, {"boundary_angles", Needs::kNothing},
+      {"size", Needs::kBound},        {"delaunay", Needs::kNothing},    {"conformity", Needs::kNothing},
+      {"surface", Needs::kNothing},   {"labels", Needs::kImage},        {"fidelity", Needs::kImage}};
+  return kAll;
+}
+
+std::vector<std::string> chosen_claims(const Options& options) {
+  std::vector<std::string> chosen;
+  for (const ClaimName& claim : all_claims()) {
+    const bool is_named =
+        std::find(options.claims.begin(), options.claims.end(), claim.name) != options.claims.end();
+    if (is_named || (options.claims.empty() && is_given(claim.needs, options))) chosen.push_back(claim.name);
+  }
+  for (const std::string& name : options.claims) {
+    if (std::find(chosen.begin(), chosen.end(), name) != chosen.end()) continue;
+    std::string known;
+    for (const ClaimName& claim : all_claims()) known += std::string(known.empty() ? "" : ", ") + claim.name;
+    throw InputError(fmt::format("--claims: no claim '{}'; there are {}", name, known));
+  }
+  return chosen;
+}
+
+Inputs read_inputs(const Options& options) {
+  Inputs inputs{read_mesh(options.mesh_path), std::nullopt, std::nullopt};
+  if (options.space) inputs.mesh.space = *options.space;
+  if (!options.image_path.empty()) inputs.image = read_image(options.image_path);
+  if (!options.schedule_path.empty()) inputs.schedule = read_schedule(options.schedule_path);
+  return inputs;
+}
+
+std::vector<ClaimResult> run_claims(const Inputs& inputs, const Options& options,
+                                    const std::vector<std::string>& claims,
+                                    const std::function<void(const std::string&)>& announce) {
+  const bool is_sound = has_sound_references(inputs.mesh);
+  const Adjacency adjacency = is_sound ? find_adjacency(inputs.mesh, options.threads) : Adjacency{};
+  std::vector<ClaimResult> results;
+  for (const std::string& claim : claims) {
+    announce(claim);
+    const auto start = std::chrono::steady_clock::now();
+    if (claim == "structure") {
+      results.push_back(check_structure(inputs.mesh, adjacency, options));
+    } else if (is_sound) {
+      results.push_back(run_claim(claim, inputs, adjacency, options));
+    } else {
+      results.push_back(not_run(claim, "the mesh is empty or has vertex ids or coordinates that are none"));
+    }
+    results.back().seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+  }
+  return results;
+}
+
+}  // namespace podm::verify

@@ -1,0 +1,44 @@
+// Which claims there are, which of them a run is asked for, and the run itself.
+#pragma once
+
+#include <functional>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "claim.h"
+#include "image/image.h"
+#include "options.h"
+#include "schedule.h"
+
+namespace podm::verify {
+
+/// What a claim needs beside the mesh.
+enum class Needs { kNothing, kImage, kBound };
+
+struct ClaimName {
+  const char* name;
+  Needs needs;
+};
+/// In the order in which they run.
+const std::vector<ClaimName>& all_claims();
+
+/// The claims asked for by name, or without names all whose inputs were given. Throws InputError for an
+/// unknown one.
+std::vector<std::string> chosen_claims(const Options& options);
+
+struct Inputs {
+  Mesh mesh;
+  std::optional<Image> image;
+  std::optional<Schedule> schedule;
+};
+/// Reads the files that `options` name. Throws InputError.
+Inputs read_inputs(const Options& options);
+
+/// One result a claim of `claims`; a claim that cannot be decided is not_run with the reason. `announce` is
+/// told of each claim that begins.
+std::vector<ClaimResult> run_claims(const Inputs& inputs, const Options& options,
+                                    const std::vector<std::string>& claims,
+                                    const std::function<void(const std::string&)>& announce);
+
+}  // namespace podm::verify
