@@ -94,7 +94,7 @@ void GmshElements::finish() {
   check_counts(file_, "$Elements", 0, mesh_.cells.size());
   if (mesh_.cells.empty()) return;
   mesh_.cell_labels = std::move(has_physical_ ? physical_ : entities_);
-  mesh_.cell_label_array = has_physical_ ? "gmsh:physical" : "gmsh:geometrical";
+  mesh_.cell_label_array = has_physical_ ? kPhysicalLabels : kEntityLabels;
 }
 
 }  // namespace podm::verify

@@ -14,6 +14,9 @@
 
 namespace podm::verify {
 
+inline constexpr const char* kPhysicalLabels = "gmsh:physical";
+inline constexpr const char* kEntityLabels = "gmsh:geometrical";
+
 /// Nodes of a Gmsh element type (reference manual, "Node ordering"); 0 for types that are not known.
 std::size_t gmsh_nodes_of(std::int64_t type);
 

@@ -19,6 +19,13 @@ namespace {
 
 constexpr std::size_t kMostNodes = 64;  // of an element
 
+// A volume on one side of a surface: 0 where the normals of its triangles point, 1 behind them.
+struct Side {
+  std::int64_t surface;
+  int number;
+  LabelValue label;
+};
+
 class GmshReader {
  public:
   explicit GmshReader(const MeshFile& file) : file_(file), cursor_(file), elements_(file, tags_, mesh_) {}
@@ -179,7 +186,7 @@ class GmshReader {
     if (dimension == 0) return;
     for (std::size_t n = count("the number of bounding entities", 2); n > 0; --n) {
       const std::int64_t bound = integer("a bounding entity");
-      if (dimension == 3) sides_[bound < 0 ? -bound : bound][bound < 0 ? 0 : 1] = label_of(group);
+      if (dimension == 3) sides_.push_back({bound < 0 ? -bound : bound, bound < 0 ? 0 : 1, label_of(group)});
     }
   }
 
@@ -302,6 +309,7 @@ class GmshReader {
   }
 
   void name_labels() {
+    if (mesh_.cell_label_array != kPhysicalLabels) return;  // the names are those of physical groups
     for (const auto& [group, name] : group_names_) mesh_.label_names[label_of(group)] = name;
   }
 
@@ -312,12 +320,15 @@ class GmshReader {
     LabelValue outside = 0;
     for (const auto& [group, label] : label_of_group_)
       if (label == 0) outside = -1;
+    std::stable_sort(sides_.begin(), sides_.end(),
+                     [](const Side& a, const Side& b) { return a.surface < b.surface; });
     for (const std::int64_t surface : elements_.facet_entities()) {
-      const auto sides = sides_.find(surface);
-      if (sides == sides_.end())
-        file_.refuse("$Elements", fmt::format("surface {} bounds no volume", surface));
+      auto side = std::lower_bound(sides_.begin(), sides_.end(), surface,
+                                   [](const Side& a, std::int64_t value) { return a.surface < value; });
       std::array<LabelValue, 2> labels{outside, outside};
-      for (const auto& [side, label] : sides->second) labels[side] = label;
+      if (side == sides_.end() || side->surface != surface)
+        file_.refuse("$Elements", fmt::format("surface {} bounds no volume", surface));
+      for (; side != sides_.end() && side->surface == surface; ++side) labels[side->number] = side->label;
       mesh_.facet_labels.push_back(labels);
     }
   }
@@ -333,7 +344,7 @@ class GmshReader {
   std::map<std::int64_t, LabelValue> label_of_group_;            // of volumes, as our mesher's comments say
   std::map<std::int64_t, std::string> group_names_;              // of volumes
   std::map<std::pair<int, std::int64_t>, std::int64_t> groups_;  // by dimension and entity
-  std::map<std::int64_t, std::map<int, LabelValue>> sides_;      // of a surface; 0: where its normal points
+  std::vector<Side> sides_;
 };
 
 }  // namespace

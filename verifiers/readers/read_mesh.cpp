@@ -46,6 +46,7 @@ struct MeshPath {
   }
 };
 
+// The file beside it counts only for a mesh that lists no triangles itself.
 Mesh read_vtu_with_facets(const MeshPath& path, const MeshFile& file) {
   Mesh mesh = read_vtu(file);
   mesh.path = file.path();

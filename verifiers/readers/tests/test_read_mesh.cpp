@@ -175,11 +175,20 @@ TEST_F(ReadMesh, OtherCellsAreCountedAndQuadraticOnesReadByTheirCorners) {
 TEST_F(ReadMesh, GmshElementsWithoutPhysicalGroupHaveTheirEntityAsLabel) {
   const Mesh mesh = read("a.msh",
                          "$MeshFormat\n2.2 0 8\n$EndMeshFormat\n$Other\nany $thing\n$EndOther\n"
+                         "$PhysicalNames\n1\n3 12 \"a group, no entity\"\n$EndPhysicalNames\n"
                          "$Nodes\n4\n1 0 0 0\n2 1 0 0\n3 0 1 0\n4 0 0 1\n$EndNodes\n"
                          "$Elements\n2\n1 15 2 0 1 1\n2 4 3 0 12 99 1 2 3 4\n$EndElements\n");
   EXPECT_EQ(mesh.cell_labels, (std::vector<LabelValue>{12}));
   EXPECT_EQ(mesh.cell_label_array, "gmsh:geometrical");
+  EXPECT_TRUE(mesh.label_names.empty());
   EXPECT_EQ(mesh.other_cells, (std::map<std::string, std::size_t>{{"vertices", 1}}));
+}
+
+TEST_F(ReadMesh, VtuArraysOfTextAreNoLabels) {
+  std::string vtu = vtu_text(written_, {});
+  vtu.insert(vtu.find("<DataArray type=\"Float32\""),
+             "<Array type=\"String\" Name=\"label\" format=\"ascii\">97 0</Array>");
+  expect_same_cells(read("a.vtu", vtu), written_);
 }
 
 // An array of fractions is no label array whatever its name.
