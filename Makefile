@@ -5,11 +5,12 @@ CMAKE_FLAGS ?=
 FIGURES = results/runs/figures
 
 .DEFAULT_GOAL := help
-.PHONY: help setup build test experiments figures clean
+.PHONY: help setup build test kill-matrix experiments figures clean
 
 help:
 	@echo "make experiments   mesh the inputs of experiments/first_mesh.toml at three sizes; table and results/runs/"
 	@echo "make test          all tests"
+	@echo "make kill-matrix   every mutant of a mesh and the claim of podm-verify that rejects it"
 	@echo "make figures       mesh the abdomen phantom and draw it cut open: $(FIGURES)/"
 	@echo "make build         the programs, in build/bin/"
 	@echo "make setup         install the Debian 12 packages needed (root or sudo; otherwise says what to run)"
@@ -29,6 +30,9 @@ build: setup
 
 test: build
 	$(if $(DATA),PODM_TEST_IMAGES="$(abspath $(DATA))") ctest --test-dir build -j2 --output-on-failure
+
+kill-matrix: build
+	cmake --build build --target kill-matrix
 
 experiments: build
 	build/bin/podm-bench run experiments/first_mesh.toml

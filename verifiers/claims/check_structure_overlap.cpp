@@ -114,10 +114,13 @@ bool is_separated_along_edges(const CellPoints& cell, const TrianglePoints& face
 // Whether the inside of the cell meets every neighbourhood of some inner point of the facet, on its positive
 // side.
 bool is_just_inside(const CellPoints& cell, const TrianglePoints& facet, std::uint64_t& num_exact) {
-  bool reaches_inside = false;
-  for (const Point& x : cell)
-    reaches_inside = reaches_inside || side_of_plane(facet[0], facet[1], facet[2], x) > 0;
-  return reaches_inside && !is_separated_by_a_facet_of(cell, facet) &&
+  bool reaches_inside = false, is_off_the_plane = true;  // the latter: with a gap
+  for (const Point& x : cell) {
+    const int side = side_of_plane(facet[0], facet[1], facet[2], x);
+    reaches_inside = reaches_inside || side > 0;
+    is_off_the_plane = is_off_the_plane && side > 0;
+  }
+  return reaches_inside && !is_off_the_plane && !is_separated_by_a_facet_of(cell, facet) &&
          !is_separated_along_edges(cell, facet, num_exact);
 }
 

@@ -1,0 +1,53 @@
+"""Tests the tester: every mutant is rejected by the claim it attacks, every harmless neighbour accepted.
+
+Usage: kill_matrix.py PODM PODM_VERIFY. Prints the matrix; exits 1 when it has a hole.
+"""
+
+import json
+import pathlib
+import subprocess
+import sys
+import tempfile
+
+from mutants import OPERATORS, Workshop
+
+
+def run(verifier, case, claim, folder):
+    """Exit code and verdict of the claim (None without a report), and its warnings."""
+    mesh, report = folder / "case.mesh", folder / "report.json"
+    report.unlink(missing_ok=True)
+    if isinstance(case.mesh, str):
+        mesh.write_text(case.mesh)
+    else:
+        case.mesh.write(mesh, case.digits)
+    claims = ["--claims", claim] if claim else []
+    process = subprocess.run([verifier, mesh, "--json", report, *claims, *case.options], capture_output=True, text=True,
+                             timeout=300, check=False)
+    if process.returncode not in (0, 1) or not report.exists():
+        return process.returncode, None, 0
+    result = json.loads(report.read_text())["claims"][claim or "structure"]
+    return process.returncode, result["verdict"], result["num_warnings"]
+
+
+def main():
+    podm, verifier = sys.argv[1:]
+    holes = 0
+    print(f"{'operator':<28} {'claim':<16} {'mutant':<10} neighbour")
+    with tempfile.TemporaryDirectory() as name:
+        folder = pathlib.Path(name)
+        shop = Workshop(podm, folder)
+        for function, claim, exit_code in OPERATORS:
+            pair = function(shop)
+            code, verdict, _ = run(verifier, pair.mutant, claim, folder)
+            is_killed = code == exit_code and verdict == ("fail" if claim else None)
+            code, verdict, warnings = run(verifier, pair.neighbour, claim or "structure", folder)
+            is_accepted = code == 0 and verdict == "pass" and warnings == pair.neighbour.warnings
+            holes += (not is_killed) + (not is_accepted)
+            print(f"{function.__name__:<28} {claim or 'the reader':<16} {'killed' if is_killed else 'ALIVE':<10} "
+                  f"{'accepted' if is_accepted else 'REJECTED'}   {function.__doc__}")
+    print(f"{len(OPERATORS)} operators, {holes} holes")
+    return 1 if holes else 0
+
+
+if __name__ == "__main__":
+    sys.exit(main())

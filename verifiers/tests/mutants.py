@@ -1,0 +1,484 @@
+"""Mutation operators: each makes a mesh that one claim must reject, and a harmless neighbour it must accept.
+
+An operator is a function of a Workshop that returns a Mutant. Its docstring is its line in the kill matrix.
+"""
+
+import dataclasses
+import json
+import math
+import subprocess
+
+import numpy as np
+
+from medit_mesh import MeditMesh, kuhn_cubes, read_medit, signed_volumes
+
+OPERATORS = []
+
+
+def operator(claim, exit_code=1):
+    """Registers an operator that `claim` has to reject; None: the file itself is refused, with exit code 2."""
+    def register(function):
+        OPERATORS.append((function, claim, exit_code))
+        return function
+    return register
+
+
+@dataclasses.dataclass
+class Case:
+    """What podm-verify is run on."""
+    mesh: object  # a MeditMesh, or text
+    options: list = dataclasses.field(default_factory=list)
+    digits: int = 17
+    warnings: int = 0  # that the claim must report
+
+
+@dataclasses.dataclass
+class Mutant:
+    mutant: Case
+    neighbour: Case
+
+
+class Workshop:
+    """The base mesh (three touching spheres, made by podm), its image, and a folder."""
+
+    def __init__(self, podm, folder):
+        self.folder = folder
+        self.image = folder / "spheres.nii.gz"
+        subprocess.run([podm, "phantom", "spheres", "--size", "48", "-o", self.image], check=True, capture_output=True)
+        path = folder / "base.mesh"
+        subprocess.run([podm, "mesh", self.image, "--radius", "9", "--quiet", "-o", path], check=True)
+        self.base = read_medit(path)
+        self.with_image = ["--image", str(self.image)]
+        self.random = np.random.default_rng(7)
+
+    def facet_pairs(self, mesh):
+        """(cell, far vertex, cell, far vertex, facet) for every facet with two cells."""
+        seen = {}
+        for c, cell in enumerate(mesh.cells[:, :4]):
+            for k in range(4):
+                facet = tuple(sorted(np.delete(cell, k)))
+                if facet in seen:
+                    yield (*seen[facet], c, cell[k], facet)
+                else:
+                    seen[facet] = (c, cell[k])
+
+    def boundary_facets(self, mesh):
+        pairs = {facet for *_, facet in self.facet_pairs(mesh)}
+        for c, cell in enumerate(mesh.cells[:, :4]):
+            for k in range(4):
+                facet = tuple(sorted(np.delete(cell, k)))
+                if facet not in pairs:
+                    yield c, cell[k], facet
+
+    def schedule(self, activations):
+        """A row of eight unit leaves over the base mesh's bounding box, with these (leaf, begin, end, touched)."""
+        low, high = self.base.vertices.min(axis=0), self.base.vertices.max(axis=0)
+        scale = 8 / (high[0] - low[0])
+        head = {"schema": "podm-schedule/1", "algorithm": "pdr-podm",
+                "mesh_to_grid": [scale, 0, 0, -scale * low[0], 0, scale, 0, -scale * low[1], 0, 0, scale,
+                                 -scale * low[2]],
+                "leaves": [[i, j, k, 1] for i in range(8) for j in range(6) for k in range(6)]}
+        lines = [head] + [{"leaf": leaf, "node": 0, "begin_s": begin, "end_s": end, "operations": 1, "deferred": 0,
+                           "touched_leaves": touched} for leaf, begin, end, touched in activations]
+        path = self.folder / f"schedule{self.random.integers(1 << 30)}.jsonl"
+        path.write_text("\n".join(map(json.dumps, lines)))
+        return ["--schedule", str(path)]
+
+
+def tetrahedron(points, label=1):
+    mesh = MeditMesh(points, [[0, 1, 2, 3, label]])
+    if signed_volumes(mesh)[0] < 0:
+        mesh.cells[0, [2, 3]] = mesh.cells[0, [3, 2]]
+    return mesh
+
+
+def joined(a, b):
+    cells = b.cells.copy()
+    cells[:, :4] += len(a.vertices)
+    return MeditMesh(np.vstack([a.vertices, b.vertices]), np.vstack([a.cells, cells]), a.facets, a.comments)
+
+
+REGULAR = np.array([(1, 1, 1), (1, -1, -1), (-1, 1, -1), (-1, -1, 1)], dtype=float)
+
+
+@operator("structure")
+def empty_mesh(_):
+    """no cells at all"""
+    return Mutant(Case(MeditMesh(REGULAR)), Case(tetrahedron(REGULAR)))
+
+
+@operator("structure")
+def not_a_number(shop):
+    """a coordinate that is not a number"""
+    mesh = shop.base.copy()
+    mesh.vertices[17, 1] = math.nan
+    return Mutant(Case(mesh), Case(shop.base))
+
+
+@operator("structure")
+def id_out_of_range(shop):
+    """a vertex id one beyond the last"""
+    mesh = shop.base.copy()
+    mesh.cells[5, 2] = len(mesh.vertices)
+    return Mutant(Case(mesh), Case(shop.base))
+
+
+@operator("structure")
+def swapped_vertices(shop):
+    """two vertices of a cell swapped; harmless: an even permutation"""
+    mesh, even = shop.base.copy(), shop.base.copy()
+    mesh.cells[11, [0, 1]] = mesh.cells[11, [1, 0]]
+    even.cells[11, [0, 1, 2]] = even.cells[11, [1, 2, 0]]
+    return Mutant(Case(mesh), Case(even))
+
+
+@operator("structure")
+def left_handed(shop):
+    """every cell turned over; harmless: every cell permuted evenly"""
+    mesh, even = shop.base.copy(), shop.base.copy()
+    mesh.cells[:, [0, 1]] = mesh.cells[:, [1, 0]]
+    even.cells[:, [0, 1, 2]] = even.cells[:, [1, 2, 0]]
+    return Mutant(Case(mesh), Case(even))
+
+
+@operator("structure")
+def flat_cell(_):
+    """four points of a plane; harmless: one of them an ulp above it"""
+    flat, above = [(0, 0, 0), (1, 0, 0), (0, 1, 0), (1, 1, 0)], [(0, 0, 0), (1, 0, 0), (0, 1, 0), (1, 1, 5e-324)]
+    return Mutant(Case(tetrahedron(flat)), Case(tetrahedron(above)))
+
+
+@operator("structure")
+def duplicate_cell(shop):
+    """a cell listed twice; harmless: the cells in reverse order"""
+    mesh, reverse = shop.base.copy(), shop.base.copy()
+    mesh.cells = np.vstack([mesh.cells, np.roll(mesh.cells[3, :3], 1).tolist() + mesh.cells[3, 3:].tolist()])
+    reverse.cells = reverse.cells[::-1].copy()
+    return Mutant(Case(mesh), Case(reverse))
+
+
+@operator("structure")
+def facet_of_three_cells(_):
+    """a third cell on a facet; harmless: on a free facet"""
+    mesh = MeditMesh([(0, 0, 0), (1, 0, 0), (0, 1, 0), (0, 0, 1), (0, 0, -1), (1, 1, 2)],
+                     [[0, 1, 2, 3, 1], [0, 2, 1, 4, 1]])
+    third, free = mesh.copy(), mesh.copy()
+    third.cells = np.vstack([third.cells, [0, 1, 2, 5, 1]])
+    free.cells = np.vstack([free.cells, [1, 2, 3, 5, 1]])
+    return Mutant(Case(third), Case(free))
+
+
+@operator("structure")
+def duplicated_vertices(shop):
+    """a crack: the vertices between two halves doubled; harmless: an unused vertex, which is a warning"""
+    orphan = shop.base.copy()
+    orphan.vertices = np.vstack([orphan.vertices, [(999, 999, 999)]])
+    return Mutant(Case(cracked(shop.base)), Case(orphan, warnings=1))
+
+
+def cracked(base):
+    mesh = base.copy()
+    upper = mesh.vertices[mesh.cells[:, :4]].mean(axis=1)[:, 2] > 0
+    shared = np.intersect1d(mesh.cells[upper, :4], mesh.cells[~upper, :4])
+    new_id = {old: len(mesh.vertices) + i for i, old in enumerate(shared)}
+    mesh.vertices = np.vstack([mesh.vertices, mesh.vertices[shared]])
+    for row in np.flatnonzero(upper):
+        mesh.cells[row, :4] = [new_id.get(v, v) for v in mesh.cells[row, :4]]
+    return mesh
+
+
+@operator("conformity")
+def crack(shop):
+    """facets on two sides of a crack that are not one facet; harmless: without the crack"""
+    return Mutant(Case(cracked(shop.base)), Case(shop.base))
+
+
+@operator("conformity")
+def doubled_along_a_leaf(shop):
+    """a vertex doubled along a leaf boundary; harmless: the same schedule, no vertex doubled"""
+    schedule = shop.schedule([(0, 0, 1, [0])])
+    cubes = kuhn_cubes(2, 1, 1)
+    cubes.vertices = cubes.vertices * 16 + shop.base.vertices.min(axis=0)
+    doubled = cubes.copy()
+    doubled.vertices = np.vstack([doubled.vertices, doubled.vertices[0]])
+    return Mutant(Case(doubled, schedule), Case(cubes, schedule))
+
+
+@operator("conformity")
+def active_neighbours(shop):
+    """two leaves active at once within two rings; harmless: one after the other, or three apart"""
+    def row(i):
+        return i * 36
+    too_near = shop.schedule([(row(0), 0, 2, [row(0)]), (row(2), 1, 3, [row(2)])])
+    apart = shop.schedule([(row(0), 0, 2, [row(0)]), (row(2), 2, 3, [row(2)]), (row(5), 2, 4, [row(5)])])
+    return Mutant(Case(shop.base, too_near), Case(shop.base, apart))
+
+
+@operator("conformity")
+def touched_outside(shop):
+    """an operation that touched a leaf of the second ring; harmless: of the first"""
+    return Mutant(Case(shop.base, shop.schedule([(0, 0, 1, [0, 72])])),
+                  Case(shop.base, shop.schedule([(0, 0, 1, [0, 36])])))
+
+
+@operator("structure")
+def overlap_inside(shop):
+    """a positive cell inside another; harmless: the same cell far away"""
+    inside, outside = REGULAR * 0.1, REGULAR * 0.1 + 500
+    center = shop.base.vertices[shop.base.cells[100, :4]].mean(axis=0)
+    return Mutant(Case(joined(shop.base, tetrahedron(inside + center))), Case(joined(shop.base, tetrahedron(outside))))
+
+
+@operator("structure")
+def interpenetrating_components(_):
+    """two cells that cross without a vertex of one in the other; harmless: pulled apart"""
+    star = joined(tetrahedron(REGULAR), tetrahedron(-REGULAR))
+    apart = joined(tetrahedron(REGULAR), tetrahedron(-REGULAR + 4))
+    return Mutant(Case(star), Case(apart))
+
+
+@operator("structure")
+def overlap_at_a_shared_vertex(_):
+    """two cells that share a vertex and overlap beside it; harmless: one on the other side of it"""
+    points = [(0, 0, 0), (2, 0, 0), (0, 2, 0), (0, 0, 2), (3, 1, 1), (1, 3, 1), (1, 1, 3)]
+    overlapping = MeditMesh(points, [[0, 1, 2, 3, 1], [0, 4, 5, 6, 1]])
+    opposite = MeditMesh([*points[:4], (-3, -1, -1), (-1, -1, -3), (-1, -3, -1)], overlapping.cells)
+    return Mutant(Case(overlapping), Case(opposite))
+
+
+@operator("structure")
+def hanging_vertex(_):
+    """a vertex in the middle of another cell's free facet; harmless: a little off it"""
+    lower = tetrahedron([(0, 0, 0), (3, 0, 0), (0, 3, 0), (1, 1, -3)])
+    upper = np.array([(1, 1, 0), (2, 1, 2), (1, 2, 2), (0.5, 0.5, 2)])
+    return Mutant(Case(joined(lower, tetrahedron(upper))), Case(joined(lower, tetrahedron(upper + (0, 0, 1e-15)))))
+
+
+@operator("structure")
+def hanging_on_an_edge(_):
+    """a vertex on another cell's edge; harmless: beside it"""
+    lower = tetrahedron([(0, 0, 0), (2, 0, 0), (0, 2, 0), (0, 0, -2)])
+    upper = np.array([(1, 0, 0), (2, -1, 1), (1, -2, 1), (1, -1, 2)], dtype=float)
+    return Mutant(Case(joined(lower, tetrahedron(upper))),
+                  Case(joined(lower, tetrahedron(upper - (0, 1e-15, 0)))))
+
+
+@operator("delaunay")
+def flip(shop):
+    """a 2-3 flip; harmless: the mesh before it"""
+    mesh = shop.base.copy()
+    for c, v, d, w, facet in shop.facet_pairs(mesh):
+        if mesh.cells[c, 4] != mesh.cells[d, 4]:
+            continue
+        a, b, e = facet
+        made = np.array([[a, b, v, w, mesh.cells[c, 4]], [b, e, v, w, mesh.cells[c, 4]], [e, a, v, w, mesh.cells[c, 4]]])
+        volumes = signed_volumes(MeditMesh(mesh.vertices, made))
+        if (volumes > 0).all() or (volumes < 0).all():
+            if volumes[0] < 0:
+                made[:, [2, 3]] = made[:, [3, 2]]
+            mesh.cells = np.vstack([np.delete(mesh.cells, [c, d], axis=0), made])
+            return Mutant(Case(mesh), Case(shop.base))
+    raise RuntimeError("no facet can be flipped")
+
+
+@operator("delaunay")
+def one_ulp(_):
+    """one vertex of eight on a sphere moved in by an ulp; harmless: exactly on it, a tie"""
+    cube, moved = kuhn_cubes(1, 1, 1), kuhn_cubes(1, 1, 1)
+    moved.vertices[1, 0] = np.nextafter(1.0, 0.0)
+    return Mutant(Case(moved), Case(cube))
+
+
+@operator("delaunay")
+def moved_by_epsilon(shop):
+    """every vertex moved by a tenth of an edge; harmless: by 1e-9 of it"""
+    far, near = shop.base.copy(), shop.base.copy()
+    steps = shop.random.normal(size=shop.base.vertices.shape)
+    far.vertices += 0.3 * steps
+    near.vertices += 1e-9 * steps
+    return Mutant(Case(far), Case(near))
+
+
+@operator("delaunay")
+def foreign_vertex_in_a_ball(_):
+    """a vertex of another component in a circumball, in no cell; harmless: outside the ball"""
+    deep, clear = REGULAR * 0.05 + (1.2, 1.2, 0), REGULAR * 0.05 + (2, 2, 0)
+    return Mutant(Case(joined(tetrahedron(REGULAR), tetrahedron(deep))),
+                  Case(joined(tetrahedron(REGULAR), tetrahedron(clear))))
+
+
+@operator("delaunay")
+def rounded_digits(shop):
+    """coordinates rounded to 3 digits; harmless: to 15"""
+    return Mutant(Case(shop.base, digits=3), Case(shop.base, digits=15))
+
+
+@operator("delaunay")
+def rounded_to_six_digits(_):
+    """a far vertex just off a ball, which 6 digits move into it; harmless: 9 digits"""
+    z = 10.000006
+    points = [(1, 0, z), (-0.6, 0.8, z), (-0.6, -0.8, z), (0, 0, z + 1), (0, 0, z - 1 - 5e-7)]
+    mesh = MeditMesh(points, [[0, 1, 2, 3, 1], [0, 2, 1, 4, 1]])
+    return Mutant(Case(mesh, digits=6), Case(mesh, digits=9))
+
+
+def needle(height):
+    s = math.sqrt(3) / 3
+    return tetrahedron([(s, 0, 0), (-s / 2, 0.5, 0), (-s / 2, -0.5, 0), (0, 0, height)])
+
+
+@operator("radius_edge")
+def needle_over_the_bound(_):
+    """a needle of ratio 1.93 (1 + 1e-12); harmless: 1.93 (1 - 1e-12)"""
+    height = (3.86 + math.sqrt(3.86 ** 2 - 4 / 3)) / 2  # R = (h^2 + 1/3) / 2h above a triangle of side 1
+    return Mutant(Case(needle(height * (1 + 1e-12))), Case(needle(height * (1 - 1e-12))))
+
+
+@operator("radius_edge")
+def flat_cell_without_a_ball(_):
+    """a flat cell, whose ratio is infinite; harmless: a regular one"""
+    return Mutant(Case(tetrahedron([(0, 0, 0), (1, 0, 0), (0, 1, 0), (3, 1, 0)])), Case(tetrahedron(REGULAR)))
+
+
+def over_triangle(a, b, c):
+    """A cell over a triangle whose other facets have no angle below 31 degrees."""
+    a, b, c = (np.array(p, dtype=float) for p in (a, b, c))
+    normal = np.cross(b - a, c - a)
+    for seed in range(2000):
+        x, y, z = np.random.default_rng(seed).uniform((-0.5, -0.5, 0.2), (1.5, 1.5, 1.2))
+        apex = a + x * (b - a) + y * (c - a) + z * normal / math.sqrt(np.linalg.norm(normal))
+        if min(least_angle(*facet, apex) for facet in ((a, b), (b, c), (c, a))) > 31:
+            return tetrahedron([a, b, c, apex])
+    raise RuntimeError("no apex found")
+
+
+def least_angle(a, b, c):
+    sides = sorted(np.linalg.norm(p - q) for p, q in ((a, b), (b, c), (c, a)))
+    cosine = (sides[1] ** 2 + sides[2] ** 2 - sides[0] ** 2) / (2 * sides[1] * sides[2])
+    return math.degrees(math.acos(cosine))
+
+
+def isosceles(degrees):
+    t = math.radians(degrees)
+    return (0, 0, 0), (2 * math.cos(t), 0, 0), (math.cos(t), math.sin(t), 0)
+
+
+@operator("boundary_angles")
+def angle_under_30(_):
+    """a boundary angle of 29.999 degrees; harmless: 30.001"""
+    return Mutant(Case(over_triangle(*isosceles(29.999))), Case(over_triangle(*isosceles(30.001))))
+
+
+@operator("boundary_angles")
+def angle_of_30(_):
+    """a boundary angle of exactly 30 degrees, in integers; harmless: an ulp more"""
+    exact = over_triangle((0, 0, 0), (1, 1, 0), (2, 1, 1))  # cos^2 = 9 / 12
+    more = exact.copy()
+    more.vertices[1, 1] = np.nextafter(1.0, 2.0)  # the apex, away from the base between the two such angles
+    return Mutant(Case(exact), Case(more))
+
+
+@operator("size")
+def radius_over_the_bound(_):
+    """a circumradius of sqrt(3) under a bound an ulp below it; harmless: an ulp above"""
+    root = math.sqrt(3)  # rounded down: its square is below 3
+    return Mutant(Case(tetrahedron(REGULAR), ["--radius", repr(root)]),
+                  Case(tetrahedron(REGULAR), ["--radius", repr(float(np.nextafter(root, 2)))]))
+
+
+@operator("size")
+def radius_over_its_label(_):
+    """a cell over its own label's bound alone; harmless: the bound is another label's"""
+    return Mutant(Case(tetrahedron(REGULAR), ["--radius", "9", "--radius-of", "1=1.7"]),
+                  Case(tetrahedron(REGULAR), ["--radius", "9", "--radius-of", "2=1.7"]))
+
+
+@operator("labels")
+def swapped_labels(shop):
+    """two labels swapped; harmless: as they were"""
+    mesh = shop.base.copy()
+    mesh.cells[:, 4] = np.select([mesh.cells[:, 4] == 1, mesh.cells[:, 4] == 2], [2, 1], mesh.cells[:, 4])
+    return Mutant(Case(mesh, shop.with_image), Case(shop.base, shop.with_image))
+
+
+@operator("labels")
+def one_wrong_label(shop):
+    """one cell with another's label; harmless: as it was"""
+    mesh = shop.base.copy()
+    mesh.cells[50, 4] = 3 if mesh.cells[50, 4] != 3 else 1
+    return Mutant(Case(mesh, shop.with_image), Case(shop.base, shop.with_image))
+
+
+@operator("labels")
+def half_voxel_shift(shop):
+    """everything shifted by half a voxel; harmless: by 1e-9 mm"""
+    far, near = shop.base.copy(), shop.base.copy()
+    far.vertices += 0.5 * 180 / 41
+    near.vertices += 1e-9
+    return Mutant(Case(far, shop.with_image), Case(near, shop.with_image))
+
+
+@operator("labels")
+def mirrored_axis(shop):
+    """x mirrored, cells turned back; harmless: coordinates in LPS and said so"""
+    mirrored, lps = shop.base.copy(), shop.base.copy()
+    mirrored.vertices[:, 0] *= -1
+    mirrored.cells[:, [0, 1]] = mirrored.cells[:, [1, 0]]
+    lps.vertices[:, :2] *= -1
+    return Mutant(Case(mirrored, shop.with_image), Case(lps, [*shop.with_image, "--space", "LPS"]))
+
+
+@operator("labels")
+def dropped_component(shop):
+    """all cells of a label dropped; harmless: none"""
+    mesh = shop.base.copy()
+    mesh.cells = mesh.cells[mesh.cells[:, 4] != 1]
+    mesh.facets = mesh.facets[:0]
+    return Mutant(Case(mesh, shop.with_image), Case(shop.base, shop.with_image))
+
+
+@operator("surface")
+def dropped_cell(shop):
+    """a cell inside dropped, its hole not among the listed facets; harmless: the facets not listed either"""
+    mesh = shop.base.copy()
+    boundary = {c for c, *_ in shop.boundary_facets(mesh)}
+    inner = next(c for c in range(len(mesh.cells)) if c not in boundary)
+    mesh.cells = np.delete(mesh.cells, inner, axis=0)
+    unlisted = shop.base.copy()
+    unlisted.facets = unlisted.facets[:0]
+    return Mutant(Case(mesh), Case(unlisted))
+
+
+@operator("surface")
+def dropped_facet(shop):
+    """a boundary facet not listed; harmless: listed last"""
+    mesh, last = shop.base.copy(), shop.base.copy()
+    mesh.facets = mesh.facets[1:]
+    last.facets = np.roll(last.facets, -1, axis=0)
+    return Mutant(Case(mesh), Case(last))
+
+
+@operator("surface")
+def stale_facet_tag(shop):
+    """a facet listed with another pair of labels; harmless: with its own"""
+    mesh = shop.base.copy()
+    mesh.facets[0, 3] = 2 if mesh.facets[0, 3] != 2 else 1
+    return Mutant(Case(mesh), Case(shop.base))
+
+
+@operator("fidelity")
+def shrunk(shop):
+    """a mesh shrunk by a fifth; harmless: by 1e-6"""
+    far, near = shop.base.copy(), shop.base.copy()
+    far.vertices *= 0.8
+    near.vertices *= 1 - 1e-6
+    return Mutant(Case(far, shop.with_image), Case(near, shop.with_image))
+
+
+@operator(None, exit_code=2)
+def truncated_file(shop):
+    """the file cut off in its cells; harmless: whole"""
+    path = shop.folder / "whole.mesh"
+    shop.base.write(path)
+    text = path.read_text()
+    return Mutant(Case(text[:2 * len(text) // 3]), Case(shop.base))
