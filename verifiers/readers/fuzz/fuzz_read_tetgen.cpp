@@ -1,5 +1,5 @@
 // TetGen files: .node, .ele and .face, apart by a '|'.
-#include "readers/fuzz/fuzz_mesh_file.h"
+#include "readers/fuzz/checked_read.h"
 
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
   const std::string_view bytes = podm::verify::text_of(data, size);

@@ -1,4 +1,4 @@
-#include "readers/fuzz/fuzz_mesh_file.h"
+#include "readers/fuzz/checked_read.h"
 
 #include <unistd.h>
 
