@@ -26,7 +26,7 @@ struct RunCommand {
   std::string experiment_path;
   std::string only;  ///< the one trial to run; empty: all
   std::string results_folder = "results/runs";
-  std::string podm_path;
+  Programs programs;
   bool keep = false;
 };
 
@@ -67,7 +67,7 @@ TrialResult run_and_record(const Experiment& experiment, const Trial& trial, con
   const std::string stem = fmt::format("{}/{}.{}", command.results_folder, experiment.name, trial.name);
   const ScratchFolder scratch(stem, command.keep);
   const auto before = environment(scratch.path());  // the load that the trial meets
-  TrialResult result = run_trial(trial, command.podm_path, scratch.path(), [] { return interrupted.load(); });
+  TrialResult result = run_trial(trial, command.programs, scratch.path(), [] { return interrupted.load(); });
   if (result.status != Status::kSkipped) rows.append(make_row(experiment, trial, result, before));
   if (command.keep) fmt::print(stderr, "kept: {}\n", scratch.path());
   return result;
@@ -114,8 +114,8 @@ int list(const std::string& folder) {
   return 0;
 }
 
-std::string podm_beside_this_program() {
-  return (fs::read_symlink("/proc/self/exe").parent_path() / "podm").string();
+std::string beside_this_program(const char* name) {
+  return (fs::read_symlink("/proc/self/exe").parent_path() / name).string();
 }
 
 int main_or_throw(int argc, char** argv) {
@@ -124,12 +124,14 @@ int main_or_throw(int argc, char** argv) {
   program.require_subcommand(1);
   program.footer("Exit codes: 0 success, 1 a trial failed or missed a guarantee, 2 bad usage or input.");
   RunCommand command;
-  command.podm_path = podm_beside_this_program();
+  command.programs = {beside_this_program("podm"), beside_this_program("podm-verify")};
   CLI::App& run_app = *program.add_subcommand("run", "run the trials of an experiment");
   run_app.add_option("EXPERIMENT", command.experiment_path, "a file of experiments/")->required();
   run_app.add_option("--only", command.only, "run this trial alone [default: all]");
   run_app.add_option("--results", command.results_folder, "folder of the JSON lines [default: results/runs]");
-  run_app.add_option("--podm", command.podm_path, "the mesher [default: the podm beside this program]");
+  run_app.add_option("--podm", command.programs.podm, "the mesher [default: the podm beside this program]");
+  run_app.add_option("--verifier", command.programs.verifier,
+                     "the verifier, or none [default: the podm-verify beside this program]");
   run_app.add_flag("--keep", command.keep, "keep each trial's mesh and messages [default: delete them]");
   std::string folder = "experiments";
   CLI::App& list_app = *program.add_subcommand("list", "list experiments: title, trials, expected time");
@@ -139,6 +141,7 @@ int main_or_throw(int argc, char** argv) {
   } catch (const CLI::ParseError& error) {
     return program.exit(error) == 0 ? 0 : kExitInput;
   }
+  if (command.programs.verifier == "none") command.programs.verifier.clear();
   return run_app.parsed() ? run(command) : list(folder);
 }
 

@@ -24,7 +24,10 @@ std::string thousands(std::uint64_t number) {
 }
 
 std::string verdict(const TrialResult& result) {
-  if (result.status == Status::kOk) return "met";
+  if (result.status == Status::kOk) {
+    const std::size_t num_proved = result.record["verdicts"].size();
+    return num_proved > 0 ? fmt::format("met, {} claims proved", num_proved) : "met";
+  }
   return fmt::format("{}: {}", result.status == Status::kUnmet ? "NOT met" : to_string(result.status),
                      result.reason);
 }

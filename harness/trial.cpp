@@ -5,6 +5,8 @@
 #include <algorithm>
 #include <fstream>
 
+#include "warm_memory.h"
+
 namespace podm::bench {
 namespace {
 
@@ -120,7 +122,7 @@ std::string to_string(Status status) {
   return "skipped";
 }
 
-TrialResult run_trial(const Trial& trial, const std::string& podm, const std::string& scratch_folder,
+TrialResult run_trial(const Trial& trial, const Programs& programs, const std::string& scratch_folder,
                       const StopQuery& stop_requested) {
   TrialResult result;
   if (trial.if_exists && !image_exists(trial)) {
@@ -128,8 +130,9 @@ TrialResult run_trial(const Trial& trial, const std::string& podm, const std::st
     result.reason = trial.image + " is not there";
     return result;
   }
-  result.image_size = read_image_size(trial, podm, scratch_folder);
-  result.command = mesh_command(trial, podm, scratch_folder);
+  result.image_size = read_image_size(trial, programs.podm, scratch_folder);
+  result.command = mesh_command(trial, programs.podm, scratch_folder);
+  warm_memory(kWarmBytes);
   const std::string stderr_path = scratch_folder + "/stderr.txt";
   result.process = run_process({.arguments = result.command,
                                 .stdout_path = {},
@@ -137,6 +140,15 @@ TrialResult run_trial(const Trial& trial, const std::string& podm, const std::st
                                 .timeout_s = trial.timeout_s},
                                stop_requested);
   judge(result, scratch_folder + "/record.jsonl");
+  if (result.record.is_object() && !programs.verifier.empty()) {
+    const Verification verification = verify_mesh(trial, result.image_size, result.record,
+                                                  scratch_folder + "/mesh.vtu", programs, scratch_folder);
+    result.record["verdicts"] = verification.verdicts;
+    if (!verification.fault.empty()) {
+      result.status = Status::kUnmet;
+      result.reason += (result.reason.empty() ? "" : "; ") + verification.fault;
+    }
+  }
   if (result.status != Status::kOk) result.stderr_tail = read_tail(stderr_path, kTailBytes);
   return result;
 }

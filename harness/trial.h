@@ -6,6 +6,7 @@
 
 #include "experiment.h"
 #include "process.h"
+#include "verification.h"
 
 namespace podm::bench {
 
@@ -13,7 +14,7 @@ inline constexpr int kRecordSchema = 1;  ///< of the mesher's records and of our
 
 enum class Status {
   kOk,
-  kUnmet,   ///< a mesh, but a guarantee or limit is unmet
+  kUnmet,   ///< a mesh, but a guarantee or limit is unmet or a claim not proved
   kFailed,  ///< no mesh, or no record of it
   kTimedOut,
   kInterrupted,  ///< by the user, as are all trials after it
@@ -32,8 +33,9 @@ struct TrialResult {
   nlohmann::ordered_json image_size;  ///< voxels per axis; null when the mesher could not tell
 };
 
-/// Runs `podm` on the trial. The mesh is written into `scratch_folder`, which must exist.
-TrialResult run_trial(const Trial& trial, const std::string& podm, const std::string& scratch_folder,
+/// Runs the mesher on the trial, then the verifier on its mesh, whose verdicts join the record. Files are
+/// written into `scratch_folder`, which must exist.
+TrialResult run_trial(const Trial& trial, const Programs& programs, const std::string& scratch_folder,
                       const StopQuery& stop_requested = {});
 
 }  // namespace podm::bench

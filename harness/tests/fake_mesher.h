@@ -56,4 +56,14 @@ done
 )" + mesh_body);
 }
 
+/// A script for `podm-verify` that runs `body`, where $report is the file asked for by --json.
+inline std::string fake_verifier(const TemporaryFolder& folder, const std::string& body) {
+  return folder.script("podm-verify", R"(
+while [ $# -gt 0 ]; do
+  case $1 in --json) report=$2;; esac
+  shift
+done
+)" + body);
+}
+
 }  // namespace podm::bench

@@ -43,9 +43,9 @@ class BenchTest : public testing::Test {
         .exit_code;
   }
   int run_with(const std::string& mesh_body, const std::vector<std::string>& more = {}) {
-    std::vector<std::string> arguments{"run",       folder_ / "exp.toml",
-                                       "--podm",    fake_mesher(folder_, mesh_body),
-                                       "--results", folder_ / "results"};
+    std::vector<std::string> arguments{
+        "run",       folder_ / "exp.toml", "--podm",     fake_mesher(folder_, mesh_body),
+        "--results", folder_ / "results",  "--verifier", "none"};
     arguments.insert(arguments.end(), more.begin(), more.end());
     return bench(arguments);
   }

@@ -19,7 +19,7 @@ Trial some_trial() {
 class TrialTest : public testing::Test {
  protected:
   TrialResult run(const std::string& mesh_body, const Trial& trial = some_trial()) {
-    return run_trial(trial, fake_mesher(folder_, mesh_body), folder_.path());
+    return run_trial(trial, {fake_mesher(folder_, mesh_body), {}}, folder_.path());
   }
   static std::string write_record(const std::string& record) {
     return "echo '" + record + "' > \"$record\"\n";
@@ -39,6 +39,25 @@ TEST_F(TrialTest, GoodRunIsOkWithItsRecordAndImageSize) {
   EXPECT_EQ(result.record, nlohmann::ordered_json::parse(kGoodRecord));
   EXPECT_EQ(result.image_size, nlohmann::ordered_json({10, 10, 10}));
   EXPECT_GT(result.process.peak_rss_bytes, 0u);
+}
+
+TEST_F(TrialTest, VerdictsOfTheVerifierDecide) {
+  const std::string mesher = fake_mesher(folder_, write_record(kGoodRecord));
+  const auto run_with_verifier = [&](const std::string& body) {
+    return run_trial(some_trial(), {mesher, fake_verifier(folder_, body)}, folder_.path());
+  };
+  const TrialResult proved =
+      run_with_verifier(R"(echo '{"claims":{"size":{"verdict":"pass"}}}' > "$report")");
+  EXPECT_EQ(proved.status, Status::kOk);
+  EXPECT_EQ(proved.record["verdicts"], nlohmann::ordered_json({{"size", "pass"}}));
+
+  const TrialResult refuted =
+      run_with_verifier(R"(echo '{"claims":{"size":{"verdict":"fail"}}}' > "$report"; exit 1)");
+  EXPECT_EQ(refuted.status, Status::kUnmet);
+  EXPECT_EQ(refuted.reason, "size fail");
+
+  std::filesystem::remove(folder_ / "verification.json");
+  EXPECT_EQ(run_with_verifier("exit 3").status, Status::kUnmet) << "no report proves nothing";
 }
 
 TEST_F(TrialTest, OptionsOfTheTrialReachTheMesher) {
@@ -133,7 +152,7 @@ TEST_F(TrialTest, MissingOrUnusableRecordFails) {
 }
 
 TEST_F(TrialTest, MissingMesherFails) {
-  const TrialResult result = run_trial(some_trial(), folder_ / "absent", folder_.path());
+  const TrialResult result = run_trial(some_trial(), {folder_ / "absent", {}}, folder_.path());
   EXPECT_EQ(result.status, Status::kFailed);
   EXPECT_NE(result.reason.find(folder_ / "absent"), std::string::npos);
 }
@@ -151,7 +170,7 @@ TEST_F(TrialTest, AbsentImageIsSkippedOnlyWhenItMayBeAbsent) {
 
 TEST_F(TrialTest, StopRequestInterrupts) {
   const TrialResult result =
-      run_trial(some_trial(), fake_mesher(folder_, "sleep 30"), folder_.path(), [] { return true; });
+      run_trial(some_trial(), {fake_mesher(folder_, "sleep 30"), {}}, folder_.path(), [] { return true; });
   EXPECT_EQ(result.status, Status::kInterrupted);
 }
 

@@ -1,0 +1,30 @@
+// A mesh handed to podm-verify, a program of its own, after the clock has stopped.
+#pragma once
+
+#include <nlohmann/json.hpp>
+#include <string>
+
+#include "experiment.h"
+
+namespace podm::bench {
+
+/// The programs that a trial runs.
+struct Programs {
+  std::string podm;
+  std::string verifier;  ///< empty: meshes are not verified
+};
+
+struct Verification {
+  nlohmann::ordered_json
+      verdicts;       ///< claim: "pass", "fail" or "not_run"; empty when the verifier told nothing
+  std::string fault;  ///< why the mesh is not proved; empty: every claim passes
+};
+
+/// Every claim but fidelity, which is promised only for cells about as small as voxels. `record` is the
+/// mesher's, of the mesh at `mesh_path`. A phantom, whose voxels per axis are `image_size`, is written to
+/// `folder` first.
+Verification verify_mesh(const Trial& trial, const nlohmann::ordered_json& image_size,
+                         const nlohmann::ordered_json& record, const std::string& mesh_path,
+                         const Programs& programs, const std::string& folder);
+
+}  // namespace podm::bench
