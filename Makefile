@@ -10,7 +10,7 @@ FIGURES = results/runs/figures
 help:
 	@echo "make experiments   mesh the inputs of experiments/first_mesh.toml at three sizes; table and results/runs/"
 	@echo "make test          all tests"
-	@echo "make kill-matrix   every mutant of a mesh and the claim of podm-verify that rejects it"
+	@echo "make kill-matrix  every mutant of a mesh and the claim of podm-verify that rejects it"
 	@echo "make figures       mesh the abdomen phantom and draw it cut open: $(FIGURES)/"
 	@echo "make build         the programs, in build/bin/"
 	@echo "make setup         install the Debian 12 packages needed (root or sudo; otherwise says what to run)"

@@ -15,6 +15,7 @@
 #include "cli/record.h"
 #include "cli/stop_on_signal.h"
 #include "cli/summary.h"
+#include "cli/verify_mesh.h"
 #include "podm/mesh_io.h"
 
 namespace podm::cli {
@@ -63,7 +64,8 @@ int run(const MeshCommand& command) {
               .options = meshing_options(command, image),
               .result = {},
               .mesh_sha256 = {},
-              .read_s = read_s};
+              .read_s = read_s,
+              .verdicts = {}};
   run.result = mesh_with_display(image, run.options, command.quiet);
   run.write_s = timed([&] {
     canonicalize(run.result.mesh);
@@ -71,6 +73,7 @@ int run(const MeshCommand& command) {
     write_outputs(command, run.result.mesh);
   });
   run.peak_rss_bytes = peak_resident_bytes();
+  if (command.verify && !run.result.mesh.cells.empty()) run.verdicts = verify_mesh(run);
   if (!command.record_path.empty()) append_line(command.record_path, json_line(record(run)));
   if (!command.quiet) fmt::print(stderr, "{}", summary(run));
   for (const std::string& warning : run.result.report.warnings) fmt::print(stderr, "warning: {}\n", warning);

@@ -171,6 +171,8 @@ void add_mesh_command(CLI::App& program, MeshCommand& command) {
       [&command](const std::string& text, const std::string& name) {
         command.meshing.contention = parse_contention(text, name);
       });
+  app.add_flag("--verify", command.verify,
+               "have podm-verify check the written mesh, and exit with 1 unless all holds");
   app.add_flag("--quiet", command.quiet, "neither progress nor summary [default: both, on standard error]");
 }
 

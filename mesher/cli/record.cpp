@@ -143,7 +143,7 @@ Json record(const MeshRun& run) {
       {"quality", quality_of(report.quality)},
       {"guarantees", guarantees_of(report.guarantees)},
       {"mesh_sha256", run.mesh_sha256},
-      {"verdicts", Json::object()},  // a verifier adds them
+      {"verdicts", run.verdicts},
       {"stop_reason", to_string(report.stop_reason)},
       {"warnings", report.warnings},
   };

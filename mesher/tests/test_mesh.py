@@ -63,6 +63,17 @@ class Mesh(PodmTestCase):
         self.assertEqual(first["mesh_sha256"], second["mesh_sha256"])
         self.assertEqual(first["input"], second["input"])
 
+    def test_any_number_of_threads_makes_a_mesh_that_verifies(self):
+        for threads in 1, 2, 5:
+            for contention in "local", "global":
+                self.assert_exit(self.mesh("--radius", "8", "--threads", threads, "--contention", contention,
+                                           "--verify"), 0)
+                record = self.read_record(self.runs)
+                self.assertEqual(set(record["verdicts"].values()), {"pass"})
+                self.assertLessEqual({"structure", "delaunay", "labels", "size"}, set(record["verdicts"]))
+                self.assertEqual(record["threads"]["used"], threads)
+                self.runs.unlink()
+
     def test_radius_of_one_label_by_name_and_by_value(self):
         info = json.loads(run_podm("info", "--json", "phantom:abdomen@32").stdout)
         label = max((one for one in info["labels"] if one["name"]), key=lambda one: one["voxels"])

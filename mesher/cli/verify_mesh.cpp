@@ -1,0 +1,110 @@
+#include "cli/verify_mesh.h"
+
+#include <fcntl.h>
+#include <fmt/format.h>
+#include <spawn.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+#include <cstdio>
+#include <cstdlib>
+#include <filesystem>
+#include <fstream>
+#include <nlohmann/json.hpp>
+
+#include "podm/errors.h"
+#include "podm/image_io.h"
+
+extern char** environ;
+
+namespace podm::cli {
+namespace {
+
+namespace fs = std::filesystem;
+
+// A new folder, gone with all it holds at the end.
+class ScratchFolder {
+ public:
+  ScratchFolder() : path_(fs::temp_directory_path() / "podm-XXXXXX") {
+    if (mkdtemp(path_.data()) == nullptr) throw InputError(fmt::format("cannot make a folder {}", path_));
+  }
+  ~ScratchFolder() {
+    std::error_code error;
+    fs::remove_all(path_, error);
+  }
+  ScratchFolder(const ScratchFolder&) = delete;
+  ScratchFolder& operator=(const ScratchFolder&) = delete;
+  std::string operator/(const char* name) const { return path_ + "/" + name; }
+
+ private:
+  std::string path_;
+};
+
+bool is_as_stored(const LabelSelection& selection) {
+  return selection.background == 0 && selection.keep.empty() && selection.drop.empty() &&
+         selection.merges.empty();
+}
+
+// Empty: there is no file of the image that was meshed.
+std::string image_file(const MeshRun& run, const ScratchFolder& scratch) {
+  const ImageArguments& image = run.command.image;
+  if (!is_as_stored(image.selection)) return "";
+  if (!image.path.starts_with("phantom:")) return image.path;
+  write_nifti(run.image, scratch / "image.nii.gz");
+  return scratch / "image.nii.gz";
+}
+
+std::vector<std::string> verifier_command(const MeshRun& run, const std::string& image,
+                                          const std::string& report) {
+  std::vector<std::string> command{
+      (fs::read_symlink("/proc/self/exe").parent_path() / "podm-verify").string(), run.command.mesh_path,
+      "--json", report, "--claims"};
+  std::string claims = "structure,radius_edge,boundary_angles,delaunay,conformity,surface";
+  if (!image.empty()) claims += ",labels";
+  const double radius_mm = run.result.report.radius_mm;
+  const auto& radius_of = run.options.radius_of_mm;
+  if (radius_mm > 0 || !radius_of.empty()) claims += ",size";
+  command.push_back(claims);
+  if (!image.empty()) command.insert(command.end(), {"--image", image});
+  if (radius_mm > 0) command.insert(command.end(), {"--radius", fmt::format("{}", radius_mm)});
+  for (const auto& [label, radius] : radius_of)
+    command.insert(command.end(), {"--radius-of", fmt::format("{}={}", label, radius)});
+  return command;
+}
+
+// Runs to the end; standard output goes to standard error, or nowhere.
+void run_to_end(const std::vector<std::string>& command, bool quiet) {
+  std::vector<char*> arguments;
+  for (const std::string& argument : command) arguments.push_back(const_cast<char*>(argument.c_str()));
+  arguments.push_back(nullptr);
+  posix_spawn_file_actions_t actions;
+  posix_spawn_file_actions_init(&actions);
+  if (quiet) {
+    posix_spawn_file_actions_addopen(&actions, STDOUT_FILENO, "/dev/null", O_WRONLY, 0);
+  } else {
+    posix_spawn_file_actions_adddup2(&actions, STDERR_FILENO, STDOUT_FILENO);
+  }
+  pid_t child = 0;
+  const int error = posix_spawn(&child, arguments[0], &actions, nullptr, arguments.data(), environ);
+  posix_spawn_file_actions_destroy(&actions);
+  if (error != 0) throw InputError(fmt::format("--verify: {} cannot be run", command[0]));
+  while (waitpid(child, nullptr, 0) < 0 && errno == EINTR) {
+  }
+}
+
+}  // namespace
+
+std::map<std::string, std::string> verify_mesh(const MeshRun& run) {
+  const ScratchFolder scratch;
+  const std::string report_path = scratch / "report.json";
+  const auto command = verifier_command(run, image_file(run, scratch), report_path);
+  run_to_end(command, run.command.quiet);
+  std::ifstream file(report_path);
+  const auto report = nlohmann::json::parse(file, nullptr, false);
+  if (!report.is_object()) throw InputError(fmt::format("--verify: {} gave no report", command[0]));
+  std::map<std::string, std::string> verdicts;
+  for (const auto& [claim, result] : report.at("claims").items()) verdicts[claim] = result.at("verdict");
+  return verdicts;
+}
+
+}  // namespace podm::cli

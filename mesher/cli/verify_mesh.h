@@ -1,0 +1,18 @@
+// podm mesh --verify: the written mesh handed to podm-verify, a program that shares no code with the mesher.
+#pragma once
+
+#include <map>
+#include <string>
+
+#include "cli/mesh_run.h"
+
+namespace podm::cli {
+
+/// Runs the podm-verify beside this program on the mesh that `run` wrote: all claims but fidelity, which is
+/// promised only for cells about as small as voxels. The image goes with it as it is in its file, a phantom
+/// as a file written for the purpose; where labels were selected or merged it does not, and only claims about
+/// the mesh alone are checked. The report for people goes to standard error unless the run is quiet. Returns
+/// the verdicts by claim; throws InputError where the verifier is not there or tells nothing.
+std::map<std::string, std::string> verify_mesh(const MeshRun& run);
+
+}  // namespace podm::cli
