@@ -167,12 +167,12 @@ void add_mesh_command(CLI::App& program, MeshCommand& command) {
           });
   add_one(
       app, "--contention", "MANAGER",
-      "what a thread does that meets another's lock: aggressive, random, global or local\n[default: local]",
+      "what a thread does that meets another's lock:\naggressive, random, global or local [default: local]",
       [&command](const std::string& text, const std::string& name) {
         command.meshing.contention = parse_contention(text, name);
       });
   app.add_flag("--verify", command.verify,
-               "have podm-verify check the written mesh, and exit with 1 unless all holds");
+               "have podm-verify check the written mesh; exit 1 unless all holds [default: no]");
   app.add_flag("--quiet", command.quiet, "neither progress nor summary [default: both, on standard error]");
 }
 

@@ -112,8 +112,14 @@ void fill(LabelImage& image, const std::vector<Organ>& organs) {
   }
 }
 
-// NIfTI keeps single precision: the phantom and its file are the same image.
-double as_stored(double x) { return static_cast<float>(x); }
+// Not less, in so few bits that it, and times half a number of voxels too, is exact in the single precision
+// of NIfTI: the phantom and its file are the same image.
+double in_few_bits(double spacing) {
+  constexpr int kBits = 12;
+  int exponent = 0;
+  const double fraction = std::frexp(spacing, &exponent);
+  return std::ldexp(std::ceil(std::ldexp(fraction, kBits)), exponent - kBits);
+}
 
 }  // namespace
 
@@ -129,13 +135,14 @@ LabelImage make_phantom(const std::string& name, int size) {
                                    phantom.half_extent_mm.z};
   const double spacing = 2 * *std::max_element(half.begin(), half.end()) / (size - 2 * kMarginVoxels);
   LabelImage image;
-  image.spacing = {as_stored(spacing), as_stored(spacing), as_stored(phantom.relative_z_spacing * spacing)};
+  image.spacing = {in_few_bits(spacing), in_few_bits(spacing),
+                   in_few_bits(phantom.relative_z_spacing * spacing)};
   for (std::size_t axis = 0; axis < 3; ++axis) {
-    constexpr double kRoundOff = 1e-5;  // else the longest axis might get a voxel too many
+    constexpr double kRoundOff = 1e-9;  // else the longest axis might get a voxel too many
     const double voxels = std::ceil(2 * half[axis] / image.spacing[axis] - kRoundOff);
     image.size[axis] = static_cast<int>(voxels) + 2 * kMarginVoxels;
     image.voxel_to_ras[5 * axis] = image.spacing[axis];
-    image.voxel_to_ras[4 * axis + 3] = as_stored(-0.5 * (image.size[axis] - 1) * image.spacing[axis]);
+    image.voxel_to_ras[4 * axis + 3] = -0.5 * (image.size[axis] - 1) * image.spacing[axis];
   }
   fill(image, phantom.organs);
   return image;

@@ -9,7 +9,7 @@ from podm_process import PROGRAM, PodmTestCase, run_podm
 OPTIONS = {
     "mesh": ["--output", "--radius", "--radius-of", "--delta", "--target-elements", "--labels", "--merge",
              "--drop", "--background", "--label-names", "--space", "--surface", "--record", "--max-elements",
-             "--max-seconds", "--max-memory-gib", "--threads", "--quiet"],
+             "--max-seconds", "--max-memory-gib", "--threads", "--contention", "--verify", "--quiet"],
     "info": ["--labels", "--merge", "--drop", "--background", "--label-names", "--json"],
     "phantom": ["--size", "--output"],
 }
