@@ -12,6 +12,8 @@ import statistics
 import subprocess
 import tempfile
 
+from warm_memory import warm_memory
+
 
 def run_podm(args, folder):
     record = os.path.join(folder, "record.jsonl")
@@ -52,8 +54,10 @@ def main():
     runs = []
     with tempfile.TemporaryDirectory() as folder:
         for number in range(args.rounds):
+            warm_memory()
             measured = {"podm": run_podm(args, folder)}
             for name, (program, threads) in peers.items():
+                warm_memory()
                 measured[name] = run_cgal(program, args, threads)
             runs += [{"round": number, "mesher": name, **row} for name, row in measured.items()]
     options = {key: value for key, value in vars(args).items() if key not in ("podm", "peers", "output", "image")}
