@@ -3,8 +3,11 @@
 #include <unistd.h>
 
 #include <CLI/CLI.hpp>
+#include <chrono>
+#include <cmath>
 #include <cstdio>
 #include <exception>
+#include <filesystem>
 #include <new>
 
 #include "errors.h"
@@ -15,6 +18,7 @@
 namespace podm::verify {
 namespace {
 
+constexpr const char* kClearLine = "\r\033[K";
 constexpr int kSuccess = 0, kClaimNotMet = 1, kBadInput = 2, kInternal = 3;
 
 struct Command {
@@ -23,6 +27,26 @@ struct Command {
   std::string claims, space;
   bool quiet = false;
 };
+
+// Bounds are made into rationals, which have no NaN and no infinity.
+CLI::Validator positive() {
+  return {[](std::string& text) {
+            double value = 0;
+            const bool is_positive =
+                CLI::detail::lexical_cast(text, value) && std::isfinite(value) && value > 0;
+            return is_positive ? std::string() : fmt::format("'{}' is no positive, finite number", text);
+          },
+          "POSITIVE"};
+}
+
+CLI::Validator angle() {
+  return {[](std::string& text) {
+            double value = 0;
+            const bool is_angle = CLI::detail::lexical_cast(text, value) && value >= 0 && value <= 60;
+            return is_angle ? std::string() : fmt::format("'{}' is no angle of 0 to 60 degrees", text);
+          },
+          "0..60"};
+}
 
 void declare_options(CLI::App& app, Command& command) {
   Options& options = command.options;
@@ -35,16 +59,16 @@ void declare_options(CLI::App& app, Command& command) {
   app.add_option("--claims", command.claims,
                  "claims to check, e.g. structure,delaunay [default: all whose inputs are given]");
   app.add_option("--radius-edge", options.radius_edge_bound, "bound of the radius-edge ratio")
-      ->check(CLI::PositiveNumber)
+      ->check(positive())
       ->capture_default_str();
   app.add_option("--angle", options.angle_bound_deg, "bound of the angles of boundary facets, degrees")
-      ->check(CLI::Range(0.0, 60.0))
+      ->check(angle())
       ->capture_default_str();
   app.add_option("--radius", options.radius_mm, "bound of the circumradius, mm [default: none]")
-      ->check(CLI::PositiveNumber);
+      ->check(positive());
   app.add_option("--radius-of", command.radius_of, "LABEL=MM, the same for one label value; repeatable");
   app.add_option("--fidelity-voxels", options.fidelity_bound_voxels, "bound of the claim fidelity, voxels")
-      ->check(CLI::PositiveNumber)
+      ->check(positive())
       ->capture_default_str();
   app.add_option("--space", command.space, "RAS, LPS or voxel [default: what the mesh file says]")
       ->check(CLI::IsMember({"RAS", "LPS", "voxel"}));
@@ -56,6 +80,16 @@ void declare_options(CLI::App& app, Command& command) {
   app.footer(
       "Exit codes: 0 all claims pass, 1 some fail or could not be decided, 2 bad usage or input, 3 "
       "internal.");
+}
+
+// A report is never written over what it reports on.
+void refuse_to_overwrite_inputs(const Options& options) {
+  namespace fs = std::filesystem;
+  std::error_code error;
+  for (const std::string& output : {options.json_path, options.extract_bad_path})
+    for (const std::string& input : {options.mesh_path, options.image_path, options.schedule_path})
+      if (!output.empty() && !input.empty() && fs::equivalent(output, input, error))
+        throw InputError(fmt::format("{}: is an input, and would be written over", output));
 }
 
 void finish_options(Command& command) {
@@ -71,27 +105,37 @@ void finish_options(Command& command) {
     LabelValue label = 0;
     double radius = 0;
     if (equals == std::string::npos || !CLI::detail::lexical_cast(text.substr(0, equals), label) ||
-        !CLI::detail::lexical_cast(text.substr(equals + 1), radius) || !(radius > 0))
+        !CLI::detail::lexical_cast(text.substr(equals + 1), radius) || !(radius > 0) || std::isinf(radius))
       throw InputError(fmt::format("--radius-of: '{}' is not LABEL=MM, as in 7=0.5", text));
     options.radius_of[label] = radius;
   }
   const std::string& bad = options.extract_bad_path;
   if (!bad.empty() && !bad.ends_with(".vtu"))
     throw InputError(fmt::format("--extract-bad: '{}' does not end in .vtu", bad));
+  refuse_to_overwrite_inputs(options);
 }
 
 int verify(const Command& command) {
+  const auto start = std::chrono::steady_clock::now();
   const Options& options = command.options;
   const std::vector<std::string> claims = chosen_claims(options);
   const Inputs inputs = read_inputs(options);
   const bool shows_progress = !command.quiet && isatty(STDERR_FILENO) != 0;
   const std::vector<ClaimResult> results = run_claims(inputs, options, claims, [&](const std::string& claim) {
-    if (shows_progress) fmt::print(stderr, "checking {} ...\r", claim);
+    if (shows_progress) fmt::print(stderr, "{}checking {} ...", kClearLine, claim);
   });
-  if (!command.quiet)
-    fmt::print(options.json_path == "-" ? stderr : stdout, "{}", terminal_report(inputs, options, results));
+  if (shows_progress) fmt::print(stderr, "{}", kClearLine);
+  const double seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+  if (!command.quiet) {
+    const std::string report = terminal_report(inputs, options, results, seconds);
+    if (options.json_path == "-") {
+      fmt::print(stderr, "{}", report);
+    } else {
+      write_text("-", report);
+    }
+  }
   if (!options.json_path.empty())
-    write_text(options.json_path, json_report(inputs, options, results).dump(1) + "\n");
+    write_text(options.json_path, json_report(inputs, options, results, seconds));
   if (!options.extract_bad_path.empty()) write_bad_cells(options.extract_bad_path, inputs.mesh, results);
   const auto passes = [](const ClaimResult& result) { return result.verdict == Verdict::kPass; };
   return std::all_of(results.begin(), results.end(), passes) ? kSuccess : kClaimNotMet;

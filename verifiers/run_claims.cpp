@@ -5,6 +5,8 @@
 #include <algorithm>
 #include <chrono>
 #include <cmath>
+#include <numeric>
+#include <utility>
 
 #include "claims/claims.h"
 #include "errors.h"
@@ -61,6 +63,28 @@ ClaimResult run_claim(const std::string& claim, const Inputs& inputs, const Adja
   return check_fidelity(mesh, adjacency, *image, options);
 }
 
+// Levenshtein's distance: insertions, deletions and replacements from one to the other.
+std::size_t edit_distance(const std::string& a, const std::string& b) {
+  std::vector<std::size_t> row(b.size() + 1);
+  std::iota(row.begin(), row.end(), 0);
+  for (std::size_t i = 1; i <= a.size(); ++i) {
+    std::size_t diagonal = std::exchange(row[0], i);
+    for (std::size_t j = 1; j <= b.size(); ++j) {
+      const std::size_t replaced = diagonal + (a[i - 1] != b[j - 1]);
+      diagonal = std::exchange(row[j], std::min({row[j] + 1, row[j - 1] + 1, replaced}));
+    }
+  }
+  return row.back();
+}
+
+std::string nearest_claim(const std::string& name) {
+  return std::min_element(all_claims().begin(), all_claims().end(),
+                          [&](const ClaimName& a, const ClaimName& b) {
+                            return edit_distance(name, a.name) < edit_distance(name, b.name);
+                          })
+      ->name;
+}
+
 }  // namespace
 
 const std::vector<ClaimName>& all_claims() {
@@ -82,7 +106,8 @@ std::vector<std::string> chosen_claims(const Options& options) {
     if (std::find(chosen.begin(), chosen.end(), name) != chosen.end()) continue;
     std::string known;
     for (const ClaimName& claim : all_claims()) known += std::string(known.empty() ? "" : ", ") + claim.name;
-    throw InputError(fmt::format("--claims: no claim '{}'; there are {}", name, known));
+    throw InputError(fmt::format("--claims: no claim '{}', nearest is '{}'; there are {}", name,
+                                 nearest_claim(name), known));
   }
   return chosen;
 }

@@ -6,6 +6,7 @@
 #include <memory>
 
 #include "errors.h"
+#include "image/image_frame.h"
 #include "report/reports.h"
 
 namespace podm::verify {
@@ -77,7 +78,9 @@ Json claim_of(const ClaimResult& result) {
 Json options_of(const Options& options) {
   Json radius_of = Json::object();
   for (const auto& [label, radius] : options.radius_of) radius_of[std::to_string(label)] = radius;
-  return {{"radius_edge_bound", options.radius_edge_bound},
+  return {{"claims", options.claims.empty() ? Json(nullptr) : Json(options.claims)},
+          {"space", options.space ? Json(describe(*options.space)) : Json(nullptr)},
+          {"radius_edge_bound", options.radius_edge_bound},
           {"angle_bound_deg", options.angle_bound_deg},
           {"radius_mm", options.radius_mm ? Json(*options.radius_mm) : Json(nullptr)},
           {"radius_of_mm", radius_of},
@@ -93,7 +96,8 @@ std::uint64_t peak_resident_bytes() {
 
 }  // namespace
 
-Json json_report(const Inputs& inputs, const Options& options, const std::vector<ClaimResult>& results) {
+std::string json_report(const Inputs& inputs, const Options& options, const std::vector<ClaimResult>& results,
+                        double seconds) {
   const Mesh& mesh = inputs.mesh;
   Json claims = Json::object();
   for (const ClaimResult& result : results) claims[result.claim] = claim_of(result);
@@ -101,16 +105,19 @@ Json json_report(const Inputs& inputs, const Options& options, const std::vector
   mesh_json["format"] = mesh.format;
   mesh_json["cells"] = mesh.cells.size();
   mesh_json["vertices"] = mesh.vertices.size();
+  mesh_json["space"] = describe(mesh.space);
   mesh_json["cell_label_array"] = mesh.cell_label_array;
   mesh_json["other_cells"] = mesh.other_cells;
-  return {{"schema", "podm-verify/1"},
-          {"program", "podm-verify " PODM_VERSION},
-          {"mesh", mesh_json},
-          {"image", file_of(options.image_path)},
-          {"schedule", file_of(options.schedule_path)},
-          {"options", options_of(options)},
-          {"claims", claims},
-          {"peak_rss_bytes", peak_resident_bytes()}};
+  const Json report{{"schema", "podm-verify/1"},
+                    {"program", "podm-verify " PODM_VERSION},
+                    {"mesh", mesh_json},
+                    {"image", file_of(options.image_path)},
+                    {"schedule", file_of(options.schedule_path)},
+                    {"options", options_of(options)},
+                    {"claims", claims},
+                    {"seconds", seconds},
+                    {"peak_rss_bytes", peak_resident_bytes()}};
+  return report.dump(1, ' ', false, Json::error_handler_t::replace) + "\n";
 }
 
 }  // namespace podm::verify

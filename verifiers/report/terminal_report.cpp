@@ -31,7 +31,7 @@ std::string left_out(const Options& options, const std::vector<ClaimResult>& res
 }  // namespace
 
 std::string terminal_report(const Inputs& inputs, const Options& options,
-                            const std::vector<ClaimResult>& results) {
+                            const std::vector<ClaimResult>& results, double seconds) {
   const Mesh& mesh = inputs.mesh;
   std::string text = fmt::format("{}: {}; {} tetrahedra, {} vertices\n", mesh.path, mesh.format,
                                  mesh.cells.size(), mesh.vertices.size());
@@ -45,7 +45,7 @@ std::string terminal_report(const Inputs& inputs, const Options& options,
     if (result.verdict == Verdict::kFail && !result.worst.empty()) text += witness_text(result.worst[0]);
   }
   return text + left_out(options, results) +
-         fmt::format("{} of {} claims pass\n", num_passed, results.size());
+         fmt::format("{} of {} claims pass ({:.2f} s)\n", num_passed, results.size(), seconds);
 }
 
 }  // namespace podm::verify

@@ -4,6 +4,7 @@
 #include <cerrno>
 #include <cstdio>
 #include <cstring>
+#include <filesystem>
 #include <fstream>
 
 #include "errors.h"
@@ -41,21 +42,30 @@ std::string head_of(const std::vector<VtuArray>& arrays, std::size_t begin, std:
   return text;
 }
 
+[[noreturn]] void refuse(const std::string& path) {
+  throw InputError(fmt::format("{}: cannot be written: {}", path, std::strerror(errno)));
+}
+
 }  // namespace
 
 void write_text(const std::string& path, const std::string& text) {
   if (path == "-") {
-    std::fwrite(text.data(), 1, text.size(), stdout);
+    const bool is_written = std::fwrite(text.data(), 1, text.size(), stdout) == text.size();
+    if (std::fflush(stdout) != 0 || !is_written) refuse("standard output");
     return;
   }
-  const std::string aside = fmt::format("{}.{}.part", path, getpid());
-  std::ofstream file(aside, std::ios::binary);
+  const bool is_file_or_none = !std::filesystem::exists(path) || std::filesystem::is_regular_file(path);
+  const std::string written = is_file_or_none ? fmt::format("{}.{}.part", path, getpid()) : path;
+  std::ofstream file(written, std::ios::binary);
   file << text;
   file.close();
-  if (!file || std::rename(aside.c_str(), path.c_str()) != 0) {
-    const std::string fault = std::strerror(errno);
-    std::remove(aside.c_str());
-    throw InputError(fmt::format("{}: cannot be written: {}", path, fault));
+  if (!is_file_or_none) {
+    if (!file) refuse(path);
+  } else if (!file || std::rename(written.c_str(), path.c_str()) != 0) {
+    const int fault = errno;
+    std::remove(written.c_str());
+    errno = fault;
+    refuse(path);
   }
 }
 

@@ -9,12 +9,22 @@ import tempfile
 import unittest
 
 import jsonschema
+from vtkmodules.util.numpy_support import vtk_to_numpy
+from vtkmodules.vtkIOXML import vtkXMLUnstructuredGridReader
 
 from medit_mesh import kuhn_cubes
 from mutants import REGULAR, tetrahedron
 
 VERIFIER = os.environ["PODM_VERIFIER"]
 SCHEMA = json.loads((pathlib.Path(__file__).parents[2] / "results/schema/podm-verify.schema.json").read_text())
+
+
+def read_cell_arrays(path):
+    reader = vtkXMLUnstructuredGridReader()
+    reader.SetFileName(str(path))
+    reader.Update()
+    data = reader.GetOutput().GetCellData()
+    return {data.GetArrayName(i): vtk_to_numpy(data.GetArray(i)) for i in range(data.GetNumberOfArrays())}
 
 
 class ProgramTest(unittest.TestCase):
@@ -28,7 +38,7 @@ class ProgramTest(unittest.TestCase):
 
     def verify(self, *arguments, mesh=None):
         return subprocess.run([VERIFIER, mesh or self.mesh, *map(str, arguments)], capture_output=True, text=True,
-                              timeout=60, check=False)
+                              errors="surrogateescape", timeout=60, check=False)
 
     def assert_exit(self, process, code):
         self.assertEqual(process.returncode, code, process.stdout + process.stderr)
@@ -72,9 +82,13 @@ class ProgramTest(unittest.TestCase):
         self.assert_exit(process, 1)
         self.assertIn("cells are positively oriented; cell 7", process.stdout)
         self.assertIn(7, [w["cells"][0] for w in self.read_report()["claims"]["structure"]["worst"]])
-        extracted = self.verify("--claims", "structure", "--json", self.report, mesh=bad)
-        self.assert_exit(extracted, 1)
-        self.assertGreaterEqual(self.read_report()["mesh"]["cells"], 1)
+        failed = {name for name, claim in self.read_report()["claims"].items() if claim["verdict"] == "fail"}
+        arrays = read_cell_arrays(bad)
+        self.assertEqual(set(arrays), {"cell", "label", *failed})
+        self.assertEqual(arrays["structure"][list(arrays["cell"]).index(7)], 1)
+        self.assertLess(len(arrays["cell"]), len(mesh.cells))
+        self.assertTrue((sum(arrays[claim] for claim in failed) >= 1).all(), "only cells in violation")
+        self.assert_exit(self.verify("--claims", "structure", mesh=bad), 1)
 
     def test_a_left_handed_mesh_is_told_apart(self):
         mesh = kuhn_cubes(2, 1, 1)
@@ -95,9 +109,15 @@ class ProgramTest(unittest.TestCase):
         self.assertEqual(*reports)
 
     def test_bad_usage_and_input_exit_with_two_and_name_the_fault(self):
-        for arguments, fault in ((["--claims", "beauty"], "no claim 'beauty'"),
+        for arguments, fault in ((["--claims", "structure,delauny"], "no claim 'delauny', nearest is 'delaunay'"),
                                  (["--radius", "-1"], "--radius"),
+                                 (["--radius", "nan"], "--radius"),
+                                 (["--radius-edge", "inf"], "--radius-edge"),
+                                 (["--angle", "nan"], "--angle"),
+                                 (["--angle", "60.5"], "--angle"),
+                                 (["--fidelity-voxels", "nan"], "--fidelity-voxels"),
                                  (["--radius-of", "3"], "LABEL=MM"),
+                                 (["--radius-of", "3=inf"], "LABEL=MM"),
                                  (["--extract-bad", "x.txt"], ".vtu"),
                                  (["--image", self.folder / "absent.nii"], "absent.nii"),
                                  (["--schedule", self.folder / "absent.jsonl"], "absent.jsonl"),
@@ -107,6 +127,44 @@ class ProgramTest(unittest.TestCase):
             self.assert_exit(process, 2)
             self.assertIn(fault, process.stderr)
         self.assert_exit(self.verify(mesh=self.folder / "absent.vtu"), 2)
+
+    def test_a_report_does_not_replace_an_input(self):
+        before = self.mesh.read_bytes()
+        process = self.verify("--json", self.folder / "." / "mesh.mesh")
+        self.assert_exit(process, 2)
+        self.assertIn("is an input", process.stderr)
+        self.assertEqual(self.mesh.read_bytes(), before)
+
+    def test_a_pipe_is_written_to_and_stays_a_pipe(self):
+        pipe = self.folder / "pipe"
+        os.mkfifo(pipe)
+        with subprocess.Popen(["cat", pipe], stdout=subprocess.PIPE) as reader:
+            self.assert_exit(self.verify("--json", pipe), 0)
+            jsonschema.validate(json.loads(reader.communicate(timeout=10)[0]), SCHEMA)
+        self.assertTrue(pipe.is_fifo())
+
+    def test_a_report_that_cannot_be_written_is_an_error(self):
+        for arguments in [], ["--quiet", "--json", "-"]:
+            with open("/dev/full", "wb") as full:
+                process = subprocess.run([VERIFIER, self.mesh, *arguments], stdout=full, stderr=subprocess.PIPE,
+                                         text=True, timeout=60, check=False)
+            self.assertEqual(process.returncode, 2)
+            self.assertIn("No space left on device", process.stderr)
+
+    def test_json_on_standard_output_is_alone_there(self):
+        process = self.verify("--json", "-")
+        self.assert_exit(process, 0)
+        jsonschema.validate(json.loads(process.stdout), SCHEMA)
+        self.assertIn("claims pass", process.stderr)
+
+    def test_numbers_and_names_that_json_cannot_hold(self):
+        flat = tetrahedron([(0, 0, 0), (1, 0, 0), (0, 1, 0), (3, 1, 0)])  # its circumradius is infinite
+        flat.vertices[3, 2] = 0
+        path = os.fsencode(self.folder) + b"/\xff.mesh"
+        flat.write(path)
+        self.assert_exit(self.verify("--json", self.report, "--radius", 1, mesh=path), 1)
+        claims = self.read_report()["claims"]
+        self.assertIsNone(claims["radius_edge"]["worst"][0]["value"])
 
     def test_faults_of_a_schedule_name_file_and_line(self):
         head = {"schema": "podm-schedule/1", "mesh_to_grid": [1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0],
