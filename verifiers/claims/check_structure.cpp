@@ -1,18 +1,19 @@
 // Claim structure.
 //   Statements  there are cells; their vertex ids are in range and coordinates finite; every cell is
-//   positively
-//               oriented; no two cells have the same vertices; no two vertices the same coordinates; every
-//               facet belongs to at most two cells, on opposite sides of it; no two cells overlap; no vertex
-//               hangs on a facet or edge. Warning: vertices that no cell uses.
+//               positively oriented; no two cells have the same vertices; no two vertices the same
+//               coordinates; every facet belongs to at most two cells, on opposite sides of it; no two cells
+//               overlap; no vertex hangs on a facet or edge. Warning: vertices that no cell uses.
 //   Rests on    exact orientation signs; what the overlap test rests on is said in check_structure_overlap.h.
-//   A mesh
-//               whose cells are all negative is told apart: it is sound but left-handed, and the other
+//               A mesh whose cells are all negative is told apart: it is sound but left-handed, and the other
 //               statements are judged for its mirror image.
-//   Cost        about linear.
+//   Cost        about n log n.
 //   Not proved  that the surface is a manifold (claim surface) or the shape right (claims labels, fidelity).
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cmath>
+#include <tuple>
+#include <utility>
 
 #include "claims/check_structure_overlap.h"
 #include "claims/claims.h"
@@ -43,61 +44,84 @@ Tally check_references(const Mesh& mesh, int threads) {
 }
 
 struct Orientations {
-  std::uint64_t positive = 0, negative = 0, flat = 0;
+  std::uint64_t positive = 0, negative = 0, flat = 0, num_exact = 0;
   std::vector<std::int8_t> of_cell;
-  bool is_left_handed() const { return positive == 0 && negative > 0; }
+  bool is_left_handed() const { return positive == 0 && flat == 0 && negative > 0; }
+  bool is_consistent() const { return flat == 0 && (positive == 0 || negative == 0); }
 };
 
 Orientations find_orientations(const Mesh& mesh, int threads) {
   Orientations all;
   all.of_cell.resize(mesh.cells.size());
-  parallel_ranges(mesh.cells.size(), threads, [&](std::size_t begin, std::size_t end, std::size_t) {
-    for (std::size_t c = begin; c < end; ++c) {
-      const CellPoints p = points_of(mesh, static_cast<CellId>(c));
-      all.of_cell[c] = static_cast<std::int8_t>(orientation(p[0], p[1], p[2], p[3]));
-    }
+  const Tally tally = tally_over(mesh.cells.size(), threads, {}, [&](std::size_t c, Tally& t) {
+    const CellPoints p = points_of(mesh, static_cast<CellId>(c));
+    all.of_cell[c] = static_cast<std::int8_t>(orientation(p[0], p[1], p[2], p[3], t.num_exact));
   });
+  all.num_exact = tally.num_exact;
   for (const std::int8_t sign : all.of_cell) ++(sign > 0 ? all.positive : sign < 0 ? all.negative : all.flat);
   return all;
 }
 
 Tally check_orientations(const Mesh& mesh, const Orientations& orientations, int threads) {
-  return tally_over(mesh.cells.size(), threads, {}, [&](std::size_t i, Tally& t) {
+  Tally exact;
+  exact.num_exact = orientations.num_exact;
+  exact.add(tally_over(mesh.cells.size(), threads, {}, [&](std::size_t i, Tally& t) {
     const auto c = static_cast<CellId>(i);
     ++t.num_checked;
     if (orientations.of_cell[c] > 0) return;
-    const CellPoints p = points_of(mesh, c);
-    t.violation(
-        {.statement = orientations.of_cell[c] == 0 ? "no cell is flat" : "cells are positively oriented",
-         .cells = {c},
-         .vertices = {mesh.cells[c].begin(), mesh.cells[c].end()},
-         .points = {p.begin(), p.end()}});
-  });
+    t.violation(cell_witness(
+        mesh, c, orientations.of_cell[c] == 0 ? "no cell is flat" : "cells are positively oriented", 0, 0));
+  }));
+  return exact;
 }
 
-VertexId far_vertex(const Mesh& mesh, FacetId f) { return mesh.cells[f / 4][f % 4]; }
+// True at one of the four facets that two equal cells share.
+bool is_first_of_duplicates(const Mesh& mesh, FacetId f, FacetId g) {
+  const auto& cell = mesh.cells[f / 4];
+  return far_vertex(mesh, f) == far_vertex(mesh, g) &&
+         far_vertex(mesh, f) == *std::min_element(cell.begin(), cell.end());
+}
+
+Witness facet_witness(const Mesh& mesh, const char* statement, FacetId f) {
+  const auto v = vertices_of(mesh, f);
+  const TrianglePoints p = points_of(mesh, v);
+  return {.statement = statement, .vertices = {v.begin(), v.end()}, .points = {p.begin(), p.end()}};
+}
+
+void report_duplicates(const Mesh& mesh, FacetId f, FacetId g, Tally& t) {
+  Witness witness = cell_witness(mesh, f / 4, "no two cells have the same vertices", 0, 0);
+  witness.cells.push_back(g / 4);
+  t.violation(std::move(witness));
+}
 
 // Two cells at a facet: different ones, and on opposite sides. Cells of equal orientation are, when they see
 // the facet's vertices turn in opposite senses.
 void check_pair(const Mesh& mesh, const Orientations& orientations, FacetId f, FacetId mirror, Tally& t) {
-  const auto vertices_of = [&](FacetId g) {
-    std::array<VertexId, 3> v{};
-    for (std::size_t k = 0; k < 3; ++k)
-      v[k] = mesh.cells[g / 4][static_cast<std::size_t>(kFacetVertices[g % 4][k])];
-    return v;
-  };
-  const auto a = vertices_of(f), b = vertices_of(mirror);
+  const auto a = vertices_of(mesh, f), b = vertices_of(mesh, mirror);
   const auto at = static_cast<std::size_t>(std::find(b.begin(), b.end(), a[0]) - b.begin());
   const bool is_same_turn = b[(at + 1) % 3] == a[1];
   const bool is_same_sign = orientations.of_cell[f / 4] == orientations.of_cell[mirror / 4];
   ++t.num_checked;
   if (is_same_turn != is_same_sign) return;
-  const bool is_duplicate = far_vertex(mesh, f) == far_vertex(mesh, mirror);
-  t.violation({.statement = is_duplicate ? "no two cells have the same vertices"
-                                         : "the two cells of a facet are on opposite sides",
-               .cells = {f / 4, mirror / 4},
-               .vertices = {a.begin(), a.end()},
-               .points = {mesh.vertices[a[0]], mesh.vertices[a[1]], mesh.vertices[a[2]]}});
+  if (is_first_of_duplicates(mesh, f, mirror)) report_duplicates(mesh, f, mirror, t);
+  if (far_vertex(mesh, f) == far_vertex(mesh, mirror)) return;
+  Witness witness = facet_witness(mesh, "the two cells of a facet are on opposite sides", f);
+  witness.cells = {f / 4, mirror / 4};
+  t.violation(std::move(witness));
+}
+
+void check_crowd(const Mesh& mesh, std::vector<FacetId> crowd, Tally& t) {
+  Witness witness = facet_witness(mesh, "a facet has at most two cells", crowd[0]);
+  witness.value = witness.severity = static_cast<double>(crowd.size());
+  for (const FacetId f : crowd) witness.cells.push_back(f / 4);
+  ++t.num_checked;
+  t.violation(std::move(witness));
+  std::sort(crowd.begin(), crowd.end(), [&](FacetId f, FacetId g) {
+    return std::pair(far_vertex(mesh, f), f) < std::pair(far_vertex(mesh, g), g);
+  });
+  for (std::size_t i = 0; i + 1 < crowd.size(); ++i)
+    if (is_first_of_duplicates(mesh, crowd[i], crowd[i + 1]))
+      report_duplicates(mesh, crowd[i], crowd[i + 1], t);
 }
 
 Tally check_facets(const Mesh& mesh, const Adjacency& adjacency, const Orientations& orientations,
@@ -107,15 +131,7 @@ Tally check_facets(const Mesh& mesh, const Adjacency& adjacency, const Orientati
     if (mirror == kNone || mirror < f) return;
     check_pair(mesh, orientations, static_cast<FacetId>(f), mirror, t);
   });
-  for (const auto& group : adjacency.crowded) {
-    Witness witness{.statement = "a facet has at most two cells", .value = static_cast<double>(group.size())};
-    witness.severity = witness.value;
-    for (const FacetId f : group) witness.cells.push_back(f / 4);
-    for (const int k : kFacetVertices[group[0] % 4])
-      witness.vertices.push_back(mesh.cells[group[0] / 4][static_cast<std::size_t>(k)]);
-    for (const VertexId v : witness.vertices) witness.points.push_back(mesh.vertices[v]);
-    tally.violation(std::move(witness));
-  }
+  for (const auto& crowd : adjacency.crowded) check_crowd(mesh, crowd, tally);
   return tally;
 }
 
@@ -137,9 +153,7 @@ Tally check_coincident_vertices(const Mesh& mesh) {
 }
 
 std::uint64_t count_orphans(const Mesh& mesh) {
-  std::vector<std::uint8_t> used(mesh.vertices.size(), 0);
-  for (const auto& cell : mesh.cells)
-    for (const VertexId v : cell) used[v] = 1;
+  const std::vector<std::uint8_t> used = used_vertices(mesh);
   return static_cast<std::uint64_t>(std::count(used.begin(), used.end(), 0));
 }
 
@@ -168,7 +182,6 @@ ClaimResult check_structure(const Mesh& mesh, const Adjacency& adjacency, const 
                {"negative_cells", orientations.negative},
                {"flat_cells", orientations.flat},
                {"is_left_handed", is_left_handed}};
-    const bool is_consistent = orientations.flat == 0 && (is_left_handed || orientations.negative == 0);
     const auto add = [&](const char* name, const Tally& part) {
       details["violations"][name] = part.num_violations;
       tally.add(part);
@@ -176,7 +189,7 @@ ClaimResult check_structure(const Mesh& mesh, const Adjacency& adjacency, const 
     add("orientation", check_orientations(mesh, orientations, options.threads));
     add("facets", check_facets(mesh, adjacency, orientations, options.threads));
     add("coincident_vertices", check_coincident_vertices(mesh));
-    if (is_consistent) {
+    if (orientations.is_consistent()) {
       add("overlap", check_overlap(mesh, adjacency, is_left_handed, options.threads));
       add("hanging_vertices", check_hanging_vertices(mesh, adjacency, options.threads));
     } else {
@@ -185,7 +198,7 @@ ClaimResult check_structure(const Mesh& mesh, const Adjacency& adjacency, const 
     num_orphans = count_orphans(mesh);
   }
   ClaimResult result = result_of("structure", tally);
-  result.method = "combinatorial, exact orientations and separating planes";
+  result.method = "combinatorial; orientations and separating planes, filtered, then exact";
   result.num_warnings = num_orphans;
   result.details = std::move(details);
   result.details["orphan_vertices"] = num_orphans;

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <string>
 #include <utility>
 #include <vector>
 
@@ -46,14 +47,14 @@ class Bins {
 
 struct Tally {
   std::uint64_t num_checked = 0, num_exact = 0, num_violations = 0, num_ties = 0;
-  WorstWitnesses worst;
+  WorstWitnesses worst, closest;  // of violations; of all, where the check adds them: reported on a pass
   std::vector<CellId> bad_cells;
   std::vector<Bins> bins;
 
   void violation(Witness witness) {
     ++num_violations;
     bad_cells.insert(bad_cells.end(), witness.cells.begin(), witness.cells.end());
-    if (worst.wants(witness.severity)) worst.add(std::move(witness));
+    worst.add(std::move(witness));
   }
   void add(const Tally& other) {
     num_checked += other.num_checked;
@@ -61,6 +62,7 @@ struct Tally {
     num_violations += other.num_violations;
     num_ties += other.num_ties;
     worst.add(other.worst);
+    closest.add(other.closest);
     bad_cells.insert(bad_cells.end(), other.bad_cells.begin(), other.bad_cells.end());
     for (std::size_t b = 0; b < bins.size(); ++b) bins[b].add(other.bins[b]);
   }
@@ -78,6 +80,18 @@ Tally tally_over(std::size_t count, int threads, const Tally& empty, const Body&
   return sum;
 }
 
+inline Witness cell_witness(const Mesh& mesh, CellId c, std::string statement, double value,
+                            double severity) {
+  Witness witness{.statement = std::move(statement),
+                  .cells = {c},
+                  .vertices = {mesh.cells[c].begin(), mesh.cells[c].end()},
+                  .value = value,
+                  .severity = severity,
+                  .label = mesh.cell_labels.empty() ? 0 : mesh.cell_labels[c]};
+  for (const VertexId v : witness.vertices) witness.points.push_back(mesh.vertices[v]);
+  return witness;
+}
+
 /// A claim's result but for method, reason and details.
 inline ClaimResult result_of(const std::string& claim, const Tally& tally) {
   ClaimResult result;
@@ -86,7 +100,7 @@ inline ClaimResult result_of(const std::string& claim, const Tally& tally) {
   result.num_checked = tally.num_checked;
   result.num_exact = tally.num_exact;
   result.num_violations = tally.num_violations;
-  result.worst = tally.worst.worst_first();
+  result.worst = (tally.num_violations == 0 ? tally.closest : tally.worst).worst_first();
   result.bad_cells = tally.bad_cells;
   std::sort(result.bad_cells.begin(), result.bad_cells.end());
   result.bad_cells.erase(std::unique(result.bad_cells.begin(), result.bad_cells.end()),

@@ -10,11 +10,7 @@ namespace podm::verify {
 namespace {
 
 std::array<VertexId, 3> sorted_vertices(const Mesh& mesh, FacetId f) {
-  const auto& cell = mesh.cells[f / 4];
-  const auto& local = kFacetVertices[f % 4];
-  std::array<VertexId, 3> v{cell[static_cast<std::size_t>(local[0])],
-                            cell[static_cast<std::size_t>(local[1])],
-                            cell[static_cast<std::size_t>(local[2])]};
+  std::array<VertexId, 3> v = vertices_of(mesh, f);
   if (v[0] > v[1]) std::swap(v[0], v[1]);
   if (v[1] > v[2]) std::swap(v[1], v[2]);
   if (v[0] > v[1]) std::swap(v[0], v[1]);
@@ -67,6 +63,13 @@ Adjacency find_adjacency(const Mesh& mesh, int threads) {
   });
   for (auto& part : crowded) std::move(part.begin(), part.end(), std::back_inserter(adjacency.crowded));
   return adjacency;
+}
+
+std::vector<std::uint8_t> used_vertices(const Mesh& mesh) {
+  std::vector<std::uint8_t> used(mesh.vertices.size(), 0);
+  for (const auto& cell : mesh.cells)
+    for (const VertexId v : cell) used[v] = 1;
+  return used;
 }
 
 }  // namespace podm::verify

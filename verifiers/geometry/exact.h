@@ -1,36 +1,28 @@
-// Exact decisions about points with double coordinates: a filter first, rationals for what it leaves open.
-//
-// Orientations and spheres are the LGPL kernel's of CGAL, filtered and exact. Other polynomials are evaluated
-// in interval arithmetic, which proves its sign or not, and then in rationals.
+// Exact decisions about points with double coordinates: a filter first, exact arithmetic for what it leaves
+// open. Every function counts in `num_exact` what was left.
 #pragma once
 
-#include <CGAL/Exact_predicates_inexact_constructions_kernel.h>
 #include <CGAL/Gmpq.h>
 #include <CGAL/Interval_nt.h>
 
 #include <array>
 #include <cstdint>
+#include <type_traits>
+#include <utility>
 
 #include "mesh.h"
 
 namespace podm::verify {
 
-using Kernel = CGAL::Exact_predicates_inexact_constructions_kernel;
 using Rational = CGAL::Gmpq;
 using Interval = CGAL::Interval_nt<false>;  // inside Protect_FPU_rounding
 
-inline Kernel::Point_3 to_cgal(const Point& p) { return {p[0], p[1], p[2]}; }
-
 /// The sign of dot(cross(b-a, c-a), d-a).
-inline int orientation(const Point& a, const Point& b, const Point& c, const Point& d) {
-  return static_cast<int>(CGAL::orientation(to_cgal(a), to_cgal(b), to_cgal(c), to_cgal(d)));
-}
+int orientation(const Point& a, const Point& b, const Point& c, const Point& d, std::uint64_t& num_exact);
 /// 1 when p is strictly inside the circumsphere of the cell abcd of either orientation, 0 on it, -1 outside.
 /// The cell must not be flat.
-inline int side_of_sphere(const Point& a, const Point& b, const Point& c, const Point& d, const Point& p) {
-  return static_cast<int>(
-      CGAL::side_of_bounded_sphere(to_cgal(a), to_cgal(b), to_cgal(c), to_cgal(d), to_cgal(p)));
-}
+int side_of_sphere(const Point& a, const Point& b, const Point& c, const Point& d, const Point& p,
+                   std::uint64_t& num_exact);
 
 /// A vector over any field.
 template <class T>
@@ -47,9 +39,40 @@ template <class T>
 Vector<T> cross(const Vector<T>& a, const Vector<T>& b) {
   return {a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]};
 }
+/// The smaller and the larger of two numbers; of intervals, what encloses it.
+template <class T>
+T smaller(const T& a, const T& b) {
+  if constexpr (std::is_same_v<T, Interval>) {
+    return {std::min(a.inf(), b.inf()), std::min(a.sup(), b.sup())};
+  } else {
+    return b < a ? b : a;
+  }
+}
+template <class T>
+T larger(const T& a, const T& b) {
+  return -smaller<T>(-a, -b);
+}
 
-/// The sign of `polynomial(T{})`, a function that computes in the type of its argument. Counts what was left
-/// to rationals.
+/// A rational constant of a polynomial, for either type that sign_of() computes in.
+class Constant {
+ public:
+  explicit Constant(Rational value) : exact_(std::move(value)), enclosure_(CGAL::to_interval(exact_)) {}
+  template <class T>
+  const T& in() const {
+    if constexpr (std::is_same_v<T, Interval>) {
+      return enclosure_;
+    } else {
+      return exact_;
+    }
+  }
+
+ private:
+  Rational exact_;
+  Interval enclosure_;
+};
+
+/// The sign of `polynomial(T{})`, a function that computes in the type of its argument: in intervals, which
+/// prove its sign or not, and then in rationals.
 template <class Polynomial>
 int sign_of(const Polynomial& polynomial, std::uint64_t& num_exact) {
   {
@@ -65,5 +88,9 @@ int sign_of(const Polynomial& polynomial, std::uint64_t& num_exact) {
 
 /// The decimal number that a person typed to get this double, as a rational: 1.93 is 193/100.
 Rational typed_decimal(double x);
+
+/// sin^2 of an angle of 0 to 90 degrees: exact at 0, 30, 45, 60 and 90, the only rational ones (Niven), and
+/// elsewhere a rational above it by less than 1e-70.
+Rational squared_sine(double degrees);
 
 }  // namespace podm::verify

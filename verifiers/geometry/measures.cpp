@@ -12,31 +12,15 @@ double degrees(double radians) { return radians * (180 / std::numbers::pi); }
 
 }  // namespace
 
-std::array<int, 2> shortest_edge(const CellPoints& p, std::uint64_t& num_exact) {
-  std::array<int, 2> best = kEdges[0];
-  for (const auto& edge : kEdges) {
-    if (edge == best) continue;
-    const auto longer = [&]<class T>(T) {
-      return squared_length<T>(p[static_cast<std::size_t>(edge[0])], p[static_cast<std::size_t>(edge[1])]) -
-             squared_length<T>(p[static_cast<std::size_t>(best[0])], p[static_cast<std::size_t>(best[1])]);
-    };
-    if (sign_of(longer, num_exact) < 0) best = edge;
-  }
-  return best;
-}
-
 double radius_edge_ratio(const CellPoints& p) {
-  double shortest2 = std::numeric_limits<double>::infinity();
-  for (const auto& edge : kEdges)
-    shortest2 = std::min(shortest2, squared_length<double>(p[static_cast<std::size_t>(edge[0])],
-                                                           p[static_cast<std::size_t>(edge[1])]));
+  const double shortest2 = squared_shortest_edge<double>(p);
   return shortest2 > 0 ? circumradius(p) / std::sqrt(shortest2) : std::numeric_limits<double>::infinity();
 }
 
 double circumradius(const CellPoints& p) {
-  const Fraction<double> squared = squared_circumradius<double>(p);
-  return squared.denominator > 0 ? std::sqrt(squared.numerator / squared.denominator)
-                                 : std::numeric_limits<double>::infinity();
+  const auto [numerator, denominator] = squared_circumradius<double>(p);
+  const double radius = std::sqrt(numerator / denominator);
+  return denominator > 0 && std::isfinite(radius) ? radius : std::numeric_limits<double>::infinity();
 }
 
 std::array<double, 3> angles_deg(const TrianglePoints& p) {

@@ -18,6 +18,10 @@ inline CellPoints points_of(const Mesh& mesh, CellId c) {
   return {mesh.vertices[v[0]], mesh.vertices[v[1]], mesh.vertices[v[2]], mesh.vertices[v[3]]};
 }
 
+inline TrianglePoints points_of(const Mesh& mesh, const std::array<VertexId, 3>& v) {
+  return {mesh.vertices[v[0]], mesh.vertices[v[1]], mesh.vertices[v[2]]};
+}
+
 template <class T>
 T squared_length(const Point& a, const Point& b) {
   const Vector<T> d = difference<T>(a, b);
@@ -41,6 +45,15 @@ Fraction<T> squared_circumradius(const CellPoints& p) {
   return {dot(sum, sum), T(4) * det * det};
 }
 
+template <class T>
+T squared_shortest_edge(const CellPoints& p) {
+  T least = squared_length<T>(p[0], p[1]);
+  for (const auto& [i, j] : kEdges)
+    least =
+        smaller<T>(least, squared_length<T>(p[static_cast<std::size_t>(i)], p[static_cast<std::size_t>(j)]));
+  return least;
+}
+
 /// 4 area^2 of a triangle.
 template <class T>
 T squared_double_area(const TrianglePoints& p) {
@@ -48,8 +61,6 @@ T squared_double_area(const TrianglePoints& p) {
   return dot(normal, normal);
 }
 
-/// Positions of the two ends of the shortest edge, by rounded lengths but exactly where these are close.
-std::array<int, 2> shortest_edge(const CellPoints& p, std::uint64_t& num_exact);
 double radius_edge_ratio(const CellPoints& p);                   ///< rounded; infinite for a flat cell
 double circumradius(const CellPoints& p);                        ///< rounded
 std::array<double, 3> angles_deg(const TrianglePoints& p);       ///< rounded

@@ -1,0 +1,70 @@
+// A tree over axis-aligned boxes, split at medians: which of them may meet something.
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <vector>
+
+#include "mesh.h"
+
+namespace podm::verify {
+
+struct Bounds {
+  Point low{}, high{};
+};
+template <class Points>
+Bounds bounds_of(const Points& points) {
+  Bounds box{points[0], points[0]};
+  for (const Point& p : points) {
+    for (std::size_t a = 0; a < 3; ++a) {
+      if (p[a] < box.low[a]) box.low[a] = p[a];
+      if (p[a] > box.high[a]) box.high[a] = p[a];
+    }
+  }
+  return box;
+}
+inline bool meet(const Bounds& a, const Bounds& b) {
+  for (std::size_t axis = 0; axis < 3; ++axis)
+    if (a.low[axis] > b.high[axis] || b.low[axis] > a.high[axis]) return false;
+  return true;
+}
+
+/// About 14 bytes a box, however the boxes are spread; they must be finite.
+class BoxTree {
+ public:
+  explicit BoxTree(const std::vector<Bounds>& boxes);
+
+  /// Calls visit(i) once for every box i of the leaves whose box `meets`, a function that must be true for
+  /// every box that holds a box for which it is true.
+  template <class Meets, class Visit>
+  void for_each_near(const Meets& meets, const Visit& visit) const {
+    if (nodes_.empty()) return;
+    std::array<std::uint32_t, 64> stack;  // one entry a level, and levels halve
+    std::size_t size = 0;
+    stack[size++] = 0;
+    while (size > 0) {
+      const std::uint32_t index = stack[--size];
+      const Node& node = nodes_[index];
+      if (!meets(node.box)) continue;
+      if (node.right == 0) {
+        for (std::uint32_t i = node.begin; i < node.end; ++i) visit(ids_[i]);
+      } else {
+        stack[size++] = node.right;
+        stack[size++] = index + 1;
+      }
+    }
+  }
+
+ private:
+  static constexpr std::uint32_t kLeafSize = 16;
+  struct Node {
+    Bounds box;
+    std::uint32_t begin, end, right;  // right child; the left one follows. 0: a leaf
+  };
+  std::uint32_t build(const std::vector<Bounds>& boxes, std::uint32_t begin, std::uint32_t end);
+
+  std::vector<std::uint32_t> ids_;
+  std::vector<Node> nodes_;
+};
+
+}  // namespace podm::verify
