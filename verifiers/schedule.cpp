@@ -2,9 +2,11 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <bit>
 #include <cmath>
 #include <fstream>
+#include <limits>
 #include <nlohmann/json.hpp>
 
 #include "errors.h"
@@ -16,7 +18,7 @@ namespace {
 using Json = nlohmann::json;
 
 constexpr const char* kSchema = "podm-schedule/1";
-constexpr std::int64_t kMostGrid = std::int64_t{1} << 40;
+constexpr double kMostGrid = 0x1p40;
 
 class Lines {
  public:
@@ -41,28 +43,32 @@ class Lines {
   std::size_t line_ = 0;
 };
 
+bool is_finite(const Json& json) { return json.is_number() && std::isfinite(json.get<double>()); }
+
 double number(const Json& json, const char* key, const Lines& lines) {
-  if (!json.contains(key) || !json[key].is_number() || !std::isfinite(json[key].get<double>()))
-    lines.fail(fmt::format("no number '{}'", key));
+  if (!json.contains(key) || !is_finite(json[key])) lines.fail(fmt::format("no number '{}'", key));
   return json[key].get<double>();
 }
 
-std::uint64_t count(const Json& json, const char* key, const Lines& lines) {
-  if (!json.contains(key) || !json[key].is_number_unsigned()) lines.fail(fmt::format("no count '{}'", key));
-  return json[key].get<std::uint64_t>();
+template <class Count>
+Count count(const Json& json, const char* key, const Lines& lines) {
+  if (!json.contains(key) || !json[key].is_number_unsigned() ||
+      json[key].get<std::uint64_t>() > std::numeric_limits<Count>::max())
+    lines.fail(fmt::format("no count '{}'", key));
+  return json[key].get<Count>();
+}
+
+// As a double it is compared without wrapping, however large.
+bool is_grid_number(const Json& json) {
+  return json.is_number_integer() && std::fabs(json.get<double>()) <= kMostGrid;
 }
 
 Leaf leaf(const Json& json, const Lines& lines) {
-  const bool is_four_integers =
-      json.is_array() && json.size() == 4 &&
-      std::all_of(json.begin(), json.end(), [](const Json& x) { return x.is_number_integer(); });
-  if (!is_four_integers) lines.fail("a leaf is not [i, j, k, side]");
-  Leaf leaf{{json[0], json[1], json[2]}, json[3]};
-  const bool is_small = std::all_of(leaf.corner.begin(), leaf.corner.end(),
-                                    [](std::int64_t x) { return std::llabs(x) <= kMostGrid; });
-  if (!is_small || leaf.side <= 0 || leaf.side > kMostGrid ||
-      !std::has_single_bit(static_cast<std::uint64_t>(leaf.side)))
-    lines.fail("a leaf's side is no power of two, or it lies too far out");
+  if (!json.is_array() || json.size() != 4 || !std::all_of(json.begin(), json.end(), is_grid_number))
+    lines.fail("a leaf is not [i, j, k, side] with numbers up to 2^40");
+  const Leaf leaf{{json[0], json[1], json[2]}, json[3]};
+  if (leaf.side <= 0 || !std::has_single_bit(static_cast<std::uint64_t>(leaf.side)))
+    lines.fail("a leaf's side is no power of two");
   return leaf;
 }
 
@@ -75,12 +81,12 @@ std::uint32_t leaf_id(const Json& json, const Schedule& schedule, const Lines& l
 Activation activation(const Json& json, const Schedule& schedule, const Lines& lines) {
   Activation a;
   a.leaf = leaf_id(json.value("leaf", Json()), schedule, lines);
-  a.node = static_cast<std::uint32_t>(count(json, "node", lines));
+  a.node = count<std::uint32_t>(json, "node", lines);
   a.begin_s = number(json, "begin_s", lines);
   a.end_s = number(json, "end_s", lines);
   if (a.end_s < a.begin_s) lines.fail("ends before it begins");
-  a.operations = count(json, "operations", lines);
-  a.deferred = count(json, "deferred", lines);
+  a.operations = count<std::uint64_t>(json, "operations", lines);
+  a.deferred = count<std::uint64_t>(json, "deferred", lines);
   if (!json.contains("touched_leaves") || !json["touched_leaves"].is_array())
     lines.fail("no list 'touched_leaves'");
   for (const Json& touched : json["touched_leaves"])
@@ -100,11 +106,9 @@ Schedule read_schedule(const std::string& path) {
   schedule.algorithm =
       json.value("algorithm", Json()).is_string() ? json["algorithm"].get<std::string>() : "";
   const Json matrix = json.value("mesh_to_grid", Json());
-  if (!matrix.is_array() || matrix.size() != 12) lines.fail("'mesh_to_grid' is not 12 numbers");
-  for (std::size_t i = 0; i < 12; ++i) {
-    if (!matrix[i].is_number()) lines.fail("'mesh_to_grid' is not 12 numbers");
-    schedule.mesh_to_grid[i] = matrix[i].get<double>();
-  }
+  if (!matrix.is_array() || matrix.size() != 12 || !std::all_of(matrix.begin(), matrix.end(), is_finite))
+    lines.fail("'mesh_to_grid' is not 12 numbers");
+  schedule.mesh_to_grid = matrix.get<std::array<double, 12>>();
   const Json leaves = json.value("leaves", Json());
   if (!leaves.is_array()) lines.fail("no list 'leaves'");
   for (const Json& entry : leaves) schedule.leaves.push_back(leaf(entry, lines));
