@@ -24,22 +24,27 @@ std::uint64_t key_of(std::array<std::uint16_t, 3> local) {
 
 }  // namespace
 
-std::uint16_t HoleFiller::local_of(Mesh& mesh, VertexId v) {
-  Vertex& vertex = mesh.vertex(v);
-  const unsigned local = vertex.local_index;
-  if (local < ids_.size() && ids_[local] == v) return vertex.local_index;
+HoleFiller::Local HoleFiller::add_local(VertexId v, const Point& p) {
   if (ids_.size() == 0xffff) throw InternalError("hole with more than 65535 vertices");
-  vertex.local_index = static_cast<std::uint16_t>(ids_.size());
   ids_.push_back(v);
-  points_.push_back(vertex.point);
+  points_.push_back(p);
+  return static_cast<Local>(ids_.size() - 1);
+}
+
+HoleFiller::Local HoleFiller::local_of(Mesh& mesh, VertexId v) {
+  Vertex& vertex = mesh.vertex(v);
+  if (vertex.local_index >= ids_.size() || ids_[vertex.local_index] != v)
+    vertex.local_index = add_local(v, vertex.point);
   return vertex.local_index;
 }
 
-void HoleFiller::collect(Mesh& mesh, const Region& region, VertexId added) {
+void HoleFiller::collect(Mesh& mesh, const Region& region, const Point* added) {
   ids_.clear();
   points_.clear();
   open_.clear();
   is_closed_.clear();
+  cells_.clear();
+  glued_.clear();
   rebuild_table(8 * (region.boundary.size() + region.cells.size()));
   for (const CellId c : region.cells) {
     for (const VertexId v : mesh.cell(c).vertices) {
@@ -47,47 +52,59 @@ void HoleFiller::collect(Mesh& mesh, const Region& region, VertexId added) {
         local_of(mesh, v);
     }
   }
-  if (added != kNoVertex) local_of(mesh, added);
+  if (added != nullptr) add_local(kNoVertex, *added);
   for (const FacetId f : region.boundary) {
     const Cell& cell = mesh.cell(cell_of(f));
     const auto k = static_cast<unsigned>(index_in_cell(f));
-    OpenFacet facet{{}, cell.mirrors[k]};
+    OpenFacet facet{{}, {cell.mirrors[k], false}};
     for (unsigned i = 0; i < 3; ++i) {
       facet.local[i] = local_of(mesh, cell.vertices[static_cast<unsigned>(kFacetVertices[k][i])]);
     }
-    add_or_match(mesh, facet);
+    add_or_match(facet);
   }
 }
 
-void HoleFiller::fill(Mesh& mesh, Pool& pool, Region& region, VertexId added) {
+void HoleFiller::plan(Mesh& mesh, const Region& region, const Point* added) {
   collect(mesh, region, added);
-  region.created.clear();
-  std::size_t reused = 0;
   for (std::size_t i = 0; i < open_.size(); ++i) {
     if (is_closed_[i]) continue;
     const OpenFacet facet = open_[i];
     is_closed_[i] = 1;
-    const unsigned apex = apex_of(mesh, facet);
-    const CellId id = reused < region.cells.size() ? region.cells[reused++] : pool.take_cell();
-    region.created.push_back(id);
-    const std::array<std::uint16_t, 4> local{facet.local[0], facet.local[1], facet.local[2],
-                                             static_cast<std::uint16_t>(apex)};
-    mesh.renew(id, {ids_[local[0]], ids_[local[1]], ids_[local[2]], ids_[local[3]]});
-    mesh.cell(id).mirrors = {kNoFacet, kNoFacet, kNoFacet, facet.mirror};
-    mesh.refresh_sphere(id);
-    mesh.set_mirror(facet.mirror, 4 * id + 3);
+    const auto first = static_cast<FacetId>(4 * cells_.size());
+    const std::array<Local, 4> local{facet.local[0], facet.local[1], facet.local[2], apex_of(mesh, facet)};
+    cells_.push_back(local);
+    glued_.push_back({facet.other, FacetRef{first + 3, true}});
     for (unsigned k = 0; k < 3; ++k) {
       const auto& turn = kFacetVertices[k];  // from inside the new cell; the hole sees it the other way round
-      add_or_match(mesh, {{local[static_cast<unsigned>(turn[0])], local[static_cast<unsigned>(turn[2])],
-                           local[static_cast<unsigned>(turn[1])]},
-                          4 * id + k});
+      add_or_match({{local[static_cast<unsigned>(turn[0])], local[static_cast<unsigned>(turn[2])],
+                     local[static_cast<unsigned>(turn[1])]},
+                    {first + k, true}});
     }
+  }
+}
+
+void HoleFiller::fill(Mesh& mesh, Pool& pool, Region& region, VertexId added) {
+  const auto id_of = [&](Local local) { return ids_[local] != kNoVertex ? ids_[local] : added; };
+  region.created.clear();
+  std::size_t reused = 0;
+  for (const auto& local : cells_) {
+    const CellId id = reused < region.cells.size() ? region.cells[reused++] : pool.take_cell();
+    region.created.push_back(id);
+    mesh.renew(id, {id_of(local[0]), id_of(local[1]), id_of(local[2]), id_of(local[3])});
+    mesh.refresh_sphere(id);
+  }
+  const auto facet_of = [&](FacetRef f) {
+    return f.is_planned ? 4 * region.created[f.facet >> 2] + (f.facet & 3) : f.facet;
+  };
+  for (const auto& [a, b] : glued_) {
+    mesh.set_mirror(facet_of(a), facet_of(b));
+    mesh.set_mirror(facet_of(b), facet_of(a));
   }
   for (; reused < region.cells.size(); ++reused) pool.release_cell(region.cells[reused]);
 }
 
 // A facet seen for the second time closes the hole there: glue its two sides.
-void HoleFiller::add_or_match(Mesh& mesh, const OpenFacet& facet) {
+void HoleFiller::add_or_match(const OpenFacet& facet) {
   if (4 * (used_slots_ + 1) > 3 * table_.size()) throw InternalError("gift wrapping does not close");
   const std::uint64_t key = key_of(facet.local);
   Slot& slot = slot_of(key);
@@ -100,9 +117,7 @@ void HoleFiller::add_or_match(Mesh& mesh, const OpenFacet& facet) {
   }
   if (is_closed_[slot.open]) throw InternalError("gift wrapping met a facet three times");
   is_closed_[slot.open] = 1;
-  const FacetId other = open_[slot.open].mirror;
-  mesh.set_mirror(facet.mirror, other);
-  mesh.set_mirror(other, facet.mirror);
+  glued_.push_back({facet.other, open_[slot.open].other});
 }
 
 HoleFiller::Slot& HoleFiller::slot_of(std::uint64_t key) {
@@ -155,7 +170,7 @@ unsigned HoleFiller::nearest_apex(const OpenFacet& facet) {
   return best;
 }
 
-unsigned HoleFiller::apex_of(const Mesh& mesh, const OpenFacet& facet) {
+HoleFiller::Local HoleFiller::apex_of(const Mesh& mesh, const OpenFacet& facet) {
   unsigned best = nearest_apex(facet);
   if (best == kNoApex) throw InternalError("no vertex on the inner side of a hole's facet");
   const Point &a = points_[facet.local[0]], &b = points_[facet.local[1]], &c = points_[facet.local[2]];
@@ -172,7 +187,7 @@ unsigned HoleFiller::apex_of(const Mesh& mesh, const OpenFacet& facet) {
     sphere = circumsphere(a, b, c, points_[best], mesh.extent());
     checked = 0;
   }
-  return best;
+  return static_cast<Local>(best);
 }
 
 }  // namespace podm

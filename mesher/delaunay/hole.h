@@ -16,34 +16,46 @@ namespace podm {
 
 class HoleFiller {
  public:
-  /// Replaces the region by the Delaunay cells of its remaining vertices and `added` (or kNoVertex).
+  /// Finds the Delaunay cells of the region's remaining vertices and of `added`, if given. Writes nothing.
+  void plan(Mesh& mesh, const Region& region, const Point* added);
+  std::size_t num_cells() const { return cells_.size(); }
+  /// Replaces the region by the planned cells; `added` is the vertex whose point was given, or kNoVertex.
   void fill(Mesh& mesh, Pool& pool, Region& region, VertexId added);
 
  private:
+  using Local = std::uint16_t;  // a vertex, as numbered by the plan
+  // A facet of the triangulation or, as long as they have no ids, of the planned cells: 4 * number + index.
+  struct FacetRef {
+    FacetId facet;
+    bool is_planned;
+  };
   struct OpenFacet {
-    std::array<std::uint16_t, 3> local;  // counter-clockwise seen from inside the hole
-    FacetId mirror;                      // what lies on its other side
+    std::array<Local, 3> local;  // counter-clockwise seen from inside the hole
+    FacetRef other;
   };
   struct Slot {
     std::uint64_t key = 0;  // the three local indices, sorted; 0: empty
     std::uint32_t open = 0;
   };
 
-  void collect(Mesh& mesh, const Region& region, VertexId added);
-  std::uint16_t local_of(Mesh& mesh, VertexId v);
-  unsigned apex_of(const Mesh& mesh, const OpenFacet& facet);
+  void collect(Mesh& mesh, const Region& region, const Point* added);
+  Local local_of(Mesh& mesh, VertexId v);
+  Local add_local(VertexId v, const Point& p);
+  Local apex_of(const Mesh& mesh, const OpenFacet& facet);
   unsigned nearest_apex(const OpenFacet& facet);
-  void add_or_match(Mesh& mesh, const OpenFacet& facet);
+  void add_or_match(const OpenFacet& facet);
   Slot& slot_of(std::uint64_t key);
   void rebuild_table(std::size_t size);
 
-  std::vector<VertexId> ids_;
+  std::vector<VertexId> ids_;  // kNoVertex: the added one
   std::vector<Point> points_;
   std::vector<std::uint8_t> is_inner_;  // candidate on the inner side of the facet at hand
   std::vector<OpenFacet> open_;
   std::vector<std::uint8_t> is_closed_;
   std::vector<Slot> table_;  // open addressing, power of two
   std::size_t used_slots_ = 0;
+  std::vector<std::array<Local, 4>> cells_;
+  std::vector<std::array<FacetRef, 2>> glued_;
 };
 
 }  // namespace podm

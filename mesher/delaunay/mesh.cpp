@@ -22,6 +22,13 @@ std::uint32_t take(std::atomic<std::uint32_t>& bound, std::uint32_t count, std::
   return first;
 }
 
+// Room for `count` more elements; doubles, so that many small calls cost little.
+template <class T>
+void reserve_more(std::vector<T>& vector, std::size_t count) {
+  const std::size_t needed = vector.size() + count;
+  if (vector.capacity() < needed) vector.reserve(std::max(2 * vector.capacity(), needed));
+}
+
 double largest_coordinate(const Box& b) {
   return std::max({std::abs(b.low.x), std::abs(b.low.y), std::abs(b.low.z), std::abs(b.high.x),
                    std::abs(b.high.y), std::abs(b.high.z)});
@@ -85,30 +92,33 @@ VertexId Mesh::take_new_vertices(std::uint32_t count) {
   return take(vertex_bound_, count, vertices_.capacity());
 }
 
-CellId Pool::take_cell() {
-  if (!free_cells_.empty()) {
-    const CellId c = free_cells_.back();
-    free_cells_.pop_back();
-    return c;
-  }
-  if (next_cell_ == end_cell_) {
+void Pool::reserve(std::size_t dying, std::size_t created, std::size_t removed) {
+  const std::size_t wanted = created > dying ? created - dying : 0;
+  reserve_more(free_cells_, std::max(dying, created) + kBlock);
+  while (free_cells_.size() + (end_cell_ - next_cell_) < wanted) {
+    for (; next_cell_ != end_cell_; ++next_cell_) free_cells_.push_back(next_cell_);
     next_cell_ = mesh_.take_new_cells(kBlock);
     end_cell_ = next_cell_ + kBlock;
   }
-  return next_cell_++;
-}
-
-VertexId Pool::take_vertex() {
-  if (!free_vertices_.empty()) {
-    const VertexId v = free_vertices_.back();
-    free_vertices_.pop_back();
-    return v;
-  }
-  if (next_vertex_ == end_vertex_) {
+  reserve_more(free_vertices_, removed);
+  if (free_vertices_.empty() && next_vertex_ == end_vertex_) {
     next_vertex_ = mesh_.take_new_vertices(kBlock);
     end_vertex_ = next_vertex_ + kBlock;
   }
-  return next_vertex_++;
+}
+
+CellId Pool::take_cell() {
+  if (free_cells_.empty()) return next_cell_++;
+  const CellId c = free_cells_.back();
+  free_cells_.pop_back();
+  return c;
+}
+
+VertexId Pool::take_vertex() {
+  if (free_vertices_.empty()) return next_vertex_++;
+  const VertexId v = free_vertices_.back();
+  free_vertices_.pop_back();
+  return v;
 }
 
 void Pool::release_cell(CellId c) {

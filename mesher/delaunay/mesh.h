@@ -145,6 +145,10 @@ class Mesh {
 class Pool {
  public:
   explicit Pool(Mesh& mesh) : mesh_(mesh) {}
+  /// Makes room: an operation that replaces `dying` cells by `created` ones, adds a vertex and removes
+  /// `removed` then allocates nothing. Throws std::bad_alloc.
+  void reserve(std::size_t dying, std::size_t created, std::size_t removed);
+  // Of what reserve() made sure of.
   CellId take_cell();
   VertexId take_vertex();
   void release_cell(CellId c);

@@ -30,8 +30,8 @@ bool Operation<Locks>::lock_cell(CellId c) {
 
 template <class Locks>
 void Operation<Locks>::add_to_region(CellId c) {
-  mesh_.mark(c, true);
   region_.cells.push_back(c);
+  mesh_.mark(c, true);
   for (const FacetId mirror : mesh_.cell(c).mirrors) {
     if (mirror != kNoFacet) mesh_.prefetch(cell_of(mirror));  // read when the front gets to c
   }
@@ -120,37 +120,50 @@ double Operation<Locks>::squared_distance_to_region(const Point& p) const {
   return nearest;
 }
 
+// What the commit writes to has room for it: nothing after this throws.
+template <class Locks>
+void Operation<Locks>::reserve_memory(std::size_t num_created) {
+  region_.created.reserve(num_created);
+  pool_.reserve(region_.cells.size(), num_created, region_.removed.size());
+}
+
 template <class Locks>
 Outcome Operation<Locks>::commit_insertion(const Point& p, VertexKind kind, double min_distance) {
   const bool is_star = is_cavity_ && star_.prepare(mesh_, region_, p);
   const double nearest = is_star ? star_.squared_distance() : squared_distance_to_region(p);
   if (nearest < min_distance * min_distance) return Outcome::kRejected;
+  if (!is_star) {
+    if (!is_cavity_) collect_boundary();
+    hole_.plan(mesh_, region_, &p);
+  }
+  reserve_memory(is_star ? star_.num_cells() : hole_.num_cells());
   inserted_ = pool_.take_vertex();
   Vertex& vertex = mesh_.vertex(inserted_);  // its lock may be tried by who has a stale entry
   vertex.point = p;
   vertex.kind = kind;
-  const std::size_t destroyed = region_.cells.size();
+  const std::size_t num_destroyed = region_.cells.size();
   if (is_star) {
     star_.fill(mesh_, pool_, region_, inserted_);
   } else {
-    if (!is_cavity_) collect_boundary();
     hole_.fill(mesh_, pool_, region_, inserted_);
   }
-  counters_.cells_destroyed += destroyed;
-  finish();
+  finish(num_destroyed);
   return Outcome::kCommitted;
 }
 
 template <class Locks>
 void Operation<Locks>::commit_removals() {
   collect_boundary();
-  counters_.cells_destroyed += region_.cells.size();
+  hole_.plan(mesh_, region_, nullptr);
+  reserve_memory(hole_.num_cells());
+  const std::size_t num_destroyed = region_.cells.size();
   hole_.fill(mesh_, pool_, region_, kNoVertex);
-  finish();
+  finish(num_destroyed);
 }
 
 template <class Locks>
-void Operation<Locks>::finish() {
+void Operation<Locks>::finish(std::size_t num_destroyed) {
+  counters_.cells_destroyed += num_destroyed;
   counters_.cells_created += region_.created.size();
   for (const VertexId v : region_.removed) pool_.release_vertex(v);
   region_.clear();

@@ -4,7 +4,8 @@
 // the region: the cells that will die. For an insertion these are the cells in conflict with the point (the
 // cavity), for a removal the cells around the vertex (its ball); an isosurface insertion with its R6 removals
 // takes their union. *Committing* replaces the region by new Delaunay cells. A plan that cannot be carried
-// out is rolled back, with nothing written. *Releasing* unlocks all.
+// out is rolled back, with nothing written. *Releasing* unlocks all. Memory is asked for before the first
+// write, so that std::bad_alloc from any step leaves a plan to roll back.
 //
 // Why one region serves all: a cell of the old triangulation stays Delaunay unless it holds a removed vertex
 // or conflicts with the new one, so the region's boundary facets are facets of the new triangulation too.
@@ -74,7 +75,8 @@ class Operation {
   bool is_in_conflict(CellId c, const Point& p);
   void collect_boundary();
   double squared_distance_to_region(const Point& p) const;
-  void finish();
+  void reserve_memory(std::size_t num_created);
+  void finish(std::size_t num_destroyed);
 
   Mesh& mesh_;
   Pool& pool_;

@@ -33,6 +33,9 @@ bool StarFiller::prepare(Mesh& mesh, const Region& region, const Point& p) {
       facet.local[i] = static_cast<std::uint16_t>(local);
     }
   }
+  row_bits_ = static_cast<unsigned>(std::bit_width(num_vertices_ - 1));
+  if (facet_at_edge_.size() < std::size_t{1} << (2 * row_bits_))
+    facet_at_edge_.resize(std::size_t{1} << (2 * row_bits_));
   return true;
 }
 
@@ -57,9 +60,6 @@ void StarFiller::compute_spheres(const Mesh& mesh, const Point& p) {
 
 void StarFiller::fill(Mesh& mesh, Pool& pool, Region& region, VertexId apex) {
   compute_spheres(mesh, mesh.point(apex));
-  row_bits_ = static_cast<unsigned>(std::bit_width(num_vertices_ - 1));
-  if (facet_at_edge_.size() < std::size_t{1} << (2 * row_bits_))
-    facet_at_edge_.resize(std::size_t{1} << (2 * row_bits_));
   region.created.clear();
   // The dying cells' ids are reused at once: they are warm, and their neighbours are next to them.
   std::size_t reused = 0;

@@ -12,9 +12,10 @@ namespace podm {
 
 class StarFiller {
  public:
-  /// Numbers the boundary's vertices and measures them from p. False if there are more than fit; then
-  /// HoleFiller must be used.
+  /// Numbers the boundary's vertices and measures them from p; writes nothing. False if there are more than
+  /// fit; then HoleFiller must be used.
   bool prepare(Mesh& mesh, const Region& region, const Point& p);
+  std::size_t num_cells() const { return num_facets_; }
   /// Of the prepared boundary to p, mm^2.
   double squared_distance() const { return squared_distance_; }
   /// Replaces the region by the star of `apex`, whose point is p. Cells get their spheres here.

@@ -41,6 +41,7 @@ class VertexLocks {
     // Relaxed: only we write our own id, so seeing it needs nobody else's writes.
     std::uint32_t holder = lock.load(std::memory_order_relaxed);
     if (holder == mine_) return true;
+    if (held_.size() == held_.capacity()) held_.reserve(2 * held_.size() + 64);  // may throw, so first
     // Acquire: sees what the last holder wrote. Relaxed on failure: nothing but the id is used.
     if (holder == 0 &&
         lock.compare_exchange_strong(holder, mine_, std::memory_order_acquire, std::memory_order_relaxed)) {
