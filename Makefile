@@ -5,12 +5,13 @@ CMAKE_FLAGS ?=
 FIGURES = results/runs/figures
 
 .DEFAULT_GOAL := help
-.PHONY: help setup build test kill-matrix experiments figures clean
+.PHONY: help setup build test stress kill-matrix experiments figures clean
 
 help:
 	@echo "make experiments   mesh the inputs of experiments/first_mesh.toml at three sizes; table and results/runs/"
 	@echo "make test          all tests"
-	@echo "make kill-matrix  every mutant of a mesh and the claim of podm-verify that rejects it"
+	@echo "make stress        2200 runs of up to 256 workers, each verified and replayed; some 10 minutes on 2 cores"
+	@echo "make kill-matrix   every mutant of a mesh and the claim of podm-verify that rejects it"
 	@echo "make figures       mesh the abdomen phantom and draw it cut open: $(FIGURES)/"
 	@echo "make build         the programs, in build/bin/"
 	@echo "make setup         install the Debian 12 packages needed (root or sudo; otherwise says what to run)"
@@ -30,6 +31,9 @@ build: setup
 
 test: build
 	$(if $(DATA),PODM_TEST_IMAGES="$(abspath $(DATA))") ctest --test-dir build -j2 --output-on-failure
+
+stress: build
+	cd mesher/tests && PODM_PROGRAM=$(CURDIR)/build/bin/podm /usr/bin/python3 -B stress.py
 
 kill-matrix: build
 	cmake --build build --target kill-matrix

@@ -11,6 +11,8 @@
 #include "extract_mesh.h"
 #include "measure_quality.h"
 #include "podm.h"
+#include "podm/operation_log.h"
+#include "replay.h"
 
 namespace podm {
 
@@ -73,7 +75,8 @@ class Run {
     check(image_, options_);
     announce("transform", 0, 0);
     const Clock::time_point start = Clock::now();
-    const Isosurface isosurface(image_, options_.threads);
+    const bool is_virtual = options_.executor == Executor::kVirtual;
+    const Isosurface isosurface(image_, is_virtual ? 0 : options_.threads);
     MeshingResult result;
     MeshingReport& report = result.report;
     report.phases_s["transform"] = seconds_since(start);
@@ -86,6 +89,9 @@ class Run {
     report.stop_reason = refinement.stop_reason;
     report.counters = refinement.counters;
     report.store_cells = refinement.mesh->num_cells();
+    const auto& [low, high] = refinement.mesh->box();
+    report.virtual_box = {low.x, low.y, low.z, high.x, high.y, high.z};
+    report.virtual_s = refinement.virtual_s;
     extract(isosurface, refinement, result);
     return result;
   }
@@ -111,9 +117,15 @@ class Run {
     Watch watch(limits, stop_, [&](std::uint64_t cells) {
       announce("refine", static_cast<double>(cells) / expected, cells);
     });
-    const Crew crew{std::max(1, options_.threads), options_.contention, options_.seed};
+    if (options_.log != nullptr) options_.log->restart();
     return podm(isosurface, foreground_bounds(image_), report.delta_mm,
-                size_field(image_, options_, radius_mm), cell_capacity(options_), crew, watch);
+                size_field(image_, options_, radius_mm), cell_capacity(options_), crew(), watch);
+  }
+
+  Crew crew() const {
+    const CoordinationOptions coordination{
+        std::max(1, options_.threads), options_.contention, {}, options_.seed};
+    return {options_.executor, coordination, options_.virtual_cost, options_.log};
   }
 
   double delta() const {
@@ -202,9 +214,24 @@ std::string to_string(Contention contention) {
   throw InternalError("unknown contention manager");
 }
 
+std::string to_string(Executor executor) { return executor == Executor::kThreads ? "threads" : "virtual"; }
+
+std::string to_string(VirtualCost cost) { return cost == VirtualCost::kUnit ? "unit" : "measured"; }
+
 MeshingResult mesh_image(const LabelImage& image, const MeshingOptions& options,
                          const ProgressCallback& progress, std::stop_token stop) {
   return Run(image, options, progress, std::move(stop))();
+}
+
+TetMesh replay_operations(const LabelImage& image, const OperationLog& log, Space space) {
+  const std::unique_ptr<Mesh> refined = replay(log);
+  const Isosurface isosurface(image, 0);
+  std::uint64_t facets_off_isosurface = 0;
+  const bool is_voxel = space == Space::kVoxel;
+  TetMesh mesh =
+      extract_mesh(*refined, isosurface, image, is_voxel ? Space::kRas : space, facets_off_isosurface);
+  if (is_voxel) convert_to_voxel_space(mesh, image);
+  return mesh;
 }
 
 }  // namespace podm

@@ -5,6 +5,7 @@
 
 #include "refine/thread_executor.h"
 #include "refine/virtual_box.h"
+#include "refine/virtual_executor.h"
 
 namespace podm {
 
@@ -24,7 +25,12 @@ void add(const Worker<Locks>& worker, Counters& sum) {
   sum.exact_decisions += o.exact_decisions;
   sum.cells_created += o.cells_created;
   sum.lock_conflicts += w.lock_conflicts;
-  sum.rollback_s += std::chrono::duration<double>(w.rollback).count();
+}
+
+void add(const Overhead& overhead, Counters& sum) {
+  sum.contention_s += overhead.contention_s;
+  sum.begging_s += overhead.begging_s;
+  sum.rollback_s += overhead.rollback_s;
 }
 
 template <class Locks>
@@ -32,21 +38,21 @@ void give_all_cells(const Mesh& mesh, Worker<Locks>& worker) {
   for (CellId c = 0; c < mesh.cell_bound(); ++c) worker.give(c);
 }
 
-// All threads start at once; those without cells beg until the first has some to share.
-void refine_in_parallel(const Isosurface& isosurface, const Parameters& parameters, const Crew& crew,
-                        Watch& watch, Refinement& result) {
-  ThreadExecutor::Workers workers;
-  for (int i = 0; i < crew.threads; ++i) {
-    workers.push_back(std::make_unique<Worker<VertexLocks>>(*result.mesh, isosurface, parameters,
-                                                            static_cast<WorkerId>(i)));
+// All workers start at once; those without cells beg until the first has some to share.
+template <class AnyExecutor>
+void refine_in_parallel(AnyExecutor& executor, const Isosurface& isosurface, const Parameters& parameters,
+                        const Crew& crew, Refinement& result) {
+  typename AnyExecutor::Workers workers;
+  for (WorkerId i = 0; i < static_cast<WorkerId>(crew.coordination.num_workers); ++i) {
+    workers.push_back(
+        std::make_unique<Worker<VertexLocks>>(*result.mesh, isosurface, parameters, i, crew.log));
   }
   give_all_cells(*result.mesh, *workers[0]);
-  ThreadExecutor executor(watch, crew.threads, crew.contention, crew.seed);
-  result.stop_reason = executor.run(workers, *result.mesh);
+  result.stop_reason = executor.run(workers);
   for (WorkerId i = 0; i < workers.size(); ++i) {
+    workers[i]->flush_log();
     add(*workers[i], result.counters);
-    result.counters.contention_s += executor.idleness(i).contention_s;
-    result.counters.begging_s += executor.idleness(i).begging_s;
+    add(executor.overhead(i), result.counters);
   }
 }
 
@@ -60,12 +66,18 @@ Refinement podm(const Isosurface& isosurface, const Box& object, double delta_mm
 
   Refinement result;
   result.mesh = std::make_unique<Mesh>(virtual_box(parameters.clamp_box), cell_capacity);
-  if (crew.threads > 1) {
-    refine_in_parallel(isosurface, parameters, crew, watch, result);
+  if (crew.executor == Executor::kVirtual) {
+    VirtualExecutor executor(watch, crew.coordination, crew.cost);
+    refine_in_parallel(executor, isosurface, parameters, crew, result);
+    result.virtual_s = executor.elapsed_s();
+  } else if (crew.coordination.num_workers > 1) {
+    ThreadExecutor executor(watch, crew.coordination);
+    refine_in_parallel(executor, isosurface, parameters, crew, result);
   } else {
-    Worker<NoLocks> worker(*result.mesh, isosurface, parameters, 0);
+    Worker<NoLocks> worker(*result.mesh, isosurface, parameters, 0, crew.log);
     give_all_cells(*result.mesh, worker);
-    result.stop_reason = SerialExecutor(watch).run(worker, *result.mesh);
+    result.stop_reason = SerialExecutor(watch).run(worker);
+    worker.flush_log();
     add(worker, result.counters);
   }
   return result;

@@ -4,6 +4,8 @@
 
 #include <memory>
 
+#include "podm/operation_log.h"
+#include "refine/coordination.h"
 #include "refine/executor.h"
 #include "refine/rules.h"
 
@@ -13,13 +15,15 @@ struct Refinement {
   std::unique_ptr<Mesh> mesh;
   StopReason stop_reason = StopReason::kComplete;
   Counters counters;
+  double virtual_s = 0;  // of Executor::kVirtual
 };
 
-/// How many workers run, and how they get out of each other's way.
+/// Who refines.
 struct Crew {
-  int threads = 1;  // 1: no locks
-  Contention contention = Contention::kLocal;
-  std::uint64_t seed = 1;
+  Executor executor = Executor::kThreads;
+  CoordinationOptions coordination;  // one thread works without locks
+  VirtualCost cost = VirtualCost::kMeasured;
+  OperationLogWriter* log = nullptr;
 };
 
 /// `object`: bounds of the foreground. `cell_capacity`: the most cells the store may hold.

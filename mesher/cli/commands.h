@@ -1,5 +1,5 @@
-// The commands of the program, one function each. They return the exit code: 0, or 1 when a guarantee or a
-// limit is unmet; faults are thrown.
+// The commands of the program, one function each. They return the exit code: 0, or 1 when a guarantee, a
+// limit or a log's claim is unmet; faults are thrown.
 #pragma once
 
 #include "cli/options.h"
@@ -7,6 +7,7 @@
 namespace podm::cli {
 
 int run(const MeshCommand& command);
+int run(const ReplayCommand& command);
 int run(const InfoCommand& command);
 int run(const PhantomCommand& command);
 int run(const ShowText& show);

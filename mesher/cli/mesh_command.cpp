@@ -3,6 +3,7 @@
 
 #include <chrono>
 #include <cstdio>
+#include <optional>
 
 #include "cli/append_line.h"
 #include "cli/commands.h"
@@ -17,6 +18,7 @@
 #include "cli/summary.h"
 #include "cli/verify_mesh.h"
 #include "podm/mesh_io.h"
+#include "podm/operation_log.h"
 
 namespace podm::cli {
 namespace {
@@ -47,6 +49,14 @@ MeshingResult mesh_with_display(const LabelImage& image, const MeshingOptions& o
   return mesh_image(image, options, progress, stop.token());
 }
 
+// The mesh must be canonical and hashed.
+void finish_log(OperationLogWriter& log, const MeshRun& run) {
+  log.finish({.box = run.result.report.virtual_box,
+              .image_sha256 = label_image_sha256(run.image),
+              .space = to_string(run.options.space),
+              .mesh_sha256 = run.mesh_sha256});
+}
+
 void write_outputs(const MeshCommand& command, const TetMesh& mesh) {
   if (mesh.cells.empty()) return;  // MeshRun::unmet() tells
   write_mesh(mesh, command.mesh_path);
@@ -66,12 +76,15 @@ int run(const MeshCommand& command) {
               .mesh_sha256 = {},
               .read_s = read_s,
               .verdicts = {}};
+  std::optional<OperationLogWriter> log;
+  if (!command.log_path.empty()) run.options.log = &log.emplace(command.log_path);
   run.result = mesh_with_display(image, run.options, command.quiet);
   run.write_s = timed([&] {
     canonicalize(run.result.mesh);
     run.mesh_sha256 = mesh_sha256(run.result.mesh);
     write_outputs(command, run.result.mesh);
   });
+  if (log) finish_log(*log, run);
   run.peak_rss_bytes = peak_resident_bytes();
   if (command.verify && !run.result.mesh.cells.empty()) run.verdicts = verify_mesh(run);
   if (!command.record_path.empty()) append_line(command.record_path, json_line(record(run)));

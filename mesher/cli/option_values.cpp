@@ -35,20 +35,6 @@ std::uint64_t parse_integer(const std::string& text, const std::string& option, 
   return value;
 }
 
-Space parse_space(const std::string& text, const std::string& option) {
-  for (const Space space : {Space::kRas, Space::kLps, Space::kVoxel})
-    if (text == to_string(space)) return space;
-  throw InputError(fmt::format("{}: '{}' is not a space, expected RAS, LPS or voxel", option, text));
-}
-
-Contention parse_contention(const std::string& text, const std::string& option) {
-  for (const Contention contention :
-       {Contention::kAggressive, Contention::kRandom, Contention::kGlobal, Contention::kLocal})
-    if (text == to_string(contention)) return contention;
-  throw InputError(fmt::format(
-      "{}: '{}' is no contention manager, expected aggressive, random, global or local", option, text));
-}
-
 std::pair<std::string, double> parse_label_length(const std::string& text, const std::string& option) {
   const std::size_t equals = text.rfind('=');
   if (equals == std::string::npos || equals == 0)

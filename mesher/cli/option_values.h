@@ -2,9 +2,11 @@
 #pragma once
 
 #include <cstdint>
+#include <initializer_list>
 #include <string>
 #include <utility>
 
+#include "podm/errors.h"
 #include "podm/mesh_image.h"
 #include "podm/tet_mesh.h"
 
@@ -17,11 +19,17 @@ double parse_positive(const std::string& text, const std::string& option, const 
 std::uint64_t parse_integer(const std::string& text, const std::string& option, std::uint64_t low,
                             std::uint64_t high);
 
-/// "RAS", "LPS" or "voxel".
-Space parse_space(const std::string& text, const std::string& option);
-
-/// "aggressive", "random", "global" or "local".
-Contention parse_contention(const std::string& text, const std::string& option);
+/// The choice whose to_string() is `text`.
+template <class Choice>
+Choice parse_choice(const std::string& text, const std::string& option,
+                    std::initializer_list<Choice> choices) {
+  std::string names;
+  for (const Choice choice : choices) {
+    if (text == to_string(choice)) return choice;
+    names += (names.empty() ? "" : choice == *(choices.end() - 1) ? " or " : ", ") + to_string(choice);
+  }
+  throw InputError(option + ": '" + text + "' is not one of " + names);
+}
 
 /// "liver=2" or "7=0.5": a label, by name or value, and a length in mm.
 std::pair<std::string, double> parse_label_length(const std::string& text, const std::string& option);

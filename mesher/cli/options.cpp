@@ -3,20 +3,15 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
-#include <CLI/CLI.hpp>
 #include <algorithm>
-#include <limits>
 
+#include "cli/add_options.h"
 #include "cli/nearest_name.h"
-#include "cli/option_values.h"
-#include "podm/errors.h"
 
 namespace podm::cli {
 namespace {
 
-constexpr std::uint64_t kMaxThreads = 1024;
 constexpr int kMaxPhantomSize = 4096;
-constexpr double kBytesPerGib = 1024.0 * 1024 * 1024;
 constexpr int kHelpColumn = 30;
 
 // What stands beside an option's name in the help: its type alone. The description tells the rest.
@@ -28,50 +23,7 @@ class HelpFormatter : public CLI::Formatter {
   }
 };
 
-// An option taking one value, given once or, when `many`, any number of times; `take(text, name)` stores it.
-template <class Take>
-CLI::Option* add_value(CLI::App& app, const std::string& names, const std::string& type, bool many,
-                       const std::string& description, Take take) {
-  const std::string name = names.substr(names.rfind(',') + 1);
-  auto take_all = [take, name](const std::vector<std::string>& texts) {
-    for (const std::string& text : texts) take(text, name);
-  };
-  CLI::Option* option = app.add_option_function<std::vector<std::string>>(names, take_all, description);
-  option->type_name(type)->type_size(1)->allow_extra_args(false);
-  if (!many) option->expected(1)->multi_option_policy(CLI::MultiOptionPolicy::Throw);
-  return option;
-}
-
-template <class Take>
-CLI::Option* add_one(CLI::App& app, const std::string& names, const std::string& type,
-                     const std::string& description, Take take) {
-  return add_value(app, names, type, false, description, take);
-}
-
-template <class Take>
-CLI::Option* add_many(CLI::App& app, const std::string& names, const std::string& type,
-                      const std::string& description, Take take) {
-  return add_value(app, names, type, true, description, take);
-}
-
-auto into(std::string& target) {
-  return [&target](const std::string& text, const std::string& name) {
-    if (text.empty()) throw InputError(name + ": the name of a file is empty");
-    target = text;
-  };
-}
-
-auto into_length(double& target_mm) {
-  return [&target_mm](const std::string& text, const std::string& name) {
-    target_mm = parse_positive(text, name, "length in mm");
-  };
-}
-
-auto into_count(std::uint64_t& target) {
-  return [&target](const std::string& text, const std::string& name) {
-    target = parse_integer(text, name, 1, std::numeric_limits<std::uint32_t>::max());
-  };
-}
+}  // namespace
 
 void add_image_options(CLI::App& app, ImageArguments& image) {
   add_one(app, "IMAGE", "",
@@ -105,75 +57,15 @@ void add_image_options(CLI::App& app, ImageArguments& image) {
   app.option_defaults()->group("Options");
 }
 
-void add_sizing_options(CLI::App& app, MeshCommand& command) {
-  MeshingOptions& meshing = command.meshing;
-  app.option_defaults()->group("Size of the cells");
-  CLI::Option* radius = add_one(app, "--radius", "MM",
-                                "largest circumradius of a cell, mm [default: unbounded, the surface drives]",
-                                into_length(meshing.radius_mm));
-  add_many(app, "--radius-of", "LABEL=MM",
-           "the same for one label, by name or value, e.g. liver=2;\nrepeatable [default: --radius]",
-           [&command](const std::string& text, const std::string& name) {
-             command.radius_of_mm.push_back(parse_label_length(text, name));
-           });
-  add_one(app, "--delta", "MM", "sampling distance of the surfaces, mm [default: from voxel size and radius]",
-          into_length(meshing.delta_mm));
-  add_one(app, "--target-elements", "N", "choose the radius for this many cells within 5 % [default: none]",
-          into_count(meshing.target_elements))
-      ->excludes(radius);
-}
+namespace {
 
-void add_limit_options(CLI::App& app, MeshCommand& command) {
-  MeshingOptions& meshing = command.meshing;
-  app.option_defaults()->group("Limits (a run that meets one writes a valid mesh and exits with 1)");
-  add_one(app, "--max-elements", "N", "stop at this many cells [default: none]",
-          into_count(meshing.max_elements));
-  add_one(app, "--max-seconds", "S", "stop meshing after this many seconds [default: none]",
-          [&meshing](const std::string& text, const std::string& name) {
-            meshing.max_seconds = parse_positive(text, name, "number of seconds");
-          });
-  add_one(app, "--max-memory-gib", "GIB", "memory of the process, GiB [default: 80 % of what is available]",
-          [&command](const std::string& text, const std::string& name) {
-            const double bytes = parse_positive(text, name, "number of GiB") * kBytesPerGib;
-            constexpr double kMost = 1e18;  // far above any machine, and within an integer
-            command.max_memory_bytes = static_cast<std::uint64_t>(std::clamp(bytes, 1.0, kMost));
-          });
-}
-
-void add_mesh_command(CLI::App& program, MeshCommand& command) {
-  CLI::App& app = *program.add_subcommand("mesh", "mesh a label image into tetrahedra with guarantees");
+void add_replay_command(CLI::App& program, ReplayCommand& command) {
+  CLI::App& app = *program.add_subcommand(
+      "replay", "carry out a run's logged operations on one thread and compare the mesh");
   add_image_options(app, command.image);
-  add_sizing_options(app, command);
-  add_limit_options(app, command);
-  app.option_defaults()->group("Output");
-  add_one(app, "-o,--output", "MESH", "mesh file: .vtu, .mesh (medit) or .msh (Gmsh 4.1) [required]",
-          into(command.mesh_path))
+  add_one(app, "LOG", "", "what podm mesh --log wrote, with the same image and label options",
+          into(command.log_path))
       ->required();
-  add_one(app, "--surface", "FILE", "also the closed surface of each label: .stl or .ply [default: none]",
-          into(command.surface_path));
-  add_one(app, "--space", "SPACE",
-          "frame of the coordinates: RAS or LPS (mm), or voxel (indices) [default: RAS]",
-          [&command](const std::string& text, const std::string& name) {
-            command.meshing.space = parse_space(text, name);
-          });
-  add_one(app, "--record", "FILE", "append one JSON line that describes the run [default: none]",
-          into(command.record_path));
-  app.option_defaults()->group("Run");
-  add_one(app, "--threads", "N",
-          "threads of all phases; 1 makes the same mesh every time\n"
-          "[default: one for refinement, all cores for the feature transform]",
-          [&command](const std::string& text, const std::string& name) {
-            command.meshing.threads = static_cast<int>(parse_integer(text, name, 1, kMaxThreads));
-          });
-  add_one(
-      app, "--contention", "MANAGER",
-      "what a thread does that meets another's lock:\naggressive, random, global or local [default: local]",
-      [&command](const std::string& text, const std::string& name) {
-        command.meshing.contention = parse_contention(text, name);
-      });
-  app.add_flag("--verify", command.verify,
-               "have podm-verify check the written mesh; exit 1 unless all holds [default: no]");
-  app.add_flag("--quiet", command.quiet, "neither progress nor summary [default: both, on standard error]");
 }
 
 void add_info_command(CLI::App& program, InfoCommand& command) {
@@ -233,6 +125,7 @@ void refuse_unknown(CLI::App& program) {
 
 Command parse_command_line(std::vector<std::string> arguments) {
   MeshCommand mesh;
+  ReplayCommand replay;
   InfoCommand info;
   PhantomCommand phantom;
   CLI::App program("Tetrahedral meshes with guarantees from segmented images.", "podm");
@@ -244,6 +137,7 @@ Command parse_command_line(std::vector<std::string> arguments) {
   program.footer(
       "Exit codes: 0 success, 1 a guarantee or limit is unmet, 2 bad usage or input, 3 internal error.");
   add_mesh_command(program, mesh);
+  add_replay_command(program, replay);
   add_info_command(program, info);
   add_phantom_command(program, phantom);
   try {
@@ -260,6 +154,7 @@ Command parse_command_line(std::vector<std::string> arguments) {
   refuse_unknown(program);
   const std::string chosen = program.get_subcommands().front()->get_name();
   if (chosen == "mesh") return mesh;
+  if (chosen == "replay") return replay;
   if (chosen == "info") return info;
   return phantom;
 }

@@ -25,11 +25,18 @@ struct MeshCommand {
   std::string mesh_path;
   std::string surface_path;  ///< empty: no surfaces
   std::string record_path;   ///< empty: no record
+  std::string log_path;      ///< empty: no linearization log
   MeshingOptions meshing;    ///< but for the two fields below, which need the image or the machine
   std::vector<std::pair<std::string, double>> radius_of_mm;  ///< by label name or value
   std::uint64_t max_memory_bytes = 0;                        ///< of the process; 0: as the machine has
   bool verify = false;
   bool quiet = false;
+};
+
+/// podm replay
+struct ReplayCommand {
+  ImageArguments image;
+  std::string log_path;
 };
 
 /// podm info
@@ -50,7 +57,7 @@ struct ShowText {
   std::string text;
 };
 
-using Command = std::variant<MeshCommand, InfoCommand, PhantomCommand, ShowText>;
+using Command = std::variant<MeshCommand, ReplayCommand, InfoCommand, PhantomCommand, ShowText>;
 
 /// Parses the arguments after the program's name. Throws InputError naming the option and the fault.
 Command parse_command_line(std::vector<std::string> arguments);

@@ -62,6 +62,16 @@ Json counters_of(const MeshingReport& report) {
           {"store_cells", report.store_cells}};
 }
 
+// Times of a virtual executor are simulated: they stand apart from those that were measured.
+Json executor_of(const MeshRun& run) {
+  Json executor{{"kind", to_string(run.options.executor)}};
+  if (run.options.executor == Executor::kVirtual) {
+    executor["cost"] = to_string(run.options.virtual_cost);
+    executor["simulated_refine_s"] = run.result.report.virtual_s;
+  }
+  return executor;
+}
+
 Json quality_of(const Quality& quality) {
   return {{"max_radius_edge", quality.max_radius_edge},
           {"min_facet_angle_deg", quality.min_facet_angle_deg},
@@ -121,6 +131,7 @@ Json record(const MeshRun& run) {
         {"used", std::max(1, run.options.threads)},
         {"placement", "unpinned"},
         {"contention", to_string(run.options.contention)}}},
+      {"executor", executor_of(run)},
       {"phases_s", run.phases_s()},
       {"cells", mesh.cells.size()},
       {"vertices", mesh.vertices.size()},

@@ -7,25 +7,25 @@ namespace podm {
 
 template <class Locks>
 Outcome Operation<Locks>::reserve(CellId c, std::uint32_t stamp) {
+  Outcome outcome = Outcome::kCommitted;
   if constexpr (Locks::kIsShared) {
     for (const VertexId v : mesh_.glimpse_vertices(c)) {
-      if (v == kNoVertex || !locks_.try_lock(mesh_.vertex(v))) {
-        locks_.unlock_all();
-        return v == kNoVertex ? Outcome::kStaleCell : Outcome::kLockConflict;
-      }
+      if (outcome != Outcome::kCommitted) break;
+      outcome = v == kNoVertex ? Outcome::kStaleCell : locks_.try_lock(mesh_.vertex(v));
     }
   }
-  if (mesh_.stamp(c) == stamp) return Outcome::kCommitted;
-  locks_.unlock_all();
-  return Outcome::kStaleCell;
+  if (mesh_.stamp(c) != stamp) outcome = Outcome::kStaleCell;
+  if (outcome != Outcome::kCommitted) locks_.unlock_all();
+  return outcome;
 }
 
 template <class Locks>
-bool Operation<Locks>::lock_cell(CellId c) {
+Outcome Operation<Locks>::lock_cell(CellId c) {
   for (const VertexId v : mesh_.cell(c).vertices) {
-    if (!locks_.try_lock(mesh_.vertex(v))) return false;
+    if (const Outcome outcome = locks_.try_lock(mesh_.vertex(v)); outcome != Outcome::kCommitted)
+      return outcome;
   }
-  return true;
+  return Outcome::kCommitted;
 }
 
 template <class Locks>
@@ -50,7 +50,7 @@ template <class Locks>
 Outcome Operation<Locks>::plan_insertion(const Point& p, CellId start) {
   is_cavity_ = true;
   if (!is_in_conflict(start, p)) return Outcome::kRejected;
-  if (!lock_cell(start)) return Outcome::kLockConflict;
+  if (const Outcome locked = lock_cell(start); locked != Outcome::kCommitted) return locked;
   add_to_region(start);
   for (std::size_t i = 0; i < region_.cells.size(); ++i) {
     const CellId c = region_.cells[i];
@@ -63,7 +63,7 @@ Outcome Operation<Locks>::plan_insertion(const Point& p, CellId start) {
       const CellId neighbor = cell_of(mirrors[k]);
       if (mesh_.is_marked(neighbor)) continue;
       if (is_in_conflict(neighbor, p)) {
-        if (!lock_cell(neighbor)) return Outcome::kLockConflict;
+        if (const Outcome locked = lock_cell(neighbor); locked != Outcome::kCommitted) return locked;
         add_to_region(neighbor);
       } else {
         region_.boundary.push_back(4 * c + k);
@@ -79,7 +79,7 @@ Outcome Operation<Locks>::plan_removal(VertexId v, CellId seed) {
   region_.removed.push_back(v);
   // Cells around v that the region already has are passed through, so the walk keeps its own list.
   ball_.assign(1, seed);
-  if (!lock_cell(seed)) return Outcome::kLockConflict;
+  if (const Outcome locked = lock_cell(seed); locked != Outcome::kCommitted) return locked;
   if (!mesh_.is_marked(seed)) add_to_region(seed);
   for (std::size_t i = 0; i < ball_.size(); ++i) {
     const Cell& cell = mesh_.cell(ball_[i]);
@@ -87,7 +87,7 @@ Outcome Operation<Locks>::plan_removal(VertexId v, CellId seed) {
       if (cell.vertices[k] == v || cell.mirrors[k] == kNoFacet) continue;
       const CellId neighbor = cell_of(cell.mirrors[k]);
       if (std::find(ball_.begin(), ball_.end(), neighbor) != ball_.end()) continue;
-      if (!lock_cell(neighbor)) return Outcome::kLockConflict;
+      if (const Outcome locked = lock_cell(neighbor); locked != Outcome::kCommitted) return locked;
       if (!mesh_.is_marked(neighbor)) add_to_region(neighbor);
       ball_.push_back(neighbor);
     }
@@ -166,6 +166,7 @@ void Operation<Locks>::finish(std::size_t num_destroyed) {
   counters_.cells_destroyed += num_destroyed;
   counters_.cells_created += region_.created.size();
   for (const VertexId v : region_.removed) pool_.release_vertex(v);
+  removed_.swap(region_.removed);
   region_.clear();
 }
 

@@ -21,8 +21,6 @@
 
 namespace podm {
 
-enum class Outcome { kCommitted, kLockConflict, kStaleCell, kRejected, kOutOfLeaf };
-
 struct OperationCounters {
   std::uint64_t conflict_tests = 0, exact_decisions = 0, cells_created = 0, cells_destroyed = 0;
 };
@@ -54,7 +52,7 @@ class Operation {
     }
   }
   bool removes(VertexId v) const;
-  std::size_t num_removed() const { return region_.removed.size(); }
+  std::size_t num_planned_removals() const { return region_.removed.size(); }
 
   /// Carries the plan out; created() then lists the new cells.
   /// kRejected: a vertex that stays lies nearer to p than `min_distance` (mm); nothing was written, roll
@@ -66,11 +64,13 @@ class Operation {
 
   /// The vertex that the last committed insertion made.
   VertexId inserted() const { return inserted_; }
+  /// What the last commit made and took away.
   const std::vector<CellId>& created() const { return region_.created; }
+  const std::vector<VertexId>& removed() const { return removed_; }
   const OperationCounters& counters() const { return counters_; }
 
  private:
-  bool lock_cell(CellId c);
+  Outcome lock_cell(CellId c);
   void add_to_region(CellId c);
   bool is_in_conflict(CellId c, const Point& p);
   void collect_boundary();
@@ -87,6 +87,7 @@ class Operation {
   HoleFiller hole_;
   bool is_cavity_ = false;  // the region is one point's cavity, its boundary collected while digging
   VertexId inserted_ = kNoVertex;
+  std::vector<VertexId> removed_;
   OperationCounters counters_;
 };
 

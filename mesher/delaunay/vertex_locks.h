@@ -13,6 +13,7 @@
 #include <vector>
 
 #include "delaunay/mesh.h"
+#include "delaunay/outcome.h"
 
 namespace podm {
 
@@ -24,7 +25,7 @@ class NoLocks {
  public:
   static constexpr bool kIsShared = false;
   explicit NoLocks(WorkerId) {}
-  static constexpr bool try_lock(Vertex&) { return true; }
+  static constexpr Outcome try_lock(Vertex&) { return Outcome::kCommitted; }
   static constexpr void unlock_all() {}
   static constexpr WorkerId conflicting_worker() { return kNoWorker; }
 };
@@ -35,21 +36,21 @@ class VertexLocks {
   static constexpr bool kIsShared = true;
   explicit VertexLocks(WorkerId self) : mine_(self + 1) {}
 
-  /// True when the vertex is held, also from before. Else conflicting_worker() tells who holds it.
-  bool try_lock(Vertex& v) {
+  /// kCommitted: the vertex is held, maybe from before. kLockConflict: conflicting_worker() holds it.
+  Outcome try_lock(Vertex& v) {
     const std::atomic_ref<std::uint32_t> lock(v.lock);
     // Relaxed: only we write our own id, so seeing it needs nobody else's writes.
     std::uint32_t holder = lock.load(std::memory_order_relaxed);
-    if (holder == mine_) return true;
+    if (holder == mine_) return Outcome::kCommitted;
     if (held_.size() == held_.capacity()) held_.reserve(2 * held_.size() + 64);  // may throw, so first
     // Acquire: sees what the last holder wrote. Relaxed on failure: nothing but the id is used.
     if (holder == 0 &&
         lock.compare_exchange_strong(holder, mine_, std::memory_order_acquire, std::memory_order_relaxed)) {
       held_.push_back(&v);
-      return true;
+      return Outcome::kCommitted;
     }
     conflicting_worker_ = holder - 1;
-    return false;
+    return Outcome::kLockConflict;
   }
   void unlock_all() {
     // Release: the next holder sees what we wrote.

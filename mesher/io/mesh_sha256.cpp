@@ -1,41 +1,9 @@
-#include <fmt/format.h>
-#include <openssl/evp.h>
-
-#include <bit>
-#include <memory>
-#include <span>
-
-#include "podm/errors.h"
+#include "io/sha256.h"
 #include "podm/mesh_io.h"
+#include "podm/operation_log.h"
 
 namespace podm {
 namespace {
-
-static_assert(std::endian::native == std::endian::little, "the hash is defined over little-endian bytes");
-
-class Sha256 {
- public:
-  Sha256() : context_(EVP_MD_CTX_new(), EVP_MD_CTX_free) {
-    if (!context_ || EVP_DigestInit_ex(context_.get(), EVP_sha256(), nullptr) != 1)
-      throw InternalError("SHA-256 is not available");
-  }
-
-  template <class T>
-  void update(std::span<const T> values) {
-    if (EVP_DigestUpdate(context_.get(), values.data(), values.size_bytes()) != 1)
-      throw InternalError("SHA-256 failed");
-  }
-
-  std::string hexadecimal() {
-    std::array<unsigned char, EVP_MAX_MD_SIZE> digest;
-    unsigned size = 0;
-    if (EVP_DigestFinal_ex(context_.get(), digest.data(), &size) != 1) throw InternalError("SHA-256 failed");
-    return fmt::format("{:02x}", fmt::join(digest.begin(), digest.begin() + size, ""));
-  }
-
- private:
-  std::unique_ptr<EVP_MD_CTX, decltype(&EVP_MD_CTX_free)> context_;
-};
 
 // Hashes the label values behind `indices` in blocks, so that no array of values is ever made.
 void update_with_values(Sha256& hash, std::span<const LabelIndex> indices, const std::vector<Label>& labels) {
@@ -48,7 +16,21 @@ void update_with_values(Sha256& hash, std::span<const LabelIndex> indices, const
   }
 }
 
+// Four bytes a value.
+void update_with_label_values(Sha256& hash, const std::vector<Label>& labels) {
+  for (const Label& label : labels) hash.update(std::span<const std::uint32_t>(&label.value, 1));
+}
+
 }  // namespace
+
+std::string label_image_sha256(const LabelImage& image) {
+  Sha256 hash;
+  hash.update(std::span<const int>(image.size));
+  hash.update(std::span<const double>(image.voxel_to_ras));
+  update_with_label_values(hash, image.labels);
+  hash.update(std::span(image.voxels));
+  return hash.hexadecimal();
+}
 
 std::string mesh_sha256(const TetMesh& mesh) {
   Sha256 hash;

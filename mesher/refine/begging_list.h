@@ -1,46 +1,50 @@
 // The begging list: idle workers ask here for cells; a busy worker that has enough gives some to the first it
-// serves. Givers push; nobody takes from another's list.
+// serves. Givers push; nobody takes from another's list. Foteinos, Chrisochoides, JPDC 74 (2014), section 6:
 //   random        one list for all, first come first served
-//   hierarchical  a giver serves a beggar of its own group first (workers that share a socket or NUMA node)
-// Its caller makes sure that one call is made at a time, but for is_empty().
+//   hierarchical  a list for each group of workers, level by level: socket, node, machine. A beggar is seen
+//                 in its own group; by the group around that one only once all of its group beg. Givers
+//                 serve the nearest first, so that most cells stay near the memory they lie in.
+// Its caller makes sure that one call is made at a time, but for may_serve().
 #pragma once
 
-#include <algorithm>
 #include <atomic>
+#include <memory>
 #include <vector>
 
 #include "delaunay/vertex_locks.h"
-#include "podm/mesh_image.h"
 
 namespace podm {
 
+/// groups[level][worker]: the group it is in, level 0 the smallest; groups nest. The machine, which holds
+/// all, goes without saying: no level at all makes the list random.
+using WorkerGroups = std::vector<std::vector<int>>;
+
 class BeggingList {
  public:
-  /// `group_of[worker]`; one group for all makes the list random.
-  explicit BeggingList(std::vector<int> group_of) : group_of_(std::move(group_of)) {}
+  BeggingList(int num_workers, WorkerGroups groups);
 
-  void add(WorkerId worker) {
-    beggars_.push_back(worker);
-    // Relaxed: only a hint; what counts is looked up again by the callers of take_first.
-    size_.store(beggars_.size(), std::memory_order_relaxed);
-  }
-  /// The beggar that `giver` serves; kNoWorker: nobody begs.
-  WorkerId take_first(WorkerId giver) {
-    if (beggars_.empty()) return kNoWorker;
-    auto served = std::find_if(beggars_.begin(), beggars_.end(),
-                               [&](WorkerId beggar) { return group_of_[beggar] == group_of_[giver]; });
-    if (served == beggars_.end()) served = beggars_.begin();
-    const WorkerId worker = *served;
-    beggars_.erase(served);
-    size_.store(beggars_.size(), std::memory_order_relaxed);
-    return worker;
-  }
-  bool is_empty() const { return size_.load(std::memory_order_relaxed) == 0; }
+  void add(WorkerId worker);
+  void remove(WorkerId worker);
+  /// The beggar that `giver` should serve; kNoWorker: it sees none.
+  WorkerId first_for(WorkerId giver) const;
+  /// A hint that anyone may ask for at any time: whether first_for(giver) would name somebody.
+  bool may_serve(WorkerId giver) const;
 
  private:
-  std::vector<int> group_of_;
-  std::vector<WorkerId> beggars_;
-  std::atomic<std::size_t> size_ = 0;
+  struct Group {
+    int size = 0, num_begging = 0;
+    std::atomic<int> num_visible = 0;  // beggars that its members see
+  };
+  Group& group_of(std::size_t level, WorkerId worker) const {
+    return levels_[level][static_cast<std::size_t>(groups_[level][worker])];
+  }
+  // Levels up to which the beggar is seen.
+  std::size_t reach_of(WorkerId beggar) const;
+  void count_visible();
+
+  WorkerGroups groups_;  // the machine last
+  std::vector<std::unique_ptr<Group[]>> levels_;
+  std::vector<WorkerId> beggars_;  // first come first
 };
 
 }  // namespace podm

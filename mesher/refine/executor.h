@@ -14,7 +14,7 @@
 
 namespace podm {
 
-/// Ends of a run that are not completion. 0: none.
+/// Ends of a run that are not completion, but for memory, whose lack shows itself. 0: none.
 struct Limits {
   std::uint64_t max_cells = 0;  // of the store
   std::chrono::steady_clock::time_point deadline = std::chrono::steady_clock::time_point::max();
@@ -29,10 +29,8 @@ class Watch {
   Watch(const Limits& limits, std::stop_token stop, std::function<void(std::uint64_t)> observe)
       : limits_(limits), stop_(std::move(stop)), observe_(std::move(observe)) {}
 
-  /// Why the run has to end, with `cells` in the store and `num_workers` at work; nothing if it has not. Any
-  /// thread may call.
-  std::optional<StopReason> reason_to_stop(std::uint64_t cells, const Mesh& mesh,
-                                           std::size_t num_workers) const;
+  /// Why the run has to end, with `cells` in the store; nothing if it has not. Any thread may call.
+  std::optional<StopReason> reason_to_stop(std::uint64_t cells) const;
   /// One thread calls.
   void observe(std::uint64_t cells);
 
@@ -43,12 +41,17 @@ class Watch {
   std::chrono::steady_clock::time_point next_observation_ = std::chrono::steady_clock::now();
 };
 
+/// Seconds that one worker did not bring the mesh on, by cause.
+struct Overhead {
+  double contention_s = 0, begging_s = 0, rollback_s = 0;
+};
+
 class SerialExecutor {
  public:
   explicit SerialExecutor(Watch& watch) : watch_(watch) {}
 
   /// Runs until the worker's poor element list is empty or something ends the run, always between operations.
-  StopReason run(Worker<NoLocks>& worker, const Mesh& mesh);
+  StopReason run(Worker<NoLocks>& worker);
 
  private:
   Watch& watch_;

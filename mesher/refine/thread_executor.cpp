@@ -1,14 +1,12 @@
 #include "refine/thread_executor.h"
 
+#include <boost/thread/scoped_thread.hpp>
+#include <new>
 #include <thread>
 
 namespace podm {
 
 namespace {
-
-// A worker shares when it lists this many cells or more; most are dead, as their turn tells.
-constexpr std::size_t kEnoughToShare = 64;
-constexpr std::size_t kMostToShare = 1024;
 
 // Adds the time of its life to a total of seconds.
 class SecondsInto {
@@ -27,104 +25,90 @@ class SecondsInto {
 
 }  // namespace
 
-ThreadExecutor::ThreadExecutor(Watch& watch, int num_threads, Contention contention, std::uint64_t seed)
+ThreadExecutor::ThreadExecutor(Watch& watch, const CoordinationOptions& options)
     : watch_(watch),
-      activity_(num_threads),
-      contention_(contention, num_threads, seed),
-      begging_(std::vector<int>(static_cast<std::size_t>(num_threads), 0)),
-      desks_(static_cast<std::size_t>(num_threads)) {}
+      coordination_(options, [this](WorkerId worker) { desks_[worker].woken.notify_one(); }),
+      desks_(static_cast<std::size_t>(options.num_workers)) {}
 
-StopReason ThreadExecutor::run(Workers& workers, const Mesh& mesh) {
+StopReason ThreadExecutor::run(Workers& workers) {
   {
-    std::vector<std::jthread> threads;
-    for (WorkerId self = 1; self < workers.size(); ++self)
-      threads.emplace_back([&, self] { work(*workers[self], self, mesh); });
-    work(*workers[0], 0, mesh);
+    std::vector<boost::scoped_thread<>> threads;
+    try {
+      threads.reserve(workers.size());
+      for (WorkerId self = 1; self < workers.size(); ++self)
+        threads.emplace_back([&, self] { work(*workers[self], self); });
+    } catch (...) {
+      end(StopReason::kCancelled, std::current_exception());
+    }
+    work(*workers[0], 0);
   }
   if (failure_) std::rethrow_exception(failure_);
   return stop_reason_;
 }
 
-void ThreadExecutor::work(Worker<VertexLocks>& worker, WorkerId self, const Mesh& mesh) try {
+void ThreadExecutor::work(Worker<VertexLocks>& worker, WorkerId self) try {
   int conflicts = 0, successes = 0, attempts = 0;  // the first two in a row
   // Relaxed: whoever ends the run leaves through the mutex or a join anyway.
   while (!is_over_.load(std::memory_order_relaxed)) {
-    if (!worker.has_work() && !beg(worker, self)) return;
+    if (!worker.has_work() && !beg(worker, self)) break;
     const Outcome outcome = worker.attempt();
+    worker.release();
     if (outcome == Outcome::kLockConflict) {
       successes = 0;
       yield_after_conflict(self, worker.conflicting_worker(), ++conflicts);
     } else if (outcome == Outcome::kCommitted) {
       conflicts = 0;
-      if (++successes % ContentionManager::kSuccessesToWake == 0 && contention_.has_waiting()) wake_one(self);
+      if (++successes % ContentionManager::kSuccessesToWake == 0 && coordination_.has_waiting()) {
+        const std::scoped_lock lock(mutex_);
+        coordination_.wake_one(self);
+      }
     }
-    if (!begging_.is_empty() && worker.num_listed() >= kEnoughToShare) share(worker, self);
-    if (++attempts % Watch::kAttemptsBetweenChecks == 0) check(worker, self, mesh);
+    if (coordination_.may_share(self, worker.num_listed())) {
+      const std::scoped_lock lock(mutex_);
+      coordination_.share(self, worker);
+    }
+    if (++attempts % Watch::kAttemptsBetweenChecks == 0) check(worker, self);
   }
+  desks_[self].overhead.rollback_s += std::chrono::duration<double>(worker.counters().rollback).count();
+} catch (const std::bad_alloc&) {
+  end(StopReason::kMemoryLimit);
 } catch (...) {
   end(StopReason::kCancelled, std::current_exception());
 }
 
 // False: the run is over.
 bool ThreadExecutor::beg(Worker<VertexLocks>& worker, WorkerId self) {
-  const SecondsInto total(desks_[self].idleness.begging_s);
+  const SecondsInto total(desks_[self].overhead.begging_s);
   std::unique_lock lock(mutex_);
-  for (const WorkerId waiting : contention_.idle(self, activity_)) set_running(waiting);
-  activity_.set(self, Activity::State::kBegging);
-  begging_.add(self);
-  if (activity_.num_running() == 0) {  // nobody waits either: the last to stop running has woken them
+  if (!coordination_.beg(self)) {
     lock.unlock();
-    end(StopReason::kComplete, nullptr);
+    end(StopReason::kComplete);
     return false;
   }
-  desks_[self].woken.wait(lock, [&] { return activity_.of(self) == Activity::State::kRunning || is_over_; });
-  worker.give(desks_[self].mail);
-  desks_[self].mail.clear();
+  desks_[self].woken.wait(lock, [&] { return coordination_.is_running(self) || is_over_; });
+  worker.give(coordination_.take_gift(self));
   return !is_over_;
 }
 
-void ThreadExecutor::share(Worker<VertexLocks>& worker, WorkerId self) {
-  const std::scoped_lock lock(mutex_);
-  if (begging_.is_empty()) return;
-  std::vector<PoorElementList::Entry> cells = worker.share(kMostToShare);
-  if (cells.empty()) return;
-  const WorkerId beggar = begging_.take_first(self);
-  desks_[beggar].mail = std::move(cells);
-  set_running(beggar);
-}
-
 void ThreadExecutor::yield_after_conflict(WorkerId self, WorkerId holder, int in_a_row) {
-  const SecondsInto total(desks_[self].idleness.contention_s);
+  const SecondsInto total(desks_[self].overhead.contention_s);
   std::unique_lock lock(mutex_);
-  const auto answer = contention_.conflict(self, holder, in_a_row, activity_);
+  const auto answer = coordination_.conflict(self, holder, in_a_row);
   if (answer.kind == ContentionManager::Answer::kWait) {
-    activity_.set(self, Activity::State::kWaiting);
-    desks_[self].woken.wait(lock,
-                            [&] { return activity_.of(self) == Activity::State::kRunning || is_over_; });
+    desks_[self].woken.wait(lock, [&] { return coordination_.is_running(self) || is_over_; });
   } else if (answer.kind == ContentionManager::Answer::kPause) {
     lock.unlock();
     std::this_thread::sleep_for(std::chrono::duration<double>(answer.pause_s));
   }
 }
 
-void ThreadExecutor::wake_one(WorkerId self) {
-  const std::scoped_lock lock(mutex_);
-  const WorkerId waiting = contention_.wake(self);
-  if (waiting != kNoWorker) set_running(waiting);
-}
-
-void ThreadExecutor::check(Worker<VertexLocks>& worker, WorkerId self, const Mesh& mesh) {
+void ThreadExecutor::check(const Worker<VertexLocks>& worker, WorkerId self) {
   desks_[self].net_cells.store(worker.net_cells(), std::memory_order_relaxed);
   std::int64_t cells = 0;
   for (const Desk& desk : desks_) cells += desk.net_cells.load(std::memory_order_relaxed);
   const auto total = static_cast<std::uint64_t>(std::max<std::int64_t>(cells, 0));
-  if (const auto reason = watch_.reason_to_stop(total, mesh, desks_.size())) end(*reason, nullptr);
+  if (const auto reason = watch_.reason_to_stop(total)) end(*reason);
   if (self == 0) watch_.observe(total);
-}
-
-void ThreadExecutor::set_running(WorkerId worker) {
-  activity_.set(worker, Activity::State::kRunning);
-  desks_[worker].woken.notify_one();
 }
 
 // The first reason counts.

@@ -2,7 +2,7 @@
 // without poor cells beg, and busy ones share the oldest cells of their lists. The run is complete when all
 // beg.
 //
-// One mutex guards contention manager, begging list and activity. It is taken on conflicts, when work runs
+// One mutex guards their coordination. It is taken on conflicts, when work runs
 // out or is given, and after every 10 successes while somebody waits: not by operations that succeed alone.
 #pragma once
 
@@ -12,52 +12,40 @@
 #include <mutex>
 #include <vector>
 
-#include "refine/activity.h"
-#include "refine/begging_list.h"
-#include "refine/contention_manager.h"
+#include "refine/coordination.h"
 #include "refine/executor.h"
 
 namespace podm {
-
-/// Seconds that one worker did no work, by cause.
-struct Idleness {
-  double contention_s = 0, begging_s = 0;
-};
 
 class ThreadExecutor {
  public:
   using Workers = std::vector<std::unique_ptr<Worker<VertexLocks>>>;
 
-  ThreadExecutor(Watch& watch, int num_threads, Contention contention, std::uint64_t seed);
+  ThreadExecutor(Watch& watch, const CoordinationOptions& options);
 
   /// Runs until every worker begs, or something ends the run, always between operations. Worker 0 runs on the
-  /// calling thread, which alone observes. What a worker throws is thrown again here.
-  StopReason run(Workers& workers, const Mesh& mesh);
-  const Idleness& idleness(WorkerId worker) const { return desks_[worker].idleness; }
+  /// calling thread, which alone observes. What a worker throws is thrown again here, but for std::bad_alloc,
+  /// which ends the run as a limit does.
+  StopReason run(Workers& workers);
+  const Overhead& overhead(WorkerId worker) const { return desks_[worker].overhead; }
 
  private:
   // What belongs to one worker, in cache lines of its own.
   struct alignas(128) Desk {
     std::condition_variable woken;
-    std::vector<PoorElementList::Entry> mail;
     std::atomic<std::int64_t> net_cells = 0;
-    Idleness idleness;
+    Overhead overhead;
   };
 
-  void work(Worker<VertexLocks>& worker, WorkerId self, const Mesh& mesh);
+  void work(Worker<VertexLocks>& worker, WorkerId self);
   bool beg(Worker<VertexLocks>& worker, WorkerId self);
-  void share(Worker<VertexLocks>& worker, WorkerId self);
   void yield_after_conflict(WorkerId self, WorkerId holder, int in_a_row);
-  void wake_one(WorkerId self);
-  void check(Worker<VertexLocks>& worker, WorkerId self, const Mesh& mesh);
-  void set_running(WorkerId worker);
-  void end(StopReason reason, const std::exception_ptr& failure);
+  void check(const Worker<VertexLocks>& worker, WorkerId self);
+  void end(StopReason reason, const std::exception_ptr& failure = nullptr);
 
   Watch& watch_;
   std::mutex mutex_;
-  Activity activity_;
-  ContentionManager contention_;
-  BeggingList begging_;
+  Coordination coordination_;
   std::vector<Desk> desks_;
   std::atomic<bool> is_over_ = false;
   StopReason stop_reason_ = StopReason::kComplete;

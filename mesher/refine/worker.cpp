@@ -7,19 +7,36 @@ namespace {
 // Invariants keep vertices s apart. Only an oracle that errs about the nearest point can bring them closer;
 // far below s the insertion is refused, so that the process ends whatever the image.
 constexpr double kSpacingFloor = 0.1;
+constexpr std::size_t kOperationsToFlush = 4096;
 
 }  // namespace
 
 template <class Locks>
-Worker<Locks>::Worker(Mesh& mesh, const Isosurface& isosurface, const Parameters& parameters, WorkerId self)
+Worker<Locks>::Worker(Mesh& mesh, const Isosurface& isosurface, const Parameters& parameters, WorkerId self,
+                      OperationLogWriter* log)
     : mesh_(mesh),
       rules_(mesh, isosurface, parameters),
       pool_(mesh),
       operation_(mesh, pool_, self),
-      min_distance_(kSpacingFloor * parameters.spacing_mm) {}
+      min_distance_(kSpacingFloor * parameters.spacing_mm),
+      self_(self),
+      log_(log) {
+  if (log_ != nullptr) unlogged_.operations.reserve(kOperationsToFlush);
+  if (log_ != nullptr) unlogged_.removed.reserve(kOperationsToFlush);
+}
 
 template <class Locks>
-Outcome Worker<Locks>::attempt() {
+Outcome Worker<Locks>::attempt() try {
+  return attempt_next();
+} catch (...) {
+  operation_.rollback();
+  operation_.release();
+  throw;
+}
+
+template <class Locks>
+Outcome Worker<Locks>::attempt_next() {
+  if (unlogged_.operations.size() >= kOperationsToFlush) flush_log();
   mesh_.prefetch(poor_.upcoming(4));
   if constexpr (!Locks::kIsShared)
     rules_.prefetch(poor_.upcoming(2));  // reads the cell, which takes its locks
@@ -34,7 +51,6 @@ Outcome Worker<Locks>::attempt() {
     const auto start =
         Locks::kIsShared ? std::chrono::steady_clock::now() : std::chrono::steady_clock::time_point();
     outcome = apply_first_rule(entry.cell);
-    operation_.release();
     if (outcome == Outcome::kLockConflict) counters_.rollback += std::chrono::steady_clock::now() - start;
   }
   if (outcome == Outcome::kLockConflict) {
@@ -106,13 +122,36 @@ Outcome Worker<Locks>::give_up() {
 
 template <class Locks>
 Outcome Worker<Locks>::commit(const Point& p, VertexKind kind, Rule rule) {
-  const std::size_t num_removed = operation_.num_removed();
+  if (log_ != nullptr)
+    unlogged_.removed.reserve(unlogged_.removed.size() + operation_.num_planned_removals());
   if (operation_.commit_insertion(p, kind, min_distance_) != Outcome::kCommitted) return give_up();
-  counters_.removals += num_removed;
+  if (log_ != nullptr) log(p, kind);
+  counters_.removals += operation_.removed().size();
   ++counters_.insertions_by_rule[static_cast<std::size_t>(rule)];
   for (const CellId c : operation_.created()) give(c);
   if (poor_.is_due_for_cleaning()) poor_.drop_stale(mesh_);
   return Outcome::kCommitted;
+}
+
+// Room was made before the commit, so that no operation is missing when memory runs out.
+template <class Locks>
+void Worker<Locks>::log(const Point& p, VertexKind kind) {
+  const auto& removed = operation_.removed();
+  unlogged_.operations.push_back({log_->next_sequence(),
+                                  {p.x, p.y, p.z},
+                                  operation_.inserted(),
+                                  self_,
+                                  static_cast<std::uint32_t>(kind),
+                                  static_cast<std::uint32_t>(removed.size())});
+  unlogged_.removed.insert(unlogged_.removed.end(), removed.begin(), removed.end());
+}
+
+template <class Locks>
+void Worker<Locks>::flush_log() {
+  if (log_ == nullptr) return;
+  log_->append(unlogged_);
+  unlogged_.operations.clear();
+  unlogged_.removed.clear();
 }
 
 template class Worker<NoLocks>;

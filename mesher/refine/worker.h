@@ -7,6 +7,7 @@
 #include <cstdint>
 
 #include "delaunay/operation.h"
+#include "podm/operation_log.h"
 #include "refine/poor_element_list.h"
 #include "refine/rules.h"
 
@@ -21,7 +22,9 @@ struct WorkerCounters {
 template <class Locks>
 class Worker {
  public:
-  Worker(Mesh& mesh, const Isosurface& isosurface, const Parameters& parameters, WorkerId self);
+  /// `log`, if given, learns of every commit.
+  Worker(Mesh& mesh, const Isosurface& isosurface, const Parameters& parameters, WorkerId self,
+         OperationLogWriter* log = nullptr);
 
   void give(CellId c) { poor_.push(c, mesh_.stamp(c)); }
   void give(const std::vector<PoorElementList::Entry>& entries) {
@@ -37,9 +40,14 @@ class Worker {
   ///   kStaleCell     the cell has died
   ///   kLockConflict  nothing was changed and the entry is back on the list; see conflicting_worker()
   ///   kRejected      the insertion would have broken the spacing floor
-  /// No lock is held before or after.
+  /// Locks are held until release(), which must come before the next attempt. What is thrown (std::bad_alloc)
+  /// leaves a valid triangulation and no lock, but may lose entries of the list.
   Outcome attempt();
+  void release() { operation_.release(); }
   WorkerId conflicting_worker() const { return operation_.conflicting_worker(); }
+
+  /// Hands the last operations to the log.
+  void flush_log();
 
   const WorkerCounters& counters() const { return counters_; }
   const OperationCounters& operation_counters() const { return operation_.counters(); }
@@ -51,11 +59,13 @@ class Worker {
 
  private:
   enum class Sampled { kNo, kCovered, kYes, kLockConflict };
+  Outcome attempt_next();
   Outcome apply_first_rule(CellId c);
   Sampled insert_on_isosurface(const Point& z, CellId start, Rule rule);
   Outcome insert_circumcenter(const Point& p, CellId start, Rule rule);
   Outcome commit(const Point& p, VertexKind kind, Rule rule);
   Outcome give_up();
+  void log(const Point& p, VertexKind kind);
 
   Mesh& mesh_;
   Rules rules_;
@@ -64,6 +74,9 @@ class Worker {
   PoorElementList poor_;
   WorkerCounters counters_;
   double min_distance_;
+  WorkerId self_;
+  OperationLogWriter* log_;
+  OperationBatch unlogged_;
 };
 
 extern template class Worker<NoLocks>;

@@ -6,11 +6,15 @@ UINT8, FLOAT32, RGB24 = 2, 16, 128  # NIfTI-1 datatype codes
 _BYTES = {UINT8: 1, FLOAT32: 4, RGB24: 3}
 
 
+def voxels_of(size, label_at):
+    """A cube of `size` voxels labelled by label_at(i, j, k), as bytes."""
+    return bytes(int(label_at(i, j, k)) for k in range(size) for j in range(size) for i in range(size))
+
+
 def ball_voxels(size):
     """Label 1 in the middle of a cube of `size` voxels, as bytes."""
     middle = (size - 1) / 2
-    inside = lambda *ijk: sum((x - middle) ** 2 for x in ijk) <= (size / 3) ** 2
-    return bytes(inside(i, j, k) for k in range(size) for j in range(size) for i in range(size))
+    return voxels_of(size, lambda *ijk: sum((x - middle) ** 2 for x in ijk) <= (size / 3) ** 2)
 
 
 def write_nifti(path, voxels, dimensions=(12, 12, 12), datatype=UINT8, affine=None, magic=b"n+1\0"):

@@ -25,6 +25,18 @@ inline constexpr double kFacetAngleBound = 30.0;
 enum class Contention { kAggressive, kRandom, kGlobal, kLocal };
 std::string to_string(Contention contention);
 
+/// Who runs the workers: threads, or one core that plays them in virtual time (refine/virtual_executor.h).
+enum class Executor { kThreads, kVirtual };
+std::string to_string(Executor executor);
+
+/// What an attempt lasts in virtual time: 1 us, or by its work, in the proportions of a measured run. Both
+/// are varied at random by half.
+enum class VirtualCost { kUnit, kMeasured };
+std::string to_string(VirtualCost cost);
+
+class OperationLogWriter;
+struct OperationLog;
+
 struct MeshingOptions {
   /// Largest circumradius r_t of a cell, mm. 0: unbounded, the surface alone drives.
   double radius_mm = 0;
@@ -39,7 +51,10 @@ struct MeshingOptions {
   /// guarantees. 0: all cores for the feature transform, one for refinement.
   int threads = 0;
   Contention contention = Contention::kLocal;
-  std::uint64_t seed = 1;  ///< of what is random: pauses of Contention::kRandom
+  Executor executor = Executor::kThreads;
+  VirtualCost virtual_cost = VirtualCost::kMeasured;
+  std::uint64_t seed = 1;             ///< of pauses of Contention::kRandom and of virtual time
+  OperationLogWriter* log = nullptr;  ///< learns of every operation of the last run; not finished
   // Limits end the run with a valid Delaunay mesh that says what is unmet. 0: none.
   std::uint64_t max_elements = 0;
   double max_seconds = 0;
@@ -111,6 +126,8 @@ struct MeshingReport {
   std::map<std::uint32_t, std::uint64_t> cells_of_label;  ///< by label value
   std::map<std::uint32_t, double> volume_of_label_mm3;    ///< by label value, of the mesh
   std::uint64_t store_cells = 0;                          ///< cells of the whole virtual box
+  std::array<double, 6> virtual_box{};                    ///< its low and high corner, mm, image frame
+  double virtual_s = 0;                                   ///< refinement in virtual time: simulated
   std::vector<std::string> warnings;
 };
 
@@ -130,5 +147,9 @@ Estimate estimate(const LabelImage& image, const MeshingOptions& options);
 /// Rules and proofs: Foteinos, Chernikov, Chrisochoides, CGTA 47 (2014) 539-562.
 MeshingResult mesh_image(const LabelImage& image, const MeshingOptions& options,
                          const ProgressCallback& progress = {}, std::stop_token stop = {});
+
+/// The mesh that the logged operations make one after the other: the serial run that a parallel run claims to
+/// equal. Throws InputError, naming the operation, when one cannot be carried out as logged.
+TetMesh replay_operations(const LabelImage& image, const OperationLog& log, Space space);
 
 }  // namespace podm

@@ -14,11 +14,13 @@ namespace {
 constexpr double kRadius = 2.5;
 
 // One thread without locks, and more threads than this machine may have cores, by contention manager.
-const std::vector<Crew> kCrews{{1, Contention::kLocal, 1},
-                               {2, Contention::kLocal, 1},
-                               {7, Contention::kLocal, 1},
-                               {7, Contention::kGlobal, 1},
-                               {7, Contention::kRandom, 1}};
+Crew crew(int num_workers, Contention contention, Executor executor = Executor::kThreads) {
+  return {executor, {num_workers, contention, {}, 1}};
+}
+const std::vector<Crew> kCrews{
+    crew(1, Contention::kLocal),  crew(2, Contention::kLocal),
+    crew(7, Contention::kLocal),  crew(7, Contention::kGlobal),
+    crew(7, Contention::kRandom), crew(64, Contention::kLocal, Executor::kVirtual)};
 
 class Refined : public testing::TestWithParam<std::tuple<NamedImage, Crew>> {
  protected:
@@ -87,8 +89,8 @@ std::string name_of(const testing::TestParamInfo<std::tuple<NamedImage, Crew>>& 
   const auto& [image, crew] = test.param;
   std::string name = image.name;
   name += '_';
-  name += std::to_string(crew.threads);
-  return name += to_string(crew.contention);
+  name += std::to_string(crew.coordination.num_workers);
+  return name += to_string(crew.coordination.contention) + to_string(crew.executor);
 }
 
 INSTANTIATE_TEST_SUITE_P(Images, Refined,

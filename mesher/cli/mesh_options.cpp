@@ -1,0 +1,109 @@
+// The options of podm mesh.
+#include <algorithm>
+
+#include "cli/add_options.h"
+
+namespace podm::cli {
+namespace {
+
+constexpr std::uint64_t kMaxThreads = 1024;
+constexpr double kBytesPerGib = 1024.0 * 1024 * 1024;
+
+void add_sizing_options(CLI::App& app, MeshCommand& command) {
+  MeshingOptions& meshing = command.meshing;
+  app.option_defaults()->group("Size of the cells");
+  CLI::Option* radius = add_one(app, "--radius", "MM",
+                                "largest circumradius of a cell, mm [default: unbounded, the surface drives]",
+                                into_length(meshing.radius_mm));
+  add_many(app, "--radius-of", "LABEL=MM",
+           "the same for one label, by name or value, e.g. liver=2;\nrepeatable [default: --radius]",
+           [&command](const std::string& text, const std::string& name) {
+             command.radius_of_mm.push_back(parse_label_length(text, name));
+           });
+  add_one(app, "--delta", "MM", "sampling distance of the surfaces, mm [default: from voxel size and radius]",
+          into_length(meshing.delta_mm));
+  add_one(app, "--target-elements", "N", "choose the radius for this many cells within 5 % [default: none]",
+          into_count(meshing.target_elements))
+      ->excludes(radius);
+}
+
+void add_limit_options(CLI::App& app, MeshCommand& command) {
+  MeshingOptions& meshing = command.meshing;
+  app.option_defaults()->group("Limits (a run that meets one writes a valid mesh and exits with 1)");
+  add_one(app, "--max-elements", "N", "stop at this many cells [default: none]",
+          into_count(meshing.max_elements));
+  add_one(app, "--max-seconds", "S", "stop meshing after this many seconds [default: none]",
+          [&meshing](const std::string& text, const std::string& name) {
+            meshing.max_seconds = parse_positive(text, name, "number of seconds");
+          });
+  add_one(app, "--max-memory-gib", "GIB", "memory of the process, GiB [default: 80 % of what is available]",
+          [&command](const std::string& text, const std::string& name) {
+            const double bytes = parse_positive(text, name, "number of GiB") * kBytesPerGib;
+            constexpr double kMost = 1e18;  // far above any machine, and within an integer
+            command.max_memory_bytes = static_cast<std::uint64_t>(std::clamp(bytes, 1.0, kMost));
+          });
+}
+
+void add_run_options(CLI::App& app, MeshCommand& command) {
+  MeshingOptions& meshing = command.meshing;
+  app.option_defaults()->group("Run");
+  add_one(app, "--threads", "N",
+          "threads of all phases; 1 makes the same mesh every time\n"
+          "[default: one for refinement, all cores for the feature transform]",
+          [&meshing](const std::string& text, const std::string& name) {
+            meshing.threads = static_cast<int>(parse_integer(text, name, 1, kMaxThreads));
+          });
+  add_one(
+      app, "--contention", "MANAGER",
+      "what a thread does that meets another's lock:\naggressive, random, global or local [default: local]",
+      [&meshing](const std::string& text, const std::string& name) {
+        meshing.contention = parse_choice(
+            text, name,
+            {Contention::kAggressive, Contention::kRandom, Contention::kGlobal, Contention::kLocal});
+      });
+  add_one(app, "--executor", "EXECUTOR",
+          "threads, or virtual: one core plays any number of threads in virtual time,\n"
+          "the same for the same seed; times are simulated [default: threads]",
+          [&meshing](const std::string& text, const std::string& name) {
+            meshing.executor = parse_choice(text, name, {Executor::kThreads, Executor::kVirtual});
+          });
+  add_one(app, "--virtual-cost", "COST",
+          "virtual time of an attempt: unit (1 us) or measured (by its work)\n[default: measured]",
+          [&meshing](const std::string& text, const std::string& name) {
+            meshing.virtual_cost = parse_choice(text, name, {VirtualCost::kUnit, VirtualCost::kMeasured});
+          });
+  add_one(app, "--seed", "N", "of pauses after conflicts and of virtual time [default: 1]",
+          [&meshing](const std::string& text, const std::string& name) {
+            meshing.seed = parse_integer(text, name, 0, std::numeric_limits<std::uint32_t>::max());
+          });
+  add_one(app, "--log", "FILE", "write every operation in its order, for podm replay [default: none]",
+          into(command.log_path));
+}
+
+}  // namespace
+
+void add_mesh_command(CLI::App& program, MeshCommand& command) {
+  CLI::App& app = *program.add_subcommand("mesh", "mesh a label image into tetrahedra with guarantees");
+  add_image_options(app, command.image);
+  add_sizing_options(app, command);
+  add_limit_options(app, command);
+  app.option_defaults()->group("Output");
+  add_one(app, "-o,--output", "MESH", "mesh file: .vtu, .mesh (medit) or .msh (Gmsh 4.1) [required]",
+          into(command.mesh_path))
+      ->required();
+  add_one(app, "--surface", "FILE", "also the closed surface of each label: .stl or .ply [default: none]",
+          into(command.surface_path));
+  add_one(app, "--space", "SPACE",
+          "frame of the coordinates: RAS or LPS (mm), or voxel (indices) [default: RAS]",
+          [&command](const std::string& text, const std::string& name) {
+            command.meshing.space = parse_choice(text, name, {Space::kRas, Space::kLps, Space::kVoxel});
+          });
+  add_one(app, "--record", "FILE", "append one JSON line that describes the run [default: none]",
+          into(command.record_path));
+  add_run_options(app, command);
+  app.add_flag("--verify", command.verify,
+               "have podm-verify check the written mesh; exit 1 unless all holds [default: no]");
+  app.add_flag("--quiet", command.quiet, "neither progress nor summary [default: both, on standard error]");
+}
+
+}  // namespace podm::cli

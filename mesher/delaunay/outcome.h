@@ -1,0 +1,13 @@
+// What becomes of an attempt to change the triangulation, and of each of its steps.
+#pragma once
+
+namespace podm {
+
+enum class Outcome {
+  kCommitted,
+  kLockConflict,  ///< another worker holds a vertex
+  kStaleCell,     ///< the cell has died
+  kRejected,      ///< the point is not in conflict, or too near to a vertex
+};
+
+}  // namespace podm

@@ -1,0 +1,81 @@
+// The linearization log: every committed operation with a sequence number taken while its locks were held.
+// Played in that order on one thread (podm replay), it must give the same mesh to the bit: the proof that a
+// run of many workers equals a serial one.
+//
+// The file: "podmlog1", then batches (two 32-bit counts, that many operations, that many vertices removed, in
+// the operations' order), in no order of sequence; two zero counts; then one JSON object to the end. Numbers
+// are little-endian.
+#pragma once
+
+#include <array>
+#include <atomic>
+#include <cstdint>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "podm/label_image.h"
+
+namespace podm {
+
+/// An isosurface point or circumcentre inserted, together with the removal of vertices.
+struct LoggedOperation {
+  std::uint64_t sequence = 0;     ///< order of the commits of a run; gaps are allowed
+  std::array<double, 3> point{};  ///< mm, image frame
+  std::uint32_t vertex = 0;       ///< id of the inserted vertex; ids of removed vertices are used again
+  std::uint32_t worker = 0;
+  std::uint32_t kind = 0;  ///< a VertexKind
+  std::uint32_t num_removed = 0;
+};
+static_assert(sizeof(LoggedOperation) == 48);
+
+struct OperationBatch {
+  std::vector<LoggedOperation> operations;
+  std::vector<std::uint32_t> removed;  ///< vertex ids, num_removed for each operation
+};
+
+/// What a log tells of its run besides operations.
+struct OperationLogHead {
+  std::array<double, 6> box{};  ///< low and high corner of the virtual box, mm
+  std::string image_sha256;     ///< label_image_sha256() of the image as meshed
+  std::string space;            ///< of the coordinates hashed: "RAS", "LPS" or "voxel"
+  std::string mesh_sha256;      ///< canonical, of the mesh as written
+};
+
+struct OperationLog {
+  OperationLogHead head;
+  OperationBatch all;  ///< in sequence
+};
+
+/// Writes a log aside and gives it its name when it is finished; else nothing is left.
+class OperationLogWriter {
+ public:
+  /// Throws InputError when the file cannot be made.
+  explicit OperationLogWriter(const std::string& path);
+  ~OperationLogWriter();
+  OperationLogWriter(const OperationLogWriter&) = delete;
+  OperationLogWriter& operator=(const OperationLogWriter&) = delete;
+
+  /// Any worker, any time.
+  std::uint64_t next_sequence() { return sequence_.fetch_add(1, std::memory_order_relaxed); }
+  void append(const OperationBatch& batch);
+  /// Forgets all operations, for a run that starts again.
+  void restart();
+  /// Throws InputError when the file cannot be written whole.
+  void finish(const OperationLogHead& head);
+
+ private:
+  struct File;
+  std::unique_ptr<File> file_;
+  // Relaxed: whoever takes the number of a later operation on the same vertices holds their locks, so it
+  // comes after the earlier holder's release, and fetch_add keeps that order.
+  std::atomic<std::uint64_t> sequence_ = 0;
+};
+
+/// Of the selected labels, the voxels and the affine: what a mesh depends on.
+std::string label_image_sha256(const LabelImage& image);
+
+/// Throws InputError with file, place and fault.
+OperationLog read_operation_log(const std::string& path);
+
+}  // namespace podm

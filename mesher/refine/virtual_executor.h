@@ -1,0 +1,67 @@
+// Any number of workers on one core, in virtual time: each attempt is carried out at once at its beginning,
+// but its locks are held to its virtual end, so that workers conflict as they would on as many cores. Only
+// the locks of an attempt that fails fall at once: its time is charged, but that attempts make each other
+// fail for ever, as they may under Contention::kAggressive, does not show. The same seed gives the same run
+// to the bit. For tests of interleavings, and for studies of machines that nobody has at hand; times are
+// simulated, not measured.
+#pragma once
+
+#include <memory>
+#include <optional>
+#include <queue>
+#include <random>
+#include <vector>
+
+#include "refine/coordination.h"
+#include "refine/executor.h"
+
+namespace podm {
+
+class VirtualExecutor {
+ public:
+  using Workers = std::vector<std::unique_ptr<Worker<VertexLocks>>>;
+
+  VirtualExecutor(Watch& watch, const CoordinationOptions& options, VirtualCost cost);
+
+  /// Runs until every worker begs, or something ends the run.
+  StopReason run(Workers& workers);
+  /// Virtual time that passed, s.
+  double elapsed_s() const { return now_s_; }
+  /// Of one worker, in virtual time.
+  const Overhead& overhead(WorkerId worker) const { return desks_[worker].overhead; }
+
+ private:
+  struct Desk {
+    std::optional<Outcome> in_progress;  // of the attempt that its next event ends
+    double since_s = 0;                  // it waits or begs, or its attempt began
+    bool begs = false;
+    int conflicts = 0, successes = 0;  // in a row
+    Overhead overhead;
+  };
+  struct Event {
+    double time_s;
+    std::uint64_t number;  // events of the same time come in the order they were made
+    WorkerId worker;
+    bool operator>(const Event& other) const {
+      return time_s != other.time_s ? time_s > other.time_s : number > other.number;
+    }
+  };
+
+  void schedule(WorkerId worker, double delay_s);
+  void resume(WorkerId worker);
+  bool step(Worker<VertexLocks>& worker, WorkerId self);
+  bool end_attempt(Worker<VertexLocks>& worker, WorkerId self);
+  void begin_attempt(Worker<VertexLocks>& worker, WorkerId self);
+  std::optional<StopReason> reason_to_stop(const Workers& workers);
+
+  Watch& watch_;
+  VirtualCost cost_;
+  std::mt19937_64 random_;
+  Coordination coordination_;
+  std::vector<Desk> desks_;
+  std::priority_queue<Event, std::vector<Event>, std::greater<>> events_;
+  std::uint64_t num_events_ = 0;
+  double now_s_ = 0;
+};
+
+}  // namespace podm
