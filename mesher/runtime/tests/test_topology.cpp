@@ -1,0 +1,191 @@
+// Machines by description, by file and the one at hand: numbering, hops, round trips and refusals.
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cstdlib>
+#include <fstream>
+#include <set>
+
+#include "io/tests/scratch_folder.h"
+#include "runtime/tests/machines.h"
+
+namespace podm::test {
+namespace {
+
+using testing::HasSubstr;
+using testing::StartsWith;
+
+void expect_same(const Topology& a, const Topology& b) {
+  ASSERT_EQ(a.num_nodes(), b.num_nodes());
+  EXPECT_EQ(a.num_sockets(), b.num_sockets());
+  EXPECT_EQ(a.num_cores(), b.num_cores());
+  const auto same = [](const Processor& p, const Processor& q) {
+    return p.os_index == q.os_index && p.core == q.core && p.node == q.node && p.socket == q.socket &&
+           p.thread == q.thread;
+  };
+  EXPECT_TRUE(std::equal(a.processors().begin(), a.processors().end(), b.processors().begin(),
+                         b.processors().end(), same));
+  for (int i = 0; i < a.num_nodes(); ++i) {
+    EXPECT_EQ(a.node_os_index(i), b.node_os_index(i));
+    for (int j = 0; j < a.num_nodes(); ++j) EXPECT_EQ(a.hops(i, j), b.hops(i, j)) << i << ' ' << j;
+  }
+}
+
+void expect_consistent(const Topology& machine) {
+  std::set<int> os_indices, cores;
+  ASSERT_FALSE(machine.processors().empty());
+  for (const Processor& processor : machine.processors()) {
+    EXPECT_TRUE(os_indices.insert(processor.os_index).second) << processor.os_index;
+    cores.insert(processor.core);
+    EXPECT_TRUE(processor.node >= 0 && processor.node < machine.num_nodes());
+    EXPECT_TRUE(processor.socket >= 0 && processor.socket < machine.num_sockets());
+  }
+  EXPECT_EQ(static_cast<int>(cores.size()), machine.num_cores());
+  int max_hops = 0;
+  for (int a = 0; a < machine.num_nodes(); ++a)
+    for (int b = 0; b < machine.num_nodes(); ++b) {
+      EXPECT_EQ(machine.hops(a, b), machine.hops(b, a));
+      EXPECT_EQ(machine.hops(a, b) == 0, a == b);
+      max_hops = std::max(max_hops, machine.hops(a, b));
+    }
+  EXPECT_EQ(machine.max_hops(), max_hops);
+}
+
+// What becomes of a machine whose XML is `text`.
+Topology read_back(const std::string& text, const std::string& path) {
+  std::ofstream(path) << text;
+  return Topology::from_file(path);
+}
+
+template <class Make>
+std::string fault(const Make& make) {
+  try {
+    make();
+  } catch (const TopologyError& error) {
+    return error.what();
+  }
+  return "accepted";
+}
+
+// 16 blades of two eight-core sockets around 128 GB [PDR.PODM, 4.1]. Blades come in linked pairs, and of each
+// pair one hangs on the first router and one on the second: the reading of the paper under which hops 1, 2
+// and 3 occur as its Table 2 has them, 1 : (n-2)/2 : (n-2)/2 on n blades. Clock cycles as in its Table 3.
+Topology blacklight() {
+  const auto hops = [](int a, int b) { return a == b ? 0 : a / 2 == b / 2 ? 1 : a % 2 == b % 2 ? 2 : 3; };
+  return Topology::synthetic("group:16 [numa(memory=137438953472)] pack:2 core:8 pu:1",
+                             latency_rows(16, [&](int a, int b) { return 200 + 1500 * hops(a, b); }));
+}
+
+TEST(Topology, OfOneNode) {
+  const Topology machine = one_node();
+  expect_consistent(machine);
+  EXPECT_EQ(machine.processors().size(), 8u);
+  EXPECT_EQ(machine.num_nodes(), 1);
+  EXPECT_EQ(machine.num_sockets(), 1);
+  EXPECT_EQ(machine.max_hops(), 0);
+  EXPECT_FALSE(machine.is_this_machine());
+}
+
+TEST(Topology, OfTwoSocketsWithTwoNodesEach) {
+  const Topology machine = two_sockets();
+  expect_consistent(machine);
+  EXPECT_EQ(machine.processors().size(), 32u);
+  EXPECT_EQ(machine.num_cores(), 16);
+  EXPECT_EQ(machine.num_nodes(), 4);
+  EXPECT_EQ(machine.num_sockets(), 2);
+  EXPECT_EQ(machine.max_hops(), 1) << "no matrix: every other node is one hop away";
+  for (const Processor& processor : machine.processors()) {
+    EXPECT_EQ(processor.socket, processor.node / 2);
+    EXPECT_EQ(processor.node, processor.core / 4);
+    EXPECT_LT(processor.thread, 2);
+  }
+}
+
+TEST(Topology, HopsRankTheLatencies) {
+  // A ring whose links grow slower with distance, and faster one way round than the other.
+  const auto ring = [](int a, int b) { return std::min((a - b + 16) % 16, (b - a + 16) % 16); };
+  const auto latency = [&](int a, int b) {
+    return 10 + 7 * ring(a, b) * ring(a, b) + (a < b && ring(a, b) > 0);
+  };
+  const Topology described = Topology::synthetic("numa:16 core:2 pu:1", latency_rows(16, latency));
+  const Topology machine = read_back(described.to_xml(), ScratchFolder() / "ring.xml");
+  expect_same(machine, described);
+  expect_consistent(machine);
+  EXPECT_EQ(machine.max_hops(), 8);
+  for (int a = 0; a < 16; ++a)
+    for (int b = 0; b < 16; ++b) EXPECT_EQ(machine.hops(a, b), ring(a, b));
+}
+
+TEST(Topology, SurvivesAFile) {
+  for (const Topology& machine : {one_node(), two_sockets(), blacklight(), Topology::of_this_machine()}) {
+    const Topology again = read_back(machine.to_xml(), ScratchFolder() / "machine.xml");
+    expect_same(again, machine);
+    EXPECT_FALSE(again.is_this_machine());
+  }
+}
+
+TEST(Topology, OfBlacklightIsAsDescribed) {
+  const Topology machine = Topology::from_file(PODM_MACHINES "/blacklight_256.xml");
+  expect_same(machine, blacklight());
+  expect_consistent(machine);
+  EXPECT_EQ(machine.num_cores(), 256);
+  EXPECT_EQ(machine.num_nodes(), 16);
+  EXPECT_EQ(machine.num_sockets(), 32);
+  for (int blade = 0; blade < 16; ++blade) {
+    std::vector<int> blades_at(4);
+    for (int other = 0; other < 16; ++other) ++blades_at[machine.hops(blade, other)];
+    EXPECT_THAT(blades_at, testing::ElementsAre(1, 1, 7, 7));
+  }
+  if (!HasFailure()) return;
+  const std::string renewed = testing::TempDir() + "blacklight_256.xml";
+  std::ofstream(renewed) << blacklight().to_xml();
+  ADD_FAILURE() << "what the description gives is now in " << renewed;
+}
+
+TEST(Topology, OfThisMachineIsWhatThisProcessMayUse) {
+  const Topology machine = Topology::of_this_machine();
+  expect_consistent(machine);
+  EXPECT_TRUE(machine.is_this_machine());
+  cpu_set_t allowed;
+  ASSERT_EQ(sched_getaffinity(0, sizeof allowed, &allowed), 0);
+  EXPECT_LE(static_cast<int>(machine.processors().size()), CPU_COUNT(&allowed));
+  for (const Processor& processor : machine.processors())
+    EXPECT_TRUE(CPU_ISSET(processor.os_index, &allowed)) << processor.os_index;
+}
+
+TEST(Topology, OfThisMachineIsNeverAnother) {
+  setenv("HWLOC_SYNTHETIC", "core:4 pu:1", 1);
+  const std::string message = fault([] { Topology::of_this_machine(); });
+  unsetenv("HWLOC_SYNTHETIC");
+  EXPECT_THAT(message, HasSubstr("HWLOC_SYNTHETIC"));
+}
+
+TEST(Topology, RefusesFilesThatDescribeNoMachine) {
+  const ScratchFolder folder;
+  const std::string path = folder / "machine.xml", whole = two_sockets().to_xml();
+  for (const std::string& text :
+       {std::string(), std::string("hello"), std::string("<?xml version=\"1.0\"?><a/>"),
+        whole.substr(0, whole.size() / 2)})
+    EXPECT_THAT(fault([&] { read_back(text, path); }), StartsWith(path + ": ")) << text;
+  for (const std::string type : {"PU", "NUMANode"}) {
+    std::string unnumbered = whole;
+    unnumbered.replace(unnumbered.find('"' + type + "\" os_index") + type.size() + 3, 2, "no");
+    EXPECT_THAT(fault([&] { read_back(unnumbered, path); }),
+                StartsWith(path + ": " + type + " 0 has no os_index"));
+  }
+  EXPECT_THAT(fault([] { Topology::from_file("/no/such/machine.xml"); }), HasSubstr("No such file"));
+  EXPECT_THAT(fault([] { Topology::from_file("/"); }), HasSubstr("holds no text"));
+}
+
+TEST(Topology, RefusesDescriptionsThatMakeNoSense) {
+  for (const char* description : {"", "pack:0", "two sockets", "core:2 core"})
+    EXPECT_THAT(fault([&] { Topology::synthetic(description); }), HasSubstr(description));
+  EXPECT_THAT(fault([] {
+                Topology::synthetic("numa:2 core:1 pu:1", {10, 20});
+              }),
+              HasSubstr("2 nodes need 4"));
+}
+
+}  // namespace
+}  // namespace podm::test
