@@ -10,9 +10,11 @@
 #include "cost_model.h"
 #include "extract_mesh.h"
 #include "measure_quality.h"
+#include "placement_of_crew.h"
 #include "podm.h"
 #include "podm/operation_log.h"
 #include "replay.h"
+#include "sample_pages.h"
 
 namespace podm {
 
@@ -69,7 +71,11 @@ class Run {
  public:
   Run(const LabelImage& image, const MeshingOptions& options, const ProgressCallback& progress,
       std::stop_token stop)
-      : image_(image), options_(options), progress_(progress), stop_(std::move(stop)) {}
+      : image_(image),
+        options_(options),
+        progress_(progress),
+        stop_(std::move(stop)),
+        placement_(place_crew(options, num_workers())) {}
 
   MeshingResult operator()() {
     check(image_, options_);
@@ -88,6 +94,9 @@ class Run {
     report.phases_s["refine"] = seconds_since(refine_start);
     report.stop_reason = refinement.stop_reason;
     report.counters = refinement.counters;
+    report.workers = refinement.workers;
+    report.num_nodes = placement_.machine.num_nodes();
+    report.pages = sample_pages(*refinement.mesh, placement_.machine);
     report.store_cells = refinement.mesh->num_cells();
     const auto& [low, high] = refinement.mesh->box();
     report.virtual_box = {low.x, low.y, low.z, high.x, high.y, high.z};
@@ -123,10 +132,11 @@ class Run {
   }
 
   Crew crew() const {
-    const CoordinationOptions coordination{
-        std::max(1, options_.threads), options_.contention, {}, options_.seed};
-    return {options_.executor, coordination, options_.virtual_cost, options_.log};
+    return {options_.executor,     {num_workers(), options_.contention, placement_.groups, options_.seed},
+            options_.virtual_cost, options_.log,
+            &placement_.machine,   placement_.places};
   }
+  int num_workers() const { return std::max(1, options_.threads); }
 
   double delta() const {
     if (options_.delta_mm > 0) return options_.delta_mm;
@@ -179,6 +189,7 @@ class Run {
   const MeshingOptions& options_;
   const ProgressCallback& progress_;
   std::stop_token stop_;
+  const PlacementOfCrew placement_;
   const Clock::time_point start_ = Clock::now();
 };
 
@@ -217,6 +228,8 @@ std::string to_string(Contention contention) {
 std::string to_string(Executor executor) { return executor == Executor::kThreads ? "threads" : "virtual"; }
 
 std::string to_string(VirtualCost cost) { return cost == VirtualCost::kUnit ? "unit" : "measured"; }
+
+std::string to_string(Begging begging) { return begging == Begging::kRandom ? "random" : "hierarchical"; }
 
 MeshingResult mesh_image(const LabelImage& image, const MeshingOptions& options,
                          const ProgressCallback& progress, std::stop_token stop) {

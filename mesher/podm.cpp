@@ -6,31 +6,16 @@
 #include "refine/thread_executor.h"
 #include "refine/virtual_box.h"
 #include "refine/virtual_executor.h"
+#include "report_on_workers.h"
 
 namespace podm {
 
 namespace {
 
-template <class Locks>
-void add(const Worker<Locks>& worker, Counters& sum) {
-  const WorkerCounters& w = worker.counters();
-  const OperationCounters& o = worker.operation_counters();
-  for (std::size_t rule = 0; rule < sum.insertions_by_rule.size(); ++rule)
-    sum.insertions_by_rule[rule] += w.insertions_by_rule[rule];
-  sum.removals += w.removals;
-  sum.rejected += w.rejected;
-  sum.stale_cells += w.stale_cells;
-  sum.classified_cells += w.classified_cells;
-  sum.conflict_tests += o.conflict_tests;
-  sum.exact_decisions += o.exact_decisions;
-  sum.cells_created += o.cells_created;
-  sum.lock_conflicts += w.lock_conflicts;
-}
+int num_nodes(const Crew& crew) { return crew.machine != nullptr ? crew.machine->num_nodes() : 1; }
 
-void add(const Overhead& overhead, Counters& sum) {
-  sum.contention_s += overhead.contention_s;
-  sum.begging_s += overhead.begging_s;
-  sum.rollback_s += overhead.rollback_s;
+Place place_of(const Crew& crew, WorkerId worker) {
+  return crew.places.empty() ? Place{} : crew.places[worker];
 }
 
 template <class Locks>
@@ -44,15 +29,14 @@ void refine_in_parallel(AnyExecutor& executor, const Isosurface& isosurface, con
                         const Crew& crew, Refinement& result) {
   typename AnyExecutor::Workers workers;
   for (WorkerId i = 0; i < static_cast<WorkerId>(crew.coordination.num_workers); ++i) {
-    workers.push_back(
-        std::make_unique<Worker<VertexLocks>>(*result.mesh, isosurface, parameters, i, crew.log));
+    workers.push_back(std::make_unique<Worker<VertexLocks>>(
+        *result.mesh, isosurface, parameters, i, static_cast<NodeIndex>(place_of(crew, i).node), crew.log));
   }
   give_all_cells(*result.mesh, *workers[0]);
   result.stop_reason = executor.run(workers);
   for (WorkerId i = 0; i < workers.size(); ++i) {
     workers[i]->flush_log();
-    add(*workers[i], result.counters);
-    add(executor.overhead(i), result.counters);
+    result.workers.push_back(report_on(*workers[i], executor.overhead(i), place_of(crew, i), crew.machine));
   }
 }
 
@@ -65,21 +49,26 @@ Refinement podm(const Isosurface& isosurface, const Box& object, double delta_mm
   const Parameters parameters{delta_mm, sizes, clamp_box(object, delta_mm), spacing_mm};
 
   Refinement result;
-  result.mesh = std::make_unique<Mesh>(virtual_box(parameters.clamp_box), cell_capacity);
+  result.mesh = std::make_unique<Mesh>(virtual_box(parameters.clamp_box), cell_capacity, num_nodes(crew));
   if (crew.executor == Executor::kVirtual) {
     VirtualExecutor executor(watch, crew.coordination, crew.cost);
     refine_in_parallel(executor, isosurface, parameters, crew, result);
     result.virtual_s = executor.elapsed_s();
   } else if (crew.coordination.num_workers > 1) {
-    ThreadExecutor executor(watch, crew.coordination);
+    ThreadExecutor executor(watch, crew.coordination, crew.places);
     refine_in_parallel(executor, isosurface, parameters, crew, result);
+    for (WorkerId i = 0; i < result.workers.size(); ++i)
+      result.workers[i].bound_to = executor.processor(i).bound_to;
   } else {
-    Worker<NoLocks> worker(*result.mesh, isosurface, parameters, 0, crew.log);
+    const ScopedBinding binding(place_of(crew, 0).processor);
+    Worker<NoLocks> worker(*result.mesh, isosurface, parameters, 0, 0, crew.log);
     give_all_cells(*result.mesh, worker);
     result.stop_reason = SerialExecutor(watch).run(worker);
     worker.flush_log();
-    add(worker, result.counters);
+    result.workers.push_back(report_on(worker, {}, place_of(crew, 0), crew.machine));
+    result.workers.back().bound_to = processor_of_this_thread().bound_to;
   }
+  result.counters = sum_of(result.workers);
   return result;
 }
 

@@ -8,13 +8,15 @@
 #include "refine/coordination.h"
 #include "refine/executor.h"
 #include "refine/rules.h"
+#include "runtime/placement.h"
 
 namespace podm {
 
 struct Refinement {
   std::unique_ptr<Mesh> mesh;
   StopReason stop_reason = StopReason::kComplete;
-  Counters counters;
+  Counters counters;  // of all workers
+  std::vector<WorkerReport> workers;
   double virtual_s = 0;  // of Executor::kVirtual
 };
 
@@ -24,6 +26,8 @@ struct Crew {
   CoordinationOptions coordination;  // one thread works without locks
   VirtualCost cost = VirtualCost::kMeasured;
   OperationLogWriter* log = nullptr;
+  const Topology* machine = nullptr;  // whose nodes the places name; none: all are on one
+  std::vector<Place> places = {};     // of the workers; none: anywhere
 };
 
 /// `object`: bounds of the foreground. `cell_capacity`: the most cells the store may hold.

@@ -89,6 +89,7 @@ int run(const MeshCommand& command) {
   if (command.verify && !run.result.mesh.cells.empty()) run.verdicts = verify_mesh(run);
   if (!command.record_path.empty()) append_line(command.record_path, json_line(record(run)));
   if (!command.quiet) fmt::print(stderr, "{}", summary(run));
+  if (command.stats) fmt::print(stderr, "{}", statistics(run));
   for (const std::string& warning : run.result.report.warnings) fmt::print(stderr, "warning: {}\n", warning);
   const auto unmet = run.unmet();
   for (const std::string& sentence : unmet) fmt::print(stderr, "podm: {}\n", sentence);

@@ -61,6 +61,21 @@ void add_run_options(CLI::App& app, MeshCommand& command) {
             text, name,
             {Contention::kAggressive, Contention::kRandom, Contention::kGlobal, Contention::kLocal});
       });
+  add_one(app, "--begging", "LIST",
+          "whom a thread with cells to spare serves first: random (the first to beg)\n"
+          "or hierarchical (the nearest in the machine) [default: hierarchical]",
+          [&meshing](const std::string& text, const std::string& name) {
+            meshing.begging = parse_choice(text, name, {Begging::kRandom, Begging::kHierarchical});
+          });
+  add_one(app, "--pin", "PLAN",
+          "bind threads to processors: compact, scatter, none,\n"
+          "or processors such as 0,2,4-7 [default: none]",
+          into(meshing.pin));
+  app.add_flag("--oversubscribe", meshing.oversubscribe,
+               "allow more threads than processors [default: refused]");
+  add_one(app, "--topology", "FILE",
+          "hwloc XML of a machine that the threads stand for [default: this machine]",
+          into(meshing.topology_path));
   add_one(app, "--executor", "EXECUTOR",
           "threads, or virtual: one core plays any number of threads in virtual time,\n"
           "the same for the same seed; times are simulated [default: threads]",
@@ -103,6 +118,7 @@ void add_mesh_command(CLI::App& program, MeshCommand& command) {
   add_run_options(app, command);
   app.add_flag("--verify", command.verify,
                "have podm-verify check the written mesh; exit 1 unless all holds [default: no]");
+  app.add_flag("--stats", command.stats, "a table of what each thread did and lost [default: no]");
   app.add_flag("--quiet", command.quiet, "neither progress nor summary [default: both, on standard error]");
 }
 

@@ -30,6 +30,7 @@ struct MeshCommand {
   std::vector<std::pair<std::string, double>> radius_of_mm;  ///< by label name or value
   std::uint64_t max_memory_bytes = 0;                        ///< of the process; 0: as the machine has
   bool verify = false;
+  bool stats = false;
   bool quiet = false;
 };
 

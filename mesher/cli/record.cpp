@@ -48,6 +48,48 @@ std::uint64_t committed(const Counters& counters) {
   return operations;
 }
 
+Json or_null(const std::optional<int>& value) { return value ? Json(*value) : Json(nullptr); }
+
+// By worker; processors in the system's numbers, nodes and sockets from 0.
+Json placement_of(const MeshingReport& report) {
+  Json places = Json::array();
+  for (const WorkerReport& worker : report.workers)
+    places.push_back({{"processor", or_null(worker.processor)},
+                      {"bound_to", or_null(worker.bound_to)},
+                      {"node", worker.node},
+                      {"socket", worker.socket}});
+  return places;
+}
+
+// Accesses by distance; why there are none on a machine of one node.
+Json hops_of(const MeshingReport& report) {
+  if (report.counters.accesses_by_hops.empty()) return "unavailable: one NUMA node or one thread";
+  return report.counters.accesses_by_hops;
+}
+
+Json pages_of(const MeshingReport& report) {
+  if (!report.pages.unavailable.empty()) return "unavailable: " + report.pages.unavailable;
+  return {{"as_claimed", report.pages.as_claimed}, {"elsewhere", report.pages.elsewhere}};
+}
+
+Json workers_of(const MeshingReport& report) {
+  Json workers = Json::array();
+  for (const WorkerReport& worker : report.workers) {
+    const Counters& c = worker.counters;
+    workers.push_back({{"committed", committed(c)},
+                       {"stale_cell", c.stale_cells},
+                       {"rejected", c.rejected},
+                       {"lock_conflict", c.lock_conflicts},
+                       {"region_cells", c.region_cells},
+                       {"conflict_tests", c.conflict_tests},
+                       {"contention_s", c.contention_s},
+                       {"begging_s", c.begging_s},
+                       {"rollback_s", c.rollback_s},
+                       {"accesses_by_hops", c.accesses_by_hops}});
+  }
+  return workers;
+}
+
 Json counters_of(const MeshingReport& report) {
   const Counters& counters = report.counters;
   Json insertions = Json::object();
@@ -59,6 +101,7 @@ Json counters_of(const MeshingReport& report) {
           {"conflict_tests", counters.conflict_tests},
           {"exact_decisions", counters.exact_decisions},
           {"cells_created", counters.cells_created},
+          {"region_cells", counters.region_cells},
           {"store_cells", report.store_cells}};
 }
 
@@ -129,8 +172,10 @@ Json record(const MeshRun& run) {
       {"threads",
        {{"asked", run.options.threads},
         {"used", std::max(1, run.options.threads)},
-        {"placement", "unpinned"},
-        {"contention", to_string(run.options.contention)}}},
+        {"pin", run.options.pin},
+        {"placement", placement_of(report)},
+        {"contention", to_string(run.options.contention)},
+        {"begging", to_string(run.options.begging)}}},
       {"executor", executor_of(run)},
       {"phases_s", run.phases_s()},
       {"cells", mesh.cells.size()},
@@ -150,7 +195,10 @@ Json record(const MeshRun& run) {
        {{"contention", report.counters.contention_s},
         {"begging", report.counters.begging_s},
         {"rollback", report.counters.rollback_s}}},
+      {"hops", hops_of(report)},
+      {"pages", pages_of(report)},
       {"counters", counters_of(report)},
+      {"workers", workers_of(report)},
       {"quality", quality_of(report.quality)},
       {"guarantees", guarantees_of(report.guarantees)},
       {"mesh_sha256", run.mesh_sha256},

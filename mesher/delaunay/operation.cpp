@@ -11,7 +11,7 @@ Outcome Operation<Locks>::reserve(CellId c, std::uint32_t stamp) {
   if constexpr (Locks::kIsShared) {
     for (const VertexId v : mesh_.glimpse_vertices(c)) {
       if (outcome != Outcome::kCommitted) break;
-      outcome = v == kNoVertex ? Outcome::kStaleCell : locks_.try_lock(mesh_.vertex(v));
+      outcome = v == kNoVertex ? Outcome::kStaleCell : lock(v);
     }
   }
   if (mesh_.stamp(c) != stamp) outcome = Outcome::kStaleCell;
@@ -20,10 +20,15 @@ Outcome Operation<Locks>::reserve(CellId c, std::uint32_t stamp) {
 }
 
 template <class Locks>
+Outcome Operation<Locks>::lock(VertexId v) {
+  count_access(mesh_.node_of_vertex(v));
+  return locks_.try_lock(mesh_.vertex(v));
+}
+
+template <class Locks>
 Outcome Operation<Locks>::lock_cell(CellId c) {
   for (const VertexId v : mesh_.cell(c).vertices) {
-    if (const Outcome outcome = locks_.try_lock(mesh_.vertex(v)); outcome != Outcome::kCommitted)
-      return outcome;
+    if (const Outcome outcome = lock(v); outcome != Outcome::kCommitted) return outcome;
   }
   return Outcome::kCommitted;
 }
@@ -32,6 +37,7 @@ template <class Locks>
 void Operation<Locks>::add_to_region(CellId c) {
   region_.cells.push_back(c);
   mesh_.mark(c, true);
+  ++counters_.region_cells;
   for (const FacetId mirror : mesh_.cell(c).mirrors) {
     if (mirror != kNoFacet) mesh_.prefetch(cell_of(mirror));  // read when the front gets to c
   }
@@ -40,6 +46,7 @@ void Operation<Locks>::add_to_region(CellId c) {
 template <class Locks>
 bool Operation<Locks>::is_in_conflict(CellId c, const Point& p) {
   ++counters_.conflict_tests;
+  count_access(mesh_.node_of_cell(c));
   const Side side = side_of(mesh_.cell(c).sphere, p);
   if (side != Side::kUndecided) return side == Side::kInside;
   ++counters_.exact_decisions;

@@ -23,12 +23,17 @@ namespace podm {
 
 struct OperationCounters {
   std::uint64_t conflict_tests = 0, exact_decisions = 0, cells_created = 0, cells_destroyed = 0;
+  std::uint64_t region_cells = 0;  // that plans collected, carried out or not
+  // Cells tested and vertices locked, by the NUMA node whose pool made them; empty on one node.
+  std::vector<std::uint64_t> accesses_by_node;
 };
 
 template <class Locks>
 class Operation {
  public:
-  Operation(Mesh& mesh, Pool& pool, WorkerId self) : mesh_(mesh), pool_(pool), locks_(self) {}
+  Operation(Mesh& mesh, Pool& pool, WorkerId self) : mesh_(mesh), pool_(pool), locks_(self) {
+    if (mesh.num_nodes() > 1) counters_.accesses_by_node.resize(static_cast<std::size_t>(mesh.num_nodes()));
+  }
 
   /// Locks the cell c of that stamp, so that it and its neighbours may be read. kStaleCell: it has died.
   /// kLockConflict: conflicting_worker() tells with whom. Unless committed nothing is held.
@@ -71,6 +76,13 @@ class Operation {
 
  private:
   Outcome lock_cell(CellId c);
+  Outcome lock(VertexId v);
+  // A run that nobody shares is on one node.
+  void count_access(NodeIndex owner) {
+    if constexpr (Locks::kIsShared) {
+      if (!counters_.accesses_by_node.empty()) ++counters_.accesses_by_node[owner];
+    }
+  }
   void add_to_region(CellId c);
   bool is_in_conflict(CellId c, const Point& p);
   void collect_boundary();

@@ -25,8 +25,9 @@ class SecondsInto {
 
 }  // namespace
 
-ThreadExecutor::ThreadExecutor(Watch& watch, const CoordinationOptions& options)
+ThreadExecutor::ThreadExecutor(Watch& watch, const CoordinationOptions& options, std::vector<Place> places)
     : watch_(watch),
+      places_(std::move(places)),
       coordination_(options, [this](WorkerId worker) { desks_[worker].woken.notify_one(); }),
       desks_(static_cast<std::size_t>(options.num_workers)) {}
 
@@ -47,6 +48,8 @@ StopReason ThreadExecutor::run(Workers& workers) {
 }
 
 void ThreadExecutor::work(Worker<VertexLocks>& worker, WorkerId self) try {
+  const ScopedBinding binding(places_.empty() ? std::nullopt : places_[self].processor);
+  desks_[self].processor = processor_of_this_thread();
   int conflicts = 0, successes = 0, attempts = 0;  // the first two in a row
   // Relaxed: whoever ends the run leaves through the mutex or a join anyway.
   while (!is_over_.load(std::memory_order_relaxed)) {

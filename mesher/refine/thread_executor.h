@@ -14,6 +14,7 @@
 
 #include "refine/coordination.h"
 #include "refine/executor.h"
+#include "runtime/placement.h"
 
 namespace podm {
 
@@ -21,12 +22,15 @@ class ThreadExecutor {
  public:
   using Workers = std::vector<std::unique_ptr<Worker<VertexLocks>>>;
 
-  ThreadExecutor(Watch& watch, const CoordinationOptions& options);
+  /// Binds the thread of worker i to the processor of places[i], if it has one.
+  ThreadExecutor(Watch& watch, const CoordinationOptions& options, std::vector<Place> places);
 
   /// Runs until every worker begs, or something ends the run, always between operations. Worker 0 runs on the
   /// calling thread, which alone observes. What a worker throws is thrown again here, but for std::bad_alloc,
   /// which ends the run as a limit does.
   StopReason run(Workers& workers);
+  /// What the system said of the worker's thread after it was bound.
+  const ThreadProcessor& processor(WorkerId worker) const { return desks_[worker].processor; }
   const Overhead& overhead(WorkerId worker) const { return desks_[worker].overhead; }
 
  private:
@@ -35,6 +39,7 @@ class ThreadExecutor {
     std::condition_variable woken;
     std::atomic<std::int64_t> net_cells = 0;
     Overhead overhead;
+    ThreadProcessor processor;
   };
 
   void work(Worker<VertexLocks>& worker, WorkerId self);
@@ -44,6 +49,7 @@ class ThreadExecutor {
   void end(StopReason reason, const std::exception_ptr& failure = nullptr);
 
   Watch& watch_;
+  std::vector<Place> places_;
   std::mutex mutex_;
   Coordination coordination_;
   std::vector<Desk> desks_;

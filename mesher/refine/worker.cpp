@@ -13,10 +13,10 @@ constexpr std::size_t kOperationsToFlush = 4096;
 
 template <class Locks>
 Worker<Locks>::Worker(Mesh& mesh, const Isosurface& isosurface, const Parameters& parameters, WorkerId self,
-                      OperationLogWriter* log)
+                      NodeIndex node, OperationLogWriter* log)
     : mesh_(mesh),
       rules_(mesh, isosurface, parameters),
-      pool_(mesh),
+      pool_(mesh, node),
       operation_(mesh, pool_, self),
       min_distance_(kSpacingFloor * parameters.spacing_mm),
       self_(self),

@@ -22,9 +22,10 @@ struct WorkerCounters {
 template <class Locks>
 class Worker {
  public:
-  /// `log`, if given, learns of every commit.
+  /// `node`: the NUMA node it runs on. `log`, if given, learns of every commit.
   Worker(Mesh& mesh, const Isosurface& isosurface, const Parameters& parameters, WorkerId self,
-         OperationLogWriter* log = nullptr);
+         NodeIndex node = 0, OperationLogWriter* log = nullptr);
+  NodeIndex node() const { return pool_.node(); }
 
   void give(CellId c) { poor_.push(c, mesh_.stamp(c)); }
   void give(const std::vector<PoorElementList::Entry>& entries) {

@@ -46,6 +46,7 @@ def draw(seed, is_virtual, images):
     threads = round(2 ** rng.uniform(1, 8 if is_virtual else 4))
     arguments = [image, "--radius", f"{radius_mm * 2 ** rng.uniform(0, 2.5):.3f}", "--threads", threads,
                  "--contention", rng.choice(MANAGERS), "--seed", seed]
+    arguments += ["--begging", rng.choice(["random", "hierarchical"]), "--oversubscribe"]
     if is_virtual:
         arguments += ["--executor", "virtual", "--virtual-cost", rng.choice(["unit", "measured"])]
     return [str(argument) for argument in arguments]

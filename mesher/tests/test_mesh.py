@@ -67,7 +67,7 @@ class Mesh(PodmTestCase):
         for threads in 1, 2, 5:
             for contention in "local", "global":
                 self.assert_exit(self.mesh("--radius", "8", "--threads", threads, "--contention", contention,
-                                           "--verify"), 0)
+                                           "--oversubscribe", "--verify"), 0)
                 record = self.read_record(self.runs)
                 self.assertEqual(set(record["verdicts"].values()), {"pass"})
                 self.assertLessEqual({"structure", "delaunay", "labels", "size"}, set(record["verdicts"]))

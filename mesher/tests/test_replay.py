@@ -17,7 +17,7 @@ class Replay(PodmTestCase):
 
     def mesh(self, *arguments):
         process = run_podm("mesh", IMAGE, "--radius", "16", "-o", self.out, "--log", self.log, "--record", self.runs,
-                           *arguments)
+                           "--oversubscribe", *arguments)
         self.assert_exit(process, 0)
         return json.loads(self.runs.read_text().splitlines()[-1])
 
@@ -35,13 +35,13 @@ class Replay(PodmTestCase):
                 self.assertEqual(process.stderr.count(record["mesh_sha256"]), 2)
 
     def test_a_run_cut_short_equals_its_replay(self):
-        process = run_podm("mesh", IMAGE, "--radius", "4", "--threads", 3, "--max-elements", 3000, "-o", self.out,
+        process = run_podm("mesh", IMAGE, "--radius", "4", "--threads", 3, "--oversubscribe", "--max-elements", 3000, "-o", self.out,
                            "--log", self.log)
         self.assert_exit(process, 1)
         self.assert_exit(run_podm("replay", IMAGE, self.log), 0)
 
     def test_a_search_for_the_radius_logs_its_last_run_only(self):
-        process = run_podm("mesh", IMAGE, "--target-elements", 20000, "--threads", 2, "-o", self.out, "--log", self.log)
+        process = run_podm("mesh", IMAGE, "--target-elements", 20000, "--threads", 2, "--oversubscribe", "-o", self.out, "--log", self.log)
         self.assert_exit(process, 0)
         self.assert_exit(run_podm("replay", IMAGE, self.log), 0)
 

@@ -10,7 +10,7 @@ OPTIONS = {
     "mesh": ["--output", "--radius", "--radius-of", "--delta", "--target-elements", "--labels", "--merge",
              "--drop", "--background", "--label-names", "--space", "--surface", "--record", "--max-elements",
              "--max-seconds", "--max-memory-gib", "--threads", "--contention", "--executor", "--virtual-cost",
-             "--seed", "--log", "--verify", "--quiet"],
+             "--seed", "--log", "--begging", "--pin", "--oversubscribe", "--topology", "--stats", "--verify", "--quiet"],
     "replay": ["--labels", "--merge", "--drop", "--background", "--label-names"],
     "info": ["--labels", "--merge", "--drop", "--background", "--label-names", "--json"],
     "phantom": ["--size", "--output"],

@@ -5,6 +5,7 @@
 #include <cstdint>
 #include <functional>
 #include <map>
+#include <optional>
 #include <stop_token>
 #include <string>
 #include <vector>
@@ -24,6 +25,11 @@ inline constexpr double kFacetAngleBound = 30.0;
 /// What a worker does that finds a vertex locked by another; see refine/contention_manager.h.
 enum class Contention { kAggressive, kRandom, kGlobal, kLocal };
 std::string to_string(Contention contention);
+
+/// Whom a worker with cells to spare serves first: the one that has begged longest, or the nearest in the
+/// machine; see refine/begging_list.h.
+enum class Begging { kRandom, kHierarchical };
+std::string to_string(Begging begging);
 
 /// Who runs the workers: threads, or one core that plays them in virtual time (refine/virtual_executor.h).
 enum class Executor { kThreads, kVirtual };
@@ -51,6 +57,10 @@ struct MeshingOptions {
   /// guarantees. 0: all cores for the feature transform, one for refinement.
   int threads = 0;
   Contention contention = Contention::kLocal;
+  Begging begging = Begging::kHierarchical;
+  std::string pin = "none";    ///< compact, scatter, none, or processors: runtime/placement.h
+  bool oversubscribe = false;  ///< else more threads than processors are refused
+  std::string topology_path;   ///< hwloc XML of the machine that the workers stand for; empty: this one
   Executor executor = Executor::kThreads;
   VirtualCost virtual_cost = VirtualCost::kMeasured;
   std::uint64_t seed = 1;             ///< of pauses of Contention::kRandom and of virtual time
@@ -111,8 +121,26 @@ struct Counters {
   std::uint64_t exact_decisions = 0;  ///< conflict tests that the cached sphere left undecided
   std::uint64_t cells_created = 0;
   std::uint64_t lock_conflicts = 0;  ///< attempts rolled back
-  // Seconds that workers lost, summed over them.
+  std::uint64_t region_cells = 0;    ///< cells that operations collected to replace, carried out or not
+  // Seconds lost, of all workers.
   double contention_s = 0, begging_s = 0, rollback_s = 0;
+  /// Cells tested and vertices locked, by the hops to the NUMA node whose worker made them; empty on one
+  /// node.
+  std::vector<std::uint64_t> accesses_by_hops;
+};
+
+/// One worker: where it was, and what it did.
+struct WorkerReport {
+  int node = 0, socket = 0;      ///< of the machine, or of the one described
+  std::optional<int> processor;  ///< asked for, by the system's number; none: bound to none
+  std::optional<int> bound_to;   ///< as the system told when the worker had begun
+  Counters counters;
+};
+
+/// Pages of the mesh store asked for where they are, against the node that the pools say.
+struct PageSamples {
+  std::uint64_t as_claimed = 0, elsewhere = 0;
+  std::string unavailable;  ///< why none were asked
 };
 
 struct MeshingReport {
@@ -122,7 +150,10 @@ struct MeshingReport {
   StopReason stop_reason = StopReason::kComplete;
   Guarantees guarantees;
   Quality quality;
-  Counters counters;
+  Counters counters;  ///< of all workers
+  std::vector<WorkerReport> workers;
+  int num_nodes = 1;  ///< NUMA nodes of the machine
+  PageSamples pages;
   std::map<std::uint32_t, std::uint64_t> cells_of_label;  ///< by label value
   std::map<std::uint32_t, double> volume_of_label_mm3;    ///< by label value, of the mesh
   std::uint64_t store_cells = 0;                          ///< cells of the whole virtual box
