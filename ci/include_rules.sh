@@ -9,6 +9,7 @@ may_include() {
     mesher/geometry | mesher/runtime | mesher/include) ;;
     mesher/image) echo mesher/geometry mesher/runtime mesher/include ;;
     mesher/delaunay) echo mesher/geometry mesher/runtime mesher/include ;;
+    mesher/octree) echo mesher/geometry mesher/runtime mesher/include ;;
     mesher/refine) echo mesher/delaunay mesher/image mesher/geometry mesher/runtime mesher/include ;;
     mesher/io | examples/*) echo mesher/include ;;
     mesher | mesher/*) echo "mesher mesher/*" ;;  # the algorithms, the command line, whole-mesher tests
