@@ -8,13 +8,16 @@
 //              it, so of radius r at most, has the facet's vertices         |pc| <= 2r, 4r
 //   R6         vertices within 2 delta of p go; their cells' vertices are
 //              within 2r of them                                            2 delta more than the above
-// So 4r + 2 delta from the leaf, and the region holds what is within one side of the leaf. About r: an
-// insertion does not raise the greatest circumradius, and a vertex that R6 removes leaves an isosurface
-// vertex within 2 delta. So a ball that is empty now was, shrunk by 2 delta, empty in the initial mesh, and
-// its radius is r_I + 2 delta at most if the initial mesh bounds all of them by r_I.
+// So 4r + 2 delta from the leaf, and in uniform trees the region holds what is within one side of the leaf
+// (where leaves are graded, within half a side at least). About r: an insertion does not raise the greatest
+// circumradius, and a vertex that R6 removes leaves an isosurface vertex within 2 delta. So a ball that is
+// empty now was, shrunk by 2 delta, empty in the initial mesh, and its radius is r_I + 2 delta at most if the
+// initial mesh bounds all of them by r_I. It does not where it is far from the object.
 //
-// That is of cells all of which are bounded; those far from the object are not. No safety rests on the side:
-// what would lock a vertex outside the region has to be deferred.
+// No safety rests on the side: what would lock a vertex outside the region has to be deferred. Then a cell
+// that is replaced has all its vertices in the region, and one beside it, whose mirror is written, three; a
+// cell cannot have three in each of two disjoint regions, nor be replaced by one operation and lie beside
+// another. That holds wherever the inserted point is: the cells it gets have three such vertices too.
 #pragma once
 
 #include <array>
@@ -23,8 +26,8 @@
 
 namespace podm {
 
-/// The smallest side, mm, at which no operation leaves its region when the circumradii of the initial mesh
-/// are `initial_radius_mm` at most.
+/// The smallest side of uniform leaves, mm, at which no operation leaves its region when the circumradii of
+/// the initial mesh are `initial_radius_mm` at most.
 constexpr double leaf_side(double initial_radius_mm, double delta_mm) {
   const double radius = initial_radius_mm + 2 * delta_mm;
   return 4 * radius + 2 * delta_mm;

@@ -63,6 +63,12 @@ std::set<RefinementQueue::Key>& RefinementQueue::ready_of(LeafId leaf) {
   return ready_[leaf * ready_.size() / octree_.num_leaves()];
 }
 
+const std::set<RefinementQueue::Key>& RefinementQueue::ready_for(unsigned node) const {
+  if (order_ == LeafOrder::kHome && !ready_[node].empty()) return ready_[node];
+  return *std::max_element(ready_.begin(), ready_.end(),
+                           [](const auto& a, const auto& b) { return a.size() < b.size(); });
+}
+
 RefinementQueue::Key RefinementQueue::key(LeafId leaf) const {
   const auto rank = [&]() -> std::uint64_t {
     const GridCube& cube = octree_.cube(leaf);
@@ -102,11 +108,7 @@ void RefinementQueue::set_active(const std::vector<LeafId>& zones, bool is_activ
 }
 
 std::optional<LeafId> RefinementQueue::take(unsigned node) {
-  const bool has_home = order_ == LeafOrder::kHome && !ready_[node].empty();
-  const std::set<Key>& ready =
-      has_home ? ready_[node]
-               : *std::max_element(ready_.begin(), ready_.end(),
-                                   [](const auto& a, const auto& b) { return a.size() < b.size(); });
+  const std::set<Key>& ready = ready_for(node);
   if (ready.empty()) return std::nullopt;
   Key& resume_at = resume_at_[order_ == LeafOrder::kMorton ? node : 0];
   const auto next = ready.lower_bound(resume_at);

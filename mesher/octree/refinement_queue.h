@@ -54,6 +54,7 @@ class RefinementQueue {
 
   Key key(LeafId leaf) const;
   std::set<Key>& ready_of(LeafId leaf);
+  const std::set<Key>& ready_for(unsigned node) const;
   bool is_ready(LeafId leaf) const { return num_poor_[leaf] > 0 && num_active_near_[leaf] == 0; }
   std::vector<LeafId> buffer_zones(LeafId leaf) const;
   void set_active(const std::vector<LeafId>& zones, bool is_active);
