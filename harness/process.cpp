@@ -41,11 +41,12 @@ double seconds(const timeval& time) {
   return static_cast<double>(time.tv_sec) + 1e-6 * static_cast<double>(time.tv_usec);
 }
 
-// In the child, for good: `file` in place of `descriptor`.
-void redirect(int descriptor, const std::string& path, int flags) {
+// In the child, for good: the file in place of `descriptor`. False with errno.
+bool redirect(int descriptor, const std::string& path, int flags) {
+  close(descriptor);  // it may be the last that is to be had
   const int file = open(path.empty() ? "/dev/null" : path.c_str(), flags, 0666);
-  if (file >= 0 && file != descriptor) dup2(file, descriptor);
-  if (file > STDERR_FILENO) close(file);
+  if (file < 0 || file == descriptor) return file >= 0;
+  return dup2(file, descriptor) >= 0 && close(file) == 0;
 }
 
 // What the child does until it is the program; returns the error when it does not become it. It leads a group
@@ -55,10 +56,9 @@ int become(const ProcessRequest& request, char* const* arguments, pid_t parent) 
   setpgid(0, 0);
   prctl(PR_SET_PDEATHSIG, SIGKILL);
   if (getppid() != parent) _exit(1);  // it died before the line above
-  redirect(STDIN_FILENO, "", O_RDONLY);
-  redirect(STDOUT_FILENO, request.stdout_path, kWrite);
-  redirect(STDERR_FILENO, request.stderr_path, kWrite);
-  execvp(arguments[0], arguments);
+  if (redirect(STDIN_FILENO, "", O_RDONLY) && redirect(STDOUT_FILENO, request.stdout_path, kWrite) &&
+      redirect(STDERR_FILENO, request.stderr_path, kWrite))
+    execvp(arguments[0], arguments);
   return errno;
 }
 

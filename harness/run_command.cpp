@@ -30,7 +30,7 @@ void on_signal(int) { interrupted = true; }
 
 // What all trials of a command have in common.
 struct Session {
-  Session(const RunCommand& given, const std::string& mesher_sha256);
+  Session(const RunCommand& given, const std::string& mesher_sha256, const Machine& machine);
 
   const RunCommand& command;
   Json programs, environment;
@@ -39,8 +39,7 @@ struct Session {
 };
 
 // Stores the machine's topology in the folder of results once; what rows tell of the machine.
-Json describe_machine(const std::string& results_folder) {
-  Machine machine = this_machine();
+Json describe(const Machine& machine, const std::string& results_folder) {
   Json described = machine.summary;
   if (machine.topology_xml.empty()) {
     described["topology_sha256"] = "unavailable: hwloc finds no topology";
@@ -53,11 +52,11 @@ Json describe_machine(const std::string& results_folder) {
   return described;
 }
 
-Session::Session(const RunCommand& given, const std::string& mesher_sha256)
-    : command(given), keys(mesher_sha256, this_machine().summary), runner(given.programs) {
+Session::Session(const RunCommand& given, const std::string& mesher_sha256, const Machine& machine)
+    : command(given), keys(mesher_sha256, machine.summary), runner(given.programs) {
   const ScratchFolder scratch(command.results_folder);
   programs = describe_programs(command.programs, scratch.path());
-  environment = describe_machine(command.results_folder);
+  environment = describe(machine, command.results_folder);
   environment.update(environment_of_run(scratch.path()));
 }
 
@@ -131,21 +130,27 @@ class ExperimentRun {
     const Trial& trial = plan_.trials[planned.turn.trial];
     const std::string label = label_of(trial, planned.turn);
     progress.start_turn(label);
-    const ScratchFolder scratch(session_.command.results_folder);
     RowContext context{experiment_.name,  planned.key,         session_.command.order_seed, 0,
                        session_.programs, session_.environment};
     context.environment.update(environment_now());
-    const TrialResult result = session_.runner.run(trial, scratch.path(), [&progress] {
-      progress.tick();
-      return interrupted.load();
-    });
+    const TrialResult result = run_in_scratch_folder(trial, planned.turn, progress);
     context.harness_s =
         clock.lap_without(result.preparation_s + result.process.wall_s + result.verification_s);
     const Json row = make_row(context, trial, planned.turn, result);
     if (result.status != Status::kSkipped) file_.append(row);
     progress.finish_turn(one_line(label, result));
-    if (session_.command.keep) keep(scratch, trial, planned.turn);
     return row;
+  }
+
+  // The mesh is gone before the row is written: it then costs the disk no time and the row finds room.
+  TrialResult run_in_scratch_folder(const Trial& trial, const Turn& turn, Progress& progress) {
+    const ScratchFolder scratch(session_.command.results_folder);
+    TrialResult result = session_.runner.run(trial, scratch.path(), [&progress] {
+      progress.tick();
+      return interrupted.load();
+    });
+    if (session_.command.keep) keep(scratch, trial, turn);
+    return result;
   }
 
   void keep(const ScratchFolder& scratch, const Trial& trial, const Turn& turn) const {
@@ -191,7 +196,7 @@ int run(const RunCommand& command) {
   const ResultsLock lock(command.results_folder);
   std::signal(SIGINT, on_signal);
   std::signal(SIGTERM, on_signal);
-  Session session(command, mesher_sha256);
+  Session session(command, mesher_sha256, this_machine());
   std::vector<Plan> plans;  // all, so that a bad file is refused before anything runs
   for (const Experiment& experiment : experiments)
     plans.push_back(
