@@ -11,8 +11,8 @@ namespace podm::bench {
 
 /// Nothing where nothing is known.
 struct Expectation {
-  std::optional<double> seconds;  ///< of one turn, verification included
-  std::optional<double> memory_bytes, disk_bytes;
+  std::optional<double> seconds;                   ///< of one turn, verification included
+  std::optional<double> memory_bytes, disk_bytes;  ///< from elements aimed at: beyond the image
 };
 
 class Expectations {
