@@ -5,6 +5,7 @@
 #include <string>
 
 #include "experiment.h"
+#include "process.h"
 
 namespace podm::bench {
 
@@ -18,6 +19,7 @@ struct Verification {
   nlohmann::ordered_json
       verdicts;       ///< claim: "pass", "fail" or "not_run"; empty when the verifier told nothing
   std::string fault;  ///< why the mesh is not proved; empty: every claim passes
+  bool is_interrupted = false;
 };
 
 /// Every claim but fidelity, which is promised only for cells about as small as voxels. `record` is the
@@ -25,6 +27,7 @@ struct Verification {
 /// `folder` first.
 Verification verify_mesh(const Trial& trial, const nlohmann::ordered_json& image_size,
                          const nlohmann::ordered_json& record, const std::string& mesh_path,
-                         const Programs& programs, const std::string& folder);
+                         const Programs& programs, const std::string& folder,
+                         const StopQuery& stop_requested);
 
 }  // namespace podm::bench

@@ -1,0 +1,28 @@
+// The options of `podm mesh` that an experiment sets, and the product of those given as arrays.
+#pragma once
+
+#include <nlohmann/json.hpp>
+#include <string>
+#include <vector>
+
+#include "toml_section.h"
+
+namespace podm::bench {
+
+/// One member of the product.
+struct Variant {
+  std::string suffix;              ///< ",key=value" of each key that the file gives as an array
+  nlohmann::ordered_json options;  ///< by key of the experiment's file; `threads` is always there
+};
+
+/// The product of the options in `section`, the first of the table in experiments/README.md slowest. A
+/// topology is a file relative to `folder`.
+std::vector<Variant> read_matrix(Section& section, const std::string& folder);
+
+/// As `podm mesh` takes them: radius_mm = 2 is "--radius", "2"; true is the bare option, false none.
+std::vector<std::string> mesher_arguments(const nlohmann::ordered_json& options);
+
+/// `value` as it stands in the name of a trial, made of letters, digits and . _ -
+std::string in_name(const nlohmann::ordered_json& value);
+
+}  // namespace podm::bench
