@@ -26,7 +26,7 @@ void add_run(CLI::App& program, int& exit_code) {
   };
   const auto state = std::make_shared<State>();
   RunCommand& command = state->command;
-  command.programs = {beside_this_program("podm"), beside_this_program("podm-verify")};
+  command.programs = {beside_this_program("podm"), beside_this_program("podm-verify"), PODM_PEERS};
   CLI::App& app = *program.add_subcommand("run", "run the trials of experiments that are not measured yet");
   app.add_option("EXPERIMENT", command.experiment_paths, "files of experiments/")->required();
   app.add_option("--only", command.only,
@@ -41,6 +41,8 @@ void add_run(CLI::App& program, int& exit_code) {
   app.add_option("--podm", command.programs.podm, "file of the mesher [default: podm beside this program]");
   app.add_option("--verifier", command.programs.verifier,
                  "file of the verifier, or none [default: podm-verify beside this program]");
+  app.add_option("--peers", command.programs.peers,
+                 "folder of other meshers [default: harness/peers of the sources]");
   app.callback([state, &exit_code] {
     if (state->command.programs.verifier == "none") state->command.programs.verifier.clear();
     if (!state->tier.empty()) state->command.tier = parse_tier(state->tier);

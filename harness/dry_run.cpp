@@ -89,7 +89,8 @@ void print_total(const Plan& plan, const std::vector<Count>& counts, const std::
 
 int dry_run(const RunCommand& command) {
   const std::vector<Experiment> experiments = read_experiments(command);
-  TrialKeys keys(sha256_of_file(command.programs.podm), this_machine().summary);
+  TrialKeys keys(sha256_of_file(command.programs.podm), this_machine().summary,
+                 Peers(command.programs.peers, command.programs.podm));
   for (const Experiment& experiment : experiments) {
     const Plan plan = make_plan(command, experiment, read_rows(rows_path(command, experiment)).rows, keys);
     if (plan.turns.empty()) continue;

@@ -29,6 +29,7 @@ struct MesherOption {
 };
 
 constexpr MesherOption kMesherOptions[] = {
+    {kMesher, Kind::kWord},
     {"algorithm", Kind::kWord},
     {"radius_mm", Kind::kPositive},
     {"delta_mm", Kind::kPositive},
@@ -126,6 +127,13 @@ void refuse_second_size(const Section& section) {
                  fmt::format("{} exclude each other", fmt::join(given, " and ")));
 }
 
+void refuse_options_of_podm(const Section& section, const Json& options) {
+  if (options.value(kMesher, kPodm) == kPodm) return;
+  for (const auto& [key, value] : options.items())
+    if (key != kMesher && key != "radius_mm" && key != "delta_mm" && key != "threads")
+      section.fail(section.place(key), fmt::format("{} is an option of podm alone", key));
+}
+
 void scale_by_threads(const Section& section, Json& options) {
   if (!options.contains(kPerThread)) return;
   const std::int64_t elements =
@@ -156,14 +164,17 @@ std::vector<Variant> read_matrix(Section& section, const std::string& folder) {
     const bool in_suffix = section.is_array(option.key) || section.is_text(option.key, kPowersOfTwo);
     if (!values.empty()) multiply(variants, option.key, values, in_suffix);
   }
-  for (Variant& variant : variants) scale_by_threads(section, variant.options);
+  for (Variant& variant : variants) {
+    refuse_options_of_podm(section, variant.options);
+    scale_by_threads(section, variant.options);
+  }
   return variants;
 }
 
 std::vector<std::string> mesher_arguments(const Json& options) {
   std::vector<std::string> arguments;
   for (const auto& [key, value] : options.items()) {
-    if (value == false) continue;
+    if (value == false || key == kMesher || key == kSchedule) continue;
     std::string name = key.ends_with(kMillimetres) ? key.substr(0, key.size() - 3) : key;
     std::replace(name.begin(), name.end(), '_', '-');
     arguments.push_back("--" + name);

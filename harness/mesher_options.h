@@ -9,6 +9,8 @@
 
 namespace podm::bench {
 
+/// Which program makes the mesh: podm, the default, or a folder of harness/peers.
+inline constexpr const char *kMesher = "mesher", *kPodm = "podm";
 /// The key that asks for the schedule of the leaves; its file is the trial's own.
 inline constexpr const char* kSchedule = "schedule";
 
@@ -22,7 +24,8 @@ struct Variant {
 /// topology is a file relative to `folder`.
 std::vector<Variant> read_matrix(Section& section, const std::string& folder);
 
-/// As `podm mesh` takes them: radius_mm = 2 is "--radius", "2"; true is the bare option, false none.
+/// As `podm mesh` takes them: radius_mm = 2 is "--radius", "2"; true is the bare option, false none. Without
+/// those of the two keys above, which are the harness's business.
 std::vector<std::string> mesher_arguments(const nlohmann::ordered_json& options);
 
 /// `value` as it stands in the name of a trial, made of letters, digits and . _ -

@@ -56,6 +56,7 @@ Json make_row(const RowContext& context, const Trial& trial, const Turn& turn, c
   row["harness_s"] = context.harness_s;
   row["stderr_tail"] = result.stderr_tail;
   row["programs"] = context.programs;
+  if (!result.peer.is_null()) row["programs"]["peer"] = result.peer;
   row["environment"] = context.environment;
   return row;
 }

@@ -53,7 +53,9 @@ Json describe(const Machine& machine, const std::string& results_folder) {
 }
 
 Session::Session(const RunCommand& given, const std::string& mesher_sha256, const Machine& machine)
-    : command(given), keys(mesher_sha256, machine.summary), runner(given.programs) {
+    : command(given),
+      keys(mesher_sha256, machine.summary, Peers(given.programs.peers, given.programs.podm)),
+      runner(given.programs) {
   const ScratchFolder scratch(command.results_folder);
   programs = describe_programs(command.programs, scratch.path());
   environment = describe(machine, command.results_folder);

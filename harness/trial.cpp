@@ -8,6 +8,7 @@
 #include <fstream>
 
 #include "mesher_options.h"
+#include "record.h"
 #include "warm_memory.h"
 
 namespace podm::bench {
@@ -35,14 +36,18 @@ class Stopwatch {
 std::vector<std::string> mesh_command(const Trial& trial, const std::string& podm,
                                       const std::string& folder) {
   std::vector<std::string> command{podm, "mesh", trial.image};
-  Json options = trial.options;
-  const bool has_schedule = options.value(kSchedule, false);
-  options.erase(kSchedule);
-  const std::vector<std::string> arguments = mesher_arguments(options);
-  command.insert(command.end(), arguments.begin(), arguments.end());
-  if (has_schedule) command.insert(command.end(), {"--schedule", folder + kScheduleName});
+  const std::vector<std::string> options = mesher_arguments(trial.options);
+  command.insert(command.end(), options.begin(), options.end());
+  if (trial.options.value(kSchedule, false))
+    command.insert(command.end(), {"--schedule", folder + kScheduleName});
   command.insert(command.end(), {"-o", folder + kMeshName, "--record", folder + kRecordName, "--quiet"});
   return command;
+}
+
+// A peer writes what format it likes and names the file.
+std::string mesh_path(const Json& record, const std::string& folder) {
+  if (!record.is_object() || !record.contains("mesh")) return folder + kMeshName;
+  return fmt::format("{}/{}", folder, text_in(record, "mesh"));
 }
 
 // The record names the image by path and hash; how many voxels it has is for memory per cell.
@@ -86,7 +91,7 @@ std::string unmet(const Json& record) {
   return text;
 }
 
-void judge(TrialResult& result, const std::string& record_path) {
+void judge(const Trial& trial, const std::string& record_path, TrialResult& result) {
   using End = ProcessOutcome::End;
   const ProcessOutcome& process = result.process;
   result.reason = process.describe();
@@ -100,6 +105,7 @@ void judge(TrialResult& result, const std::string& record_path) {
     return;
   }
   Json record = Json::parse(file, nullptr, false);
+  if (is_of_peer(trial)) record = complete_record(trial, std::move(record));
   if (const std::string fault = fault_of(record); !fault.empty()) {
     result.reason += ", with a record that " + fault;
     return;
@@ -145,8 +151,8 @@ void TrialRunner::verify(const Trial& trial, const std::string& scratch_folder,
                          const StopQuery& stop_requested, TrialResult& result) {
   const Stopwatch watch;
   const Verification verification =
-      verify_mesh(trial, result.image_size, result.record, scratch_folder + kMeshName, programs_,
-                  scratch_folder, stop_requested);
+      verify_mesh(trial, result.image_size, result.record, mesh_path(result.record, scratch_folder),
+                  programs_, scratch_folder, stop_requested);
   result.verification_s = watch.seconds();
   result.record["verdicts"] = verification.verdicts;
   if (verification.fault.empty()) return;
@@ -154,17 +160,31 @@ void TrialRunner::verify(const Trial& trial, const std::string& scratch_folder,
   result.reason += (result.reason.empty() ? "" : "; ") + verification.fault;
 }
 
+bool TrialRunner::skip(const Trial& trial, TrialResult& result) {
+  if (trial.if_exists && !image_exists(trial)) result.reason = trial.image + " is not there";
+  if (is_of_peer(trial) && result.reason.empty()) result.reason = peers_.of(trial).absence;
+  if (!result.reason.empty()) result.status = Status::kSkipped;
+  return !result.reason.empty();
+}
+
+void TrialRunner::set_command(const Trial& trial, const std::string& scratch_folder, TrialResult& result) {
+  if (!is_of_peer(trial)) {
+    result.command = mesh_command(trial, programs_.podm, scratch_folder);
+    return;
+  }
+  const Peer& peer = peers_.of(trial);
+  const std::string image = image_file(trial, result.image_size, programs_.podm, scratch_folder);
+  result.command = peer_command(trial, peer, image, programs_.podm, scratch_folder);
+  result.peer = {{"name", trial.options[kMesher]}, {"sha256", peer.sha256()}, {"version", peer.version}};
+}
+
 TrialResult TrialRunner::run(const Trial& trial, const std::string& scratch_folder,
                              const StopQuery& stop_requested) {
   TrialResult result;
-  if (trial.if_exists && !image_exists(trial)) {
-    result.status = Status::kSkipped;
-    result.reason = trial.image + " is not there";
-    return result;
-  }
+  if (skip(trial, result)) return result;
   const Stopwatch watch;
   result.image_size = image_size(trial.image, scratch_folder);
-  result.command = mesh_command(trial, programs_.podm, scratch_folder);
+  set_command(trial, scratch_folder, result);
   warm_memory(kWarmBytes);
   result.preparation_s = watch.seconds();
   const std::string stderr_path = scratch_folder + "/stderr.txt";
@@ -175,9 +195,9 @@ TrialResult TrialRunner::run(const Trial& trial, const std::string& scratch_fold
                    .timeout_s = trial.timeout_s,
                    .memory_limit_bytes = static_cast<std::uint64_t>(trial.memory_limit_gib * kBytesPerGib)},
                   stop_requested);
-  judge(result, scratch_folder + kRecordName);
+  judge(trial, scratch_folder + kRecordName, result);
   std::error_code error;
-  const auto mesh_bytes = std::filesystem::file_size(scratch_folder + kMeshName, error);
+  const auto mesh_bytes = std::filesystem::file_size(mesh_path(result.record, scratch_folder), error);
   if (!error) result.mesh_bytes = mesh_bytes;
   if (result.record.is_object() && !programs_.verifier.empty())
     verify(trial, scratch_folder, stop_requested, result);

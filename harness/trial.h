@@ -6,6 +6,7 @@
 #include <string>
 
 #include "experiment.h"
+#include "peer.h"
 #include "process.h"
 #include "verification.h"
 
@@ -19,7 +20,7 @@ enum class Status {
   kFailed,  ///< no mesh, or no record of it
   kTimedOut,
   kInterrupted,  ///< by the user, as are all trials after it
-  kSkipped,      ///< the image is absent and may be
+  kSkipped,      ///< the image is absent and may be, or the peer is not installed
 };
 /// "ok", "unmet", "failed", "timed_out", "interrupted", "skipped".
 std::string to_string(Status status);
@@ -28,6 +29,7 @@ struct TrialResult {
   Status status = Status::kFailed;
   std::string reason;                ///< why the status is not kOk
   std::vector<std::string> command;  ///< as run
+  nlohmann::ordered_json peer;       ///< name, hash and version of a mesher other than podm; else null
   ProcessOutcome process;
   std::uint64_t mesh_bytes = 0;                  ///< of the mesh file
   double preparation_s = 0, verification_s = 0;  ///< before the mesher starts and after it has ended
@@ -39,7 +41,8 @@ struct TrialResult {
 /// Runs trials one after the other.
 class TrialRunner {
  public:
-  explicit TrialRunner(Programs programs) : programs_(std::move(programs)) {}
+  explicit TrialRunner(Programs programs)
+      : programs_(std::move(programs)), peers_(programs_.peers, programs_.podm) {}
 
   /// Runs the mesher on the trial, then the verifier on its mesh, whose verdicts join the record. Files are
   /// written into `scratch_folder`, which must exist.
@@ -48,10 +51,14 @@ class TrialRunner {
 
  private:
   const nlohmann::ordered_json& image_size(const std::string& image, const std::string& scratch_folder);
+  // Status kSkipped and the reason where the trial cannot run here.
+  bool skip(const Trial& trial, TrialResult& result);
+  void set_command(const Trial& trial, const std::string& scratch_folder, TrialResult& result);
   void verify(const Trial& trial, const std::string& scratch_folder, const StopQuery& stop_requested,
               TrialResult& result);
 
   Programs programs_;
+  Peers peers_;
   std::map<std::string, nlohmann::ordered_json> image_sizes_;  // each image is looked at once
 };
 

@@ -16,9 +16,12 @@ std::string TrialKeys::of(const Trial& trial, const Turn& turn) {
   nlohmann::ordered_json options = trial.options;
   if (options.contains("topology")) options["topology"] = content_of(options["topology"]);
   const nlohmann::ordered_json identity = {
-      {"mesher", mesher_sha256_}, {"input", is_phantom(trial.image) ? trial.image : content_of(trial.image)},
-      {"trial", trial.name},      {"options", options},
-      {"machine", machine_},      {"repeat", turn.repeat},
+      {"mesher", is_of_peer(trial) ? peers_.of(trial).sha256() : mesher_sha256_},
+      {"input", is_phantom(trial.image) ? trial.image : content_of(trial.image)},
+      {"trial", trial.name},
+      {"options", options},
+      {"machine", machine_},
+      {"repeat", turn.repeat},
       {"warmup", turn.is_warmup}};
   return sha256_of(identity.dump());
 }

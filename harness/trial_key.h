@@ -4,6 +4,7 @@
 #include <map>
 #include <string>
 
+#include "peer.h"
 #include "schedule.h"
 
 namespace podm::bench {
@@ -12,10 +13,10 @@ namespace podm::bench {
 /// the options, the machine and the number of the repeat. Not by paths, limits or the verifier.
 class TrialKeys {
  public:
-  TrialKeys(std::string mesher_sha256, const nlohmann::ordered_json& machine_summary)
-      : mesher_sha256_(std::move(mesher_sha256)), machine_(machine_summary) {}
+  TrialKeys(std::string mesher_sha256, const nlohmann::ordered_json& machine_summary, Peers peers = {})
+      : mesher_sha256_(std::move(mesher_sha256)), machine_(machine_summary), peers_(std::move(peers)) {}
 
-  /// 64 hexadecimal digits. Throws InputError when a file that is there cannot be read.
+  /// 64 hexadecimal digits. Throws InputError when a file that is there cannot be read or a peer is unknown.
   std::string of(const Trial& trial, const Turn& turn);
 
  private:
@@ -24,6 +25,7 @@ class TrialKeys {
 
   std::string mesher_sha256_;
   nlohmann::ordered_json machine_;
+  Peers peers_;
   std::map<std::string, std::string> content_;
 };
 

@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <filesystem>
 #include <fstream>
 
 #include "mesher_options.h"
@@ -16,7 +17,27 @@ using Json = nlohmann::ordered_json;
 constexpr const char* kClaims = "structure,radius_edge,boundary_angles,delaunay,conformity,surface,labels";
 constexpr double kTimeoutS = 600;
 
-// The file of the trial's image, written first where it is a phantom. Empty: it cannot.
+Json read_json(const std::string& path) {
+  std::ifstream file(path);
+  return file ? Json::parse(file, nullptr, false) : Json();
+}
+
+// Of the claims that the record promises: all, unless it names them.
+std::string fault_of(const Json& verdicts, const Json& record) {
+  const auto is_promised = [&](const std::string& claim) {
+    const auto promises = record.find("promises");
+    return promises == record.end() ||
+           std::find(promises->begin(), promises->end(), claim) != promises->end();
+  };
+  std::string text;
+  for (const auto& [claim, verdict] : verdicts.items())
+    if (verdict != "pass" && is_promised(claim))
+      text += fmt::format("{}{} {}", text.empty() ? "" : ", ", claim, verdict.get<std::string>());
+  return text;
+}
+
+}  // namespace
+
 std::string image_file(const Trial& trial, const Json& image_size, const std::string& podm,
                        const std::string& folder) {
   if (!is_phantom(trial.image)) return trial.image;
@@ -24,6 +45,7 @@ std::string image_file(const Trial& trial, const Json& image_size, const std::st
   int longest = 0;
   for (const auto& voxels : image_size) longest = std::max(longest, voxels.get<int>());
   const std::string path = folder + "/image.nii.gz";
+  if (std::filesystem::exists(path)) return path;
   const ProcessRequest request{.arguments = {podm, "phantom", phantom.substr(0, phantom.find('@')), "--size",
                                              std::to_string(longest), "-o", path},
                                .stdout_path = {},
@@ -31,21 +53,6 @@ std::string image_file(const Trial& trial, const Json& image_size, const std::st
                                .timeout_s = kTimeoutS};
   return run_process(request).succeeded() ? path : "";
 }
-
-Json read_json(const std::string& path) {
-  std::ifstream file(path);
-  return file ? Json::parse(file, nullptr, false) : Json();
-}
-
-std::string fault_of(const Json& verdicts) {
-  std::string text;
-  for (const auto& [claim, verdict] : verdicts.items())
-    if (verdict != "pass")
-      text += fmt::format("{}{} {}", text.empty() ? "" : ", ", claim, verdict.get<std::string>());
-  return text;
-}
-
-}  // namespace
 
 Verification verify_mesh(const Trial& trial, const Json& image_size, const Json& record,
                          const std::string& mesh_path, const Programs& programs, const std::string& folder,
@@ -70,7 +77,7 @@ Verification verify_mesh(const Trial& trial, const Json& image_size, const Json&
   }
   const Json claims = report.value("claims", Json::object());
   for (const auto& [claim, result] : claims.items()) verification.verdicts[claim] = result["verdict"];
-  verification.fault = fault_of(verification.verdicts);
+  verification.fault = fault_of(verification.verdicts, record);
   return verification;
 }
 
