@@ -115,6 +115,15 @@ Json executor_of(const MeshRun& run) {
   return executor;
 }
 
+Json leaves_of(const MeshRun& run) {
+  if (run.result.report.algorithm == Algorithm::kPodm) return nullptr;
+  return {{"number", run.result.report.num_leaves},
+          {"nodes", run.result.report.computing_nodes},
+          {"initial_ratio", run.options.initial_ratio},
+          {"initial_threads", run.options.initial_threads},
+          {"leaf_size_mm", run.options.leaf_size_mm}};
+}
+
 Json quality_of(const Quality& quality) {
   return {{"max_radius_edge", quality.max_radius_edge},
           {"min_facet_angle_deg", quality.min_facet_angle_deg},
@@ -163,7 +172,7 @@ Json record(const MeshRun& run) {
   return {
       {"schema", kRecordSchema},
       {"program", "podm " PODM_VERSION},
-      {"algorithm", "podm"},
+      {"algorithm", to_string(report.algorithm)},
       {"input",
        {{"path", path}, {"sha256", input_sha256(path, run.image)}, {"affine", affine_rows(run.image)}}},
       {"options", options_of(run)},
@@ -171,11 +180,12 @@ Json record(const MeshRun& run) {
       {"seed", run.options.seed},
       {"threads",
        {{"asked", run.options.threads},
-        {"used", std::max(1, run.options.threads)},
+        {"used", report.workers.size()},
         {"pin", run.options.pin},
         {"placement", placement_of(report)},
         {"contention", to_string(run.options.contention)},
         {"begging", to_string(run.options.begging)}}},
+      {"leaves", leaves_of(run)},
       {"executor", executor_of(run)},
       {"phases_s", run.phases_s()},
       {"cells", mesh.cells.size()},
@@ -190,7 +200,8 @@ Json record(const MeshRun& run) {
        {{"committed", committed(report.counters)},
         {"stale_cell", report.counters.stale_cells},
         {"rejected", report.counters.rejected},
-        {"lock_conflict", report.counters.lock_conflicts}}},
+        {"lock_conflict", report.counters.lock_conflicts},
+        {"out_of_leaf", report.counters.out_of_leaf}}},
       {"overhead_s",
        {{"contention", report.counters.contention_s},
         {"begging", report.counters.begging_s},

@@ -30,7 +30,7 @@ class Refined : public testing::TestWithParam<std::tuple<NamedImage, Crew>> {
         delta_(default_delta_mm(image_, kRadius)),
         sizes_(std::vector<double>(image_.labels.size(), kRadius)) {
     Watch watch({}, {}, [](std::uint64_t) {});
-    refinement_ = podm(isosurface_, foreground_bounds(image_), delta_, sizes_, 1 << 22,
+    refinement_ = podm({isosurface_, foreground_bounds(image_), delta_, sizes_, 1 << 22},
                        std::get<Crew>(GetParam()), watch);
   }
   double spacing() const { return std::min(delta_, kRadius / std::sqrt(2 + std::sqrt(3.0))); }
