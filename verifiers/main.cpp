@@ -23,8 +23,8 @@ constexpr int kSuccess = 0, kClaimNotMet = 1, kBadInput = 2, kInternal = 3;
 
 struct Command {
   Options options;
-  std::vector<std::string> radius_of;
-  std::string claims, space;
+  std::vector<std::string> radius_of, merges;
+  std::string claims, space, labels, drop;
   bool quiet = false;
 };
 
@@ -48,12 +48,29 @@ CLI::Validator angle() {
           "0..60"};
 }
 
+// Those of `podm mesh`, for a mesh of a part of the image's labels.
+void declare_selection(CLI::App& app, Command& command) {
+  app.option_defaults()->group("Labels of the image that were meshed");
+  CLI::Option* image = app.get_option("--image");
+  app.add_option("--labels", command.labels, "these label values only, e.g. 1,3-7 [default: all]")
+      ->needs(image);
+  app.add_option("--drop", command.drop, "these label values are background [default: none]")->needs(image);
+  app.add_option("--merge", command.merges,
+                 "VALUES=NAME, one label of several, e.g. 2,3=kidney; repeatable [default: none]")
+      ->needs(image);
+  app.add_option("--background", command.options.selection.background,
+                 "label value of the background, in mesh and image")
+      ->capture_default_str();
+  app.option_defaults()->group("Options");
+}
+
 void declare_options(CLI::App& app, Command& command) {
   Options& options = command.options;
   app.add_option("MESH", options.mesh_path, "VTU, legacy VTK, Medit, Gmsh 2.2 or 4.1, TetGen; also .gz")
       ->required();
   app.add_option("--image", options.image_path,
                  "the segmented image, for the claims labels, surface and fidelity");
+  declare_selection(app, command);
   app.add_option("--schedule", options.schedule_path,
                  "leaf grid and schedule of a run, for the claim conformity");
   app.add_option("--claims", command.claims,
@@ -109,6 +126,9 @@ void finish_options(Command& command) {
       throw InputError(fmt::format("--radius-of: '{}' is not LABEL=MM, as in 7=0.5", text));
     options.radius_of[label] = radius;
   }
+  if (!command.labels.empty()) options.selection.keep = parse_label_ranges(command.labels, "--labels");
+  if (!command.drop.empty()) options.selection.drop = parse_label_ranges(command.drop, "--drop");
+  for (const std::string& text : command.merges) options.selection.merges.push_back(parse_merge(text));
   const std::string& bad = options.extract_bad_path;
   if (!bad.empty() && !bad.ends_with(".vtu"))
     throw InputError(fmt::format("--extract-bad: '{}' does not end in .vtu", bad));

@@ -6,6 +6,7 @@
 #include <string>
 #include <vector>
 
+#include "image/label_selection.h"
 #include "mesh.h"
 
 namespace podm::verify {
@@ -13,6 +14,7 @@ namespace podm::verify {
 struct Options {
   std::string mesh_path;
   std::string image_path;           ///< empty: claims about the image are not run
+  LabelSelection selection;         ///< what was meshed of the image
   std::string schedule_path;        ///< leaf grid and schedule of a PDR or PDR.PODM run; empty: none
   std::vector<std::string> claims;  ///< names asked for; empty: all
   double radius_edge_bound = 1.93;

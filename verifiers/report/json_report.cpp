@@ -75,11 +75,19 @@ Json claim_of(const ClaimResult& result) {
           {"seconds", result.seconds}};
 }
 
+Json selection_of(const LabelSelection& selection) {
+  return {{"background", selection.background},
+          {"labels", selection.keep},
+          {"drop", selection.drop},
+          {"merge", selection.merges}};
+}
+
 Json options_of(const Options& options) {
   Json radius_of = Json::object();
   for (const auto& [label, radius] : options.radius_of) radius_of[std::to_string(label)] = radius;
   return {{"claims", options.claims.empty() ? Json(nullptr) : Json(options.claims)},
           {"space", options.space ? Json(describe(*options.space)) : Json(nullptr)},
+          {"selection", selection_of(options.selection)},
           {"radius_edge_bound", options.radius_edge_bound},
           {"angle_bound_deg", options.angle_bound_deg},
           {"radius_mm", options.radius_mm ? Json(*options.radius_mm) : Json(nullptr)},

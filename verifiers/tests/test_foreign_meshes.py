@@ -10,6 +10,8 @@ import unittest
 
 import numpy as np
 
+from inr_image import write_inr
+
 VERIFIER = os.environ["PODM_VERIFIER"]
 CUBE = """8 3 0 0
 1 0 0 0\n2 1 0 0\n3 1 1 0\n4 0 1 0\n5 0 0 1\n6 1 0 1\n7 1 1 1\n8 0 1 1
@@ -27,14 +29,10 @@ Mesh.MeshSizeMax = 0.15;
 """
 
 
-def write_half_balls(path):
-    """An INR image of a ball, its halves labelled 1 and 2."""
-    size = 32
-    z, y, x = np.indices((size, size, size)) - (size - 1) / 2
-    voxels = np.where(x * x + y * y + z * z < 12 ** 2, np.where(x > 0, 2, 1), 0).astype(np.uint8)
-    header = (f"#INRIMAGE-4#{{\nXDIM={size}\nYDIM={size}\nZDIM={size}\nVDIM=1\nTYPE=unsigned fixed\nPIXSIZE=8 bits\n"
-              "SCALE=2**0\nCPU=decm\nVX=1\nVY=1\nVZ=1\n")
-    path.write_bytes(header.ljust(256 - 4, "\n").encode() + b"##}\n" + voxels.tobytes())
+def half_balls():
+    """Voxels of a ball, its halves labelled 1 and 2."""
+    z, y, x = np.indices((32, 32, 32)) - 15.5
+    return np.where(x * x + y * y + z * z < 12 ** 2, np.where(x > 0, 2, 1), 0)
 
 
 class ForeignMeshTest(unittest.TestCase):
@@ -86,7 +84,7 @@ class ForeignMeshTest(unittest.TestCase):
         """Of CGAL's mesh of two half balls, with criteria that its refinement is proved to meet."""
         if "PODM_CGAL_IMAGE_MESH" not in os.environ:
             self.skipTest("built without PODM_BUILD_CGAL_PEER")
-        write_half_balls(self.folder / "balls.inr")
+        write_inr(self.folder / "balls.inr", half_balls())
         self.run_program(os.environ["PODM_CGAL_IMAGE_MESH"], "balls.inr", "balls.mesh", "3", *options)
         return self.verdicts("balls.mesh", "--image", self.folder / "balls.inr", "--radius", "3", "--radius-edge", "2")
 
