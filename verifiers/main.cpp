@@ -57,6 +57,7 @@ void declare_selection(CLI::App& app, Command& command) {
   app.add_option("--drop", command.drop, "these label values are background [default: none]")->needs(image);
   app.add_option("--merge", command.merges,
                  "VALUES=NAME, one label of several, e.g. 2,3=kidney; repeatable [default: none]")
+      ->allow_extra_args(false)
       ->needs(image);
   app.add_option("--background", command.options.selection.background,
                  "label value of the background, in mesh and image")
@@ -83,10 +84,15 @@ void declare_options(CLI::App& app, Command& command) {
       ->capture_default_str();
   app.add_option("--radius", options.radius_mm, "bound of the circumradius, mm [default: none]")
       ->check(positive());
-  app.add_option("--radius-of", command.radius_of, "LABEL=MM, the same for one label value; repeatable");
-  app.add_option("--fidelity-voxels", options.fidelity_bound_voxels, "bound of the claim fidelity, voxels")
+  app.add_option("--radius-of", command.radius_of, "LABEL=MM, the same for one label value; repeatable")
+      ->allow_extra_args(false);
+  app.add_option("--fidelity-voxels", options.fidelity_bound_voxels,
+                 "bound of the claim fidelity, voxels: the image tells no less")
       ->check(positive())
       ->capture_default_str();
+  app.add_option("--delta", options.delta_mm,
+                 "sampling distance that a PODM mesh was made with, mm:\nfidelity within 2 delta passes, too")
+      ->check(positive());
   app.add_option("--space", command.space, "RAS, LPS or voxel [default: what the mesh file says]")
       ->check(CLI::IsMember({"RAS", "LPS", "voxel"}));
   app.add_option("--threads", options.threads, "[default: all cores]")->check(CLI::Range(1, 4096));

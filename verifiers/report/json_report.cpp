@@ -93,6 +93,7 @@ Json options_of(const Options& options) {
           {"radius_mm", options.radius_mm ? Json(*options.radius_mm) : Json(nullptr)},
           {"radius_of_mm", radius_of},
           {"fidelity_bound_voxels", options.fidelity_bound_voxels},
+          {"delta_mm", options.delta_mm ? Json(*options.delta_mm) : Json(nullptr)},
           {"threads", options.threads}};
 }
 

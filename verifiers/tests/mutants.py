@@ -47,11 +47,15 @@ class Workshop:
         self.folder = folder
         self.image = folder / "spheres.nii.gz"
         subprocess.run([podm, "phantom", "spheres", "--size", "48", "-o", self.image], check=True, capture_output=True)
-        path = folder / "base.mesh"
-        subprocess.run([podm, "mesh", self.image, "--radius", "9", "--quiet", "-o", path], check=True)
-        self.base = read_medit(path)
+        self.podm = podm
+        self.base = self.meshed("--radius", "9")
         self.with_image = ["--image", str(self.image)]
         self.random = np.random.default_rng(7)
+
+    def meshed(self, *options):
+        path = self.folder / "meshed.mesh"
+        subprocess.run([self.podm, "mesh", self.image, *options, "--quiet", "-o", path], check=True)
+        return read_medit(path)
 
     def facet_pairs(self, mesh):
         """(cell, far vertex, cell, far vertex, facet) for every facet with two cells."""
@@ -541,6 +545,13 @@ def shrunk(shop):
     far.vertices *= 0.8
     near.vertices *= 1 - 1e-6
     return Mutant(Case(far, shop.with_image), Case(near, shop.with_image))
+
+
+@operator("fidelity")
+def sampled_coarsely(shop):
+    """a mesh whose surfaces are sampled every six voxels; harmless: the same, and said so"""
+    coarse = shop.meshed("--radius", "90", "--delta", "25")
+    return Mutant(Case(coarse, shop.with_image), Case(coarse, [*shop.with_image, "--delta", "25"]))
 
 
 @operator(None, exit_code=2)

@@ -101,6 +101,11 @@ class ProgramTest(unittest.TestCase):
         self.assertTrue((sum(arrays[claim] for claim in failed) >= 1).all(), "only cells in violation")
         self.assert_exit(self.verify("--claims", "structure", mesh=bad), 1)
 
+    def test_an_option_that_may_be_repeated_takes_one_value_each_time(self):
+        process = subprocess.run([VERIFIER, "--claims", "size", "--radius-of", "1=1", "--radius-of", "2=1", self.mesh],
+                                 capture_output=True, text=True, timeout=60, check=False)
+        self.assert_exit(process, 0)
+
     def test_a_left_handed_mesh_is_told_apart(self):
         mesh = kuhn_cubes(2, 1, 1)
         mesh.cells[:, [0, 1]] = mesh.cells[:, [1, 0]]
@@ -150,6 +155,7 @@ class ProgramTest(unittest.TestCase):
                                  (["--angle", "nan"], "--angle"),
                                  (["--angle", "60.5"], "--angle"),
                                  (["--fidelity-voxels", "nan"], "--fidelity-voxels"),
+                                 (["--delta", "0"], "--delta"),
                                  (["--radius-of", "3"], "LABEL=MM"),
                                  (["--radius-of", "3=inf"], "LABEL=MM"),
                                  (["--labels", "1"], "--image"),
