@@ -75,8 +75,7 @@ class Run {
     check(image_, options_);
     announce("transform", 0, 0);
     const Clock::time_point start = Clock::now();
-    const bool is_virtual = options_.executor == Executor::kVirtual;
-    const Isosurface isosurface(image_, is_virtual ? 0 : options_.threads);
+    const Isosurface isosurface(image_, threads());
     MeshingResult result;
     MeshingReport& report = result.report;
     report.phases_s["transform"] = seconds_since(start);
@@ -97,6 +96,9 @@ class Run {
   }
 
  private:
+  // Of all phases but refinement. The threads of virtual time are none of this machine's.
+  int threads() const { return options_.executor == Executor::kVirtual ? 0 : options_.threads; }
+
   void announce(const char* phase, double fraction, std::uint64_t cells) const {
     if (progress_) progress_({phase, std::clamp(fraction, 0.0, 1.0), cells, seconds_since(start_)});
   }
@@ -145,7 +147,7 @@ class Run {
       Refinement refinement =
           refine(isosurface, radius, options_.delta_mm > 0 ? options_.delta_mm : radius / 2, report);
       const auto cells =
-          std::max(1.0, static_cast<double>(count_labelled_cells(*refinement.mesh, isosurface)));
+          std::max(1.0, static_cast<double>(label_cells(*refinement.mesh, isosurface, threads())));
       const bool is_met = std::abs(cells / target - 1) <= kTargetTolerance;
       if (is_met || runs == kMaxTargetRuns || refinement.stop_reason != StopReason::kComplete) {
         if (!is_met) report.warnings.push_back("the target number of elements was not met within 5 %");
@@ -165,7 +167,7 @@ class Run {
     MeshingReport& report = result.report;
     const bool is_voxel = options_.space == Space::kVoxel;
     result.mesh = extract_mesh(*refinement.mesh, isosurface, image_, is_voxel ? Space::kRas : options_.space,
-                               report.guarantees.facet_vertices);
+                               threads(), report.guarantees.facet_vertices);
     refinement.mesh.reset();
     report.phases_s["extract"] = seconds_since(start);
     measure_quality(result.mesh, image_, size_field(image_, options_, report.radius_mm), report);
@@ -229,7 +231,7 @@ TetMesh replay_operations(const LabelImage& image, const OperationLog& log, Spac
   std::uint64_t facets_off_isosurface = 0;
   const bool is_voxel = space == Space::kVoxel;
   TetMesh mesh =
-      extract_mesh(*refined, isosurface, image, is_voxel ? Space::kRas : space, facets_off_isosurface);
+      extract_mesh(*refined, isosurface, image, is_voxel ? Space::kRas : space, 0, facets_off_isosurface);
   if (is_voxel) convert_to_voxel_space(mesh, image);
   return mesh;
 }

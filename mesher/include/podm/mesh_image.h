@@ -48,7 +48,7 @@ struct MeshingOptions {
   std::uint64_t target_elements = 0;
   Space space = Space::kRas;
   /// Of all phases. With one thread the same input makes the same mesh to the bit, with more one of the same
-  /// guarantees. 0: all cores for the feature transform, one for refinement.
+  /// guarantees. 0: one for refinement, all cores for the rest.
   int threads = 0;
   Contention contention = Contention::kLocal;
   Executor executor = Executor::kThreads;
