@@ -1,10 +1,13 @@
 #include "extract_mesh.h"
 
 #include <algorithm>
+#include <atomic>
 #include <numeric>
 #include <utility>
+#include <vector>
 
 #include "runtime/parallel_for.h"
+#include "runtime/parallel_resize.h"
 
 namespace podm {
 
@@ -81,10 +84,10 @@ class Extractor {
       shares[chunk] = count_cells(begin, end);
     });
     shares.sum_up();
-    out_.cells.resize(shares.total().cells);
-    out_.cell_labels.resize(shares.total().cells);
-    out_.facets.resize(shares.total().facets);
-    out_.facet_labels.resize(shares.total().facets);
+    parallel_resize(out_.cells, shares.total().cells, threads_);
+    parallel_resize(out_.cell_labels, shares.total().cells, threads_);
+    parallel_resize(out_.facets, shares.total().facets, threads_);
+    parallel_resize(out_.facet_labels, shares.total().facets, threads_);
     write_vertices();
     std::atomic<std::uint64_t> facets_off_isosurface = 0;
     for_each_chunk(mesh_.cell_bound(), threads_, [&](std::size_t chunk, CellId begin, CellId end) {
@@ -139,7 +142,7 @@ class Extractor {
       for (VertexId v = begin; v < end; ++v) shares[chunk].vertices += out_ids_[v] == kUsed;
     });
     shares.sum_up();
-    out_.vertices.resize(shares.total().vertices);
+    parallel_resize(out_.vertices, shares.total().vertices, threads_);
     for_each_chunk(mesh_.vertex_bound(), threads_, [&](std::size_t chunk, VertexId begin, VertexId end) {
       std::size_t at = shares[chunk].vertices;
       for (VertexId v = begin; v < end; ++v) {

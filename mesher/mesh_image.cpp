@@ -75,7 +75,7 @@ class Run {
     check(image_, options_);
     announce("transform", 0, 0);
     const Clock::time_point start = Clock::now();
-    const Isosurface isosurface(image_, threads());
+    const Isosurface isosurface(image_, options_.loop_threads());
     MeshingResult result;
     MeshingReport& report = result.report;
     report.phases_s["transform"] = seconds_since(start);
@@ -96,9 +96,6 @@ class Run {
   }
 
  private:
-  // Of all phases but refinement. The threads of virtual time are none of this machine's.
-  int threads() const { return options_.executor == Executor::kVirtual ? 0 : options_.threads; }
-
   void announce(const char* phase, double fraction, std::uint64_t cells) const {
     if (progress_) progress_({phase, std::clamp(fraction, 0.0, 1.0), cells, seconds_since(start_)});
   }
@@ -120,7 +117,7 @@ class Run {
       announce("refine", static_cast<double>(cells) / expected, cells);
     });
     if (options_.log != nullptr) options_.log->restart();
-    return podm(isosurface, foreground_bounds(image_), report.delta_mm,
+    return podm(isosurface, foreground_bounds(image_, options_.loop_threads()), report.delta_mm,
                 size_field(image_, options_, radius_mm), cell_capacity(options_), crew(), watch);
   }
 
@@ -142,12 +139,13 @@ class Run {
   // target.
   Refinement refine_to_target(const Isosurface& isosurface, MeshingReport& report) {
     const auto target = static_cast<double>(options_.target_elements);
-    double radius = radius_for_cells(image_, target / 8), last_radius = 0, last_cells = 0;
+    double radius = radius_for_cells(image_, target / 8, options_.loop_threads()), last_radius = 0,
+           last_cells = 0;
     for (int runs = 1;; ++runs) {
       Refinement refinement =
           refine(isosurface, radius, options_.delta_mm > 0 ? options_.delta_mm : radius / 2, report);
-      const auto cells =
-          std::max(1.0, static_cast<double>(label_cells(*refinement.mesh, isosurface, threads())));
+      const auto cells = std::max(
+          1.0, static_cast<double>(label_cells(*refinement.mesh, isosurface, options_.loop_threads())));
       const bool is_met = std::abs(cells / target - 1) <= kTargetTolerance;
       if (is_met || runs == kMaxTargetRuns || refinement.stop_reason != StopReason::kComplete) {
         if (!is_met) report.warnings.push_back("the target number of elements was not met within 5 %");
@@ -167,7 +165,7 @@ class Run {
     MeshingReport& report = result.report;
     const bool is_voxel = options_.space == Space::kVoxel;
     result.mesh = extract_mesh(*refinement.mesh, isosurface, image_, is_voxel ? Space::kRas : options_.space,
-                               threads(), report.guarantees.facet_vertices);
+                               options_.loop_threads(), report.guarantees.facet_vertices);
     refinement.mesh.reset();
     report.phases_s["extract"] = seconds_since(start);
     measure_quality(result.mesh, image_, size_field(image_, options_, report.radius_mm), report);

@@ -59,6 +59,9 @@ struct MeshingOptions {
   std::uint64_t max_elements = 0;
   double max_seconds = 0;
   std::uint64_t max_memory_bytes = 0;  ///< of the mesh store
+
+  /// Of all phases but refinement: the threads of virtual time are none of this machine's.
+  int loop_threads() const { return executor == Executor::kVirtual ? 0 : threads; }
 };
 
 /// What a run is expected to cost, from the image and the options alone.
