@@ -100,8 +100,7 @@ class Run {
   MeshingResult operator()() {
     announce("transform", 0, 0);
     const Clock::time_point start = Clock::now();
-    const bool is_virtual = options_.executor == Executor::kVirtual;
-    const Isosurface isosurface(image_, is_virtual ? 0 : options_.threads);
+    const Isosurface isosurface(image_, options_.loop_threads());
     MeshingResult result;
     MeshingReport& report = result.report;
     report.phases_s["transform"] = seconds_since(start);
@@ -148,9 +147,10 @@ class Run {
       announce("refine", static_cast<double>(cells) / expected, cells);
     });
     if (options_.log != nullptr) options_.log->restart();
-    Refinement refinement = run({isosurface, foreground_bounds(image_), report.delta_mm,
-                                 size_field(image_, options_, radius_mm), cell_capacity(options_)},
-                                watch);
+    Refinement refinement =
+        run({isosurface, foreground_bounds(image_, options_.loop_threads()), report.delta_mm,
+             size_field(image_, options_, radius_mm), cell_capacity(options_)},
+            watch);
     for (const auto& [phase, seconds] : refinement.phases_s) report.phases_s[phase] += seconds;
     return refinement;
   }
@@ -211,12 +211,13 @@ class Run {
   // target.
   Refinement refine_to_target(const Isosurface& isosurface, MeshingReport& report) {
     const auto target = static_cast<double>(options_.target_elements);
-    double radius = radius_for_cells(image_, target / 8), last_radius = 0, last_cells = 0;
+    double radius = radius_for_cells(image_, target / 8, options_.loop_threads()), last_radius = 0,
+           last_cells = 0;
     for (int runs = 1;; ++runs) {
       Refinement refinement =
           refine(isosurface, radius, options_.delta_mm > 0 ? options_.delta_mm : radius / 2, report);
-      const auto cells =
-          std::max(1.0, static_cast<double>(count_labelled_cells(*refinement.mesh, isosurface)));
+      const auto cells = std::max(
+          1.0, static_cast<double>(label_cells(*refinement.mesh, isosurface, options_.loop_threads())));
       const bool is_met = std::abs(cells / target - 1) <= kTargetTolerance;
       if (is_met || runs == kMaxTargetRuns || refinement.stop_reason != StopReason::kComplete) {
         if (!is_met) report.warnings.push_back("the target number of elements was not met within 5 %");
@@ -236,7 +237,7 @@ class Run {
     MeshingReport& report = result.report;
     const bool is_voxel = options_.space == Space::kVoxel;
     result.mesh = extract_mesh(*refinement.mesh, isosurface, image_, is_voxel ? Space::kRas : options_.space,
-                               report.guarantees.facet_vertices);
+                               options_.loop_threads(), report.guarantees.facet_vertices);
     refinement.mesh.reset();
     report.phases_s["extract"] = seconds_since(start);
     measure_quality(result.mesh, image_, size_field(image_, options_, report.radius_mm), report);
@@ -317,7 +318,7 @@ TetMesh replay_operations(const LabelImage& image, const OperationLog& log, Spac
   std::uint64_t facets_off_isosurface = 0;
   const bool is_voxel = space == Space::kVoxel;
   TetMesh mesh =
-      extract_mesh(*refined, isosurface, image, is_voxel ? Space::kRas : space, facets_off_isosurface);
+      extract_mesh(*refined, isosurface, image, is_voxel ? Space::kRas : space, 0, facets_off_isosurface);
   if (is_voxel) convert_to_voxel_space(mesh, image);
   return mesh;
 }

@@ -134,6 +134,7 @@ class Mesh {
     __builtin_prefetch(&cells_[c]);
     __builtin_prefetch(&states_[c]);
   }
+  void prefetch_label(CellId c) const { __builtin_prefetch(&states_[c]); }
 
   /// Ids below these have been handed out; some may be free again.
   CellId cell_bound() const { return cell_ids_.bound(); }

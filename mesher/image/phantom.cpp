@@ -3,12 +3,12 @@
 #include <array>
 #include <cmath>
 #include <map>
-#include <thread>
 
 #include "image/phantom_abdomen.h"
 #include "image/phantom_shapes.h"
 #include "podm/errors.h"
 #include "podm/image_io.h"
+#include "runtime/parallel_for.h"
 
 namespace podm {
 
@@ -103,13 +103,8 @@ void fill(LabelImage& image, const std::vector<Organ>& organs) {
   std::vector<Paint> paints;
   for (const Organ& organ : organs) paints.push_back({organ.shape, index[organ.label]});
   image.voxels.assign(image.num_voxels(), kBackground);
-  const int num_threads = static_cast<int>(std::max(1u, std::thread::hardware_concurrency()));
-  std::vector<std::jthread> threads;
-  for (int t = 0; t < num_threads; ++t) {
-    threads.emplace_back([&, t] {
-      for (int k = t; k < image.size[2]; k += num_threads) fill_slice(image, paints, k);
-    });
-  }
+  parallel_for(static_cast<std::size_t>(image.size[2]), num_threads(0),
+               [&](std::size_t k, std::size_t) { fill_slice(image, paints, static_cast<int>(k)); });
 }
 
 // Not less, in so few bits that it, and times half a number of voxels too, is exact in the single precision

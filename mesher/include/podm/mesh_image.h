@@ -73,7 +73,7 @@ struct MeshingOptions {
   double leaf_size_mm = 0;   ///< side of the octree's leaves; default: from the initial mesh's bound
   bool with_schedule = false;  ///< report when which leaf was refined
   /// Of all phases. With one thread the same input makes the same mesh to the bit, with more one of the same
-  /// guarantees. 0: all cores for the feature transform, one for refinement.
+  /// guarantees. 0: one for refinement, all cores for the rest.
   int threads = 0;
   Contention contention = Contention::kLocal;
   Begging begging = Begging::kHierarchical;
@@ -88,6 +88,9 @@ struct MeshingOptions {
   std::uint64_t max_elements = 0;
   double max_seconds = 0;
   std::uint64_t max_memory_bytes = 0;  ///< of the mesh store
+
+  /// Of all phases but refinement: the threads of virtual time are none of this machine's.
+  int loop_threads() const { return executor == Executor::kVirtual ? 0 : threads; }
 };
 
 /// What a run is expected to cost, from the image and the options alone.
