@@ -28,9 +28,9 @@ def fig1(report):
         one.stairs(100 * counts / max(counts.sum(), 1), edges, fill=True, color=style.COLOURS["podm"], alpha=0.85)
         if bound is not None:
             one.axvline(bound, color=style.GHOST, linestyle="--")
-        one.set(title=f"{title}\n{histogram['minimum']:.3g} to {histogram['maximum']:.3g}", xlabel=unit, ylabel="% of all")
+        one.set(title=f"{title}\n{histogram['minimum']:.4g} to {histogram['maximum']:.4g}", xlabel=unit, ylabel="% of all")
     mesh = report["mesh"]
-    style.caption(figure, f"{mesh['cells']:,} cells, counted exactly by podm-verify. Lines: guarantees of the method; "
+    style.finish(figure, f"{mesh['cells']:,} cells, counted exactly by podm-verify. Lines: guarantees of the method; "
                           "dihedral angles have none.")
     return figure
 
@@ -52,5 +52,5 @@ def fig1_extremes(frame):
         one.axhline(bound, color=style.GHOST, linestyle="--")
         one.set(title=title, xlabel="million cells", xscale="log")
         one.margins(y=0.4)
-    style.caption(figure, f"n = {len(rows)} verified meshes, every one shown. Lines: guarantees of the method.")
+    style.finish(figure, f"n = {len(rows)} verified meshes, every one shown. Lines: guarantees of the method.")
     return figure

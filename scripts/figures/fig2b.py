@@ -19,14 +19,17 @@ def fig2b(schedule, mesh):
     *leaves, height = pair
     affine = schedule.mesh_to_grid
     polygons, owners = plane_cut(mesh.points @ affine[:, :3].T + affine[:, 3], mesh.cells, height)
-    figure, (axes,) = style.new_figure(width=7.5, height=6.5)
+    low, high, aspect = _frame(schedule)
+    tall = aspect * (high[1] - low[1]) / (high[0] - low[0])
+    figure, (axes,) = style.new_figure(width=8, height=0.9 + 5.8 * float(numpy.clip(tall, 0.3, 1.5)))
+    axes.set(xlim=(low[0], high[0]), ylim=(low[1], high[1]), aspect=aspect, xlabel="i, leaf grid", ylabel="j, leaf grid",
+             title=f"two active leaves, k = {height:g}")
     axes.grid(False)
     _draw_leaves(axes, schedule.leaves, leaves, height)
-    axes.add_collection(PolyCollection(polygons, facecolors="none", edgecolors=style.INK, linewidths=0.25, alpha=0.8))
-    _fit(axes, schedule, height)
+    axes.add_collection(PolyCollection(polygons, facecolors="none", edgecolors=style.INK, linewidths=0.25, alpha=0.6))
     axes.legend(handles=_handles(leaves), frameon=False, fontsize=8, labelcolor=style.INK, loc="upper left", bbox_to_anchor=(1, 1))
     first, second = (set(_with_ring(schedule.leaves, leaf)) for leaf in leaves)
-    style.caption(figure, f"Cut at k = {height:g} of the leaf grid, {len(owners):,} cells cut. "
+    style.finish(figure, f"Cut at k = {height:g} of the leaf grid, {len(owners):,} cells cut. "
                   f"Leaves with first rings have {len(first & second)} leaves in common.")
     return figure
 
@@ -49,16 +52,11 @@ def _draw_leaves(axes, leaves, active, height):
                                  edgecolor=style.GHOST))
 
 
-def _fit(axes, schedule, height):
-    """All leaves of the plane, with equal lengths equally long: a step of the grid is as long as its column in mm."""
+def _frame(schedule):
+    """Corners of the plane's leaves, and how much longer a step of j is than one of i in mm."""
     leaves = schedule.leaves
-    top = (leaves[:, :2] + leaves[:, 3:]).max(axis=0)
-    low = leaves[:, :2].min(axis=0)
-    axes.set_xlim(low[0], top[0])
-    axes.set_ylim(low[1], top[1])
     step_mm = numpy.linalg.norm(numpy.linalg.inv(schedule.mesh_to_grid[:, :3]), axis=0)
-    axes.set_aspect(step_mm[1] / step_mm[0])
-    axes.set(xlabel="i, leaf grid", ylabel="j, leaf grid", title=f"two active leaves, k = {height:g}")
+    return leaves[:, :2].min(axis=0), (leaves[:, :2] + leaves[:, 3:]).max(axis=0), step_mm[1] / step_mm[0]
 
 
 def _handles(leaves):

@@ -21,5 +21,5 @@ def fig4a(series):
     efficiency.set(ylabel="efficiency, %", ylim=(0, 115), title="efficiency")
     efficiency.axhline(100, color=style.INK, linewidth=0.8)
     style.legend(speedup, loc="upper left")
-    style.caption(figure, style.caption_of(shown))
+    style.finish(figure, style.caption_of(shown))
     return figure

@@ -25,9 +25,11 @@ def fig4b(series):
     for one in shown:
         style.plot_series(rate, one, "rate", 1e-6)
     style.cores_axis(rate, cores)
-    rate.set(yscale="log", ylabel="million elements per second", title="elements per second")
+    rate.set_yscale("log")
+    rate.yaxis.set_major_formatter("{x:g}")
+    rate.set(ylabel="million elements per second", title="elements per second")
     style.legend(rate, loc="upper left")
-    style.caption(figure, style.caption_of(shown) + (" Simulated bars are hatched." if any(
+    style.finish(figure, style.caption_of(shown) + (" Simulated bars are hatched." if any(
         one.key["basis"] == "simulated" for one in shown) else ""))
     return figure
 

@@ -20,7 +20,8 @@ def make(frame, report=None, schedule=None, mesh=None):
     """`report`: of podm-verify, or None; `schedule` and `mesh`: for figure 2 (b), or None."""
     series = scaling.weak_series(frame)
     weak, hops, levels = table1.table1(series), table2.table2(frame), table3.table3(frame)
-    tables = {"table1": (weak, table1.readable(weak)), "table2": (hops, table2.readable(hops)), "table3": (levels, levels)}
+    tables = {"table1": (weak, table1.readable(weak)), "table2": (hops, table2.readable(hops)),
+              "table3": (levels, table3.readable(levels))}
     drawn, missing = _figures(frame, series, report, schedule, mesh)
     return Outcome(tables, drawn, verdicts.verdicts(frame, series, hops), missing)
 
@@ -41,7 +42,7 @@ def _figures(frame, series, report, schedule, mesh):
 
 def readable_verdicts(found):
     """Claims, then cells, each as one table for people."""
-    claim_columns = ["claim", "basis", "paper", "value", "verdict", "reason"]
-    cell_columns = ["table", "cores", "algorithm", "column", "basis", "paper", "value", "deviation", "verdict", "reason"]
+    claim_columns = ["claim", "basis", "verdict", "value", "paper", "reason", "statement"]
+    cell_columns = ["table", "cores", "algorithm", "column", "basis", "verdict", "value", "paper", "deviation", "reason"]
     return (pandas.DataFrame(found["claims"], columns=claim_columns, dtype=object),
             pandas.DataFrame(found["cells"], columns=cell_columns, dtype=object))

@@ -29,12 +29,9 @@ def dress(axes):
         axes.spines[side].set_visible(False)
     for spine in axes.spines.values():
         spine.set_color(INK)
-    axes.tick_params(colors=INK, labelsize=9)
+    axes.tick_params(which="both", colors=INK, labelsize=9)
     axes.grid(True, color=GHOST, alpha=0.25, linewidth=0.6)
     axes.set_axisbelow(True)
-    for text in (axes.title, axes.xaxis.label, axes.yaxis.label):
-        text.set_color(INK)
-        text.set_size(10)
 
 
 def cores_axis(axes, cores):
@@ -47,9 +44,14 @@ def cores_axis(axes, cores):
     axes.set_xlabel("cores")
 
 
+def by_algorithm(table):
+    """The parts of a table that the paper compares, in its order."""
+    return [(name, table.loc[[name]]) for name in NAMES if name in table.index]
+
+
 def ghost(axes, table, column, scale=1.0):
     """The paper's series: grey and dashed, behind everything else."""
-    for algorithm, part in table.groupby(level="algorithm", sort=False):
+    for algorithm, part in by_algorithm(table):
         axes.plot(part.index.get_level_values("cores"), part[column] * scale, color=GHOST, linestyle="--", linewidth=1.2,
                   marker=MARKERS[algorithm], markersize=4, label=f"{NAMES[algorithm]}, paper", zorder=1)
 
@@ -57,9 +59,7 @@ def ghost(axes, table, column, scale=1.0):
 def plot_series(axes, series, column, scale=1.0):
     """Our medians with their intervals; measured filled and solid, simulated hollow and dotted."""
     basis = series.key["basis"]
-    for algorithm, part in series.table.groupby(level="algorithm", sort=False):
-        if algorithm not in COLOURS:
-            continue
+    for algorithm, part in by_algorithm(series.table):
         middle = part[column] * scale
         spread = numpy.nan_to_num([middle - part[column + "_low"] * scale, part[column + "_high"] * scale - middle])
         axes.errorbar(part.index.get_level_values("cores"), middle, yerr=numpy.clip(spread, 0, None), capsize=3,
@@ -73,10 +73,13 @@ def legend(axes, **options):
         text.set_color(INK)
 
 
-def caption(figure, text):
-    """A line under the figure; also `figure.caption`, for pages."""
-    figure.caption = text
-    figure.supxlabel(text, fontsize=7.5, color=INK, wrap=True)
+def finish(figure, caption):
+    """Sizes and colours of what was written since; the caption becomes the figure's label, shown by write.py."""
+    for axes in figure.axes:
+        for text in (axes.title, axes.xaxis.label, axes.yaxis.label):
+            text.set_color(INK)
+            text.set_size(10)
+    figure.set_label(caption)
 
 
 def caption_of(series):

@@ -3,6 +3,7 @@ import numpy
 import pandas
 
 from . import paper, scaling
+from .table1 import in_order
 
 COLUMNS = ["basis", "algorithm", "cores", "hops", "share", "visits", "n"]
 
@@ -22,10 +23,11 @@ def table2(frame):
 
 
 def readable(table):
-    """Hops down, one column a basis, algorithm and number of cores, in percent."""
-    wide = table.pivot_table(index="hops", columns=["cores", "algorithm", "basis"], values="share", sort=False).sort_index(axis=1)
-    wide.columns = [f"{cores} cores, {algorithm}, {basis}" for cores, algorithm, basis in wide.columns]
-    return wide.applymap(lambda share: "" if pandas.isna(share) else f"{100 * share:.2f} %").reset_index()
+    """One line a number of cores, algorithm and basis; hops across, in percent."""
+    wide = table.pivot_table(index=["cores", "algorithm", "basis"], columns="hops", values="share")
+    wide.columns = [f"{hops} hops" for hops in wide.columns]
+    shown = wide.applymap(lambda share: "" if pandas.isna(share) else f"{100 * share:.2f} %").reset_index()
+    return in_order(shown)
 
 
 def why_no_hops(frame):

@@ -18,6 +18,11 @@ def table3(frame):
     return pandas.concat(blocks, ignore_index=True)[COLUMNS]
 
 
+def readable(table):
+    return table[["level", "memory_module", "size", "access_clock_cycles", "basis"]].rename(
+        columns={"memory_module": "memory module", "access_clock_cycles": "clock cycles"})
+
+
 def _newest_levels(frame):
     name = "environment.memory_levels"
     lists = [] if name not in frame else [levels for levels in frame[name] if isinstance(levels, list)]

@@ -108,12 +108,15 @@ def why_missing(frame, series, basis, algorithm, cores, needs_hops=False):
         if series is None:
             return "no row of PODM on one core of this input, program and machine to refer to"
         return f"rows are of another series than {series.label()}"
-    if basis == "simulated":
-        return f"no simulated row with {cores} cores"
+    return lack_of_cores(frame, basis, cores) or f"no {basis} row of {algorithm} with {cores} cores"
+
+
+def lack_of_cores(frame, basis, cores):
+    """"needs 32 cores, has 2" where no machine of the rows has as many; empty otherwise. Simulations need none."""
     usable = frame["usable_cores"].dropna() if "usable_cores" in frame else pandas.Series(dtype=float)
-    if len(usable) and usable.max() < cores:
-        return f"needs {cores} cores, has {int(usable.max())}"
-    return f"no row of {algorithm} with {cores} cores"
+    if basis == "simulated" or usable.empty or usable.max() >= cores:
+        return ""
+    return f"needs {cores} cores, has {int(usable.max())}"
 
 
 def claims(frame, series, hops):
@@ -121,7 +124,7 @@ def claims(frame, series, hops):
     made = []
     for basis in ("measured", "simulated"):
         one = scaling.first_of(series, basis)
-        made += [_crossover(one, basis), *_trends(one, basis), _zero_hops(hops, frame, basis)]
+        made += [_crossover(frame, one, basis), *_trends(frame, one, basis), _zero_hops(hops, frame, basis)]
     return made
 
 
@@ -139,12 +142,12 @@ def crossover(table):
     return int(after.min()) if len(after) else None
 
 
-def _crossover(series, basis):
+def _crossover(frame, series, basis):
     published = crossover(paper.table1())
     claim = _claim("crossover", "PDR.PODM overtakes PODM between 128 and 160 cores", published, basis)
     both = [] if series is None else _common_cores(series.table)
     if not both or max(both) < published:
-        claim["reason"] = f"needs rows of both algorithms up to {published} cores, has them at {both or 'none'}"
+        claim["reason"] = lack_of_cores(frame, basis, published) or f"no rows of both algorithms up to {published} cores"
         return claim
     ours = crossover(series.table)
     claim.update(value=ours, verdict="agrees" if ours == published else "differs",
@@ -157,7 +160,7 @@ def _common_cores(table):
     return sorted(set.intersection(*sets))
 
 
-def _trends(series, basis):
+def _trends(frame, series, basis):
     """Efficiency at the most cores over that at the fewest beyond one core: what is kept of it."""
     for algorithm, statement in (("podm", "PODM's efficiency collapses: 106.6 % on 32 cores, 17.5 % on 256"),
                                  ("pdr-podm", "PDR.PODM keeps its efficiency: 90.7 % on 32 cores, 64.0 % on 256")):
@@ -165,7 +168,7 @@ def _trends(series, basis):
         claim = _claim(f"efficiency trend of {algorithm}", statement, float(published[256] / published[32]), basis)
         ours = None if series is None or algorithm not in series.table.index else series.table.loc[algorithm]["efficiency"]
         if ours is None or not {32, 256} <= set(ours.index):
-            claim["reason"] = "needs rows with 32 and with 256 cores"
+            claim["reason"] = lack_of_cores(frame, basis, 256) or "no rows with 32 and with 256 cores"
         else:
             kept = float(ours[256] / ours[32])
             near = abs(kept - claim["paper"]) <= RATIO_TOLERANCE

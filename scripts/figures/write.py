@@ -3,6 +3,7 @@ import io
 import json
 import os
 import re
+import textwrap
 
 import matplotlib
 import pandas
@@ -21,7 +22,9 @@ def write_json(path, value):
 
 
 def write_figure(figure, folder, name):
-    """NAME.pdf and NAME.png, the latter on white."""
+    """NAME.pdf and NAME.png, the latter on white, with the caption below."""
+    figure.supxlabel(textwrap.fill(figure.get_label(), 150), fontsize=7, color=style.INK)
+    figure.get_layout_engine().set(h_pad=0.1)
     for suffix, options in (("pdf", {"metadata": {"CreationDate": None}}), ("png", {"dpi": 160, "facecolor": "white"})):
         made = io.BytesIO()
         figure.savefig(made, format=suffix, **options)
@@ -52,4 +55,4 @@ def markdown(table):
 def _plain(value):
     if pandas.isna(value):
         return ""
-    return f"{value:.3g}" if isinstance(value, float) else str(value).replace("|", "\\|")
+    return f"{value:.4g}" if isinstance(value, float) else str(value).replace("|", "\\|")
