@@ -69,8 +69,9 @@ def _cell(name, value, is_first):
         return f'<th scope="row">{escape(_text(value))}</th>'
     if name == "verdict":
         return f'<td><span class="verdict {escape(value)}">{escape(value.replace("_", " "))}</span></td>'
-    kind = ' class="number"' if _text(value)[:1].isdigit() else ""
-    return f"<td{kind}>{escape(_text(value))}</td>"
+    text = _text(value)
+    kind = ' class="words"' if len(text) > 30 else ' class="number"' if text[:1].isdigit() else ""
+    return f"<td{kind}>{escape(text)}</td>"
 
 
 def _text(value):

@@ -1,5 +1,6 @@
 """Rows, schedules and meshes made up for tests. Never results."""
 import copy
+import itertools
 import random
 
 PASSED = {claim: "pass" for claim in ("structure", "delaunay", "radius_edge", "boundary_angles", "size", "conformity")}
@@ -52,3 +53,35 @@ def report():
             "claims": {"radius_edge": {"histograms": [histogram("radius_edge_ratio", 0.6, 2.0, 0.62, 1.92),
                                                       histogram("dihedral_angle", 0, 180, 2.0, 170.0)]},
                        "boundary_angles": {"histograms": [histogram("boundary_facet_angle", 0, 180, 30.2, 118.0)]}}}
+
+
+def box_mesh(side=4):
+    """A cube of side^3 unit cubes of six tetrahedra each: points, cells and labels, two of these."""
+    import numpy
+
+    steps = numpy.stack(numpy.meshgrid(*[range(side + 1)] * 3, indexing="ij"), axis=-1).reshape(-1, 3)
+    number = {tuple(point): index for index, point in enumerate(steps)}
+    cells, labels = [], []
+    for corner in numpy.ndindex(side, side, side):
+        for order in itertools.permutations(range(3)):  # Kuhn: a path along the axes for each order of them
+            path = [numpy.array(corner)]
+            for axis in order:
+                path.append(path[-1] + numpy.eye(3, dtype=int)[axis])
+            cells.append([number[tuple(point)] for point in path])
+            labels.append(1 + (corner[0] >= side // 2))
+    return steps.astype(float), numpy.array(cells), numpy.array(labels)
+
+
+def write_vtu(path, points, cells, labels):
+    """An ASCII .vtu file, such as no mesher of ours writes."""
+    def array(name, kind, values, extra=""):
+        return f'<DataArray type="{kind}" Name="{name}" format="ascii"{extra}>{" ".join(map(str, values))}</DataArray>'
+
+    count = len(cells)
+    path.write_text(
+        '<VTKFile type="UnstructuredGrid" version="0.1"><UnstructuredGrid>'
+        f'<Piece NumberOfPoints="{len(points)}" NumberOfCells="{count}">'
+        f'<Points>{array("Points", "Float64", points.ravel(), extra=" NumberOfComponents=" + chr(34) + "3" + chr(34))}</Points>'
+        f'<Cells>{array("connectivity", "Int64", cells.ravel())}{array("offsets", "Int64", range(4, 4 * count + 1, 4))}'
+        f'{array("types", "UInt8", [10] * count)}</Cells>'
+        f'<CellData>{array("label", "Int32", labels)}</CellData></Piece></UnstructuredGrid></VTKFile>')
