@@ -20,9 +20,12 @@ class ReportError(Exception):
 
 
 def parse_arguments(arguments):
-    parser = argparse.ArgumentParser(prog="make_figures", description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser = argparse.ArgumentParser(
+        prog="make_figures", description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter
+    )
     add_inputs(parser)
-    parser.add_argument("-o", "--output", type=Path, default=Path("results/runs/figures"), help="folder (default: %(default)s)")
+    parser.add_argument("-o", "--output", type=Path, default=Path("results/runs/figures"),
+                        help="folder (default: %(default)s)")
     return parser.parse_args(arguments)
 
 
@@ -30,8 +33,9 @@ def add_inputs(parser):
     parser.add_argument("--records", type=Path, nargs="+", default=[Path("results/runs")], metavar="PATH",
                         help="JSON-lines files, or folders of them (default: results/runs)")
     parser.add_argument("--verified", type=Path, metavar="JSON", help="report of `podm-verify --json`, for the histograms")
-    parser.add_argument("--schedule", type=Path, metavar="JSONL", help="schedule of a run of pdr or pdr-podm, for figure 2 (b)")
-    parser.add_argument("--mesh", type=Path, metavar="VTU", help="the mesh of that run")
+    parser.add_argument("--schedule", type=Path, metavar="JSONL",
+                        help="schedule of a run of pdr or pdr-podm, for figure 2 (b)")
+    parser.add_argument("--mesh", type=Path, metavar="VTU", help="the mesh of that run, to be cut")
 
 
 def read_inputs(arguments):

@@ -27,7 +27,7 @@ def fig2b(schedule, mesh):
     axes.grid(False)
     _draw_leaves(axes, schedule.leaves, leaves, height)
     axes.add_collection(PolyCollection(polygons, facecolors="none", edgecolors=style.INK, linewidths=0.25, alpha=0.6))
-    axes.legend(handles=_handles(leaves), frameon=False, fontsize=8, labelcolor=style.INK, loc="upper left", bbox_to_anchor=(1, 1))
+    style.legend(axes, handles=_handles(leaves), loc="upper left", bbox_to_anchor=(1, 1))
     first, second = (set(_with_ring(schedule.leaves, leaf)) for leaf in leaves)
     style.finish(figure, f"Cut at k = {height:g} of the leaf grid, {len(owners):,} cells cut. "
                   f"Leaves with first rings have {len(first & second)} leaves in common.")
@@ -61,4 +61,5 @@ def _frame(schedule):
 
 def _handles(leaves):
     words = ("leaf", "first ring of", "second ring of")
-    return [Patch(color=shade, label=f"{word} {leaf}") for leaf, shades in zip(leaves, SHADES) for word, shade in zip(words, shades)]
+    return [Patch(color=shade, label=f"{word} {leaf}")
+            for leaf, shades in zip(leaves, SHADES) for word, shade in zip(words, shades)]

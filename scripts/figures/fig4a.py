@@ -6,8 +6,8 @@ def fig4a(series):
     """The paper's curves and the first series of each basis."""
     figure, (speedup, efficiency) = style.new_figure(columns=2, height=4.2)
     published = paper.table1()
-    shown = [one for one in (scaling.first_of(series, basis) for basis in style.LINES) if one is not None]
-    cores = list(published.index.get_level_values("cores")) + [c for one in shown for c in one.table.index.get_level_values("cores")]
+    shown = scaling.shown_of(series)
+    cores = scaling.core_counts([published, *(one.table for one in shown)])
     for axes, column, scale in ((speedup, "speedup", 1), (efficiency, "efficiency", 100)):
         style.ghost(axes, published, column, scale)
         for one in shown:

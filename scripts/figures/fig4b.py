@@ -11,16 +11,17 @@ def fig4b(series):
     """Bars: the median seconds of each phase; beside them the paper's totals, whose parts are not printed."""
     figure, (seconds, rate) = style.new_figure(columns=2, height=4.2)
     published = paper.table1()
-    shown = [one for one in (scaling.first_of(series, basis) for basis in style.LINES) if one is not None]
-    cores = sorted({c for table in [published, *(one.table for one in shown)] for c in table.index.get_level_values("cores")})
+    shown = scaling.shown_of(series)
+    cores = scaling.core_counts([published, *(one.table for one in shown)])
     _ghost_bars(seconds, published, cores)
     for one in shown:
         _stack(seconds, one, cores)
     seconds.set_xticks(range(len(cores)), [str(count) for count in cores])
     seconds.set(xlabel="cores", ylabel="seconds, all phases but write", title="time: PDR.PODM left, PODM right of each pair")
-    handles = [Patch(color=colour, label=phase) for phase, colour in style.PHASE_COLOURS.items()]
-    style.legend(seconds, handles=[*handles, Patch(facecolor="none", edgecolor=style.GHOST, linestyle="--", label="paper, total")],
-                 loc="upper left", ncols=2)
+    handles = [Patch(color=colour, label=phase) for phase, colour in style.PHASE_COLOURS.items()
+               if any((one.table[phase] > 0).any() for one in shown)]
+    handles.append(Patch(facecolor="none", edgecolor=style.GHOST, linestyle="--", label="paper, total"))
+    style.legend(seconds, handles=handles, loc="upper left", ncols=2)
     style.ghost(rate, published, "rate", 1e-6)
     for one in shown:
         style.plot_series(rate, one, "rate", 1e-6)
@@ -29,8 +30,8 @@ def fig4b(series):
     rate.yaxis.set_major_formatter("{x:g}")
     rate.set(ylabel="million elements per second", title="elements per second")
     style.legend(rate, loc="upper left")
-    style.finish(figure, style.caption_of(shown) + (" Simulated bars are hatched." if any(
-        one.key["basis"] == "simulated" for one in shown) else ""))
+    has_simulated = scaling.first_of(series, "simulated") is not None
+    style.finish(figure, style.caption_of(shown) + (" Simulated bars are hatched." if has_simulated else ""))
     return figure
 
 

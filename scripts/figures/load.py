@@ -35,19 +35,23 @@ def load(paths):
 def derived(row):
     """What the figures need of a row, under one name whatever the schema; None where the trial made no mesh."""
     phases = row.get("phases_s") or {}
-    environment = row.get("environment", {})
-    doubt = why_not_verified(row)
+    doubt = doubt_of(row)
     return {
         "basis": "simulated" if row.get("executor") == "virtual" else "measured",
-        "machine": environment.get("cpu", "unknown machine"),
-        "usable_cores": environment.get("usable_processors", (environment.get("cores") or {}).get("usable")
-                                        if isinstance(environment.get("cores"), dict) else None),
+        "machine": row.get("environment", {}).get("cpu", "unknown machine"),
+        "usable_cores": usable_cores(row.get("environment", {})),
         "build": build_of(row),
         "cores": row.get("threads", {}).get("used"),
         "seconds": sum(phases.values()) - phases.get("write", 0.0) if phases else None,
-        "verified": not doubt,
+        "headline": not doubt,
         "doubt": doubt,
     }
+
+
+def usable_cores(environment):
+    """Of the machine of a row: schema 2 names them, schema 1 holds them among `cores`; None where neither is there."""
+    cores = environment.get("cores")
+    return environment.get("usable_processors", cores.get("usable") if isinstance(cores, dict) else None)
 
 
 def build_of(row):
@@ -61,10 +65,13 @@ def build_of(row):
     return row.get("program", "unknown")
 
 
-def why_not_verified(row):
-    """Empty when the row's mesh may give a headline number; otherwise the reason why not."""
+def doubt_of(row):
+    """Empty when the row may give a headline number; otherwise the reason why not."""
     if row.get("warmup"):
         return "a warm-up"
+    threads, cores = row.get("threads", {}).get("used", 0), usable_cores(row.get("environment", {}))
+    if cores and threads > cores and row.get("executor") != "virtual":
+        return f"{threads} threads on {cores} cores"
     status = row.get("status", "ok")
     if status != "ok":
         return f"status {status}: {row.get('reason') or 'no reason given'}"
@@ -72,8 +79,8 @@ def why_not_verified(row):
     if not verdicts:
         return "the mesh was not verified"
     failed = [claim for claim, verdict in verdicts.items() if verdict == "fail"]
-    undecided = [claim for claim in NEEDED_CLAIMS if verdicts.get(claim) != "pass" and claim not in failed]
-    return "; ".join([f"claim {claim} failed" for claim in failed] + [f"claim {claim} was not run" for claim in undecided])
+    undecided = [claim for claim in NEEDED_CLAIMS if verdicts.get(claim) not in ("pass", "fail")]
+    return "; ".join([*(f"claim {claim} failed" for claim in failed), *(f"claim {claim} was not run" for claim in undecided)])
 
 
 def _files(paths):

@@ -3,6 +3,7 @@
 Speed-up follows equation 1 of the paper: cells per second over those of PODM on one core; efficiency is speed-up
 over cores. Seconds are all phases but `write`.
 """
+import math
 from dataclasses import dataclass
 
 import numpy
@@ -13,7 +14,8 @@ from .spread import median_interval, ratio_interval
 KEY = ["basis", "machine", "build", "experiment", "input.path"]
 # Cells per core may stray this far from one core's; the paper's own stray by 3 %, --target-elements by 5 %.
 WEAK_TOLERANCE = 0.10
-PHASES = ["read", "transform", "octree", "initial", "refine", "extract"]
+PAPER_CELLS_PER_CORE = 3e6
+PHASES = ["read", "transform", "octree", "initial", "refine", "extract", "other"]
 
 
 @dataclass(frozen=True)
@@ -26,14 +28,15 @@ class Series:
 
     def label(self):
         key = self.key
-        return f"{key['experiment']}, {key['input.path']}, {self.cells_per_core / 1e6:.2g} M cells per core, {key['machine']}"
+        size = f"{self.cells_per_core / 1e6:.2g} M cells per core"
+        return ", ".join(part for part in (key["experiment"], key["input.path"], size, key["machine"]) if part)
 
 
 def headline_rows(frame):
-    """Rows whose meshes verified: the only ones that may give a number of a table or figure."""
+    """The only rows that may give a number of a table or figure: `doubt_of` of load.py finds nothing."""
     if frame.empty:
         return frame
-    rows = frame[frame["verified"] & frame["cores"].notna()].copy()
+    rows = frame[frame["headline"] & frame["cores"].notna()].copy()
     for name in [*KEY, "algorithm"]:
         rows[name] = rows[name].fillna("") if name in rows else ""
     rows["cores"] = rows["cores"].astype(int)
@@ -41,7 +44,8 @@ def headline_rows(frame):
 
 
 def weak_series(frame):
-    """All series that have a run of PODM on one core, the one to show first: of most core counts, then the newest."""
+    """All series that have a run of PODM on one core. First comes the one to show: of most core counts, then nearest to
+    the paper's cells per core, then the newest."""
     found = []
     rows = headline_rows(frame)
     if rows.empty:
@@ -51,13 +55,27 @@ def weak_series(frame):
         for base in _clusters(alone["cells"]):
             members = group[abs(group["cells"] / group["cores"] / base - 1) <= WEAK_TOLERANCE]
             series = Series(dict(zip(KEY, values)), base, _table(members))
-            found.append((len(series.table), members.index.max(), series))
-    return [series for *_, series in sorted(found, key=lambda entry: entry[:2], reverse=True)]
+            found.append((len(series.table), -_octaves_from_paper(base), members.index.max(), series))
+    return [series for *_, series in sorted(found, key=lambda entry: entry[:3], reverse=True)]
 
 
 def first_of(series, basis):
     """The series of that basis to show, or None."""
     return next((one for one in series if one.key["basis"] == basis), None)
+
+
+def shown_of(series):
+    """The series to show: one of each basis that there is."""
+    return [one for one in (first_of(series, basis) for basis in ("measured", "simulated")) if one is not None]
+
+
+def core_counts(tables):
+    """All numbers of cores in tables indexed by (algorithm, cores), sorted."""
+    return sorted({int(cores) for table in tables for cores in table.index.get_level_values("cores")})
+
+
+def _octaves_from_paper(cells_per_core):
+    return round(abs(math.log2(cells_per_core / PAPER_CELLS_PER_CORE)))
 
 
 def _clusters(cells):
@@ -81,13 +99,19 @@ def _table(members):
         speedup = (1.0, numpy.nan, numpy.nan) if is_base else ratio_interval(rate[group.index], base)
         line.update(_bounds("speedup", speedup))
         line.update(_bounds("efficiency", [value / cores for value in speedup]))
-        for phase in PHASES:
-            name = f"phases_s.{phase}"
-            line[phase] = group[name].fillna(0).median() if name in group else 0.0
+        line.update(_phases(group))
         lines[algorithm, cores] = line
     table = pandas.DataFrame.from_dict(lines, orient="index")
     table.index = pandas.MultiIndex.from_tuples(table.index, names=["algorithm", "cores"])
     return table
+
+
+def _phases(group):
+    """Median seconds of each phase; `other` is what the phases known here leave of the whole."""
+    columns = {f"phases_s.{phase}": phase for phase in PHASES[:-1]}
+    phases = group.reindex(columns=columns).rename(columns=columns).astype(float).fillna(0.0)
+    phases["other"] = (group["seconds"] - phases.sum(axis=1)).clip(lower=0)
+    return phases.median()
 
 
 def _bounds(name, values):

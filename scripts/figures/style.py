@@ -9,7 +9,7 @@ COLOURS = {"podm": "#2b7bba", "pdr-podm": "#d1495b"}
 MARKERS = {"podm": "o", "pdr-podm": "s"}
 NAMES = {"podm": "PODM", "pdr-podm": "PDR.PODM"}
 PHASE_COLOURS = {"read": "#c9b458", "transform": "#8fb996", "octree": "#7a6c9d", "initial": "#e8a33d",
-                 "refine": "#d1495b", "extract": "#6d9dc5"}
+                 "refine": "#d1495b", "extract": "#6d9dc5", "other": "#b0b0b0"}
 LINES = {"measured": {"linestyle": "-", "markerfacecolor": None}, "simulated": {"linestyle": ":", "markerfacecolor": "none"}}
 
 
@@ -90,4 +90,6 @@ def caption_of(series):
         n = f"n = {counts[0]}" if len(counts) == 1 else f"n = {counts[0]} to {counts[-1]}"
         parts.append(f"{one.key['basis']}: {one.label()}, {n}")
     text = "; ".join(parts) if parts else "no verified weak-scaling rows"
-    return text + ". Median, bars: bootstrap 95 % interval. Grey, dashed: the paper, Blacklight."
+    if any((one.table["n"] > 1).any() for one in series):
+        text += ". Medians; bars: bootstrap 95 % interval"
+    return text + ". Grey, dashed: the paper, Blacklight."

@@ -10,10 +10,8 @@ BOUNDS = [f"{value}_{end}" for value in VALUES[1:] for end in ("low", "high")]
 def table1(series):
     """One line a basis, number of cores and algorithm; the first series of each basis. Published values tell no `n`."""
     blocks = [paper.table1().reset_index().assign(basis="published", n=pandas.NA, series="Table 1 of the paper")]
-    for basis in ("measured", "simulated"):
-        one = scaling.first_of(series, basis)
-        if one is not None:
-            blocks.append(one.table.reset_index().assign(basis=basis, series=one.label()))
+    for one in scaling.shown_of(series):
+        blocks.append(one.table.reset_index().assign(basis=one.key["basis"], series=one.label()))
     table = pandas.concat(blocks, ignore_index=True).astype({"n": "Int64"})
     columns = ["basis", "cores", "algorithm", "n", *VALUES, *BOUNDS, "series"]
     return in_order(table.reindex(columns=columns))
@@ -21,9 +19,13 @@ def table1(series):
 
 def in_order(table):
     """By cores, then as people compare: PODM first, the published value before ours."""
-    ranks = {"basis": ["published", "measured", "simulated"], "algorithm": list(paper.ALGORITHMS)}
-    return table.sort_values(["cores", "algorithm", "basis"], ignore_index=True, kind="stable",
-                             key=lambda one: one.map({name: rank for rank, name in enumerate(ranks[one.name])}) if one.name in ranks else one)
+    peers = sorted(set(table["algorithm"]) - set(paper.ALGORITHMS))
+    ranks = {"basis": ["published", "measured", "simulated"], "algorithm": [*paper.ALGORITHMS, *peers]}
+
+    def rank(column):
+        return column.map(ranks[column.name].index, na_action="ignore") if column.name in ranks else column
+
+    return table.sort_values(["cores", "algorithm", "basis"], ignore_index=True, key=rank)
 
 
 def readable(table):
@@ -35,8 +37,11 @@ def readable(table):
     for name, (scale, digits) in scales.items():
         low = table.get(name + "_low", pandas.Series(index=table.index, dtype=float))
         high = table.get(name + "_high", pandas.Series(index=table.index, dtype=float))
-        shown[titles[name]] = [
-            f"{value * scale:.{digits}f}" + ("" if pandas.isna(a) else f" [{a * scale:.{digits}f}, {b * scale:.{digits}f}]")
-            for value, a, b in zip(table[name], low, high)
-        ]
+        shown[titles[name]] = [_with_bounds(*(number * scale for number in numbers), digits)
+                               for numbers in zip(table[name], low, high)]
     return shown
+
+
+def _with_bounds(value, low, high, digits):
+    bounds = "" if pandas.isna(low) else f" [{low:.{digits}f}, {high:.{digits}f}]"
+    return f"{value:.{digits}f}{bounds}"

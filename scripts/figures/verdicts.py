@@ -32,21 +32,22 @@ def _cells_of_table1(frame, series, basis):
     base = published.loc["podm", 1]
     made = []
     for (algorithm, cores), row in published.iterrows():
-        ours = None if series is None or (algorithm, cores) not in series.table.index else series.table.loc[algorithm, cores]
+        has_ours = series is not None and (algorithm, cores) in series.table.index
         for column in HIGHER_IS_BETTER:
             cell = _cell("1", basis, algorithm, cores, column, float(row[column]))
-            if ours is None:
-                cell["reason"] = why_missing(frame, series, basis, algorithm, cores)
+            if has_ours:
+                ours, our_base = series.table.loc[algorithm, cores], series.table.loc["podm", 1]
+                _judge_ratio(cell, ours, row[column] / base[column], our_base[column])
             else:
-                _judge_ratio(cell, ours, row[column] / base[column], series.table.loc["podm", 1][column])
+                cell["reason"] = why_missing(frame, series, basis, algorithm, cores)
             made.append(cell)
     return made
 
 
 def _cell(table, basis, algorithm, cores, column, published):
-    return {"table": table, "basis": basis, "algorithm": algorithm, "cores": int(cores), "column": column, "paper": published,
-            "value": None, "n": 0, "deviation": None, "ratio_to_one_core": None, "paper_ratio_to_one_core": None,
-            "verdict": "cannot_fill", "reason": ""}
+    return {"table": table, "basis": basis, "algorithm": algorithm, "cores": int(cores), "column": column,
+            "paper": published, "value": None, "n": 0, "deviation": None, "ratio_to_one_core": None,
+            "paper_ratio_to_one_core": None, "verdict": "cannot_fill", "reason": ""}
 
 
 def _judge_ratio(cell, ours, paper_ratio, our_base):
@@ -79,7 +80,7 @@ def _cells_of_table2(frame, hops, basis):
             if (cores, hop) in ours.index:
                 _judge_share(cell, ours.loc[cores, hop], hop)
             elif cores in ours.index.get_level_values("cores"):
-                cell.update(value=0.0, verdict="agrees", reason="no visit over so many hops is possible or was seen")
+                _judge_share(cell, {"share": 0.0, "n": ours.loc[(cores, 0), "n"]}, hop)
             else:
                 cell["reason"] = why_missing(frame, None, basis, "pdr-podm", cores, needs_hops=True)
             made.append(cell)
@@ -100,9 +101,9 @@ def why_missing(frame, series, basis, algorithm, cores, needs_hops=False):
     for column, value in (("basis", basis), ("algorithm", algorithm), ("cores", cores)):
         wanted = wanted[wanted[column] == value] if column in wanted else wanted.iloc[:0]
     if len(wanted):
-        doubts = sorted(set(wanted.loc[~wanted["verified"], "doubt"]))
-        if len(doubts) and not wanted["verified"].any():
-            return "no verified row: " + doubts[0]
+        doubts = sorted(set(wanted.loc[~wanted["headline"], "doubt"]))
+        if doubts and not wanted["headline"].any():
+            return "no row to count: " + doubts[0]
         if needs_hops:
             return table2.why_no_hops(wanted)
         if series is None:

@@ -15,9 +15,12 @@ from .viewer import TooManyCells, pack
 
 
 def main(arguments=None):
-    parser = argparse.ArgumentParser(prog="report", description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser = argparse.ArgumentParser(
+        prog="report", description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter
+    )
     add_inputs(parser)
-    parser.add_argument("-o", "--output", type=Path, default=Path("results/runs/report.html"), help="file (default: %(default)s)")
+    parser.add_argument("-o", "--output", type=Path, default=Path("results/runs/report.html"),
+                        help="file (default: %(default)s)")
     arguments = parser.parse_args(arguments)
     try:
         records, report, schedule, mesh = read_inputs(arguments)

@@ -83,8 +83,8 @@ def _text(value):
 def _counts(records, outcome):
     verdicts = [one["verdict"] for one in outcome.verdicts["cells"] + outcome.verdicts["claims"]]
     frame = records.frame
-    verified = int(frame["verified"].sum()) if len(frame) else 0
-    counts = [(f"{len(frame)}", "trials recorded"), (f"{verified}", "meshes verified"),
+    verified = int(frame["headline"].sum()) if len(frame) else 0
+    counts = [(f"{len(frame)}", "trials recorded"), (f"{verified}", "of them verified and fit for numbers"),
               (str(sum(verdict in ("agrees", "better") for verdict in verdicts)), "values and claims agree or are better"),
               (str(verdicts.count("differs")), "differ"), (str(verdicts.count("cannot_fill")), "cannot be filled, with the reason")]
     return '<ul class="counts">' + "".join(f"<li><b>{number}</b>{words}</li>" for number, words in counts) + "</ul>"
@@ -161,7 +161,7 @@ def _environment(records):
     facts = {name.removeprefix("environment."): _distinct(frame[name]) for name in names}
     lines = "".join(f"<dt>{escape(name)}</dt><dd>{escape(value)}</dd>" for name, value in facts.items() if value)
     skipped = "".join(f"<li>{escape(problem)}</li>" for problem in records.problems)
-    doubts = frame.loc[~frame["verified"], "doubt"].value_counts() if len(frame) else {}
+    doubts = frame.loc[~frame["headline"], "doubt"].value_counts() if len(frame) else {}
     unverified = "".join(f"<li>{count} × {escape(doubt)}</li>" for doubt, count in doubts.items())
     return (f"<dl>{lines}</dl>" + (f"<h3>Rows that give no number</h3><ul>{unverified}</ul>" if unverified else "")
             + (f"<h3>Skipped</h3><ul>{skipped}</ul>" if skipped else ""))

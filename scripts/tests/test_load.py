@@ -51,7 +51,7 @@ class Load(unittest.TestCase):
         with self.assertRaisesRegex(RecordError, "no such file"):
             load([self.file])
 
-    def test_unverified_rows_say_why(self):
+    def test_rows_that_give_no_number_say_why(self):
         passed = synthetic.PASSED
         for changes, reason in (
             ({"verdicts": {**passed, "delaunay": "fail"}}, "claim delaunay failed"),
@@ -60,25 +60,26 @@ class Load(unittest.TestCase):
             ({"verdicts": {}}, "not verified"),
             ({"status": "timed_out", "reason": "after 600 s"}, "timed_out: after 600 s"),
             ({"warmup": True}, "warm-up"),
+            ({"threads": {"asked": 4, "used": 4}}, "4 threads on 2 cores"),
         ):
             with self.subTest(reason=reason):
                 frame = self.load(synthetic.row(**changes)).frame
-                self.assertFalse(frame["verified"][0])
+                self.assertFalse(frame["headline"][0])
                 self.assertIn(reason, frame["doubt"][0])
 
     def test_claims_without_their_input_do_not_spoil_a_row(self):
         frame = self.load(synthetic.row(verdicts={**synthetic.PASSED, "fidelity": "not_run"})).frame
-        self.assertTrue(frame["verified"][0])
+        self.assertTrue(frame["headline"][0])
 
     def test_a_trial_without_a_mesh_is_a_row(self):
         row = {key: value for key, value in synthetic.row(status="failed").items()
                if key not in ("phases_s", "cells", "verdicts", "threads", "quality")}
         frame = self.load(row).frame
-        self.assertEqual((len(frame), bool(frame["verified"][0])), (1, False))
+        self.assertEqual((len(frame), bool(frame["headline"][0])), (1, False))
 
     def test_reads_the_reference_runs(self):
         records = load([paths.REFERENCE])
-        self.assertTrue(records.frame["verified"].any())
+        self.assertTrue(records.frame["headline"].any())
         self.assertEqual(set(records.frame["basis"]), {"measured"})
 
 
