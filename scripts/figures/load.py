@@ -17,7 +17,8 @@ class RecordError(Exception):
 
 @dataclass(frozen=True)
 class Records:
-    """`frame`: one line a trial, nested keys joined by dots, and the columns of `derived`. `problems`: what was skipped."""
+    """`frame`: one line a trial, nested keys joined by dots, and the columns of `derived`. `problems`: what was
+    skipped."""
 
     frame: pandas.DataFrame
     problems: list

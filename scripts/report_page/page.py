@@ -12,17 +12,18 @@ HERE = Path(__file__).parent
 DOI = "https://doi.org/10.1016/j.proeng.2015.10.119"
 SECTIONS = {"claims": "Claims", "guarantees": "Guarantees", "tables": "Tables", "figures": "Figures", "mesh": "Mesh",
             "environment": "Environment"}
-FIGURE_TITLES = {"fig1": "Figure 1: quality of the cells", "fig2b": "Figure 2 (b): two active leaves and their rings",
+FIGURE_TITLES = {"fig1": "Figure 1: quality of the cells",
+                 "fig2b": "Figure 2 (b): two active leaves and their rings",
                  "fig4a": "Figure 4 (a): speed-up and efficiency", "fig4b": "Figure 4 (b): time and elements per second"}
-TABLE_TITLES = {"table1": "Table 1: weak scaling", "table2": "Table 2: visits by hops", "table3": "Table 3: memory levels"}
+TABLE_TITLES = {"table1": "Table 1: weak scaling", "table2": "Table 2: visits by hops",
+                "table3": "Table 3: memory levels"}
 
 
 def page(records, outcome, mesh=None, mesh_fault=""):
     """`mesh`: of viewer.pack; without one, `mesh_fault` says why."""
     parts = {"claims": _claims(outcome), "guarantees": _guarantees(records.frame), "tables": _tables(outcome),
              "figures": _figures(outcome), "mesh": _viewer(mesh, mesh_fault), "environment": _environment(records)}
-    body = "\n".join(f'<section id="{name}" aria-labelledby="{name}-title"><h2 id="{name}-title">{title}</h2>\n{parts[name]}\n</section>'
-                     for name, title in SECTIONS.items())
+    body = "\n".join(_section(name, title, parts[name]) for name, title in SECTIONS.items())
     links = " ".join(f'<a href="#{name}">{title}</a>' for name, title in SECTIONS.items())
     script = f"<script>{(HERE / 'viewer.js').read_text()}</script>" if mesh else ""
     return f"""<!doctype html>
@@ -37,8 +38,9 @@ def page(records, outcome, mesh=None, mesh_fault=""):
 <body>
 <header>
 <h1>Parallel Delaunay image-to-mesh: results</h1>
-<p>Beside the values of <a href="{DOI}">Feng, Tsolakis, Chernikov and Chrisochoides, IMR24, 2015</a>. Published, measured and
-simulated values are never mixed; no mesh gives a number unless it verified. Machines differ, so shapes are compared, not seconds.</p>
+<p>Beside the values of <a href="{DOI}">Feng, Tsolakis, Chernikov and Chrisochoides, IMR24, 2015</a>. Published,
+measured and simulated values are never mixed; no mesh gives a number unless it verified. Machines differ, so shapes
+are compared, not seconds.</p>
 {_counts(records, outcome)}
 <nav aria-label="Sections">{links}</nav>
 </header>
@@ -51,17 +53,26 @@ simulated values are never mixed; no mesh gives a number unless it verified. Mac
 """
 
 
-def table_html(table, caption="", row_classes=None):
-    """A table in a box that scrolls sideways; a column `verdict` is marked, the first column heads its row."""
+def _section(name, title, content):
+    heading = f'<h2 id="{name}-title">{title}</h2>'
+    return f'<section id="{name}" aria-labelledby="{name}-title">{heading}\n{content}\n</section>'
+
+
+def _box(title, content):
+    """A box that scrolls sideways where the page is narrower than its content."""
+    return f'<div class="wide" tabindex="0" role="region" aria-label="{escape(title, quote=True)}">{content}</div>'
+
+
+def table_html(table, title, row_classes=None):
+    """A table in a box; a column `verdict` is marked, the first column heads its row."""
     head = "".join(f'<th scope="col">{escape(str(name))}</th>' for name in table.columns)
     lines = []
     for position, row in enumerate(table.itertuples(index=False)):
         cells = [_cell(name, value, is_first=at == 0) for at, (name, value) in enumerate(zip(table.columns, row))]
         kind = f' class="{row_classes[position]}"' if row_classes is not None else ""
         lines.append(f"<tr{kind}>{''.join(cells)}</tr>")
-    label = f' role="region" aria-label="{escape(caption, quote=True)}"' if caption else ""
-    return (f'<div class="wide" tabindex="0"{label}><table><thead><tr>{head}</tr></thead>\n<tbody>' + "\n".join(lines)
-            + "</tbody></table></div>")
+    rows = "\n".join(lines)
+    return _box(title, f"<table><thead><tr>{head}</tr></thead>\n<tbody>{rows}</tbody></table>")
 
 
 def _cell(name, value, is_first):
@@ -83,10 +94,13 @@ def _text(value):
 def _counts(records, outcome):
     verdicts = [one["verdict"] for one in outcome.verdicts["cells"] + outcome.verdicts["claims"]]
     frame = records.frame
-    verified = int(frame["headline"].sum()) if len(frame) else 0
-    counts = [(f"{len(frame)}", "trials recorded"), (f"{verified}", "of them verified and fit for numbers"),
-              (str(sum(verdict in ("agrees", "better") for verdict in verdicts)), "values and claims agree or are better"),
-              (str(verdicts.count("differs")), "differ"), (str(verdicts.count("cannot_fill")), "cannot be filled, with the reason")]
+    counts = [
+        (len(frame), "trials recorded"),
+        (int(frame["headline"].sum()) if len(frame) else 0, "of them verified and fit for numbers"),
+        (verdicts.count("agrees") + verdicts.count("better"), "values and claims agree or are better"),
+        (verdicts.count("differs"), "differ"),
+        (verdicts.count("cannot_fill"), "cannot be filled, with the reason"),
+    ]
     return '<ul class="counts">' + "".join(f"<li><b>{number}</b>{words}</li>" for number, words in counts) + "</ul>"
 
 
@@ -106,8 +120,8 @@ def _guarantees(frame):
               "verdict": "fail" if (frame[name] == "fail").any() else "pass" if (frame[name] == "pass").any() else "not_run",
               **{word.replace("_", " "): int((frame[name] == word).sum()) for word in ("pass", "fail", "not_run")}}
              for name in sorted(names)]
-    return ("<p>Claims about meshes, decided exactly by <code>podm-verify</code> after the clock stopped: numbers of meshes.</p>\n"
-            + table_html(pandas.DataFrame(lines), "Guarantees"))
+    return ("<p>Claims about meshes, decided exactly by <code>podm-verify</code> after the clock stopped: numbers of "
+            "meshes.</p>\n" + table_html(pandas.DataFrame(lines), "Guarantees"))
 
 
 def _tables(outcome):
@@ -115,17 +129,21 @@ def _tables(outcome):
     for name, (data, shown) in outcome.tables.items():
         note = ""
         if "series" in data:
-            note = f'<p class="faint">{escape("; ".join(data["series"].unique()))}. In brackets: bootstrap 95 % interval.</p>'
+            series = escape("; ".join(data["series"].unique()))
+            note = f'<p class="faint">{series}. In brackets: bootstrap 95 % interval.</p>'
         box = table_html(shown, TABLE_TITLES[name], list(shown["basis"]))
         made.append(f"<h3>{TABLE_TITLES[name]}</h3>\n{box}\n{note}")
     return "\n".join(made)
 
 
 def _figures(outcome):
-    made = [f"<figure><h3>{FIGURE_TITLES[name]}</h3><div class=\"wide\" tabindex=\"0\" role=\"region\" aria-label=\"{FIGURE_TITLES[name]}\">"
-            f"{_responsive(svg_of(figure, name), FIGURE_TITLES[name])}</div><figcaption>{escape(figure.get_label())}</figcaption></figure>"
-            for name, figure in outcome.figures.items()]
-    made += [f"<p class=\"faint\">{FIGURE_TITLES[name]}: not drawn, {escape(reason)}.</p>" for name, reason in outcome.missing.items()]
+    made = []
+    for name, figure in outcome.figures.items():
+        title = FIGURE_TITLES[name]
+        box = _box(title, _responsive(svg_of(figure, name), title))
+        made.append(f"<figure><h3>{title}</h3>{box}<figcaption>{escape(figure.get_label())}</figcaption></figure>")
+    for name, reason in outcome.missing.items():
+        made.append(f'<p class="faint">{FIGURE_TITLES[name]}: not drawn, {escape(reason)}.</p>')
     return "\n".join(made)
 
 
@@ -140,14 +158,15 @@ def _viewer(mesh, fault):
     if mesh is None:
         return f'<p class="faint">{escape(fault or "No mesh was given.")}</p>'
     data = json.dumps(mesh).replace("<", "\\u003c")
-    return f"""<p>{mesh["cells"]:,} cells, cut open: those whose centres lie beyond the plane are left out. Drag to turn; wheel, two
-fingers, + and - zoom; arrow keys turn too.</p>
+    return f"""<p>{mesh["cells"]:,} cells, cut open: those whose centres lie beyond the plane are left out. Drag to
+turn; wheel, two fingers, + and - zoom; arrow keys turn too.</p>
 <div id="viewer">
 <canvas tabindex="0" role="img" aria-label="The mesh in three dimensions, cells coloured by label"></canvas>
 <form>
 <div class="line"><label for="axis">across</label><select id="axis" name="axis"><option value="0">x</option>
 <option value="1" selected>y</option><option value="2">z</option></select></div>
-<div class="line"><label for="cut">cut</label><input id="cut" name="cut" type="range" min="0" max="1" step="0.005" value="0.5"></div>
+<div class="line"><label for="cut">cut</label>
+<input id="cut" name="cut" type="range" min="0" max="1" step="0.005" value="0.5"></div>
 <fieldset><legend>labels</legend><div data-labels></div></fieldset>
 </form>
 <p data-fault role="status"></p>
@@ -169,5 +188,5 @@ def _environment(records):
 
 def _distinct(column):
     """Values that rows give; of many, how many and the first."""
-    values = list(dict.fromkeys(str(value) for value in column if not (isinstance(value, float) and pandas.isna(value))))
-    return ", ".join(values) if len(values) <= 2 else f"{values[0]} ({len(values)} values)" if values else ""
+    values = list(dict.fromkeys(str(value) for value in column if _text(value)))
+    return ", ".join(values) if len(values) <= 2 else f"{values[0]} ({len(values)} values)"

@@ -142,7 +142,7 @@ async function show(root, mesh) {
     draw();
   }
 
-  steer(canvas, root, move);
+  steer(canvas, move);
   list(root.querySelector("[data-labels]"), mesh.labels, (value, isShown) => {
     view.hidden[isShown ? "delete" : "add"](value);
     paintLabels();
@@ -161,7 +161,7 @@ async function show(root, mesh) {
 }
 
 // Drag or arrow keys turn; wheel, two fingers, + and - zoom.
-function steer(canvas, root, move) {
+function steer(canvas, move) {
   const fingers = new Map();
   const gap = () => { const [a, b] = [...fingers.values()]; return Math.hypot(a.x - b.x, a.y - b.y); };
   canvas.addEventListener("pointerdown", (event) => {
@@ -181,7 +181,8 @@ function steer(canvas, root, move) {
     event.preventDefault();
     move(0, 0, Math.exp(-event.deltaY / 500));
   }, { passive: false });
-  const keys = { ArrowLeft: [-0.1, 0], ArrowRight: [0.1, 0], ArrowUp: [0, -0.1], ArrowDown: [0, 0.1], "+": [0, 0, 1.2], "-": [0, 0, 1 / 1.2] };
+  const keys = { ArrowLeft: [-0.1, 0], ArrowRight: [0.1, 0], ArrowUp: [0, -0.1], ArrowDown: [0, 0.1],
+    "+": [0, 0, 1.2], "-": [0, 0, 1 / 1.2] };
   canvas.addEventListener("keydown", (event) => {
     if (!keys[event.key]) return;
     event.preventDefault();

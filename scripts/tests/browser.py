@@ -62,10 +62,11 @@ class Browser:
             raise RuntimeError(answer["exceptionDetails"]["exception"].get("description"))
         return answer["result"].get("value")
 
-    def screenshot(self, selector=None):
-        """PNG of the whole page, or of the first element that matches."""
-        box = self.evaluate(f"""(() => {{ const element = {f'document.querySelector("{selector}")' if selector else 'document.documentElement'};
-            const box = element.getBoundingClientRect(); return [box.x + scrollX, box.y + scrollY, box.width, box.height]; }})()""")
+    def screenshot(self, selector="html"):
+        """PNG of the first element that matches; by default of the whole page."""
+        box = self.evaluate(f"""(() => {{
+            const box = document.querySelector('{selector}').getBoundingClientRect();
+            return [box.x + scrollX, box.y + scrollY, box.width, box.height]; }})()""")
         clip = dict(zip(("x", "y", "width", "height"), box), scale=1)
         return base64.b64decode(self._send("Page.captureScreenshot", clip=clip, captureBeyondViewport=True)["data"])
 

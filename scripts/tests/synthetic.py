@@ -84,7 +84,7 @@ def write_vtu(path, points, cells, labels):
     path.write_text(
         '<VTKFile type="UnstructuredGrid" version="0.1"><UnstructuredGrid>'
         f'<Piece NumberOfPoints="{len(points)}" NumberOfCells="{count}">'
-        f'<Points>{array("Points", "Float64", points.ravel(), extra=" NumberOfComponents=" + chr(34) + "3" + chr(34))}</Points>'
+        f"""<Points>{array("Points", "Float64", points.ravel(), ' NumberOfComponents="3"')}</Points>"""
         f'<Cells>{array("connectivity", "Int64", cells.ravel())}{array("offsets", "Int64", range(4, 4 * count + 1, 4))}'
         f'{array("types", "UInt8", [10] * count)}</Cells>'
         f'<CellData>{array("label", "Int32", labels)}</CellData></Piece></UnstructuredGrid></VTKFile>')

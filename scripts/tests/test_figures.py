@@ -87,7 +87,8 @@ class Scaling(unittest.TestCase):
 
 class Hops(unittest.TestCase):
     def test_counts_are_added_up_into_shares(self):
-        rows = [synthetic.row("pdr-podm", 32, environment=synthetic.BIG_MACHINE, hops=hops) for hops in ([90, 10], [100, 0, 0])]
+        rows = [synthetic.row("pdr-podm", 32, environment=synthetic.BIG_MACHINE, hops=hops)
+                for hops in ([90, 10], [100, 0, 0])]
         ours = table2.table2(frame_of(rows)).query("basis == 'measured'").set_index("hops")["share"]
         self.assertEqual([ours[0], ours[1], ours[2]], [0.95, 0.05, 0])
 
