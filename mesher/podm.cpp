@@ -70,7 +70,7 @@ Refinement podm(const Isosurface& isosurface, const Box& object, double delta_mm
     VirtualExecutor executor(watch, crew.coordination, crew.cost);
     refine_in_parallel(executor, isosurface, parameters, crew, result);
     result.virtual_s = executor.elapsed_s();
-  } else if (crew.coordination.num_workers > 1) {
+  } else if (crew.coordination.num_workers > 1 || crew.locks_alone) {
     ThreadExecutor executor(watch, crew.coordination);
     refine_in_parallel(executor, isosurface, parameters, crew, result);
   } else {

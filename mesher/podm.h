@@ -21,9 +21,10 @@ struct Refinement {
 /// Who refines.
 struct Crew {
   Executor executor = Executor::kThreads;
-  CoordinationOptions coordination;  // one thread works without locks
+  CoordinationOptions coordination;  // one thread works without locks, unless `locks_alone`
   VirtualCost cost = VirtualCost::kMeasured;
   OperationLogWriter* log = nullptr;
+  bool locks_alone = false;  // to measure what locks cost
 };
 
 /// `object`: bounds of the foreground. `cell_capacity`: the most cells the store may hold.
