@@ -85,7 +85,7 @@ void Refiner::refine_anywhere(const std::string& phase, const Parameters& parame
       refine(
           workers, [&] { return executor.run(workers); }, [&](WorkerId id) { return executor.overhead(id); });
       result_.virtual_s += executor.elapsed_s();
-    } else if (num_workers > 1) {
+    } else if (num_workers > 1 || crew_.locks_alone) {
       auto workers = make_workers<VertexLocks>(parameters, num_workers);
       ThreadExecutor<VertexLocks> executor(watch_, coordination(num_workers), crew_.places);
       refine(

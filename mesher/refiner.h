@@ -32,6 +32,7 @@ struct Crew {
   OperationLogWriter* log = nullptr;
   const Topology* machine = nullptr;  // whose nodes the places name; none: all are on one
   std::vector<Place> places = {};     // of the workers; none: anywhere
+  bool locks_alone = false;           // a single worker locks too: to measure what locks cost
 };
 
 struct Refinement {
