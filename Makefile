@@ -12,7 +12,8 @@ help:
 	@echo "make test          all tests"
 	@echo "make stress        2200 runs of up to 256 workers, each verified and replayed; some 10 minutes on 2 cores"
 	@echo "make kill-matrix   every mutant of a mesh and the claim of podm-verify that rejects it"
-	@echo "make figures       mesh the abdomen phantom and draw it cut open: $(FIGURES)/"
+	@echo "make figures       tables and figures of results/runs/ beside the paper's, a mesh cut open: $(FIGURES)/,"
+	@echo "                   and one page of it all: results/runs/report.html"
 	@echo "make build         the programs, in build/bin/"
 	@echo "make setup         install the Debian 12 packages needed (root or sudo; otherwise says what to run)"
 	@echo "make clean         remove build folders; results stay"
@@ -41,10 +42,15 @@ kill-matrix: build
 experiments: build
 	build/bin/podm-bench run experiments/first_mesh.toml
 
+# Tables and figures of the records in results/runs/, the phantom cut open, and one page of it all.
 figures: build
 	mkdir -p $(FIGURES)
 	build/bin/podm mesh phantom:abdomen@256 --target-elements 400000 -o $(FIGURES)/abdomen.vtu
 	/usr/bin/python3 scripts/render_mesh.py $(FIGURES)/abdomen.vtu -o $(FIGURES)/abdomen_cut.png
+	build/bin/podm-verify $(FIGURES)/abdomen.vtu --json $(FIGURES)/abdomen_verified.json
+	scripts/make_figures --records results/runs --verified $(FIGURES)/abdomen_verified.json -o $(FIGURES)
+	scripts/report --records results/runs --verified $(FIGURES)/abdomen_verified.json --mesh $(FIGURES)/abdomen.vtu \
+	  -o results/runs/report.html
 
 clean:
 	rm -rf build build-*

@@ -36,6 +36,8 @@ def load(paths):
 def derived(row):
     """What the figures need of a row, under one name whatever the schema; None where the trial made no mesh."""
     phases = row.get("phases_s") or {}
+    if row.get("virtual"):  # what was simulated; the other phases ran on the machine at hand
+        phases = {"refine": row["virtual"]["refine_s"]}
     doubt = doubt_of(row)
     return {
         "basis": "simulated" if row.get("executor") == "virtual" else "measured",
