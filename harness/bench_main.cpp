@@ -10,6 +10,7 @@
 #include <filesystem>
 
 #include "environment.h"
+#include "gate_command.h"
 #include "record.h"
 #include "table.h"
 #include "trial.h"
@@ -136,11 +137,15 @@ int main_or_throw(int argc, char** argv) {
   std::string folder = "experiments";
   CLI::App& list_app = *program.add_subcommand("list", "list experiments: title, trials, expected time");
   list_app.add_option("FOLDER", folder, "where they are [default: experiments]");
+  int exit_code = 0;
+  add_compare(program, exit_code);
+  add_gate(program, beside_this_program("podm"), exit_code);
   try {
     program.parse(argc, argv);
   } catch (const CLI::ParseError& error) {
     return program.exit(error) == 0 ? 0 : kExitInput;
   }
+  if (!run_app.parsed() && !list_app.parsed()) return exit_code;
   if (command.programs.verifier == "none") command.programs.verifier.clear();
   return run_app.parsed() ? run(command) : list(folder);
 }
