@@ -92,6 +92,12 @@ class Keys {
   std::map<std::string, std::string> settings_;  // by trial
 };
 
+// The trial, or the image where a mesher's record has none.
+std::string name_of(const Json& row) {
+  const Json trial = at(row, "/trial"), image = at(row, "/input/path");
+  return trial.is_string() ? trial : image.is_string() ? image : Json("");
+}
+
 // In the order of `a`; those without a row of `b` are left out.
 std::vector<Group> groups_of(const Rows& a, const Rows& b) {
   const Keys keys{&a, &b};
@@ -99,7 +105,7 @@ std::vector<Group> groups_of(const Rows& a, const Rows& b) {
   std::map<std::string, std::size_t> places;
   for (const Json& row : a) {
     const auto [found, is_new] = places.emplace(keys.of(row), groups.size());
-    if (is_new) groups.push_back({row["trial"], {}, {}});
+    if (is_new) groups.push_back({name_of(row), {}, {}});
     groups[found->second].a.push_back(row);
   }
   for (const Json& row : b)
@@ -128,7 +134,7 @@ void add_verdict(const Group& group, const std::string& place, const std::string
                   b.empty() ? "none" : fmt::format("{}", fmt::join(b, "/")), is_worse ? ": WORSE" : "");
 }
 
-bool has_one_thread(const Group& group) { return at(group.a.front(), "/threads/asked") == 1; }
+bool has_one_thread(const Group& group) { return at(group.a.front(), "/threads/used") == 1; }
 
 void add_differences(const Group& group, Comparison& result) {
   add_verdict(group, "/status", "ok", result);
@@ -188,8 +194,8 @@ Rows read_record_file(const std::string& path) {
   for (std::string line; std::getline(file, line);) {
     ++line_number;
     Json row = Json::parse(line, nullptr, false);
-    if (!row.is_object() || !at(row, "/trial").is_string())
-      throw InputError(fmt::format("{}:{}: is not a row of an experiment", path, line_number));
+    if (!row.is_object() || name_of(row).empty())
+      throw InputError(fmt::format("{}:{}: is no record of a trial or of the mesher", path, line_number));
     rows.push_back(std::move(row));
   }
   if (rows.empty()) throw InputError(fmt::format("{}:1: holds no rows", path));

@@ -17,7 +17,7 @@ Json row(double seconds, int threads = 1) {
           {"status", "ok"},
           {"input", {{"path", "image.nii"}}},
           {"options", {{"radius_mm", 2.0}}},
-          {"threads", {{"asked", threads}}},
+          {"threads", {{"asked", threads}, {"used", threads}}},
           {"phases_s", {{"refine", seconds}, {"write", 50.0}}},
           {"cells", 1000},
           {"cells_per_second", 1000 / seconds},
@@ -98,6 +98,15 @@ TEST(Compare, MatchesOnlyWhatMeasuresTheSame) {
   Rows both = repeats(2);
   both.push_back(row(9, 2));
   EXPECT_FALSE(compare(repeats(2), both).is_worse);
+}
+
+TEST(Compare, TakesRecordsOfTheMesherAlone) {
+  Json record = row(2);
+  record.erase("trial");
+  record.erase("status");
+  const Comparison comparison = compare({record}, {record});
+  EXPECT_FALSE(comparison.is_worse);
+  EXPECT_TRUE(has(comparison, "image.nii"));
 }
 
 class CompareCommand : public testing::Test {

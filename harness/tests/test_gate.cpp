@@ -163,6 +163,16 @@ TEST_F(GateTest, MoreInstructionsThanTheBudgetAllowsBlock) {
   EXPECT_FALSE(gate(options(mesher(proved_, "i=0; while [ $i -lt 20000 ]; do i=$((i+1)); done\n"), {1}), {}));
 }
 
+TEST_F(GateTest, SecondsAreAskedOfBothMeshersAndAFailureIsNoAnswer) {
+  GateOptions both = options(mesher(proved_), {2});
+  both.base = both.head;
+  EXPECT_NO_THROW(gate(both, {}));
+  both.base = folder_.script("broken", "exit 3\n");
+  EXPECT_THROW(gate(both, {}), InputError);
+  EXPECT_THROW(gate(options(folder_ / "absent", {1}), {}), InputError);
+  EXPECT_THROW(gate(options(mesher(proved_), {1}), [] { return true; }), InputError) << "stopped by the user";
+}
+
 TEST_F(GateTest, BrokenBudgetsAreRefusedByName) {
   for (const char* text : {"", "[]", "{", R"({"schema":2})", R"({"schema":1,"build":""})"}) {
     const std::string path = folder_.write("budgets.json", text);
