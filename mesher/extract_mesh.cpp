@@ -39,16 +39,15 @@ class WorldFrame {
 };
 
 // Threads share out chunks of ids.
-constexpr std::uint32_t kChunk = 1 << 13;
+constexpr std::size_t kChunk = 1 << 13;
 
-std::size_t num_chunks(std::uint32_t num_ids) { return (std::size_t{num_ids} + kChunk - 1) / kChunk; }
+std::size_t num_chunks(std::uint32_t num_ids) { return (num_ids + kChunk - 1) / kChunk; }
 
 /// Calls work(chunk, begin, end) for every chunk of the ids below `num_ids`.
 template <class Work>
 void for_each_chunk(std::uint32_t num_ids, std::size_t threads, const Work& work) {
-  parallel_for(num_chunks(num_ids), threads, [&](std::size_t chunk, std::size_t) {
-    const auto begin = static_cast<std::uint32_t>(chunk * kChunk);
-    work(chunk, begin, begin + std::min(kChunk, num_ids - begin));
+  parallel_for_ranges(num_ids, kChunk, threads, [&](std::size_t begin, std::size_t end, std::size_t) {
+    work(begin / kChunk, static_cast<std::uint32_t>(begin), static_cast<std::uint32_t>(end));
   });
 }
 

@@ -72,7 +72,8 @@ void write_outputs(const MeshCommand& command, const TetMesh& mesh) {
 int run(const MeshCommand& command) {
   check_outputs(command);
   LabelImage image;
-  const double read_s = timed([&] { image = read_labelled_image(command.image); });
+  const double read_s =
+      timed([&] { image = read_labelled_image(command.image, command.meshing.loop_threads()); });
   MeshRun run{.command = command,
               .image = image,
               .options = meshing_options(command, image),

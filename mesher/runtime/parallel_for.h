@@ -27,4 +27,12 @@ void parallel_for(std::size_t count, std::size_t threads, const Work& work) {
   run(0);
 }
 
+/// The same for consecutive ranges of [0, size), `length` long but for the last: work(begin, end, thread).
+template <class Work>
+void parallel_for_ranges(std::size_t size, std::size_t length, std::size_t threads, const Work& work) {
+  parallel_for((size + length - 1) / length, threads, [&](std::size_t i, std::size_t thread) {
+    work(i * length, std::min(size, (i + 1) * length), thread);
+  });
+}
+
 }  // namespace podm

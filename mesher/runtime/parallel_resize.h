@@ -18,10 +18,9 @@ void parallel_resize(std::vector<T>& vector, std::size_t size, std::size_t threa
   const auto address = reinterpret_cast<std::uintptr_t>(vector.data());
   const std::uintptr_t begin = (address + kPage - 1) / kPage * kPage,
                        end = std::max(begin, (address + size * sizeof(T)) / kPage * kPage);
-  parallel_for((end - begin + kPiece - 1) / kPiece, threads, [&](std::size_t i, std::size_t) {
-    const std::uintptr_t piece = begin + i * kPiece;
+  parallel_for_ranges(end - begin, kPiece, threads, [&](std::size_t from, std::size_t to, std::size_t) {
     // Where the kernel cannot, resize() meets the faults.
-    madvise(reinterpret_cast<void*>(piece), std::min(kPiece, end - piece), MADV_POPULATE_WRITE);
+    madvise(reinterpret_cast<void*>(begin + from), to - from, MADV_POPULATE_WRITE);
   });
   vector.resize(size);
 }
