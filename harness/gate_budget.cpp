@@ -61,7 +61,7 @@ void write_budgets(const Budgets& budgets, const std::string& path) {
 }
 
 std::string this_build() {
-  const Json build = environment(std::filesystem::temp_directory_path());
+  const Json build = environment_of_run(std::filesystem::temp_directory_path());
   return fmt::format("{} {} {}", build["compiler"].get<std::string>(),
                      build["compiler_flags"].get<std::string>(), build["build_type"].get<std::string>());
 }

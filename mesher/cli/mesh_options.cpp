@@ -56,7 +56,8 @@ void add_algorithm_options(CLI::App& app, MeshCommand& command) {
   app.option_defaults()->group("Algorithm");
   add_one(app, "--algorithm", "NAME",
           "podm: threads anywhere, with locks; pdr-podm: leaf by leaf of an octree, on nodes\n"
-          "of several threads; pdr: leaf by leaf, a thread each, no locks; auto [default: podm]",
+          "of several threads; pdr: leaf by leaf, a thread each, no locks; auto: podm or\n"
+          "pdr-podm, by the number of threads [default: podm]",
           [&meshing](const std::string& text, const std::string& name) {
             meshing.algorithm = parse_choice(
                 text, name, {Algorithm::kAuto, Algorithm::kPodm, Algorithm::kPdr, Algorithm::kPdrPodm});
@@ -75,8 +76,7 @@ void add_algorithm_options(CLI::App& app, MeshCommand& command) {
           });
   add_one(app, "--initial-threads", "N", "threads of the initial mesh [default: all; 1 for pdr]",
           into_threads(meshing.initial_threads));
-  add_one(app, "--leaf-size", "MM",
-          "side of the octree's leaves, mm [default: from the initial mesh's bound]",
+  add_one(app, "--leaf-size", "MM", "side of the octree's leaves, mm [default: from the initial bound]",
           into_length(meshing.leaf_size_mm));
   add_one(app, "--schedule", "FILE", "write which leaf was refined when, for podm-verify [default: none]",
           into(command.schedule_path));

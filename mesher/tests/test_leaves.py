@@ -27,7 +27,7 @@ class Leaves(PodmTestCase):
     def test_meshes_and_schedules_verify_and_runs_equal_their_replay(self):
         for arguments in (["--algorithm", "pdr"], ["--algorithm", "pdr", "--threads", 5],
                           ["--algorithm", "pdr-podm", "--nodes", 2, "--cores-per-node", 2, "--space", "LPS"],
-                          ["--algorithm", "pdr-podm", "--nodes", 3, "--threads", 3, "--space", "voxel"],
+                          ["--algorithm", "pdr-podm", "--nodes", 3, "--threads", 3, "--pin", "none"],
                           ["--algorithm", "pdr-podm", "--executor", "virtual", "--nodes", 16, "--cores-per-node", 4],
                           ["--algorithm", "pdr", "--executor", "virtual", "--threads", 16]):
             with self.subTest(arguments=arguments):
@@ -43,6 +43,12 @@ class Leaves(PodmTestCase):
         process = run_podm(self.out, "--schedule", self.schedule, "--json", report, program=VERIFIER)
         self.assert_exit(process, 0)
         self.assertEqual(json.loads(report.read_text())["claims"]["conformity"]["verdict"], "pass")
+
+    def test_schedules_follow_the_space_of_the_mesh(self):
+        for space in "RAS", "LPS", "voxel":
+            self.mesh("--algorithm", "pdr", "--threads", 2, "--space", space)
+            process = run_podm(self.out, "--claims", "conformity", "--schedule", self.schedule, program=VERIFIER)
+            self.assert_exit(process, 0)
 
     def test_a_schedule_of_leaves_too_near_to_each_other_fails(self):
         self.mesh("--algorithm", "pdr", "--threads", 2)

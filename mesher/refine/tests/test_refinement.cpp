@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <sstream>
 
 #include "cost_model.h"
 #include "images.h"
@@ -108,9 +109,10 @@ TEST_P(Refined, NoFreeVertexStaysNearTheIsosurfaceVertices) {
 
 std::string name_of(const testing::TestParamInfo<std::tuple<NamedImage, Method>>& test) {
   const auto& [image, method] = test.param;
-  std::string name = image.name;
-  name += "_" + to_string(method.algorithm) + "_" + std::to_string(method.num_workers) + "_" +
-          to_string(method.contention) + "_" + to_string(method.executor);
+  std::ostringstream text;
+  text << image.name << '_' << to_string(method.algorithm) << '_' << method.num_workers << '_'
+       << to_string(method.contention) << '_' << to_string(method.executor);
+  std::string name = text.str();
   std::replace(name.begin(), name.end(), '-', '_');
   return name;
 }
