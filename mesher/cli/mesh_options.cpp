@@ -55,9 +55,9 @@ void add_algorithm_options(CLI::App& app, MeshCommand& command) {
   };
   app.option_defaults()->group("Algorithm");
   add_one(app, "--algorithm", "NAME",
-          "podm: threads anywhere, with locks; pdr-podm: leaf by leaf of an octree, by nodes\n"
-          "of several threads; pdr: leaf by leaf, a thread each, no locks; auto: podm on few\n"
-          "threads, pdr-podm on many [default: podm]",
+          "podm: threads anywhere, with locks; pdr-podm: leaf by leaf of an octree,\n"
+          "by nodes of several threads; pdr: leaf by leaf, a thread each, no locks;\n"
+          "auto: podm on few threads, pdr-podm on many [default: podm]",
           [&meshing](const std::string& text, const std::string& name) {
             meshing.algorithm = parse_choice(
                 text, name, {Algorithm::kAuto, Algorithm::kPodm, Algorithm::kPdr, Algorithm::kPdrPodm});
