@@ -20,6 +20,7 @@ class SizeField {
     for (double& squared : scaled.squared_) squared *= ratio * ratio;
     return scaled;
   }
+  std::size_t num_labels() const { return squared_.size(); }  // the background included
   double squared_radius(LabelIndex label) const { return squared_[label]; }
   /// Of all labels but the background.
   double smallest_squared_radius() const { return *std::min_element(squared_.begin() + 1, squared_.end()); }

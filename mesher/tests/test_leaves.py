@@ -29,7 +29,8 @@ class Leaves(PodmTestCase):
                           ["--algorithm", "pdr-podm", "--nodes", 2, "--cores-per-node", 2, "--space", "LPS"],
                           ["--algorithm", "pdr-podm", "--nodes", 3, "--threads", 3, "--pin", "none"],
                           ["--algorithm", "pdr-podm", "--executor", "virtual", "--nodes", 16, "--cores-per-node", 4],
-                          ["--algorithm", "pdr", "--executor", "virtual", "--threads", 16]):
+                          ["--algorithm", "pdr", "--executor", "virtual", "--threads", 16],
+                          ["--algorithm", "pdr", "--threads", 2, "--radius-of", "liver=5"]):
             with self.subTest(arguments=arguments):
                 record = self.mesh("--verify", *arguments)
                 self.assertEqual(set(record["verdicts"].values()), {"pass"})
