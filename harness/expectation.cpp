@@ -15,6 +15,13 @@ using Json = nlohmann::ordered_json;
 // file.
 constexpr double kMemoryBytesPerCell = 160, kDiskBytesPerCell = 50;
 
+// What a turn takes beside its cells, as cells; cells where the file sets the radius.
+constexpr double kPreparationInCells = 200'000, kUnknownCells = 1'000'000;
+
+double weight_of(const Trial& trial) {
+  return kPreparationInCells + number_in(trial.options, "target_elements").value_or(kUnknownCells);
+}
+
 void keep_largest(std::optional<double>& largest, const std::optional<double>& value) {
   if (value && (!largest || *value > *largest)) largest = value;
 }
@@ -27,8 +34,9 @@ bool is_of(const Json& row, const Trial& trial) {
 }  // namespace
 
 Expectations::Expectations(const Experiment& experiment, std::vector<Json> rows) : rows_(std::move(rows)) {
-  if (experiment.expected_minutes > 0)
-    seconds_of_a_turn_ = 60 * experiment.expected_minutes / static_cast<double>(experiment.num_turns());
+  double weight = 0;
+  for (const Trial& trial : experiment.trials) weight += weight_of(trial) * (trial.repeats + trial.warmups);
+  if (experiment.expected_minutes > 0) seconds_per_weight_ = 60 * experiment.expected_minutes / weight;
 }
 
 Expectation Expectations::of(const Trial& trial) const {
@@ -43,7 +51,8 @@ Expectation Expectations::of(const Trial& trial) const {
     keep_largest(expected.memory_bytes, number_in(process, "peak_rss_bytes"));
     keep_largest(expected.disk_bytes, number_in(row, "mesh_bytes"));
   }
-  expected.seconds = seconds.empty() ? seconds_of_a_turn_ : median(seconds);
+  if (seconds_per_weight_) expected.seconds = *seconds_per_weight_ * weight_of(trial);
+  if (!seconds.empty()) expected.seconds = median(seconds);
   if (const auto elements = number_in(trial.options, "target_elements")) {
     if (!expected.memory_bytes) expected.memory_bytes = *elements * kMemoryBytesPerCell;
     if (!expected.disk_bytes) expected.disk_bytes = *elements * kDiskBytesPerCell;

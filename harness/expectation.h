@@ -19,12 +19,12 @@ class Expectations {
  public:
   Expectations(const Experiment& experiment, std::vector<nlohmann::ordered_json> rows);
 
-  /// From the finished rows of the trial on the same image; without any, from the experiment's minutes and
-  /// the elements aimed at.
+  /// From the finished rows of the trial on the same image; without any, its share of the experiment's
+  /// minutes by the elements aimed at.
   Expectation of(const Trial& trial) const;
 
  private:
-  std::optional<double> seconds_of_a_turn_;
+  std::optional<double> seconds_per_weight_;  // from the experiment's minutes
   std::vector<nlohmann::ordered_json> rows_;
 };
 

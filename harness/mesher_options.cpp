@@ -21,7 +21,7 @@ constexpr const char* kPerThread = "target_elements_per_thread";  // becomes tar
 constexpr const char* kPowersOfTwo = "1..all";
 constexpr const char* kMillimetres = "_mm";  // ends keys of lengths, but no option of podm
 
-enum class Kind { kPositive, kElements, kCount, kSeed, kWord, kSwitch, kFile, kThreads };
+enum class Kind { kPositive, kElements, kCount, kSeed, kWord, kSwitch, kFlag, kFile, kThreads };
 
 struct MesherOption {
   const char* key;
@@ -47,6 +47,7 @@ constexpr MesherOption kMesherOptions[] = {
     {"leaf_size", Kind::kPositive},
     {"seed", Kind::kSeed},
     {"topology", Kind::kFile},
+    {kSchedule, Kind::kFlag},
 };
 
 // "all" is the number of usable processors, "1..all" the powers of two up to it and itself.
@@ -85,6 +86,8 @@ std::vector<Json> read_value(const Section& section, const toml::node& node, con
       return {section.text_of(node, key)};
     case Kind::kSwitch:
       return {switch_value(section, node, key)};
+    case Kind::kFlag:
+      return {section.flag_of(node, key)};
     case Kind::kFile:
       return {(std::filesystem::path(folder) / section.text_of(node, key)).lexically_normal().string()};
     case Kind::kThreads:

@@ -9,6 +9,9 @@
 
 namespace podm::bench {
 
+/// The key that asks for the schedule of the leaves; its file is the trial's own.
+inline constexpr const char* kSchedule = "schedule";
+
 /// One member of the product.
 struct Variant {
   std::string suffix;              ///< ",key=value" of each key that the file gives as an array

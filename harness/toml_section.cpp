@@ -51,9 +51,12 @@ std::string Section::text(std::string_view key, const std::string& otherwise) {
 
 bool Section::flag(std::string_view key) {
   const toml::node* node = find(key);
-  if (node == nullptr) return false;
-  const auto value = node->value_exact<bool>();
-  if (!value) fail(node->source(), fmt::format("{} must be true or false", key));
+  return node != nullptr && flag_of(*node, key);
+}
+
+bool Section::flag_of(const toml::node& node, std::string_view key) const {
+  const auto value = node.value_exact<bool>();
+  if (!value) fail(node.source(), fmt::format("{} must be true or false", key));
   return *value;
 }
 

@@ -47,6 +47,7 @@ class Section {
   void done() const;
 
   std::string text_of(const toml::node& node, std::string_view key) const;
+  bool flag_of(const toml::node& node, std::string_view key) const;
   double positive_of(const toml::node& node, std::string_view key) const;
   std::int64_t count_of(const toml::node& node, std::string_view key, std::int64_t least,
                         std::int64_t most) const;

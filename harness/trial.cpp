@@ -35,8 +35,12 @@ class Stopwatch {
 std::vector<std::string> mesh_command(const Trial& trial, const std::string& podm,
                                       const std::string& folder) {
   std::vector<std::string> command{podm, "mesh", trial.image};
-  const std::vector<std::string> options = mesher_arguments(trial.options);
-  command.insert(command.end(), options.begin(), options.end());
+  Json options = trial.options;
+  const bool has_schedule = options.value(kSchedule, false);
+  options.erase(kSchedule);
+  const std::vector<std::string> arguments = mesher_arguments(options);
+  command.insert(command.end(), arguments.begin(), arguments.end());
+  if (has_schedule) command.insert(command.end(), {"--schedule", folder + kScheduleName});
   command.insert(command.end(), {"-o", folder + kMeshName, "--record", folder + kRecordName, "--quiet"});
   return command;
 }

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <fstream>
 
+#include "mesher_options.h"
 #include "process.h"
 
 namespace podm::bench {
@@ -57,6 +58,8 @@ Verification verify_mesh(const Trial& trial, const Json& image_size, const Json&
   const double radius_mm = record.value("used", Json::object()).value("radius_mm", 0.0);
   command.push_back(radius_mm > 0 ? std::string(kClaims) + ",size" : kClaims);
   if (radius_mm > 0) command.insert(command.end(), {"--radius", fmt::format("{}", radius_mm)});
+  if (trial.options.value(kSchedule, false))
+    command.insert(command.end(), {"--schedule", folder + kScheduleName});
   const ProcessOutcome outcome = run_process(
       {.arguments = command, .stdout_path = {}, .stderr_path = {}, .timeout_s = kTimeoutS}, stop_requested);
   const Json report = read_json(report_path);

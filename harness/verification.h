@@ -9,6 +9,8 @@
 
 namespace podm::bench {
 
+inline constexpr const char* kScheduleName = "/schedule.jsonl";  ///< in the folder of a trial
+
 /// The programs that a trial runs.
 struct Programs {
   std::string podm;

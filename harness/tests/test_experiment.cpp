@@ -238,6 +238,19 @@ seed = 0
   EXPECT_EQ(options["seed"], 0);
 }
 
+// What stands in experiments/ is complete, and each has a part for every reader's patience.
+TEST(Experiments, StateClaimToleranceAndTimeAndHaveAKickTiresTier) {
+  for (const std::string& path : experiment_files(PODM_EXPERIMENTS)) {
+    const Experiment experiment = read_experiment(path);
+    EXPECT_NE(experiment.tolerance, "") << path;
+    EXPECT_GT(experiment.expected_minutes, 0) << path;
+    std::set<Tier> tiers;
+    for (const Trial& trial : experiment.trials) tiers.insert(trial.tier);
+    EXPECT_TRUE(tiers.contains(Tier::kKickTires)) << path;
+    EXPECT_TRUE(tiers.contains(Tier::kDefault)) << path;
+  }
+}
+
 TEST_F(ExperimentTest, MissingFileAndFolderAreNamed) {
   EXPECT_THROW(read_experiment(folder_ / "absent.toml"), InputError);
   EXPECT_THROW(read_experiment(folder_.path()), InputError);

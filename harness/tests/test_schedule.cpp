@@ -136,6 +136,19 @@ TEST(Expectations, ComeFromRowsOfTheTrialThenFromTheFile) {
   EXPECT_DOUBLE_EQ(*known.of(trial).seconds, 20) << "rows of another image tell nothing";
 }
 
+TEST(Expectations, ShareTheMinutesByElements) {
+  Experiment experiment;
+  experiment.trials = {Trial{}, Trial{}};
+  experiment.trials[0].options["target_elements"] = 100'000;
+  experiment.trials[1].options["target_elements"] = 10'000'000;
+  experiment.expected_minutes = 2;
+  const Expectations expected(experiment, {});
+  const double small_s = *expected.of(experiment.trials[0]).seconds;
+  const double large_s = *expected.of(experiment.trials[1]).seconds;
+  EXPECT_DOUBLE_EQ(small_s + large_s, 120);
+  EXPECT_GT(large_s, 10 * small_s);
+}
+
 TEST(RemainingTime, FollowsExpectationsAndCorrectsThem) {
   RemainingTime remaining({10.0, 10.0, 30.0});
   EXPECT_DOUBLE_EQ(*remaining.seconds(0), 50);

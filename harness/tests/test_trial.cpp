@@ -71,6 +71,20 @@ TEST_F(TrialTest, OptionsOfTheTrialReachTheMesher) {
   EXPECT_TRUE(arguments.ends_with(" --quiet\n")) << arguments;
 }
 
+TEST_F(TrialTest, ScheduleOfTheMesherReachesTheVerifier) {
+  Trial trial = some_trial();
+  trial.options["schedule"] = true;
+  const std::string mesher = fake_mesher(folder_, write_record(kGoodRecord));
+  const std::string verifier =
+      folder_.script("podm-verify", "echo \"$@\" > \"$(dirname \"$0\")/verifier_arguments\"");
+  TrialRunner({mesher, verifier}).run(trial, folder_.path());
+  const std::string option = " --schedule " + folder_.path() + "/schedule.jsonl";
+  for (const char* program : {"arguments", "verifier_arguments"}) {
+    const std::string arguments = " " + read_tail(folder_ / program, 1000);
+    EXPECT_NE(arguments.find(option), std::string::npos) << program << arguments;
+  }
+}
+
 TEST_F(TrialTest, MemoryAboveTheLimitEndsTheTrial) {
   Trial trial = some_trial();
   trial.memory_limit_gib = 0.1;
