@@ -36,7 +36,7 @@ def write_images(folder):
         "noise": voxels(SIZE, lambda x, y, z: hash((x, y, z)) % 3),
     }
     images = [(small_images.write_nifti(folder / f"{name}.nii", shape, (SIZE, SIZE, SIZE)),
-               0.1 if name == "voxel" else 1) for name, shape in shapes.items()]
+               {"voxel": 0.1, "slice": 0.3}.get(name, 1)) for name, shape in shapes.items()]
     return images + [("phantom:spheres@20", 5), ("phantom:torus@24", 5), ("phantom:abdomen@24", 16)]
 
 
