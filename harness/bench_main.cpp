@@ -9,6 +9,7 @@
 #include <string>
 
 #include "commands.h"
+#include "gate_command.h"
 
 namespace podm::bench {
 namespace {
@@ -65,6 +66,8 @@ int main_or_throw(int argc, char** argv) {
   int exit_code = 0;
   add_run(program, exit_code);
   add_list(program, exit_code);
+  add_compare(program, exit_code);
+  add_gate(program, beside_this_program("podm"), exit_code);
   try {
     program.parse(argc, argv);
   } catch (const CLI::ParseError& error) {

@@ -3,6 +3,7 @@
 #include <algorithm>
 
 #include "record.h"
+#include "statistics.h"
 #include "table.h"
 
 namespace podm::bench {

@@ -7,6 +7,7 @@
 #include <functional>
 
 #include "record.h"
+#include "statistics.h"
 
 namespace podm::bench {
 namespace {
@@ -37,8 +38,7 @@ std::string median_over(const Rows& rows, const std::function<std::optional<doub
   std::vector<double> values;
   for (const Json* row : rows)
     if (const auto value = value_of(*row)) values.push_back(*value);
-  const auto middle = median(values);
-  return middle ? print(*middle) : "-";
+  return values.empty() ? "-" : print(median(std::move(values)));
 }
 
 std::string print_count(double count) { return thousands(static_cast<std::uint64_t>(count)); }
@@ -79,13 +79,6 @@ double meshing_seconds(const Json& record) {
   for (const auto& [phase, phase_s] : record["phases_s"].items())
     if (phase != "write") seconds += phase_s.get<double>();
   return seconds;
-}
-
-std::optional<double> median(std::vector<double> values) {
-  if (values.empty()) return {};
-  std::sort(values.begin(), values.end());
-  const std::size_t half = values.size() / 2;
-  return values.size() % 2 == 1 ? values[half] : (values[half - 1] + values[half]) / 2;
 }
 
 std::string align(const std::vector<Line>& lines, std::size_t num_text_columns) {

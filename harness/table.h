@@ -19,9 +19,6 @@ std::string format_table(const std::vector<std::vector<nlohmann::ordered_json>>&
 /// Of all phases of a mesher's record but writing, as in the paper's eq. (1).
 double meshing_seconds(const nlohmann::ordered_json& record);
 
-/// Nothing of nothing.
-std::optional<double> median(std::vector<double> values);
-
 /// "1 234 567".
 std::string thousands(std::uint64_t number);
 

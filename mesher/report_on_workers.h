@@ -12,9 +12,10 @@ namespace podm {
 
 /// `machine` gives the hops between its nodes; none: one node.
 template <class Locks>
-WorkerReport report_on(const Worker<Locks>& worker, const Overhead& overhead, const Place& place,
-                       const Topology* machine);
+Counters counters_of(const Worker<Locks>& worker, const Overhead& overhead, const Place& place,
+                     const Topology* machine);
 
+void add(const Counters& terms, Counters& sum);
 Counters sum_of(const std::vector<WorkerReport>& workers);
 
 }  // namespace podm

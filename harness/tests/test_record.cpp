@@ -118,13 +118,6 @@ TEST_F(RowTest, TableHasMediansOfWhatIsProvedAndNoOther) {
       << "no number of an unproved mesh";
 }
 
-TEST(Median, IsTheMiddle) {
-  EXPECT_EQ(median({}), std::nullopt);
-  EXPECT_EQ(median({3}), 3);
-  EXPECT_EQ(median({9, 1, 2}), 2);
-  EXPECT_EQ(median({4, 1, 2, 9}), 3);
-}
-
 TEST(Environment, KnowsThisMachineOrSaysWhyNot) {
   const TemporaryFolder folder;
   Json known = environment_of_run(folder.path());

@@ -1,6 +1,14 @@
-// The whole refinement on the abdomen phantom: final cells per second, all phases but reading and writing.
+// The whole refinement on the abdomen phantom: final cells per second, all phases but reading and writing;
+// and what vertex locks cost a worker that meets nobody.
 #include <benchmark/benchmark.h>
 
+#include <algorithm>
+#include <array>
+#include <ctime>
+#include <vector>
+
+#include "cost_model.h"
+#include "podm.h"
 #include "podm/image_io.h"
 #include "podm/mesh_image.h"
 
@@ -23,6 +31,57 @@ void BM_mesh_phantom(benchmark::State& state) {
   state.counters["refine_cells_per_second"] = static_cast<double>(cells) / refine_s;
 }
 BENCHMARK(BM_mesh_phantom)->Arg(8)->Arg(5)->Unit(benchmark::kMillisecond);
+
+// Of this thread: what others do to the machine counts less than in time on the wall.
+double cpu_s() {
+  std::timespec t{};
+  clock_gettime(CLOCK_THREAD_CPUTIME_ID, &t);
+  return static_cast<double>(t.tv_sec) + 1e-9 * static_cast<double>(t.tv_nsec);
+}
+
+double median(std::vector<double> values) {
+  const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
+  std::nth_element(values.begin(), middle, values.end());
+  return *middle;
+}
+
+// The same worker with and without locks, one run of each an iteration, in turns the first: the median of the
+// pairs' ratios is little moved by a machine that is busy for a while. For instructions: run once under
+// `valgrind --tool=callgrind` and compare ThreadExecutor::run and SerialExecutor::run, inclusive.
+void BM_cost_of_locks(benchmark::State& state) {
+  const LabelImage image = make_phantom("abdomen", 128);
+  const Isosurface isosurface(image, 0);
+  const double radius_mm = static_cast<double>(state.range(0));
+  const SizeField sizes(std::vector<double>(image.labels.size(), radius_mm));
+  std::uint64_t cells = 0;
+  const auto refine_s = [&](bool with_locks) {
+    Watch watch({}, {}, [](std::uint64_t) {});
+    Crew crew;
+    crew.locks_alone = with_locks;
+    const double start_s = cpu_s();
+    const Refinement refinement =
+        podm({isosurface, foreground_bounds(image), default_delta_mm(image, radius_mm), sizes, 1 << 24}, crew,
+             watch);
+    const double elapsed_s = cpu_s() - start_s;
+    cells = refinement.mesh->num_cells();
+    return elapsed_s;
+  };
+  std::array<std::vector<double>, 2> times_s;  // without, with
+  std::vector<double> ratios;
+  bool with_locks_first = false;
+  for (auto _ : state) {
+    for (const bool with_locks : {with_locks_first, !with_locks_first})
+      times_s[with_locks].push_back(refine_s(with_locks));
+    ratios.push_back(times_s[1].back() / times_s[0].back());
+    with_locks_first = !with_locks_first;
+  }
+  state.counters["store_cells"] = static_cast<double>(cells);
+  state.counters["without_s"] = median(times_s[0]);
+  state.counters["with_s"] = median(times_s[1]);
+  state.counters["ratio"] = median(ratios);
+}
+BENCHMARK(BM_cost_of_locks)->ArgName("radius_mm")->Arg(16)->Iterations(1)->Unit(benchmark::kMillisecond);
+BENCHMARK(BM_cost_of_locks)->ArgName("radius_mm")->Arg(5)->Iterations(11)->Unit(benchmark::kMillisecond);
 
 }  // namespace
 }  // namespace podm

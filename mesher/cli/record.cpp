@@ -105,14 +105,19 @@ Json counters_of(const MeshingReport& report) {
           {"store_cells", report.store_cells}};
 }
 
-// Times of a virtual executor are simulated: they stand apart from those that were measured.
-Json executor_of(const MeshRun& run) {
-  Json executor{{"kind", to_string(run.options.executor)}};
-  if (run.options.executor == Executor::kVirtual) {
-    executor["cost"] = to_string(run.options.virtual_cost);
-    executor["simulated_refine_s"] = run.result.report.virtual_s;
-  }
-  return executor;
+// What a virtual executor says of time is simulated: it stands apart from what was measured.
+Json virtual_of(const MeshRun& run) {
+  if (run.options.executor != Executor::kVirtual) return nullptr;
+  return {{"cost", to_string(run.options.virtual_cost)}, {"refine_s", run.result.report.virtual_s}};
+}
+
+Json leaves_of(const MeshRun& run) {
+  if (run.result.report.algorithm == Algorithm::kPodm) return nullptr;
+  return {{"number", run.result.report.num_leaves},
+          {"nodes", run.result.report.computing_nodes},
+          {"initial_ratio", run.options.initial_ratio},
+          {"initial_threads", run.options.initial_threads},
+          {"leaf_size_mm", run.options.leaf_size_mm}};
 }
 
 Json quality_of(const Quality& quality) {
@@ -163,7 +168,7 @@ Json record(const MeshRun& run) {
   return {
       {"schema", kRecordSchema},
       {"program", "podm " PODM_VERSION},
-      {"algorithm", "podm"},
+      {"algorithm", to_string(report.algorithm)},
       {"input",
        {{"path", path}, {"sha256", input_sha256(path, run.image)}, {"affine", affine_rows(run.image)}}},
       {"options", options_of(run)},
@@ -171,12 +176,14 @@ Json record(const MeshRun& run) {
       {"seed", run.options.seed},
       {"threads",
        {{"asked", run.options.threads},
-        {"used", std::max(1, run.options.threads)},
+        {"used", report.workers.size()},
         {"pin", run.options.pin},
         {"placement", placement_of(report)},
         {"contention", to_string(run.options.contention)},
         {"begging", to_string(run.options.begging)}}},
-      {"executor", executor_of(run)},
+      {"leaves", leaves_of(run)},
+      {"executor", to_string(run.options.executor)},
+      {"virtual", virtual_of(run)},
       {"phases_s", run.phases_s()},
       {"cells", mesh.cells.size()},
       {"vertices", mesh.vertices.size()},
@@ -190,7 +197,8 @@ Json record(const MeshRun& run) {
        {{"committed", committed(report.counters)},
         {"stale_cell", report.counters.stale_cells},
         {"rejected", report.counters.rejected},
-        {"lock_conflict", report.counters.lock_conflicts}}},
+        {"lock_conflict", report.counters.lock_conflicts},
+        {"out_of_leaf", report.counters.out_of_leaf}}},
       {"overhead_s",
        {{"contention", report.counters.contention_s},
         {"begging", report.counters.begging_s},

@@ -60,7 +60,8 @@ std::string quality_text(const Quality& quality) {
 std::string time_text(const MeshRun& run) {
   const auto phases = run.phases_s();
   std::string text = "time      ";
-  for (const char* phase : {"read", "transform", "octree", "initial", "refine", "extract", "write"})
+  for (const char* phase :
+       {"read", "transform", "initial", "octree", "refine", "closing", "extract", "write"})
     if (const auto found = phases.find(phase); found != phases.end())
       text += fmt::format(" {} {:.2f} s", phase, found->second);
   return text + fmt::format("\nspeed      {:.0f} cells/s in all but writing, {:.0f} cells/s refining\n",

@@ -40,6 +40,21 @@ struct Vertex {
 };
 static_assert(sizeof(Vertex) == 40 || sizeof(Vertex) == 32);
 
+/// The point as someone sees it who may not have locked the vertex: of a stale cell it may be in the middle
+/// of a change. Acquire, and release in place(): who sees a coordinate of the new point sees that the cells
+/// of the old one have died.
+inline Point glimpse_point(const Vertex& v) {
+  return {load(v.point.x, std::memory_order_acquire), load(v.point.y, std::memory_order_acquire),
+          load(v.point.z, std::memory_order_acquire)};
+}
+/// Makes an unused vertex one at `p`.
+inline void place(Vertex& v, const Point& p, VertexKind kind) {
+  store(v.point.x, p.x, std::memory_order_release);
+  store(v.point.y, p.y, std::memory_order_release);
+  store(v.point.z, p.z, std::memory_order_release);
+  v.kind = kind;
+}
+
 /// Everything a conflict test, a walk and a gluing read: 64 bytes, one cache line.
 struct alignas(64) Cell {
   Circumsphere sphere;
@@ -58,10 +73,14 @@ struct CellState {
 };
 static_assert(sizeof(CellState) == 4);
 
-/// Opposite corners of the virtual box.
+/// An axis-aligned box, by opposite corners.
 struct Box {
   Point low, high;
 };
+inline bool is_in(const Box& box, const Point& p) {
+  return box.low.x <= p.x && p.x <= box.high.x && box.low.y <= p.y && p.y <= box.high.y && box.low.z <= p.z &&
+         p.z <= box.high.z;
+}
 
 class Mesh {
  public:
@@ -115,6 +134,7 @@ class Mesh {
     __builtin_prefetch(&cells_[c]);
     __builtin_prefetch(&states_[c]);
   }
+  void prefetch_label(CellId c) const { __builtin_prefetch(&states_[c]); }
 
   /// Ids below these have been handed out; some may be free again.
   CellId cell_bound() const { return cell_ids_.bound(); }

@@ -145,9 +145,7 @@ Outcome Operation<Locks>::commit_insertion(const Point& p, VertexKind kind, doub
   }
   reserve_memory(is_star ? star_.num_cells() : hole_.num_cells());
   inserted_ = pool_.take_vertex();
-  Vertex& vertex = mesh_.vertex(inserted_);  // its lock may be tried by who has a stale entry
-  vertex.point = p;
-  vertex.kind = kind;
+  place(mesh_.vertex(inserted_), p, kind);  // its lock may be tried by who has a stale entry
   const std::size_t num_destroyed = region_.cells.size();
   if (is_star) {
     star_.fill(mesh_, pool_, region_, inserted_);
@@ -186,5 +184,7 @@ void Operation<Locks>::rollback() {
 
 template class Operation<NoLocks>;
 template class Operation<VertexLocks>;
+template class Operation<LeafLocks<NoLocks>>;
+template class Operation<LeafLocks<VertexLocks>>;
 
 }  // namespace podm

@@ -15,6 +15,7 @@
 #include <vector>
 
 #include "delaunay/hole.h"
+#include "delaunay/leaf_locks.h"
 #include "delaunay/mesh.h"
 #include "delaunay/star.h"
 #include "delaunay/vertex_locks.h"
@@ -39,6 +40,7 @@ class Operation {
   /// kLockConflict: conflicting_worker() tells with whom. Unless committed nothing is held.
   Outcome reserve(CellId c, std::uint32_t stamp);
   void release() { locks_.unlock_all(); }
+  Locks& locks() { return locks_; }
   WorkerId conflicting_worker() const { return locks_.conflicting_worker(); }
 
   /// Digs the cavity of p from `start`, a cell in conflict with p, reserved or beside it. Unless committed
@@ -105,5 +107,7 @@ class Operation {
 
 extern template class Operation<NoLocks>;
 extern template class Operation<VertexLocks>;
+extern template class Operation<LeafLocks<NoLocks>>;
+extern template class Operation<LeafLocks<VertexLocks>>;
 
 }  // namespace podm

@@ -23,6 +23,11 @@ LeafRegion::LeafRegion(const Octree& octree, LeafId leaf) : octree_(&octree), le
     high[axis] = std::int64_t{cube.corner[axis]} + cube.side + m;
   }
   inner_ = grid_box(low, high);
+  for (unsigned axis = 0; axis < 3; ++axis) {
+    low[axis] = cube.corner[axis];
+    high[axis] = low[axis] + cube.side;
+  }
+  own_ = grid_box(low, high);
   outer_ = grid_box(outer_low, outer_high);
   is_box_ = inner_ == outer_;
 }

@@ -44,6 +44,9 @@ class LeafRegion {
     const Point g = octree_->to_grid(p);
     return inner_.has(g) || (!is_box_ && outer_.has(g) && octree_->is_in_region(leaf_, g));
   }
+  /// Whether the point is in the leaf itself.
+  bool owns(const Point& p) const { return own_.has(octree_->to_grid(p)); }
+  const Octree& octree() const { return *octree_; }
 
  private:
   struct GridBox {
@@ -57,6 +60,7 @@ class LeafRegion {
 
   const Octree* octree_;
   LeafId leaf_;
+  GridBox own_;
   GridBox inner_, outer_;  // inner_ within the region within outer_
   bool is_box_;            // they are the same, as in uniform trees
 };
