@@ -78,9 +78,14 @@ class Load(unittest.TestCase):
         self.assertEqual((len(frame), bool(frame["headline"][0])), (1, False))
 
     def test_reads_the_reference_runs(self):
-        records = load([paths.REFERENCE])
-        self.assertTrue(records.frame["headline"].any())
-        self.assertEqual(set(records.frame["basis"]), {"measured"})
+        self.assertTrue(load([paths.REFERENCE]).frame["headline"].any())
+
+    def test_a_reference_file_holds_measured_or_simulated_rows(self):
+        for path in paths.REFERENCE.glob("*.jsonl"):
+            frame = load([path]).frame
+            if not frame.empty:
+                with self.subTest(path=path.name):
+                    self.assertEqual(set(frame["basis"]), {"simulated" if "virtual" in path.name else "measured"})
 
 
 if __name__ == "__main__":
