@@ -4,6 +4,15 @@ namespace podm {
 
 namespace {
 
+// What add() sums besides insertions and accesses.
+constexpr std::uint64_t Counters::*kCounts[] = {&Counters::removals,       &Counters::rejected,
+                                                &Counters::stale_cells,    &Counters::classified_cells,
+                                                &Counters::conflict_tests, &Counters::exact_decisions,
+                                                &Counters::cells_created,  &Counters::lock_conflicts,
+                                                &Counters::out_of_leaf,    &Counters::region_cells};
+constexpr double Counters::*kSeconds[] = {&Counters::contention_s, &Counters::begging_s,
+                                          &Counters::rollback_s};
+
 void add(const std::vector<std::uint64_t>& terms, std::vector<std::uint64_t>& sums) {
   sums.resize(std::max(sums.size(), terms.size()));
   for (std::size_t i = 0; i < terms.size(); ++i) sums[i] += terms[i];
@@ -47,19 +56,8 @@ Counters counters_of(const Worker<Locks>& worker, const Overhead& overhead, cons
 void add(const Counters& c, Counters& sum) {
   for (std::size_t rule = 0; rule < sum.insertions_by_rule.size(); ++rule)
     sum.insertions_by_rule[rule] += c.insertions_by_rule[rule];
-  sum.removals += c.removals;
-  sum.rejected += c.rejected;
-  sum.stale_cells += c.stale_cells;
-  sum.classified_cells += c.classified_cells;
-  sum.conflict_tests += c.conflict_tests;
-  sum.exact_decisions += c.exact_decisions;
-  sum.cells_created += c.cells_created;
-  sum.lock_conflicts += c.lock_conflicts;
-  sum.out_of_leaf += c.out_of_leaf;
-  sum.region_cells += c.region_cells;
-  sum.contention_s += c.contention_s;
-  sum.begging_s += c.begging_s;
-  sum.rollback_s += c.rollback_s;
+  for (const auto count : kCounts) sum.*count += c.*count;
+  for (const auto seconds : kSeconds) sum.*seconds += c.*seconds;
   add(c.accesses_by_hops, sum.accesses_by_hops);
 }
 

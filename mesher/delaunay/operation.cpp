@@ -21,7 +21,7 @@ Outcome Operation<Locks>::reserve(CellId c, std::uint32_t stamp) {
 
 template <class Locks>
 Outcome Operation<Locks>::lock(VertexId v) {
-  count_access(mesh_.node_of_vertex(v));
+  if (counts_accesses()) ++counters_.accesses_by_node[mesh_.node_of_vertex(v)];
   return locks_.try_lock(mesh_.vertex(v));
 }
 
@@ -46,7 +46,7 @@ void Operation<Locks>::add_to_region(CellId c) {
 template <class Locks>
 bool Operation<Locks>::is_in_conflict(CellId c, const Point& p) {
   ++counters_.conflict_tests;
-  count_access(mesh_.node_of_cell(c));
+  if (counts_accesses()) ++counters_.accesses_by_node[mesh_.node_of_cell(c)];
   const Side side = side_of(mesh_.cell(c).sphere, p);
   if (side != Side::kUndecided) return side == Side::kInside;
   ++counters_.exact_decisions;

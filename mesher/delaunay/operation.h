@@ -80,11 +80,7 @@ class Operation {
   Outcome lock_cell(CellId c);
   Outcome lock(VertexId v);
   // A run that nobody shares is on one node.
-  void count_access(NodeIndex owner) {
-    if constexpr (Locks::kIsShared) {
-      if (!counters_.accesses_by_node.empty()) ++counters_.accesses_by_node[owner];
-    }
-  }
+  bool counts_accesses() const { return Locks::kIsShared && !counters_.accesses_by_node.empty(); }
   void add_to_region(CellId c);
   bool is_in_conflict(CellId c, const Point& p);
   void collect_boundary();
