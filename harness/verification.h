@@ -15,7 +15,7 @@ inline constexpr const char* kScheduleName = "/schedule.jsonl";  ///< in the fol
 struct Programs {
   std::string podm;
   std::string verifier;  ///< empty: meshes are not verified
-  std::string peers;     ///< folder of other meshers; empty: there are none
+  std::string peers{};   ///< folder of other meshers; empty: there are none
 };
 
 struct Verification {
