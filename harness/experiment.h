@@ -19,10 +19,10 @@ Tier parse_tier(const std::string& text);
 
 /// The settings of one mesh to make, some number of times.
 struct Trial {
-  std::string name;                ///< as in the file, then ",key=value" of each key given as an array
-  std::string image;               ///< a file or phantom:NAME[@SIZE]
-  bool if_exists = false;          ///< skip the trial, saying so, when the image file is absent
-  nlohmann::ordered_json options;  ///< of the mesher, by key of the file
+  std::string name;        ///< as in the file, then ",key=value" of each key given as an array
+  std::string image;       ///< a file or phantom:NAME[@SIZE]
+  bool if_exists = false;  ///< skip the trial, saying so, when the image file is absent
+  nlohmann::ordered_json options = nlohmann::ordered_json::object();  ///< of the mesher, by key of the file
   int repeats = 1, warmups = 0;
   double timeout_s = 0;
   double memory_limit_gib = 0;  ///< 0: none

@@ -63,7 +63,7 @@ std::optional<CellSource::Entries> ComputingNode<Locks>::next(bool may_wait) {
   const auto leaf = shared_.take_leaf(node_, may_wait);
   if (!leaf) return std::nullopt;
   region_.emplace(shared_.octree(), *leaf);
-  for (const auto& worker : workers_) worker->confine(*region_);
+  for (const auto& worker : workers_) worker->locks().confine(*region_);
   const double now = shared_.now();
   activation_ = {*leaf, node_, now, now, num_committed(), 0, {}};
   return shared_.take_cells(*leaf);

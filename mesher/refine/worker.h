@@ -48,9 +48,8 @@ class Worker {
   void release() { operation_.release(); }
   WorkerId conflicting_worker() const { return operation_.conflicting_worker(); }
 
-  /// Which leaf the next attempts are for. New cells whose circumcentre is elsewhere are kept apart.
-  void confine(const LeafRegion& region) requires requires(Locks& locks) { locks.confine(region); }
-  { operation_.locks().confine(region); }
+  /// Confined to the region of the leaf that the next attempts are for; new cells whose circumcentre is
+  /// elsewhere are kept apart.
   Locks& locks() { return operation_.locks(); }
   std::vector<PoorElementList::Entry> take_foreign() { return std::exchange(foreign_, {}); }
   /// Cells of the leaf that need vertices outside its region.
