@@ -60,6 +60,7 @@ std::vector<std::string> peer_command(const Trial& trial, const Peer& peer, cons
 Json complete_record(const Trial& trial, Json record) {
   if (!record.is_object()) return record;
   record["schema"] = kMesherSchemaOfPeers;
+  record["algorithm"] = trial.options[kMesher];
   record["guarantees"] = Json::object();  // it promises claims of the verifier instead
   record["stop_reason"] = "complete";
   record["used"]["radius_mm"] = trial.options.value("radius_mm", 0.0);

@@ -238,6 +238,13 @@ seed = 0
   EXPECT_EQ(options["seed"], 0);
 }
 
+TEST_F(ExperimentTest, OtherMeshersTakeRadiusDeltaAndThreadsAlone) {
+  const std::string peer = kHead + kTrial + "mesher = [\"podm\", \"other\"]\nradius_mm = 2\n";
+  EXPECT_EQ(read(peer + "delta_mm = 1\nthreads = 2\n").trials.size(), 2u);
+  const std::string what = fault(peer + "pin = true\n");
+  EXPECT_NE(what.find("pin is an option of podm alone"), std::string::npos) << what;
+}
+
 // What stands in experiments/ is complete, and each has a part for every reader's patience.
 TEST(Experiments, StateClaimToleranceAndTimeAndHaveAKickTiresTier) {
   for (const std::string& path : experiment_files(PODM_EXPERIMENTS)) {
