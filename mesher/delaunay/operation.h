@@ -30,8 +30,8 @@ class Operation {
  public:
   Operation(Mesh& mesh, Pool& pool, WorkerId self) : mesh_(mesh), pool_(pool), locks_(self) {}
 
-  /// Locks the cell c of that stamp, so that it and its neighbours may be read. kStaleCell: it has died.
-  /// kLockConflict: conflicting_worker() tells with whom. Unless committed nothing is held.
+  /// Locks two vertices of the cell c of that stamp, so that it and its neighbours may be read. kStaleCell:
+  /// it has died. kLockConflict: conflicting_worker() tells with whom. Unless committed nothing is held.
   Outcome reserve(CellId c, std::uint32_t stamp);
   void release() { locks_.unlock_all(); }
   WorkerId conflicting_worker() const { return locks_.conflicting_worker(); }
@@ -71,6 +71,7 @@ class Operation {
 
  private:
   Outcome lock_cell(CellId c);
+  Outcome lock_beyond(FacetId facet);
   void add_to_region(CellId c);
   bool is_in_conflict(CellId c, const Point& p);
   void collect_boundary();
