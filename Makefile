@@ -3,22 +3,27 @@
 MARCH = $(if $(NATIVE),native,x86-64-v3)
 CMAKE_FLAGS ?=
 FIGURES = results/runs/figures
+TIER ?= default
 
 .DEFAULT_GOAL := help
-.PHONY: help setup build test stress kill-matrix experiments figures clean
+.PHONY: help setup build test stress kill-matrix kick-tires experiments figures clean
 
 help:
-	@echo "make experiments   mesh the inputs of experiments/first_mesh.toml at three sizes; table and results/runs/"
+	@echo "make kick-tires    the smallest runs of every experiment, in some minutes; tables and results/runs/"
+	@echo "make experiments   the experiments at the size of a laptop (TIER=full: of the whole machine); a second call"
+	@echo "                   goes on where the first ended"
 	@echo "make test          all tests"
 	@echo "make stress        2200 runs of up to 256 workers, each verified and replayed; some 10 minutes on 2 cores"
 	@echo "make kill-matrix   every mutant of a mesh and the claim of podm-verify that rejects it"
-	@echo "make figures       mesh the abdomen phantom and draw it cut open: $(FIGURES)/"
+	@echo "make figures       tables and figures of results/runs/ beside the paper's, a mesh cut open: $(FIGURES)/,"
+	@echo "                   and one page of it all: results/runs/report.html"
 	@echo "make build         the programs, in build/bin/"
 	@echo "make setup         install the Debian 12 packages needed (root or sudo; otherwise says what to run)"
 	@echo "make clean         remove build folders; results stay"
 	@echo
 	@echo "Each makes what it needs, setup and build included."
 	@echo "  NATIVE=1         compile for this machine's processor instead of any x86-64-v3 one"
+	@echo "  IMAGE=FILE       (make experiments) on your own segmentation"
 	@echo "  DATA=FOLDER      (make test) also run the tests on the real images in FOLDER"
 	@echo "  CMAKE_FLAGS=...  more flags for CMake"
 
@@ -38,13 +43,21 @@ stress: build
 kill-matrix: build
 	cmake --build build --target kill-matrix
 
-experiments: build
-	build/bin/podm-bench run experiments/first_mesh.toml
+kick-tires:
+	$(MAKE) experiments TIER=kick-tires
 
+experiments: build
+	build/bin/podm-bench run --tier $(TIER) $(if $(IMAGE),--image "$(IMAGE)") experiments/*.toml
+
+# Tables and figures of the records in results/runs/, the phantom cut open, and one page of it all.
 figures: build
 	mkdir -p $(FIGURES)
 	build/bin/podm mesh phantom:abdomen@256 --target-elements 400000 -o $(FIGURES)/abdomen.vtu
 	/usr/bin/python3 scripts/render_mesh.py $(FIGURES)/abdomen.vtu -o $(FIGURES)/abdomen_cut.png
+	build/bin/podm-verify $(FIGURES)/abdomen.vtu --json $(FIGURES)/abdomen_verified.json
+	scripts/make_figures --records results/runs --verified $(FIGURES)/abdomen_verified.json -o $(FIGURES)
+	scripts/report --records results/runs --verified $(FIGURES)/abdomen_verified.json --mesh $(FIGURES)/abdomen.vtu \
+	  -o results/runs/report.html
 
 clean:
 	rm -rf build build-*

@@ -1,22 +1,25 @@
 #include "environment.h"
 
 #include <fmt/format.h>
-#include <sched.h>
+#include <gnu/libc-version.h>
+#include <hwloc.h>
 #include <sys/utsname.h>
-#include <unistd.h>
 
 #include <cstdlib>
 #include <fstream>
 
+#include "machine.h"
 #include "process.h"
+#include "sha256.h"
 
 namespace podm::bench {
 namespace {
 
 using Json = nlohmann::ordered_json;
 
-constexpr double kGitTimeoutS = 30;
-constexpr std::size_t kMaxGitBytes = 4096;
+constexpr double kAnswerTimeoutS = 30;
+constexpr std::size_t kMaxAnswerBytes = 4096;
+constexpr const char* kCgroupRoot = "/sys/fs/cgroup";
 
 std::string first_line(const std::string& path) {
   std::ifstream file(path);
@@ -24,29 +27,11 @@ std::string first_line(const std::string& path) {
   return std::getline(file, line) ? line : "unavailable: no " + path;
 }
 
-// The text after the colon of the first line "key : text".
-std::string value_of(const std::string& path, const std::string& key) {
-  std::ifstream file(path);
-  for (std::string line; std::getline(file, line);)
-    if (line.starts_with(key))
-      if (const auto begin = line.find_first_not_of(" \t", line.find(':') + 1); begin != std::string::npos)
-        return line.substr(begin);
-  return fmt::format("unavailable: {} does not tell '{}'", path, key);
-}
-
 // From a line "key: 123 kB".
 Json bytes_of(const std::string& key) {
   const std::string text = value_of("/proc/meminfo", key);
   if (text.starts_with("unavailable")) return text;
   return 1024 * std::stoull(text);
-}
-
-Json cores() {
-  cpu_set_t allowed;
-  CPU_ZERO(&allowed);
-  Json usable = "unavailable: no affinity";
-  if (sched_getaffinity(0, sizeof(allowed), &allowed) == 0) usable = CPU_COUNT(&allowed);
-  return {{"online", sysconf(_SC_NPROCESSORS_ONLN)}, {"usable", usable}};
 }
 
 Json load_average() {
@@ -61,41 +46,79 @@ std::string kernel() {
   return fmt::format("{} {} {}", name.sysname, name.release, name.machine);
 }
 
-// What `git ARGUMENTS` prints about the sources; false when it fails.
-bool ask_git(std::vector<std::string> arguments, const std::string& scratch_folder, std::string& answer) {
-  const std::string path = scratch_folder + "/git.txt";
-  arguments.insert(arguments.begin(), {"git", "-C", PODM_SOURCE_DIR});
-  const ProcessOutcome git = run_process(
-      {.arguments = arguments, .stdout_path = path, .stderr_path = {}, .timeout_s = kGitTimeoutS});
-  answer = read_tail(path, kMaxGitBytes);
-  while (answer.ends_with('\n')) answer.pop_back();
-  return git.succeeded();
+// The limits of this process's own group, version 2. In a container its root is seen as /.
+Json cgroup_limits() {
+  std::ifstream file("/proc/self/cgroup");
+  std::string group;
+  for (std::string line; std::getline(file, line);)
+    if (line.starts_with("0::")) group = line.substr(3);
+  if (group == "/") group.clear();
+  const std::string folder = kCgroupRoot + group;
+  return {{"cpu_max", first_line(folder + "/cpu.max")},
+          {"cpuset", first_line(folder + "/cpuset.cpus.effective")},
+          {"memory_max", first_line(folder + "/memory.max")}};
+}
+
+std::string trimmed(std::string text) {
+  while (text.ends_with('\n')) text.pop_back();
+  return text;
+}
+
+// What a program prints on stdout; false when it fails.
+bool ask(const std::vector<std::string>& arguments, const std::string& scratch_folder, std::string& answer) {
+  const std::string path = scratch_folder + "/answer.txt";
+  const ProcessOutcome outcome = run_process(
+      {.arguments = arguments, .stdout_path = path, .stderr_path = {}, .timeout_s = kAnswerTimeoutS});
+  answer = trimmed(read_tail(path, kMaxAnswerBytes));
+  return outcome.succeeded();
 }
 
 Json sources(const std::string& scratch_folder) {
   std::string commit, changes;
-  if (!ask_git({"rev-parse", "HEAD"}, scratch_folder, commit) ||
-      !ask_git({"status", "--porcelain", "--untracked-files=no"}, scratch_folder, changes))
+  if (!ask({"git", "-C", PODM_SOURCE_DIR, "rev-parse", "HEAD"}, scratch_folder, commit) ||
+      !ask({"git", "-C", PODM_SOURCE_DIR, "status", "--porcelain", "--untracked-files=no"}, scratch_folder,
+           changes))
     return "unavailable: the sources are in no git checkout";
   return {{"commit", commit}, {"dirty", !changes.empty()}};
 }
 
+Json describe_program(const std::string& path, const std::string& scratch_folder) {
+  std::string version;
+  if (!ask({path, "--version"}, scratch_folder, version)) version = "unavailable: --version fails";
+  return {{"sha256", sha256_of_file(path)}, {"version", version}};
+}
+
 }  // namespace
 
-Json environment(const std::string& scratch_folder) {
+Json environment_of_run(const std::string& scratch_folder) {
   return {
-      {"cpu", value_of("/proc/cpuinfo", "model name")},
-      {"cores", cores()},
-      {"governor", first_line("/sys/devices/system/cpu/cpu0/cpufreq/scaling_governor")},
-      {"transparent_huge_pages", first_line("/sys/kernel/mm/transparent_hugepage/enabled")},
       {"kernel", kernel()},
-      {"load_average", load_average()},
-      {"memory_bytes", {{"total", bytes_of("MemTotal")}, {"available", bytes_of("MemAvailable")}}},
+      {"smt", first_line("/sys/devices/system/cpu/smt/control")},
+      {"cgroup", cgroup_limits()},
+      {"libraries",
+       {{"glibc", gnu_get_libc_version()}, {"hwloc", fmt::format("{:#x}", hwloc_get_api_version())}}},
       {"compiler", PODM_COMPILER},
       {"compiler_flags", PODM_COMPILER_FLAGS},
       {"build_type", PODM_BUILD_TYPE},
       {"sources", sources(scratch_folder)},
   };
+}
+
+Json environment_now() {
+  return {
+      {"load_average", load_average()},
+      {"memory_bytes", {{"total", bytes_of("MemTotal")}, {"available", bytes_of("MemAvailable")}}},
+      {"governor", first_line("/sys/devices/system/cpu/cpu0/cpufreq/scaling_governor")},
+      {"transparent_huge_pages", first_line("/sys/kernel/mm/transparent_hugepage/enabled")},
+      {"numa_balancing", first_line("/proc/sys/kernel/numa_balancing")},
+  };
+}
+
+Json describe_programs(const Programs& programs, const std::string& scratch_folder) {
+  Json described = {{"podm", describe_program(programs.podm, scratch_folder)}};
+  described["podm_verify"] =
+      programs.verifier.empty() ? Json("none") : describe_program(programs.verifier, scratch_folder);
+  return described;
 }
 
 }  // namespace podm::bench

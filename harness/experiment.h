@@ -2,42 +2,52 @@
 // experiments/README.md.
 #pragma once
 
-#include <cstdint>
-#include <stdexcept>
+#include <nlohmann/json.hpp>
 #include <string>
 #include <vector>
 
+#include "errors.h"
+
 namespace podm::bench {
 
-/// The user's input is at fault; what() names the file, the place and the fault. Exit code 2.
-class InputError : public std::runtime_error {
- public:
-  using std::runtime_error::runtime_error;
-};
+/// How much of an evaluation a trial belongs to; each includes those before it.
+enum class Tier { kKickTires, kDefault, kFull };
+/// "kick-tires", "default", "full".
+std::string to_string(Tier tier);
+/// Throws InputError naming the tiers there are.
+Tier parse_tier(const std::string& text);
 
-/// One mesh to make. Lengths 0 and elements 0: left to the mesher.
+/// The settings of one mesh to make, some number of times.
 struct Trial {
-  std::string name;
+  std::string name;        ///< as in the file, then ",key=value" of each key given as an array
   std::string image;       ///< a file or phantom:NAME[@SIZE]
   bool if_exists = false;  ///< skip the trial, saying so, when the image file is absent
-  double radius_mm = 0, delta_mm = 0;
-  std::uint64_t target_elements = 0;
-  int threads = 1;
+  nlohmann::ordered_json options = nlohmann::ordered_json::object();  ///< of the mesher, by key of the file
+  int repeats = 1, warmups = 0;
   double timeout_s = 0;
+  double memory_limit_gib = 0;  ///< 0: none
+  Tier tier = Tier::kDefault;
 };
 
 struct Experiment {
-  std::string name;  ///< the file's name without .toml
-  std::string title, claim;
+  std::string name;                            ///< the file's name without .toml
+  std::string title, claim, paper, tolerance;  ///< the last two may be empty
+  Tier tier = Tier::kDefault;
   double expected_minutes = 0;
-  std::vector<Trial> trials;  ///< in the order of the file
+  std::vector<Trial> trials;  ///< the matrix, expanded, in the order of the file
+
+  /// Times that a mesh is made, warm-ups included.
+  std::size_t num_turns() const;
 };
 
-/// Throws InputError "file:line:column: fault" on anything that is not exactly the format.
-Experiment read_experiment(const std::string& path);
+/// Throws InputError "file:line:column: fault" on anything that is not exactly the format. A non-empty
+/// `image` stands for all inputs; it is relative to the working folder.
+Experiment read_experiment(const std::string& path, const std::string& image = "");
 
 /// Paths of the *.toml of a folder, sorted. Throws InputError when it cannot be read.
 std::vector<std::string> experiment_files(const std::string& folder);
+
+bool is_phantom(const std::string& image);
 
 /// Whether the trial's image is a phantom or a file that exists.
 bool image_exists(const Trial& trial);

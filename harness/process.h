@@ -15,10 +15,11 @@ struct ProcessRequest {
   std::vector<std::string> arguments;    ///< the program first; looked up in PATH unless it has a slash
   std::string stdout_path, stderr_path;  ///< overwritten; empty: thrown away
   double timeout_s = 0;                  ///< killed after it; 0: never
+  std::uint64_t memory_limit_bytes = 0;  ///< killed when its resident memory is seen above it; 0: never
 };
 
 struct ProcessOutcome {
-  enum class End { kExited, kSignalled, kTimedOut, kInterrupted, kNotStarted };
+  enum class End { kExited, kSignalled, kTimedOut, kOutOfMemory, kInterrupted, kNotStarted };
   End end = End::kNotStarted;
   int exit_code = 0;        ///< when kExited
   int signal = 0;           ///< when kSignalled
@@ -31,7 +32,8 @@ struct ProcessOutcome {
   std::string describe() const;
 };
 
-/// Runs to the end, the time limit or a stop request; the latter two kill the child and its descendants.
+/// Runs to the end, a limit or a stop request; the latter two kill the child and its descendants. The child
+/// dies with this process, however that ends.
 ProcessOutcome run_process(const ProcessRequest& request, const StopQuery& stop_requested = {});
 
 /// The end of a text file, at most `max_bytes` of it; empty when there is none.

@@ -1,14 +1,5 @@
 #include "record.h"
 
-#include <fcntl.h>
-#include <fmt/format.h>
-#include <sys/file.h>
-#include <sys/stat.h>
-#include <unistd.h>
-
-#include <cerrno>
-#include <cstring>
-
 namespace podm::bench {
 namespace {
 
@@ -23,25 +14,12 @@ Json process_of(const Trial& trial, const TrialResult& result) {
   return {{"exit_code", process.end == End::kExited ? Json(process.exit_code) : Json()},
           {"signal", process.end == End::kSignalled ? Json(process.signal) : Json()},
           {"timeout_s", trial.timeout_s},
+          {"memory_limit_gib", trial.memory_limit_gib > 0 ? Json(trial.memory_limit_gib) : Json()},
           {"wall_s", process.wall_s},
           {"user_s", process.user_s},
           {"system_s", process.system_s},
           {"peak_rss_bytes", process.peak_rss_bytes},
           {"bytes_per_cell_beyond_image", memory ? Json(*memory) : Json()}};
-}
-
-// 0 or the number of the error.
-int write_all(int descriptor, const std::string& text) {
-  for (std::size_t done = 0; done < text.size();) {
-    const ssize_t written = ::write(descriptor, text.data() + done, text.size() - done);
-    if (written < 0 && errno != EINTR) return errno;
-    if (written > 0) done += static_cast<std::size_t>(written);
-  }
-  return ::fsync(descriptor) == 0 || errno == EINVAL ? 0 : errno;  // EINVAL: a pipe or a terminal
-}
-
-[[noreturn]] void fail(const std::string& path, int error_number) {
-  throw InputError(fmt::format("cannot write {}: {}", path, std::strerror(error_number)));
 }
 
 }  // namespace
@@ -55,39 +33,47 @@ std::optional<double> bytes_per_cell_beyond_image(const TrialResult& result) {
   return (static_cast<double>(result.process.peak_rss_bytes) - image_bytes) / cells;
 }
 
-Json make_row(const Experiment& experiment, const Trial& trial, const TrialResult& result,
-              const Json& environment) {
-  Json row = {{"schema", kRecordSchema},
-              {"experiment", experiment.name},
+Json make_row(const RowContext& context, const Trial& trial, const Turn& turn, const TrialResult& result) {
+  Json row = {{"schema", kRowSchema},
+              {"key", context.key},
+              {"experiment", context.experiment},
               {"trial", trial.name},
+              {"repeat", turn.repeat},
+              {"warmup", turn.is_warmup},
+              {"order_seed", context.order_seed},
               {"status", to_string(result.status)},
               {"reason", result.reason},
+              {"asked", trial.options},
               {"command", result.command},
               {"input", {{"path", trial.image}}}};
   if (result.record.is_object()) row.update(result.record);
+  row["schema"] = kRowSchema;  // the mesher's record has its own
   row["input"]["size"] = result.image_size;
+  row["mesh_bytes"] = result.mesh_bytes > 0 ? Json(result.mesh_bytes) : Json();
   row["process"] = process_of(trial, result);
+  row["preparation_s"] = result.preparation_s;
+  row["verification_s"] = result.verification_s;
+  row["harness_s"] = context.harness_s;
   row["stderr_tail"] = result.stderr_tail;
-  row["environment"] = environment;
+  row["programs"] = context.programs;
+  if (!result.peer.is_null()) row["programs"]["peer"] = result.peer;
+  row["environment"] = context.environment;
   return row;
 }
 
-RecordFile::RecordFile(const std::string& path)
-    : path_(path), descriptor_(::open(path.c_str(), O_WRONLY | O_CREAT | O_APPEND | O_CLOEXEC, 0666)) {
-  if (descriptor_ < 0) fail(path_, errno);
+std::string text_in(const Json& row, const char* key) {
+  const auto found = row.find(key);
+  return found != row.end() && found->is_string() ? found->get<std::string>() : "";
 }
 
-RecordFile::~RecordFile() { ::close(descriptor_); }
+std::optional<double> number_in(const Json& row, const char* key) {
+  const auto found = row.find(key);
+  return found != row.end() && found->is_number() ? std::optional<double>(*found) : std::nullopt;
+}
 
-void RecordFile::append(const Json& row) {
-  // stderr may hold any bytes; what is not UTF-8 is replaced.
-  const std::string line = row.dump(-1, ' ', false, Json::error_handler_t::replace) + "\n";
-  ::flock(descriptor_, LOCK_EX);  // two benches may share the file
-  struct stat before {};
-  int error_number = ::fstat(descriptor_, &before) == 0 ? write_all(descriptor_, line) : errno;
-  if (error_number != 0 && ::ftruncate(descriptor_, before.st_size) != 0) error_number = errno;
-  ::flock(descriptor_, LOCK_UN);
-  if (error_number != 0) fail(path_, error_number);
+bool is_finished(const Json& row) {
+  const std::string status = text_in(row, "status");
+  return status == to_string(Status::kOk) || status == to_string(Status::kUnmet);
 }
 
 }  // namespace podm::bench

@@ -5,32 +5,36 @@
 #include <optional>
 #include <string>
 
+#include "schedule.h"
 #include "trial.h"
 
 namespace podm::bench {
+
+inline constexpr int kRowSchema = 2;  ///< results/schema/podm-bench-row.schema.json
+
+/// What a row tells beside the trial and its result.
+struct RowContext {
+  std::string experiment;              ///< its name
+  std::string key;                     ///< of the turn, TrialKeys
+  std::uint64_t order_seed = 0;        ///< of the schedule
+  double harness_s = 0;                ///< spent by this program since the row before
+  nlohmann::ordered_json programs;     ///< describe_programs()
+  nlohmann::ordered_json environment;  ///< before the trial
+};
 
 /// Peak resident bytes a cell beyond labels and feature transform of the image; nothing without a mesh.
 std::optional<double> bytes_per_cell_beyond_image(const TrialResult& result);
 
 /// The row of a trial that ran, whatever came of it.
-nlohmann::ordered_json make_row(const Experiment& experiment, const Trial& trial, const TrialResult& result,
-                                const nlohmann::ordered_json& environment);
+nlohmann::ordered_json make_row(const RowContext& context, const Trial& trial, const Turn& turn,
+                                const TrialResult& result);
 
-/// A file of JSON lines that rows are appended to; each is on the disk, whole, when append() returns.
-class RecordFile {
- public:
-  /// Makes the file if need be. Throws InputError naming it when it cannot be written.
-  explicit RecordFile(const std::string& path);
-  ~RecordFile();
-  RecordFile(const RecordFile&) = delete;
-  RecordFile& operator=(const RecordFile&) = delete;
+/// The text at `key` of a row; empty when there is none.
+std::string text_in(const nlohmann::ordered_json& row, const char* key);
+/// The number at `key`; nothing when there is none.
+std::optional<double> number_in(const nlohmann::ordered_json& row, const char* key);
 
-  /// Throws InputError naming the file and the fault; then it is as before.
-  void append(const nlohmann::ordered_json& row);
-
- private:
-  std::string path_;
-  int descriptor_;
-};
+/// Whether a row holds a mesh that met its guarantees or is known not to: "ok" or "unmet".
+bool is_finished(const nlohmann::ordered_json& row);
 
 }  // namespace podm::bench

@@ -3,19 +3,70 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <array>
 #include <filesystem>
+#include <functional>
 
 #include "record.h"
+#include "statistics.h"
 
 namespace podm::bench {
 namespace {
 
-constexpr std::size_t kColumns = 9;
-constexpr std::size_t kTextColumns = 2;  // aligned to the left; so is the last
-using Line = std::array<std::string, kColumns>;
+using Json = nlohmann::ordered_json;
+using Line = std::vector<std::string>;
+using Rows = std::vector<const Json*>;
 
 constexpr double kBytesPerMib = 1024.0 * 1024;
+
+// What became of the repeats: the first fault where there is one.
+std::string verdict(const Rows& repeats) {
+  const auto is_ok = [](const Json* row) { return text_in(*row, "status") == to_string(Status::kOk); };
+  const auto fault = std::find_if_not(repeats.begin(), repeats.end(), is_ok);
+  if (fault != repeats.end()) {
+    const std::string status = text_in(**fault, "status");
+    return fmt::format("{}: {}", status == to_string(Status::kUnmet) ? "NOT met" : status,
+                       text_in(**fault, "reason"));
+  }
+  const Json verdicts = repeats.front()->value("verdicts", Json::object());
+  const auto num_proved = std::count(verdicts.begin(), verdicts.end(), "pass");
+  return num_proved > 0 ? fmt::format("met, {} claims proved", num_proved) : "met";
+}
+
+// "-" without any value.
+std::string median_over(const Rows& rows, const std::function<std::optional<double>(const Json&)>& value_of,
+                        const std::function<std::string(double)>& print) {
+  std::vector<double> values;
+  for (const Json* row : rows)
+    if (const auto value = value_of(*row)) values.push_back(*value);
+  return values.empty() ? "-" : print(median(std::move(values)));
+}
+
+std::string print_count(double count) { return thousands(static_cast<std::uint64_t>(count)); }
+
+Line line_of(const Rows& repeats) {
+  const Json& first = *repeats.front();
+  Rows proved;
+  for (const Json* row : repeats)
+    if (text_in(*row, "status") == to_string(Status::kOk)) proved.push_back(row);
+  const auto number = [](const char* key) { return [key](const Json& row) { return number_in(row, key); }; };
+  const auto of_process = [](const char* key) {
+    return [key](const Json& row) { return number_in(row.value("process", Json::object()), key); };
+  };
+  return {text_in(first, "trial"),
+          std::filesystem::path(text_in(first.value("input", Json::object()), "path")).filename().string(),
+          std::to_string(repeats.size()),
+          median_over(proved, number("cells"), print_count),
+          median_over(proved, number("vertices"), print_count),
+          median_over(proved, meshing_seconds, [](double s) { return fmt::format("{:.2f}", s); }),
+          median_over(proved, number("refine_cells_per_second"), print_count),
+          median_over(proved, of_process("peak_rss_bytes"),
+                      [](double bytes) { return fmt::format("{:.0f}", bytes / kBytesPerMib); }),
+          median_over(proved, of_process("bytes_per_cell_beyond_image"),
+                      [](double bytes) { return fmt::format("{:.0f}", bytes); }),
+          verdict(repeats)};
+}
+
+}  // namespace
 
 std::string thousands(std::uint64_t number) {
   std::string digits = std::to_string(number);
@@ -23,57 +74,38 @@ std::string thousands(std::uint64_t number) {
   return digits;
 }
 
-std::string verdict(const TrialResult& result) {
-  if (result.status == Status::kOk) {
-    const std::size_t num_proved = result.record["verdicts"].size();
-    return num_proved > 0 ? fmt::format("met, {} claims proved", num_proved) : "met";
-  }
-  return fmt::format("{}: {}", result.status == Status::kUnmet ? "NOT met" : to_string(result.status),
-                     result.reason);
-}
-
-Line line_of(const Trial& trial, const TrialResult& result) {
-  Line line;
-  line.fill("-");
-  line[0] = trial.name;
-  line[1] = std::filesystem::path(trial.image).filename().string();
-  line.back() = verdict(result);
-  if (result.process.peak_rss_bytes > 0)
-    line[6] = fmt::format("{:.0f}", static_cast<double>(result.process.peak_rss_bytes) / kBytesPerMib);
-  if (!result.record.is_object()) return line;
-  line[2] = thousands(result.record["cells"]);
-  line[3] = thousands(result.record["vertices"]);
-  line[4] = fmt::format("{:.2f}", meshing_seconds(result.record));
-  line[5] = thousands(static_cast<std::uint64_t>(result.record["refine_cells_per_second"].get<double>()));
-  if (const auto bytes = bytes_per_cell_beyond_image(result)) line[7] = fmt::format("{:.0f}", *bytes);
-  return line;
-}
-
-}  // namespace
-
-double meshing_seconds(const nlohmann::ordered_json& record) {
+double meshing_seconds(const Json& record) {
   double seconds = 0;
   for (const auto& [phase, phase_s] : record["phases_s"].items())
     if (phase != "write") seconds += phase_s.get<double>();
   return seconds;
 }
 
-std::string format_table(const std::vector<std::pair<Trial, TrialResult>>& results) {
-  std::vector<Line> lines{{"trial", "input", "cells", "vertices", "seconds", "refine cells/s", "peak MiB",
-                           "bytes/cell", "guarantees"}};
-  for (const auto& [trial, result] : results) lines.push_back(line_of(trial, result));
-  std::array<std::size_t, kColumns> widths{};
+std::string align(const std::vector<Line>& lines, std::size_t num_text_columns) {
+  std::vector<std::size_t> widths(lines.front().size());
   for (const Line& line : lines)
-    for (std::size_t column = 0; column < kColumns; ++column)
+    for (std::size_t column = 0; column < line.size(); ++column)
       widths[column] = std::max(widths[column], line[column].size());
   std::string text;
   for (const Line& line : lines) {
-    for (std::size_t column = 0; column + 1 < kColumns; ++column)
-      text += column < kTextColumns ? fmt::format("{:<{}}  ", line[column], widths[column])
-                                    : fmt::format("{:>{}}  ", line[column], widths[column]);
+    for (std::size_t column = 0; column + 1 < line.size(); ++column)
+      text += column < num_text_columns ? fmt::format("{:<{}}  ", line[column], widths[column])
+                                        : fmt::format("{:>{}}  ", line[column], widths[column]);
     text += line.back() + "\n";
   }
   return text;
+}
+
+std::string format_table(const std::vector<std::vector<Json>>& rows_of_trials) {
+  std::vector<Line> lines{{"trial", "input", "runs", "cells", "vertices", "seconds", "refine cells/s",
+                           "peak MiB", "bytes/cell", "guarantees"}};
+  for (const std::vector<Json>& rows : rows_of_trials) {
+    Rows repeats;
+    for (const Json& row : rows)
+      if (!row.value("warmup", false)) repeats.push_back(&row);
+    if (!repeats.empty()) lines.push_back(line_of(repeats));
+  }
+  return align(lines, 2);
 }
 
 }  // namespace podm::bench

@@ -1,18 +1,25 @@
 // What a person reads at the end of an experiment.
 #pragma once
 
+#include <nlohmann/json.hpp>
+#include <optional>
 #include <string>
-#include <utility>
 #include <vector>
-
-#include "trial.h"
 
 namespace podm::bench {
 
-/// Columns aligned, one line a trial, each line ended. Seconds are those of all phases but writing.
-std::string format_table(const std::vector<std::pair<Trial, TrialResult>>& results);
+/// Columns of the same number on every line, the first the heading, aligned; each line ended. The last and
+/// the first `num_text_columns` are aligned to the left.
+std::string align(const std::vector<std::vector<std::string>>& lines, std::size_t num_text_columns);
+
+/// A line for each trial that has rows besides those of warm-ups. Seconds are those of all phases but
+/// writing; numbers are medians over the repeats that hold all they promise, and "-" without any.
+std::string format_table(const std::vector<std::vector<nlohmann::ordered_json>>& rows_of_trials);
 
 /// Of all phases of a mesher's record but writing, as in the paper's eq. (1).
 double meshing_seconds(const nlohmann::ordered_json& record);
+
+/// "1 234 567".
+std::string thousands(std::uint64_t number);
 
 }  // namespace podm::bench

@@ -3,8 +3,12 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <chrono>
+#include <filesystem>
 #include <fstream>
 
+#include "mesher_options.h"
+#include "record.h"
 #include "warm_memory.h"
 
 namespace podm::bench {
@@ -15,27 +19,41 @@ using Json = nlohmann::ordered_json;
 constexpr std::size_t kTailBytes = 2000;
 constexpr double kInfoTimeoutS = 120;
 constexpr int kExitUnmet = 1;
+constexpr double kBytesPerGib = 1024.0 * 1024 * 1024;
+constexpr const char* kMeshName = "/mesh.vtu";
+constexpr const char* kRecordName = "/record.jsonl";
+
+class Stopwatch {
+ public:
+  double seconds() const {
+    return std::chrono::duration<double>(std::chrono::steady_clock::now() - start_).count();
+  }
+
+ private:
+  std::chrono::steady_clock::time_point start_ = std::chrono::steady_clock::now();
+};
 
 std::vector<std::string> mesh_command(const Trial& trial, const std::string& podm,
                                       const std::string& folder) {
   std::vector<std::string> command{podm, "mesh", trial.image};
-  const auto add = [&](const char* option, const std::string& value) {
-    command.insert(command.end(), {option, value});
-  };
-  if (trial.radius_mm > 0) add("--radius", fmt::format("{}", trial.radius_mm));
-  if (trial.delta_mm > 0) add("--delta", fmt::format("{}", trial.delta_mm));
-  if (trial.target_elements > 0) add("--target-elements", fmt::format("{}", trial.target_elements));
-  add("--threads", fmt::format("{}", trial.threads));
-  add("-o", folder + "/mesh.vtu");
-  add("--record", folder + "/record.jsonl");
-  command.push_back("--quiet");
+  const std::vector<std::string> options = mesher_arguments(trial.options);
+  command.insert(command.end(), options.begin(), options.end());
+  if (trial.options.value(kSchedule, false))
+    command.insert(command.end(), {"--schedule", folder + kScheduleName});
+  command.insert(command.end(), {"-o", folder + kMeshName, "--record", folder + kRecordName, "--quiet"});
   return command;
 }
 
+// A peer writes what format it likes and names the file.
+std::string mesh_path(const Json& record, const std::string& folder) {
+  if (!record.is_object() || !record.contains("mesh")) return folder + kMeshName;
+  return fmt::format("{}/{}", folder, text_in(record, "mesh"));
+}
+
 // The record names the image by path and hash; how many voxels it has is for memory per cell.
-Json read_image_size(const Trial& trial, const std::string& podm, const std::string& folder) {
+Json read_image_size(const std::string& image_path, const std::string& podm, const std::string& folder) {
   const std::string path = folder + "/info.json";
-  const ProcessOutcome info = run_process({.arguments = {podm, "info", trial.image, "--json"},
+  const ProcessOutcome info = run_process({.arguments = {podm, "info", image_path, "--json"},
                                            .stdout_path = path,
                                            .stderr_path = {},
                                            .timeout_s = kInfoTimeoutS});
@@ -48,8 +66,8 @@ Json read_image_size(const Trial& trial, const std::string& podm, const std::str
 // Why `record` cannot be used; empty: it can. Asks only for what is read here and in the table.
 std::string fault_of(const Json& record) {
   if (!record.is_object()) return "is not a JSON object";
-  if (record.value("schema", Json()) != kRecordSchema)
-    return fmt::format("is not of schema {}", kRecordSchema);
+  if (record.value("schema", Json()) != kMesherSchema)
+    return fmt::format("is not of schema {}", kMesherSchema);
   const auto at = [&](const char* key) { return record.value(key, Json()); };
   const Json phases = at("phases_s");
   if (!phases.is_object() ||
@@ -73,7 +91,7 @@ std::string unmet(const Json& record) {
   return text;
 }
 
-void judge(TrialResult& result, const std::string& record_path) {
+void judge(const Trial& trial, const std::string& record_path, TrialResult& result) {
   using End = ProcessOutcome::End;
   const ProcessOutcome& process = result.process;
   result.reason = process.describe();
@@ -87,6 +105,7 @@ void judge(TrialResult& result, const std::string& record_path) {
     return;
   }
   Json record = Json::parse(file, nullptr, false);
+  if (is_of_peer(trial)) record = complete_record(trial, std::move(record));
   if (const std::string fault = fault_of(record); !fault.empty()) {
     result.reason += ", with a record that " + fault;
     return;
@@ -122,33 +141,66 @@ std::string to_string(Status status) {
   return "skipped";
 }
 
-TrialResult run_trial(const Trial& trial, const Programs& programs, const std::string& scratch_folder,
-                      const StopQuery& stop_requested) {
+const Json& TrialRunner::image_size(const std::string& image, const std::string& scratch_folder) {
+  const auto [entry, is_new] = image_sizes_.try_emplace(image);
+  if (is_new) entry->second = read_image_size(image, programs_.podm, scratch_folder);
+  return entry->second;
+}
+
+void TrialRunner::verify(const Trial& trial, const std::string& scratch_folder,
+                         const StopQuery& stop_requested, TrialResult& result) {
+  const Stopwatch watch;
+  const Verification verification =
+      verify_mesh(trial, result.image_size, result.record, mesh_path(result.record, scratch_folder),
+                  programs_, scratch_folder, stop_requested);
+  result.verification_s = watch.seconds();
+  result.record["verdicts"] = verification.verdicts;
+  if (verification.fault.empty()) return;
+  result.status = verification.is_interrupted ? Status::kInterrupted : Status::kUnmet;
+  result.reason += (result.reason.empty() ? "" : "; ") + verification.fault;
+}
+
+bool TrialRunner::skip(const Trial& trial, TrialResult& result) {
+  if (trial.if_exists && !image_exists(trial)) result.reason = trial.image + " is not there";
+  if (is_of_peer(trial) && result.reason.empty()) result.reason = peers_.of(trial).absence;
+  if (!result.reason.empty()) result.status = Status::kSkipped;
+  return !result.reason.empty();
+}
+
+void TrialRunner::set_command(const Trial& trial, const std::string& scratch_folder, TrialResult& result) {
+  if (!is_of_peer(trial)) {
+    result.command = mesh_command(trial, programs_.podm, scratch_folder);
+    return;
+  }
+  const Peer& peer = peers_.of(trial);
+  const std::string image = image_file(trial, result.image_size, programs_.podm, scratch_folder);
+  result.command = peer_command(trial, peer, image, programs_.podm, scratch_folder);
+  result.peer = {{"name", trial.options[kMesher]}, {"sha256", peer.sha256()}, {"version", peer.version}};
+}
+
+TrialResult TrialRunner::run(const Trial& trial, const std::string& scratch_folder,
+                             const StopQuery& stop_requested) {
   TrialResult result;
-  if (trial.if_exists && !image_exists(trial)) {
-    result.status = Status::kSkipped;
-    result.reason = trial.image + " is not there";
-    return result;
-  }
-  result.image_size = read_image_size(trial, programs.podm, scratch_folder);
-  result.command = mesh_command(trial, programs.podm, scratch_folder);
+  if (skip(trial, result)) return result;
+  const Stopwatch watch;
+  result.image_size = image_size(trial.image, scratch_folder);
+  set_command(trial, scratch_folder, result);
   warm_memory(kWarmBytes);
+  result.preparation_s = watch.seconds();
   const std::string stderr_path = scratch_folder + "/stderr.txt";
-  result.process = run_process({.arguments = result.command,
-                                .stdout_path = {},
-                                .stderr_path = stderr_path,
-                                .timeout_s = trial.timeout_s},
-                               stop_requested);
-  judge(result, scratch_folder + "/record.jsonl");
-  if (result.record.is_object() && !programs.verifier.empty()) {
-    const Verification verification = verify_mesh(trial, result.image_size, result.record,
-                                                  scratch_folder + "/mesh.vtu", programs, scratch_folder);
-    result.record["verdicts"] = verification.verdicts;
-    if (!verification.fault.empty()) {
-      result.status = Status::kUnmet;
-      result.reason += (result.reason.empty() ? "" : "; ") + verification.fault;
-    }
-  }
+  result.process =
+      run_process({.arguments = result.command,
+                   .stdout_path = {},
+                   .stderr_path = stderr_path,
+                   .timeout_s = trial.timeout_s,
+                   .memory_limit_bytes = static_cast<std::uint64_t>(trial.memory_limit_gib * kBytesPerGib)},
+                  stop_requested);
+  judge(trial, scratch_folder + kRecordName, result);
+  std::error_code error;
+  const auto mesh_bytes = std::filesystem::file_size(mesh_path(result.record, scratch_folder), error);
+  if (!error) result.mesh_bytes = mesh_bytes;
+  if (result.record.is_object() && !programs_.verifier.empty())
+    verify(trial, scratch_folder, stop_requested, result);
   if (result.status != Status::kOk) result.stderr_tail = read_tail(stderr_path, kTailBytes);
   return result;
 }

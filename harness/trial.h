@@ -1,16 +1,18 @@
 // One trial: the mesher run once as a child process, and what came of it.
 #pragma once
 
+#include <map>
 #include <nlohmann/json.hpp>
 #include <string>
 
 #include "experiment.h"
+#include "peer.h"
 #include "process.h"
 #include "verification.h"
 
 namespace podm::bench {
 
-inline constexpr int kRecordSchema = 1;  ///< of the mesher's records and of ours
+inline constexpr int kMesherSchema = 1;  ///< of the mesher's records
 
 enum class Status {
   kOk,
@@ -18,7 +20,7 @@ enum class Status {
   kFailed,  ///< no mesh, or no record of it
   kTimedOut,
   kInterrupted,  ///< by the user, as are all trials after it
-  kSkipped,      ///< the image is absent and may be
+  kSkipped,      ///< the image is absent and may be, or the peer is not installed
 };
 /// "ok", "unmet", "failed", "timed_out", "interrupted", "skipped".
 std::string to_string(Status status);
@@ -27,15 +29,37 @@ struct TrialResult {
   Status status = Status::kFailed;
   std::string reason;                ///< why the status is not kOk
   std::vector<std::string> command;  ///< as run
+  nlohmann::ordered_json peer;       ///< name, hash and version of a mesher other than podm; else null
   ProcessOutcome process;
-  std::string stderr_tail;            ///< of a trial that is not kOk
-  nlohmann::ordered_json record;      ///< as the mesher wrote it; null when it did not
-  nlohmann::ordered_json image_size;  ///< voxels per axis; null when the mesher could not tell
+  std::uint64_t mesh_bytes = 0;                  ///< of the mesh file
+  double preparation_s = 0, verification_s = 0;  ///< before the mesher starts and after it has ended
+  std::string stderr_tail;                       ///< of a trial that is not kOk
+  nlohmann::ordered_json record;                 ///< as the mesher wrote it; null when it did not
+  nlohmann::ordered_json image_size;             ///< voxels per axis; null when the mesher could not tell
 };
 
-/// Runs the mesher on the trial, then the verifier on its mesh, whose verdicts join the record. Files are
-/// written into `scratch_folder`, which must exist.
-TrialResult run_trial(const Trial& trial, const Programs& programs, const std::string& scratch_folder,
-                      const StopQuery& stop_requested = {});
+/// Runs trials one after the other.
+class TrialRunner {
+ public:
+  explicit TrialRunner(Programs programs)
+      : programs_(std::move(programs)), peers_(programs_.peers, programs_.podm) {}
+
+  /// Runs the mesher on the trial, then the verifier on its mesh, whose verdicts join the record. Files are
+  /// written into `scratch_folder`, which must exist.
+  TrialResult run(const Trial& trial, const std::string& scratch_folder,
+                  const StopQuery& stop_requested = {});
+
+ private:
+  const nlohmann::ordered_json& image_size(const std::string& image, const std::string& scratch_folder);
+  // Status kSkipped and the reason where the trial cannot run here.
+  bool skip(const Trial& trial, TrialResult& result);
+  void set_command(const Trial& trial, const std::string& scratch_folder, TrialResult& result);
+  void verify(const Trial& trial, const std::string& scratch_folder, const StopQuery& stop_requested,
+              TrialResult& result);
+
+  Programs programs_;
+  Peers peers_;
+  std::map<std::string, nlohmann::ordered_json> image_sizes_;  // each image is looked at once
+};
 
 }  // namespace podm::bench

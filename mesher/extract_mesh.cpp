@@ -1,7 +1,13 @@
 #include "extract_mesh.h"
 
 #include <algorithm>
+#include <atomic>
+#include <numeric>
 #include <utility>
+#include <vector>
+
+#include "runtime/parallel_for.h"
+#include "runtime/parallel_resize.h"
 
 namespace podm {
 
@@ -12,128 +18,206 @@ double determinant(const std::array<double, 12>& a) {
          a[2] * (a[4] * a[9] - a[5] * a[8]);
 }
 
-// A mirroring affine turns every cell inside out; swapping two vertices turns it back.
-void turn_around(TetMesh& mesh) {
-  for (auto& cell : mesh.cells) std::swap(cell[2], cell[3]);
-  for (auto& facet : mesh.facets) std::swap(facet[1], facet[2]);
+// From the image frame, mm, to the world.
+class WorldFrame {
+ public:
+  WorldFrame(const LabelImage& image, Space space)
+      : a_(image.voxel_to_ras), spacing_(image.spacing), flip_(space == Space::kLps ? -1 : 1) {}
+
+  std::array<double, 3> operator()(const Point& p) const {
+    const double i = p.x / spacing_[0], j = p.y / spacing_[1], k = p.z / spacing_[2];
+    return {flip_ * (a_[0] * i + a_[1] * j + a_[2] * k + a_[3]),
+            flip_ * (a_[4] * i + a_[5] * j + a_[6] * k + a_[7]), a_[8] * i + a_[9] * j + a_[10] * k + a_[11]};
+  }
+  // Then it turns every cell inside out; swapping two vertices turns it back.
+  bool is_mirrored() const { return determinant(a_) < 0; }
+
+ private:
+  std::array<double, 12> a_;
+  std::array<double, 3> spacing_;
+  double flip_;
+};
+
+// Threads share out chunks of ids.
+constexpr std::size_t kChunk = 1 << 13;
+
+std::size_t num_chunks(std::uint32_t num_ids) { return (num_ids + kChunk - 1) / kChunk; }
+
+/// Calls work(chunk, begin, end) for every chunk of the ids below `num_ids`.
+template <class Work>
+void for_each_chunk(std::uint32_t num_ids, std::size_t threads, const Work& work) {
+  parallel_for_ranges(num_ids, kChunk, threads, [&](std::size_t begin, std::size_t end, std::size_t) {
+    work(begin / kChunk, static_cast<std::uint32_t>(begin), static_cast<std::uint32_t>(end));
+  });
 }
 
+// How many a chunk adds to the output; summed up, where in the output they begin.
+struct Share {
+  std::size_t vertices = 0, cells = 0, facets = 0;
+  Share operator+(const Share& b) const {
+    return {vertices + b.vertices, cells + b.cells, facets + b.facets};
+  }
+};
+
+// One share a chunk, and the total.
+class Shares {
+ public:
+  explicit Shares(std::uint32_t num_ids) : shares_(num_chunks(num_ids) + 1) {}
+  Share& operator[](std::size_t chunk) { return shares_[chunk]; }
+  void sum_up() { std::exclusive_scan(shares_.begin(), shares_.end(), shares_.begin(), Share{}); }
+  const Share& total() const { return shares_.back(); }
+
+ private:
+  std::vector<Share> shares_;
+};
+
+// Of a mesh whose labels are known. Each thread counts what its chunks add, then knows where to write.
 class Extractor {
  public:
-  Extractor(Mesh& mesh, const Isosurface& isosurface, TetMesh& out)
-      : mesh_(mesh), isosurface_(isosurface), out_(out), out_ids_(mesh.vertex_bound(), kNoVertex) {}
+  Extractor(const Mesh& mesh, const WorldFrame& frame, std::size_t threads, TetMesh& out)
+      : mesh_(mesh), frame_(frame), threads_(threads), out_(out), out_ids_(mesh.vertex_bound(), kNoVertex) {}
 
-  // Counts first, so that the cells are not copied while growing; facets are few.
-  void reserve() {
-    std::size_t cells = 0;
-    for (CellId c = 0; c < mesh_.cell_bound(); ++c) cells += label_of(c) != kBackground;
-    out_.cells.reserve(cells);
-    out_.cell_labels.reserve(cells);
+  std::uint64_t operator()() {
+    Shares shares(mesh_.cell_bound());
+    for_each_chunk(mesh_.cell_bound(), threads_, [&](std::size_t chunk, CellId begin, CellId end) {
+      shares[chunk] = count_cells(begin, end);
+    });
+    shares.sum_up();
+    parallel_resize(out_.cells, shares.total().cells, threads_);
+    parallel_resize(out_.cell_labels, shares.total().cells, threads_);
+    parallel_resize(out_.facets, shares.total().facets, threads_);
+    parallel_resize(out_.facet_labels, shares.total().facets, threads_);
+    write_vertices();
+    std::atomic<std::uint64_t> facets_off_isosurface = 0;
+    for_each_chunk(mesh_.cell_bound(), threads_, [&](std::size_t chunk, CellId begin, CellId end) {
+      facets_off_isosurface += write_cells(begin, end, shares[chunk]);
+    });
+    return facets_off_isosurface;
   }
 
-  std::uint64_t add_all() {
-    std::uint64_t facets_off_isosurface = 0;
-    for (CellId c = 0; c < mesh_.cell_bound(); ++c) {
+ private:
+  // In out_ids_, which a facet reads anyway: looking at the vertices themselves would double the time.
+  static constexpr std::uint32_t kUsed = 0, kOffIsosurface = 1u << 31;
+
+  std::uint32_t out_id(VertexId v) const { return out_ids_[v] & ~kOffIsosurface; }
+  bool is_off_isosurface(VertexId v) const { return (out_ids_[v] & kOffIsosurface) != 0; }
+
+  // What a cell needs besides its own line, early.
+  static constexpr CellId kLookahead = 32;
+  void prefetch_around(CellId c) const {
+    if (c >= mesh_.cell_bound() || mesh_.label(c) == kBackground) return;
+    for (const FacetId mirror : mesh_.cell(c).mirrors) {
+      if (mirror != kNoFacet) mesh_.prefetch_label(cell_of(mirror));
+    }
+    for (const VertexId v : mesh_.cell(c).vertices) __builtin_prefetch(&out_ids_[v]);
+  }
+
+  LabelIndex label_across(CellId c, unsigned k) const {
+    const FacetId mirror = mesh_.cell(c).mirrors[k];
+    return mirror == kNoFacet ? kBackground : mesh_.label(cell_of(mirror));
+  }
+  // The cell of the larger label writes the facet.
+  bool is_written_here(CellId c, unsigned k) const { return label_across(c, k) < mesh_.label(c); }
+
+  // Marks their vertices as used.
+  Share count_cells(CellId begin, CellId end) {
+    Share share;
+    for (CellId c = begin; c < end; ++c) {
       prefetch_around(c + kLookahead);
-      const LabelIndex label = label_of(c);
+      if (mesh_.label(c) == kBackground) continue;
+      ++share.cells;
+      for (unsigned k = 0; k < 4; ++k) share.facets += is_written_here(c, k);
+      for (const VertexId v : mesh_.cell(c).vertices) {
+        if (load(out_ids_[v], std::memory_order_relaxed) != kUsed)
+          store(out_ids_[v], kUsed, std::memory_order_relaxed);
+      }
+    }
+    return share;
+  }
+
+  void write_vertices() {
+    Shares shares(mesh_.vertex_bound());
+    for_each_chunk(mesh_.vertex_bound(), threads_, [&](std::size_t chunk, VertexId begin, VertexId end) {
+      for (VertexId v = begin; v < end; ++v) shares[chunk].vertices += out_ids_[v] == kUsed;
+    });
+    shares.sum_up();
+    parallel_resize(out_.vertices, shares.total().vertices, threads_);
+    for_each_chunk(mesh_.vertex_bound(), threads_, [&](std::size_t chunk, VertexId begin, VertexId end) {
+      std::size_t at = shares[chunk].vertices;
+      for (VertexId v = begin; v < end; ++v) {
+        if (out_ids_[v] != kUsed) continue;
+        out_ids_[v] = static_cast<std::uint32_t>(at);
+        if (mesh_.vertex(v).kind != VertexKind::kIsosurface) out_ids_[v] |= kOffIsosurface;
+        out_.vertices[at++] = frame_(mesh_.point(v));
+      }
+    });
+  }
+
+  // Returns how many facets have a vertex off the isosurface.
+  std::uint64_t write_cells(CellId begin, CellId end, Share at) {
+    std::uint64_t facets_off_isosurface = 0;
+    for (CellId c = begin; c < end; ++c) {
+      prefetch_around(c + kLookahead);
+      const LabelIndex label = mesh_.label(c);
       if (label == kBackground) continue;
-      const auto& v = mesh_.cell(c).vertices;
-      out_.cells.push_back({out_id(v[0]), out_id(v[1]), out_id(v[2]), out_id(v[3])});
-      out_.cell_labels.push_back(label);
+      auto& cell = out_.cells[at.cells];
+      for (unsigned i = 0; i < 4; ++i) cell[i] = out_id(mesh_.cell(c).vertices[i]);
+      if (is_mirrored_) std::swap(cell[2], cell[3]);
+      out_.cell_labels[at.cells++] = label;
       for (unsigned k = 0; k < 4; ++k) {
-        if (is_written_here(c, k)) facets_off_isosurface += add_facet(c, k);
+        if (is_written_here(c, k)) facets_off_isosurface += write_facet(c, k, at.facets++);
       }
     }
     return facets_off_isosurface;
   }
 
- private:
-  static constexpr CellId kLookahead = 8;
-  void prefetch_around(CellId c) const {
-    if (c >= mesh_.cell_bound()) return;
-    for (const FacetId mirror : mesh_.cell(c).mirrors) {
-      if (mirror != kNoFacet) mesh_.prefetch(cell_of(mirror));
-    }
-    for (const VertexId v : mesh_.cell(c).vertices) {
-      if (v != kNoVertex) __builtin_prefetch(&out_ids_[v]);
-    }
-  }
-  // Dead cells count as background.
-  LabelIndex label_of(CellId c) {
-    if (!mesh_.cell(c).is_alive()) return kBackground;
-    LabelIndex& label = mesh_.label(c);
-    if (label == kUnknownLabel) label = isosurface_.label_at(mesh_.cell(c).sphere.center);
-    return label;
-  }
-  LabelIndex label_across(CellId c, unsigned k) {
-    const FacetId mirror = mesh_.cell(c).mirrors[k];
-    return mirror == kNoFacet ? kBackground : label_of(cell_of(mirror));
-  }
-  // The cell of the larger label writes the facet.
-  bool is_written_here(CellId c, unsigned k) { return label_across(c, k) < label_of(c); }
-
-  bool add_facet(CellId c, unsigned k) {
+  // Returns whether a vertex is off the isosurface.
+  bool write_facet(CellId c, unsigned k, std::size_t at) {
     bool is_off = false;
-    std::array<std::uint32_t, 3> facet{};
+    auto& facet = out_.facets[at];
     for (unsigned i = 0; i < 3; ++i) {
       // kFacetVertices turns towards the cell; outwards is the other way round.
       const VertexId v = mesh_.cell(c).vertices[static_cast<unsigned>(kFacetVertices[k][2 - i])];
       facet[i] = out_id(v);
-      is_off = is_off || mesh_.vertex(v).kind != VertexKind::kIsosurface;
+      is_off = is_off || is_off_isosurface(v);
     }
-    out_.facets.push_back(facet);
-    out_.facet_labels.push_back({label_across(c, k), label_of(c)});
+    if (is_mirrored_) std::swap(facet[1], facet[2]);
+    out_.facet_labels[at] = {label_across(c, k), mesh_.label(c)};
     return is_off;
   }
 
-  std::uint32_t out_id(VertexId v) {
-    if (out_ids_[v] == kNoVertex) {
-      out_ids_[v] = static_cast<std::uint32_t>(out_.vertices.size());
-      const Point& p = mesh_.point(v);
-      out_.vertices.push_back({p.x, p.y, p.z});
-    }
-    return out_ids_[v];
-  }
-
-  Mesh& mesh_;
-  const Isosurface& isosurface_;
+  const Mesh& mesh_;
+  const WorldFrame& frame_;
+  const bool is_mirrored_ = frame_.is_mirrored();
+  std::size_t threads_;
   TetMesh& out_;
-  std::vector<std::uint32_t> out_ids_;
+  std::vector<std::uint32_t> out_ids_;  // by id in the store: used or not, then the position in the output
 };
-
-void convert_to_world(TetMesh& mesh, const LabelImage& image, Space space) {
-  const auto& a = image.voxel_to_ras;
-  const double flip = space == Space::kLps ? -1 : 1;
-  for (auto& v : mesh.vertices) {
-    const double i = v[0] / image.spacing[0], j = v[1] / image.spacing[1], k = v[2] / image.spacing[2];
-    v = {flip * (a[0] * i + a[1] * j + a[2] * k + a[3]), flip * (a[4] * i + a[5] * j + a[6] * k + a[7]),
-         a[8] * i + a[9] * j + a[10] * k + a[11]};
-  }
-  if (determinant(a) < 0) turn_around(mesh);
-  mesh.space = space;
-}
 
 }  // namespace
 
-std::uint64_t count_labelled_cells(Mesh& mesh, const Isosurface& isosurface) {
-  std::uint64_t count = 0;
-  for (CellId c = 0; c < mesh.cell_bound(); ++c) {
-    if (!mesh.cell(c).is_alive()) continue;
-    const LabelIndex label = mesh.label(c);
-    const LabelIndex known = label != kUnknownLabel ? label : isosurface.label_at(mesh.cell(c).sphere.center);
-    count += known != kBackground;
-  }
-  return count;
+std::uint64_t label_cells(Mesh& mesh, const Isosurface& isosurface, int threads) {
+  std::atomic<std::uint64_t> labelled = 0;
+  for_each_chunk(mesh.cell_bound(), num_threads(threads), [&](std::size_t, CellId begin, CellId end) {
+    std::uint64_t count = 0;
+    for (CellId c = begin; c < end; ++c) {
+      LabelIndex& label = mesh.label(c);
+      if (label == kUnknownLabel)
+        label = mesh.cell(c).is_alive() ? isosurface.label_at(mesh.cell(c).sphere.center) : kBackground;
+      count += label != kBackground;
+    }
+    labelled += count;
+  });
+  return labelled;
 }
 
 TetMesh extract_mesh(Mesh& mesh, const Isosurface& isosurface, const LabelImage& image, Space space,
-                     std::uint64_t& facets_off_isosurface) {
+                     int threads, std::uint64_t& facets_off_isosurface) {
   TetMesh out;
   out.labels = image.labels;
-  Extractor extractor(mesh, isosurface, out);
-  extractor.reserve();
-  facets_off_isosurface = extractor.add_all();
-  convert_to_world(out, image, space);
+  out.space = space;
+  label_cells(mesh, isosurface, threads);
+  facets_off_isosurface = Extractor(mesh, WorldFrame(image, space), num_threads(threads), out)();
   return out;
 }
 
@@ -152,7 +236,10 @@ void convert_to_voxel_space(TetMesh& mesh, const LabelImage& image) {
           (a[0] * a[5] - a[1] * a[4]) * z) /
              det};
   }
-  if (det < 0) turn_around(mesh);
+  if (det < 0) {
+    for (auto& cell : mesh.cells) std::swap(cell[2], cell[3]);
+    for (auto& facet : mesh.facets) std::swap(facet[1], facet[2]);
+  }
   mesh.space = Space::kVoxel;
 }
 

@@ -1,5 +1,5 @@
 // From the store to the mesh that leaves the library: cells whose circumcentre lies inside, facets between
-// labels, world coordinates.
+// labels, world coordinates. `threads`: 0 for all cores; the result is the same for any number.
 #pragma once
 
 #include <cstdint>
@@ -11,12 +11,13 @@
 
 namespace podm {
 
-/// Cells with a label, without the boundary facets off the isosurface.
-std::uint64_t count_labelled_cells(Mesh& mesh, const Isosurface& isosurface);
+/// Cells with a label. Afterwards mesh.label() is known of all cells, the background's of dead ones.
+std::uint64_t label_cells(Mesh& mesh, const Isosurface& isosurface, int threads);
 
-/// `space` is kRas or kLps. `facets_off_isosurface` counts boundary facets with a vertex elsewhere.
+/// `space` is kRas or kLps. `facets_off_isosurface` counts boundary facets with a vertex elsewhere. Vertices
+/// and cells keep the order of their ids. Takes 4 bytes a vertex beside the mesh while it runs.
 TetMesh extract_mesh(Mesh& mesh, const Isosurface& isosurface, const LabelImage& image, Space space,
-                     std::uint64_t& facets_off_isosurface);
+                     int threads, std::uint64_t& facets_off_isosurface);
 
 /// Replaces RAS coordinates by continuous voxel indices.
 void convert_to_voxel_space(TetMesh& mesh, const LabelImage& image);

@@ -6,13 +6,16 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <set>
 
 #include "cost_model.h"
 #include "extract_mesh.h"
 #include "measure_quality.h"
+#include "placement_of_crew.h"
 #include "podm.h"
 #include "podm/operation_log.h"
 #include "replay.h"
+#include "sample_pages.h"
 
 namespace podm {
 
@@ -28,6 +31,22 @@ constexpr std::size_t kBytesPerCell = sizeof(Cell) + sizeof(CellState) + sizeof(
 
 bool is_positive_or_zero(double x) { return std::isfinite(x) && x >= 0; }
 
+void check_leaves(const MeshingOptions& options) {
+  const int nodes = options.nodes, cores = options.cores_per_node, threads = options.threads;
+  if (nodes > 0 && cores > 0 && threads > 0 && nodes * cores != threads)
+    throw InputError("threads must be nodes times cores per node, or left out");
+  if ((nodes > 0 && threads % nodes != 0) || (cores > 0 && threads % cores != 0))
+    throw InputError("nodes must divide the threads evenly");
+  if (options.algorithm == Algorithm::kPdr && cores > 1)
+    throw InputError("pdr has one core per node; pdr-podm has more");
+  if (options.initial_threads > std::max({1, threads, std::max(1, nodes) * std::max(1, cores)}))
+    throw InputError("the initial mesh cannot have more threads than the whole run");
+  if (!(std::isfinite(options.initial_ratio) && options.initial_ratio >= 1))
+    throw InputError("the initial ratio must be 1 or more");
+  if (!is_positive_or_zero(options.leaf_size_mm))
+    throw InputError("leaf size must be a positive number of mm");
+}
+
 void check(const LabelImage& image, const MeshingOptions& options) {
   if (!is_positive_or_zero(options.radius_mm)) throw InputError("radius must be a positive number of mm");
   if (!is_positive_or_zero(options.delta_mm)) throw InputError("delta must be a positive number of mm");
@@ -40,6 +59,7 @@ void check(const LabelImage& image, const MeshingOptions& options) {
       throw InputError("radius of label " + std::to_string(value) + " must be a positive number of mm");
     }
   }
+  check_leaves(options);
   if (options.target_elements > 0 && options.radius_mm > 0) {
     throw InputError("a target number of elements excludes a radius");
   }
@@ -69,29 +89,38 @@ class Run {
  public:
   Run(const LabelImage& image, const MeshingOptions& options, const ProgressCallback& progress,
       std::stop_token stop)
-      : image_(image), options_(options), progress_(progress), stop_(std::move(stop)) {}
+      : image_(image),
+        options_(options),
+        progress_(progress),
+        stop_(std::move(stop)),
+        placement_(place_crew(options, num_workers())) {
+    check(image_, options_);
+  }
 
   MeshingResult operator()() {
-    check(image_, options_);
     announce("transform", 0, 0);
     const Clock::time_point start = Clock::now();
-    const bool is_virtual = options_.executor == Executor::kVirtual;
-    const Isosurface isosurface(image_, is_virtual ? 0 : options_.threads);
+    const Isosurface isosurface(image_, options_.loop_threads());
     MeshingResult result;
     MeshingReport& report = result.report;
     report.phases_s["transform"] = seconds_since(start);
 
-    const Clock::time_point refine_start = Clock::now();
     Refinement refinement = options_.target_elements > 0
                                 ? refine_to_target(isosurface, report)
                                 : refine(isosurface, options_.radius_mm, delta(), report);
-    report.phases_s["refine"] = seconds_since(refine_start);
     report.stop_reason = refinement.stop_reason;
     report.counters = refinement.counters;
+    report.workers = refinement.workers;
+    report.num_nodes = placement_.machine.num_nodes();
+    report.pages = sample_pages(*refinement.mesh, placement_.machine);
     report.store_cells = refinement.mesh->num_cells();
     const auto& [low, high] = refinement.mesh->box();
     report.virtual_box = {low.x, low.y, low.z, high.x, high.y, high.z};
     report.virtual_s = refinement.virtual_s;
+    report.algorithm = algorithm();
+    report.computing_nodes = algorithm() == Algorithm::kPodm ? 1 : leaf_options().num_nodes;
+    report.num_leaves = refinement.num_leaves;
+    report.schedule = std::move(refinement.schedule);
     extract(isosurface, refinement, result);
     return result;
   }
@@ -118,14 +147,56 @@ class Run {
       announce("refine", static_cast<double>(cells) / expected, cells);
     });
     if (options_.log != nullptr) options_.log->restart();
-    return podm(isosurface, foreground_bounds(image_), report.delta_mm,
-                size_field(image_, options_, radius_mm), cell_capacity(options_), crew(), watch);
+    Refinement refinement =
+        run({isosurface, foreground_bounds(image_, options_.loop_threads()), report.delta_mm,
+             size_field(image_, options_, radius_mm), cell_capacity(options_)},
+            watch);
+    for (const auto& [phase, seconds] : refinement.phases_s) report.phases_s[phase] += seconds;
+    return refinement;
+  }
+
+  Refinement run(const Problem& problem, Watch& watch) const {
+    switch (algorithm()) {
+      case Algorithm::kPdr:
+        return pdr(problem, crew(), leaf_options(), watch);
+      case Algorithm::kPdrPodm:
+        return pdr_podm(problem, crew(), leaf_options(), watch);
+      default:
+        return podm(problem, crew(), watch);
+    }
+  }
+
+  Algorithm algorithm() const {
+    if (options_.algorithm != Algorithm::kAuto) return options_.algorithm;
+    return num_workers() < options_.crossover ? Algorithm::kPodm : Algorithm::kPdrPodm;
+  }
+
+  LeafOptions leaf_options() const {
+    const bool is_pdr = algorithm() == Algorithm::kPdr;
+    const int initial = options_.initial_threads > 0 ? options_.initial_threads : is_pdr ? 1 : num_workers();
+    return {num_computing_nodes(), options_.initial_ratio, initial, options_.leaf_size_mm,
+            options_.with_schedule};
+  }
+
+  // As asked for; else as many as NUMA nodes that have workers, if they divide them evenly.
+  int num_computing_nodes() const {
+    if (algorithm() == Algorithm::kPdr) return num_workers();
+    if (options_.nodes > 0) return options_.nodes;
+    if (options_.cores_per_node > 0) return num_workers() / options_.cores_per_node;
+    std::set<int> used;
+    for (const Place& place : placement_.places) used.insert(place.node);
+    const int nodes = static_cast<int>(used.size());
+    return num_workers() % nodes == 0 ? nodes : 1;
   }
 
   Crew crew() const {
-    const CoordinationOptions coordination{
-        std::max(1, options_.threads), options_.contention, {}, options_.seed};
-    return {options_.executor, coordination, options_.virtual_cost, options_.log};
+    return {options_.executor,     {num_workers(), options_.contention, placement_.groups, options_.seed},
+            options_.virtual_cost, options_.log,
+            &placement_.machine,   placement_.places};
+  }
+  int num_workers() const {
+    if (options_.threads > 0) return options_.threads;
+    return std::max(1, options_.nodes) * std::max(1, options_.cores_per_node);
   }
 
   double delta() const {
@@ -140,12 +211,13 @@ class Run {
   // target.
   Refinement refine_to_target(const Isosurface& isosurface, MeshingReport& report) {
     const auto target = static_cast<double>(options_.target_elements);
-    double radius = radius_for_cells(image_, target / 8), last_radius = 0, last_cells = 0;
+    double radius = radius_for_cells(image_, target / 8, options_.loop_threads()), last_radius = 0,
+           last_cells = 0;
     for (int runs = 1;; ++runs) {
       Refinement refinement =
           refine(isosurface, radius, options_.delta_mm > 0 ? options_.delta_mm : radius / 2, report);
-      const auto cells =
-          std::max(1.0, static_cast<double>(count_labelled_cells(*refinement.mesh, isosurface)));
+      const auto cells = std::max(
+          1.0, static_cast<double>(label_cells(*refinement.mesh, isosurface, options_.loop_threads())));
       const bool is_met = std::abs(cells / target - 1) <= kTargetTolerance;
       if (is_met || runs == kMaxTargetRuns || refinement.stop_reason != StopReason::kComplete) {
         if (!is_met) report.warnings.push_back("the target number of elements was not met within 5 %");
@@ -165,7 +237,7 @@ class Run {
     MeshingReport& report = result.report;
     const bool is_voxel = options_.space == Space::kVoxel;
     result.mesh = extract_mesh(*refinement.mesh, isosurface, image_, is_voxel ? Space::kRas : options_.space,
-                               report.guarantees.facet_vertices);
+                               options_.loop_threads(), report.guarantees.facet_vertices);
     refinement.mesh.reset();
     report.phases_s["extract"] = seconds_since(start);
     measure_quality(result.mesh, image_, size_field(image_, options_, report.radius_mm), report);
@@ -179,6 +251,7 @@ class Run {
   const MeshingOptions& options_;
   const ProgressCallback& progress_;
   std::stop_token stop_;
+  const PlacementOfCrew placement_;
   const Clock::time_point start_ = Clock::now();
 };
 
@@ -200,6 +273,20 @@ std::string to_string(StopReason reason) {
   throw InternalError("unknown stop reason");
 }
 
+std::string to_string(Algorithm algorithm) {
+  switch (algorithm) {
+    case Algorithm::kAuto:
+      return "auto";
+    case Algorithm::kPodm:
+      return "podm";
+    case Algorithm::kPdr:
+      return "pdr";
+    case Algorithm::kPdrPodm:
+      return "pdr-podm";
+  }
+  throw InternalError("unknown algorithm");
+}
+
 std::string to_string(Contention contention) {
   switch (contention) {
     case Contention::kAggressive:
@@ -218,6 +305,8 @@ std::string to_string(Executor executor) { return executor == Executor::kThreads
 
 std::string to_string(VirtualCost cost) { return cost == VirtualCost::kUnit ? "unit" : "measured"; }
 
+std::string to_string(Begging begging) { return begging == Begging::kRandom ? "random" : "hierarchical"; }
+
 MeshingResult mesh_image(const LabelImage& image, const MeshingOptions& options,
                          const ProgressCallback& progress, std::stop_token stop) {
   return Run(image, options, progress, std::move(stop))();
@@ -229,7 +318,7 @@ TetMesh replay_operations(const LabelImage& image, const OperationLog& log, Spac
   std::uint64_t facets_off_isosurface = 0;
   const bool is_voxel = space == Space::kVoxel;
   TetMesh mesh =
-      extract_mesh(*refined, isosurface, image, is_voxel ? Space::kRas : space, facets_off_isosurface);
+      extract_mesh(*refined, isosurface, image, is_voxel ? Space::kRas : space, 0, facets_off_isosurface);
   if (is_voxel) convert_to_voxel_space(mesh, image);
   return mesh;
 }

@@ -1,34 +1,28 @@
-// PODM: Parallel Optimistic Delaunay Meshing of an image, from the six cells of a box to a mesh that obeys
-// R1..R6.
+// The algorithms. Each brings an image from the six cells of a box to a mesh that obeys R1..R6.
 #pragma once
 
-#include <memory>
-
-#include "podm/operation_log.h"
-#include "refine/coordination.h"
-#include "refine/executor.h"
-#include "refine/rules.h"
+#include "refiner.h"
 
 namespace podm {
 
-struct Refinement {
-  std::unique_ptr<Mesh> mesh;
-  StopReason stop_reason = StopReason::kComplete;
-  Counters counters;
-  double virtual_s = 0;  // of Executor::kVirtual
+/// Parallel Optimistic Delaunay Meshing: all workers anywhere at once. On one worker it is sequential,
+/// without locks.
+Refinement podm(const Problem& problem, const Crew& crew, Watch& watch);
+
+struct LeafOptions {
+  int num_nodes = 1;         // computing nodes; they divide the workers evenly
+  double initial_ratio = 4;  // bounds of the initial mesh over those of the final one
+  int initial_workers = 1;   // of the initial mesh
+  double leaf_size_mm = 0;   // 0: from the initial mesh's bound
+  bool with_schedule = false;
 };
 
-/// Who refines.
-struct Crew {
-  Executor executor = Executor::kThreads;
-  CoordinationOptions coordination;  // one thread works without locks, unless `locks_alone`
-  VirtualCost cost = VirtualCost::kMeasured;
-  OperationLogWriter* log = nullptr;
-  bool locks_alone = false;  // to measure what locks cost
-};
+/// Parallel Delaunay refinement leaf by leaf, one worker a leaf, without locks.
+Refinement pdr(const Problem& problem, const Crew& crew, const LeafOptions& options, Watch& watch);
+/// The same with several workers a leaf, which lock vertices against each other.
+Refinement pdr_podm(const Problem& problem, const Crew& crew, const LeafOptions& options, Watch& watch);
 
-/// `object`: bounds of the foreground. `cell_capacity`: the most cells the store may hold.
-Refinement podm(const Isosurface& isosurface, const Box& object, double delta_mm, const SizeField& sizes,
-                std::size_t cell_capacity, const Crew& crew, Watch& watch);
+/// Rules for the problem, with all bounds times `ratio`.
+Parameters parameters_for(const Problem& problem, double ratio, const Box& clamp_box);
 
 }  // namespace podm

@@ -1,5 +1,6 @@
 // podm-verify: proves or refutes claims about a tetrahedral mesh file.
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 #include <unistd.h>
 
 #include <CLI/CLI.hpp>
@@ -23,8 +24,8 @@ constexpr int kSuccess = 0, kClaimNotMet = 1, kBadInput = 2, kInternal = 3;
 
 struct Command {
   Options options;
-  std::vector<std::string> radius_of;
-  std::string claims, space;
+  std::vector<std::string> radius_of, merges;
+  std::string claims, space, labels, drop;
   bool quiet = false;
 };
 
@@ -36,7 +37,7 @@ CLI::Validator positive() {
                 CLI::detail::lexical_cast(text, value) && std::isfinite(value) && value > 0;
             return is_positive ? std::string() : fmt::format("'{}' is no positive, finite number", text);
           },
-          "POSITIVE"};
+          ""};
 }
 
 CLI::Validator angle() {
@@ -45,38 +46,111 @@ CLI::Validator angle() {
             const bool is_angle = CLI::detail::lexical_cast(text, value) && value >= 0 && value <= 60;
             return is_angle ? std::string() : fmt::format("'{}' is no angle of 0 to 60 degrees", text);
           },
-          "0..60"};
+          ""};
+}
+
+void declare_inputs(CLI::App& app, Command& command) {
+  Options& options = command.options;
+  app.add_option("MESH", options.mesh_path, "VTU, legacy VTK, Medit, Gmsh 2.2 or 4.1, TetGen; also .gz")
+      ->option_text(" ")
+      ->required();
+  app.option_defaults()->group("Inputs");
+  app.add_option("--image", options.image_path,
+                 "segmented image, for the claims labels and fidelity, and topology beside the mesh's:\n"
+                 "NIfTI, NRRD, MetaImage or INR")
+      ->option_text("FILE");
+  app.add_option("--space", command.space,
+                 "frame of the mesh's coordinates: RAS or LPS (mm), or voxel (indices)\n"
+                 "[default: what its file says, else RAS]")
+      ->option_text("SPACE")
+      ->check(CLI::IsMember({"RAS", "LPS", "voxel"}));
+  app.add_option("--schedule", options.schedule_path,
+                 "leaf grid and schedule of a run, for the claim conformity [default: none]")
+      ->option_text("FILE");
+}
+
+// Those of `podm mesh`, for a mesh of a part of the image's labels.
+void declare_selection(CLI::App& app, Command& command) {
+  app.option_defaults()->group("Labels of the image that were meshed, as podm mesh was told");
+  CLI::Option* image = app.get_option("--image");
+  app.add_option("--labels", command.labels, "these label values only, e.g. 1,3-7 [default: all]")
+      ->option_text("RANGES")
+      ->needs(image);
+  app.add_option("--drop", command.drop, "these label values are background [default: none]")
+      ->option_text("RANGES")
+      ->needs(image);
+  app.add_option("--merge", command.merges,
+                 "one label is made of several, e.g. 2,3=kidney; repeatable [default: none]")
+      ->option_text("VALUES=NAME")
+      ->allow_extra_args(false)
+      ->needs(image);
+  app.add_option("--background", command.options.selection.background,
+                 "label value of the background in mesh and image; a foreground label 0 is then\n"
+                 "reported as VALUE [default: 0]")
+      ->option_text("VALUE");
+}
+
+void declare_claims(CLI::App& app, Command& command) {
+  Options& options = command.options;
+  std::vector<std::string> names;
+  for (const ClaimName& claim : all_claims()) names.emplace_back(claim.name);
+  app.option_defaults()->group("Claims and their bounds");
+  app.add_option("--claims", command.claims,
+                 fmt::format("check these alone [default: all whose inputs and bounds are given], of\n{}",
+                             fmt::join(names, ",")))
+      ->option_text("NAMES");
+  app.add_option("--radius-edge", options.radius_edge_bound,
+                 fmt::format("circumradius over shortest edge is below this [default: {}]",
+                             options.radius_edge_bound))
+      ->option_text("RATIO")
+      ->check(positive());
+  app.add_option("--angle", options.angle_bound_deg,
+                 fmt::format("angles of boundary and interface facets are above this [default: {}]",
+                             options.angle_bound_deg))
+      ->option_text("DEGREES")
+      ->check(angle());
+  app.add_option("--radius", options.radius_mm, "size: largest circumradius of a cell, mm [default: none]")
+      ->option_text("MM")
+      ->check(positive());
+  app.add_option("--radius-of", command.radius_of,
+                 "the same for one label value; repeatable [default: --radius]")
+      ->option_text("LABEL=MM")
+      ->allow_extra_args(false);
+  app.add_option(
+         "--fidelity-voxels", options.fidelity_bound_voxels,
+         fmt::format("95 % of the interfaces of mesh and image are within this of each other [default: {},\n"
+                     "since an image does not tell where between two voxels a label ends]",
+                     options.fidelity_bound_voxels))
+      ->option_text("VOXELS")
+      ->check(positive());
+  app.add_option("--delta", options.delta_mm,
+                 "surface sampling distance of a PODM mesh: fidelity passes within 2 delta, too,\n"
+                 "as its rules prove; podm mesh tells and records it [default: none]")
+      ->option_text("MM")
+      ->check(positive());
+}
+
+void declare_report(CLI::App& app, Command& command) {
+  Options& options = command.options;
+  app.option_defaults()->group("Run and report");
+  app.add_option("--json", options.json_path,
+                 "write the report as JSON, - for standard output; its schema is podm-verify/1")
+      ->option_text("FILE");
+  app.add_option("--extract-bad", options.extract_bad_path,
+                 "write the cells that violate a claim, and which, as .vtu")
+      ->option_text("FILE");
+  app.add_option("--threads", options.threads, "verdicts do not depend on it [default: all cores]")
+      ->option_text("N")
+      ->check(CLI::Range(1, 4096));
+  app.add_flag("--quiet", command.quiet, "no report for people");
+  app.set_version_flag("--version", "podm-verify " PODM_VERSION);
 }
 
 void declare_options(CLI::App& app, Command& command) {
-  Options& options = command.options;
-  app.add_option("MESH", options.mesh_path, "VTU, legacy VTK, Medit, Gmsh 2.2 or 4.1, TetGen; also .gz")
-      ->required();
-  app.add_option("--image", options.image_path,
-                 "the segmented image, for the claims labels, surface and fidelity");
-  app.add_option("--schedule", options.schedule_path,
-                 "leaf grid and schedule of a run, for the claim conformity");
-  app.add_option("--claims", command.claims,
-                 "claims to check, e.g. structure,delaunay [default: all whose inputs are given]");
-  app.add_option("--radius-edge", options.radius_edge_bound, "bound of the radius-edge ratio")
-      ->check(positive())
-      ->capture_default_str();
-  app.add_option("--angle", options.angle_bound_deg, "bound of the angles of boundary facets, degrees")
-      ->check(angle())
-      ->capture_default_str();
-  app.add_option("--radius", options.radius_mm, "bound of the circumradius, mm [default: none]")
-      ->check(positive());
-  app.add_option("--radius-of", command.radius_of, "LABEL=MM, the same for one label value; repeatable");
-  app.add_option("--fidelity-voxels", options.fidelity_bound_voxels, "bound of the claim fidelity, voxels")
-      ->check(positive())
-      ->capture_default_str();
-  app.add_option("--space", command.space, "RAS, LPS or voxel [default: what the mesh file says]")
-      ->check(CLI::IsMember({"RAS", "LPS", "voxel"}));
-  app.add_option("--threads", options.threads, "[default: all cores]")->check(CLI::Range(1, 4096));
-  app.add_option("--json", options.json_path, "write the report as JSON to this file, - for standard output");
-  app.add_option("--extract-bad", options.extract_bad_path, "write the cells in violation to this .vtu file");
-  app.add_flag("--quiet", command.quiet, "no report for people");
-  app.set_version_flag("--version", "podm-verify " PODM_VERSION);
+  declare_inputs(app, command);
+  declare_selection(app, command);
+  declare_claims(app, command);
+  declare_report(app, command);
   app.footer(
       "Exit codes: 0 all claims pass, 1 some fail or could not be decided, 2 bad usage or input, 3 "
       "internal.");
@@ -109,6 +183,9 @@ void finish_options(Command& command) {
       throw InputError(fmt::format("--radius-of: '{}' is not LABEL=MM, as in 7=0.5", text));
     options.radius_of[label] = radius;
   }
+  if (!command.labels.empty()) options.selection.keep = parse_label_ranges(command.labels, "--labels");
+  if (!command.drop.empty()) options.selection.drop = parse_label_ranges(command.drop, "--drop");
+  for (const std::string& text : command.merges) options.selection.merges.push_back(parse_merge(text));
   const std::string& bad = options.extract_bad_path;
   if (!bad.empty() && !bad.ends_with(".vtu"))
     throw InputError(fmt::format("--extract-bad: '{}' does not end in .vtu", bad));
@@ -142,7 +219,7 @@ int verify(const Command& command) {
 }
 
 int main_or_throw(int argc, char** argv) {
-  CLI::App app("Proves or refutes claims about a tetrahedral mesh file, exactly.", "podm-verify");
+  CLI::App app("Proves or refutes claims about a tetrahedral mesh file.", "podm-verify");
   Command command;
   declare_options(app, command);
   try {

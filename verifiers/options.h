@@ -6,6 +6,7 @@
 #include <string>
 #include <vector>
 
+#include "image/label_selection.h"
 #include "mesh.h"
 
 namespace podm::verify {
@@ -13,6 +14,7 @@ namespace podm::verify {
 struct Options {
   std::string mesh_path;
   std::string image_path;           ///< empty: claims about the image are not run
+  LabelSelection selection;         ///< what was meshed of the image
   std::string schedule_path;        ///< leaf grid and schedule of a PDR or PDR.PODM run; empty: none
   std::vector<std::string> claims;  ///< names asked for; empty: all
   double radius_edge_bound = 1.93;
@@ -22,6 +24,9 @@ struct Options {
   /// Fidelity: 95 % of either surface lies within this many voxels of the other, and all of the mesh's within
   /// sqrt(3) times as many of the image's.
   double fidelity_bound_voxels = 1;
+  /// The sampling distance of a PODM mesh's surfaces: within 2 delta is near enough, too
+  /// (check_fidelity.cpp).
+  std::optional<double> delta_mm;
   std::optional<Space> space;               ///< overrides what the file states
   int threads = 0;                          ///< 0: all cores
   std::string json_path, extract_bad_path;  ///< empty: not written; json_path "-": standard output

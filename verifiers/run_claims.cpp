@@ -116,6 +116,8 @@ Inputs read_inputs(const Options& options) {
   Inputs inputs{read_mesh(options.mesh_path), std::nullopt, std::nullopt};
   if (options.space) inputs.mesh.space = *options.space;
   if (!options.image_path.empty()) inputs.image = read_image(options.image_path);
+  if (inputs.image && options.selection != LabelSelection{}) select_labels(*inputs.image, options.selection);
+  if (options.selection.background != 0) move_background(inputs.mesh, options.selection.background);
   if (!options.schedule_path.empty()) inputs.schedule = read_schedule(options.schedule_path);
   return inputs;
 }

@@ -43,10 +43,11 @@ inline const std::string kGoodRecord =
     R"("refine_cells_per_second":1000.0,"phases_s":{"read":0.5,"refine":1.0,"extract":0.5,"write":5.0},)"
     R"("guarantees":{"radius_edge":0,"facet_angle":0},"stop_reason":"complete"})";
 
-/// A script for `podm`: answers `info` with 10 x 10 x 10 voxels; `mesh` runs `mesh_body`, where $record is
-/// the file asked for by --record and $output that of -o.
+/// A script for `podm`: answers --version, and `info` with 10 x 10 x 10 voxels; `mesh` runs `mesh_body`,
+/// where $record is the file asked for by --record and $output that of -o.
 inline std::string fake_mesher(const TemporaryFolder& folder, const std::string& mesh_body) {
   return folder.script("podm", R"(
+[ "$1" = --version ] && { echo 'podm 9.9'; exit 0; }
 [ "$1" = info ] && { echo '{"size":[10,10,10]}'; exit 0; }
 echo "$@" > "$(dirname "$0")/arguments"
 while [ $# -gt 0 ]; do

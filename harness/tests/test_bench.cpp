@@ -1,11 +1,17 @@
 // The program as a user runs it.
 #include <gtest/gtest.h>
 
+#include <algorithm>
+#include <chrono>
 #include <nlohmann/json.hpp>
+#include <thread>
 #include <vector>
 
 #include "fake_mesher.h"
 #include "process.h"
+#include "results_file.h"
+#include "schedule.h"
+#include "sha256.h"
 
 namespace podm::bench {
 namespace {
@@ -50,18 +56,41 @@ class BenchTest : public testing::Test {
     return bench(arguments);
   }
   std::string printed(const std::string& name) { return read_tail(folder_ / name, 10000); }
-  std::vector<std::string> trials_recorded() {
+  bool has_printed(const std::string& name, const std::string& words) {
+    return printed(name).find(words) != std::string::npos;
+  }
+  std::vector<nlohmann::json> rows() {
     std::ifstream file(folder_ / "results/exp.jsonl");
+    std::vector<nlohmann::json> rows;
+    for (std::string line; std::getline(file, line);) rows.push_back(nlohmann::json::parse(line));
+    return rows;
+  }
+  // In the order in which they ran.
+  std::vector<std::string> in_order() {
     std::vector<std::string> trials;
-    for (std::string line; std::getline(file, line);)
-      trials.push_back(nlohmann::json::parse(line).at("trial"));
+    for (const auto& row : rows()) trials.push_back(row.at("trial"));
     return trials;
   }
-  std::size_t files_in_results() {
-    std::size_t files = 0;
-    for (const auto& entry : std::filesystem::recursive_directory_iterator(folder_ / "results"))
-      files += entry.is_regular_file();
-    return files;
+  std::vector<std::string> trials_recorded() {
+    std::vector<std::string> trials = in_order();
+    std::sort(trials.begin(), trials.end());
+    return trials;
+  }
+  // Whether rows, lock and topology are all that is left.
+  bool is_tidy() {
+    for (const auto& entry : std::filesystem::directory_iterator(folder_ / "results")) {
+      const std::string name = entry.path().filename();
+      if (name != "exp.jsonl" && name != ".lock" && !name.starts_with("topology-")) return false;
+    }
+    return true;
+  }
+  // One with which trial "one" runs before trial "two".
+  static std::string seed_with_one_first() {
+    for (std::uint64_t seed = 0;; ++seed)
+      for (const Turn& turn : schedule(std::vector<Trial>(3), seed)) {
+        if (turn.trial == 0) return std::to_string(seed);
+        if (turn.trial == 1) break;
+      }
   }
   const std::string good_mesh_ = "echo mesh > \"$output\"; echo '" + kGoodRecord + "' > \"$record\"\n";
   TemporaryFolder folder_;
@@ -70,15 +99,147 @@ class BenchTest : public testing::Test {
 TEST_F(BenchTest, RecordsTheTrialsThatRanAndLeavesNoMesh) {
   EXPECT_EQ(run_with(good_mesh_), 0) << printed("err");
   EXPECT_EQ(trials_recorded(), (std::vector<std::string>{"one", "two"}));
-  EXPECT_EQ(files_in_results(), 1u);
+  EXPECT_TRUE(is_tidy());
   for (const char* word : {"one", "two", "three", "skipped", "absent.nii"})
     EXPECT_NE(printed("out").find(word), std::string::npos) << word;
 }
 
-TEST_F(BenchTest, SecondRunAppends) {
+TEST_F(BenchTest, SecondRunSkipsWhatIsThereUnlessTold) {
   run_with(good_mesh_);
-  EXPECT_EQ(run_with(good_mesh_, {"--only", "two"}), 0);
+  EXPECT_EQ(run_with(good_mesh_), 0);
+  EXPECT_EQ(trials_recorded(), (std::vector<std::string>{"one", "two"}));
+  EXPECT_TRUE(has_printed("err", "2 of them skipped: already in " + (folder_ / "results/exp.jsonl")));
+  EXPECT_TRUE(has_printed("out", "two")) << "the table tells them too";
+  EXPECT_EQ(run_with(good_mesh_, {"--only", "two", "--again"}), 0);
   EXPECT_EQ(trials_recorded(), (std::vector<std::string>{"one", "two", "two"}));
+  EXPECT_EQ(run_with("# another mesher\n" + good_mesh_, {"--only", "one"}), 0);
+  EXPECT_EQ(trials_recorded(), (std::vector<std::string>{"one", "one", "two", "two"}));
+}
+
+TEST_F(BenchTest, OnlyFinishedTrialsAreSkippedAndUnmetOnesStayUnmet) {
+  const std::string state = folder_.write("state", "exit 3");
+  const std::string mesh_body = good_mesh_ + ". " + state + "\n";
+  EXPECT_EQ(run_with(mesh_body, {"--only", "one"}), 1);
+  folder_.write("state", "exit 1");
+  EXPECT_EQ(run_with(mesh_body, {"--only", "one"}), 1);
+  folder_.write("state", "exit 0");
+  EXPECT_EQ(run_with(mesh_body, {"--only", "one"}), 1) << "still not met";
+  ASSERT_EQ(rows().size(), 2u) << "a failure runs again, a mesh that is not met does not";
+  EXPECT_EQ(rows()[0].at("status"), "failed");
+  EXPECT_EQ(rows()[1].at("status"), "unmet");
+}
+
+TEST_F(BenchTest, RepeatsAreRoundsAndTheSeedDecidesTheirOrder) {
+  std::string matrix = kExperiment;
+  matrix.replace(matrix.find("radius_mm = 2"), 13, "radius_mm = [1, 2, 3]\nrepeats = 3\nwarmup = 1");
+  folder_.write("exp.toml", matrix);
+  const auto order_with = [&](const std::string& seed) {
+    std::filesystem::remove_all(folder_ / "results");
+    EXPECT_EQ(run_with(good_mesh_, {"--only", "two*", "--order-seed", seed}), 0) << printed("err");
+    return in_order();
+  };
+  const auto order = order_with("5");
+  ASSERT_EQ(order.size(), 12u);
+  for (std::size_t i = 0; i < order.size(); ++i) {
+    const auto row = rows()[i];
+    EXPECT_EQ(row.at("warmup"), i < 3);
+    EXPECT_EQ(row.at("repeat"), i < 3 ? 1 : static_cast<int>(i / 3));
+    EXPECT_EQ(row.at("order_seed"), 5);
+  }
+  EXPECT_EQ(order_with("5"), order);
+  EXPECT_NE(order_with("6"), order);
+}
+
+TEST_F(BenchTest, KilledRunLosesTheRunningTrialAloneAndIsResumed) {
+  folder_.write("slow", "");
+  const std::string mesher = fake_mesher(folder_, R"script(
+cd "$(dirname "$0")"
+case $(cat arguments) in *--radius*) [ ! -e slow ] || { echo $$ > pid; exec sleep 60; } ;; esac
+)script" + good_mesh_);
+  const std::vector<std::string> arguments{PODM_BENCH, "run",          folder_ / "exp.toml", "--podm",
+                                           mesher,     "--results",    folder_ / "results",  "--verifier",
+                                           "none",     "--order-seed", seed_with_one_first()};
+  const auto outcome = run_process(
+      {.arguments = arguments, .stdout_path = {}, .stderr_path = folder_ / "err", .timeout_s = 60},
+      [&] { return printed("pid").ends_with('\n'); });  // it is killed by signal 9
+  ASSERT_EQ(outcome.end, ProcessOutcome::End::kInterrupted) << printed("err");
+  EXPECT_EQ(trials_recorded(), std::vector<std::string>{"one"});
+  EXPECT_FALSE(is_tidy()) << "nobody could clean up";
+  const std::string mesher_state = "/proc/" + std::to_string(std::stoi(printed("pid"))) + "/stat";
+  const auto is_running = [&] {
+    const std::string stat = read_tail(mesher_state, 1000);
+    return !stat.empty() && stat.find(") Z") == std::string::npos;
+  };
+  for (int tries = 0; tries < 200 && is_running(); ++tries)
+    std::this_thread::sleep_for(std::chrono::milliseconds(20));
+  EXPECT_FALSE(is_running()) << "the mesher outlives the harness";
+
+  std::filesystem::remove(folder_ / "slow");
+  EXPECT_EQ(bench({arguments.begin() + 1, arguments.end()}), 0) << printed("err");
+  EXPECT_EQ(in_order(), (std::vector<std::string>{"one", "two"}));
+  EXPECT_TRUE(has_printed("err", "1 of them skipped"));
+  EXPECT_TRUE(is_tidy());
+}
+
+TEST_F(BenchTest, BrokenLastLineIsReportedAndMovedAside) {
+  run_with(good_mesh_, {"--only", "one"});
+  std::ofstream(folder_ / "results/exp.jsonl", std::ios::app) << R"({"schema":2,"key":")";
+  EXPECT_EQ(run_with(good_mesh_), 0);
+  EXPECT_TRUE(has_printed("err", "results/exp.jsonl:2: a broken line")) << printed("err");
+  EXPECT_EQ(printed("results/exp.jsonl.broken"), "{\"schema\":2,\"key\":\"\n");
+  EXPECT_EQ(trials_recorded(), (std::vector<std::string>{"one", "two"}));
+}
+
+TEST_F(BenchTest, SecondRunAtTheSameTimeIsRefused) {
+  const ResultsLock lock(folder_ / "results");
+  EXPECT_EQ(run_with(good_mesh_), 2);
+  EXPECT_TRUE(has_printed("err", folder_ / "results/.lock")) << printed("err");
+  EXPECT_TRUE(rows().empty());
+}
+
+TEST_F(BenchTest, RowsOfAnotherSchemaAreRefused) {
+  std::filesystem::create_directory(folder_ / "results");
+  folder_.write("results/exp.jsonl", "{\"schema\":99}\n");
+  EXPECT_EQ(run_with(good_mesh_), 2);
+  EXPECT_TRUE(has_printed("err", "exp.jsonl:1: a row of schema 99")) << printed("err");
+}
+
+TEST_F(BenchTest, DryRunTellsWhatIsToDoAndDoesNothing) {
+  EXPECT_EQ(run_with("touch \"$(dirname \"$0\")/ran\"\n", {"--dry-run"}), 0) << printed("err");
+  for (const char* words : {"one", "two", "--radius 2", "absent.nii (absent)", "3 runs, 3 to do"})
+    EXPECT_TRUE(has_printed("out", words)) << words << " in\n" << printed("out");
+  EXPECT_FALSE(std::filesystem::exists(folder_ / "ran"));
+  EXPECT_FALSE(std::filesystem::exists(folder_ / "results"));
+  run_with(good_mesh_);
+  EXPECT_EQ(run_with(good_mesh_, {"--dry-run"}), 0);
+  EXPECT_TRUE(has_printed("out", "3 runs, 1 to do")) << printed("out");
+}
+
+TEST_F(BenchTest, ImageStandsForAllInputs) {
+  EXPECT_EQ(run_with(good_mesh_, {"--image", folder_.write("mine.nii", "x")}), 0) << printed("err");
+  EXPECT_EQ(trials_recorded(), (std::vector<std::string>{"one", "three", "two"}));
+  for (const auto& row : rows()) EXPECT_EQ(row.at("command")[2], folder_ / "mine.nii");
+  EXPECT_EQ(run_with(good_mesh_, {"--image", folder_ / "none.nii"}), 2);
+  EXPECT_TRUE(has_printed("err", "none.nii"));
+}
+
+TEST_F(BenchTest, TierIncludesTheLowerOnes) {
+  std::string tiers = kExperiment;
+  tiers.replace(tiers.find("radius_mm = 2"), 13, "tier = 'kick-tires'");
+  folder_.write("exp.toml", "tier = 'full'\n" + tiers);
+  EXPECT_EQ(run_with(good_mesh_, {"--tier", "default"}), 0) << printed("err");
+  EXPECT_EQ(trials_recorded(), std::vector<std::string>{"two"});
+  EXPECT_EQ(run_with(good_mesh_, {"--tier", "full"}), 0);
+  EXPECT_EQ(trials_recorded(), (std::vector<std::string>{"one", "two"}));
+  EXPECT_EQ(run_with(good_mesh_, {"--tier", "huge"}), 2);
+}
+
+TEST_F(BenchTest, RowsNameTheTopologyBesideThem) {
+  run_with(good_mesh_);
+  for (const auto& row : rows()) {
+    const std::string hash = row.at("environment").at("topology_sha256");
+    EXPECT_EQ(sha256_of_file(folder_ / "results/topology-" + hash + ".xml"), hash);
+  }
 }
 
 TEST_F(BenchTest, KeepKeepsTheMesh) {
@@ -92,14 +253,15 @@ TEST_F(BenchTest, KeepKeepsTheMesh) {
 TEST_F(BenchTest, FailedTrialIsRecordedTheOthersStillRunAndTheExitCodeTells) {
   EXPECT_EQ(run_with("case $* in *--radius*) exit 3;; esac\n"), 1);
   EXPECT_EQ(trials_recorded(), (std::vector<std::string>{"one", "two"}));
-  EXPECT_EQ(files_in_results(), 1u);
+  EXPECT_TRUE(is_tidy());
 }
 
 TEST_F(BenchTest, InterruptEndsTheTrialRecordsItAndStops) {
   EXPECT_EQ(run_with("kill -INT $PPID; sleep 30"), 1);  // what Ctrl-C sends to podm-bench
-  EXPECT_EQ(trials_recorded(), (std::vector<std::string>{"one"}));
+  ASSERT_EQ(rows().size(), 1u);
+  EXPECT_EQ(rows()[0].at("status"), "interrupted");
   EXPECT_NE(printed("out").find("interrupted"), std::string::npos);
-  EXPECT_EQ(files_in_results(), 1u);
+  EXPECT_TRUE(is_tidy());
 }
 
 TEST_F(BenchTest, BadUsageAndInputExitWithTwoAndRecordNothing) {
@@ -110,10 +272,11 @@ TEST_F(BenchTest, BadUsageAndInputExitWithTwoAndRecordNothing) {
   EXPECT_EQ(bench({"run", path, "--colour"}), 2);
   EXPECT_EQ(bench({"run", folder_ / "absent.toml"}), 2);
   EXPECT_EQ(run_with(good_mesh_, {"--only", "four"}), 2);
-  EXPECT_NE(printed("err").find("four"), std::string::npos);
+  EXPECT_TRUE(has_printed("err", "four")) << printed("err");
   folder_.write("exp.toml", "colour = 1\n" + kExperiment);
   EXPECT_EQ(run_with(good_mesh_), 2);
   EXPECT_NE(printed("err").find(path + ":1:1:"), std::string::npos) << printed("err");
+  EXPECT_EQ(bench({"run", path, "--podm", folder_ / "absent", "--results", folder_ / "results"}), 2);
   EXPECT_FALSE(std::filesystem::exists(folder_ / "results"));
 }
 

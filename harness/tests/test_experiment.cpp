@@ -1,10 +1,15 @@
 #include <gtest/gtest.h>
 
+#include <set>
+
 #include "experiment.h"
 #include "fake_mesher.h"
+#include "machine.h"
 
 namespace podm::bench {
 namespace {
+
+using Json = nlohmann::ordered_json;
 
 const std::string kHead = R"(title = "T"
 claim = "C"
@@ -38,8 +43,14 @@ TEST_F(ExperimentTest, EveryKeyIsRead) {
   const Experiment experiment = read(R"(
 title = "Title"
 claim = "Claim"
+paper = "Table 1"
+tolerance = "Some text"
+tier = "full"
 expected_minutes = 1.5
 timeout_s = 7
+memory_limit_gib = 2
+repeats = 3
+warmup = 1
 [inputs.file]
 image = "data/head.nii"
 if_exists = true
@@ -52,6 +63,10 @@ radius_mm = 2
 delta_mm = 0.5
 threads = 4
 timeout_s = 9
+memory_limit_gib = 0.5
+repeats = 5
+warmup = 0
+tier = "kick-tires"
 [[trials]]
 name = "second"
 input = "file"
@@ -60,23 +75,31 @@ target_elements = 1_000
   EXPECT_EQ(experiment.name, "some");
   EXPECT_EQ(experiment.title, "Title");
   EXPECT_EQ(experiment.claim, "Claim");
+  EXPECT_EQ(experiment.paper, "Table 1");
+  EXPECT_EQ(experiment.tolerance, "Some text");
+  EXPECT_EQ(experiment.tier, Tier::kFull);
   EXPECT_EQ(experiment.expected_minutes, 1.5);
   ASSERT_EQ(experiment.trials.size(), 2u);
   const Trial& first = experiment.trials[0];
   EXPECT_EQ(first.name, "first");
   EXPECT_EQ(first.image, "phantom:torus@64");
   EXPECT_FALSE(first.if_exists);
-  EXPECT_EQ(first.radius_mm, 2);
-  EXPECT_EQ(first.delta_mm, 0.5);
-  EXPECT_EQ(first.threads, 4);
+  EXPECT_EQ(first.options, Json({{"threads", 4}, {"radius_mm", 2.0}, {"delta_mm", 0.5}}));
   EXPECT_EQ(first.timeout_s, 9);
+  EXPECT_EQ(first.memory_limit_gib, 0.5);
+  EXPECT_EQ(first.repeats, 5);
+  EXPECT_EQ(first.warmups, 0);
+  EXPECT_EQ(first.tier, Tier::kKickTires);
   const Trial& second = experiment.trials[1];
   EXPECT_EQ(second.image, folder_ / "data/head.nii");  // beside the experiment
   EXPECT_TRUE(second.if_exists);
-  EXPECT_EQ(second.target_elements, 1000u);
-  EXPECT_EQ(second.radius_mm, 0);
-  EXPECT_EQ(second.threads, 1);
-  EXPECT_EQ(second.timeout_s, 7);  // the experiment's
+  EXPECT_EQ(second.options, Json({{"threads", 1}, {"target_elements", 1000}}));
+  EXPECT_EQ(second.timeout_s, 7);  // the experiment's, and so on
+  EXPECT_EQ(second.memory_limit_gib, 2);
+  EXPECT_EQ(second.repeats, 3);
+  EXPECT_EQ(second.warmups, 1);
+  EXPECT_EQ(second.tier, Tier::kFull);
+  EXPECT_EQ(experiment.num_turns(), 5u + 4u);
 }
 
 TEST_F(ExperimentTest, AbsoluteImagePathsStayAsTheyAre) {
@@ -112,6 +135,21 @@ TEST_F(ExperimentTest, FaultsNameFileLineAndColumn) {
       {kHead + "[[trials]]\nname = 'x'\ninput = 'b'\n", "some.toml:7:9:", "inputs.b"},  // contradictions
       {kHead + kTrial + kTrial, "some.toml:9:8:", "one"},
       {kHead + kTrial + "radius_mm = 1\ntarget_elements = 5\n", "some.toml:9:19:", "exclude"},
+      {kHead + kTrial + "target_elements = 1\ntarget_elements_per_thread = 5\n",
+       "some.toml:9:30:", "exclude"},
+      {kHead + kTrial + "threads = 4\ntarget_elements_per_thread = 2000000000\n",
+       "some.toml:9:30:", "8000000000"},
+      {kHead + kTrial + "threads = [1, 0]\n", "some.toml:8:15:", "threads"},  // in arrays
+      {kHead + kTrial + "threads = []\n", "some.toml:8:11:", "threads"},
+      {kHead + kTrial + "threads = 'most'\n", "some.toml:8:11:", "1..all"},
+      {kHead + kTrial + "contention = ['local', 3]\n", "some.toml:8:24:", "contention"},
+      {kHead + kTrial + "seed = -1\n", "some.toml:8:8:", "seed"},
+      {kHead + kTrial + "pin = 1.5\n", "some.toml:8:7:", "pin"},
+      {kHead + kTrial + "repeats = 0\n", "some.toml:8:11:", "repeats"},
+      {kHead + kTrial + "repeats = [1, 2]\n", "some.toml:8:11:", "repeats"},
+      {kHead + kTrial + "memory_limit_gib = 0\n", "some.toml:8:20:", "memory_limit_gib"},
+      {"tier = 'huge'\n" + kHead + kTrial, "some.toml:1:8:", "kick-tires"},
+      {kHead + "[[trials]]\nname = 'x'\ninput = ['a', 'b']\n", "some.toml:7:15:", "inputs.b"},
       {kHead, "some.toml:1:", "trials"},  // what is missing
       {kHead + "[[trials]]\ninput = 'a'\n", "some.toml:5:", "name"},
       {"claim='C'\n" + kTrial, "some.toml:1:", "title"},
@@ -121,6 +159,95 @@ TEST_F(ExperimentTest, FaultsNameFileLineAndColumn) {
     const std::string message = fault(text);
     EXPECT_TRUE(message.starts_with(place)) << message << "\nfor\n" << text;
     EXPECT_NE(message.find(word), std::string::npos) << message << "\nfor\n" << text;
+  }
+}
+
+TEST_F(ExperimentTest, ArraysBecomeTheirProduct) {
+  const auto trials =
+      read(kHead + kTrial + "threads = [1, 4]\ncontention = ['local', 'global']\nradius_mm = [2.5]\n").trials;
+  ASSERT_EQ(trials.size(), 4u);
+  EXPECT_EQ(trials[0].name, "one,radius_mm=2.5,threads=1,contention=local");
+  EXPECT_EQ(trials[3].name, "one,radius_mm=2.5,threads=4,contention=global");
+  std::set<std::pair<int, std::string>> settings;
+  for (const Trial& trial : trials) settings.emplace(trial.options["threads"], trial.options["contention"]);
+  EXPECT_EQ(settings.size(), 4u);
+}
+
+TEST_F(ExperimentTest, ThreadsUpToAllArePowersOfTwoAndAll) {
+  const int all = usable_processors();
+  const auto threads_of = [&](const std::string& value) {
+    std::vector<int> threads;
+    for (const Trial& trial : read(kHead + kTrial + "threads = " + value + "\n").trials)
+      threads.push_back(trial.options["threads"]);
+    return threads;
+  };
+  EXPECT_EQ(threads_of("'all'"), std::vector<int>{all});
+  const auto powers = threads_of("'1..all'");
+  EXPECT_EQ(powers.front(), 1);
+  EXPECT_EQ(powers.back(), all);
+  for (std::size_t i = 1; i < powers.size(); ++i) {
+    EXPECT_GT(powers[i], powers[i - 1]);
+    if (i + 1 < powers.size()) {
+      EXPECT_EQ(powers[i], 2 * powers[i - 1]);
+    }
+  }
+  EXPECT_EQ(threads_of("['1..all', 'all', 1]"), powers) << "each number once";
+}
+
+TEST_F(ExperimentTest, ElementsPerThreadGrowWithTheThreads) {
+  const auto trials = read(kHead + kTrial + "threads = [1, 3]\ntarget_elements_per_thread = 1000\n").trials;
+  ASSERT_EQ(trials.size(), 2u);
+  for (const Trial& trial : trials) {
+    EXPECT_EQ(trial.options["target_elements"], 1000 * trial.options["threads"].get<int>());
+    EXPECT_FALSE(trial.options.contains("target_elements_per_thread"));
+  }
+}
+
+TEST_F(ExperimentTest, OneImageStandsForAllInputs) {
+  const std::string path =
+      folder_.write("some.toml", kHead + "[inputs.b]\nimage = 'b.nii'\nif_exists = true\n" +
+                                     "[[trials]]\nname = 'x'\ninput = ['a', 'b']\nthreads = [1, 2]\n");
+  EXPECT_EQ(read_experiment(path).trials.size(), 4u);
+  const auto trials = read_experiment(path, "mine.nii").trials;
+  ASSERT_EQ(trials.size(), 2u);
+  for (const Trial& trial : trials) {
+    EXPECT_EQ(trial.image, "mine.nii");
+    EXPECT_FALSE(trial.if_exists);
+    EXPECT_EQ(trial.name.find("input"), std::string::npos);
+  }
+}
+
+TEST_F(ExperimentTest, TopologiesAreBesideTheExperimentAndOptionsKeepTheirTypes) {
+  const Json options = read(kHead + kTrial + R"(
+topology = "machines/big.xml"
+pin = true
+oversubscribe = false
+executor = "virtual"
+initial_ratio = 4
+nodes = 2
+seed = 0
+)")
+                           .trials[0]
+                           .options;
+  EXPECT_EQ(options["topology"], folder_ / "machines/big.xml");
+  EXPECT_EQ(options["pin"], true);
+  EXPECT_EQ(options["oversubscribe"], false);
+  EXPECT_EQ(options["executor"], "virtual");
+  EXPECT_EQ(options["initial_ratio"], 4.0);
+  EXPECT_EQ(options["nodes"], 2);
+  EXPECT_EQ(options["seed"], 0);
+}
+
+// What stands in experiments/ is complete, and each has a part for every reader's patience.
+TEST(Experiments, StateClaimToleranceAndTimeAndHaveAKickTiresTier) {
+  for (const std::string& path : experiment_files(PODM_EXPERIMENTS)) {
+    const Experiment experiment = read_experiment(path);
+    EXPECT_NE(experiment.tolerance, "") << path;
+    EXPECT_GT(experiment.expected_minutes, 0) << path;
+    std::set<Tier> tiers;
+    for (const Trial& trial : experiment.trials) tiers.insert(trial.tier);
+    EXPECT_TRUE(tiers.contains(Tier::kKickTires)) << path;
+    EXPECT_TRUE(tiers.contains(Tier::kDefault)) << path;
   }
 }
 

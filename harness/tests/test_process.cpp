@@ -44,6 +44,22 @@ TEST(Process, MissingProgramIsNamedAndNothingIsMeasured) {
   EXPECT_EQ(outcome.peak_rss_bytes, 0u);
 }
 
+TEST(Process, FileThatCannotBeWrittenIsNoSilentLoss) {
+  ProcessRequest request = shell("exit 0");
+  request.stderr_path = "/no/such/folder/err";
+  EXPECT_EQ(run_process(request).end, End::kNotStarted);
+}
+
+TEST(Process, MemoryLimitEndsTheChild) {
+  ProcessRequest request = shell("exec dd if=/dev/zero of=/dev/null count=1000 bs=300M");
+  request.memory_limit_bytes = 100 << 20;
+  const ProcessOutcome outcome = run_process(request);
+  EXPECT_EQ(outcome.end, End::kOutOfMemory);
+  EXPECT_GT(outcome.peak_rss_bytes, request.memory_limit_bytes);
+  request.arguments.back() = "exit 0";
+  EXPECT_TRUE(run_process(request).succeeded());
+}
+
 TEST(Process, OutputsGoToTheirFilesAndArgumentsArriveVerbatim) {
   const TemporaryFolder folder;
   const ProcessOutcome outcome =

@@ -5,7 +5,9 @@
 
 #include "environment.h"
 #include "fake_mesher.h"
+#include "machine.h"
 #include "record.h"
+#include "sha256.h"
 #include "table.h"
 
 namespace podm::bench {
@@ -15,10 +17,13 @@ using Json = nlohmann::ordered_json;
 
 struct RowTest : testing::Test {
   RowTest() {
-    experiment.name = "exp";
+    context.experiment = "exp";
+    context.key = "some key";
+    context.environment = {{"cpu", "some cpu"}};
     trial.name = "some";
     trial.image = "folder/image.nii";
     trial.timeout_s = 20;
+    trial.options = {{"threads", 2}};
     good.status = Status::kOk;
     good.record = Json::parse(kGoodRecord);
     good.image_size = {10, 10, 10};
@@ -29,17 +34,24 @@ struct RowTest : testing::Test {
     failed.process.signal = 6;
     failed.stderr_tail = "not UTF-8: \xff\n";
   }
-  Experiment experiment;
+  Json row_of(const TrialResult& result) const { return make_row(context, trial, turn, result); }
+  RowContext context;
   Trial trial;
+  Turn turn{0, 3, false};
   TrialResult good, failed;
 };
 
 TEST_F(RowTest, HoldsTheMesherRecordAndWhatTheHarnessSaw) {
-  const Json row = make_row(experiment, trial, good, {{"cpu", "some cpu"}});
+  const Json row = row_of(good);
   for (const auto& [key, value] : good.record.items()) {
-    if (key == "input") continue;  // the harness adds the size
+    if (key == "input" || key == "schema") continue;  // the harness adds the size; rows have their own schema
     EXPECT_EQ(row.at(key), value) << key;
   }
+  EXPECT_EQ(row.at("schema"), kRowSchema);
+  EXPECT_EQ(row.at("key"), "some key");
+  EXPECT_EQ(row.at("repeat"), 3);
+  EXPECT_EQ(row.at("warmup"), false);
+  EXPECT_EQ(row.at("asked"), trial.options);
   EXPECT_EQ(row.at("experiment"), "exp");
   EXPECT_EQ(row.at("trial"), "some");
   EXPECT_EQ(row.at("status"), "ok");
@@ -51,7 +63,7 @@ TEST_F(RowTest, HoldsTheMesherRecordAndWhatTheHarnessSaw) {
 }
 
 TEST_F(RowTest, OfAFailureSaysWhyAndOnWhat) {
-  const Json row = make_row(experiment, trial, failed, Json::object());
+  const Json row = row_of(failed);
   EXPECT_EQ(row.at("status"), "failed");
   EXPECT_EQ(row.at("reason"), failed.reason);
   EXPECT_EQ(row.at("input").at("path"), trial.image);
@@ -68,30 +80,11 @@ TEST_F(RowTest, MemoryPerCellLeavesOutLabelsAndTransform) {
   EXPECT_FALSE(bytes_per_cell_beyond_image(good).has_value());
 }
 
-TEST_F(RowTest, EachAppendAddsOneWholeLineToWhatWasThere) {
-  const TemporaryFolder folder;
-  const std::string path = folder.write("rows.jsonl", "{\"old\":1}\n");
-  for (const TrialResult& result : {good, failed})
-    RecordFile(path).append(make_row(experiment, trial, result, Json::object()));
-  std::ifstream file(path);
-  std::vector<Json> rows;
-  for (std::string line; std::getline(file, line);) rows.push_back(Json::parse(line));
-  ASSERT_EQ(rows.size(), 3u);
-  EXPECT_EQ(rows[0].at("old"), 1);
-  EXPECT_EQ(rows[1].at("status"), "ok");
-  EXPECT_EQ(rows[2].at("status"), "failed");
-}
-
-TEST_F(RowTest, UnwritableFileIsRefused) {
-  EXPECT_THROW(RecordFile("/no/such/folder/rows.jsonl"), InputError);
-  EXPECT_THROW(RecordFile("/dev/full").append(Json::object()), InputError);
-}
-
 TEST_F(RowTest, TableIsAlignedAndTellsEveryTrial) {
   good.record["cells"] = 1234567u;
-  Trial other = trial;
-  other.name = "another-with-a-long-name";
-  std::istringstream text(format_table({{trial, good}, {other, failed}}));
+  const Json met = row_of(good);
+  trial.name = "another-with-a-long-name";
+  std::istringstream text(format_table({{met}, {row_of(failed)}, {}}));
   std::vector<std::string> lines;
   for (std::string line; std::getline(text, line);) lines.push_back(line);
   ASSERT_EQ(lines.size(), 3u);
@@ -103,19 +96,68 @@ TEST_F(RowTest, TableIsAlignedAndTellsEveryTrial) {
   EXPECT_EQ(lines[2].find("failed:"), last_column);
 }
 
+TEST_F(RowTest, TableHasMediansOfWhatIsProvedAndNoOther) {
+  std::vector<Json> rows;
+  for (const unsigned cells : {10u, 30u, 20u}) {
+    good.record["cells"] = cells;
+    rows.push_back(row_of(good));
+  }
+  EXPECT_NE(format_table({rows}).find(" 20 "), std::string::npos);
+
+  good.record["cells"] = 4000u;
+  turn.is_warmup = true;
+  rows.push_back(row_of(good));
+  turn.is_warmup = false;
+  good.status = Status::kUnmet;
+  good.reason = "facet_angle 7";
+  rows.push_back(row_of(good));
+  const std::string table = format_table({rows});
+  EXPECT_NE(table.find(" 20 "), std::string::npos) << table;
+  EXPECT_NE(table.find("NOT met: facet_angle 7"), std::string::npos) << table;
+  EXPECT_EQ(format_table({{rows.back()}}).find("4 000"), std::string::npos)
+      << "no number of an unproved mesh";
+}
+
 TEST(Environment, KnowsThisMachineOrSaysWhyNot) {
   const TemporaryFolder folder;
-  const Json now = environment(folder.path());
-  for (const char* key : {"cpu", "cores", "governor", "transparent_huge_pages", "kernel", "load_average",
-                          "memory_bytes", "compiler", "compiler_flags", "build_type", "sources"}) {
-    ASSERT_TRUE(now.contains(key)) << key;
-    EXPECT_NE(now[key], "") << key;
-    EXPECT_NE(now[key], Json()) << key;
+  Json known = environment_of_run(folder.path());
+  known.update(environment_now());
+  for (const char* key :
+       {"governor", "transparent_huge_pages", "numa_balancing", "smt", "cgroup", "kernel", "load_average",
+        "memory_bytes", "compiler", "compiler_flags", "build_type", "libraries", "sources"}) {
+    ASSERT_TRUE(known.contains(key)) << key;
+    EXPECT_NE(known[key], "") << key;
+    EXPECT_NE(known[key], Json()) << key;
   }
-  EXPECT_GE(now["cores"]["usable"], 1);
-  EXPECT_GE(now["cores"]["online"], now["cores"]["usable"]);
-  EXPECT_GT(now["memory_bytes"]["total"], now["memory_bytes"]["available"]);
-  EXPECT_TRUE(now["kernel"].get<std::string>().starts_with("Linux"));
+  EXPECT_GT(known["memory_bytes"]["total"], known["memory_bytes"]["available"]);
+  EXPECT_TRUE(known["kernel"].get<std::string>().starts_with("Linux"));
+}
+
+TEST(Environment, ProgramsAreKnownByTheirBytesAndVersion) {
+  const TemporaryFolder folder;
+  const Programs programs{folder.script("podm", "echo podm 9.9"), folder.script("podm-verify", "exit 3")};
+  const Json described = describe_programs(programs, folder.path());
+  EXPECT_EQ(described["podm"]["version"], "podm 9.9");
+  EXPECT_TRUE(text_in(described["podm_verify"], "version").starts_with("unavailable"));
+  EXPECT_NE(described["podm"]["sha256"], described["podm_verify"]["sha256"]);
+  EXPECT_THROW(describe_programs({folder / "absent", {}}, folder.path()), InputError);
+}
+
+TEST(Machine, IsTheSameEachTimeAndTellsNoHostName) {
+  const Machine machine = this_machine();
+  EXPECT_EQ(machine.summary, this_machine().summary);
+  EXPECT_GE(machine.summary["usable_processors"], 1);
+  EXPECT_NE(machine.topology_xml.find("<topology"), std::string::npos);
+  EXPECT_EQ(machine.topology_xml.find("HostName"), std::string::npos);
+}
+
+TEST(Sha256, IsThatOfTheStandard) {  // FIPS 180-4, the one-block example
+  const std::string of_abc = "ba7816bf8f01cfea414140de5dae2223b00361a396177a9cb410ff61f20015ad";
+  const TemporaryFolder folder;
+  EXPECT_EQ(sha256_of("abc"), of_abc);
+  EXPECT_EQ(sha256_of_file(folder.write("file", "abc")), of_abc);
+  EXPECT_THROW(sha256_of_file(folder / "absent"), InputError);
+  EXPECT_THROW(sha256_of_file(folder.path()), InputError);
 }
 
 }  // namespace

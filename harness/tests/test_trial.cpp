@@ -11,7 +11,7 @@ Trial some_trial() {
   Trial trial;
   trial.name = "some";
   trial.image = "image.nii";
-  trial.radius_mm = 2.5;
+  trial.options = {{"threads", 1}, {"radius_mm", 2.5}};
   trial.timeout_s = 20;
   return trial;
 }
@@ -19,7 +19,7 @@ Trial some_trial() {
 class TrialTest : public testing::Test {
  protected:
   TrialResult run(const std::string& mesh_body, const Trial& trial = some_trial()) {
-    return run_trial(trial, {fake_mesher(folder_, mesh_body), {}}, folder_.path());
+    return TrialRunner({fake_mesher(folder_, mesh_body), {}}).run(trial, folder_.path());
   }
   static std::string write_record(const std::string& record) {
     return "echo '" + record + "' > \"$record\"\n";
@@ -44,7 +44,7 @@ TEST_F(TrialTest, GoodRunIsOkWithItsRecordAndImageSize) {
 TEST_F(TrialTest, VerdictsOfTheVerifierDecide) {
   const std::string mesher = fake_mesher(folder_, write_record(kGoodRecord));
   const auto run_with_verifier = [&](const std::string& body) {
-    return run_trial(some_trial(), {mesher, fake_verifier(folder_, body)}, folder_.path());
+    return TrialRunner({mesher, fake_verifier(folder_, body)}).run(some_trial(), folder_.path());
   };
   const TrialResult proved =
       run_with_verifier(R"(echo '{"claims":{"size":{"verdict":"pass"}}}' > "$report")");
@@ -62,22 +62,45 @@ TEST_F(TrialTest, VerdictsOfTheVerifierDecide) {
 
 TEST_F(TrialTest, OptionsOfTheTrialReachTheMesher) {
   Trial trial = some_trial();
-  trial.delta_mm = 0.25;
-  trial.threads = 3;
+  trial.options = {
+      {"threads", 3}, {"delta_mm", 0.25}, {"cores_per_node", 8}, {"pin", true}, {"oversubscribe", false}};
   run(write_record(kGoodRecord), trial);
   const std::string arguments = " " + read_tail(folder_ / "arguments", 1000);
-  for (const char* expected :
-       {" mesh image.nii ", " --radius 2.5 ", " --delta 0.25 ", " --threads 3 ", " --quiet"})
-    EXPECT_NE(arguments.find(expected), std::string::npos) << expected << " in " << arguments;
-  EXPECT_EQ(arguments.find("--target-elements"), std::string::npos);
+  EXPECT_TRUE(arguments.starts_with(" mesh image.nii --threads 3 --delta 0.25 --cores-per-node 8 --pin -o "))
+      << arguments;
+  EXPECT_TRUE(arguments.ends_with(" --quiet\n")) << arguments;
+}
 
-  trial = some_trial();
-  trial.radius_mm = 0;
-  trial.target_elements = 12345;
-  run(write_record(kGoodRecord), trial);
-  const std::string others = read_tail(folder_ / "arguments", 1000);
-  EXPECT_NE(others.find("--target-elements 12345 "), std::string::npos);
-  EXPECT_EQ(others.find("--radius"), std::string::npos);
+TEST_F(TrialTest, ScheduleOfTheMesherReachesTheVerifier) {
+  Trial trial = some_trial();
+  trial.options["schedule"] = true;
+  const std::string mesher = fake_mesher(folder_, write_record(kGoodRecord));
+  const std::string verifier =
+      folder_.script("podm-verify", "echo \"$@\" > \"$(dirname \"$0\")/verifier_arguments\"");
+  TrialRunner({mesher, verifier}).run(trial, folder_.path());
+  const std::string option = " --schedule " + folder_.path() + "/schedule.jsonl";
+  for (const char* program : {"arguments", "verifier_arguments"}) {
+    const std::string arguments = " " + read_tail(folder_ / program, 1000);
+    EXPECT_NE(arguments.find(option), std::string::npos) << program << arguments;
+  }
+}
+
+TEST_F(TrialTest, MemoryAboveTheLimitEndsTheTrial) {
+  Trial trial = some_trial();
+  trial.memory_limit_gib = 0.1;
+  // dd holds a block of 300 MiB in memory.
+  const TrialResult result = run("exec dd if=/dev/zero of=/dev/null count=1000 bs=300M", trial);
+  EXPECT_EQ(result.status, Status::kFailed);
+  EXPECT_NE(result.reason.find("memory limit"), std::string::npos) << result.reason;
+  EXPECT_EQ(run(write_record(kGoodRecord), trial).status, Status::kOk);
+}
+
+TEST_F(TrialTest, EachImageIsLookedAtOnce) {
+  const std::string mesher = fake_mesher(folder_, write_record(kGoodRecord));
+  TrialRunner runner({mesher, {}});
+  runner.run(some_trial(), folder_.path());
+  std::filesystem::remove(mesher);
+  EXPECT_EQ(runner.run(some_trial(), folder_.path()).image_size, nlohmann::ordered_json({10, 10, 10}));
 }
 
 TEST_F(TrialTest, MissedGuaranteeIsUnmetAndNamed) {
@@ -152,7 +175,7 @@ TEST_F(TrialTest, MissingOrUnusableRecordFails) {
 }
 
 TEST_F(TrialTest, MissingMesherFails) {
-  const TrialResult result = run_trial(some_trial(), {folder_ / "absent", {}}, folder_.path());
+  const TrialResult result = TrialRunner({folder_ / "absent", {}}).run(some_trial(), folder_.path());
   EXPECT_EQ(result.status, Status::kFailed);
   EXPECT_NE(result.reason.find(folder_ / "absent"), std::string::npos);
 }
@@ -170,7 +193,9 @@ TEST_F(TrialTest, AbsentImageIsSkippedOnlyWhenItMayBeAbsent) {
 
 TEST_F(TrialTest, StopRequestInterrupts) {
   const TrialResult result =
-      run_trial(some_trial(), {fake_mesher(folder_, "sleep 30"), {}}, folder_.path(), [] { return true; });
+      TrialRunner({fake_mesher(folder_, "sleep 30"), {}}).run(some_trial(), folder_.path(), [] {
+        return true;
+      });
   EXPECT_EQ(result.status, Status::kInterrupted);
 }
 

@@ -56,8 +56,9 @@ void BM_cost_of_locks(benchmark::State& state) {
     Crew crew;
     crew.locks_alone = with_locks;
     const double start_s = cpu_s();
-    const Refinement refinement = podm(isosurface, foreground_bounds(image),
-                                       default_delta_mm(image, radius_mm), sizes, 1 << 24, crew, watch);
+    const Refinement refinement =
+        podm({isosurface, foreground_bounds(image), default_delta_mm(image, radius_mm), sizes, 1 << 24}, crew,
+             watch);
     const double elapsed_s = cpu_s() - start_s;
     cells = refinement.mesh->num_cells();
     return elapsed_s;

@@ -12,8 +12,8 @@
 
 namespace podm::cli {
 
-/// Reads the image and gives names from the table to labels that have none yet.
-LabelImage read_labelled_image(const ImageArguments& arguments);
+/// Reads the image and gives names from the table to labels that have none yet. `threads`: 0 for all cores.
+LabelImage read_labelled_image(const ImageArguments& arguments, int threads = 0);
 
 /// Lengths by label value. A name stands for every label that bears it. Throws InputError, naming
 /// `image_path`, where a label is absent.

@@ -9,6 +9,7 @@
 #include "cli/commands.h"
 #include "cli/json_text.h"
 #include "cli/labelled_image.h"
+#include "cli/leaf_schedule_file.h"
 #include "cli/mesh_run.h"
 #include "cli/meshing_options.h"
 #include "cli/process_memory.h"
@@ -36,6 +37,9 @@ void check_outputs(const MeshCommand& command) {
   check_mesh_path(command.mesh_path);
   if (!command.surface_path.empty()) check_surface_path(command.surface_path);
   if (!command.record_path.empty()) check_appendable(command.record_path);
+  const Algorithm algorithm = command.meshing.algorithm;
+  if (!command.schedule_path.empty() && algorithm == Algorithm::kPodm)
+    throw InputError(command.schedule_path + ": podm has no leaves; use --algorithm pdr or pdr-podm");
 }
 
 MeshingResult mesh_with_display(const LabelImage& image, const MeshingOptions& options, bool quiet) {
@@ -68,7 +72,8 @@ void write_outputs(const MeshCommand& command, const TetMesh& mesh) {
 int run(const MeshCommand& command) {
   check_outputs(command);
   LabelImage image;
-  const double read_s = timed([&] { image = read_labelled_image(command.image); });
+  const double read_s =
+      timed([&] { image = read_labelled_image(command.image, command.meshing.loop_threads()); });
   MeshRun run{.command = command,
               .image = image,
               .options = meshing_options(command, image),
@@ -78,6 +83,7 @@ int run(const MeshCommand& command) {
               .verdicts = {}};
   std::optional<OperationLogWriter> log;
   if (!command.log_path.empty()) run.options.log = &log.emplace(command.log_path);
+  run.options.with_schedule = !command.schedule_path.empty();
   run.result = mesh_with_display(image, run.options, command.quiet);
   run.write_s = timed([&] {
     canonicalize(run.result.mesh);
@@ -85,10 +91,12 @@ int run(const MeshCommand& command) {
     write_outputs(command, run.result.mesh);
   });
   if (log) finish_log(*log, run);
+  if (!command.schedule_path.empty()) write_schedule(run, command.schedule_path);
   run.peak_rss_bytes = peak_resident_bytes();
   if (command.verify && !run.result.mesh.cells.empty()) run.verdicts = verify_mesh(run);
   if (!command.record_path.empty()) append_line(command.record_path, json_line(record(run)));
   if (!command.quiet) fmt::print(stderr, "{}", summary(run));
+  if (command.stats) fmt::print(stderr, "{}", statistics(run));
   for (const std::string& warning : run.result.report.warnings) fmt::print(stderr, "warning: {}\n", warning);
   const auto unmet = run.unmet();
   for (const std::string& sentence : unmet) fmt::print(stderr, "podm: {}\n", sentence);

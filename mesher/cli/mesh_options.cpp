@@ -1,4 +1,6 @@
 // The options of podm mesh.
+#include <fmt/format.h>
+
 #include <algorithm>
 
 #include "cli/add_options.h"
@@ -44,9 +46,44 @@ void add_limit_options(CLI::App& app, MeshCommand& command) {
           });
 }
 
+void add_algorithm_options(CLI::App& app, MeshCommand& command) {
+  MeshingOptions& meshing = command.meshing;
+  const auto into_threads = [](int& target) {
+    return [&target](const std::string& text, const std::string& name) {
+      target = static_cast<int>(parse_integer(text, name, 1, kMaxThreads));
+    };
+  };
+  app.option_defaults()->group("Algorithm");
+  add_one(app, "--algorithm", "NAME",
+          "podm: threads anywhere, with locks; pdr-podm: leaf by leaf of an octree,\n"
+          "by nodes of several threads; pdr: leaf by leaf, a thread each, no locks;\n"
+          "auto: podm on few threads, pdr-podm on many [default: podm]",
+          [&meshing](const std::string& text, const std::string& name) {
+            meshing.algorithm = parse_choice(
+                text, name, {Algorithm::kAuto, Algorithm::kPodm, Algorithm::kPdr, Algorithm::kPdrPodm});
+          });
+  add_one(app, "--crossover", "N",
+          fmt::format("threads from which on auto is pdr-podm [default: {}]", kDefaultCrossover),
+          into_threads(meshing.crossover));
+  add_one(app, "--nodes", "N", "computing nodes of pdr-podm [default: NUMA nodes in use]",
+          into_threads(meshing.nodes));
+  add_one(app, "--cores-per-node", "N", "threads of each computing node [default: threads over nodes]",
+          into_threads(meshing.cores_per_node));
+  add_one(app, "--initial-ratio", "X",
+          "bounds of the initial mesh of pdr and pdr-podm over the final ones [default: 4]",
+          [&meshing](const std::string& text, const std::string& name) {
+            meshing.initial_ratio = parse_positive(text, name, "number");
+          });
+  add_one(app, "--initial-threads", "N", "threads of the initial mesh [default: all; 1 for pdr]",
+          into_threads(meshing.initial_threads));
+  add_one(app, "--leaf-size", "MM", "side of the octree's leaves, mm [default: from the initial bound]",
+          into_length(meshing.leaf_size_mm));
+  add_one(app, "--schedule", "FILE", "write which leaf was refined when, for podm-verify [default: none]",
+          into(command.schedule_path));
+}
+
 void add_run_options(CLI::App& app, MeshCommand& command) {
   MeshingOptions& meshing = command.meshing;
-  app.option_defaults()->group("Run");
   add_one(app, "--threads", "N",
           "threads of all phases; 1 makes the same mesh every time\n"
           "[default: one for refinement, all cores for the feature transform]",
@@ -61,6 +98,21 @@ void add_run_options(CLI::App& app, MeshCommand& command) {
             text, name,
             {Contention::kAggressive, Contention::kRandom, Contention::kGlobal, Contention::kLocal});
       });
+  add_one(app, "--begging", "LIST",
+          "whom a thread with cells to spare serves first: random (the first to beg)\n"
+          "or hierarchical (the nearest in the machine) [default: hierarchical]",
+          [&meshing](const std::string& text, const std::string& name) {
+            meshing.begging = parse_choice(text, name, {Begging::kRandom, Begging::kHierarchical});
+          });
+  add_one(app, "--pin", "PLAN",
+          "bind threads to processors: compact, scatter, none,\n"
+          "or processors such as 0,2,4-7 [default: none]",
+          into(meshing.pin));
+  app.add_flag("--oversubscribe", meshing.oversubscribe,
+               "allow more threads than processors [default: refused]");
+  add_one(app, "--topology", "FILE",
+          "hwloc XML of a machine that the threads stand for [default: this machine]",
+          into(meshing.topology_path));
   add_one(app, "--executor", "EXECUTOR",
           "threads, or virtual: one core plays any number of threads in virtual time,\n"
           "the same for the same seed; times are simulated [default: threads]",
@@ -100,9 +152,12 @@ void add_mesh_command(CLI::App& program, MeshCommand& command) {
           });
   add_one(app, "--record", "FILE", "append one JSON line that describes the run [default: none]",
           into(command.record_path));
+  add_algorithm_options(app, command);
+  app.option_defaults()->group("Run");
   add_run_options(app, command);
   app.add_flag("--verify", command.verify,
                "have podm-verify check the written mesh; exit 1 unless all holds [default: no]");
+  app.add_flag("--stats", command.stats, "a table of what each thread did and lost [default: no]");
   app.add_flag("--quiet", command.quiet, "neither progress nor summary [default: both, on standard error]");
 }
 

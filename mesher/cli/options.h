@@ -23,13 +23,15 @@ struct ImageArguments {
 struct MeshCommand {
   ImageArguments image;
   std::string mesh_path;
-  std::string surface_path;  ///< empty: no surfaces
-  std::string record_path;   ///< empty: no record
-  std::string log_path;      ///< empty: no linearization log
-  MeshingOptions meshing;    ///< but for the two fields below, which need the image or the machine
+  std::string surface_path;   ///< empty: no surfaces
+  std::string record_path;    ///< empty: no record
+  std::string log_path;       ///< empty: no linearization log
+  std::string schedule_path;  ///< empty: no schedule
+  MeshingOptions meshing;     ///< but for the two fields below, which need the image or the machine
   std::vector<std::pair<std::string, double>> radius_of_mm;  ///< by label name or value
   std::uint64_t max_memory_bytes = 0;                        ///< of the process; 0: as the machine has
   bool verify = false;
+  bool stats = false;
   bool quiet = false;
 };
 

@@ -48,6 +48,48 @@ std::uint64_t committed(const Counters& counters) {
   return operations;
 }
 
+Json or_null(const std::optional<int>& value) { return value ? Json(*value) : Json(nullptr); }
+
+// By worker; processors in the system's numbers, nodes and sockets from 0.
+Json placement_of(const MeshingReport& report) {
+  Json places = Json::array();
+  for (const WorkerReport& worker : report.workers)
+    places.push_back({{"processor", or_null(worker.processor)},
+                      {"bound_to", or_null(worker.bound_to)},
+                      {"node", worker.node},
+                      {"socket", worker.socket}});
+  return places;
+}
+
+// Accesses by distance; why there are none on a machine of one node.
+Json hops_of(const MeshingReport& report) {
+  if (report.counters.accesses_by_hops.empty()) return "unavailable: one NUMA node or one thread";
+  return report.counters.accesses_by_hops;
+}
+
+Json pages_of(const MeshingReport& report) {
+  if (!report.pages.unavailable.empty()) return "unavailable: " + report.pages.unavailable;
+  return {{"as_claimed", report.pages.as_claimed}, {"elsewhere", report.pages.elsewhere}};
+}
+
+Json workers_of(const MeshingReport& report) {
+  Json workers = Json::array();
+  for (const WorkerReport& worker : report.workers) {
+    const Counters& c = worker.counters;
+    workers.push_back({{"committed", committed(c)},
+                       {"stale_cell", c.stale_cells},
+                       {"rejected", c.rejected},
+                       {"lock_conflict", c.lock_conflicts},
+                       {"region_cells", c.region_cells},
+                       {"conflict_tests", c.conflict_tests},
+                       {"contention_s", c.contention_s},
+                       {"begging_s", c.begging_s},
+                       {"rollback_s", c.rollback_s},
+                       {"accesses_by_hops", c.accesses_by_hops}});
+  }
+  return workers;
+}
+
 Json counters_of(const MeshingReport& report) {
   const Counters& counters = report.counters;
   Json insertions = Json::object();
@@ -59,17 +101,23 @@ Json counters_of(const MeshingReport& report) {
           {"conflict_tests", counters.conflict_tests},
           {"exact_decisions", counters.exact_decisions},
           {"cells_created", counters.cells_created},
+          {"region_cells", counters.region_cells},
           {"store_cells", report.store_cells}};
 }
 
-// Times of a virtual executor are simulated: they stand apart from those that were measured.
-Json executor_of(const MeshRun& run) {
-  Json executor{{"kind", to_string(run.options.executor)}};
-  if (run.options.executor == Executor::kVirtual) {
-    executor["cost"] = to_string(run.options.virtual_cost);
-    executor["simulated_refine_s"] = run.result.report.virtual_s;
-  }
-  return executor;
+// What a virtual executor says of time is simulated: it stands apart from what was measured.
+Json virtual_of(const MeshRun& run) {
+  if (run.options.executor != Executor::kVirtual) return nullptr;
+  return {{"cost", to_string(run.options.virtual_cost)}, {"refine_s", run.result.report.virtual_s}};
+}
+
+Json leaves_of(const MeshRun& run) {
+  if (run.result.report.algorithm == Algorithm::kPodm) return nullptr;
+  return {{"number", run.result.report.num_leaves},
+          {"nodes", run.result.report.computing_nodes},
+          {"initial_ratio", run.options.initial_ratio},
+          {"initial_threads", run.options.initial_threads},
+          {"leaf_size_mm", run.options.leaf_size_mm}};
 }
 
 Json quality_of(const Quality& quality) {
@@ -120,7 +168,7 @@ Json record(const MeshRun& run) {
   return {
       {"schema", kRecordSchema},
       {"program", "podm " PODM_VERSION},
-      {"algorithm", "podm"},
+      {"algorithm", to_string(report.algorithm)},
       {"input",
        {{"path", path}, {"sha256", input_sha256(path, run.image)}, {"affine", affine_rows(run.image)}}},
       {"options", options_of(run)},
@@ -128,10 +176,14 @@ Json record(const MeshRun& run) {
       {"seed", run.options.seed},
       {"threads",
        {{"asked", run.options.threads},
-        {"used", std::max(1, run.options.threads)},
-        {"placement", "unpinned"},
-        {"contention", to_string(run.options.contention)}}},
-      {"executor", executor_of(run)},
+        {"used", report.workers.size()},
+        {"pin", run.options.pin},
+        {"placement", placement_of(report)},
+        {"contention", to_string(run.options.contention)},
+        {"begging", to_string(run.options.begging)}}},
+      {"leaves", leaves_of(run)},
+      {"executor", to_string(run.options.executor)},
+      {"virtual", virtual_of(run)},
       {"phases_s", run.phases_s()},
       {"cells", mesh.cells.size()},
       {"vertices", mesh.vertices.size()},
@@ -145,12 +197,16 @@ Json record(const MeshRun& run) {
        {{"committed", committed(report.counters)},
         {"stale_cell", report.counters.stale_cells},
         {"rejected", report.counters.rejected},
-        {"lock_conflict", report.counters.lock_conflicts}}},
+        {"lock_conflict", report.counters.lock_conflicts},
+        {"out_of_leaf", report.counters.out_of_leaf}}},
       {"overhead_s",
        {{"contention", report.counters.contention_s},
         {"begging", report.counters.begging_s},
         {"rollback", report.counters.rollback_s}}},
+      {"hops", hops_of(report)},
+      {"pages", pages_of(report)},
       {"counters", counters_of(report)},
+      {"workers", workers_of(report)},
       {"quality", quality_of(report.quality)},
       {"guarantees", guarantees_of(report.guarantees)},
       {"mesh_sha256", run.mesh_sha256},

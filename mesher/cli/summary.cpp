@@ -60,7 +60,8 @@ std::string quality_text(const Quality& quality) {
 std::string time_text(const MeshRun& run) {
   const auto phases = run.phases_s();
   std::string text = "time      ";
-  for (const char* phase : {"read", "transform", "octree", "initial", "refine", "extract", "write"})
+  for (const char* phase :
+       {"read", "transform", "initial", "octree", "refine", "closing", "extract", "write"})
     if (const auto found = phases.find(phase); found != phases.end())
       text += fmt::format(" {} {:.2f} s", phase, found->second);
   return text + fmt::format("\nspeed      {:.0f} cells/s in all but writing, {:.0f} cells/s refining\n",
@@ -85,6 +86,47 @@ std::string summary(const MeshRun& run) {
   text += fmt::format("sha256     {}\n", run.mesh_sha256);
   text += fmt::format("guarantees {}\n", report.guarantees.all_met() ? "all met" : "not met");
   return text;
+}
+
+namespace {
+
+std::string hops_text(const std::vector<std::uint64_t>& accesses) {
+  std::uint64_t all = 0;
+  for (const std::uint64_t n : accesses) all += n;
+  std::string text;
+  for (const std::uint64_t n : accesses)
+    text += fmt::format(" {:6.2f}", all > 0 ? 100 * static_cast<double>(n) / static_cast<double>(all) : 0);
+  return text;
+}
+
+std::string statistics_line(const std::string& name, const std::string& place, const Counters& c) {
+  std::uint64_t committed = c.removals;
+  for (const std::uint64_t insertions : c.insertions_by_rule) committed += insertions;
+  const auto visited = static_cast<double>(c.conflict_tests);
+  return fmt::format("{:>6} {:>11} {:>11} {:>11} {:>9} {:>9} {:>9.1f} {:>9.3f} {:>8.3f} {:>8.3f} {}\n", name,
+                     place, committed, c.stale_cells, c.lock_conflicts, c.rejected,
+                     committed > 0 ? visited / static_cast<double>(committed) : 0, c.contention_s,
+                     c.begging_s, c.rollback_s, hops_text(c.accesses_by_hops));
+}
+
+}  // namespace
+
+std::string statistics(const MeshRun& run) {
+  const MeshingReport& report = run.result.report;
+  const bool is_virtual = run.options.executor == Executor::kVirtual;
+  std::string text = fmt::format(
+      "{:>6} {:>11} {:>11} {:>11} {:>9} {:>9} {:>9} {:>28}{}\n"
+      "{:>6} {:>11} {:>11} {:>11} {:>9} {:>9} {:>9} {:>9} {:>8} {:>8}{}\n",
+      "", "", "", "", "", "", "cells", is_virtual ? "simulated seconds lost to" : "seconds lost to",
+      report.counters.accesses_by_hops.empty() ? "" : "  % of accesses", "worker", "cpu/node", "committed",
+      "stale", "conflict", "rejected", "visited", "waiting", "begging", "rollback",
+      report.counters.accesses_by_hops.empty() ? "" : "  at 0, 1, ... hops");
+  for (std::size_t i = 0; i < report.workers.size(); ++i) {
+    const WorkerReport& worker = report.workers[i];
+    const std::string processor = worker.bound_to ? std::to_string(*worker.bound_to) : "any";
+    text += statistics_line(std::to_string(i), fmt::format("{}/{}", processor, worker.node), worker.counters);
+  }
+  return text + statistics_line("all", "", report.counters);
 }
 
 }  // namespace podm::cli

@@ -10,4 +10,7 @@ namespace podm::cli {
 /// Several lines, each ended.
 std::string summary(const MeshRun& run);
 
+/// One line a worker: operations by outcome, cells visited an operation, time lost, accesses by distance.
+std::string statistics(const MeshRun& run);
+
 }  // namespace podm::cli

@@ -2,6 +2,7 @@
 
 #include <fcntl.h>
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 #include <spawn.h>
 #include <sys/wait.h>
 #include <unistd.h>
@@ -40,35 +41,50 @@ class ScratchFolder {
   std::string path_;
 };
 
-bool is_as_stored(const LabelSelection& selection) {
-  return selection.background == 0 && selection.keep.empty() && selection.drop.empty() &&
-         selection.merges.empty();
+using Ranges = std::vector<std::pair<std::uint32_t, std::uint32_t>>;
+
+std::string text_of(const Ranges& ranges) {
+  std::vector<std::string> parts;
+  for (const auto& [first, last] : ranges)
+    parts.push_back(first == last ? fmt::format("{}", first) : fmt::format("{}-{}", first, last));
+  return fmt::format("{}", fmt::join(parts, ","));
 }
 
-// Empty: there is no file of the image that was meshed.
-std::string image_file(const MeshRun& run, const ScratchFolder& scratch) {
+// The image and what was meshed of it. A phantom is written with its labels selected.
+std::vector<std::string> image_options(const MeshRun& run, const ScratchFolder& scratch) {
   const ImageArguments& image = run.command.image;
-  if (!is_as_stored(image.selection)) return "";
-  if (!image.path.starts_with("phantom:")) return image.path;
-  write_nifti(run.image, scratch / "image.nii.gz");
-  return scratch / "image.nii.gz";
+  const LabelSelection& selection = image.selection;
+  const std::string background = fmt::format("{}", selection.background);
+  if (image.path.starts_with("phantom:")) {
+    write_nifti(run.image, scratch / "image.nii.gz");
+    return {"--image", scratch / "image.nii.gz", "--background", background};
+  }
+  std::vector<std::string> options{"--image", image.path, "--background", background};
+  if (!selection.keep.empty()) options.insert(options.end(), {"--labels", text_of(selection.keep)});
+  if (!selection.drop.empty()) options.insert(options.end(), {"--drop", text_of(selection.drop)});
+  for (const auto& [values, name] : selection.merges)
+    options.insert(options.end(), {"--merge", fmt::format("{}={}", fmt::join(values, ","), name)});
+  return options;
 }
 
-std::vector<std::string> verifier_command(const MeshRun& run, const std::string& image,
+std::vector<std::string> verifier_command(const MeshRun& run, const ScratchFolder& scratch,
                                           const std::string& report) {
   std::vector<std::string> command{
       (fs::read_symlink("/proc/self/exe").parent_path() / "podm-verify").string(), run.command.mesh_path,
       "--json", report, "--claims"};
-  std::string claims = "structure,radius_edge,boundary_angles,delaunay,conformity,surface";
-  if (!image.empty()) claims += ",labels";
+  std::string claims = "structure,radius_edge,boundary_angles,delaunay,conformity,surface,labels";
   const double radius_mm = run.result.report.radius_mm;
   const auto& radius_of = run.options.radius_of_mm;
   if (radius_mm > 0 || !radius_of.empty()) claims += ",size";
   command.push_back(claims);
-  if (!image.empty()) command.insert(command.end(), {"--image", image});
+  const auto image = image_options(run, scratch);
+  command.insert(command.end(), image.begin(), image.end());
   if (radius_mm > 0) command.insert(command.end(), {"--radius", fmt::format("{}", radius_mm)});
+  // A foreground label 0 goes by the background's value there.
+  const std::uint32_t background = run.command.image.selection.background;
   for (const auto& [label, radius] : radius_of)
-    command.insert(command.end(), {"--radius-of", fmt::format("{}={}", label, radius)});
+    command.insert(command.end(),
+                   {"--radius-of", fmt::format("{}={}", label == 0 ? background : label, radius)});
   return command;
 }
 
@@ -97,7 +113,7 @@ void run_to_end(const std::vector<std::string>& command, bool quiet) {
 std::map<std::string, std::string> verify_mesh(const MeshRun& run) {
   const ScratchFolder scratch;
   const std::string report_path = scratch / "report.json";
-  const auto command = verifier_command(run, image_file(run, scratch), report_path);
+  const auto command = verifier_command(run, scratch, report_path);
   run_to_end(command, run.command.quiet);
   std::ifstream file(report_path);
   const auto report = nlohmann::json::parse(file, nullptr, false);

@@ -9,10 +9,10 @@
 namespace podm::cli {
 
 /// Runs the podm-verify beside this program on the mesh that `run` wrote: all claims but fidelity, which is
-/// promised only for cells about as small as voxels. The image goes with it as it is in its file, a phantom
-/// as a file written for the purpose; where labels were selected or merged it does not, and only claims about
-/// the mesh alone are checked. The report for people goes to standard error unless the run is quiet. Returns
-/// the verdicts by claim; throws InputError where the verifier is not there or tells nothing.
+/// promised only for cells about as small as voxels. The image goes with it as it is in its file, with the
+/// options that selected its labels; a phantom as a file written for the purpose. The report for people goes
+/// to standard error unless the run is quiet. Returns the verdicts by claim; throws InputError where the
+/// verifier is not there or tells nothing.
 std::map<std::string, std::string> verify_mesh(const MeshRun& run);
 
 }  // namespace podm::cli

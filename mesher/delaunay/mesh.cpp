@@ -14,13 +14,9 @@ namespace {
 // vertices are bounded by cells / 4, which leaves slack for sparse starts.
 std::size_t vertex_capacity_for(std::size_t cell_capacity) { return cell_capacity / 4 + 4096; }
 
-std::uint32_t take(std::atomic<std::uint32_t>& bound, std::uint32_t count, std::size_t capacity) {
-  std::uint32_t first = bound.load(std::memory_order_relaxed);
-  do {
-    if (first + static_cast<std::size_t>(count) > capacity) throw std::bad_alloc();
-  } while (!bound.compare_exchange_weak(first, first + count, std::memory_order_relaxed));
-  return first;
-}
+// Runs of ids whose cells or vertices fill a huge page of 2 MiB.
+constexpr unsigned kCellRunBits = 15, kVertexRunBits = 16;
+static_assert(sizeof(Cell) << kCellRunBits == 1 << 21 && sizeof(Vertex) << kVertexRunBits == 1 << 21);
 
 // Room for `count` more elements; doubles, so that many small calls cost little.
 template <class T>
@@ -36,15 +32,17 @@ double largest_coordinate(const Box& b) {
 
 }  // namespace
 
-Mesh::Mesh(const Box& box, std::size_t cell_capacity)
+Mesh::Mesh(const Box& box, std::size_t cell_capacity, int num_nodes)
     : box_(box),
       extent_(largest_coordinate(box)),
       cells_(cell_capacity),
       states_(cell_capacity),
-      vertices_(vertex_capacity_for(cell_capacity)) {
+      vertices_(vertex_capacity_for(cell_capacity)),
+      cell_ids_(cells_.capacity(), num_nodes, kCellRunBits),
+      vertex_ids_(vertices_.capacity(), num_nodes, kVertexRunBits) {
   // Kuhn's six cells around the diagonal from corner 0 to corner 7 (bit 0: x, 1: y, 2: z). All eight corners
   // are cospherical; the perturbation of predicates.h, which lowers the largest corner most, picks these.
-  take_new_vertices(8);
+  vertex_ids_.take(8, 0);
   for (unsigned corner = 0; corner < 8; ++corner) {
     vertices_[corner] = {{(corner & 1) ? box.high.x : box.low.x, (corner & 2) ? box.high.y : box.low.y,
                           (corner & 4) ? box.high.z : box.low.z},
@@ -54,7 +52,7 @@ Mesh::Mesh(const Box& box, std::size_t cell_capacity)
   }
   static constexpr std::array<std::array<VertexId, 2>, 6> kPaths{
       {{1, 3}, {3, 2}, {2, 6}, {6, 4}, {4, 5}, {5, 1}}};
-  take_new_cells(6);
+  cell_ids_.take(6, 0);
   for (CellId c = 0; c < 6; ++c) {
     // Neighbouring paths share an edge from 0 to 7; the ring turns counter-clockwise seen from 7.
     cells_[c].vertices = {0, kPaths[c][0], kPaths[c][1], 7};
@@ -82,27 +80,17 @@ std::uint64_t Mesh::num_cells() const {
   return count;
 }
 
-CellId Mesh::take_new_cells(std::uint32_t count) {
-  const CellId first = take(cell_bound_, count, cells_.capacity());
-  for (std::uint32_t i = 0; i < count; ++i) cells_[first + i].vertices[0] = kNoVertex;
-  return first;
-}
-
-VertexId Mesh::take_new_vertices(std::uint32_t count) {
-  return take(vertex_bound_, count, vertices_.capacity());
-}
-
 void Pool::reserve(std::size_t dying, std::size_t created, std::size_t removed) {
   const std::size_t wanted = created > dying ? created - dying : 0;
   reserve_more(free_cells_, std::max(dying, created) + kBlock);
   while (free_cells_.size() + (end_cell_ - next_cell_) < wanted) {
     for (; next_cell_ != end_cell_; ++next_cell_) free_cells_.push_back(next_cell_);
-    next_cell_ = mesh_.take_new_cells(kBlock);
+    next_cell_ = mesh_.cell_ids().take(kBlock, node_);
     end_cell_ = next_cell_ + kBlock;
   }
   reserve_more(free_vertices_, removed);
   if (free_vertices_.empty() && next_vertex_ == end_vertex_) {
-    next_vertex_ = mesh_.take_new_vertices(kBlock);
+    next_vertex_ = mesh_.vertex_ids().take(kBlock, node_);
     end_vertex_ = next_vertex_ + kBlock;
   }
 }

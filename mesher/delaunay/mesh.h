@@ -2,11 +2,11 @@
 #pragma once
 
 #include <array>
-#include <atomic>
 #include <cstdint>
 #include <string>
 #include <vector>
 
+#include "delaunay/id_arena.h"
 #include "geometry/circumsphere.h"
 #include "geometry/point.h"
 #include "geometry/tetrahedron.h"
@@ -40,12 +40,28 @@ struct Vertex {
 };
 static_assert(sizeof(Vertex) == 40 || sizeof(Vertex) == 32);
 
+/// The point as someone sees it who may not have locked the vertex: of a stale cell it may be in the middle
+/// of a change. Acquire, and release in place(): who sees a coordinate of the new point sees that the cells
+/// of the old one have died.
+inline Point glimpse_point(const Vertex& v) {
+  return {load(v.point.x, std::memory_order_acquire), load(v.point.y, std::memory_order_acquire),
+          load(v.point.z, std::memory_order_acquire)};
+}
+/// Makes an unused vertex one at `p`.
+inline void place(Vertex& v, const Point& p, VertexKind kind) {
+  store(v.point.x, p.x, std::memory_order_release);
+  store(v.point.y, p.y, std::memory_order_release);
+  store(v.point.z, p.z, std::memory_order_release);
+  v.kind = kind;
+}
+
 /// Everything a conflict test, a walk and a gluing read: 64 bytes, one cache line.
 struct alignas(64) Cell {
   Circumsphere sphere;
   std::array<VertexId, 4> vertices{kNoVertex, kNoVertex, kNoVertex, kNoVertex};
   std::array<FacetId, 4> mirrors{};  // the facet on the other side of each of ours
-  bool is_alive() const { return vertices[0] != kNoVertex; }
+  // A cell has four vertices; memory that nobody has touched has none, nor has a cell that died.
+  bool is_alive() const { return vertices[0] != vertices[1]; }
 };
 static_assert(sizeof(Cell) == 64);
 
@@ -57,15 +73,20 @@ struct CellState {
 };
 static_assert(sizeof(CellState) == 4);
 
-/// Opposite corners of the virtual box.
+/// An axis-aligned box, by opposite corners.
 struct Box {
   Point low, high;
 };
+inline bool is_in(const Box& box, const Point& p) {
+  return box.low.x <= p.x && p.x <= box.high.x && box.low.y <= p.y && p.y <= box.high.y && box.low.z <= p.z &&
+         p.z <= box.high.z;
+}
 
 class Mesh {
  public:
-  /// The six cells of the virtual box, all vertices kBox. Capacities bound the ids that pools may take.
-  Mesh(const Box& box, std::size_t cell_capacity);
+  /// The six cells of the virtual box, all vertices kBox. The capacity bounds the ids that pools may take;
+  /// `num_nodes` is how many NUMA nodes they are on.
+  Mesh(const Box& box, std::size_t cell_capacity, int num_nodes = 1);
 
   Cell& cell(CellId c) { return cells_[c]; }
   const Cell& cell(CellId c) const { return cells_[c]; }
@@ -112,10 +133,11 @@ class Mesh {
     __builtin_prefetch(&cells_[c]);
     __builtin_prefetch(&states_[c]);
   }
+  void prefetch_label(CellId c) const { __builtin_prefetch(&states_[c]); }
 
   /// Ids below these have been handed out; some may be free again.
-  CellId cell_bound() const { return cell_bound_.load(std::memory_order_relaxed); }
-  VertexId vertex_bound() const { return vertex_bound_.load(std::memory_order_relaxed); }
+  CellId cell_bound() const { return cell_ids_.bound(); }
+  VertexId vertex_bound() const { return vertex_ids_.bound(); }
   std::size_t cell_capacity() const { return cells_.capacity(); }
   double extent() const { return extent_; }  // the largest coordinate, M of circumsphere.h
   const Box& box() const { return box_; }
@@ -124,9 +146,13 @@ class Mesh {
   bool is_in_conflict(CellId c, const Point& p) const;  // exact, unique by perturbation
   std::uint64_t num_cells() const;
 
-  /// Throws std::bad_alloc when the capacity is used up. Any worker may call at any time.
-  CellId take_new_cells(std::uint32_t count);
-  VertexId take_new_vertices(std::uint32_t count);
+  /// Which ids there are, and whose; pools take them.
+  IdArena& cell_ids() { return cell_ids_; }
+  IdArena& vertex_ids() { return vertex_ids_; }
+  int num_nodes() const { return cell_ids_.num_nodes(); }
+  /// The node whose pool handed out the id.
+  NodeIndex node_of_cell(CellId c) const { return cell_ids_.node_of(c); }
+  NodeIndex node_of_vertex(VertexId v) const { return vertex_ids_.node_of(v); }
 
  private:
   Box box_;
@@ -135,15 +161,14 @@ class Mesh {
   HugeArray<CellState> states_;
   HugeArray<Vertex> vertices_;
   static constexpr std::uint16_t kStampBits = 0x7fff, kMark = 0x8000;
-  // Relaxed: an id is handed on under locks, or with a list entry under a mutex.
-  std::atomic<CellId> cell_bound_ = 0;
-  std::atomic<VertexId> vertex_bound_ = 0;
+  IdArena cell_ids_, vertex_ids_;
 };
 
 /// One worker's free ids: its own dead slots first (warm in its cache), then blocks from the store.
 class Pool {
  public:
-  explicit Pool(Mesh& mesh) : mesh_(mesh) {}
+  explicit Pool(Mesh& mesh, NodeIndex node = 0) : mesh_(mesh), node_(node) {}
+  NodeIndex node() const { return node_; }
   /// Makes room: an operation that replaces `dying` cells by `created` ones, adds a vertex and removes
   /// `removed` then allocates nothing. Throws std::bad_alloc.
   void reserve(std::size_t dying, std::size_t created, std::size_t removed);
@@ -156,6 +181,7 @@ class Pool {
  private:
   static constexpr std::uint32_t kBlock = 1024;
   Mesh& mesh_;
+  NodeIndex node_;  // where its worker runs
   std::vector<CellId> free_cells_;
   std::vector<VertexId> free_vertices_;
   CellId next_cell_ = 0, end_cell_ = 0;

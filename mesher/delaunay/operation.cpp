@@ -11,7 +11,7 @@ Outcome Operation<Locks>::reserve(CellId c, std::uint32_t stamp) {
   if constexpr (Locks::kIsShared) {
     for (const VertexId v : mesh_.glimpse_two_vertices(c)) {
       if (outcome != Outcome::kCommitted) break;
-      outcome = v == kNoVertex ? Outcome::kStaleCell : locks_.try_lock(mesh_.vertex(v));
+      outcome = v == kNoVertex ? Outcome::kStaleCell : lock(v);
     }
   }
   if (mesh_.stamp(c) != stamp) outcome = Outcome::kStaleCell;
@@ -20,10 +20,15 @@ Outcome Operation<Locks>::reserve(CellId c, std::uint32_t stamp) {
 }
 
 template <class Locks>
+Outcome Operation<Locks>::lock(VertexId v) {
+  count_access(mesh_.node_of_vertex(v));
+  return locks_.try_lock(mesh_.vertex(v));
+}
+
+template <class Locks>
 Outcome Operation<Locks>::lock_cell(CellId c) {
   for (const VertexId v : mesh_.cell(c).vertices) {
-    if (const Outcome outcome = locks_.try_lock(mesh_.vertex(v)); outcome != Outcome::kCommitted)
-      return outcome;
+    if (const Outcome outcome = lock(v); outcome != Outcome::kCommitted) return outcome;
   }
   return Outcome::kCommitted;
 }
@@ -32,13 +37,14 @@ Outcome Operation<Locks>::lock_cell(CellId c) {
 template <class Locks>
 Outcome Operation<Locks>::lock_beyond(FacetId facet) {
   const auto& vertices = mesh_.cell(cell_of(facet)).vertices;
-  return locks_.try_lock(mesh_.vertex(vertices[static_cast<unsigned>(index_in_cell(facet))]));
+  return lock(vertices[static_cast<unsigned>(index_in_cell(facet))]);
 }
 
 template <class Locks>
 void Operation<Locks>::add_to_region(CellId c) {
   region_.cells.push_back(c);
   mesh_.mark(c, true);
+  ++counters_.region_cells;
   for (const FacetId mirror : mesh_.cell(c).mirrors) {
     if (mirror != kNoFacet) mesh_.prefetch(cell_of(mirror));  // read when the front gets to c
   }
@@ -47,6 +53,7 @@ void Operation<Locks>::add_to_region(CellId c) {
 template <class Locks>
 bool Operation<Locks>::is_in_conflict(CellId c, const Point& p) {
   ++counters_.conflict_tests;
+  count_access(mesh_.node_of_cell(c));
   const Side side = side_of(mesh_.cell(c).sphere, p);
   if (side != Side::kUndecided) return side == Side::kInside;
   ++counters_.exact_decisions;
@@ -145,9 +152,7 @@ Outcome Operation<Locks>::commit_insertion(const Point& p, VertexKind kind, doub
   }
   reserve_memory(is_star ? star_.num_cells() : hole_.num_cells());
   inserted_ = pool_.take_vertex();
-  Vertex& vertex = mesh_.vertex(inserted_);  // its lock may be tried by who has a stale entry
-  vertex.point = p;
-  vertex.kind = kind;
+  place(mesh_.vertex(inserted_), p, kind);  // its lock may be tried by who has a stale entry
   const std::size_t num_destroyed = region_.cells.size();
   if (is_star) {
     star_.fill(mesh_, pool_, region_, inserted_);
@@ -186,5 +191,7 @@ void Operation<Locks>::rollback() {
 
 template class Operation<NoLocks>;
 template class Operation<VertexLocks>;
+template class Operation<LeafLocks<NoLocks>>;
+template class Operation<LeafLocks<VertexLocks>>;
 
 }  // namespace podm

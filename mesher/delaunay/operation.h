@@ -15,6 +15,7 @@
 #include <vector>
 
 #include "delaunay/hole.h"
+#include "delaunay/leaf_locks.h"
 #include "delaunay/mesh.h"
 #include "delaunay/star.h"
 #include "delaunay/vertex_locks.h"
@@ -23,17 +24,23 @@ namespace podm {
 
 struct OperationCounters {
   std::uint64_t conflict_tests = 0, exact_decisions = 0, cells_created = 0, cells_destroyed = 0;
+  std::uint64_t region_cells = 0;  // that plans collected, carried out or not
+  // Cells tested and vertices locked, by the NUMA node whose pool made them; empty on one node.
+  std::vector<std::uint64_t> accesses_by_node;
 };
 
 template <class Locks>
 class Operation {
  public:
-  Operation(Mesh& mesh, Pool& pool, WorkerId self) : mesh_(mesh), pool_(pool), locks_(self) {}
+  Operation(Mesh& mesh, Pool& pool, WorkerId self) : mesh_(mesh), pool_(pool), locks_(self) {
+    if (mesh.num_nodes() > 1) counters_.accesses_by_node.resize(static_cast<std::size_t>(mesh.num_nodes()));
+  }
 
   /// Locks two vertices of the cell c of that stamp, so that it and its neighbours may be read. kStaleCell:
   /// it has died. kLockConflict: conflicting_worker() tells with whom. Unless committed nothing is held.
   Outcome reserve(CellId c, std::uint32_t stamp);
   void release() { locks_.unlock_all(); }
+  Locks& locks() { return locks_; }
   WorkerId conflicting_worker() const { return locks_.conflicting_worker(); }
 
   /// Digs the cavity of p from `start`, a cell in conflict with p, reserved or beside it. Unless committed
@@ -72,6 +79,13 @@ class Operation {
  private:
   Outcome lock_cell(CellId c);
   Outcome lock_beyond(FacetId facet);
+  Outcome lock(VertexId v);
+  // A run that nobody shares is on one node.
+  void count_access(NodeIndex owner) {
+    if constexpr (Locks::kIsShared) {
+      if (!counters_.accesses_by_node.empty()) ++counters_.accesses_by_node[owner];
+    }
+  }
   void add_to_region(CellId c);
   bool is_in_conflict(CellId c, const Point& p);
   void collect_boundary();
@@ -94,5 +108,7 @@ class Operation {
 
 extern template class Operation<NoLocks>;
 extern template class Operation<VertexLocks>;
+extern template class Operation<LeafLocks<NoLocks>>;
+extern template class Operation<LeafLocks<VertexLocks>>;
 
 }  // namespace podm

@@ -8,6 +8,7 @@ enum class Outcome {
   kLockConflict,  ///< another worker holds a vertex
   kStaleCell,     ///< the cell has died
   kRejected,      ///< the point is not in conflict, or too near to a vertex
+  kOutOfLeaf,     ///< a vertex lies outside the region of the leaf being refined
 };
 
 }  // namespace podm

@@ -2,13 +2,12 @@
 
 #include <algorithm>
 #include <array>
-#include <atomic>
 #include <optional>
 #include <string>
-#include <thread>
 #include <vector>
 
 #include "podm/errors.h"
+#include "runtime/parallel_for.h"
 
 namespace podm {
 
@@ -251,18 +250,6 @@ class NeighborhoodFinder {
   const LabelImage& image_;
 };
 
-// Calls work(i, workspace) for i in [0, count), each workspace on a thread of its own.
-template <class Work>
-void for_each_in_parallel(int count, std::vector<Workspace>& workspaces, Work&& work) {
-  std::atomic<int> next{0};
-  const auto run = [&](Workspace& workspace) {
-    for (int i = next++; i < count; i = next++) work(i, workspace);
-  };
-  std::vector<std::jthread> others;
-  for (std::size_t t = 1; t < workspaces.size(); ++t) others.emplace_back([&, t] { run(workspaces[t]); });
-  run(workspaces[0]);
-}
-
 std::size_t checked_num_voxels(const LabelImage& image) {
   if (image.num_voxels() > kNone) {
     throw InputError("image: " + std::to_string(image.num_voxels()) +
@@ -274,17 +261,20 @@ std::size_t checked_num_voxels(const LabelImage& image) {
 }  // namespace
 
 FeatureTransform::FeatureTransform(const LabelImage& image, int threads) : words_(checked_num_voxels(image)) {
-  const int available = threads > 0 ? threads : static_cast<int>(std::thread::hardware_concurrency());
-  const int used = std::clamp(available, 1, std::max(image.size[1], image.size[2]));
-  std::vector<Workspace> workspaces(static_cast<std::size_t>(used), Workspace(image));
+  const auto num_y = static_cast<std::size_t>(image.size[1]), num_z = static_cast<std::size_t>(image.size[2]);
+  const std::size_t used = std::clamp<std::size_t>(num_threads(threads), 1, std::max(num_y, num_z));
+  std::vector<Workspace> workspaces(used, Workspace(image));
   Transformer transformer(image, words_);
-  for_each_in_parallel(image.size[2], workspaces,
-                       [&](int z, Workspace& work) { transformer.transform_slice(z, work); });
-  for_each_in_parallel(image.size[1], workspaces,
-                       [&](int y, Workspace& work) { transformer.transform_depth(y, work); });
+  parallel_for(num_z, used, [&](std::size_t z, std::size_t thread) {
+    transformer.transform_slice(static_cast<int>(z), workspaces[thread]);
+  });
+  parallel_for(num_y, used, [&](std::size_t y, std::size_t thread) {
+    transformer.transform_depth(static_cast<int>(y), workspaces[thread]);
+  });
   const NeighborhoodFinder finder(image);
-  for_each_in_parallel(image.size[2], workspaces, [&](int z, Workspace&) {
-    for (std::size_t v = image.index(0, 0, z); v < image.index(0, 0, z + 1); ++v) {
+  const std::size_t slice = image.num_voxels() / num_z;
+  parallel_for(num_z, used, [&](std::size_t z, std::size_t) {
+    for (std::size_t v = z * slice; v < (z + 1) * slice; ++v) {
       if (words_[v] == v) words_[v] = kSurface | finder.bits(v);
     }
   });

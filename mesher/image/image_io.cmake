@@ -3,7 +3,7 @@ find_package(ZLIB REQUIRED)
 find_package(Threads REQUIRED)
 find_library(NIFTIIO_LIBRARY niftiio REQUIRED)
 
-add_library(podm_image_io STATIC input_file.cpp label_names.cpp label_selection.cpp phantom.cpp phantom_abdomen.cpp
+add_library(podm_image_io STATIC index_voxels.cpp input_file.cpp label_names.cpp label_selection.cpp phantom.cpp phantom_abdomen.cpp
                                  phantom_shapes.cpp raw_image.cpp read_image.cpp read_inr.cpp read_itk.cpp
                                  read_nifti.cpp voxel_data.cpp write_nifti.cpp)
 target_include_directories(podm_image_io SYSTEM PRIVATE ${ITK_INCLUDE_DIRS})

@@ -8,6 +8,7 @@
 
 #include "image/raw_image.h"
 #include "podm/errors.h"
+#include "runtime/parallel_for.h"
 
 namespace podm {
 
@@ -39,21 +40,39 @@ bool covers(const std::vector<Range>& ranges, std::uint32_t value) {
                      [&](const Range& range) { return range.first <= value && value <= range.second; });
 }
 
-std::set<std::uint32_t> values_with_voxels(const LabelImage& image) {
-  std::vector<char> is_used(image.labels.size(), 0);
-  for (const LabelIndex voxel : image.voxels) is_used[voxel] = 1;
+constexpr std::size_t kChunk = 1 << 18;  // voxels
+
+std::set<std::uint32_t> values_with_voxels(const LabelImage& image, std::size_t threads) {
+  std::vector<std::vector<char>> is_used(threads, std::vector<char>(image.labels.size()));
+  parallel_for_ranges(image.voxels.size(), kChunk, threads,
+                      [&](std::size_t begin, std::size_t end, std::size_t thread) {
+                        char* const used = is_used[thread].data();
+                        for (std::size_t i = begin; i < end; ++i) used[image.voxels[i]] = true;
+                      });
   std::set<std::uint32_t> values;
-  for (std::size_t i = 0; i < is_used.size(); ++i)
-    if (is_used[i]) values.insert(image.labels[i].value);
+  for (const std::vector<char>& used : is_used)
+    for (std::size_t i = 0; i < used.size(); ++i)
+      if (used[i]) values.insert(image.labels[i].value);
   return values;
+}
+
+void replace_voxels(std::vector<LabelIndex>& voxels, const std::vector<LabelIndex>& replacement,
+                    std::size_t threads) {
+  bool is_identity = true;
+  for (std::size_t i = 0; i < replacement.size(); ++i) is_identity = is_identity && replacement[i] == i;
+  if (is_identity) return;
+  parallel_for_ranges(voxels.size(), kChunk, threads, [&](std::size_t begin, std::size_t end, std::size_t) {
+    for (std::size_t i = begin; i < end; ++i) voxels[i] = replacement[voxels[i]];
+  });
 }
 
 // What each value becomes that the image has and the selection keeps; the background's value has no place in
 // it.
 class SelectedLabels {
  public:
-  SelectedLabels(const LabelImage& image, const LabelSelection& selection, const std::string& path)
-      : path_(path), background_(selection.background), present_(values_with_voxels(image)) {
+  SelectedLabels(const LabelImage& image, const LabelSelection& selection, const std::string& path,
+                 std::size_t threads)
+      : path_(path), background_(selection.background), present_(values_with_voxels(image, threads)) {
     expect_labels(selection.keep, "--labels");
     expect_labels(selection.drop, "--drop");
     std::set<std::uint32_t> merged;
@@ -119,8 +138,9 @@ LabelSelection::Merge parse_merge(const std::string& text) {
   return merge;
 }
 
-void select_labels(LabelImage& image, const LabelSelection& selection, const std::string& path) {
-  const SelectedLabels selected(image, selection, path);
+void select_labels(LabelImage& image, const LabelSelection& selection, const std::string& path,
+                   std::size_t threads) {
+  const SelectedLabels selected(image, selection, path, threads);
   std::map<std::uint32_t, std::string> names;  // of the final labels, by value
   for (const auto& [value, label] : selected.by_value()) names[label.value] = label.name;
   if (names.empty()) refuse(path, "no foreground: every voxel is background or deselected");
@@ -138,7 +158,7 @@ void select_labels(LabelImage& image, const LabelSelection& selection, const std
     if (const auto label = selected.by_value().find(image.labels[i].value);
         label != selected.by_value().end())
       replacement[i] = new_index.at(label->second.value);
-  for (LabelIndex& voxel : image.voxels) voxel = replacement[voxel];
+  replace_voxels(image.voxels, replacement, threads);
   image.labels = std::move(labels);
 }
 

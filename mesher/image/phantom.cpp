@@ -3,12 +3,12 @@
 #include <array>
 #include <cmath>
 #include <map>
-#include <thread>
 
 #include "image/phantom_abdomen.h"
 #include "image/phantom_shapes.h"
 #include "podm/errors.h"
 #include "podm/image_io.h"
+#include "runtime/parallel_for.h"
 
 namespace podm {
 
@@ -91,7 +91,7 @@ void fill_slice(LabelImage& image, const std::vector<Paint>& paints, int k) {
   for (int j = 0; j < y.size; ++j) fill_row(&image.voxels[image.index(0, j, k)], met, x, y.at(j), z);
 }
 
-void fill(LabelImage& image, const std::vector<Organ>& organs) {
+void fill(LabelImage& image, const std::vector<Organ>& organs, int threads) {
   std::map<std::uint32_t, std::string> names;
   for (const Organ& organ : organs) names.emplace(organ.label, organ.name);
   image.labels = {{0, ""}};
@@ -103,13 +103,8 @@ void fill(LabelImage& image, const std::vector<Organ>& organs) {
   std::vector<Paint> paints;
   for (const Organ& organ : organs) paints.push_back({organ.shape, index[organ.label]});
   image.voxels.assign(image.num_voxels(), kBackground);
-  const int num_threads = static_cast<int>(std::max(1u, std::thread::hardware_concurrency()));
-  std::vector<std::jthread> threads;
-  for (int t = 0; t < num_threads; ++t) {
-    threads.emplace_back([&, t] {
-      for (int k = t; k < image.size[2]; k += num_threads) fill_slice(image, paints, k);
-    });
-  }
+  parallel_for(static_cast<std::size_t>(image.size[2]), num_threads(threads),
+               [&](std::size_t k, std::size_t) { fill_slice(image, paints, static_cast<int>(k)); });
 }
 
 // Not less, in so few bits that it, and times half a number of voxels too, is exact in the single precision
@@ -125,7 +120,7 @@ double in_few_bits(double spacing) {
 
 std::vector<std::string> phantom_names() { return {"abdomen", "spheres", "torus"}; }
 
-LabelImage make_phantom(const std::string& name, int size) {
+LabelImage make_phantom(const std::string& name, int size, int threads) {
   const Phantom phantom = phantom_of(name);
   if (size < kSmallestSize || size > kLargestSize) {
     throw InputError("phantom:" + name + "@" + std::to_string(size) + ": the size must be between " +
@@ -144,7 +139,7 @@ LabelImage make_phantom(const std::string& name, int size) {
     image.voxel_to_ras[5 * axis] = image.spacing[axis];
     image.voxel_to_ras[4 * axis + 3] = -0.5 * (image.size[axis] - 1) * image.spacing[axis];
   }
-  fill(image, phantom.organs);
+  fill(image, phantom.organs, threads);
   return image;
 }
 

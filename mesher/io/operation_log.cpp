@@ -95,6 +95,8 @@ class Reader {
       if (json.at("schema") != kSchema) fail(fmt::format("schema is not {}", kSchema));
       OperationLogHead head;
       json.at("box").get_to(head.box);
+      for (std::size_t axis = 0; axis < 3; ++axis)
+        if (!(head.box[axis] < head.box[axis + 3])) fail("the box is empty");
       json.at("image_sha256").get_to(head.image_sha256);
       json.at("space").get_to(head.space);
       json.at("mesh_sha256").get_to(head.mesh_sha256);

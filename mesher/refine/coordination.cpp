@@ -10,6 +10,8 @@ Coordination::Coordination(const CoordinationOptions& options, std::function<voi
       resume_(std::move(resume)) {}
 
 ContentionManager::Answer Coordination::conflict(WorkerId self, WorkerId holder, int in_a_row) {
+  const bool is_ours = holder < gifts_.size();
+  if (!is_ours) return {};
   const auto answer = contention_.conflict(self, holder, in_a_row, activity_);
   if (answer.kind == ContentionManager::Answer::kWait) activity_.set(self, Activity::State::kWaiting);
   return answer;

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <functional>
+#include <optional>
 #include <vector>
 
 #include "refine/activity.h"
@@ -20,6 +21,16 @@ struct CoordinationOptions {
   std::uint64_t seed = 1;
 };
 
+/// Where a group of workers gets cells when all of them beg: the next leaf, in PDR.
+class CellSource {
+ public:
+  using Entries = std::vector<PoorElementList::Entry>;
+  virtual ~CellSource() = default;
+  /// Cells to go on with; nothing when there are none: for ever if it `may_wait`, else for now. No worker of
+  /// the group runs meanwhile.
+  virtual std::optional<Entries> next(bool may_wait) = 0;
+};
+
 /// Its caller makes sure that one call is made at a time, but for has_waiting() and may_share().
 class Coordination {
  public:
@@ -32,6 +43,7 @@ class Coordination {
   int num_running() const { return activity_.num_running(); }
 
   /// `self` met a vertex of `holder`, for the `in_a_row`-th time. After kWait it must not run until resumed.
+  /// Nobody waits for a worker of another group.
   ContentionManager::Answer conflict(WorkerId self, WorkerId holder, int in_a_row);
   /// A hint that anyone may ask for at any time.
   bool has_waiting() const { return contention_.has_waiting(); }
@@ -53,12 +65,13 @@ class Coordination {
     Entries cells = worker.share(kMostToShare);
     if (!cells.empty()) give(beggar, std::move(cells));
   }
+  /// Ends the begging of one worker by these cells.
+  void give(WorkerId beggar, Entries cells);
   Entries take_gift(WorkerId self) { return std::exchange(gifts_[self], {}); }
 
  private:
   // A worker shares when it lists this many cells or more; most are dead, as their turn tells.
   static constexpr std::size_t kEnoughToShare = 64, kMostToShare = 1024;
-  void give(WorkerId beggar, Entries cells);
   void resume(WorkerId worker);
 
   Activity activity_;

@@ -3,6 +3,7 @@
 // thread.
 #pragma once
 
+#include <atomic>
 #include <chrono>
 #include <cstdint>
 #include <functional>
@@ -20,7 +21,8 @@ struct Limits {
   std::chrono::steady_clock::time_point deadline = std::chrono::steady_clock::time_point::max();
 };
 
-/// Looks at a run from outside, between operations.
+/// Looks at a run from outside, between operations. Executors that run at the same time or one after the
+/// other share one, and all end when it says so. Any thread may call, but for observe().
 class Watch {
  public:
   static constexpr int kAttemptsBetweenChecks = 1 << 8;  // of each worker, well below a millisecond
@@ -29,16 +31,40 @@ class Watch {
   Watch(const Limits& limits, std::stop_token stop, std::function<void(std::uint64_t)> observe)
       : limits_(limits), stop_(std::move(stop)), observe_(std::move(observe)) {}
 
-  /// Why the run has to end, with `cells` in the store; nothing if it has not. Any thread may call.
-  std::optional<StopReason> reason_to_stop(std::uint64_t cells) const;
-  /// One thread calls.
-  void observe(std::uint64_t cells);
+  /// The store has so many more cells.
+  void add_cells(std::int64_t more) { num_cells_.fetch_add(more, std::memory_order_relaxed); }
+  /// Why the run has to end; nothing if it has not.
+  std::optional<StopReason> reason_to_stop();
+  /// kComplete as long as nothing has ended it.
+  StopReason reason() const { return reason_; }
+  /// Ends the run. The first reason counts.
+  void end(StopReason reason);
+  /// Requested when the run has to end.
+  std::stop_token over() const { return over_.get_token(); }
+  /// The thread that the run was called from calls.
+  void observe();
 
  private:
   Limits limits_;
   std::stop_token stop_;
   std::function<void(std::uint64_t)> observe_;
+  std::atomic<std::int64_t> num_cells_ = 0;
+  std::atomic<StopReason> reason_ = StopReason::kComplete;  // of the end, once there is one
+  std::stop_source over_;
   std::chrono::steady_clock::time_point next_observation_ = std::chrono::steady_clock::now();
+};
+
+/// Tells a watch of the cells that a worker adds.
+class CellMeter {
+ public:
+  template <class Worker>
+  void report(const Worker& worker, Watch& watch) {
+    watch.add_cells(worker.net_cells() - reported_);
+    reported_ = worker.net_cells();
+  }
+
+ private:
+  std::int64_t reported_ = 0;
 };
 
 /// Seconds that one worker did not bring the mesh on, by cause.

@@ -129,10 +129,16 @@ bool Rules::has_poor_ratio(CellId c, double squared_radius) const {
 }
 
 std::optional<Rule> Rules::volume_rule(const Examination& t) const {
-  if (t.label == kBackground) return std::nullopt;
+  if (t.label == kBackground) return is_large_in_shell(t) ? std::optional(Rule::kR5) : std::nullopt;
   if (has_poor_ratio(t.cell, t.squared_radius)) return Rule::kR4;
   if (t.squared_radius > parameters_.sizes.squared_radius(t.label) * (1 - kMargin)) return Rule::kR5;
   return std::nullopt;
+}
+
+bool Rules::is_large_in_shell(const Examination& t) const {
+  return parameters_.shell_mm > 0 && t.squared_radius > square(parameters_.shell_radius_mm) &&
+         is_in(parameters_.clamp_box, t.center) &&
+         isosurface_.distance_lower_bound(t.center, parameters_.shell_mm) < parameters_.shell_mm;
 }
 
 bool Rules::is_doomed(VertexId v, const Point& z) const {

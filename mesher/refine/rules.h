@@ -30,6 +30,9 @@ struct Parameters {
   SizeField sizes;
   Box clamp_box;          // circumcentres beyond it are moved onto it, see virtual_box.h
   double spacing_mm = 0;  // s
+  /// The initial mesh of PDR also bounds cells around the object: R5 holds outside too, with
+  /// `shell_radius_mm`, for circumcentres up to `shell_mm` from the isosurface. 0: there is no such shell.
+  double shell_mm = 0, shell_radius_mm = 0;
 };
 
 /// What the rules need to know of a cell, asked of the oracle once.
@@ -77,6 +80,7 @@ class Rules {
   bool may_be_restricted(const Examination& t, CellId neighbor) const;
   bool is_settled(const Cell& cell, double squared_radius) const;
   bool needs_sample(CellId c, unsigned facet) const;
+  bool is_large_in_shell(const Examination& t) const;
 
   Mesh& mesh_;
   const Isosurface& isosurface_;

@@ -25,12 +25,18 @@ class SecondsInto {
 
 }  // namespace
 
-ThreadExecutor::ThreadExecutor(Watch& watch, const CoordinationOptions& options)
+template <class Locks>
+ThreadExecutor<Locks>::ThreadExecutor(Watch& watch, const CoordinationOptions& options,
+                                      std::vector<Place> places, WorkerId first_id)
     : watch_(watch),
+      places_(std::move(places)),
+      first_id_(first_id),
       coordination_(options, [this](WorkerId worker) { desks_[worker].woken.notify_one(); }),
       desks_(static_cast<std::size_t>(options.num_workers)) {}
 
-StopReason ThreadExecutor::run(Workers& workers) {
+template <class Locks>
+StopReason ThreadExecutor<Locks>::run(Workers workers, CellSource* source) {
+  source_ = source;
   {
     std::vector<boost::scoped_thread<>> threads;
     try {
@@ -46,7 +52,10 @@ StopReason ThreadExecutor::run(Workers& workers) {
   return stop_reason_;
 }
 
-void ThreadExecutor::work(Worker<VertexLocks>& worker, WorkerId self) try {
+template <class Locks>
+void ThreadExecutor<Locks>::work(Worker<Locks>& worker, WorkerId self) try {
+  const ScopedBinding binding(places_.empty() ? std::nullopt : places_[self].processor);
+  desks_[self].processor = processor_of_this_thread();
   int conflicts = 0, successes = 0, attempts = 0;  // the first two in a row
   // Relaxed: whoever ends the run leaves through the mutex or a join anyway.
   while (!is_over_.load(std::memory_order_relaxed)) {
@@ -77,10 +86,11 @@ void ThreadExecutor::work(Worker<VertexLocks>& worker, WorkerId self) try {
 }
 
 // False: the run is over.
-bool ThreadExecutor::beg(Worker<VertexLocks>& worker, WorkerId self) {
+template <class Locks>
+bool ThreadExecutor<Locks>::beg(Worker<Locks>& worker, WorkerId self) {
   const SecondsInto total(desks_[self].overhead.begging_s);
   std::unique_lock lock(mutex_);
-  if (!coordination_.beg(self)) {
+  if (!coordination_.beg(self) && !refill(self)) {
     lock.unlock();
     end(StopReason::kComplete);
     return false;
@@ -90,10 +100,21 @@ bool ThreadExecutor::beg(Worker<VertexLocks>& worker, WorkerId self) {
   return !is_over_;
 }
 
-void ThreadExecutor::yield_after_conflict(WorkerId self, WorkerId holder, int in_a_row) {
+// Asks for more cells when the whole group begs. The others wait without the mutex.
+template <class Locks>
+bool ThreadExecutor<Locks>::refill(WorkerId self) {
+  if (source_ == nullptr || is_over_) return false;
+  auto cells = source_->next(true);
+  if (!cells) return false;
+  coordination_.give(self, std::move(*cells));
+  return true;
+}
+
+template <class Locks>
+void ThreadExecutor<Locks>::yield_after_conflict(WorkerId self, WorkerId holder, int in_a_row) {
   const SecondsInto total(desks_[self].overhead.contention_s);
   std::unique_lock lock(mutex_);
-  const auto answer = coordination_.conflict(self, holder, in_a_row);
+  const auto answer = coordination_.conflict(self, holder - first_id_, in_a_row);
   if (answer.kind == ContentionManager::Answer::kWait) {
     desks_[self].woken.wait(lock, [&] { return coordination_.is_running(self) || is_over_; });
   } else if (answer.kind == ContentionManager::Answer::kPause) {
@@ -102,22 +123,26 @@ void ThreadExecutor::yield_after_conflict(WorkerId self, WorkerId holder, int in
   }
 }
 
-void ThreadExecutor::check(const Worker<VertexLocks>& worker, WorkerId self) {
-  desks_[self].net_cells.store(worker.net_cells(), std::memory_order_relaxed);
-  std::int64_t cells = 0;
-  for (const Desk& desk : desks_) cells += desk.net_cells.load(std::memory_order_relaxed);
-  const auto total = static_cast<std::uint64_t>(std::max<std::int64_t>(cells, 0));
-  if (const auto reason = watch_.reason_to_stop(total)) end(*reason);
-  if (self == 0) watch_.observe(total);
+template <class Locks>
+void ThreadExecutor<Locks>::check(const Worker<Locks>& worker, WorkerId self) {
+  desks_[self].meter.report(worker, watch_);
+  if (const auto reason = watch_.reason_to_stop()) end(*reason);
+  if (first_id_ + self == 0) watch_.observe();
 }
 
 // The first reason counts.
-void ThreadExecutor::end(StopReason reason, const std::exception_ptr& failure) {
+template <class Locks>
+void ThreadExecutor<Locks>::end(StopReason reason, const std::exception_ptr& failure) {
   const std::scoped_lock lock(mutex_);
   if (!failure_) failure_ = failure;
   if (!is_over_) stop_reason_ = reason;
   is_over_ = true;
+  if (reason != StopReason::kComplete) watch_.end(reason);  // for the other groups
   for (Desk& desk : desks_) desk.woken.notify_all();
 }
+
+template class ThreadExecutor<VertexLocks>;
+template class ThreadExecutor<LeafLocks<NoLocks>>;
+template class ThreadExecutor<LeafLocks<VertexLocks>>;
 
 }  // namespace podm

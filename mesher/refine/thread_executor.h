@@ -10,46 +10,64 @@
 #include <exception>
 #include <memory>
 #include <mutex>
+#include <span>
 #include <vector>
 
 #include "refine/coordination.h"
 #include "refine/executor.h"
+#include "runtime/placement.h"
 
 namespace podm {
 
+template <class Locks>
 class ThreadExecutor {
  public:
-  using Workers = std::vector<std::unique_ptr<Worker<VertexLocks>>>;
+  using Workers = std::span<const std::unique_ptr<Worker<Locks>>>;
 
-  ThreadExecutor(Watch& watch, const CoordinationOptions& options);
+  /// Binds the thread of worker i to the processor of places[i], if it has one. Workers have the ids from
+  /// `first_id` on.
+  ThreadExecutor(Watch& watch, const CoordinationOptions& options, std::vector<Place> places,
+                 WorkerId first_id = 0);
 
-  /// Runs until every worker begs, or something ends the run, always between operations. Worker 0 runs on the
-  /// calling thread, which alone observes. What a worker throws is thrown again here, but for std::bad_alloc,
-  /// which ends the run as a limit does.
-  StopReason run(Workers& workers);
+  /// Runs until every worker begs and `source`, if any, has no more cells, or something ends the run, always
+  /// between operations. Worker 0 runs on the calling thread; of all groups that which has the first worker
+  /// observes. What a worker throws ends the run and is thrown again here, but for std::bad_alloc, which ends
+  /// it as a limit does.
+  StopReason run(Workers workers, CellSource* source = nullptr);
+  /// What the system said of the worker's thread after it was bound.
+  const ThreadProcessor& processor(WorkerId worker) const { return desks_[worker].processor; }
   const Overhead& overhead(WorkerId worker) const { return desks_[worker].overhead; }
 
  private:
   // What belongs to one worker, in cache lines of its own.
   struct alignas(128) Desk {
     std::condition_variable woken;
-    std::atomic<std::int64_t> net_cells = 0;
+    CellMeter meter;
     Overhead overhead;
+    ThreadProcessor processor;
   };
 
-  void work(Worker<VertexLocks>& worker, WorkerId self);
-  bool beg(Worker<VertexLocks>& worker, WorkerId self);
+  void work(Worker<Locks>& worker, WorkerId self);
+  bool beg(Worker<Locks>& worker, WorkerId self);
+  bool refill(WorkerId self);
   void yield_after_conflict(WorkerId self, WorkerId holder, int in_a_row);
-  void check(const Worker<VertexLocks>& worker, WorkerId self);
+  void check(const Worker<Locks>& worker, WorkerId self);
   void end(StopReason reason, const std::exception_ptr& failure = nullptr);
 
   Watch& watch_;
+  std::vector<Place> places_;
+  WorkerId first_id_;
   std::mutex mutex_;
   Coordination coordination_;
+  CellSource* source_ = nullptr;
   std::vector<Desk> desks_;
   std::atomic<bool> is_over_ = false;
   StopReason stop_reason_ = StopReason::kComplete;
   std::exception_ptr failure_;
 };
+
+extern template class ThreadExecutor<VertexLocks>;
+extern template class ThreadExecutor<LeafLocks<NoLocks>>;
+extern template class ThreadExecutor<LeafLocks<VertexLocks>>;
 
 }  // namespace podm

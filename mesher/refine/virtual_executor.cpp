@@ -11,7 +11,8 @@ struct Work {
   std::uint64_t attempts = 0, classified = 0, tests = 0, created = 0;
 };
 
-Work work_of(const Worker<VertexLocks>& worker) {
+template <class Locks>
+Work work_of(const Worker<Locks>& worker) {
   return {1, worker.counters().classified_cells, worker.operation_counters().conflict_tests,
           worker.operation_counters().cells_created};
 }
@@ -30,14 +31,23 @@ double seconds(VirtualCost cost, const Work& before, const Work& after) {
 
 }  // namespace
 
-VirtualExecutor::VirtualExecutor(Watch& watch, const CoordinationOptions& options, VirtualCost cost)
+template <class Locks>
+VirtualExecutor<Locks>::VirtualExecutor(Watch& watch, const CoordinationOptions& options, VirtualCost cost,
+                                        int num_groups)
     : watch_(watch),
       cost_(cost),
+      group_size_(static_cast<WorkerId>(options.num_workers)),
       random_(options.seed),
-      coordination_(options, [this](WorkerId worker) { resume(worker); }),
-      desks_(static_cast<std::size_t>(options.num_workers)) {}
+      desks_(static_cast<std::size_t>(num_groups) * group_size_) {
+  for (WorkerId first = 0; first < desks_.size(); first += group_size_) {
+    const auto resume_in_group = [this, first](WorkerId worker) { resume(first + worker); };
+    groups_.push_back(std::make_unique<Coordination>(options, resume_in_group));
+  }
+}
 
-StopReason VirtualExecutor::run(Workers& workers) try {
+template <class Locks>
+StopReason VirtualExecutor<Locks>::run(Workers workers, const std::vector<CellSource*>& sources) try {
+  sources_ = sources;
   for (WorkerId self = 0; self < workers.size(); ++self) schedule(self, 0);
   while (!events_.empty()) {
     const Event event = events_.top();
@@ -53,24 +63,42 @@ StopReason VirtualExecutor::run(Workers& workers) try {
   }
   throw InternalError("virtual time stands still: every worker waits");
 } catch (const std::bad_alloc&) {
+  watch_.end(StopReason::kMemoryLimit);
   return StopReason::kMemoryLimit;
 }
 
-// False: the last worker with cells has run out of them.
-bool VirtualExecutor::step(Worker<VertexLocks>& worker, WorkerId self) {
+// False: the last worker with cells has run out of them, and there are no more.
+template <class Locks>
+bool VirtualExecutor<Locks>::step(Worker<Locks>& worker, WorkerId self) {
   Desk& desk = desks_[self];
   if (desk.in_progress && !end_attempt(worker, self)) return true;
-  worker.give(coordination_.take_gift(self));
+  worker.give(coordination_of(self).take_gift(within_group(self)));
   if (worker.has_work()) {
     begin_attempt(worker, self);
     return true;
   }
   desk.since_s = now_s_;
   desk.begs = true;
-  return coordination_.beg(self);
+  return coordination_of(self).beg(within_group(self)) || refill_idle_groups();
 }
 
-void VirtualExecutor::begin_attempt(Worker<VertexLocks>& worker, WorkerId self) {
+// A group that begs ends its leaf first, which may let others go on. False: all groups are idle for good.
+template <class Locks>
+bool VirtualExecutor<Locks>::refill_idle_groups() {
+  bool is_any_running = false;
+  for (int pass = 0; pass < 2; ++pass) {
+    for (std::size_t group = 0; group < groups_.size(); ++group) {
+      if (groups_[group]->num_running() == 0 && !sources_.empty()) {
+        if (auto cells = sources_[group]->next(false)) groups_[group]->give(0, std::move(*cells));
+      }
+      is_any_running = is_any_running || groups_[group]->num_running() > 0;
+    }
+  }
+  return is_any_running;
+}
+
+template <class Locks>
+void VirtualExecutor<Locks>::begin_attempt(Worker<Locks>& worker, WorkerId self) {
   const Work before = work_of(worker);
   desks_[self].since_s = now_s_;
   desks_[self].in_progress = worker.attempt();
@@ -81,8 +109,10 @@ void VirtualExecutor::begin_attempt(Worker<VertexLocks>& worker, WorkerId self) 
 }
 
 // False: the worker does not go on at once.
-bool VirtualExecutor::end_attempt(Worker<VertexLocks>& worker, WorkerId self) {
+template <class Locks>
+bool VirtualExecutor<Locks>::end_attempt(Worker<Locks>& worker, WorkerId self) {
   Desk& desk = desks_[self];
+  Coordination& coordination = coordination_of(self);
   const Outcome outcome = *desk.in_progress;
   desk.in_progress.reset();
   worker.release();
@@ -90,7 +120,8 @@ bool VirtualExecutor::end_attempt(Worker<VertexLocks>& worker, WorkerId self) {
     desk.overhead.rollback_s += now_s_ - desk.since_s;
     desk.since_s = now_s_;
     desk.successes = 0;
-    const auto answer = coordination_.conflict(self, worker.conflicting_worker(), ++desk.conflicts);
+    const WorkerId holder = worker.conflicting_worker() - group_of(self) * group_size_;
+    const auto answer = coordination.conflict(within_group(self), holder, ++desk.conflicts);
     if (answer.kind == ContentionManager::Answer::kPause) {
       desk.overhead.contention_s += answer.pause_s;
       schedule(self, answer.pause_s);
@@ -99,29 +130,36 @@ bool VirtualExecutor::end_attempt(Worker<VertexLocks>& worker, WorkerId self) {
   }
   if (outcome == Outcome::kCommitted) {
     desk.conflicts = 0;
-    if (++desk.successes % ContentionManager::kSuccessesToWake == 0) coordination_.wake_one(self);
+    if (++desk.successes % ContentionManager::kSuccessesToWake == 0)
+      coordination.wake_one(within_group(self));
   }
-  if (coordination_.may_share(self, worker.num_listed())) coordination_.share(self, worker);
+  if (coordination.may_share(within_group(self), worker.num_listed()))
+    coordination.share(within_group(self), worker);
   return true;
 }
 
-void VirtualExecutor::schedule(WorkerId worker, double delay_s) {
+template <class Locks>
+void VirtualExecutor<Locks>::schedule(WorkerId worker, double delay_s) {
   events_.push({now_s_ + delay_s, num_events_++, worker});
 }
 
-void VirtualExecutor::resume(WorkerId worker) {
+template <class Locks>
+void VirtualExecutor<Locks>::resume(WorkerId worker) {
   Desk& desk = desks_[worker];
   (desk.begs ? desk.overhead.begging_s : desk.overhead.contention_s) += now_s_ - desk.since_s;
   desk.begs = false;
   schedule(worker, 0);
 }
 
-std::optional<StopReason> VirtualExecutor::reason_to_stop(const Workers& workers) {
-  std::int64_t cells = 0;
-  for (const auto& worker : workers) cells += worker->net_cells();
-  const auto total = static_cast<std::uint64_t>(std::max<std::int64_t>(cells, 0));
-  watch_.observe(total);
-  return watch_.reason_to_stop(total);
+template <class Locks>
+std::optional<StopReason> VirtualExecutor<Locks>::reason_to_stop(Workers workers) {
+  for (WorkerId self = 0; self < workers.size(); ++self) desks_[self].meter.report(*workers[self], watch_);
+  watch_.observe();
+  return watch_.reason_to_stop();
 }
+
+template class VirtualExecutor<VertexLocks>;
+template class VirtualExecutor<LeafLocks<NoLocks>>;
+template class VirtualExecutor<LeafLocks<VertexLocks>>;
 
 }  // namespace podm

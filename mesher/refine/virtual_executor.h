@@ -10,6 +10,7 @@
 #include <optional>
 #include <queue>
 #include <random>
+#include <span>
 #include <vector>
 
 #include "refine/coordination.h"
@@ -17,14 +18,17 @@
 
 namespace podm {
 
+template <class Locks>
 class VirtualExecutor {
  public:
-  using Workers = std::vector<std::unique_ptr<Worker<VertexLocks>>>;
+  using Workers = std::span<const std::unique_ptr<Worker<Locks>>>;
 
-  VirtualExecutor(Watch& watch, const CoordinationOptions& options, VirtualCost cost);
+  /// Groups of workers that coordinate among themselves only, `options` for each.
+  VirtualExecutor(Watch& watch, const CoordinationOptions& options, VirtualCost cost, int num_groups = 1);
 
-  /// Runs until every worker begs, or something ends the run.
-  StopReason run(Workers& workers);
+  /// Runs until every worker begs and no source, if there are any (one for each group), has more cells, or
+  /// something ends the run.
+  StopReason run(Workers workers, const std::vector<CellSource*>& sources = {});
   /// Virtual time that passed, s.
   double elapsed_s() const { return now_s_; }
   /// Of one worker, in virtual time.
@@ -36,6 +40,7 @@ class VirtualExecutor {
     double since_s = 0;                  // it waits or begs, or its attempt began
     bool begs = false;
     int conflicts = 0, successes = 0;  // in a row
+    CellMeter meter;
     Overhead overhead;
   };
   struct Event {
@@ -47,21 +52,32 @@ class VirtualExecutor {
     }
   };
 
+  WorkerId group_of(WorkerId worker) const { return worker / group_size_; }
+  WorkerId within_group(WorkerId worker) const { return worker % group_size_; }
+  Coordination& coordination_of(WorkerId worker) { return *groups_[group_of(worker)]; }
+
   void schedule(WorkerId worker, double delay_s);
   void resume(WorkerId worker);
-  bool step(Worker<VertexLocks>& worker, WorkerId self);
-  bool end_attempt(Worker<VertexLocks>& worker, WorkerId self);
-  void begin_attempt(Worker<VertexLocks>& worker, WorkerId self);
-  std::optional<StopReason> reason_to_stop(const Workers& workers);
+  bool step(Worker<Locks>& worker, WorkerId self);
+  bool end_attempt(Worker<Locks>& worker, WorkerId self);
+  void begin_attempt(Worker<Locks>& worker, WorkerId self);
+  bool refill_idle_groups();
+  std::optional<StopReason> reason_to_stop(Workers workers);
 
   Watch& watch_;
   VirtualCost cost_;
+  WorkerId group_size_;
   std::mt19937_64 random_;
-  Coordination coordination_;
+  std::vector<std::unique_ptr<Coordination>> groups_;
+  std::vector<CellSource*> sources_;
   std::vector<Desk> desks_;
   std::priority_queue<Event, std::vector<Event>, std::greater<>> events_;
   std::uint64_t num_events_ = 0;
   double now_s_ = 0;
 };
+
+extern template class VirtualExecutor<VertexLocks>;
+extern template class VirtualExecutor<LeafLocks<NoLocks>>;
+extern template class VirtualExecutor<LeafLocks<VertexLocks>>;
 
 }  // namespace podm

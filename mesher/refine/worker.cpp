@@ -15,11 +15,10 @@ constexpr std::uint64_t kAttemptsForOneTimed = 16;
 
 template <class Locks>
 Worker<Locks>::Worker(Mesh& mesh, const Isosurface& isosurface, const Parameters& parameters, WorkerId self,
-                      OperationLogWriter* log)
+                      Pool& pool, OperationLogWriter* log)
     : mesh_(mesh),
       rules_(mesh, isosurface, parameters),
-      pool_(mesh),
-      operation_(mesh, pool_, self),
+      operation_(mesh, pool, self),
       min_distance_(kSpacingFloor * parameters.spacing_mm),
       self_(self),
       log_(log) {
@@ -61,6 +60,9 @@ Outcome Worker<Locks>::attempt_next() {
     poor_.push(entry.cell, entry.stamp);
   } else if (outcome == Outcome::kStaleCell) {
     ++counters_.stale_cells;
+  } else if (outcome == Outcome::kOutOfLeaf) {
+    ++counters_.out_of_leaf;
+    deferred_.push_back(entry);
   }
   return outcome;
 }
@@ -69,42 +71,40 @@ template <class Locks>
 Outcome Worker<Locks>::apply_first_rule(CellId c) {
   const Examination t = rules_.examine(c);
   if (const auto z = rules_.r1_sample(t)) {
-    const Sampled sampled = insert_on_isosurface(*z, c, Rule::kR1);
-    if (sampled == Sampled::kYes) return Outcome::kCommitted;
-    if (sampled == Sampled::kLockConflict) return Outcome::kLockConflict;
+    const Outcome sampled = insert_on_isosurface(*z, c, Rule::kR1);
+    if (sampled != Outcome::kRejected) return sampled;
   }
   if (const auto p = rules_.r2_center(t)) return insert_circumcenter(*p, c, Rule::kR2);
   if (const auto center = rules_.r3_surface_center(t)) {
     const std::uint16_t stamp = mesh_.stamp(c);
-    const Sampled sampled = insert_on_isosurface(center->point, center->start, Rule::kR3);
-    if (sampled == Sampled::kLockConflict) return Outcome::kLockConflict;
-    if (sampled == Sampled::kYes && mesh_.stamp(c) == stamp) give(c);
-    return Outcome::kCommitted;
+    const Outcome sampled = insert_on_isosurface(center->point, center->start, Rule::kR3);
+    if (sampled == Outcome::kCommitted && mesh_.stamp(c) == stamp) give(c);
+    return sampled == Outcome::kRejected ? Outcome::kCommitted : sampled;
   }
   if (const auto rule = rules_.volume_rule(t)) return insert_circumcenter(t.center, c, *rule);
   return Outcome::kCommitted;
 }
 
-// The point and its R6 removals are one operation.
+// The point and its R6 removals are one operation. kRejected: the point is covered already, or the ball only
+// touches the isosurface there.
 template <class Locks>
-auto Worker<Locks>::insert_on_isosurface(const Point& z, CellId start, Rule rule) -> Sampled {
+Outcome Worker<Locks>::insert_on_isosurface(const Point& z, CellId start, Rule rule) {
   Outcome planned = operation_.plan_insertion(z, start);
-  bool is_covered = false;
   if (planned == Outcome::kCommitted && rule == Rule::kR1) {
+    bool is_covered = false;
     operation_.for_each_region_vertex(
         [&](VertexId v, CellId) { is_covered = is_covered || rules_.is_covered(z, v); });
+    if (is_covered) planned = Outcome::kRejected;
   }
-  if (planned == Outcome::kCommitted && !is_covered) {
+  if (planned == Outcome::kCommitted) {
     operation_.for_each_region_vertex([&](VertexId v, CellId seed) {
       if (planned == Outcome::kCommitted && rules_.is_doomed(v, z) && !operation_.removes(v))
         planned = operation_.plan_removal(v, seed);
     });
-    if (planned == Outcome::kCommitted)
-      return commit(z, VertexKind::kIsosurface, rule) == Outcome::kCommitted ? Sampled::kYes : Sampled::kNo;
   }
+  if (planned == Outcome::kCommitted) return commit(z, VertexKind::kIsosurface, rule);
   operation_.rollback();
-  if (planned == Outcome::kLockConflict) return Sampled::kLockConflict;
-  return is_covered ? Sampled::kCovered : Sampled::kNo;  // no: the ball only touches the isosurface at z
+  return planned;
 }
 
 template <class Locks>
@@ -131,9 +131,22 @@ Outcome Worker<Locks>::commit(const Point& p, VertexKind kind, Rule rule) {
   if (log_ != nullptr) log(p, kind);
   counters_.removals += operation_.removed().size();
   ++counters_.insertions_by_rule[static_cast<std::size_t>(rule)];
-  for (const CellId c : operation_.created()) give(c);
+  list_created();
   if (poor_.is_due_for_cleaning()) poor_.drop_stale(mesh_);
   return Outcome::kCommitted;
+}
+
+template <class Locks>
+void Worker<Locks>::list_created() {
+  for (const CellId c : operation_.created()) {
+    if constexpr (requires(Locks & locks) { locks.region(); }) {
+      if (!operation_.locks().region().owns(mesh_.cell(c).sphere.center)) {
+        foreign_.push_back({c, mesh_.stamp(c)});
+        continue;
+      }
+    }
+    give(c);
+  }
 }
 
 // Room was made before the commit, so that no operation is missing when memory runs out.
@@ -159,5 +172,7 @@ void Worker<Locks>::flush_log() {
 
 template class Worker<NoLocks>;
 template class Worker<VertexLocks>;
+template class Worker<LeafLocks<NoLocks>>;
+template class Worker<LeafLocks<VertexLocks>>;
 
 }  // namespace podm

@@ -15,7 +15,8 @@ namespace podm {
 
 struct WorkerCounters {
   std::array<std::uint64_t, 5> insertions_by_rule{};
-  std::uint64_t removals = 0, rejected = 0, stale_cells = 0, classified_cells = 0, lock_conflicts = 0;
+  std::uint64_t removals = 0, rejected = 0, stale_cells = 0, classified_cells = 0, lock_conflicts = 0,
+                out_of_leaf = 0;
   std::chrono::steady_clock::duration rollback{};  // in attempts that ended in a lock conflict; estimated
 };
 
@@ -23,7 +24,7 @@ template <class Locks>
 class Worker {
  public:
   /// `log`, if given, learns of every commit.
-  Worker(Mesh& mesh, const Isosurface& isosurface, const Parameters& parameters, WorkerId self,
+  Worker(Mesh& mesh, const Isosurface& isosurface, const Parameters& parameters, WorkerId self, Pool& pool,
          OperationLogWriter* log = nullptr);
 
   void give(CellId c) { poor_.push(c, mesh_.stamp(c)); }
@@ -40,11 +41,19 @@ class Worker {
   ///   kStaleCell     the cell has died
   ///   kLockConflict  nothing was changed and the entry is back on the list; see conflicting_worker()
   ///   kRejected      the insertion would have broken the spacing floor
+  ///   kOutOfLeaf     nothing was changed; the cell is among the deferred
   /// Locks are held until release(), which must come before the next attempt. What is thrown (std::bad_alloc)
   /// leaves a valid triangulation and no lock, but may lose entries of the list.
   Outcome attempt();
   void release() { operation_.release(); }
   WorkerId conflicting_worker() const { return operation_.conflicting_worker(); }
+
+  /// Confined to the region of the leaf that the next attempts are for; new cells whose circumcentre is
+  /// elsewhere are kept apart.
+  Locks& locks() { return operation_.locks(); }
+  std::vector<PoorElementList::Entry> take_foreign() { return std::exchange(foreign_, {}); }
+  /// Cells of the leaf that need vertices outside its region.
+  std::vector<PoorElementList::Entry> take_deferred() { return std::exchange(deferred_, {}); }
 
   /// Hands the last operations to the log.
   void flush_log();
@@ -58,20 +67,20 @@ class Worker {
   }
 
  private:
-  enum class Sampled { kNo, kCovered, kYes, kLockConflict };
   Outcome attempt_next();
   Outcome apply_first_rule(CellId c);
-  Sampled insert_on_isosurface(const Point& z, CellId start, Rule rule);
+  Outcome insert_on_isosurface(const Point& z, CellId start, Rule rule);
   Outcome insert_circumcenter(const Point& p, CellId start, Rule rule);
   Outcome commit(const Point& p, VertexKind kind, Rule rule);
   Outcome give_up();
   void log(const Point& p, VertexKind kind);
+  void list_created();
 
   Mesh& mesh_;
   Rules rules_;
-  Pool pool_;
   Operation<Locks> operation_;
   PoorElementList poor_;
+  std::vector<PoorElementList::Entry> foreign_, deferred_;
   WorkerCounters counters_;
   double min_distance_;
   WorkerId self_;
@@ -81,5 +90,7 @@ class Worker {
 
 extern template class Worker<NoLocks>;
 extern template class Worker<VertexLocks>;
+extern template class Worker<LeafLocks<NoLocks>>;
+extern template class Worker<LeafLocks<VertexLocks>>;
 
 }  // namespace podm

@@ -117,26 +117,52 @@ std::vector<Place> place_workers(const Topology& machine, const PinPlan& plan, i
   return places;
 }
 
-void pin_this_thread(int os_index) {
+namespace {
+
+void bind_this_thread(const std::vector<int>& os_indices) {
   ProcessorSet set{};
-  if (os_index < 0 || os_index >= kMaxProcessors)
-    throw PlacementError(fmt::format("processor {}: no such processor", os_index));
-  CPU_SET_S(os_index, sizeof set, set.data());
+  for (const int os_index : os_indices) {
+    if (os_index < 0 || os_index >= kMaxProcessors)
+      throw PlacementError(fmt::format("processor {}: no such processor", os_index));
+    CPU_SET_S(os_index, sizeof set, set.data());
+  }
   if (sched_setaffinity(0, sizeof set, set.data()) != 0)
-    throw PlacementError(
-        fmt::format("processor {}: a thread cannot be bound to it: {}", os_index, std::strerror(errno)));
+    throw PlacementError(fmt::format("processor {}: a thread cannot be bound to it: {}", os_indices.front(),
+                                     std::strerror(errno)));
 }
 
-ThreadProcessor processor_of_this_thread() {
+std::vector<int> processors_of_this_thread() {
   ProcessorSet set{};
   if (sched_getaffinity(0, sizeof set, set.data()) != 0)
     throw PlacementError(fmt::format("the processors of a thread cannot be read: {}", std::strerror(errno)));
-  ThreadProcessor result;
-  result.running_on = sched_getcpu();
-  if (CPU_COUNT_S(sizeof set, set.data()) == 1)
-    for (int os_index = 0; os_index < kMaxProcessors; ++os_index)
-      if (CPU_ISSET_S(os_index, sizeof set, set.data())) result.bound_to = os_index;
-  return result;
+  std::vector<int> os_indices;
+  for (int os_index = 0; os_index < kMaxProcessors; ++os_index)
+    if (CPU_ISSET_S(os_index, sizeof set, set.data())) os_indices.push_back(os_index);
+  return os_indices;
+}
+
+}  // namespace
+
+void pin_this_thread(int os_index) { bind_this_thread({os_index}); }
+
+ScopedBinding::ScopedBinding(std::optional<int> os_index) {
+  if (!os_index) return;
+  before_ = processors_of_this_thread();
+  pin_this_thread(*os_index);
+}
+
+ScopedBinding::~ScopedBinding() {
+  if (before_.empty()) return;
+  try {
+    bind_this_thread(before_);
+  } catch (const PlacementError&) {
+    // Processors that were taken away meanwhile: the thread stays where it is.
+  }
+}
+
+ThreadProcessor processor_of_this_thread() {
+  const std::vector<int> os_indices = processors_of_this_thread();
+  return {os_indices.size() == 1 ? std::optional(os_indices.front()) : std::nullopt, sched_getcpu()};
 }
 
 }  // namespace podm

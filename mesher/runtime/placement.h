@@ -42,6 +42,19 @@ std::vector<Place> place_workers(const Topology& machine, const PinPlan& plan, i
 /// Binds the calling thread to one processor. Throws PlacementError when the system refuses.
 void pin_this_thread(int os_index);
 
+/// Binds the calling thread as long as it lives, then gives it back the processors that it had.
+class ScopedBinding {
+ public:
+  /// Empty: leaves the thread as it is. Throws as pin_this_thread does.
+  explicit ScopedBinding(std::optional<int> os_index);
+  ~ScopedBinding();
+  ScopedBinding(const ScopedBinding&) = delete;
+  ScopedBinding& operator=(const ScopedBinding&) = delete;
+
+ private:
+  std::vector<int> before_;  // empty: nothing to give back
+};
+
 struct ThreadProcessor {
   std::optional<int> bound_to;  // empty: the system may choose between several
   int running_on = 0;           // at this moment

@@ -13,9 +13,9 @@ PROGRAM = os.environ["PODM_PROGRAM"]
 TIMEOUT_S = 240
 
 
-def run_podm(*arguments, **popen_options):
+def run_podm(*arguments, program=PROGRAM, **popen_options):
     """The finished process, with text in stdout and stderr."""
-    return subprocess.run([PROGRAM, *map(str, arguments)], capture_output=True, text=True, timeout=TIMEOUT_S,
+    return subprocess.run([program, *map(str, arguments)], capture_output=True, text=True, timeout=TIMEOUT_S,
                           **popen_options)
 
 

@@ -16,6 +16,7 @@ import tempfile
 import small_images
 from podm_process import PROGRAM
 
+VERIFIER = os.path.join(os.path.dirname(PROGRAM), "podm-verify")
 MANAGERS = ["aggressive", "random", "global", "local"]
 TIMEOUT_S = 300
 SIZE = 10
@@ -35,7 +36,7 @@ def write_images(folder):
         "noise": voxels(SIZE, lambda x, y, z: hash((x, y, z)) % 3),
     }
     images = [(small_images.write_nifti(folder / f"{name}.nii", shape, (SIZE, SIZE, SIZE)),
-               0.1 if name == "voxel" else 1) for name, shape in shapes.items()]
+               {"voxel": 0.1, "slice": 0.3}.get(name, 1)) for name, shape in shapes.items()]
     return images + [("phantom:spheres@20", 5), ("phantom:torus@24", 5), ("phantom:abdomen@24", 16)]
 
 
@@ -44,8 +45,18 @@ def draw(seed, is_virtual, images):
     rng = random.Random(2 * seed + is_virtual)
     image, radius_mm = rng.choice(images)
     threads = round(2 ** rng.uniform(1, 8 if is_virtual else 4))
+    algorithm = rng.choice(["podm", "podm", "pdr", "pdr-podm"])
     arguments = [image, "--radius", f"{radius_mm * 2 ** rng.uniform(0, 2.5):.3f}", "--threads", threads,
                  "--contention", rng.choice(MANAGERS), "--seed", seed]
+    arguments += ["--begging", rng.choice(["random", "hierarchical"]), "--oversubscribe"]
+    if algorithm != "podm":
+        arguments += ["--algorithm", algorithm, "--initial-ratio", rng.choice([1, 2, 4, 7.5]),
+                      "--initial-threads", rng.randint(1, threads)]
+        if rng.random() < 0.5:
+            arguments += ["--leaf-size", f"{radius_mm * 2 ** rng.uniform(0, 5):.3f}"]
+    if algorithm == "pdr-podm":
+        nodes = rng.choice([n for n in range(1, threads + 1) if threads % n == 0])
+        arguments += ["--nodes", nodes]
     if is_virtual:
         arguments += ["--executor", "virtual", "--virtual-cost", rng.choice(["unit", "measured"])]
     return [str(argument) for argument in arguments]
@@ -62,8 +73,10 @@ def fault_of(seed, is_virtual, images):
     with tempfile.TemporaryDirectory() as folder:
         mesh, log = os.path.join(folder, "out.vtu"), os.path.join(folder, "run.log")
         try:
-            fault = call(PROGRAM, "mesh", *arguments, "-o", mesh, "--log", log, "--verify") \
-                or call(PROGRAM, "replay", arguments[0], log)
+            leaves = ["--schedule", os.path.join(folder, "leaves.jsonl")] if "--algorithm" in arguments else []
+            fault = call(PROGRAM, "mesh", *arguments, "-o", mesh, "--log", log, "--verify", *leaves) \
+                or call(PROGRAM, "replay", arguments[0], log) \
+                or (leaves and call(VERIFIER, mesh, *leaves))
         except subprocess.TimeoutExpired:
             fault = f"did not end within {TIMEOUT_S} s"
     return fault and f"seed {seed}: podm mesh {' '.join(arguments)}\n{fault}"

@@ -67,12 +67,25 @@ class Mesh(PodmTestCase):
         for threads in 1, 2, 5:
             for contention in "local", "global":
                 self.assert_exit(self.mesh("--radius", "8", "--threads", threads, "--contention", contention,
-                                           "--verify"), 0)
+                                           "--oversubscribe", "--verify"), 0)
                 record = self.read_record(self.runs)
                 self.assertEqual(set(record["verdicts"].values()), {"pass"})
                 self.assertLessEqual({"structure", "delaunay", "labels", "size"}, set(record["verdicts"]))
                 self.assertEqual(record["threads"]["used"], threads)
                 self.runs.unlink()
+
+    def test_a_mesh_of_some_labels_is_verified_with_those_of_the_image(self):
+        image = self.folder / "spheres.nii.gz"
+        self.assert_exit(run_podm("phantom", "spheres", "--size", "32", "-o", image), 0)
+        for options in (["--labels", "1,3"], ["--drop", "1-2"], ["--merge", "2,1=pair", "--drop", "3"],
+                        ["--background", "2", "--radius-of", "0=8"]):
+            for source in image, "phantom:spheres@32":
+                with self.subTest(options=options, source=source):
+                    self.runs.unlink(missing_ok=True)
+                    self.assert_exit(self.mesh("--radius", "9", "--verify", *options, image=source), 0)
+                    verdicts = self.read_record(self.runs)["verdicts"]
+                    self.assertEqual(set(verdicts.values()), {"pass"})
+                    self.assertLessEqual({"labels", "surface", "size"}, set(verdicts))
 
     def test_radius_of_one_label_by_name_and_by_value(self):
         info = json.loads(run_podm("info", "--json", "phantom:abdomen@32").stdout)

@@ -17,7 +17,7 @@ class Replay(PodmTestCase):
 
     def mesh(self, *arguments):
         process = run_podm("mesh", IMAGE, "--radius", "16", "-o", self.out, "--log", self.log, "--record", self.runs,
-                           *arguments)
+                           "--oversubscribe", *arguments)
         self.assert_exit(process, 0)
         return json.loads(self.runs.read_text().splitlines()[-1])
 
@@ -35,13 +35,13 @@ class Replay(PodmTestCase):
                 self.assertEqual(process.stderr.count(record["mesh_sha256"]), 2)
 
     def test_a_run_cut_short_equals_its_replay(self):
-        process = run_podm("mesh", IMAGE, "--radius", "4", "--threads", 3, "--max-elements", 3000, "-o", self.out,
+        process = run_podm("mesh", IMAGE, "--radius", "4", "--threads", 3, "--oversubscribe", "--max-elements", 3000, "-o", self.out,
                            "--log", self.log)
         self.assert_exit(process, 1)
         self.assert_exit(run_podm("replay", IMAGE, self.log), 0)
 
     def test_a_search_for_the_radius_logs_its_last_run_only(self):
-        process = run_podm("mesh", IMAGE, "--target-elements", 20000, "--threads", 2, "-o", self.out, "--log", self.log)
+        process = run_podm("mesh", IMAGE, "--target-elements", 20000, "--threads", 2, "--oversubscribe", "-o", self.out, "--log", self.log)
         self.assert_exit(process, 0)
         self.assert_exit(run_podm("replay", IMAGE, self.log), 0)
 
@@ -49,12 +49,12 @@ class Replay(PodmTestCase):
         def run(seed, threads=256):
             return self.mesh("--executor", "virtual", "--threads", threads, "--seed", seed)
         first, second, other = run(7), run(7), run(8)
-        for name in "mesh_sha256", "outcomes", "overhead_s", "executor", "counters":
+        for name in "mesh_sha256", "outcomes", "overhead_s", "virtual", "counters":
             self.assertEqual(first[name], second[name], name)
         self.assertNotEqual(first["mesh_sha256"], other["mesh_sha256"])
-        self.assertGreater(first["executor"]["simulated_refine_s"], 0)
-        self.assertGreater(run(7, threads=1)["executor"]["simulated_refine_s"],
-                           2 * first["executor"]["simulated_refine_s"])
+        self.assertGreater(first["virtual"]["refine_s"], 0)
+        self.assertGreater(run(7, threads=1)["virtual"]["refine_s"],
+                           2 * first["virtual"]["refine_s"])
 
     def test_a_log_that_was_changed_is_refused_or_not_equal(self):
         self.mesh()

@@ -9,8 +9,9 @@ from podm_process import PROGRAM, PodmTestCase, run_podm
 OPTIONS = {
     "mesh": ["--output", "--radius", "--radius-of", "--delta", "--target-elements", "--labels", "--merge",
              "--drop", "--background", "--label-names", "--space", "--surface", "--record", "--max-elements",
-             "--max-seconds", "--max-memory-gib", "--threads", "--contention", "--executor", "--virtual-cost",
-             "--seed", "--log", "--verify", "--quiet"],
+             "--max-seconds", "--max-memory-gib", "--threads", "--contention", "--algorithm", "--crossover", "--nodes",
+             "--cores-per-node", "--initial-ratio", "--initial-threads", "--leaf-size", "--schedule", "--executor", "--virtual-cost",
+             "--seed", "--log", "--begging", "--pin", "--oversubscribe", "--topology", "--stats", "--verify", "--quiet"],
     "replay": ["--labels", "--merge", "--drop", "--background", "--label-names"],
     "info": ["--labels", "--merge", "--drop", "--background", "--label-names", "--json"],
     "phantom": ["--size", "--output"],

@@ -1,11 +1,10 @@
 // Claim conformity.
 //   Statements  what was made apart shares its facets: no two facets with one cell each lie at the same
-//   place,
-//               and no two vertices of such facets do. Given a schedule also: no two vertices at a leaf
-//               boundary lie at the same place, so that a facet which crosses or touches one is shared by two
-//               cells or is on the mesh's boundary; leaves do not overlap; no two leaves that are active at
-//               the same time are within two rings of each other; and no operation touched a vertex outside
-//               its leaf and the first ring.
+//               place, and no two vertices of such facets do. Given a schedule also: no two vertices at a
+//               leaf boundary lie at the same place, so that a facet which crosses or touches one is shared
+//               by two cells or is on the mesh's boundary; leaves do not overlap; no two leaves that are
+//               active at the same time are within two rings of each other; and no operation touched a vertex
+//               outside its leaf and the first ring.
 //   Rests on    equality of coordinates, and integers on the leaf grid. Ring 1 of a leaf is the leaves whose
 //               closed cubes touch it, ring 2 those that touch ring 1. An activation lasts from its beginning
 //               up to, not including, its end; one without length is the instant between.
@@ -13,7 +12,7 @@
 //               that some more is looked at, never less. The schedule is the mesher's own word on what it did
 //               when.
 //   Cost        n log n in facets with one cell and in vertices at leaf boundaries; in the schedule, an
-//               activation costs the leaves of its two rings.
+//               activation costs the leaves of its first ring.
 //   Not proved  that facets which lie together only in part are matched: the structure claim finds those as
 //               hanging vertices and overlaps, the surface claim a gap.
 #include <fmt/format.h>

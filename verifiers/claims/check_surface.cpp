@@ -2,8 +2,7 @@
 // surface.
 //
 //   1. Each edge of the boundary is passed as often in one direction as in the other by the boundary's
-//   facets,
-//      turned outwards from their cells.
+//      facets, turned outwards from their cells.
 //   2. Where the file lists facets with the labels on their two sides, these are the facets between different
 //      labels, each once, with the labels of the cells there and all turned alike.
 // A label's boundary are the facets between one of its cells and a cell of another label, or none. Cells of

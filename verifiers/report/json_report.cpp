@@ -75,16 +75,25 @@ Json claim_of(const ClaimResult& result) {
           {"seconds", result.seconds}};
 }
 
+Json selection_of(const LabelSelection& selection) {
+  return {{"background", selection.background},
+          {"labels", selection.keep},
+          {"drop", selection.drop},
+          {"merge", selection.merges}};
+}
+
 Json options_of(const Options& options) {
   Json radius_of = Json::object();
   for (const auto& [label, radius] : options.radius_of) radius_of[std::to_string(label)] = radius;
   return {{"claims", options.claims.empty() ? Json(nullptr) : Json(options.claims)},
           {"space", options.space ? Json(describe(*options.space)) : Json(nullptr)},
+          {"selection", selection_of(options.selection)},
           {"radius_edge_bound", options.radius_edge_bound},
           {"angle_bound_deg", options.angle_bound_deg},
           {"radius_mm", options.radius_mm ? Json(*options.radius_mm) : Json(nullptr)},
           {"radius_of_mm", radius_of},
           {"fidelity_bound_voxels", options.fidelity_bound_voxels},
+          {"delta_mm", options.delta_mm ? Json(*options.delta_mm) : Json(nullptr)},
           {"threads", options.threads}};
 }
 

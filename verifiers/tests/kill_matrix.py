@@ -1,6 +1,7 @@
 """Tests the tester: every mutant is rejected by the claim it attacks, every harmless neighbour accepted.
 
-Usage: kill_matrix.py PODM PODM_VERIFY. Prints the matrix; exits 1 when it has a hole.
+Usage: kill_matrix.py PODM PODM_VERIFY. Prints the matrix; exits 1 when it has a hole: a mutant ALIVE, a mutant that
+offends against a claim it must pass (IMPURE), or a neighbour REJECTED.
 """
 
 import json
@@ -29,6 +30,10 @@ def run(verifier, case, claim, folder):
     return process.returncode, result["verdict"], result["num_warnings"]
 
 
+def word(is_killed, is_pure):
+    return "ALIVE" if not is_killed else "killed" if is_pure else "IMPURE"
+
+
 def main():
     podm, verifier = sys.argv[1:]
     holes = 0
@@ -40,10 +45,11 @@ def main():
             pair = function(shop)
             code, verdict, _ = run(verifier, pair.mutant, claim, folder)
             is_killed = code == exit_code and verdict == ("fail" if claim else None)
+            is_pure = all(run(verifier, pair.mutant, other, folder)[:2] == (0, "pass") for other in pair.still_passes)
             code, verdict, warnings = run(verifier, pair.neighbour, claim or "structure", folder)
             is_accepted = code == 0 and verdict == "pass" and warnings == pair.neighbour.warnings
-            holes += (not is_killed) + (not is_accepted)
-            print(f"{function.__name__:<28} {claim or 'the reader':<16} {'killed' if is_killed else 'ALIVE':<10} "
+            holes += (not is_killed) + (not is_pure) + (not is_accepted)
+            print(f"{function.__name__:<28} {claim or 'the reader':<16} {word(is_killed, is_pure):<10} "
                   f"{'accepted' if is_accepted else 'REJECTED'}   {function.__doc__}")
     print(f"{len(OPERATORS)} operators, {holes} holes")
     return 1 if holes else 0

@@ -4,6 +4,7 @@ An operator is a function of a Workshop that returns a Mutant. Its docstring is 
 """
 
 import dataclasses
+import itertools
 import json
 import math
 import subprocess
@@ -36,6 +37,7 @@ class Case:
 class Mutant:
     mutant: Case
     neighbour: Case
+    still_passes: tuple = ()  # other claims, which the mutant must not offend against
 
 
 class Workshop:
@@ -45,11 +47,15 @@ class Workshop:
         self.folder = folder
         self.image = folder / "spheres.nii.gz"
         subprocess.run([podm, "phantom", "spheres", "--size", "48", "-o", self.image], check=True, capture_output=True)
-        path = folder / "base.mesh"
-        subprocess.run([podm, "mesh", self.image, "--radius", "9", "--quiet", "-o", path], check=True)
-        self.base = read_medit(path)
+        self.podm = podm
+        self.base = self.meshed("--radius", "9")
         self.with_image = ["--image", str(self.image)]
         self.random = np.random.default_rng(7)
+
+    def meshed(self, *options):
+        path = self.folder / "meshed.mesh"
+        subprocess.run([self.podm, "mesh", self.image, *options, "--quiet", "-o", path], check=True)
+        return read_medit(path)
 
     def facet_pairs(self, mesh):
         """(cell, far vertex, cell, far vertex, facet) for every facet with two cells."""
@@ -61,6 +67,23 @@ class Workshop:
                     yield (*seen[facet], c, cell[k], facet)
                 else:
                     seen[facet] = (c, cell[k])
+
+    def edge_rings(self, mesh, length):
+        """(cells, vertex, vertex, link in order) for every edge inside a label that so many cells go around."""
+        around = {}
+        for c, cell in enumerate(mesh.cells[:, :4]):
+            for edge in itertools.combinations(sorted(cell), 2):
+                around.setdefault(edge, []).append(c)
+        for edge, cells in around.items():
+            if len(cells) != length or len(set(mesh.cells[cells, 4])) > 1:
+                continue
+            sides = [[v for v in mesh.cells[c, :4] if v not in edge] for c in cells]
+            ring = sides.pop()
+            while side := next((side for side in sides if ring[-1] in side), None):
+                sides.remove(side)
+                ring.append(sum(side) - ring[-1])
+            if not sides and ring.pop() == ring[0]:
+                yield cells, *edge, ring
 
     def boundary_facets(self, mesh):
         pairs = {facet for *_, facet in self.facet_pairs(mesh)}
@@ -263,22 +286,71 @@ def hanging_on_an_edge(_):
                   Case(joined(lower, tetrahedron(upper - (0, 1e-15, 0)))))
 
 
+def refilled(mesh, gone, made):
+    """`mesh` with the cells `made` in place of `gone`; None unless they fill the same space, as a flip's do."""
+    label = mesh.cells[gone[0], 4]
+    cells = np.array([[*cell, label] for cell in made])
+    volumes = signed_volumes(MeditMesh(mesh.vertices, cells))
+    before = signed_volumes(MeditMesh(mesh.vertices, mesh.cells[gone])).sum()
+    # Made cells have the boundary of those gone, so signed volumes add up: the absolute do where none is inverted.
+    if abs(volumes).min() < 1e-6 * before or abs(abs(volumes).sum() - before) > 1e-9 * before:
+        return None
+    inverted = volumes < 0
+    cells[inverted, 2], cells[inverted, 3] = cells[inverted, 3], cells[inverted, 2].copy()
+    return MeditMesh(mesh.vertices, np.vstack([np.delete(mesh.cells, gone, axis=0), cells]), mesh.facets, mesh.comments)
+
+
+def flips_2_3(shop, mesh):
+    """The mesh after each 2-3 flip: a facet inside a label gone, the edge across it made."""
+    for c, v, d, w, (a, b, e) in shop.facet_pairs(mesh):
+        if mesh.cells[c, 4] == mesh.cells[d, 4]:
+            yield refilled(mesh, [c, d], [(a, b, v, w), (b, e, v, w), (e, a, v, w)])
+
+
+def flips_3_2(shop, mesh):
+    """The inverse: an edge of three cells gone, the facet across it made."""
+    for gone, a, b, ring in shop.edge_rings(mesh, 3):
+        yield refilled(mesh, gone, [(*ring, a), (*ring, b)])
+
+
+def flips_4_4(shop, mesh):
+    """An edge of four cells gone, an edge between two of its four link vertices made."""
+    for gone, a, b, ring in shop.edge_rings(mesh, 4):
+        for p, x, q, y in (ring, np.roll(ring, 1)):
+            yield refilled(mesh, gone, [(p, q, a, x), (p, q, x, b), (p, q, b, y), (p, q, y, a)])
+
+
+def flip_mutant(shop, flips, tie):
+    """The base mesh after its first such flip; `tie`, whose vertices are cospherical, stays Delaunay after it."""
+    mutant, neighbour = (next(flipped for flipped in flips(shop, mesh) if flipped is not None)
+                         for mesh in (shop.base, tie))
+    return Mutant(Case(mutant), Case(neighbour), still_passes=("structure", "surface"))
+
+
+POLES = [(0, 0, 5), (0, 0, -5)]
+BIPYRAMID = [*POLES, (5, 0, 0), (-3, 4, 0), (-3, -4, 0)]
+OCTAHEDRON = [*POLES, (5, 0, 0), (0, 5, 0), (-5, 0, 0), (0, -5, 0)]
+
+
 @operator("delaunay")
-def flip(shop):
-    """a 2-3 flip; harmless: the mesh before it"""
-    mesh = shop.base.copy()
-    for c, v, d, w, facet in shop.facet_pairs(mesh):
-        if mesh.cells[c, 4] != mesh.cells[d, 4]:
-            continue
-        a, b, e = facet
-        made = np.array([[a, b, v, w, mesh.cells[c, 4]], [b, e, v, w, mesh.cells[c, 4]], [e, a, v, w, mesh.cells[c, 4]]])
-        volumes = signed_volumes(MeditMesh(mesh.vertices, made))
-        if (volumes > 0).all() or (volumes < 0).all():
-            if volumes[0] < 0:
-                made[:, [2, 3]] = made[:, [3, 2]]
-            mesh.cells = np.vstack([np.delete(mesh.cells, [c, d], axis=0), made])
-            return Mutant(Case(mesh), Case(shop.base))
-    raise RuntimeError("no facet can be flipped")
+def flip_2_3(shop):
+    """a 2-3 flip; harmless: of five cospherical vertices"""
+    two = MeditMesh(BIPYRAMID, [[2, 3, 4, 0, 1], [2, 4, 3, 1, 1]])
+    return flip_mutant(shop, flips_2_3, two)
+
+
+@operator("delaunay")
+def flip_3_2(shop):
+    """a 3-2 flip; harmless: of five cospherical vertices"""
+    three = MeditMesh(BIPYRAMID, [[2, 3, 1, 0, 1], [3, 4, 1, 0, 1], [4, 2, 1, 0, 1]])
+    return flip_mutant(shop, flips_3_2, three)
+
+
+@operator("delaunay")
+def flip_4_4(shop):
+    """a 4-4 flip; harmless: of an octahedron, whose vertices are cospherical"""
+    four = MeditMesh(OCTAHEDRON, [[2, 3, 1, 0, 1], [3, 4, 1, 0, 1], [4, 5, 1, 0, 1], [5, 2, 1, 0, 1]])
+    return flip_mutant(shop, flips_4_4, four)
 
 
 @operator("delaunay")
@@ -473,6 +545,13 @@ def shrunk(shop):
     far.vertices *= 0.8
     near.vertices *= 1 - 1e-6
     return Mutant(Case(far, shop.with_image), Case(near, shop.with_image))
+
+
+@operator("fidelity")
+def sampled_coarsely(shop):
+    """a mesh whose surfaces are sampled every six voxels; harmless: the same, and said so"""
+    coarse = shop.meshed("--radius", "90", "--delta", "25")
+    return Mutant(Case(coarse, shop.with_image), Case(coarse, [*shop.with_image, "--delta", "25"]))
 
 
 @operator(None, exit_code=2)

@@ -10,6 +10,8 @@ import unittest
 
 import numpy as np
 
+from inr_image import write_inr
+
 VERIFIER = os.environ["PODM_VERIFIER"]
 CUBE = """8 3 0 0
 1 0 0 0\n2 1 0 0\n3 1 1 0\n4 0 1 0\n5 0 0 1\n6 1 0 1\n7 1 1 1\n8 0 1 1
@@ -17,6 +19,20 @@ CUBE = """8 3 0 0
 1\n4 1 2 3 4\n1\n4 5 6 7 8\n1\n4 1 2 6 5\n1\n4 2 3 7 6\n1\n4 3 4 8 7\n1\n4 4 1 5 8
 0\n0
 """
+BALL_IN_A_CUBE = """SetFactory("OpenCASCADE");
+Box(1) = {0,0,0,1,1,1};
+Sphere(2) = {0.5,0.5,0.5,0.3};
+BooleanFragments{ Volume{1}; Delete; }{ Volume{2}; Delete; }
+Physical Volume(7) = {2};
+Physical Volume(8) = {3};
+Mesh.MeshSizeMax = 0.15;
+"""
+
+
+def half_balls():
+    """Voxels of a ball, its halves labelled 1 and 2."""
+    z, y, x = np.indices((32, 32, 32)) - 15.5
+    return np.where(x * x + y * y + z * z < 12 ** 2, np.where(x > 0, 2, 1), 0)
 
 
 class ForeignMeshTest(unittest.TestCase):
@@ -52,13 +68,34 @@ class ForeignMeshTest(unittest.TestCase):
         self.assertEqual((verdicts["structure"], verdicts["surface"], verdicts["delaunay"]), ("pass", "pass", "fail"))
 
     def test_gmsh_meshes_are_sound_and_not_delaunay(self):
-        (self.folder / "cube.geo").write_text('SetFactory("OpenCASCADE");\nBox(1) = {0,0,0,1,1,1};\n'
-                                              "Physical Volume(7) = {1};\nMesh.MeshSizeMax = 0.2;\n")
-        for arguments in (["-format", "msh41"], ["-algo", "hxt", "-format", "msh22"]):
-            self.run_program("gmsh", "-3", "cube.geo", "-o", "cube.msh", *arguments)
-            verdicts = self.verdicts("cube.msh")
-            self.assertEqual({verdicts[claim] for claim in ("structure", "radius_edge", "surface")}, {"pass"})
-            self.assertEqual(verdicts["delaunay"], "fail", "Gmsh optimises its meshes")
+        (self.folder / "ball.geo").write_text(BALL_IN_A_CUBE)
+        surfaces = []
+        for arguments in (["-format", "msh41"], ["-format", "msh22"], ["-algo", "hxt", "-format", "msh41"],
+                          ["-algo", "hxt", "-format", "msh22", "-bin"]):
+            with self.subTest(arguments=arguments):
+                self.run_program("gmsh", "-3", "ball.geo", "-o", "ball.msh", *arguments)
+                verdicts = self.verdicts("ball.msh")
+                self.assertEqual({verdicts[claim] for claim in ("structure", "conformity", "surface")}, {"pass"})
+                self.assertEqual(verdicts["delaunay"], "fail", "Gmsh optimises its meshes")
+                surfaces.append(self.report["claims"]["boundary_angles"]["reason"])
+        self.assertEqual(len(set(surfaces)), 1, "every algorithm keeps the surface mesh")
+
+    def cgal_verdicts(self, *options):
+        """Of CGAL's mesh of two half balls, with criteria that its refinement is proved to meet."""
+        if "PODM_CGAL_IMAGE_MESH" not in os.environ:
+            self.skipTest("built without PODM_BUILD_CGAL_PEER")
+        write_inr(self.folder / "balls.inr", half_balls())
+        self.run_program(os.environ["PODM_CGAL_IMAGE_MESH"], "balls.inr", "balls.mesh", "3", *options)
+        return self.verdicts("balls.mesh", "--image", self.folder / "balls.inr", "--radius", "3", "--radius-edge", "2")
+
+    def test_cgal_meshes_images_by_delaunay_refinement_and_keeps_every_claim(self):
+        verdicts = self.cgal_verdicts()
+        self.assertEqual((len(verdicts), set(verdicts.values())), (9, {"pass"}))
+
+    def test_cgal_gives_up_delaunay_where_it_weights_vertices_against_slivers(self):
+        verdicts = self.cgal_verdicts("exude")
+        self.assertEqual({verdicts[claim] for claim in ("structure", "conformity", "surface")}, {"pass"})
+        self.assertEqual(verdicts["delaunay"], "fail")
 
 
 if __name__ == "__main__":

@@ -9,9 +9,11 @@ import tempfile
 import unittest
 
 import jsonschema
+import numpy as np
 from vtkmodules.util.numpy_support import vtk_to_numpy
 from vtkmodules.vtkIOXML import vtkXMLUnstructuredGridReader
 
+from inr_image import write_inr
 from medit_mesh import kuhn_cubes
 from mutants import REGULAR, tetrahedron
 
@@ -25,6 +27,15 @@ def read_cell_arrays(path):
     reader.Update()
     data = reader.GetOutput().GetCellData()
     return {data.GetArrayName(i): vtk_to_numpy(data.GetArray(i)) for i in range(data.GetNumberOfArrays())}
+
+
+def meshed_voxels(voxels, becomes):
+    """Six cells a voxel, all with its centre as circumcentre; of each label, or what it becomes, None being no cell."""
+    mesh = kuhn_cubes(*reversed(voxels.shape))
+    labels = [becomes.get(label, label) for label in voxels.ravel()]
+    mesh.cells = np.array([[*cell[:4], labels[c // 6]] for c, cell in enumerate(mesh.cells)
+                           if labels[c // 6] is not None])
+    return mesh
 
 
 class ProgramTest(unittest.TestCase):
@@ -90,6 +101,11 @@ class ProgramTest(unittest.TestCase):
         self.assertTrue((sum(arrays[claim] for claim in failed) >= 1).all(), "only cells in violation")
         self.assert_exit(self.verify("--claims", "structure", mesh=bad), 1)
 
+    def test_an_option_that_may_be_repeated_takes_one_value_each_time(self):
+        process = subprocess.run([VERIFIER, "--claims", "size", "--radius-of", "1=1", "--radius-of", "2=1", self.mesh],
+                                 capture_output=True, text=True, timeout=60, check=False)
+        self.assert_exit(process, 0)
+
     def test_a_left_handed_mesh_is_told_apart(self):
         mesh = kuhn_cubes(2, 1, 1)
         mesh.cells[:, [0, 1]] = mesh.cells[:, [1, 0]]
@@ -108,6 +124,29 @@ class ProgramTest(unittest.TestCase):
             reports.append(claims)
         self.assertEqual(*reports)
 
+    def read_overlaps(self):
+        """Dice's coefficient of every label, of the mesh with the image."""
+        return {row["dice"] for row in self.read_report()["claims"]["labels"]["details"]["labels"]}
+
+    def test_a_mesh_of_some_labels_is_compared_with_those_of_the_image(self):
+        voxels = np.random.default_rng(5).choice([0, 1, 2, 3, 7], size=(6, 7, 8))
+        image = self.folder / "image.inr"
+        write_inr(image, voxels, offset=0.5)
+        for options, becomes in ((["--labels", "1-2,7"], {0: None, 3: None}),
+                                 (["--drop", "2"], {0: None, 2: None}),
+                                 (["--merge", "3,1=a", "--merge", "7,2=b"], {0: None, 1: 3, 2: 7}),
+                                 (["--labels", "1-3", "--drop", "1", "--merge", "1,3=a"],
+                                  {0: None, 1: None, 3: 1, 7: None}),
+                                 (["--background", "7"], {7: None}),
+                                 (["--background", "7", "--drop", "0"], {0: None, 7: None})):
+            with self.subTest(options=options):
+                meshed_voxels(voxels, becomes).write(self.mesh)
+                claims = ["--claims", "labels,surface,fidelity", "--json", self.report, "--image", image]
+                self.assert_exit(self.verify(*claims, *options), 0)
+                self.assertEqual(self.read_overlaps(), {1})
+                self.verify(*claims)
+                self.assertNotEqual(self.read_overlaps(), {1}, "all labels of the image are other ones")
+
     def test_bad_usage_and_input_exit_with_two_and_name_the_fault(self):
         for arguments, fault in ((["--claims", "structure,delauny"], "no claim 'delauny', nearest is 'delaunay'"),
                                  (["--radius", "-1"], "--radius"),
@@ -116,8 +155,13 @@ class ProgramTest(unittest.TestCase):
                                  (["--angle", "nan"], "--angle"),
                                  (["--angle", "60.5"], "--angle"),
                                  (["--fidelity-voxels", "nan"], "--fidelity-voxels"),
+                                 (["--delta", "0"], "--delta"),
                                  (["--radius-of", "3"], "LABEL=MM"),
                                  (["--radius-of", "3=inf"], "LABEL=MM"),
+                                 (["--labels", "1"], "--image"),
+                                 (["--image", "absent.nii", "--labels", "7-3"], "--labels: the range '7-3'"),
+                                 (["--image", "absent.nii", "--merge", "2,3"], "--merge: '2,3' is not VALUES=NAME"),
+                                 (["--background", "-1"], "--background"),
                                  (["--extract-bad", "x.txt"], ".vtu"),
                                  (["--image", self.folder / "absent.nii"], "absent.nii"),
                                  (["--schedule", self.folder / "absent.jsonl"], "absent.jsonl"),

@@ -19,6 +19,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <exception>
+#include <fstream>
 #include <iostream>
 #include <nlohmann/json.hpp>
 #include <stdexcept>
@@ -41,9 +42,11 @@ constexpr double kRadiusEdgeBound = 1.93;
 
 struct Options {
   std::string image_path;
-  double cell_size_mm = 0;  // 0: unbounded, the surface alone drives
-  double facet_distance_mm = 0;
-  std::size_t threads = 0;  // 0: Sequential_tag
+  double cell_size_mm = 0;       // 0: unbounded, the surface alone drives
+  double facet_size_mm = 0;      // 0: unbounded
+  double facet_distance_mm = 0;  // 0: unbounded
+  std::string output_path;       // empty: no file
+  std::size_t threads = 0;       // 0: Sequential_tag
 };
 
 CGAL::Image_3 read_image(const std::string& path) {
@@ -58,6 +61,16 @@ std::uint64_t peak_resident_bytes() {
   return static_cast<std::uint64_t>(usage.ru_maxrss) * 1024;
 }
 
+// Medit, the references of cells being the image's labels.
+template <class Complex>
+void write_mesh(const Complex& complex, const std::string& path) {
+  if (path.empty()) return;
+  std::ofstream file(path);
+  file.precision(17);
+  complex.output_to_medit(file, false, false);
+  if (!file.flush()) throw std::runtime_error(path + ": cannot be written");
+}
+
 // Refinement alone: no perturbation, no exudation, no smoothing.
 template <class Concurrency>
 Json mesh(const Domain& domain, const Options& options) {
@@ -66,14 +79,16 @@ Json mesh(const Domain& domain, const Options& options) {
   using Criteria = CGAL::Mesh_criteria_3<Triangulation>;
   namespace params = CGAL::parameters;
 
-  const Criteria criteria(
-      params::facet_angle = kFacetAngleDeg, params::facet_distance = options.facet_distance_mm,
-      params::cell_radius_edge_ratio = kRadiusEdgeBound, params::cell_size = options.cell_size_mm);
+  const Criteria criteria(params::facet_angle = kFacetAngleDeg, params::facet_size = options.facet_size_mm,
+                          params::facet_distance = options.facet_distance_mm,
+                          params::cell_radius_edge_ratio = kRadiusEdgeBound,
+                          params::cell_size = options.cell_size_mm);
   const auto start = std::chrono::steady_clock::now();
   const Complex complex =
       CGAL::make_mesh_3<Complex>(domain, criteria, params::no_perturb(), params::no_exude());
   const std::chrono::duration<double> elapsed = std::chrono::steady_clock::now() - start;
 
+  write_mesh(complex, options.output_path);
   Json result;
   result["cells"] = complex.number_of_cells_in_complex();
   result["vertices"] = complex.triangulation().number_of_vertices();
@@ -92,6 +107,7 @@ Json run(const Options& options) {
                                      : mesh<CGAL::Parallel_tag>(domain, options);
   result["options"] = {{"image", options.image_path},
                        {"cell_size_mm", options.cell_size_mm},
+                       {"facet_size_mm", options.facet_size_mm},
                        {"facet_distance_mm", options.facet_distance_mm},
                        {"facet_angle_deg", kFacetAngleDeg},
                        {"cell_radius_edge_ratio", kRadiusEdgeBound},
@@ -106,16 +122,20 @@ Json run(const Options& options) {
 int main(int argc, char** argv) {
   Options options;
   CLI::App app("CGAL's mesh generation of a label image, timed. Prints one JSON line.");
+  app.set_version_flag("--version", "CGAL " CGAL_VERSION_STR " Mesh_3, GPL-3.0-or-later");
   app.add_option("IMAGE", options.image_path, "label image, .inr or .inr.gz")
       ->required()
       ->check(CLI::ExistingFile);
   app.add_option("--cell-size", options.cell_size_mm,
                  "largest circumradius of a cell, mm [default: unbounded]")
       ->check(CLI::PositiveNumber);
-  app.add_option("--facet-distance", options.facet_distance_mm,
-                 "largest distance of a facet to the surface, mm")
-      ->required()
+  app.add_option("--facet-size", options.facet_size_mm,
+                 "largest radius of a facet's ball about the surface, mm [default: unbounded]")
       ->check(CLI::PositiveNumber);
+  app.add_option("--facet-distance", options.facet_distance_mm,
+                 "largest distance of a facet to the surface, mm [default: unbounded]")
+      ->check(CLI::PositiveNumber);
+  app.add_option("--output", options.output_path, "Medit file of the mesh, .mesh [default: none]");
   app.add_option("--threads", options.threads, "0: CGAL's Sequential_tag [default: 0]");
   try {
     app.parse(argc, argv);

@@ -32,11 +32,11 @@ LabelSelection::Merge parse_merge(const std::string& text);
 std::map<std::uint32_t, std::string> read_label_names(const std::string& path);
 
 /// Reads NIfTI, NRRD, MetaImage, INR (each .gz where usual), or "phantom:NAME[@SIZE]".
-/// Throws InputError naming the file and the fault. Labels are sorted by value.
-LabelImage read_image(const std::string& path, const LabelSelection& selection = {});
+/// Throws InputError naming the file and the fault. Labels are sorted by value. `threads`: 0 for all cores.
+LabelImage read_image(const std::string& path, const LabelSelection& selection = {}, int threads = 0);
 
 /// The analytic phantoms: "abdomen", "spheres", "torus"; `size` voxels along the longest axis.
-LabelImage make_phantom(const std::string& name, int size);
+LabelImage make_phantom(const std::string& name, int size, int threads = 0);
 std::vector<std::string> phantom_names();
 
 /// Writes a NIfTI-1 label image (.nii or .nii.gz), whole or not at all.

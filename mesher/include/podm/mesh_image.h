@@ -5,6 +5,7 @@
 #include <cstdint>
 #include <functional>
 #include <map>
+#include <optional>
 #include <stop_token>
 #include <string>
 #include <vector>
@@ -21,9 +22,24 @@ inline constexpr double kRadiusEdgeBound = 1.93;
 /// Every planar angle of every boundary facet exceeds this, in degrees.
 inline constexpr double kFacetAngleBound = 30.0;
 
+/// How the work is divided among threads. kPodm: anywhere, with locks. kPdrPodm: an initial mesh by PODM,
+/// then leaf by leaf of an octree, each by a computing node of several threads. kPdr: leaf by leaf, one
+/// thread each, without locks. kAuto: kPodm on few threads, kPdrPodm on many.
+enum class Algorithm { kAuto, kPodm, kPdr, kPdrPodm };
+std::string to_string(Algorithm algorithm);
+
+/// Threads from which on kAuto is kPdrPodm, unless told: the crossover of the published runs lies between 128
+/// and 160 cores (Feng et al., IMR 2015, Table 1). An experiment measures it for the machine at hand.
+inline constexpr int kDefaultCrossover = 144;
+
 /// What a worker does that finds a vertex locked by another; see refine/contention_manager.h.
 enum class Contention { kAggressive, kRandom, kGlobal, kLocal };
 std::string to_string(Contention contention);
+
+/// Whom a worker with cells to spare serves first: the one that has begged longest, or the nearest in the
+/// machine; see refine/begging_list.h.
+enum class Begging { kRandom, kHierarchical };
+std::string to_string(Begging begging);
 
 /// Who runs the workers: threads, or one core that plays them in virtual time (refine/virtual_executor.h).
 enum class Executor { kThreads, kVirtual };
@@ -47,10 +63,23 @@ struct MeshingOptions {
   /// When positive: choose radius_mm so that the mesh has this many cells within 5 %; radius_mm must be 0.
   std::uint64_t target_elements = 0;
   Space space = Space::kRas;
+  Algorithm algorithm = Algorithm::kPodm;
+  int crossover = kDefaultCrossover;  ///< threads from which on kAuto is kPdrPodm
+  // Of PDR and PDR.PODM; 0: left to the mesher.
+  int nodes = 0;             ///< computing nodes; default: NUMA nodes in use, for kPdr one a thread
+  int cores_per_node = 0;    ///< threads of each; default: threads over nodes
+  double initial_ratio = 4;  ///< circumradius bound and delta of the initial mesh over those of the final one
+  int initial_threads = 0;   ///< of the initial mesh; default: all, for kPdr one
+  double leaf_size_mm = 0;   ///< side of the octree's leaves; default: from the initial mesh's bound
+  bool with_schedule = false;  ///< report when which leaf was refined
   /// Of all phases. With one thread the same input makes the same mesh to the bit, with more one of the same
-  /// guarantees. 0: all cores for the feature transform, one for refinement.
+  /// guarantees. 0: one for refinement, all cores for the rest.
   int threads = 0;
   Contention contention = Contention::kLocal;
+  Begging begging = Begging::kHierarchical;
+  std::string pin = "none";    ///< compact, scatter, none, or processors: runtime/placement.h
+  bool oversubscribe = false;  ///< else more threads than processors are refused
+  std::string topology_path;   ///< hwloc XML of the machine that the workers stand for; empty: this one
   Executor executor = Executor::kThreads;
   VirtualCost virtual_cost = VirtualCost::kMeasured;
   std::uint64_t seed = 1;             ///< of pauses of Contention::kRandom and of virtual time
@@ -59,6 +88,9 @@ struct MeshingOptions {
   std::uint64_t max_elements = 0;
   double max_seconds = 0;
   std::uint64_t max_memory_bytes = 0;  ///< of the mesh store
+
+  /// Of all phases but refinement: the threads of virtual time are none of this machine's.
+  int loop_threads() const { return executor == Executor::kVirtual ? 0 : threads; }
 };
 
 /// What a run is expected to cost, from the image and the options alone.
@@ -111,8 +143,45 @@ struct Counters {
   std::uint64_t exact_decisions = 0;  ///< conflict tests that the cached sphere left undecided
   std::uint64_t cells_created = 0;
   std::uint64_t lock_conflicts = 0;  ///< attempts rolled back
-  // Seconds that workers lost, summed over them.
+  std::uint64_t out_of_leaf = 0;     ///< attempts that needed vertices outside a leaf's region, deferred
+  std::uint64_t region_cells = 0;    ///< cells that operations collected to replace, carried out or not
+  // Seconds lost, of all workers.
   double contention_s = 0, begging_s = 0, rollback_s = 0;
+  /// Cells tested and vertices locked, by the hops to the NUMA node whose worker made them; empty on one
+  /// node.
+  std::vector<std::uint64_t> accesses_by_hops;
+};
+
+/// One worker: where it was, and what it did.
+struct WorkerReport {
+  int node = 0, socket = 0;      ///< of the machine, or of the one described
+  std::optional<int> processor;  ///< asked for, by the system's number; none: bound to none
+  std::optional<int> bound_to;   ///< as the system told when the worker had begun
+  Counters counters;
+};
+
+/// Pages of the mesh store asked for where they are, against the node that the pools say.
+struct PageSamples {
+  std::uint64_t as_claimed = 0, elsewhere = 0;
+  std::string unavailable;  ///< why none were asked
+};
+
+/// The leaves of an octree and when each was refined.
+struct LeafSchedule {
+  std::array<double, 3> origin_mm{};  ///< of the grid, image frame
+  double side_mm = 0;                 ///< of a grid cell
+  struct Leaf {
+    std::array<std::uint32_t, 3> corner;  ///< in the grid
+    std::uint32_t side;
+  };
+  std::vector<Leaf> leaves;
+  struct Activation {
+    std::uint32_t leaf, node;
+    double begin_s, end_s;  ///< since the first; in virtual time under Executor::kVirtual
+    std::uint64_t operations, deferred;
+    std::vector<std::uint32_t> touched_leaves;  ///< that hold a vertex which was locked
+  };
+  std::vector<Activation> activations;  ///< in the order of their ends
 };
 
 struct MeshingReport {
@@ -122,7 +191,14 @@ struct MeshingReport {
   StopReason stop_reason = StopReason::kComplete;
   Guarantees guarantees;
   Quality quality;
-  Counters counters;
+  Counters counters;  ///< of all workers
+  std::vector<WorkerReport> workers;
+  int num_nodes = 1;                       ///< NUMA nodes of the machine
+  Algorithm algorithm = Algorithm::kPodm;  ///< as used
+  int computing_nodes = 1;                 ///< as used
+  std::uint64_t num_leaves = 0;
+  std::optional<LeafSchedule> schedule;
+  PageSamples pages;
   std::map<std::uint32_t, std::uint64_t> cells_of_label;  ///< by label value
   std::map<std::uint32_t, double> volume_of_label_mm3;    ///< by label value, of the mesh
   std::uint64_t store_cells = 0;                          ///< cells of the whole virtual box

@@ -19,7 +19,7 @@ const std::vector<Crew> kCrews{crew(Executor::kThreads, 1), crew(Executor::kThre
 class Faults : public testing::TestWithParam<Crew> {
  protected:
   Refinement refine(Watch& watch, std::size_t cell_capacity = 1 << 20) {
-    return podm(isosurface_, foreground_bounds(image_), 1.2, sizes_, cell_capacity, GetParam(), watch);
+    return podm({isosurface_, foreground_bounds(image_), 1.2, sizes_, cell_capacity}, GetParam(), watch);
   }
   static Watch patient() {
     return {{}, {}, [](std::uint64_t) {}};

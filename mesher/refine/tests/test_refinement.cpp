@@ -2,6 +2,9 @@
 // rule.
 #include <gtest/gtest.h>
 
+#include <algorithm>
+#include <sstream>
+
 #include "cost_model.h"
 #include "images.h"
 #include "podm.h"
@@ -13,16 +16,35 @@ namespace {
 
 constexpr double kRadius = 2.5;
 
-// One thread without locks, and more threads than this machine may have cores, by contention manager.
-Crew crew(int num_workers, Contention contention, Executor executor = Executor::kThreads) {
-  return {executor, {num_workers, contention, {}, 1}};
-}
-const std::vector<Crew> kCrews{
-    crew(1, Contention::kLocal),  crew(2, Contention::kLocal),
-    crew(7, Contention::kLocal),  crew(7, Contention::kGlobal),
-    crew(7, Contention::kRandom), crew(64, Contention::kLocal, Executor::kVirtual)};
+// An algorithm and its workers.
+struct Method {
+  Algorithm algorithm;
+  int num_workers, num_nodes;
+  Contention contention = Contention::kLocal;
+  Executor executor = Executor::kThreads;
 
-class Refined : public testing::TestWithParam<std::tuple<NamedImage, Crew>> {
+  Refinement operator()(const Problem& problem, Watch& watch) const {
+    const Crew crew{executor, {num_workers, contention, {}, 1}};
+    const LeafOptions leaves{.num_nodes = num_nodes, .initial_workers = num_workers};
+    if (algorithm == Algorithm::kPdr) return pdr(problem, crew, leaves, watch);
+    if (algorithm == Algorithm::kPdrPodm) return pdr_podm(problem, crew, leaves, watch);
+    return podm(problem, crew, watch);
+  }
+};
+
+// One thread without locks, and more threads than this machine may have cores.
+const std::vector<Method> kMethods{{Algorithm::kPodm, 1, 1},
+                                   {Algorithm::kPodm, 2, 1},
+                                   {Algorithm::kPodm, 7, 1},
+                                   {Algorithm::kPodm, 7, 1, Contention::kGlobal},
+                                   {Algorithm::kPodm, 7, 1, Contention::kRandom},
+                                   {Algorithm::kPodm, 64, 1, Contention::kLocal, Executor::kVirtual},
+                                   {Algorithm::kPdr, 1, 1},
+                                   {Algorithm::kPdr, 4, 4},
+                                   {Algorithm::kPdrPodm, 6, 3},
+                                   {Algorithm::kPdrPodm, 64, 8, Contention::kLocal, Executor::kVirtual}};
+
+class Refined : public testing::TestWithParam<std::tuple<NamedImage, Method>> {
  protected:
   Refined()
       : image_(std::get<NamedImage>(GetParam()).make()),
@@ -30,8 +52,8 @@ class Refined : public testing::TestWithParam<std::tuple<NamedImage, Crew>> {
         delta_(default_delta_mm(image_, kRadius)),
         sizes_(std::vector<double>(image_.labels.size(), kRadius)) {
     Watch watch({}, {}, [](std::uint64_t) {});
-    refinement_ = podm(isosurface_, foreground_bounds(image_), delta_, sizes_, 1 << 22,
-                       std::get<Crew>(GetParam()), watch);
+    const Problem problem{isosurface_, foreground_bounds(image_), delta_, sizes_, 1 << 22};
+    refinement_ = std::get<Method>(GetParam())(problem, watch);
   }
   double spacing() const { return std::min(delta_, kRadius / std::sqrt(2 + std::sqrt(3.0))); }
 
@@ -85,16 +107,18 @@ TEST_P(Refined, NoFreeVertexStaysNearTheIsosurfaceVertices) {
   }
 }
 
-std::string name_of(const testing::TestParamInfo<std::tuple<NamedImage, Crew>>& test) {
-  const auto& [image, crew] = test.param;
-  std::string name = image.name;
-  name += '_';
-  name += std::to_string(crew.coordination.num_workers);
-  return name += to_string(crew.coordination.contention) + to_string(crew.executor);
+std::string name_of(const testing::TestParamInfo<std::tuple<NamedImage, Method>>& test) {
+  const auto& [image, method] = test.param;
+  std::ostringstream text;
+  text << image.name << '_' << to_string(method.algorithm) << '_' << method.num_workers << '_'
+       << to_string(method.contention) << '_' << to_string(method.executor);
+  std::string name = text.str();
+  std::replace(name.begin(), name.end(), '-', '_');
+  return name;
 }
 
 INSTANTIATE_TEST_SUITE_P(Images, Refined,
-                         testing::Combine(testing::ValuesIn(images()), testing::ValuesIn(kCrews)), name_of);
+                         testing::Combine(testing::ValuesIn(images()), testing::ValuesIn(kMethods)), name_of);
 
 }  // namespace
 }  // namespace podm::test

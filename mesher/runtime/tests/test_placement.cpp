@@ -169,6 +169,18 @@ TEST(Pinning, OfOneThreadLeavesOthersFree) {
   EXPECT_EQ(processor_of_this_thread().bound_to, before.bound_to);
 }
 
+TEST(Pinning, ScopedGivesBackWhatTheThreadHad) {
+  const ThreadProcessor before = processor_of_this_thread();
+  {
+    const int os_index = Topology::of_this_machine().processors().back().os_index;
+    const ScopedBinding binding(os_index);
+    EXPECT_EQ(processor_of_this_thread().bound_to, os_index);
+    const ScopedBinding none(std::nullopt);
+    EXPECT_EQ(processor_of_this_thread().bound_to, os_index);
+  }
+  EXPECT_EQ(processor_of_this_thread().bound_to, before.bound_to);
+}
+
 TEST(Pinning, RefusesProcessorsThatAreNotThere) {
   for (const int os_index : {-1, 8191, 8192})
     EXPECT_THAT(fault([&] { pin_this_thread(os_index); }),

@@ -1,6 +1,7 @@
 // Machines by description, by file and the one at hand: numbering, hops, round trips and refusals.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
+#include <sched.h>
 
 #include <algorithm>
 #include <cstdlib>
@@ -8,6 +9,7 @@
 #include <set>
 
 #include "io/tests/scratch_folder.h"
+#include "runtime/placement.h"
 #include "runtime/tests/machines.h"
 
 namespace podm::test {
@@ -117,6 +119,15 @@ TEST(Topology, HopsRankTheLatencies) {
     for (int b = 0; b < 16; ++b) EXPECT_EQ(machine.hops(a, b), ring(a, b));
 }
 
+TEST(Topology, HopsCountTheSlowerWay) {
+  const Topology machine = Topology::synthetic("numa:3 pu:1", {10, 12, 20,  //
+                                                               30, 10, 25,  //
+                                                               20, 25, 10});
+  EXPECT_EQ(machine.hops(0, 2), 1);
+  EXPECT_EQ(machine.hops(1, 2), 2);
+  EXPECT_EQ(machine.hops(0, 1), 3);
+}
+
 TEST(Topology, SurvivesAFile) {
   for (const Topology& machine : {one_node(), two_sockets(), blacklight(), Topology::of_this_machine()}) {
     const Topology again = read_back(machine.to_xml(), ScratchFolder() / "machine.xml");
@@ -152,6 +163,19 @@ TEST(Topology, OfThisMachineIsWhatThisProcessMayUse) {
   EXPECT_LE(static_cast<int>(machine.processors().size()), CPU_COUNT(&allowed));
   for (const Processor& processor : machine.processors())
     EXPECT_TRUE(CPU_ISSET(processor.os_index, &allowed)) << processor.os_index;
+}
+
+TEST(Topology, OfThisMachineHeedsTheAffinity) {
+  const int os_index = Topology::of_this_machine().processors().back().os_index;
+  const auto is_all = [](const Topology& machine, int processor) {
+    return machine.processors().size() == 1 && machine.processors().front().os_index == processor;
+  };
+  EXPECT_EXIT(  // in a process of its own, as its one thread is bound for good
+      {
+        pin_this_thread(os_index);
+        std::exit(is_all(Topology::of_this_machine(), os_index) ? 0 : 1);
+      },
+      testing::ExitedWithCode(0), "");
 }
 
 TEST(Topology, OfThisMachineIsNeverAnother) {

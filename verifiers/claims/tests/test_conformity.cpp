@@ -226,5 +226,22 @@ TEST(Conformity, LargeSchedulesTakeNoQuadraticTime) {  // by the time limit of t
   EXPECT_EQ(count_of(check_active(schedule, activations), "active_leaves_too_near"), 100000ULL * 99999 / 2);
 }
 
+TEST(Conformity, ManySmallLeavesAroundALargeOneTakeNoQuadraticTime) {
+  constexpr std::int64_t kSide = 128;
+  Schedule schedule = unit_leaves(0);
+  schedule.leaves.push_back({{0, 0, 0}, kSide});
+  for (std::int64_t k = -1; k <= kSide; ++k)
+    for (std::int64_t j = -1; j <= kSide; ++j)
+      for (std::int64_t i = -1; i <= kSide; ++i)
+        if (std::min({i, j, k}) < 0 || std::max({i, j, k}) == kSide)
+          schedule.leaves.push_back({{i, j, k}, 1});
+  ASSERT_GT(schedule.leaves.size(), 98000U);
+  std::vector<Activation> activations;
+  for (std::uint32_t i = 0; i < schedule.leaves.size(); ++i) activations.push_back(active(i, i, i + 1));
+  EXPECT_EQ(check_active(schedule, activations).verdict, Verdict::kPass);
+  activations[0].end_s = 2.5;  // the large leaf while the first two small ones are active
+  EXPECT_EQ(count_of(check_active(schedule, activations), "active_leaves_too_near"), 2U);
+}
+
 }  // namespace
 }  // namespace podm::verify

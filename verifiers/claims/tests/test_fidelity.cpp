@@ -67,6 +67,23 @@ TEST(Fidelity, TheBoundDecides) {
   EXPECT_EQ(fidelity_of(mesh, image, 0.6).verdict, Verdict::kFail);
 }
 
+TEST(Fidelity, TwiceTheSamplingDistanceIsNearEnough) {
+  for (const auto& affine : kAffines) {
+    const Image image = make_image({13, 11, 9}, affine, two_boxes);
+    Options options;
+    options.threads = 1;
+    options.fidelity_bound_voxels = 0.01;
+    const auto result_for = [&](double delta_mm) {
+      options.delta_mm = delta_mm;
+      const Mesh mesh = kuhn_mesh(image);
+      return check_fidelity(mesh, mapped_adjacency(mesh), image, options);
+    };
+    const double furthest_mm = number(result_for(1e-3), "mesh_to_image", "max_mm");
+    EXPECT_EQ(result_for(0.49 * furthest_mm).verdict, Verdict::kFail);
+    EXPECT_EQ(result_for(0.51 * furthest_mm).verdict, Verdict::kPass);
+  }
+}
+
 TEST(Fidelity, AWrongSpaceFails) {
   const Image image = make_image({13, 11, 9}, kAnisotropic, two_boxes);
   Mesh mesh = kuhn_mesh(image, Space::kLps);

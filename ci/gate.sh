@@ -1,0 +1,23 @@
+#!/bin/sh
+# The performance gate: the mesher of the working tree against that of the commit where it left branch $1 (main).
+# Exits with 1 when the change may not go in. Both are built side by side in build-gate/.
+set -eu
+cd "$(dirname "$0")/.."
+
+base=$(git merge-base HEAD "${1:-main}")
+rm -rf build-gate/base-sources
+mkdir -p build-gate/base-sources
+git archive "$base" | tar -x -C build-gate/base-sources
+
+build() {  # sources, folder, targets
+  sources=$1
+  folder=$2
+  shift 2
+  cmake -S "$sources" -B "$folder" -G Ninja -DCMAKE_BUILD_TYPE=Release -DPODM_BUILD_TESTS=OFF
+  cmake --build "$folder" --target "$@"
+}
+build build-gate/base-sources build-gate/base podm
+build . build-gate/head podm podm-verify podm-bench
+
+echo "== head against $base"
+build-gate/head/bin/podm-bench gate --base build-gate/base/bin/podm

@@ -1,0 +1,37 @@
+// The commands of podm-bench, one file each. Each returns the exit code; all throw InputError.
+#pragma once
+
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "experiment.h"
+#include "verification.h"
+
+namespace podm::bench {
+
+inline constexpr int kExitMissed = 1, kExitInput = 2, kExitInternal = 3;
+
+struct RunCommand {
+  std::vector<std::string> experiment_paths;
+  std::string only;          ///< a pattern of trial names, as in a shell; empty: all
+  std::optional<Tier> tier;  ///< trials of this tier and the lower ones; nothing: all
+  std::string image;         ///< in place of all inputs; empty: the inputs
+  std::string results_folder = "results/runs";
+  std::uint64_t order_seed = 1;
+  Programs programs;
+  bool again = false;  ///< also what is measured already
+  bool keep = false;   ///< meshes and messages
+};
+
+/// Runs what is not measured yet and prints the table.
+int run(const RunCommand& command);
+
+/// Prints what run() would do and what that takes; writes no file.
+int dry_run(const RunCommand& command);
+
+/// Prints title, tier, trials and time of the experiments in a folder.
+int list(const std::string& folder);
+
+}  // namespace podm::bench

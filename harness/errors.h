@@ -1,0 +1,13 @@
+#pragma once
+
+#include <stdexcept>
+
+namespace podm::bench {
+
+/// The user's input is at fault; what() names the file, the place and the fault. Exit code 2.
+class InputError : public std::runtime_error {
+ public:
+  using std::runtime_error::runtime_error;
+};
+
+}  // namespace podm::bench

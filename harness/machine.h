@@ -1,0 +1,23 @@
+// The machine as hwloc sees it.
+#pragma once
+
+#include <nlohmann/json.hpp>
+#include <string>
+
+namespace podm::bench {
+
+struct Machine {
+  /// Processor and numbers of packages, NUMA nodes, cores and processors; nothing of a host's name or state.
+  nlohmann::ordered_json summary;
+  std::string topology_xml;  ///< hwloc's, without the host's name; empty when hwloc cannot tell
+};
+
+Machine this_machine();
+
+/// Processors that this process may run on, at least 1.
+int usable_processors();
+
+/// The text after the colon of the first line "key : text" of a file, or "unavailable: why".
+std::string value_of(const std::string& path, const std::string& key);
+
+}  // namespace podm::bench

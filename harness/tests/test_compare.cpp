@@ -1,0 +1,147 @@
+// What `podm-bench compare` matches, finds and calls worse.
+#include "compare.h"
+
+#include <gtest/gtest.h>
+
+#include "fake_mesher.h"
+#include "process.h"
+
+namespace podm::bench {
+namespace {
+
+using Json = nlohmann::ordered_json;
+using Rows = std::vector<Json>;
+
+Json row(double seconds, int threads = 1) {
+  return {{"trial", "some"},
+          {"status", "ok"},
+          {"input", {{"path", "image.nii"}}},
+          {"options", {{"radius_mm", 2.0}}},
+          {"threads", {{"asked", threads}, {"used", threads}}},
+          {"phases_s", {{"refine", seconds}, {"write", 50.0}}},
+          {"cells", 1000},
+          {"cells_per_second", 1000 / seconds},
+          {"counters", {{"insertions", {{"R1", 7}, {"R2", 3}}}, {"removals", 1}, {"conflict_tests", 100}}},
+          {"mesh_sha256", "aa"},
+          {"verdicts", {{"size", "pass"}}},
+          {"process", {{"peak_rss_bytes", 5000}}}};
+}
+
+// Seven measurements within 2 % of each other.
+Rows repeats(double seconds, int threads = 1) {
+  Rows rows;
+  for (int i = -3; i <= 3; ++i) rows.push_back(row(seconds * (1 + 0.003 * i), threads));
+  return rows;
+}
+
+bool has(const Comparison& comparison, const std::string& text) {
+  return comparison.text.find(text) != std::string::npos;
+}
+
+TEST(Compare, WithItselfIsTheSame) {
+  const Comparison comparison = compare(repeats(2), repeats(2));
+  EXPECT_FALSE(comparison.is_worse);
+  EXPECT_TRUE(has(comparison, "same"));
+  EXPECT_FALSE(has(comparison, "better"));
+}
+
+TEST(Compare, SlowerIsWorseAndFasterIsBetter) {
+  const Comparison slower = compare(repeats(2), repeats(2.3));
+  EXPECT_TRUE(slower.is_worse);
+  EXPECT_TRUE(has(slower, "1.150")) << slower.text;
+  EXPECT_TRUE(has(slower, "0.870")) << "cells a second";
+  const Comparison faster = compare(repeats(2.3), repeats(2));
+  EXPECT_FALSE(faster.is_worse);
+  EXPECT_TRUE(has(faster, "better"));
+}
+
+TEST(Compare, FewRowsAreNoEvidenceOfTime) {
+  const Comparison comparison = compare({row(2)}, {row(4)});
+  EXPECT_FALSE(comparison.is_worse);
+  EXPECT_TRUE(has(comparison, "2.000"));
+  EXPECT_TRUE(has(comparison, "no interval"));
+}
+
+TEST(Compare, WorkOfOneThreadNeedsNoRepeats) {
+  for (const int threads : {1, 2}) {
+    Json more = row(2, threads);
+    more["counters"]["conflict_tests"] = 110;
+    EXPECT_EQ(compare({row(2, threads)}, {more}).is_worse, threads == 1);
+  }
+}
+
+TEST(Compare, LostVerdictsAndStatusComeFirstAndAreWorse) {
+  Json unproved = row(2),
+       failed = {{"trial", "some"}, {"status", "failed"}, {"input", {{"path", "image.nii"}}}};
+  unproved["verdicts"]["size"] = "fail";
+  for (const Json& bad : {unproved, failed}) {
+    const Comparison comparison = compare({row(2)}, {row(2), bad});
+    EXPECT_TRUE(comparison.is_worse);
+    EXPECT_LT(comparison.text.find("WORSE"), comparison.text.find("median"));
+    EXPECT_FALSE(compare({bad}, {row(2)}).is_worse) << "mended";
+  }
+}
+
+TEST(Compare, AnotherMeshIsToldOnOneThreadOnly) {
+  for (const int threads : {1, 2}) {
+    Json other = row(2, threads);
+    other["mesh_sha256"] = "bb";
+    EXPECT_EQ(has(compare({row(2, threads)}, {other}), "another mesh"), threads == 1);
+  }
+}
+
+TEST(Compare, MatchesOnlyWhatMeasuresTheSame) {
+  EXPECT_THROW(compare({row(2)}, {row(2, 2)}), InputError);
+  Json other = row(2);
+  other["options"]["radius_mm"] = 3.0;
+  EXPECT_THROW(compare({row(2)}, {other}), InputError);
+  Rows both = repeats(2);
+  both.push_back(row(9, 2));
+  EXPECT_FALSE(compare(repeats(2), both).is_worse);
+}
+
+TEST(Compare, TakesRecordsOfTheMesherAlone) {
+  Json record = row(2);
+  record.erase("trial");
+  record.erase("status");
+  const Comparison comparison = compare({record}, {record});
+  EXPECT_FALSE(comparison.is_worse);
+  EXPECT_TRUE(has(comparison, "image.nii"));
+}
+
+class CompareCommand : public testing::Test {
+ protected:
+  std::string file(const std::string& name, const Rows& rows) {
+    std::string text;
+    for (const Json& one : rows) text += one.dump() + "\n";
+    return folder_.write(name, text);
+  }
+  int run(const std::string& a, const std::string& b) {
+    return run_process({.arguments = {PODM_BENCH, "compare", a, b},
+                        .stdout_path = folder_ / "out",
+                        .stderr_path = folder_ / "err",
+                        .timeout_s = 60})
+        .exit_code;
+  }
+  TemporaryFolder folder_;
+};
+
+TEST_F(CompareCommand, ExitCodeTells) {
+  const std::string a = file("a", repeats(2)), b = file("b", repeats(2.3));
+  EXPECT_EQ(run(a, a), 0);
+  EXPECT_EQ(run(b, a), 0);
+  EXPECT_EQ(run(a, b), 1);
+}
+
+TEST_F(CompareCommand, BadInputExitsWithTwoAndNamesThePlace) {
+  const std::string a = file("a", repeats(2));
+  EXPECT_EQ(run(a, folder_ / "absent"), 2);
+  EXPECT_EQ(run(a, folder_.write("empty", "")), 2);
+  const std::string broken = file("broken", repeats(2)) + "";
+  std::ofstream(broken, std::ios::app) << "{\"trial\":\n";
+  EXPECT_EQ(run(a, broken), 2);
+  EXPECT_NE(read_tail(folder_ / "err", 1000).find(broken + ":8:"), std::string::npos);
+}
+
+}  // namespace
+}  // namespace podm::bench

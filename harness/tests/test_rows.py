@@ -1,0 +1,78 @@
+"""Rows of podm-bench against their schema. The programs are those that PODM_BENCH, PODM and PODM_VERIFIER name."""
+
+import copy
+import json
+import os
+import pathlib
+import subprocess
+import tempfile
+import unittest
+
+import jsonschema
+
+ROOT = pathlib.Path(__file__).resolve().parents[2]
+VALIDATOR = jsonschema.Draft202012Validator(
+    json.loads((ROOT / "results/schema/podm-bench-row.schema.json").read_text()))
+
+EXPERIMENT = """
+title = "T"
+claim = "C"
+[inputs.ball]
+image = "phantom:torus@24"
+[[trials]]
+name = "trial"
+input = "ball"
+repeats = 2
+warmup = 1
+"""
+
+
+def rows_of(experiment, mesh_body=None):
+    """The rows of a run of the experiment with the mesher, or with a shell script in its place."""
+    with tempfile.TemporaryDirectory() as folder:
+        path = pathlib.Path(folder, "exp.toml")
+        path.write_text(experiment)
+        podm = os.environ["PODM"]
+        if mesh_body:
+            podm = path.with_name("podm")
+            podm.write_text(f'#!/bin/sh\n[ "$1" != mesh ] || {mesh_body}\n')
+            podm.chmod(0o700)
+        subprocess.run([os.environ["PODM_BENCH"], "run", path, "--results", folder, "--podm", podm, "--verifier",
+                        os.environ["PODM_VERIFIER"]], check=False, capture_output=True, timeout=200)
+        return [json.loads(line) for line in path.with_suffix(".jsonl").read_text().splitlines()]
+
+
+class Rows(unittest.TestCase):
+    @classmethod
+    def setUpClass(cls):
+        cls.made = rows_of(EXPERIMENT)
+        cls.timed_out = rows_of(EXPERIMENT + "timeout_s = 0.1\n", "exec sleep 60")
+        cls.failed = rows_of(EXPERIMENT, "exit 2")
+
+    def test_each_kind_of_row_fits_the_schema(self):
+        for rows, status in ((self.made, "ok"), (self.timed_out, "timed_out"), (self.failed, "failed")):
+            self.assertEqual([row["status"] for row in rows], [status] * 3, rows[0]["reason"])
+            self.assertEqual([(row["warmup"], row["repeat"]) for row in rows], [(True, 1), (False, 1), (False, 2)])
+            self.assertEqual(len({row["key"] for row in rows}), 3)
+            for row in rows:
+                VALIDATOR.validate(row)
+
+    def test_meshes_are_proved_and_repeats_alike(self):
+        for row in self.made:
+            self.assertEqual(set(row["verdicts"].values()), {"pass"})
+            self.assertGreater(row["verification_s"], 0)
+            self.assertGreater(row["mesh_bytes"], 0)
+        self.assertEqual(len({row["mesh_sha256"] for row in self.made}), 1)
+
+    def test_rows_that_lack_a_key_or_lie_are_refused(self):
+        for key in VALIDATOR.schema["required"] + VALIDATOR.schema["then"]["required"]:
+            row = copy.deepcopy(self.made[0])
+            del row[key]
+            self.assertFalse(VALIDATOR.is_valid(row), key)
+        for key, value in (("schema", 1), ("key", "x"), ("repeat", 0), ("status", "skipped"), ("harness_s", -1)):
+            self.assertFalse(VALIDATOR.is_valid(self.made[0] | {key: value}), key)
+        self.assertFalse(VALIDATOR.is_valid(self.failed[0] | {"reason": ""}), "a failure without a reason")
+
+
+if __name__ == "__main__":
+    unittest.main()

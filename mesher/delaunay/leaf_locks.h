@@ -1,0 +1,50 @@
+// Locks confined to the region of one leaf of an octree: a vertex outside of it cannot be had. Regions of
+// leaves that are refined at the same time are disjoint (octree/octree.h), so their workers never meet: what
+// holds for two or three locked vertices of a cell (vertex_locks.h) holds for as many in the region. Within
+// one leaf `Inner` locks; with NoLocks a leaf has one worker, as in PDR.
+#pragma once
+
+#include <algorithm>
+#include <vector>
+
+#include "delaunay/vertex_locks.h"
+#include "octree/leaf_region.h"
+
+namespace podm {
+
+template <class Inner>
+class LeafLocks {
+ public:
+  static constexpr bool kIsShared = true;
+  explicit LeafLocks(WorkerId self) : inner_(self) {}
+
+  /// Nothing is held meanwhile. The region must outlive the operations.
+  void confine(const LeafRegion& region) { region_ = &region; }
+  const LeafRegion& region() const { return *region_; }
+  /// From now on remembers the leaves that locked vertices lie in.
+  void watch_leaves() { is_watching_ = true; }
+  std::vector<LeafId>& touched_leaves() { return touched_leaves_; }
+
+  Outcome try_lock(Vertex& v) {
+    const Point p = glimpse_point(v);
+    if (!region_->contains(p)) return Outcome::kOutOfLeaf;
+    if (is_watching_) remember(region_->octree().leaf_at(p));
+    return inner_.try_lock(v);
+  }
+  void unlock_all() { inner_.unlock_all(); }
+  WorkerId conflicting_worker() const { return inner_.conflicting_worker(); }
+
+ private:
+  void remember(LeafId leaf) {
+    if (leaf != kNoLeaf &&
+        std::find(touched_leaves_.begin(), touched_leaves_.end(), leaf) == touched_leaves_.end())
+      touched_leaves_.push_back(leaf);
+  }
+
+  Inner inner_;
+  const LeafRegion* region_ = nullptr;
+  bool is_watching_ = false;
+  std::vector<LeafId> touched_leaves_;
+};
+
+}  // namespace podm

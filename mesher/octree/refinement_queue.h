@@ -1,0 +1,74 @@
+// The refinement queue of PDR.PODM (Feng et al., IMR 2015, Fig. 3): which leaf a computing node refines next.
+//
+// A leaf that is handed out is *active* until it is finished. Meanwhile no leaf within two rings of it (B1
+// and B2, see octree.h) is handed out: they are out of the queue, though they may be given poor cells. So the
+// regions of active leaves are disjoint. Orders in which leaves are handed out:
+//   home       most poor cells first, of the node's own share of the Morton curve, so that a node works
+//              where it has worked; if it has none ready, of the share that has most leaves ready
+//   most work  most poor cells first
+//   Morton     each node goes along the curve from its last leaf; nodes start evenly spread
+//   coloring   by position modulo 3, colour by colour: leaves of one of the 27 do not keep each other waiting
+// tests/test_refinement_queue_orders.cpp compares them, and tells why home is the default.
+#pragma once
+
+#include <condition_variable>
+#include <mutex>
+#include <optional>
+#include <set>
+#include <stop_token>
+#include <vector>
+
+#include "octree/octree.h"
+
+namespace podm {
+
+enum class LeafOrder { kHome, kMostWork, kMorton, kColoring };
+
+/// Any thread may call any of it. What it hands out depends on the order of the calls alone. Its one lock is
+/// held for some ten microseconds a leaf, whose refinement takes milliseconds.
+class RefinementQueue {
+ public:
+  /// For nodes 0 to num_nodes - 1, at least one. The octree must outlive the queue.
+  RefinementQueue(const Octree& octree, unsigned num_nodes, LeafOrder order = LeafOrder::kHome);
+
+  /// The leaf has `num_poor` more poor cells. Leaves that never had any are not handed out.
+  void push(LeafId leaf, std::uint64_t num_poor);
+
+  /// A leaf for the node, now active, with all its poor cells taken; nothing if all that have poor cells are
+  /// near active ones. Never waits.
+  std::optional<LeafId> pop(unsigned node);
+  /// As pop, but waits for a leaf. Nothing: no leaf is active nor has poor cells, or `stop` was requested.
+  std::optional<LeafId> wait_and_pop(unsigned node, std::stop_token stop);
+  /// The leaf is active no more. Whoever has it must have pushed what it left behind.
+  void finish(LeafId leaf);
+
+  struct Counts {
+    std::size_t pending = 0, ready = 0;  // leaves with poor cells; those of them that may be handed out
+    std::size_t active = 0;
+    std::size_t waiting = 0;  // nodes in wait_and_pop
+  };
+  Counts counts() const;
+
+ private:
+  using Key = std::uint64_t;  // rank in the order, then leaf
+
+  Key key(LeafId leaf) const;
+  std::set<Key>& ready_of(LeafId leaf);
+  const std::set<Key>& ready_for(unsigned node) const;
+  bool is_ready(LeafId leaf) const { return num_poor_[leaf] > 0 && num_active_near_[leaf] == 0; }
+  std::vector<LeafId> buffer_zones(LeafId leaf) const;
+  void set_active(const std::vector<LeafId>& zones, bool is_active);
+  std::optional<LeafId> take(unsigned node);
+
+  const Octree& octree_;
+  const LeafOrder order_;
+  mutable std::mutex mutex_;
+  std::condition_variable_any changed_;
+  std::vector<std::uint64_t> num_poor_;
+  std::vector<std::uint32_t> num_active_near_;  // active leaves within two rings, the leaf itself included
+  std::vector<std::set<Key>> ready_;            // by share of the curve: one a node for home, else one
+  std::vector<Key> resume_at_;                  // by node: where in the order its next leaf is looked for
+  Counts counts_;
+};
+
+}  // namespace podm

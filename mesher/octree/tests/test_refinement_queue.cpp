@@ -1,0 +1,195 @@
+#include <gtest/gtest.h>
+
+#include <atomic>
+#include <thread>
+
+#include "octree/refinement_queue.h"
+#include "random_octrees.h"
+
+namespace podm::test {
+namespace {
+
+constexpr LeafOrder kOrders[] = {LeafOrder::kHome, LeafOrder::kMostWork, LeafOrder::kMorton,
+                                 LeafOrder::kColoring};
+
+class Queue : public testing::TestWithParam<std::tuple<LeafOrder, int>> {
+ protected:
+  LeafOrder order = std::get<0>(GetParam());
+  RandomOctree seeded{static_cast<std::uint64_t>(std::get<1>(GetParam()))};
+  Octree octree = seeded.pruned();
+  std::vector<GridCube> cubes = cubes_of(seeded.whole());
+  bool are_near(LeafId a, LeafId b) const {
+    return is_within_two_rings(cubes, octree.cube(a), octree.cube(b));
+  }
+};
+
+// Calls at random as one thread for several nodes makes them, checked against what has to hold after each.
+TEST_P(Queue, HandsOutEveryPendingLeafAwayFromActiveOnes) {
+  constexpr unsigned kNumNodes = 5;
+  RefinementQueue queue(octree, kNumNodes, order);
+  std::set<LeafId> pending;
+  std::vector<LeafId> active;
+  const auto is_free = [&](LeafId leaf) {
+    return std::none_of(active.begin(), active.end(), [&](LeafId other) { return are_near(leaf, other); });
+  };
+  const auto step = [&](bool is_pushing) {
+    const auto choice = seeded.random() % 3;
+    if (choice == 0 && is_pushing) {
+      const LeafId leaf = static_cast<LeafId>(seeded.random() % octree.num_leaves());
+      queue.push(leaf, 1 + seeded.random() % 100);
+      pending.insert(leaf);
+    } else if (choice == 1 && !active.empty()) {
+      std::swap(active.back(), active[seeded.random() % active.size()]);
+      queue.finish(active.back());
+      active.pop_back();
+    } else if (active.size() < kNumNodes) {
+      const std::optional<LeafId> leaf = queue.pop(static_cast<unsigned>(seeded.random() % kNumNodes));
+      ASSERT_EQ(leaf.has_value(), std::any_of(pending.begin(), pending.end(), is_free));
+      if (!leaf) return;
+      EXPECT_TRUE(is_free(*leaf));
+      EXPECT_EQ(pending.erase(*leaf), 1u);
+      active.push_back(*leaf);
+    }
+    const RefinementQueue::Counts counts = queue.counts();
+    EXPECT_EQ(counts.pending, pending.size());
+    EXPECT_EQ(counts.active, active.size());
+    EXPECT_EQ(counts.ready, std::size_t(std::count_if(pending.begin(), pending.end(), is_free)));
+  };
+  if (octree.num_leaves() == 0) return;
+  for (int i = 0; i < 300 && !HasFatalFailure(); ++i) step(true);
+  while (!HasFatalFailure() && !(pending.empty() && active.empty())) step(false);
+}
+
+TEST_P(Queue, RepeatsItselfForTheSameCalls) {
+  const auto run = [&] {
+    std::mt19937_64 random(3);
+    RefinementQueue queue(octree, 4, order);
+    for (LeafId leaf = 0; leaf < octree.num_leaves(); ++leaf) queue.push(leaf, 1 + random() % 100);
+    std::vector<std::optional<LeafId>> answers;
+    std::vector<LeafId> active;
+    for (unsigned i = 0; i < 200; ++i) {
+      answers.push_back(queue.pop(i % 4));
+      if (answers.back()) active.push_back(*answers.back());
+      if (active.empty() || random() % 2 == 0) continue;
+      queue.finish(active.front());
+      active.erase(active.begin());
+    }
+    return answers;
+  };
+  EXPECT_EQ(run(), run());
+}
+
+// What a node writes without locks while its leaf is active. Sanitizers see two that do so at once.
+TEST_P(Queue, ThreadsRefineEveryLeafWithItsRegionToThemselves) {
+  constexpr unsigned kNumNodes = 4;
+  RefinementQueue queue(octree, kNumNodes, order);
+  std::vector<unsigned> user_of(cubes.size());         // of each cube: node + 1, or 0
+  std::vector<unsigned> poor_of(octree.num_leaves());  // poor cells, given by the leaf itself or its ring
+  std::atomic<unsigned> num_pushed = octree.num_leaves(), num_refined = 0, num_shared = 0;
+  for (LeafId leaf = 0; leaf < octree.num_leaves(); ++leaf) {
+    poor_of[leaf] = 1;
+    queue.push(leaf, 1);
+  }
+  const auto refine = [&](unsigned node, LeafId leaf, std::mt19937_64& random) {
+    for (std::size_t i = 0; i < cubes.size(); ++i)
+      if (touch(cubes[i], octree.cube(leaf)) && std::exchange(user_of[i], node + 1) != 0) ++num_shared;
+    num_refined += std::exchange(poor_of[leaf], 0);
+    std::this_thread::yield();
+    std::vector<LeafId> to = octree.first_ring(leaf);
+    to.push_back(leaf);
+    for (const LeafId other : to) {
+      if (random() % (2 * to.size()) != 0) continue;
+      ++num_pushed;
+      ++poor_of[other];
+      queue.push(other, 1);
+    }
+    for (std::size_t i = 0; i < cubes.size(); ++i)
+      if (touch(cubes[i], octree.cube(leaf)) && std::exchange(user_of[i], 0) != node + 1) ++num_shared;
+  };
+  {
+    std::vector<std::jthread> nodes;
+    for (unsigned node = 0; node < kNumNodes; ++node) {
+      nodes.emplace_back([&, node](std::stop_token stop) {
+        std::mt19937_64 random(node);
+        while (const std::optional<LeafId> leaf = queue.wait_and_pop(node, stop)) {
+          refine(node, *leaf, random);
+          queue.finish(*leaf);
+        }
+      });
+    }
+    for (std::jthread& node : nodes) node.join();  // the destructor would ask them to stop
+  }
+  EXPECT_EQ(num_shared, 0u);
+  EXPECT_EQ(num_refined, num_pushed);
+  const RefinementQueue::Counts counts = queue.counts();
+  EXPECT_EQ(counts.pending + counts.active + counts.waiting, 0u);
+}
+
+INSTANTIATE_TEST_SUITE_P(Orders, Queue, testing::Combine(testing::ValuesIn(kOrders), testing::Range(0, 12)));
+
+class SmallQueue : public testing::Test {
+ protected:
+  Octree octree{{0, 0, 0},
+                {8, 1, 1},
+                1,
+                [](const Point&, const Point&) { return 1.0; },
+                [](const Point&, const Point&) { return true; }};
+  RefinementQueue queue{octree, 2};
+};
+
+TEST_F(SmallQueue, IsFinishedWhenNothingIsPendingNorActive) {
+  EXPECT_EQ(queue.wait_and_pop(0, {}), std::nullopt);
+  queue.push(3, 0);
+  EXPECT_EQ(queue.wait_and_pop(0, {}), std::nullopt);
+}
+
+TEST_F(SmallQueue, LeavesNearAnActiveOneWaitForItsEnd) {
+  queue.push(3, 5);
+  ASSERT_EQ(queue.wait_and_pop(0, {}), LeafId{3});
+  queue.push(3, 1);
+  queue.push(5, 1);
+  EXPECT_EQ(queue.pop(1), std::nullopt);
+  queue.push(6, 1);
+  EXPECT_EQ(queue.pop(1), LeafId{6});
+  queue.finish(3);
+  EXPECT_EQ(queue.pop(0), LeafId{3});
+}
+
+TEST_F(SmallQueue, WaitersGoOnWhenALeafIsFinishedAndEndTogether) {
+  queue.push(3, 1);
+  ASSERT_EQ(queue.pop(0), LeafId{3});
+  queue.push(4, 1);
+  std::atomic<unsigned> num_taken = 0;
+  std::vector<std::jthread> waiters;
+  for (unsigned node = 0; node < 2; ++node) {
+    waiters.emplace_back([&, node] {
+      while (const auto leaf = queue.wait_and_pop(node, {})) {
+        ++num_taken;
+        queue.finish(*leaf);
+      }
+    });
+  }
+  while (queue.counts().waiting < 2) std::this_thread::yield();
+  EXPECT_EQ(num_taken, 0u);
+  queue.finish(3);
+  for (std::jthread& waiter : waiters) waiter.join();
+  EXPECT_EQ(num_taken, 1u);
+}
+
+TEST_F(SmallQueue, StopWakesWaitersAndHandsOutNothingMore) {
+  queue.push(3, 1);
+  ASSERT_EQ(queue.pop(0), LeafId{3});
+  queue.push(4, 1);
+  std::optional<LeafId> answer = 0;
+  std::jthread waiter([&](std::stop_token stop) { answer = queue.wait_and_pop(1, stop); });
+  while (queue.counts().waiting == 0) std::this_thread::yield();
+  waiter.request_stop();
+  waiter.join();
+  EXPECT_EQ(answer, std::nullopt);
+  queue.finish(3);
+  EXPECT_EQ(queue.wait_and_pop(1, waiter.get_stop_token()), std::nullopt);
+  EXPECT_EQ(queue.counts().pending, 1u);
+}
+
+}  // namespace
+}  // namespace podm::test

@@ -1,0 +1,23 @@
+// Where in which machine the workers of a run stand.
+#pragma once
+
+#include <vector>
+
+#include "podm/mesh_image.h"
+#include "refine/begging_list.h"
+#include "runtime/placement.h"
+#include "runtime/topology.h"
+
+namespace podm {
+
+struct PlacementOfCrew {
+  Topology machine;  // this one, or the one described
+  std::vector<Place> places;
+  WorkerGroups groups;  // of the begging list
+};
+
+/// A place for each of `num_workers`. Workers of a described machine, and virtual ones, are bound to nothing.
+/// Throws InputError on a plan, machine or number that cannot be had.
+PlacementOfCrew place_crew(const MeshingOptions& options, int num_workers);
+
+}  // namespace podm

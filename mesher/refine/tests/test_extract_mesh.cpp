@@ -1,0 +1,93 @@
+// Extraction from the store: what the definition says, whoever writes it and whichever labels are known.
+#include "extract_mesh.h"
+
+#include <gtest/gtest.h>
+
+#include <set>
+
+#include "cost_model.h"
+#include "images.h"
+#include "podm.h"
+#include "podm/mesh_io.h"
+
+namespace podm::test {
+namespace {
+
+// Three labels that meet, in the middle of refinement: cells that no worker has asked the label of. The world
+// mirrors the image.
+class ExtractMesh : public testing::Test {
+ protected:
+  ExtractMesh() {
+    image_.voxel_to_ras = {0, -1, 0, 5, -1, 0, 0, 6, 0, 0, -1, 7};
+    Watch watch({.max_cells = 30000}, {}, [](std::uint64_t) {});
+    mesh_ =
+        podm({isosurface_, foreground_bounds(image_), 0.5, SizeField(std::vector<double>(4, 0.6)), 1 << 20},
+             Crew{}, watch)
+            .mesh;
+    for (CellId c = 0; c < mesh_->cell_bound(); c += 3) {
+      if (mesh_->cell(c).is_alive()) mesh_->label(c) = kUnknownLabel;
+    }
+  }
+
+  LabelIndex label_of(CellId c) const { return isosurface_.label_at(mesh_->cell(c).sphere.center); }
+  TetMesh extract(int threads) {
+    return extract_mesh(*mesh_, isosurface_, image_, Space::kRas, threads, facets_off_isosurface_);
+  }
+
+  LabelImage image_ = make_image({24, 24, 24}, {1, 1, 1}, 3, [](int i, int j, int k) {
+    if (std::hypot(i - 11.5, j - 11.5, k - 11.5) >= 10) return 0;
+    return k < 9 ? 1 : i < 12 ? 2 : 3;
+  });
+  Isosurface isosurface_{image_, 1};
+  std::unique_ptr<Mesh> mesh_;
+  std::uint64_t facets_off_isosurface_ = 0;
+};
+
+TEST_F(ExtractMesh, TakesLabelledCellsTheirVerticesAndTheFacetsBetweenLabels) {
+  const TetMesh out = extract(2);
+  std::size_t cells = 0, facets = 0, facets_off_isosurface = 0;
+  std::set<VertexId> vertices;
+  for (CellId c = 0; c < mesh_->cell_bound(); ++c) {
+    const Cell& cell = mesh_->cell(c);
+    if (!cell.is_alive() || label_of(c) == kBackground) continue;
+    ++cells;
+    vertices.insert(cell.vertices.begin(), cell.vertices.end());
+    for (unsigned k = 0; k < 4; ++k) {
+      const FacetId mirror = cell.mirrors[k];
+      if (mirror != kNoFacet && label_of(cell_of(mirror)) >= label_of(c)) continue;
+      ++facets;
+      facets_off_isosurface += std::any_of(kFacetVertices[k].begin(), kFacetVertices[k].end(), [&](int i) {
+        return mesh_->vertex(cell.vertices[static_cast<unsigned>(i)]).kind != VertexKind::kIsosurface;
+      });
+    }
+  }
+  EXPECT_GT(cells, 20000u);
+  EXPECT_EQ(out.cells.size(), cells);
+  EXPECT_EQ(out.cell_labels.size(), cells);
+  EXPECT_EQ(out.vertices.size(), vertices.size());
+  EXPECT_EQ(out.facets.size(), facets);
+  EXPECT_EQ(out.facet_labels.size(), facets);
+  EXPECT_GT(facets_off_isosurface, 0u);
+  EXPECT_EQ(facets_off_isosurface_, facets_off_isosurface);
+}
+
+TEST_F(ExtractMesh, IsTheSameWithAnyNumberOfThreads) {
+  std::vector<CellId> unknown;
+  for (CellId c = 0; c < mesh_->cell_bound(); ++c) {
+    if (mesh_->label(c) == kUnknownLabel) unknown.push_back(c);
+  }
+  std::set<std::string> hashes;
+  std::set<std::size_t> counts;
+  for (const int threads : {1, 2, 5}) {
+    for (const CellId c : unknown) mesh_->label(c) = kUnknownLabel;
+    TetMesh out = extract(threads);
+    canonicalize(out);
+    hashes.insert(mesh_sha256(out));
+    counts.insert(facets_off_isosurface_);
+  }
+  EXPECT_EQ(hashes.size(), 1u);
+  EXPECT_EQ(counts.size(), 1u);
+}
+
+}  // namespace
+}  // namespace podm::test

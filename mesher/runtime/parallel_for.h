@@ -1,0 +1,38 @@
+// Loops whose rounds any thread may take.
+#pragma once
+
+#include <algorithm>
+#include <atomic>
+#include <cstddef>
+#include <thread>
+#include <vector>
+
+namespace podm {
+
+/// As many threads as asked for; all cores where that is 0.
+inline std::size_t num_threads(int asked) {
+  return asked > 0 ? static_cast<std::size_t>(asked) : std::max(1u, std::thread::hardware_concurrency());
+}
+
+/// Calls work(i, thread) once for each i < count, on `threads` threads numbered from 0, the caller's. Whoever
+/// is free takes the next i. `work` must not throw.
+template <class Work>
+void parallel_for(std::size_t count, std::size_t threads, const Work& work) {
+  std::atomic<std::size_t> next{0};
+  const auto run = [&](std::size_t thread) {
+    for (std::size_t i = next++; i < count; i = next++) work(i, thread);
+  };
+  std::vector<std::jthread> others;
+  for (std::size_t t = 1; t < std::min(threads, count); ++t) others.emplace_back(run, t);
+  run(0);
+}
+
+/// The same for consecutive ranges of [0, size), `length` long but for the last: work(begin, end, thread).
+template <class Work>
+void parallel_for_ranges(std::size_t size, std::size_t length, std::size_t threads, const Work& work) {
+  parallel_for((size + length - 1) / length, threads, [&](std::size_t i, std::size_t thread) {
+    work(i * length, std::min(size, (i + 1) * length), thread);
+  });
+}
+
+}  // namespace podm

@@ -1,0 +1,95 @@
+"""How every figure looks, and the words of legends and captions."""
+import numpy
+from matplotlib.figure import Figure
+
+# Text and axes are this colour and nothing else is: the report turns it into the page's own.
+INK = "#1f2430"
+GHOST = "#8c8c8c"
+COLOURS = {"podm": "#2b7bba", "pdr-podm": "#d1495b"}
+MARKERS = {"podm": "o", "pdr-podm": "s"}
+NAMES = {"podm": "PODM", "pdr-podm": "PDR.PODM"}
+PHASE_COLOURS = {"read": "#c9b458", "transform": "#8fb996", "octree": "#7a6c9d", "initial": "#e8a33d",
+                 "refine": "#d1495b", "extract": "#6d9dc5", "other": "#b0b0b0"}
+LINES = {"measured": {"linestyle": "-", "markerfacecolor": None}, "simulated": {"linestyle": ":", "markerfacecolor": "none"}}
+
+
+def new_figure(columns=1, rows=1, width=9.0, height=3.8):
+    """A figure and its axes in a flat list; no global state of pyplot."""
+    figure = Figure(figsize=(width, height), layout="constrained")
+    figure.patch.set_alpha(0)
+    axes = list(numpy.ravel(figure.subplots(rows, columns)))
+    for one in axes:
+        dress(one)
+    return figure, axes
+
+
+def dress(axes):
+    axes.patch.set_alpha(0)
+    for side in ("top", "right"):
+        axes.spines[side].set_visible(False)
+    for spine in axes.spines.values():
+        spine.set_color(INK)
+    axes.tick_params(which="both", colors=INK, labelsize=9)
+    axes.grid(True, color=GHOST, alpha=0.25, linewidth=0.6)
+    axes.set_axisbelow(True)
+
+
+def cores_axis(axes, cores):
+    """Logarithmic, with a tick at each power of two."""
+    axes.set_xscale("log", base=2)
+    top = int(numpy.ceil(numpy.log2(max([2, *cores]))))
+    ticks = 2 ** numpy.arange(top + 1)
+    axes.set_xticks(ticks, [str(tick) for tick in ticks])
+    axes.set_xlim(0.85, 2**top * 1.18)
+    axes.set_xlabel("cores")
+
+
+def by_algorithm(table):
+    """The parts of a table that the paper compares, in its order."""
+    return [(name, table.loc[[name]]) for name in NAMES if name in table.index]
+
+
+def ghost(axes, table, column, scale=1.0):
+    """The paper's series: grey and dashed, behind everything else."""
+    for algorithm, part in by_algorithm(table):
+        axes.plot(part.index.get_level_values("cores"), part[column] * scale, color=GHOST, linestyle="--", linewidth=1.2,
+                  marker=MARKERS[algorithm], markersize=4, label=f"{NAMES[algorithm]}, paper", zorder=1)
+
+
+def plot_series(axes, series, column, scale=1.0):
+    """Our medians with their intervals; measured filled and solid, simulated hollow and dotted."""
+    basis = series.key["basis"]
+    for algorithm, part in by_algorithm(series.table):
+        middle = part[column] * scale
+        spread = numpy.nan_to_num([middle - part[column + "_low"] * scale, part[column + "_high"] * scale - middle])
+        axes.errorbar(part.index.get_level_values("cores"), middle, yerr=numpy.clip(spread, 0, None), capsize=3,
+                      color=COLOURS[algorithm], marker=MARKERS[algorithm], markersize=6, linewidth=1.8,
+                      label=f"{NAMES[algorithm]}, {basis}", zorder=3, **LINES[basis])
+
+
+def legend(axes, **options):
+    made = axes.legend(frameon=False, fontsize=8, **options)
+    for text in made.get_texts():
+        text.set_color(INK)
+
+
+def finish(figure, caption):
+    """Sizes and colours of what was written since; the caption becomes the figure's label, shown by write.py."""
+    for axes in figure.axes:
+        for text in (axes.title, axes.xaxis.label, axes.yaxis.label):
+            text.set_color(INK)
+            text.set_size(10)
+    figure.set_label(caption)
+
+
+def caption_of(series):
+    """What was run, how often, and what the bars are."""
+    parts = []
+    for one in series:
+        counts = sorted(set(one.table["n"].astype(int)))
+        n = f"n = {counts[0]}" if len(counts) == 1 else f"n = {counts[0]} to {counts[-1]}"
+        parts.append(f"{one.key['basis']}: {one.label()}, {n}")
+    text = "; ".join(parts) if parts else "no verified weak-scaling rows"
+    if any((one.table["n"] > 1).any() for one in series):
+        text += ". Medians; bars: bootstrap 95 % interval"
+    return text + ". Grey, dashed: the paper, Blacklight."

@@ -1,0 +1,7 @@
+"""Makes the packages beside this folder importable, and says where the tree is."""
+import sys
+from pathlib import Path
+
+SCRIPTS = Path(__file__).resolve().parents[1]
+REFERENCE = SCRIPTS.parent / "results" / "reference" / "amd-epyc-zen5-2-cores"
+sys.path.insert(0, str(SCRIPTS))

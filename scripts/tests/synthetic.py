@@ -1,0 +1,90 @@
+"""Rows, schedules and meshes made up for tests. Never results."""
+import copy
+import itertools
+import random
+
+PASSED = {claim: "pass" for claim in ("structure", "delaunay", "radius_edge", "boundary_angles", "size", "conformity")}
+ROW = {
+    "schema": 2, "experiment": "weak", "trial": "made-up", "warmup": False, "status": "ok", "reason": "",
+    "algorithm": "podm", "input": {"path": "phantom:made-up"}, "threads": {"asked": 1, "used": 1},
+    "phases_s": {"read": 1.0, "transform": 1.0, "refine": 24.0, "extract": 1.18, "write": 5.0},
+    "cells": 3_000_000, "quality": {"max_radius_edge": 1.92, "min_facet_angle_deg": 30.4}, "verdicts": PASSED,
+    "programs": {"podm": {"sha256": "ab" * 32, "version": "podm 0.1.0"}},
+    "environment": {"cpu": "Made-up CPU", "usable_processors": 2, "kernel": "Linux", "compiler": "GNU 12"},
+}
+BIG_MACHINE = ROW["environment"] | {"usable_processors": 256}
+
+
+def row(algorithm="podm", cores=1, **changes):
+    made = copy.deepcopy(ROW)
+    made.update(algorithm=algorithm, threads={"asked": cores, "used": cores}, cells=3_000_000 * cores)
+    made.update(changes)
+    return made
+
+
+def like_the_paper(published, repeats=5, spread=0.02, **changes):
+    """Rows with the seconds of a table of `figures.paper.table1`, times a random factor, of a machine of 256 cores."""
+    changes.setdefault("environment", BIG_MACHINE)
+    noise = random.Random(1)
+    for (algorithm, cores), line in published.iterrows():
+        for _ in range(repeats):
+            total = line["seconds"] * (1 + noise.uniform(-spread, spread))
+            phases = {"read": 0.02 * total, "transform": 0.03 * total, "refine": 0.9 * total, "extract": 0.05 * total,
+                      "write": 9.0}
+            if algorithm == "pdr-podm":
+                phases.update(octree=0.02 * total, initial=0.18 * total, refine=0.7 * total)
+            yield row(algorithm, cores, cells=int(line["cells"]), phases_s=phases, **changes)
+
+
+def schedule(side=9):
+    """A flat grid of leaves, two of which are active at one time, with rings that do not meet."""
+    leaves = [[i, j, 0, 1] for j in range(side) for i in range(side)]
+    head = {"schema": "podm-schedule/1", "algorithm": "pdr-podm", "leaves": leaves,
+            "mesh_to_grid": [0.1, 0, 0, 0, 0, 0.1, 0, 0, 0, 0, 0.1, 0]}
+    active = [(2 + 2 * side, 0, 0.0, 1.0, 900), (6 + 6 * side, 1, 0.5, 1.5, 800), (0, 0, 2.0, 3.0, 999)]
+    return [head] + [{"leaf": leaf, "node": node, "begin_s": begin, "end_s": end, "operations": operations, "deferred": 0,
+                      "touched_leaves": [leaf]} for leaf, node, begin, end, operations in active]
+
+
+def report():
+    """What podm-verify writes, as far as figure 1 reads it."""
+    def histogram(name, low, high, minimum, maximum):
+        return {"name": name, "unit": "", "low": low, "high": high, "minimum": minimum, "maximum": maximum,
+                "counts": [0, 3, 9, 20, 11, 5, 1, 0]}
+
+    return {"schema": "podm-verify/1", "mesh": {"path": "made-up.vtu", "cells": 49},
+            "claims": {"radius_edge": {"histograms": [histogram("radius_edge_ratio", 0.6, 2.0, 0.62, 1.92),
+                                                      histogram("dihedral_angle", 0, 180, 2.0, 170.0)]},
+                       "boundary_angles": {"histograms": [histogram("boundary_facet_angle", 0, 180, 30.2, 118.0)]}}}
+
+
+def box_mesh(side=4):
+    """A cube of side^3 unit cubes of six tetrahedra each: points, cells and labels, two of these."""
+    import numpy
+
+    steps = numpy.stack(numpy.meshgrid(*[range(side + 1)] * 3, indexing="ij"), axis=-1).reshape(-1, 3)
+    number = {tuple(point): index for index, point in enumerate(steps)}
+    cells, labels = [], []
+    for corner in numpy.ndindex(side, side, side):
+        for order in itertools.permutations(range(3)):  # Kuhn: a path along the axes for each order of them
+            path = [numpy.array(corner)]
+            for axis in order:
+                path.append(path[-1] + numpy.eye(3, dtype=int)[axis])
+            cells.append([number[tuple(point)] for point in path])
+            labels.append(1 + (corner[0] >= side // 2))
+    return steps.astype(float), numpy.array(cells), numpy.array(labels)
+
+
+def write_vtu(path, points, cells, labels):
+    """An ASCII .vtu file, such as no mesher of ours writes."""
+    def array(name, kind, values, extra=""):
+        return f'<DataArray type="{kind}" Name="{name}" format="ascii"{extra}>{" ".join(map(str, values))}</DataArray>'
+
+    count = len(cells)
+    path.write_text(
+        '<VTKFile type="UnstructuredGrid" version="0.1"><UnstructuredGrid>'
+        f'<Piece NumberOfPoints="{len(points)}" NumberOfCells="{count}">'
+        f"""<Points>{array("Points", "Float64", points.ravel(), ' NumberOfComponents="3"')}</Points>"""
+        f'<Cells>{array("connectivity", "Int64", cells.ravel())}{array("offsets", "Int64", range(4, 4 * count + 1, 4))}'
+        f'{array("types", "UInt8", [10] * count)}</Cells>'
+        f'<CellData>{array("label", "Int32", labels)}</CellData></Piece></UnstructuredGrid></VTKFile>')

@@ -1,0 +1,123 @@
+#include "image/label_selection.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <charconv>
+#include <map>
+#include <set>
+#include <string_view>
+
+#include "errors.h"
+#include "image/raw_image.h"
+
+namespace podm::verify {
+
+namespace {
+
+std::uint32_t parse_value(std::string_view text, const std::string& option) {
+  std::uint32_t value = 0;
+  const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
+  if (error != std::errc{} || end != text.data() + text.size())
+    throw InputError(fmt::format("{}: '{}' is no label (an integer, 0 to 2^32-1)", option, text));
+  return value;
+}
+
+template <class Visit>
+void for_each_part(std::string_view text, const Visit& visit) {
+  std::size_t comma = 0;
+  while ((comma = text.find(',')) != std::string_view::npos) {
+    visit(text.substr(0, comma));
+    text.remove_prefix(comma + 1);
+  }
+  visit(text);
+}
+
+bool holds(const LabelSelection::Ranges& ranges, std::uint32_t value) {
+  return std::any_of(ranges.begin(), ranges.end(),
+                     [value](const auto& range) { return range.first <= value && value <= range.second; });
+}
+
+/// A background of another value and 0 change places.
+template <class Value>
+Value with_background_moved(Value value, Value background) {
+  return value == background ? 0 : value == 0 ? background : value;
+}
+
+void expect_foreground(const Image& image, const std::set<std::uint32_t>& present,
+                       const LabelSelection& selection, std::uint32_t value, const char* option) {
+  if (value == selection.background)
+    refuse(image.path, fmt::format("{}: label {} is the background", option, value));
+  if (!present.contains(value)) refuse(image.path, fmt::format("{}: no voxel has label {}", option, value));
+}
+
+void check_selection(const Image& image, const std::set<std::uint32_t>& present,
+                     const LabelSelection& selection) {
+  // A range may hold values without voxels; one named by itself without any is an error in writing.
+  for (const auto& [first, last] : selection.keep)
+    if (first == last) expect_foreground(image, present, selection, first, "--labels");
+  for (const auto& [first, last] : selection.drop)
+    if (first == last) expect_foreground(image, present, selection, first, "--drop");
+  std::set<std::uint32_t> merged;
+  for (const auto& values : selection.merges) {
+    for (const std::uint32_t value : values) {
+      expect_foreground(image, present, selection, value, "--merge");
+      if (!merged.insert(value).second)
+        refuse(image.path, fmt::format("--merge: label {} is merged twice", value));
+    }
+  }
+}
+
+}  // namespace
+
+LabelSelection::Ranges parse_label_ranges(const std::string& text, const std::string& option) {
+  LabelSelection::Ranges ranges;
+  for_each_part(text, [&](std::string_view part) {
+    const std::size_t dash = std::min(part.find('-'), part.size());
+    const std::uint32_t first = parse_value(part.substr(0, dash), option);
+    const std::uint32_t last = dash == part.size() ? first : parse_value(part.substr(dash + 1), option);
+    if (last < first) throw InputError(fmt::format("{}: the range '{}' runs backwards", option, part));
+    ranges.emplace_back(first, last);
+  });
+  return ranges;
+}
+
+std::vector<std::uint32_t> parse_merge(const std::string& text) {
+  const std::size_t equals = text.find('=');
+  if (equals == std::string::npos || equals + 1 == text.size())
+    throw InputError(fmt::format("--merge: '{}' is not VALUES=NAME, as in 2,3=kidney", text));
+  std::vector<std::uint32_t> values;
+  for_each_part(std::string_view(text).substr(0, equals),
+                [&](std::string_view part) { values.push_back(parse_value(part, "--merge")); });
+  return values;
+}
+
+void select_labels(Image& image, const LabelSelection& selection) {
+  const std::set<std::uint32_t> present(image.voxels.begin(), image.voxels.end());
+  check_selection(image, present, selection);
+  std::map<std::uint32_t, std::uint32_t> becomes;
+  for (const std::uint32_t value : present)
+    if (value != selection.background && !holds(selection.drop, value) &&
+        (selection.keep.empty() || holds(selection.keep, value)))
+      becomes[value] = value;
+  for (const auto& values : selection.merges)
+    for (const std::uint32_t value : values)
+      if (becomes.contains(value)) becomes[value] = values.front();
+  if (becomes.empty()) refuse(image.path, "no voxel has a label that is selected");
+  for (std::uint32_t& voxel : image.voxels) {
+    const auto found = becomes.find(voxel);
+    voxel = found == becomes.end() ? 0 : with_background_moved(found->second, selection.background);
+  }
+}
+
+void move_background(Mesh& mesh, std::uint32_t background) {
+  const auto moved = [&](LabelValue label) { return with_background_moved<LabelValue>(label, background); };
+  for (LabelValue& label : mesh.cell_labels) label = moved(label);
+  for (auto& labels : mesh.facet_labels)
+    for (LabelValue& label : labels) label = moved(label);
+  std::map<LabelValue, std::string> names;
+  for (const auto& [label, name] : mesh.label_names) names[moved(label)] = name;
+  mesh.label_names = std::move(names);
+}
+
+}  // namespace podm::verify
