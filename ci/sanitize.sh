@@ -1,8 +1,28 @@
 #!/bin/sh
-# Builds everything with address and undefined-behaviour sanitizers and runs the unit tests; the tests of whole
-# programs, too slow here, carry lower-case names such as podm.mesh.
+# Usage: ci/sanitize.sh [FOLDER]
+# Builds the mesher and its unit tests in FOLDER/build-asan with the address and undefined-behaviour sanitizers and
+# in FOLDER/build-tsan with the thread sanitizer (FOLDER: here). Under each the tests run, then four threads mesh a
+# phantom and their log must replay to the same mesh. The first program with a finding ends it, with exit code 1.
 set -eu
 cd "$(dirname "$0")/.."
-cmake --preset asan -G Ninja
-cmake --build build-asan
-ctest --test-dir build-asan -j2 --output-on-failure --exclude-regex '^[a-z]'
+folder=${1:-.}
+tests="refinement_tests fault_tests delaunay_tests isosurface_tests mesh_io_tests image_io_tests runtime_tests"
+export UBSAN_OPTIONS=halt_on_error=1:print_stacktrace=1 ASAN_OPTIONS=detect_stack_use_after_return=1
+image=phantom:spheres@48
+
+run() {
+  echo "== $*"
+  "$@" || exit 1
+}
+
+for sanitizer in asan tsan; do
+  build=$folder/build-$sanitizer
+  cmake --preset "$sanitizer" -B "$build" -G Ninja
+  # shellcheck disable=SC2086  # a list of words
+  cmake --build "$build" --target podm $tests
+  for test in $tests; do
+    run "$build/bin/$test" --gtest_brief=1
+  done
+  run "$build/bin/podm" mesh "$image" --threads 4 --radius 4 --log "$build/run.log" -o "$build/run.vtu"
+  run "$build/bin/podm" replay "$image" "$build/run.log"
+done

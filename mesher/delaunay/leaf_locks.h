@@ -1,7 +1,7 @@
 // Locks confined to the region of one leaf of an octree: a vertex outside of it cannot be had. Regions of
 // leaves that are refined at the same time are disjoint (octree/octree.h), so their workers never meet: what
-// holds for three locked vertices of a cell (vertex_locks.h) holds for three in the region. Within one leaf
-// `Inner` locks; with NoLocks a leaf has one worker, as in PDR.
+// holds for two or three locked vertices of a cell (vertex_locks.h) holds for as many in the region. Within
+// one leaf `Inner` locks; with NoLocks a leaf has one worker, as in PDR.
 #pragma once
 
 #include <algorithm>

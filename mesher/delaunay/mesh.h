@@ -101,12 +101,11 @@ class Mesh {
   std::uint16_t stamp(CellId c) const {
     return load(states_[c].stamp_and_mark, std::memory_order_relaxed) & kStampBits;
   }
-  /// The vertices as someone without locks sees them. Acquire, and release in renew(): who sees a vertex of
+  /// Two vertices as someone without locks sees them. Acquire, and release in renew(): who sees a vertex of
   /// the new cell sees the new stamp too.
-  std::array<VertexId, 4> glimpse_vertices(CellId c) const {
+  std::array<VertexId, 2> glimpse_two_vertices(CellId c) const {
     const auto& v = cells_[c].vertices;
-    return {load(v[0], std::memory_order_acquire), load(v[1], std::memory_order_acquire),
-            load(v[2], std::memory_order_acquire), load(v[3], std::memory_order_acquire)};
+    return {load(v[3], std::memory_order_acquire), load(v[0], std::memory_order_acquire)};
   }
   /// Scratch of the operation that holds the locks: the cell is in its region.
   bool is_marked(CellId c) const { return (states_[c].stamp_and_mark & kMark) != 0; }

@@ -9,7 +9,7 @@ template <class Locks>
 Outcome Operation<Locks>::reserve(CellId c, std::uint32_t stamp) {
   Outcome outcome = Outcome::kCommitted;
   if constexpr (Locks::kIsShared) {
-    for (const VertexId v : mesh_.glimpse_vertices(c)) {
+    for (const VertexId v : mesh_.glimpse_two_vertices(c)) {
       if (outcome != Outcome::kCommitted) break;
       outcome = v == kNoVertex ? Outcome::kStaleCell : lock(v);
     }
@@ -31,6 +31,13 @@ Outcome Operation<Locks>::lock_cell(CellId c) {
     if (const Outcome outcome = lock(v); outcome != Outcome::kCommitted) return outcome;
   }
   return Outcome::kCommitted;
+}
+
+// Locks the cell that `facet` belongs to; the facet's own vertices are held.
+template <class Locks>
+Outcome Operation<Locks>::lock_beyond(FacetId facet) {
+  const auto& vertices = mesh_.cell(cell_of(facet)).vertices;
+  return lock(vertices[static_cast<unsigned>(index_in_cell(facet))]);
 }
 
 template <class Locks>
@@ -70,7 +77,7 @@ Outcome Operation<Locks>::plan_insertion(const Point& p, CellId start) {
       const CellId neighbor = cell_of(mirrors[k]);
       if (mesh_.is_marked(neighbor)) continue;
       if (is_in_conflict(neighbor, p)) {
-        if (const Outcome locked = lock_cell(neighbor); locked != Outcome::kCommitted) return locked;
+        if (const Outcome locked = lock_beyond(mirrors[k]); locked != Outcome::kCommitted) return locked;
         add_to_region(neighbor);
       } else {
         region_.boundary.push_back(4 * c + k);
@@ -94,7 +101,7 @@ Outcome Operation<Locks>::plan_removal(VertexId v, CellId seed) {
       if (cell.vertices[k] == v || cell.mirrors[k] == kNoFacet) continue;
       const CellId neighbor = cell_of(cell.mirrors[k]);
       if (std::find(ball_.begin(), ball_.end(), neighbor) != ball_.end()) continue;
-      if (const Outcome locked = lock_cell(neighbor); locked != Outcome::kCommitted) return locked;
+      if (const Outcome locked = lock_beyond(cell.mirrors[k]); locked != Outcome::kCommitted) return locked;
       if (!mesh_.is_marked(neighbor)) add_to_region(neighbor);
       ball_.push_back(neighbor);
     }

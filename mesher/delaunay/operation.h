@@ -36,8 +36,8 @@ class Operation {
     if (mesh.num_nodes() > 1) counters_.accesses_by_node.resize(static_cast<std::size_t>(mesh.num_nodes()));
   }
 
-  /// Locks the cell c of that stamp, so that it and its neighbours may be read. kStaleCell: it has died.
-  /// kLockConflict: conflicting_worker() tells with whom. Unless committed nothing is held.
+  /// Locks two vertices of the cell c of that stamp, so that it and its neighbours may be read. kStaleCell:
+  /// it has died. kLockConflict: conflicting_worker() tells with whom. Unless committed nothing is held.
   Outcome reserve(CellId c, std::uint32_t stamp);
   void release() { locks_.unlock_all(); }
   Locks& locks() { return locks_; }
@@ -78,6 +78,7 @@ class Operation {
 
  private:
   Outcome lock_cell(CellId c);
+  Outcome lock_beyond(FacetId facet);
   Outcome lock(VertexId v);
   // A run that nobody shares is on one node.
   bool counts_accesses() const { return Locks::kIsShared && !counters_.accesses_by_node.empty(); }

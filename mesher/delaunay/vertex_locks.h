@@ -3,10 +3,14 @@
 // An operation try-locks every vertex of every cell it is going to replace before it writes anything, and
 // keeps them to its end. That guards the cells around the region too, without their far vertices: a cell has
 // four vertices, so two workers that each hold three of them share one, which cannot be. Hence whoever holds
-// three vertices of a cell may read it and write its mirrors and label, and nobody can replace it meanwhile.
+// three vertices of a cell may read it and write its mirrors, and nobody can replace it meanwhile.
 // And two regions that are locked at the same time have no facet in common: each facet of the result borders
 // cells of only one of them or an unchanged cell, so it is locally Delaunay by that operation's own work, and
 // a triangulation of the box whose facets all are is the Delaunay triangulation.
+//
+// Two vertices of a cell are enough to read it and its neighbours. Who replaces the cell, or a neighbour and
+// with it a mirror, holds three of the cell's four vertices, hence one of the two. So nobody does meanwhile,
+// and who did before has released a lock that the reader took later, or gave it the cell.
 #pragma once
 
 #include <cstdint>

@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "podm/mesh_image.h"
+#include "runtime/shared_word.h"
 
 namespace podm {
 
@@ -23,9 +24,13 @@ Rules::Rules(Mesh& mesh, const Isosurface& isosurface, const Parameters& paramet
       squared_delta_(square(parameters.delta_mm)),
       squared_two_delta_(square(2 * parameters.delta_mm)) {}
 
+// Several workers may ask for a neighbour's label at a time. Relaxed: all of them write the same.
 LabelIndex Rules::label_of(CellId c) const {
-  LabelIndex& label = mesh_.label(c);
-  if (label == kUnknownLabel) label = isosurface_.label_at(mesh_.cell(c).sphere.center);
+  LabelIndex label = load(mesh_.label(c), std::memory_order_relaxed);
+  if (label == kUnknownLabel) {
+    label = isosurface_.label_at(mesh_.cell(c).sphere.center);
+    store(mesh_.label(c), label, std::memory_order_relaxed);
+  }
   return label;
 }
 

@@ -71,10 +71,10 @@ void ThreadExecutor<Locks>::work(Worker<Locks>& worker, WorkerId self) try {
         const std::scoped_lock lock(mutex_);
         coordination_.wake_one(self);
       }
-    }
-    if (coordination_.may_share(self, worker.num_listed())) {
-      const std::scoped_lock lock(mutex_);
-      coordination_.share(self, worker);
+      if (coordination_.may_share(self, worker.num_listed())) {
+        const std::scoped_lock lock(mutex_);
+        coordination_.share(self, worker);
+      }
     }
     if (++attempts % Watch::kAttemptsBetweenChecks == 0) check(worker, self);
   }

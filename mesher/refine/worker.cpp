@@ -8,6 +8,8 @@ namespace {
 // far below s the insertion is refused, so that the process ends whatever the image.
 constexpr double kSpacingFloor = 0.1;
 constexpr std::size_t kOperationsToFlush = 4096;
+// A clock costs 2 % when every attempt reads it; one in so many stands for the others.
+constexpr std::uint64_t kAttemptsForOneTimed = 16;
 
 }  // namespace
 
@@ -47,10 +49,11 @@ Outcome Worker<Locks>::attempt_next() {
   Outcome outcome = operation_.reserve(entry.cell, entry.stamp);
   if (outcome == Outcome::kCommitted) {
     ++counters_.classified_cells;
-    const auto start =
-        Locks::kIsShared ? std::chrono::steady_clock::now() : std::chrono::steady_clock::time_point();
+    const bool is_timed = Locks::kIsShared && counters_.classified_cells % kAttemptsForOneTimed == 0;
+    const auto start = is_timed ? std::chrono::steady_clock::now() : std::chrono::steady_clock::time_point();
     outcome = apply_first_rule(entry.cell);
-    if (outcome == Outcome::kLockConflict) counters_.rollback += std::chrono::steady_clock::now() - start;
+    if (is_timed && outcome == Outcome::kLockConflict)
+      counters_.rollback += kAttemptsForOneTimed * (std::chrono::steady_clock::now() - start);
   }
   if (outcome == Outcome::kLockConflict) {
     ++counters_.lock_conflicts;

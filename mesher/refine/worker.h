@@ -17,7 +17,7 @@ struct WorkerCounters {
   std::array<std::uint64_t, 5> insertions_by_rule{};
   std::uint64_t removals = 0, rejected = 0, stale_cells = 0, classified_cells = 0, lock_conflicts = 0,
                 out_of_leaf = 0;
-  std::chrono::steady_clock::duration rollback{};  // time in attempts that ended in a lock conflict
+  std::chrono::steady_clock::duration rollback{};  // in attempts that ended in a lock conflict; estimated
 };
 
 template <class Locks>
