@@ -38,7 +38,7 @@ struct Vertex {
   std::uint16_t local_index = 0;  // scratch of the operation that holds the lock
   VertexKind kind = VertexKind::kUnused;
 };
-static_assert(sizeof(Vertex) == 40 || sizeof(Vertex) == 32);
+static_assert(sizeof(Vertex) == 32);
 
 /// The point as someone sees it who may not have locked the vertex: of a stale cell it may be in the middle
 /// of a change. Acquire, and release in place(): who sees a coordinate of the new point sees that the cells

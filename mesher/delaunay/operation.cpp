@@ -5,6 +5,8 @@
 
 namespace podm {
 
+// The stamp is compared under the locks: who replaced the cell after our glimpse held both vertices before
+// us, and a glimpse of the new cell shows the new stamp as well.
 template <class Locks>
 Outcome Operation<Locks>::reserve(CellId c, std::uint32_t stamp) {
   Outcome outcome = Outcome::kCommitted;

@@ -1,11 +1,12 @@
 // One operation on the triangulation: insert a vertex, remove vertices, or both at once.
 //
-// An operation is cautious. *Reserving* locks the cell that asks for it. *Planning* reads, locks and collects
-// the region: the cells that will die. For an insertion these are the cells in conflict with the point (the
-// cavity), for a removal the cells around the vertex (its ball); an isosurface insertion with its R6 removals
-// takes their union. *Committing* replaces the region by new Delaunay cells. A plan that cannot be carried
-// out is rolled back, with nothing written. *Releasing* unlocks all. Memory is asked for before the first
-// write, so that std::bad_alloc from any step leaves a plan to roll back.
+// An operation is cautious. *Reserving* locks two vertices of the cell that asks for it, enough to read it.
+// *Planning* reads, locks and collects the region: the cells that will die. For an insertion these are the
+// cells in conflict with the point (the cavity), for a removal the cells around the vertex (its ball); an
+// isosurface insertion with its R6 removals takes their union. *Committing* replaces the region by new
+// Delaunay cells. A plan that cannot be carried out is rolled back, with nothing written. *Releasing* unlocks
+// all. Memory is asked for before the first write, so that std::bad_alloc from any step leaves a plan to roll
+// back.
 //
 // Why one region serves all: a cell of the old triangulation stays Delaunay unless it holds a removed vertex
 // or conflicts with the new one, so the region's boundary facets are facets of the new triangulation too.

@@ -8,7 +8,7 @@
 namespace podm {
 
 struct Region {
-  std::vector<CellId> cells;      // die; marked in_region
+  std::vector<CellId> cells;      // die; marked (Mesh::mark)
   std::vector<FacetId> boundary;  // facets of `cells` whose other side stays
   std::vector<VertexId> removed;  // vertices that go with them
   std::vector<CellId> created;    // filled by the committing step

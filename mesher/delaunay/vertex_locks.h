@@ -1,16 +1,20 @@
-// Vertex locks: all atomics of the locking protocol, and the reason for each memory order.
+// Vertex locks: the protocol, why it is safe, and the reason for each memory order. What is read without
+// locks is in mesh.h, likewise.
 //
 // An operation try-locks every vertex of every cell it is going to replace before it writes anything, and
-// keeps them to its end. That guards the cells around the region too, without their far vertices: a cell has
-// four vertices, so two workers that each hold three of them share one, which cannot be. Hence whoever holds
-// three vertices of a cell may read it and write its mirrors, and nobody can replace it meanwhile.
+// keeps them to its end. (Nobody locks the vertex that it inserts: a cell that gets it has three others, all
+// locked.) That guards the cells around the region too, without their far vertices: a cell has four vertices,
+// so two workers that each hold three of them share one, which cannot be. Hence whoever holds three vertices
+// of a cell may read it and write its mirrors, and nobody can replace it meanwhile.
 // And two regions that are locked at the same time have no facet in common: each facet of the result borders
 // cells of only one of them or an unchanged cell, so it is locally Delaunay by that operation's own work, and
 // a triangulation of the box whose facets all are is the Delaunay triangulation.
 //
 // Two vertices of a cell are enough to read it and its neighbours. Who replaces the cell, or a neighbour and
-// with it a mirror, holds three of the cell's four vertices, hence one of the two. So nobody does meanwhile,
-// and who did before has released a lock that the reader took later, or gave it the cell.
+// with it a mirror, holds three of the cell's four vertices, hence one of the two. So nobody does meanwhile.
+// Who did before has released a lock that the reader took later, or made the cell as well as the neighbour,
+// and the reader learnt of the cell after that. The points of their vertices stay, too, locked or not: a
+// vertex goes with all cells around it. Only labels are written by readers, all the same (Rules::label_of).
 #pragma once
 
 #include <cstdint>

@@ -2,12 +2,13 @@
 //
 // Foteinos, Chernikov, Chrisochoides, CGTA 47 (2014) 539-562. With t the cell, c its circumcentre, r its
 // circumradius, z the isosurface point nearest to c:
-//   R1  t meets the isosurface and no isosurface vertex is closer than delta to z    insert z
-//   R2  t meets the isosurface and r >= 2 delta                                      insert c
-//   R3  a restricted facet has a vertex off the isosurface or an angle < 30 degrees  insert its surface
-//   centre R4  c is inside and radius-edge >= 1.93                                          insert c R5  c is
-//   inside and r > r_t                                                      insert c R6  after R1 and R3:
-//   remove circumcentre vertices closer than 2 delta to z
+//   R1  insert z if t meets the isosurface and no isosurface vertex is closer than delta to z
+//   R2  insert c if t meets the isosurface and r >= 2 delta
+//   R3  insert a restricted facet's surface centre if the facet has a vertex off the isosurface
+//       or an angle of at most 30 degrees
+//   R4  insert c if it is inside and radius-edge >= 1.93
+//   R5  insert c if it is inside and r > r_t
+//   R6  after R1 and R3, whose point is z: remove circumcentre vertices closer than 2 delta to z
 // Spacing s = min(delta, r_t / k), k = sqrt(2 + sqrt(3)): isosurface vertices stay s apart, all others k s
 // (I1..I3), so the process ends, on non-manifold interfaces too. Rules are tightened by kMargin, so that what
 // they guarantee survives the rounding of world coordinates.
@@ -43,8 +44,8 @@ struct Examination {
   LabelIndex label;            // at the centre
   double isosurface_distance;  // a lower bound, from the centre
   bool is_distance_proven;     // else it rests on the nearest point found
-  std::optional<Isosurface::NearPoint>
-      nearest;  // z, if the circumball meets the isosurface and R1 or R2 may care
+  // z, if the circumball meets the isosurface and R1 or R2 may care
+  std::optional<Isosurface::NearPoint> nearest;
 };
 
 struct SurfaceCenter {
@@ -74,9 +75,9 @@ class Rules {
 
   /// Label at the circumcentre, remembered in the store so that all cells around see the same.
   LabelIndex label_of(CellId c) const;
-  bool has_poor_ratio(CellId c, double squared_radius) const;
 
  private:
+  bool has_poor_ratio(CellId c, double squared_radius) const;
   bool may_be_restricted(const Examination& t, CellId neighbor) const;
   bool is_settled(const Cell& cell, double squared_radius) const;
   bool needs_sample(CellId c, unsigned facet) const;

@@ -2,8 +2,8 @@
 // without poor cells beg, and busy ones share the oldest cells of their lists. The run is complete when all
 // beg.
 //
-// One mutex guards their coordination. It is taken on conflicts, when work runs
-// out or is given, and after every 10 successes while somebody waits: not by operations that succeed alone.
+// One mutex guards their coordination. It is taken on conflicts, when work runs out or is given, and after
+// every 10 successes while somebody waits: not by operations that succeed alone.
 #pragma once
 
 #include <condition_variable>

@@ -1,5 +1,6 @@
-// Words that a worker may read while another, which holds the locks that guard them, writes. Such a reader
-// only guesses: it locks what the guess names and then looks again (Operation::reserve).
+// Words that one worker may read while another writes. Either the writer holds the locks that guard them, and
+// the reader only guesses: it locks what the guess names and then looks again (Operation::reserve). Or all
+// write the same (Rules::label_of).
 #pragma once
 
 #include <atomic>

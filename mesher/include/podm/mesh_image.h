@@ -185,7 +185,7 @@ struct LeafSchedule {
 };
 
 struct MeshingReport {
-  std::map<std::string, double> phases_s;  ///< transform, octree, initial, refine, extract
+  std::map<std::string, double> phases_s;  ///< transform, initial, octree, refine, closing, extract
   double radius_mm = 0;                    ///< as used; 0 when unbounded
   double delta_mm = 0;                     ///< as used
   StopReason stop_reason = StopReason::kComplete;

@@ -35,9 +35,8 @@ void check_surface_path(const std::string& path);  ///< .stl .ply
 ///          vertices). Field data of both: `space`, and the label table `label_value`, `label_name`.
 ///   .mesh  a tetrahedron's reference is its label value; a triangle's numbers the unordered label pair.
 ///          Comments give the space, the labels and the pairs. Coordinates read back to the same doubles.
-///   .msh   physical volumes by label value, named "kidney" or "label 3"; physical surfaces by label pair,
-///   named
-///          "kidney|outside" or "liver|kidney"; the space in $Comments.
+///   .msh   physical volumes by label value, named "kidney" or "label 3"; physical surfaces by label
+///          pair, named "kidney|outside" or "liver|kidney"; the space in $Comments.
 void write_mesh(const TetMesh& mesh, const std::string& path);
 
 /// Writes the closed, outward oriented surface of every label that has one: "s.stl" becomes
