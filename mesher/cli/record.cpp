@@ -42,12 +42,6 @@ Json options_of(const MeshRun& run) {
           {"labels", selection_of(run.command.image.selection)}};
 }
 
-std::uint64_t committed(const Counters& counters) {
-  std::uint64_t operations = counters.removals;
-  for (const std::uint64_t insertions : counters.insertions_by_rule) operations += insertions;
-  return operations;
-}
-
 Json or_null(const std::optional<int>& value) { return value ? Json(*value) : Json(nullptr); }
 
 // By worker; processors in the system's numbers, nodes and sockets from 0.
@@ -76,7 +70,7 @@ Json workers_of(const MeshingReport& report) {
   Json workers = Json::array();
   for (const WorkerReport& worker : report.workers) {
     const Counters& c = worker.counters;
-    workers.push_back({{"committed", committed(c)},
+    workers.push_back({{"committed", num_committed(c)},
                        {"stale_cell", c.stale_cells},
                        {"rejected", c.rejected},
                        {"lock_conflict", c.lock_conflicts},
@@ -194,7 +188,7 @@ Json record(const MeshRun& run) {
       {"refine_cells_per_second", run.refine_cells_per_second()},
       {"peak_rss_bytes", run.peak_rss_bytes},
       {"outcomes",
-       {{"committed", committed(report.counters)},
+       {{"committed", num_committed(report.counters)},
         {"stale_cell", report.counters.stale_cells},
         {"rejected", report.counters.rejected},
         {"lock_conflict", report.counters.lock_conflicts},

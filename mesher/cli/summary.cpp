@@ -100,8 +100,7 @@ std::string hops_text(const std::vector<std::uint64_t>& accesses) {
 }
 
 std::string statistics_line(const std::string& name, const std::string& place, const Counters& c) {
-  std::uint64_t committed = c.removals;
-  for (const std::uint64_t insertions : c.insertions_by_rule) committed += insertions;
+  const std::uint64_t committed = num_committed(c);
   const auto visited = static_cast<double>(c.conflict_tests);
   return fmt::format("{:>6} {:>11} {:>11} {:>11} {:>9} {:>9} {:>9.1f} {:>9.3f} {:>8.3f} {:>8.3f} {}\n", name,
                      place, committed, c.stale_cells, c.lock_conflicts, c.rejected,
