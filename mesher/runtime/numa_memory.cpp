@@ -4,7 +4,6 @@
 #include <numaif.h>
 #include <unistd.h>
 
-#include <algorithm>
 #include <cerrno>
 #include <cstdint>
 #include <cstring>
@@ -23,11 +22,6 @@ PageNode node_of_page(const void* address) {
   if (status == -EFAULT) return {{}, "no page of this process, or one only read so far"};
   if (status < 0) return {{}, std::strerror(-status)};
   return {status, ""};
-}
-
-int num_memory_nodes() {
-  if (numa_available() < 0) return 1;
-  return std::max(1, static_cast<int>(numa_bitmask_weight(numa_all_nodes_ptr)));
 }
 
 }  // namespace podm

@@ -15,7 +15,4 @@ struct PageNode {
 /// The node that holds the page of an address. Looks only: a page that was never touched stays so.
 PageNode node_of_page(const void* address);
 
-/// NUMA nodes whose memory this process may use; 1 where the kernel tells none apart.
-int num_memory_nodes();
-
 }  // namespace podm
