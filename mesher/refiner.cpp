@@ -136,7 +136,8 @@ Refiner::Entries Refiner::run_leaves(const Parameters& parameters, const Octree&
                                      bool with_schedule, std::function<double()> clock,
                                      const RunNodes& run_nodes) {
   auto workers = make_workers<Locks>(parameters, num_workers());
-  LeafRefinement leaves(mesh(), octree, static_cast<unsigned>(num_nodes), std::move(clock), watch_.over());
+  LeafRefinement leaves(mesh(), octree, static_cast<unsigned>(num_nodes), all_cells(), std::move(clock),
+                        watch_.over());
   const std::size_t per_node = workers.size() / static_cast<std::size_t>(num_nodes);
   std::vector<ComputingNode<Locks>> nodes;
   for (unsigned node = 0; node < static_cast<unsigned>(num_nodes); ++node)
@@ -144,7 +145,6 @@ Refiner::Entries Refiner::run_leaves(const Parameters& parameters, const Octree&
   if (with_schedule) {
     for (const auto& worker : workers) worker->locks().watch_leaves();
   }
-  leaves.add(all_cells());
   run_nodes(std::span<const std::unique_ptr<Worker<Locks>>>(workers), nodes);
   for (ComputingNode<Locks>& node : nodes) node.finish_leaf();  // of those that ended early
   for (const auto& worker : workers) worker->flush_log();

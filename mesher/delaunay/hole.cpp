@@ -85,11 +85,10 @@ void HoleFiller::plan(Mesh& mesh, const Region& region, const Point* added) {
 
 void HoleFiller::fill(Mesh& mesh, Pool& pool, Region& region, VertexId added) {
   const auto id_of = [&](Local local) { return ids_[local] != kNoVertex ? ids_[local] : added; };
-  region.created.clear();
-  std::size_t reused = 0;
-  for (const auto& local : cells_) {
-    const CellId id = reused < region.cells.size() ? region.cells[reused++] : pool.take_cell();
-    region.created.push_back(id);
+  pool.replace(region.cells, cells_.size(), region.created);
+  for (std::size_t i = 0; i < cells_.size(); ++i) {
+    const auto& local = cells_[i];
+    const CellId id = region.created[i];
     mesh.renew(id, {id_of(local[0]), id_of(local[1]), id_of(local[2]), id_of(local[3])});
     mesh.refresh_sphere(id);
   }
@@ -100,7 +99,6 @@ void HoleFiller::fill(Mesh& mesh, Pool& pool, Region& region, VertexId added) {
     mesh.set_mirror(facet_of(a), facet_of(b));
     mesh.set_mirror(facet_of(b), facet_of(a));
   }
-  for (; reused < region.cells.size(); ++reused) pool.release_cell(region.cells[reused]);
 }
 
 // A facet seen for the second time closes the hole there: glue its two sides.

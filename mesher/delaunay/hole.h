@@ -10,6 +10,7 @@
 #include <cstdint>
 #include <vector>
 
+#include "delaunay/pool.h"
 #include "delaunay/region.h"
 
 namespace podm {

@@ -3,8 +3,10 @@
 // tells whose it is.
 #pragma once
 
+#include <algorithm>
 #include <atomic>
 #include <cstdint>
+#include <iterator>
 #include <mutex>
 #include <new>
 #include <vector>
@@ -17,7 +19,7 @@ class IdArena {
  public:
   /// Ids below `capacity`. 2^run_bits ids make a run, of which blocks are taken.
   IdArena(std::size_t capacity, int num_nodes, unsigned run_bits)
-      : capacity_(capacity), run_bits_(run_bits), cursors_(static_cast<std::size_t>(num_nodes)) {
+      : capacity_(capacity), run_bits_(run_bits), nodes_(static_cast<std::size_t>(num_nodes)) {
     if (num_nodes > 1) node_of_run_.resize((capacity >> run_bits) + 1);
   }
 
@@ -25,35 +27,52 @@ class IdArena {
   /// cells. Throws std::bad_alloc when the capacity is used up.
   std::uint32_t take(std::uint32_t count, NodeIndex node) {
     const std::scoped_lock lock(mutex_);
-    Cursor& cursor = cursors_[node];
-    if (cursor.end - cursor.next < count) cursor = next_run(count, node);
-    cursor.next += count;
-    return cursor.next - count;
+    OfNode& own = nodes_[node];
+    if (own.end - own.next < count) start_run(count, node);
+    own.next += count;
+    return own.next - count;
+  }
+  /// Ids of any node that nobody uses; takes them out of `ids` one by one. Throws std::bad_alloc.
+  void give_back(std::vector<std::uint32_t>& ids) {
+    const std::scoped_lock lock(mutex_);
+    for (; !ids.empty(); ids.pop_back()) nodes_[node_of(ids.back())].returned.push_back(ids.back());
+  }
+  /// Adds at most `count` of the node's own that were given back; false: there are none. `ids` has room.
+  bool take_returned(std::uint32_t count, NodeIndex node, std::vector<std::uint32_t>& ids) {
+    const std::scoped_lock lock(mutex_);
+    auto& returned = nodes_[node].returned;
+    const auto from = returned.end() - std::min<std::ptrdiff_t>(count, std::ssize(returned));
+    ids.insert(ids.end(), from, returned.end());
+    const bool is_any = from != returned.end();
+    returned.erase(from, returned.end());
+    return is_any;
   }
   NodeIndex node_of(std::uint32_t id) const {
     return node_of_run_.empty() ? NodeIndex{0} : node_of_run_[id >> run_bits_];
   }
-  int num_nodes() const { return static_cast<int>(cursors_.size()); }
+  int num_nodes() const { return static_cast<int>(nodes_.size()); }
   /// Ids below it have been handed out, or lie in the run of a node.
   std::uint32_t bound() const { return bound_.load(std::memory_order_relaxed); }
 
  private:
-  struct Cursor {
+  struct OfNode {
     std::uint32_t next = 0, end = 0;
+    std::vector<std::uint32_t> returned{};
   };
-  Cursor next_run(std::uint32_t count, NodeIndex node) {
+  void start_run(std::uint32_t count, NodeIndex node) {
     const std::uint32_t first = bound();
     const std::uint32_t size = node_of_run_.empty() ? count : 1u << run_bits_;
     if (first + static_cast<std::size_t>(size) > capacity_) throw std::bad_alloc();
     if (!node_of_run_.empty()) node_of_run_[first >> run_bits_] = node;
     bound_.store(first + size, std::memory_order_relaxed);
-    return {first, first + size};
+    nodes_[node].next = first;
+    nodes_[node].end = first + size;
   }
 
   std::size_t capacity_;
   unsigned run_bits_;
   std::mutex mutex_;
-  std::vector<Cursor> cursors_;
+  std::vector<OfNode> nodes_;
   std::vector<NodeIndex> node_of_run_;  // empty on one node
   // Relaxed: an id is handed on under locks, or with a list entry under a mutex.
   std::atomic<std::uint32_t> bound_ = 0;

@@ -18,13 +18,6 @@ std::size_t vertex_capacity_for(std::size_t cell_capacity) { return cell_capacit
 constexpr unsigned kCellRunBits = 15, kVertexRunBits = 16;
 static_assert(sizeof(Cell) << kCellRunBits == 1 << 21 && sizeof(Vertex) << kVertexRunBits == 1 << 21);
 
-// Room for `count` more elements; doubles, so that many small calls cost little.
-template <class T>
-void reserve_more(std::vector<T>& vector, std::size_t count) {
-  const std::size_t needed = vector.size() + count;
-  if (vector.capacity() < needed) vector.reserve(std::max(2 * vector.capacity(), needed));
-}
-
 double largest_coordinate(const Box& b) {
   return std::max({std::abs(b.low.x), std::abs(b.low.y), std::abs(b.low.z), std::abs(b.high.x),
                    std::abs(b.high.y), std::abs(b.high.z)});
@@ -78,45 +71,6 @@ std::uint64_t Mesh::num_cells() const {
   std::uint64_t count = 0;
   for (CellId c = 0; c < cell_bound(); ++c) count += cells_[c].is_alive();
   return count;
-}
-
-void Pool::reserve(std::size_t dying, std::size_t created, std::size_t removed) {
-  const std::size_t wanted = created > dying ? created - dying : 0;
-  reserve_more(free_cells_, std::max(dying, created) + kBlock);
-  while (free_cells_.size() + (end_cell_ - next_cell_) < wanted) {
-    for (; next_cell_ != end_cell_; ++next_cell_) free_cells_.push_back(next_cell_);
-    next_cell_ = mesh_.cell_ids().take(kBlock, node_);
-    end_cell_ = next_cell_ + kBlock;
-  }
-  reserve_more(free_vertices_, removed);
-  if (free_vertices_.empty() && next_vertex_ == end_vertex_) {
-    next_vertex_ = mesh_.vertex_ids().take(kBlock, node_);
-    end_vertex_ = next_vertex_ + kBlock;
-  }
-}
-
-CellId Pool::take_cell() {
-  if (free_cells_.empty()) return next_cell_++;
-  const CellId c = free_cells_.back();
-  free_cells_.pop_back();
-  return c;
-}
-
-VertexId Pool::take_vertex() {
-  if (free_vertices_.empty()) return next_vertex_++;
-  const VertexId v = free_vertices_.back();
-  free_vertices_.pop_back();
-  return v;
-}
-
-void Pool::release_cell(CellId c) {
-  mesh_.renew(c, {kNoVertex, kNoVertex, kNoVertex, kNoVertex});
-  free_cells_.push_back(c);
-}
-
-void Pool::release_vertex(VertexId v) {
-  mesh_.vertex(v).kind = VertexKind::kUnused;
-  free_vertices_.push_back(v);
 }
 
 }  // namespace podm

@@ -164,30 +164,6 @@ class Mesh {
   IdArena cell_ids_, vertex_ids_;
 };
 
-/// One worker's free ids: its own dead slots first (warm in its cache), then blocks from the store.
-class Pool {
- public:
-  explicit Pool(Mesh& mesh, NodeIndex node = 0) : mesh_(mesh), node_(node) {}
-  NodeIndex node() const { return node_; }
-  /// Makes room: an operation that replaces `dying` cells by `created` ones, adds a vertex and removes
-  /// `removed` then allocates nothing. Throws std::bad_alloc.
-  void reserve(std::size_t dying, std::size_t created, std::size_t removed);
-  // Of what reserve() made sure of.
-  CellId take_cell();
-  VertexId take_vertex();
-  void release_cell(CellId c);
-  void release_vertex(VertexId v);
-
- private:
-  static constexpr std::uint32_t kBlock = 1024;
-  Mesh& mesh_;
-  NodeIndex node_;  // where its worker runs
-  std::vector<CellId> free_cells_;
-  std::vector<VertexId> free_vertices_;
-  CellId next_cell_ = 0, end_cell_ = 0;
-  VertexId next_vertex_ = 0, end_vertex_ = 0;
-};
-
 /// Whether adjacency, orientation, circumspheres and the local Delaunay property all hold; `fault` tells what
 /// does not. Linear in the number of cells.
 bool is_valid(const Mesh& mesh, std::string* fault = nullptr);

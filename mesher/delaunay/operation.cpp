@@ -140,7 +140,7 @@ double Operation<Locks>::squared_distance_to_region(const Point& p) const {
 template <class Locks>
 void Operation<Locks>::reserve_memory(std::size_t num_created) {
   region_.created.reserve(num_created);
-  pool_.reserve(region_.cells.size(), num_created, region_.removed.size());
+  pool_.reserve(region_.cells, num_created, region_.removed.size());
 }
 
 template <class Locks>

@@ -60,13 +60,10 @@ void StarFiller::compute_spheres(const Mesh& mesh, const Point& p) {
 
 void StarFiller::fill(Mesh& mesh, Pool& pool, Region& region, VertexId apex) {
   compute_spheres(mesh, mesh.point(apex));
-  region.created.clear();
-  // The dying cells' ids are reused at once: they are warm, and their neighbours are next to them.
-  std::size_t reused = 0;
+  pool.replace(region.cells, num_facets_, region.created);
   for (unsigned f = 0; f < num_facets_; ++f) {
     const Facet& facet = facets_[f];
-    const CellId id = reused < region.cells.size() ? region.cells[reused++] : pool.take_cell();
-    region.created.push_back(id);
+    const CellId id = region.created[f];
     mesh.renew(id, {facet.vertices[0], facet.vertices[1], facet.vertices[2], apex});
     Cell& cell = mesh.cell(id);
     cell.sphere = {{spheres_[0][f], spheres_[1][f], spheres_[2][f]}, spheres_[3][f]};
@@ -84,7 +81,6 @@ void StarFiller::fill(Mesh& mesh, Pool& pool, Region& region, VertexId apex) {
     mirrors[1] = facet_at_edge_[(a << row_bits_) + c];
     mirrors[2] = facet_at_edge_[(b << row_bits_) + a];
   }
-  for (; reused < region.cells.size(); ++reused) pool.release_cell(region.cells[reused]);
 }
 
 }  // namespace podm

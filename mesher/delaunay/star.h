@@ -6,6 +6,7 @@
 #include <cstdint>
 #include <vector>
 
+#include "delaunay/pool.h"
 #include "delaunay/region.h"
 
 namespace podm {

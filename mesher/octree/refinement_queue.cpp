@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <limits>
+#include <numeric>
 
 namespace podm {
 
@@ -10,11 +11,26 @@ RefinementQueue::RefinementQueue(const Octree& octree, unsigned num_nodes, LeafO
       order_(order),
       num_poor_(octree.num_leaves()),
       num_active_near_(octree.num_leaves()),
+      share_of_(octree.num_leaves()),
       ready_(order == LeafOrder::kHome ? num_nodes : 1),
       resume_at_(num_nodes) {
+  for (LeafId leaf = 0; leaf < octree.num_leaves(); ++leaf)
+    share_of_[leaf] = leaf * ready_.size() / octree.num_leaves();
   if (order_ != LeafOrder::kMorton) return;
   for (unsigned node = 0; node < num_nodes; ++node)
     resume_at_[node] = std::uint64_t{octree.num_leaves()} * node / num_nodes;
+}
+
+void RefinementQueue::share_out() {
+  const std::lock_guard lock(mutex_);
+  const std::uint64_t total = std::reduce(num_poor_.begin(), num_poor_.end());
+  for (auto& ready : ready_) ready.clear();
+  std::uint64_t before = 0;
+  for (LeafId leaf = 0; leaf < octree_.num_leaves(); ++leaf) {
+    if (total > 0) share_of_[leaf] = std::min(before * ready_.size() / total, ready_.size() - 1);
+    before += num_poor_[leaf];
+    if (is_ready(leaf)) ready_of(leaf).insert(key(leaf));
+  }
 }
 
 void RefinementQueue::push(LeafId leaf, std::uint64_t num_poor) {
@@ -57,10 +73,6 @@ RefinementQueue::Counts RefinementQueue::counts() const {
   Counts counts = counts_;
   for (const auto& ready : ready_) counts.ready += ready.size();
   return counts;
-}
-
-std::set<RefinementQueue::Key>& RefinementQueue::ready_of(LeafId leaf) {
-  return ready_[leaf * ready_.size() / octree_.num_leaves()];
 }
 
 const std::set<RefinementQueue::Key>& RefinementQueue::ready_for(unsigned node) const {

@@ -31,6 +31,9 @@ class RefinementQueue {
   /// For nodes 0 to num_nodes - 1, at least one. The octree must outlive the queue.
   RefinementQueue(const Octree& octree, unsigned num_nodes, LeafOrder order = LeafOrder::kHome);
 
+  /// Gives each node an equal share of the poor cells there are now; until then, of the leaves.
+  void share_out();
+
   /// The leaf has `num_poor` more poor cells. Leaves that never had any are not handed out.
   void push(LeafId leaf, std::uint64_t num_poor);
 
@@ -53,7 +56,7 @@ class RefinementQueue {
   using Key = std::uint64_t;  // rank in the order, then leaf
 
   Key key(LeafId leaf) const;
-  std::set<Key>& ready_of(LeafId leaf);
+  std::set<Key>& ready_of(LeafId leaf) { return ready_[share_of_[leaf]]; }
   const std::set<Key>& ready_for(unsigned node) const;
   bool is_ready(LeafId leaf) const { return num_poor_[leaf] > 0 && num_active_near_[leaf] == 0; }
   std::vector<LeafId> buffer_zones(LeafId leaf) const;
@@ -66,7 +69,8 @@ class RefinementQueue {
   std::condition_variable_any changed_;
   std::vector<std::uint64_t> num_poor_;
   std::vector<std::uint32_t> num_active_near_;  // active leaves within two rings, the leaf itself included
-  std::vector<std::set<Key>> ready_;            // by share of the curve: one a node for home, else one
+  std::vector<std::size_t> share_of_;           // by leaf: of the curve; one a node for home, else one
+  std::vector<std::set<Key>> ready_;            // by share
   std::vector<Key> resume_at_;                  // by node: where in the order its next leaf is looked for
   Counts counts_;
 };

@@ -6,13 +6,16 @@
 namespace podm {
 
 LeafRefinement::LeafRefinement(const Mesh& mesh, const Octree& octree, unsigned num_nodes,
-                               std::function<double()> clock, std::stop_token over)
+                               const Entries& cells, std::function<double()> clock, std::stop_token over)
     : mesh_(mesh),
       octree_(octree),
       clock_(std::move(clock)),
       over_(std::move(over)),
       queue_(octree, num_nodes),
-      cells_of_leaf_(octree.num_leaves()) {}
+      cells_of_leaf_(octree.num_leaves()) {
+  add(cells);
+  queue_.share_out();
+}
 
 void LeafRefinement::add(const Entries& cells) {
   std::map<LeafId, std::uint64_t> num_new;

@@ -22,9 +22,9 @@ class LeafRefinement {
  public:
   using Entries = CellSource::Entries;
 
-  /// `clock` gives seconds, for the schedule; `over` ends all waiting.
-  LeafRefinement(const Mesh& mesh, const Octree& octree, unsigned num_nodes, std::function<double()> clock,
-                 std::stop_token over);
+  /// Of `cells`, to begin with. `clock` gives seconds, for the schedule; `over` ends all waiting.
+  LeafRefinement(const Mesh& mesh, const Octree& octree, unsigned num_nodes, const Entries& cells,
+                 std::function<double()> clock, std::stop_token over);
 
   /// Lists cells with their leaves. Nobody may change them meanwhile.
   void add(const Entries& cells);

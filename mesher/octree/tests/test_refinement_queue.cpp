@@ -1,6 +1,7 @@
 #include <gtest/gtest.h>
 
 #include <atomic>
+#include <numeric>
 #include <thread>
 
 #include "octree/refinement_queue.h"
@@ -126,6 +127,32 @@ TEST_P(Queue, ThreadsRefineEveryLeafWithItsRegionToThemselves) {
 }
 
 INSTANTIATE_TEST_SUITE_P(Orders, Queue, testing::Combine(testing::ValuesIn(kOrders), testing::Range(0, 12)));
+
+class Shares : public testing::TestWithParam<std::uint64_t> {};
+
+// Whichever node asks, it is given of its own share first; the shares have equal work within one leaf's.
+TEST_P(Shares, HaveEqualWork) {
+  constexpr unsigned kNumNodes = 3, kMost = 100;
+  RandomOctree seeded{GetParam()};
+  const Octree octree = seeded.pruned();
+  if (octree.num_leaves() == 0) return;
+  RefinementQueue queue(octree, kNumNodes);
+  std::vector<unsigned> num_poor(octree.num_leaves());
+  for (LeafId leaf = 0; leaf < octree.num_leaves(); ++leaf)
+    queue.push(leaf, num_poor[leaf] = 1 + static_cast<unsigned>(seeded.random() % kMost));
+  queue.share_out();
+  const double total = std::reduce(num_poor.begin(), num_poor.end());
+  for (unsigned node = 0; node < kNumNodes; ++node) {
+    const std::optional<LeafId> leaf = queue.pop(node);
+    ASSERT_TRUE(leaf);
+    const double before = std::reduce(num_poor.begin(), num_poor.begin() + *leaf);
+    EXPECT_GE(before, total * node / kNumNodes - kMost);
+    EXPECT_LE(before, total * (node + 1) / kNumNodes + kMost);
+    queue.finish(*leaf);
+  }
+}
+
+INSTANTIATE_TEST_SUITE_P(Seeds, Shares, testing::Range(std::uint64_t{0}, std::uint64_t{12}));
 
 class SmallQueue : public testing::Test {
  protected:

@@ -1,0 +1,73 @@
+#include <gtest/gtest.h>
+
+#include <random>
+#include <set>
+
+#include "delaunay/pool.h"
+
+namespace podm::test {
+namespace {
+
+constexpr int kNumNodes = 3;
+
+// Workers of three nodes that take ids and set any of them free, as insertions and removals do.
+TEST(FreeIds, AreOfTheWorkersNodeAndNobodyElses) {
+  IdArena arena(1 << 20, kNumNodes, 12);
+  std::vector<FreeIds> workers;
+  for (NodeIndex node = 0; node < 2 * kNumNodes; ++node) workers.emplace_back(arena, node % kNumNodes);
+  std::mt19937_64 random(1);
+  std::vector<std::uint32_t> used;
+  std::set<std::uint32_t> distinct;
+  for (int i = 0; i < 20'000; ++i) {
+    const std::size_t self = random() % workers.size();
+    const std::size_t wanted = random() % 40, released = std::min<std::size_t>(used.size(), random() % 40);
+    workers[self].reserve(wanted, released);
+    for (std::size_t k = 0; k < wanted; ++k) {
+      used.push_back(workers[self].take());
+      ASSERT_EQ(arena.node_of(used.back()), self % kNumNodes);
+      ASSERT_TRUE(distinct.insert(used.back()).second) << "id " << used.back() << " is used twice";
+    }
+    for (std::size_t k = 0; k < released; ++k) {
+      std::swap(used.back(), used[random() % used.size()]);
+      workers[self].release(used.back());
+      distinct.erase(used.back());
+      used.pop_back();
+    }
+  }
+}
+
+// One node sets free what another has made, again and again: the ids go home, and no new ones are needed.
+TEST(FreeIds, GoHome) {
+  IdArena arena(1 << 16, 2, 12);
+  FreeIds maker(arena, 0), eater(arena, 1);
+  for (int i = 0; i < 1'000; ++i) {
+    maker.reserve(500, 0);
+    eater.reserve(0, 500);
+    for (int k = 0; k < 500; ++k) eater.release(maker.take());
+  }
+  EXPECT_LE(arena.bound(), 2u << 12);
+}
+
+TEST(Pool, ReusesTheDyingCellsOfItsNode) {
+  const Box box{{0, 0, 0}, {1, 1, 1}};
+  Mesh mesh(box, 1 << 20, 2);
+  Pool own(mesh, 0), other(mesh, 1);
+  const auto make = [](Pool& pool, std::size_t count) {
+    std::vector<CellId> created;
+    pool.reserve({}, count, 0);
+    pool.replace({}, count, created);
+    return created;
+  };
+  std::vector<CellId> dying = make(own, 4);
+  const std::vector<CellId> reused = dying, foreign = make(other, 4);
+  dying.insert(dying.end(), foreign.begin(), foreign.end());
+  std::vector<CellId> created;
+  own.reserve(dying, 10, 0);
+  own.replace(dying, 10, created);
+  ASSERT_EQ(created.size(), 10u);
+  EXPECT_TRUE(std::equal(reused.begin(), reused.end(), created.begin()));
+  for (const CellId c : created) EXPECT_EQ(mesh.node_of_cell(c), 0);
+}
+
+}  // namespace
+}  // namespace podm::test
