@@ -68,9 +68,9 @@ def _handles(turns):
 
 
 def _caption(turns, zones, height, num_cut):
-    begin, end = max(turn["begin_s"] for turn in turns), min(turn["end_s"] for turn in turns)
+    begin, end = max(1e3 * turn["begin_s"] for turn in turns), min(1e3 * turn["end_s"] for turn in turns)
     inner = [{leaf for leaf, zone in one.items() if zone != SECOND} for one in zones]
     common = len(inner[0] & inner[1])
-    return (f"Both at work from {begin:.3f} to {end:.3f} s. Leaves with their first rings have {common or 'no'} leaf in "
+    return (f"Both at work from {begin:.2f} to {end:.2f} ms of the refinement. Leaves with their first rings have {common or 'no'} leaf in "
             f"common; hatched: also in the second ring of the other. Cut at k\N{NO-BREAK SPACE}=\N{NO-BREAK SPACE}{height:g} of the leaf grid through "
             f"{num_cut:,} cells of the final mesh.")

@@ -80,7 +80,7 @@ class Files(unittest.TestCase):
         schedule = synthetic.schedule(side=9)
         schedule[0]["mesh_to_grid"] = [1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0]
         figure = fig2b.fig2b(self.schedule(schedule), Mesh(points, cells, labels))
-        self.assertIn("from 0.500 to 1.000 s", figure.get_label())
+        self.assertIn("from 500.00 to 1000.00 ms", figure.get_label())
         self.assertIn("have no leaf in common", figure.get_label())
         self.assertEqual(len(figure.axes[0].get_legend().get_texts()), 6)
 
