@@ -159,6 +159,10 @@ void add_mesh_command(CLI::App& program, MeshCommand& command) {
   add_run_options(app, command);
   app.add_flag("--verify", command.verify,
                "have podm-verify check the written mesh; exit 1 unless all holds [default: no]");
+  app.add_flag_callback(
+      "--verify-fidelity", [&command] { command.verify = command.verify_fidelity = true; },
+      "the same, and that surfaces of mesh and image are within a voxel or 2 delta of\n"
+      "each other; a mesh much coarser than a structure may miss it [default: no]");
   app.add_flag("--stats", command.stats, "a table of what each thread did and lost [default: no]");
   app.add_flag("--quiet", command.quiet, "neither progress nor summary [default: both, on standard error]");
 }

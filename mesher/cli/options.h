@@ -34,6 +34,7 @@ struct MeshCommand {
   std::vector<std::pair<std::string, double>> radius_of_mm;  ///< by label name or value
   std::uint64_t max_memory_bytes = 0;                        ///< of the process; 0: as the machine has
   bool verify = false;
+  bool verify_fidelity = false;  ///< implies verify
   bool stats = false;
   bool quiet = false;
 };
