@@ -130,6 +130,7 @@ Experiment read_experiment(const std::string& path, const std::string& image) {
   experiment.paper = file.text("paper", "");
   experiment.tolerance = file.text("tolerance", "");
   experiment.expected_minutes = file.positive("expected_minutes", 0);
+  experiment.stores_crossover = file.flag("stores_crossover");
   Trial head;
   head.timeout_s = kDefaultTimeoutS;
   read_conduct(file, head);

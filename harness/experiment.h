@@ -34,7 +34,8 @@ struct Experiment {
   std::string title, claim, paper, tolerance;  ///< the last two may be empty
   Tier tier = Tier::kDefault;
   double expected_minutes = 0;
-  std::vector<Trial> trials;  ///< the matrix, expanded, in the order of the file
+  bool stores_crossover = false;  ///< at its end, for podm mesh --algorithm auto: crossover.h
+  std::vector<Trial> trials;      ///< the matrix, expanded, in the order of the file
 
   /// Times that a mesh is made, warm-ups included.
   std::size_t num_turns() const;

@@ -9,6 +9,7 @@
 #include <utility>
 
 #include "commands.h"
+#include "crossover.h"
 #include "environment.h"
 #include "machine.h"
 #include "plan.h"
@@ -110,6 +111,7 @@ class ExperimentRun {
       rows_[planned.turn.trial].push_back(planned.row ? *planned.row : run_turn(planned, progress, clock));
     }
     fmt::print("{}Recorded in {}\n", format_table(rows_), path_);
+    if (experiment_.stores_crossover && !interrupted) store_crossover();
     return !interrupted && summarize();
   }
 
@@ -160,6 +162,20 @@ class ExperimentRun {
                                          trial.name, turn.is_warmup ? "warmup" : "repeat", turn.repeat);
     scratch.keep(path);
     fmt::print(stderr, "kept: {}\n", path);
+  }
+
+  // Of the turns asked for: their keys make them this machine's and this mesher's.
+  void store_crossover() const {
+    const Json crossover = crossover_of(rows_);
+    if (crossover.is_null()) {
+      fmt::print("No crossover stored: podm and pdr-podm did not both run on this machine's own cores\n");
+      return;
+    }
+    const std::string path = fmt::format("{}/crossover.json", session_.command.results_folder);
+    write_file(path, crossover.dump(2) + "\n");
+    fmt::print(
+        "{}; stored in {}. To have podm mesh --algorithm auto follow it:\n  export PODM_CROSSOVER={}\n",
+        tell_crossover(crossover), path, std::filesystem::absolute(path).lexically_normal().string());
   }
 
   bool summarize() const {

@@ -73,6 +73,21 @@ class Rows(unittest.TestCase):
             self.assertFalse(VALIDATOR.is_valid(self.made[0] | {key: value}), key)
         self.assertFalse(VALIDATOR.is_valid(self.failed[0] | {"reason": ""}), "a failure without a reason")
 
+    def test_podm_follows_the_crossover_that_is_stored(self):
+        with tempfile.TemporaryDirectory() as folder:
+            path = pathlib.Path(folder, "exp.toml")
+            path.write_text("stores_crossover = true" + EXPERIMENT + 'algorithm = ["podm", "pdr-podm"]\nradius_mm = 12\n')
+            subprocess.run([os.environ["PODM_BENCH"], "run", path, "--results", folder, "--podm", os.environ["PODM"],
+                            "--verifier", "none"], check=True, capture_output=True, timeout=200)
+            stored = path.with_name("crossover.json")
+            subprocess.run([os.environ["PODM"], "mesh", "phantom:torus@24", "--algorithm", "auto", "-o", path.with_suffix(".vtu"),
+                            "--record", path.with_suffix(".record")], check=True, capture_output=True, timeout=200,
+                           env=os.environ | {"PODM_CROSSOVER": str(stored)})
+            followed = json.loads(path.with_suffix(".record").read_text())
+            self.assertEqual(followed["auto"]["measured"], json.loads(stored.read_text())["threads"])
+            self.assertEqual(followed["auto"]["measured_up_to"], 1)
+            self.assertEqual(followed["warnings"], [], "it is this processor's")
+
 
 if __name__ == "__main__":
     unittest.main()

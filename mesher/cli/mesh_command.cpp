@@ -71,20 +71,24 @@ void write_outputs(const MeshCommand& command, const TetMesh& mesh) {
 
 int run(const MeshCommand& command) {
   check_outputs(command);
+  Crossover crossover = choose_crossover(command);
   LabelImage image;
   const double read_s =
       timed([&] { image = read_labelled_image(command.image, command.meshing.loop_threads()); });
   MeshRun run{.command = command,
               .image = image,
               .options = meshing_options(command, image),
+              .crossover = std::move(crossover),
               .result = {},
               .mesh_sha256 = {},
               .read_s = read_s,
               .verdicts = {}};
   std::optional<OperationLogWriter> log;
   if (!command.log_path.empty()) run.options.log = &log.emplace(command.log_path);
+  run.options.crossover = run.crossover.threads;
   run.options.with_schedule = !command.schedule_path.empty();
   run.result = mesh_with_display(image, run.options, command.quiet);
+  if (!run.crossover.warning.empty()) run.result.report.warnings.push_back(run.crossover.warning);
   run.write_s = timed([&] {
     canonicalize(run.result.mesh);
     run.mesh_sha256 = mesh_sha256(run.result.mesh);

@@ -4,11 +4,11 @@
 #include <algorithm>
 
 #include "cli/add_options.h"
+#include "cli/crossover.h"
 
 namespace podm::cli {
 namespace {
 
-constexpr std::uint64_t kMaxThreads = 1024;
 constexpr double kBytesPerGib = 1024.0 * 1024 * 1024;
 
 void add_sizing_options(CLI::App& app, MeshCommand& command) {
@@ -62,9 +62,11 @@ void add_algorithm_options(CLI::App& app, MeshCommand& command) {
             meshing.algorithm = parse_choice(
                 text, name, {Algorithm::kAuto, Algorithm::kPodm, Algorithm::kPdr, Algorithm::kPdrPodm});
           });
-  add_one(app, "--crossover", "N",
-          fmt::format("threads from which on auto is pdr-podm [default: {}]", kDefaultCrossover),
-          into_threads(meshing.crossover));
+  add_one(app, "--crossover", "N|FILE",
+          fmt::format("threads from which on auto is pdr-podm, or the file in which podm-bench stored\n"
+                      "what it measured here [default: the file named by {}, else {}]",
+                      kCrossoverVariable, kDefaultCrossover),
+          into(command.crossover));
   add_one(app, "--nodes", "N", "computing nodes of pdr-podm [default: NUMA nodes in use]",
           into_threads(meshing.nodes));
   add_one(app, "--cores-per-node", "N", "threads of each computing node [default: threads over nodes]",
@@ -157,6 +159,10 @@ void add_mesh_command(CLI::App& program, MeshCommand& command) {
   add_run_options(app, command);
   app.add_flag("--verify", command.verify,
                "have podm-verify check the written mesh; exit 1 unless all holds [default: no]");
+  app.add_flag_callback(
+      "--verify-fidelity", [&command] { command.verify = command.verify_fidelity = true; },
+      "the same, and that surfaces of mesh and image are within a voxel or 2 delta of\n"
+      "each other; a mesh much coarser than a structure may miss it [default: no]");
   app.add_flag("--stats", command.stats, "a table of what each thread did and lost [default: no]");
   app.add_flag("--quiet", command.quiet, "neither progress nor summary [default: both, on standard error]");
 }

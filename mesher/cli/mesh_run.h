@@ -6,6 +6,7 @@
 #include <string>
 #include <vector>
 
+#include "cli/crossover.h"
 #include "cli/options.h"
 #include "podm/label_image.h"
 #include "podm/mesh_image.h"
@@ -16,6 +17,7 @@ struct MeshRun {
   const MeshCommand& command;
   const LabelImage& image;
   MeshingOptions options;  ///< as handed to mesh_image()
+  Crossover crossover;     ///< of --algorithm auto
   MeshingResult result;
   std::string mesh_sha256;
   double read_s = 0, write_s = 0;

@@ -19,6 +19,8 @@ struct ImageArguments {
   std::string label_names_path;  ///< empty: none
 };
 
+inline constexpr int kMaxThreads = 1024;
+
 /// podm mesh
 struct MeshCommand {
   ImageArguments image;
@@ -27,10 +29,12 @@ struct MeshCommand {
   std::string record_path;    ///< empty: no record
   std::string log_path;       ///< empty: no linearization log
   std::string schedule_path;  ///< empty: no schedule
-  MeshingOptions meshing;     ///< but for the two fields below, which need the image or the machine
+  std::string crossover;      ///< a number of threads or a file; empty: not asked
+  MeshingOptions meshing;  ///< but for crossover and the two fields below: these need files, image or machine
   std::vector<std::pair<std::string, double>> radius_of_mm;  ///< by label name or value
   std::uint64_t max_memory_bytes = 0;                        ///< of the process; 0: as the machine has
   bool verify = false;
+  bool verify_fidelity = false;  ///< implies verify
   bool stats = false;
   bool quiet = false;
 };

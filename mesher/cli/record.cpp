@@ -175,6 +175,7 @@ Json record(const MeshRun& run) {
         {"placement", placement_of(report)},
         {"contention", to_string(run.options.contention)},
         {"begging", to_string(run.options.begging)}}},
+      {"auto", run.options.algorithm == Algorithm::kAuto ? run.crossover.source : Json()},
       {"leaves", leaves_of(run)},
       {"executor", to_string(run.options.executor)},
       {"virtual", virtual_of(run)},

@@ -76,6 +76,10 @@ std::vector<std::string> verifier_command(const MeshRun& run, const ScratchFolde
   const double radius_mm = run.result.report.radius_mm;
   const auto& radius_of = run.options.radius_of_mm;
   if (radius_mm > 0 || !radius_of.empty()) claims += ",size";
+  if (run.command.verify_fidelity) {
+    claims += ",fidelity";
+    command.insert(command.end() - 1, {"--delta", fmt::format("{}", run.result.report.delta_mm)});
+  }
   command.push_back(claims);
   const auto image = image_options(run, scratch);
   command.insert(command.end(), image.begin(), image.end());

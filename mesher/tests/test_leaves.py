@@ -64,13 +64,6 @@ class Leaves(PodmTestCase):
         for name in "mesh_sha256", "outcomes", "virtual", "counters":
             self.assertEqual(runs[0][name], runs[1][name], name)
 
-    def test_auto_is_podm_below_the_crossover_and_pdr_podm_from_it_on(self):
-        for threads, algorithm in (3, "podm"), (4, "pdr-podm"):
-            process = run_podm("mesh", IMAGE, "--radius", 20, "--algorithm", "auto", "--crossover", 4, "--threads",
-                               threads, "--oversubscribe", "-o", self.out, "--record", self.runs)
-            self.assert_exit(process, 0)
-            self.assertEqual(json.loads(self.runs.read_text().splitlines()[-1])["algorithm"], algorithm)
-
     def test_options_that_do_not_go_together_are_refused(self):
         for arguments, word in ((["--algorithm", "pdr", "--cores-per-node", "2"], "pdr"),
                                 (["--algorithm", "pdr-podm", "--nodes", "3", "--threads", "4"], "evenly"),

@@ -11,6 +11,7 @@ import unittest
 
 from podm_process import PROGRAM, PodmTestCase, run_podm, start_podm
 
+VERIFIER = os.path.join(os.path.dirname(PROGRAM), "podm-verify")
 RECORD_NAMES = {"schema", "algorithm", "input", "options", "seed", "threads", "phases_s", "cells", "vertices",
                 "boundary_facets", "cells_per_second", "refine_cells_per_second", "peak_rss_bytes", "outcomes",
                 "counters", "quality", "guarantees", "mesh_sha256", "verdicts", "stop_reason", "warnings"}
@@ -86,6 +87,21 @@ class Mesh(PodmTestCase):
                     verdicts = self.read_record(self.runs)["verdicts"]
                     self.assertEqual(set(verdicts.values()), {"pass"})
                     self.assertLessEqual({"labels", "surface", "size"}, set(verdicts))
+
+    def test_fidelity_is_verified_within_what_the_sampling_distance_promises(self):
+        """By voxels alone the coarse mesh would fail."""
+        coarse = ["--radius", "20", "--delta", "10"]
+        for options, image in ((coarse, "phantom:torus@64"), (["--radius", "9", "--labels", "1,3", "--space", "LPS"],
+                                                             "phantom:spheres@32")):
+            self.runs.unlink(missing_ok=True)
+            self.assert_exit(self.mesh("--verify-fidelity", *options, image=image), 0)
+            verdicts = self.read_record(self.runs)["verdicts"]
+            self.assertEqual(set(verdicts.values()), {"pass"})
+            self.assertLessEqual({"fidelity", "labels", "size"}, set(verdicts))
+        image = self.folder / "torus.nii.gz"
+        self.assert_exit(run_podm("phantom", "torus", "--size", "64", "-o", image), 0)
+        self.assert_exit(self.mesh(*coarse, image=image), 0)
+        self.assert_exit(run_podm(self.out, "--image", image, "--claims", "fidelity", program=VERIFIER), 1)
 
     def test_radius_of_one_label_by_name_and_by_value(self):
         info = json.loads(run_podm("info", "--json", "phantom:abdomen@32").stdout)

@@ -11,7 +11,7 @@ OPTIONS = {
              "--drop", "--background", "--label-names", "--space", "--surface", "--record", "--max-elements",
              "--max-seconds", "--max-memory-gib", "--threads", "--contention", "--algorithm", "--crossover", "--nodes",
              "--cores-per-node", "--initial-ratio", "--initial-threads", "--leaf-size", "--schedule", "--executor", "--virtual-cost",
-             "--seed", "--log", "--begging", "--pin", "--oversubscribe", "--topology", "--stats", "--verify", "--quiet"],
+             "--seed", "--log", "--begging", "--pin", "--oversubscribe", "--topology", "--stats", "--verify", "--verify-fidelity", "--quiet"],
     "replay": ["--labels", "--merge", "--drop", "--background", "--label-names"],
     "info": ["--labels", "--merge", "--drop", "--background", "--label-names", "--json"],
     "phantom": ["--size", "--output"],

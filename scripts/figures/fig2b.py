@@ -9,6 +9,8 @@ from .schedule import active_pair, rings
 
 # Leaf, first ring, second ring of each of the two, as in the paper: green and red, paler outwards.
 SHADES = [("#1b6e3c", "#58a773", "#b5dcc0"), ("#9b2335", "#d1495b", "#efb8be")]
+LEAF, FIRST, SECOND = range(3)
+MARGIN = 0.08  # around the grid, in leaves
 
 
 def fig2b(schedule, mesh):
@@ -16,40 +18,40 @@ def fig2b(schedule, mesh):
     pair = active_pair(schedule)
     if pair is None:
         return None
-    *leaves, height = pair
+    *turns, height = pair
     affine = schedule.mesh_to_grid
     polygons, owners = plane_cut(mesh.points @ affine[:, :3].T + affine[:, 3], mesh.cells, height)
     low, high, aspect = _frame(schedule)
     tall = aspect * (high[1] - low[1]) / (high[0] - low[0])
     figure, (axes,) = style.new_figure(width=8, height=0.9 + 5.8 * float(numpy.clip(tall, 0.3, 1.5)))
-    axes.set(xlim=(low[0], high[0]), ylim=(low[1], high[1]), aspect=aspect, xlabel="i, leaf grid", ylabel="j, leaf grid",
-             title=f"two active leaves, k = {height:g}")
+    axes.set(xlim=(low[0] - MARGIN, high[0] + MARGIN), ylim=(low[1] - MARGIN, high[1] + MARGIN), aspect=aspect,
+             xlabel="i, leaf grid", ylabel="j, leaf grid", title="two leaves refined at the same time, and their rings")
     axes.grid(False)
-    _draw_leaves(axes, schedule.leaves, leaves, height)
+    axes.spines[:].set_visible(False)
+    zones = [_zones(schedule.leaves, turn["leaf"]) for turn in turns]
+    _draw_leaves(axes, schedule.leaves, zones, height)
     axes.add_collection(PolyCollection(polygons, facecolors="none", edgecolors=style.INK, linewidths=0.25, alpha=0.6))
-    style.legend(axes, handles=_handles(leaves), loc="upper left", bbox_to_anchor=(1, 1))
-    first, second = (set(_with_ring(schedule.leaves, leaf)) for leaf in leaves)
-    style.finish(figure, f"Cut at k = {height:g} of the leaf grid, {len(owners):,} cells cut. "
-                  f"Leaves with first rings have {len(first & second)} leaves in common.")
+    style.legend(axes, handles=_handles(turns), loc="upper left", bbox_to_anchor=(1, 1))
+    style.finish(figure, _caption(turns, zones, height, len(owners)))
     return figure
 
 
-def _with_ring(leaves, leaf):
-    return [leaf, *rings(leaves, leaf)[0]]
+def _zones(leaves, leaf):
+    """LEAF, FIRST or SECOND by leaf."""
+    first, second = rings(leaves, leaf)
+    return {leaf: LEAF, **dict.fromkeys(first, FIRST), **dict.fromkeys(second, SECOND)}
 
 
-def _draw_leaves(axes, leaves, active, height):
-    cut = (leaves[:, 2] <= height) & (height < leaves[:, 2] + leaves[:, 3])
-    colours = {}
-    for leaf, (dark, middle, pale) in zip(active, SHADES):
-        first, second = rings(leaves, leaf)
-        colours.update({one: pale for one in second if one not in colours})
-        colours.update({one: middle for one in first})
-    colours.update({leaf: shades[0] for leaf, shades in zip(active, SHADES)})
-    for one in numpy.flatnonzero(cut):
+def _draw_leaves(axes, leaves, zones, height):
+    """Each in the colour of the nearer of the two; hatched in the other's where it lies in the rings of both."""
+    for one in numpy.flatnonzero((leaves[:, 2] <= height) & (height < leaves[:, 2] + leaves[:, 3])):
         i, j, _, side = leaves[one]
-        axes.add_patch(Rectangle((i, j), side, side, facecolor=colours.get(one, "none"), alpha=0.85, linewidth=0.8,
-                                 edgecolor=style.GHOST))
+        colours = [shades[zone[one]] for _, zone, shades in sorted(
+            ((zone[one], zone, shades) for zone, shades in zip(zones, SHADES) if one in zone), key=lambda each: each[0])]
+        axes.add_patch(Rectangle((i, j), side, side, facecolor=colours[0] if colours else "none", alpha=0.85, linewidth=0))
+        if len(colours) > 1:
+            axes.add_patch(Rectangle((i, j), side, side, fill=False, hatch="//", edgecolor=colours[1], linewidth=0))
+        axes.add_patch(Rectangle((i, j), side, side, fill=False, edgecolor=style.GHOST, linewidth=0.8))
 
 
 def _frame(schedule):
@@ -59,7 +61,16 @@ def _frame(schedule):
     return leaves[:, :2].min(axis=0), (leaves[:, :2] + leaves[:, 3:]).max(axis=0), step_mm[1] / step_mm[0]
 
 
-def _handles(leaves):
-    words = ("leaf", "first ring of", "second ring of")
-    return [Patch(color=shade, label=f"{word} {leaf}")
-            for leaf, shades in zip(leaves, SHADES) for word, shade in zip(words, shades)]
+def _handles(turns):
+    words = ("leaf {leaf}, node {node}", "its first ring", "its second ring")
+    return [Patch(color=shade, label=word.format(**turn))
+            for turn, shades in zip(turns, SHADES) for word, shade in zip(words, shades)]
+
+
+def _caption(turns, zones, height, num_cut):
+    begin, end = max(1e3 * turn["begin_s"] for turn in turns), min(1e3 * turn["end_s"] for turn in turns)
+    inner = [{leaf for leaf, zone in one.items() if zone != SECOND} for one in zones]
+    common = len(inner[0] & inner[1])
+    return (f"Both at work from {begin:.2f} to {end:.2f} ms of the refinement. Leaves with their first rings have {common or 'no'} leaf in "
+            f"common; hatched: also in the second ring of the other. Cut at k\N{NO-BREAK SPACE}=\N{NO-BREAK SPACE}{height:g} of the leaf grid through "
+            f"{num_cut:,} cells of the final mesh.")

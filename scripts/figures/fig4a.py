@@ -18,7 +18,7 @@ def fig4a(series):
     ticks = [2**power for power in range(0, 9)]
     speedup.set_yticks(ticks, [str(tick) for tick in ticks])
     speedup.set(ylabel="speed-up over PODM on one core", title="weak-scaling speed-up")
-    efficiency.set(ylabel="efficiency, %", ylim=(0, 115), title="efficiency")
+    efficiency.set(ylabel="efficiency, %", ylim=(0, max(115, 1.05 * efficiency.dataLim.y1)), title="efficiency")
     efficiency.axhline(100, color=style.INK, linewidth=0.8)
     style.legend(speedup, loc="upper left")
     style.finish(figure, style.caption_of(shown))

@@ -14,8 +14,9 @@ def fig4b(series):
     shown = scaling.shown_of(series)
     cores = scaling.core_counts([published, *(one.table for one in shown)])
     _ghost_bars(seconds, published, cores)
-    for one in shown:
-        _stack(seconds, one, cores)
+    for place, one in enumerate(shown):
+        _stack(seconds, one, cores, place - (len(shown) - 1) / 2, 0.85 * WIDTH / max(1, len(shown)))
+    seconds.set_ylim(0, 1.05 * seconds.dataLim.y1)
     seconds.set_xticks(range(len(cores)), [str(count) for count in cores])
     seconds.set(xlabel="cores", ylabel="seconds, all phases but write", title="time: PDR.PODM left, PODM right of each pair")
     handles = [Patch(color=colour, label=phase) for phase, colour in style.PHASE_COLOURS.items()
@@ -45,14 +46,13 @@ def _ghost_bars(axes, published, cores):
                  linestyle="--", linewidth=0.9)
 
 
-def _stack(axes, series, cores):
-    """Beside one another where a basis shares the cores with another one."""
+def _stack(axes, series, cores, place, width):
+    """`place`: of this basis beside the others, in bars from the middle."""
     is_simulated = series.key["basis"] == "simulated"
     for (algorithm, count), row in series.table.iterrows():
         if algorithm not in style.NAMES:
             continue
         parts = row[scaling.PHASES].to_numpy(dtype=float)
         bottoms = numpy.concatenate([[0], numpy.cumsum(parts)[:-1]])
-        offset = _side(algorithm) + (WIDTH / 4 if is_simulated else -WIDTH / 4)
-        axes.bar(cores.index(count) + offset, parts, WIDTH / 2, bottom=bottoms, hatch="////" if is_simulated else None,
+        axes.bar(cores.index(count) + _side(algorithm) + place * width, parts, width, bottom=bottoms, hatch="////" if is_simulated else None,
                  color=[style.PHASE_COLOURS[phase] for phase in scaling.PHASES], edgecolor=style.INK, linewidth=0.4)

@@ -5,6 +5,7 @@ over cores. Seconds are all phases but `write`.
 """
 import math
 from dataclasses import dataclass
+from pathlib import Path
 
 import numpy
 import pandas
@@ -29,7 +30,7 @@ class Series:
     def label(self):
         key = self.key
         size = f"{self.cells_per_core / 1e6:.2g} M cells per core"
-        return ", ".join(part for part in (key["experiment"], key["input.path"], size, key["machine"]) if part)
+        return ", ".join(part for part in (key["experiment"], Path(key["input.path"]).name, size, key["machine"]) if part)
 
 
 def headline_rows(frame):

@@ -55,8 +55,8 @@ def _touching(leaves, some):
 
 
 def active_pair(schedule):
-    """Two leaves active at one time on different nodes that a plane of constant k cuts both, with the middle of that
-    plane; the two with the most operations. None when the run had no such pair."""
+    """Activations of two leaves at one time on different nodes, cut both by a plane of constant k, and that k: the two
+    with the most operations. None when the run had no such pair."""
     by_work = sorted(schedule.activations, key=lambda one: -one.get("operations", 0))[:500]
     best = None
     for position, one in enumerate(by_work):
@@ -68,7 +68,7 @@ def active_pair(schedule):
                 continue
             low, high = _common_k(schedule.leaves[one["leaf"]], schedule.leaves[other["leaf"]])
             if low < high:
-                best = (one["operations"] + other["operations"], one["leaf"], other["leaf"], (low + high) / 2)
+                best = (one["operations"] + other["operations"], one, other, (low + high) / 2)
     return best and best[1:]
 
 

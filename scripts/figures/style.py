@@ -87,7 +87,7 @@ def caption_of(series):
     parts = []
     for one in series:
         counts = sorted(set(one.table["n"].astype(int)))
-        n = f"n = {counts[0]}" if len(counts) == 1 else f"n = {counts[0]} to {counts[-1]}"
+        n = f"n\N{NO-BREAK SPACE}=\N{NO-BREAK SPACE}{counts[0]}" + (f" to {counts[-1]}" if len(counts) > 1 else "")
         parts.append(f"{one.key['basis']}: {one.label()}, {n}")
     text = "; ".join(parts) if parts else "no verified weak-scaling rows"
     if any((one.table["n"] > 1).any() for one in series):

@@ -78,7 +78,7 @@ class Scaling(unittest.TestCase):
         self.assertEqual(series[0].table.loc[("podm", 1), "other"], 5.0)
         self.assertIn("some-peer", set(table1.table1(series)["algorithm"]))
         for draw in (fig4a.fig4a, fig4b.fig4b):
-            self.assertIn("n = 1", draw(series).get_label())
+            self.assertIn("n\N{NO-BREAK SPACE}=\N{NO-BREAK SPACE}1", draw(series).get_label())
 
     def test_no_series_without_one_core_of_podm(self):
         self.assertEqual(scaling.weak_series(frame_of([synthetic.row(cores=2), synthetic.row("pdr-podm")])), [])

@@ -47,8 +47,8 @@ class Files(unittest.TestCase):
 
     def test_two_leaves_active_at_one_time_are_found(self):
         schedule = self.schedule(synthetic.schedule(side=9))
-        *pair, height = active_pair(schedule)
-        self.assertEqual((pair, height), ([20, 60], 0.5))
+        one, other, height = active_pair(schedule)
+        self.assertEqual((one["leaf"], other["leaf"], height), (20, 60, 0.5))
 
     def test_none_when_leaves_are_active_one_after_another(self):
         rows = synthetic.schedule()
@@ -80,7 +80,8 @@ class Files(unittest.TestCase):
         schedule = synthetic.schedule(side=9)
         schedule[0]["mesh_to_grid"] = [1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0]
         figure = fig2b.fig2b(self.schedule(schedule), Mesh(points, cells, labels))
-        self.assertIn("have 0 leaves in common", figure.get_label())
+        self.assertIn("from 500.00 to 1000.00 ms", figure.get_label())
+        self.assertIn("have no leaf in common", figure.get_label())
         self.assertEqual(len(figure.axes[0].get_legend().get_texts()), 6)
 
     def test_reads_vtu_and_refuses_what_is_none(self):
