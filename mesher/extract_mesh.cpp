@@ -6,17 +6,13 @@
 #include <utility>
 #include <vector>
 
+#include "geometry/affine.h"
 #include "runtime/parallel_for.h"
 #include "runtime/parallel_resize.h"
 
 namespace podm {
 
 namespace {
-
-double determinant(const std::array<double, 12>& a) {
-  return a[0] * (a[5] * a[10] - a[6] * a[9]) - a[1] * (a[4] * a[10] - a[6] * a[8]) +
-         a[2] * (a[4] * a[9] - a[5] * a[8]);
-}
 
 // From the image frame, mm, to the world.
 class WorldFrame {
@@ -25,15 +21,14 @@ class WorldFrame {
       : a_(image.voxel_to_ras), spacing_(image.spacing), flip_(space == Space::kLps ? -1 : 1) {}
 
   std::array<double, 3> operator()(const Point& p) const {
-    const double i = p.x / spacing_[0], j = p.y / spacing_[1], k = p.z / spacing_[2];
-    return {flip_ * (a_[0] * i + a_[1] * j + a_[2] * k + a_[3]),
-            flip_ * (a_[4] * i + a_[5] * j + a_[6] * k + a_[7]), a_[8] * i + a_[9] * j + a_[10] * k + a_[11]};
+    const auto ras = map(a_, {p.x / spacing_[0], p.y / spacing_[1], p.z / spacing_[2]});
+    return {flip_ * ras[0], flip_ * ras[1], ras[2]};
   }
   // Then it turns every cell inside out; swapping two vertices turns it back.
   bool is_mirrored() const { return determinant(a_) < 0; }
 
  private:
-  std::array<double, 12> a_;
+  Affine a_;
   std::array<double, 3> spacing_;
   double flip_;
 };
@@ -222,21 +217,9 @@ TetMesh extract_mesh(Mesh& mesh, const Isosurface& isosurface, const LabelImage&
 }
 
 void convert_to_voxel_space(TetMesh& mesh, const LabelImage& image) {
-  const auto& a = image.voxel_to_ras;
-  const double det = determinant(a);
-  for (auto& v : mesh.vertices) {
-    const double x = v[0] - a[3], y = v[1] - a[7], z = v[2] - a[11];
-    v = {((a[5] * a[10] - a[6] * a[9]) * x + (a[2] * a[9] - a[1] * a[10]) * y +
-          (a[1] * a[6] - a[2] * a[5]) * z) /
-             det,
-         ((a[6] * a[8] - a[4] * a[10]) * x + (a[0] * a[10] - a[2] * a[8]) * y +
-          (a[2] * a[4] - a[0] * a[6]) * z) /
-             det,
-         ((a[4] * a[9] - a[5] * a[8]) * x + (a[1] * a[8] - a[0] * a[9]) * y +
-          (a[0] * a[5] - a[1] * a[4]) * z) /
-             det};
-  }
-  if (det < 0) {
+  const Affine ras_to_voxel = inverse(image.voxel_to_ras);
+  for (auto& v : mesh.vertices) v = map(ras_to_voxel, v);
+  if (determinant(image.voxel_to_ras) < 0) {
     for (auto& cell : mesh.cells) std::swap(cell[2], cell[3]);
     for (auto& facet : mesh.facets) std::swap(facet[1], facet[2]);
   }

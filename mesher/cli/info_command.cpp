@@ -8,16 +8,13 @@
 #include "cli/json_text.h"
 #include "cli/labelled_image.h"
 #include "cli/standard_output.h"
+#include "geometry/affine.h"
 
 namespace podm::cli {
 namespace {
 
 // The product of the spacings only where the axes are orthogonal.
-double voxel_volume_mm3(const LabelImage& image) {
-  const auto& a = image.voxel_to_ras;
-  return std::abs(a[0] * (a[5] * a[10] - a[6] * a[9]) - a[1] * (a[4] * a[10] - a[6] * a[8]) +
-                  a[2] * (a[4] * a[9] - a[5] * a[8]));
-}
+double voxel_volume_mm3(const LabelImage& image) { return std::abs(determinant(image.voxel_to_ras)); }
 
 std::string as_text(const std::string& path, const LabelImage& image) {
   const auto& affine = image.voxel_to_ras;

@@ -1,27 +1,13 @@
 #include "cli/leaf_schedule_file.h"
 
 #include "cli/json_text.h"
+#include "geometry/affine.h"
 #include "io/atomic_file.h"
 
 namespace podm::cli {
 namespace {
 
 using Json = nlohmann::ordered_json;
-using Affine = std::array<double, 12>;  // row-major 3x4
-
-Affine inverse(const Affine& a) {
-  const auto cofactor = [&](std::size_t r, std::size_t c) {
-    const std::size_t r1 = (r + 1) % 3, r2 = (r + 2) % 3, c1 = (c + 1) % 3, c2 = (c + 2) % 3;
-    return a[4 * r1 + c1] * a[4 * r2 + c2] - a[4 * r1 + c2] * a[4 * r2 + c1];
-  };
-  const double det = a[0] * cofactor(0, 0) + a[1] * cofactor(0, 1) + a[2] * cofactor(0, 2);
-  Affine b{};
-  for (std::size_t r = 0; r < 3; ++r) {
-    for (std::size_t c = 0; c < 3; ++c) b[4 * r + c] = cofactor(c, r) / det;
-    for (std::size_t c = 0; c < 3; ++c) b[4 * r + 3] -= b[4 * r + c] * a[4 * c + 3];
-  }
-  return b;
-}
 
 // From coordinates of the mesh file to those of the leaves' grid.
 Affine mesh_to_grid(const MeshRun& run, const LeafSchedule& schedule) {

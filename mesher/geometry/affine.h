@@ -1,0 +1,40 @@
+// Affine maps as images have them.
+#pragma once
+
+#include <array>
+#include <cstddef>
+
+namespace podm {
+
+using Affine = std::array<double, 12>;  // row-major 3x4: a linear part, then what is added
+
+/// The minor of the linear part without row r and column c, with its sign.
+inline double cofactor(const Affine& a, std::size_t r, std::size_t c) {
+  const std::size_t r1 = (r + 1) % 3, r2 = (r + 2) % 3, c1 = (c + 1) % 3, c2 = (c + 2) % 3;
+  return a[4 * r1 + c1] * a[4 * r2 + c2] - a[4 * r1 + c2] * a[4 * r2 + c1];
+}
+
+/// Of the linear part: signed volume of a voxel where the map takes voxels to mm.
+inline double determinant(const Affine& a) {
+  return a[0] * cofactor(a, 0, 0) + a[1] * cofactor(a, 0, 1) + a[2] * cofactor(a, 0, 2);
+}
+
+/// Of a map whose determinant is not 0.
+inline Affine inverse(const Affine& a) {
+  const double det = determinant(a);
+  Affine b{};
+  for (std::size_t r = 0; r < 3; ++r) {
+    for (std::size_t c = 0; c < 3; ++c) b[4 * r + c] = cofactor(a, c, r) / det;
+    for (std::size_t c = 0; c < 3; ++c) b[4 * r + 3] -= b[4 * r + c] * a[4 * c + 3];
+  }
+  return b;
+}
+
+inline std::array<double, 3> map(const Affine& a, const std::array<double, 3>& x) {
+  std::array<double, 3> y{};
+  for (std::size_t r = 0; r < 3; ++r)
+    y[r] = a[4 * r] * x[0] + a[4 * r + 1] * x[1] + a[4 * r + 2] * x[2] + a[4 * r + 3];
+  return y;
+}
+
+}  // namespace podm
