@@ -172,8 +172,7 @@ class Run {
   }
 
   LeafOptions leaf_options() const {
-    const bool is_pdr = algorithm() == Algorithm::kPdr;
-    const int initial = options_.initial_threads > 0 ? options_.initial_threads : is_pdr ? 1 : num_workers();
+    const int initial = options_.initial_threads > 0 ? options_.initial_threads : num_workers();
     return {num_computing_nodes(), options_.initial_ratio, initial, options_.leaf_size_mm,
             options_.with_schedule};
   }

@@ -1,9 +1,9 @@
 #!/usr/bin/python3
 """Times `podm mesh` and CGAL's mesher on one image in interleaved rounds and prints medians.
 
-Needs build/bin/podm and a build of harness/peers/cgal_mesh3 (GPL, cmake -DPODM_BUILD_CGAL_PEER=ON). Both are given one
-thread. podm's rate counts refinement only, CGAL's the meshing call only: loading, transform and writing are left out.
-Every run becomes a JSON line of OUTPUT.
+Needs build/bin/podm and a build of harness/peers/cgal_mesh3 (GPL, cmake -DPODM_BUILD_CGAL_PEER=ON). Both are given as many
+threads; on one, CGAL's sequential meshers run too. podm's rate counts refinement only, CGAL's the meshing call only:
+loading, transform and writing are left out. Every run becomes a JSON line of OUTPUT.
 """
 import argparse
 import json
@@ -17,7 +17,8 @@ from warm_memory import warm_memory
 
 def run_podm(args, folder):
     record = os.path.join(folder, "record.jsonl")
-    command = [args.podm, "mesh", args.image, "-o", os.path.join(folder, "mesh.vtu"), "--record", record, "--quiet"]
+    command = [args.podm, "mesh", args.image, "-o", os.path.join(folder, "mesh.vtu"), "--record", record, "--quiet",
+               "--threads", str(args.threads)]
     for option in ("radius", "delta"):
         if getattr(args, option) is not None:
             command += ["--" + option, str(getattr(args, option))]
@@ -43,14 +44,16 @@ def main():
     parser.add_argument("--delta", type=float, help="podm's delta, mm (default: podm's own)")
     parser.add_argument("--cell-size", type=float, help="CGAL's, mm (default: none)")
     parser.add_argument("--facet-distance", type=float, default=1.0, help="CGAL's, mm (default 1)")
+    parser.add_argument("--threads", type=int, default=1, help="default 1")
     parser.add_argument("--rounds", type=int, default=3, help="default 3")
     parser.add_argument("--podm", default="build/bin/podm", help="default build/bin/podm")
     parser.add_argument("--peers", default="build/bin", help="folder of cgal_mesh3 (default build/bin)")
     args = parser.parse_args()
 
-    peers = {"CGAL sequential": (os.path.join(args.peers, "cgal_mesh3"), 0),
-             "CGAL sequential, unsorted": (os.path.join(args.peers, "cgal_mesh3_unsorted"), 0),
-             "CGAL parallel, 1 thread": (os.path.join(args.peers, "cgal_mesh3"), 1)}
+    peers = {"CGAL parallel": (os.path.join(args.peers, "cgal_mesh3"), args.threads)}
+    if args.threads == 1:
+        peers |= {"CGAL sequential": (os.path.join(args.peers, "cgal_mesh3"), 0),
+                  "CGAL sequential, unsorted": (os.path.join(args.peers, "cgal_mesh3_unsorted"), 0)}
     runs = []
     with tempfile.TemporaryDirectory() as folder:
         for number in range(args.rounds):
@@ -64,11 +67,14 @@ def main():
     with open(args.output, "a") as output:
         for row in runs:
             output.write(json.dumps({"image": os.path.basename(args.image), "options": options, **row}) + "\n")
+    rates = {}
     for name in ["podm", *peers]:
         rows = [row for row in runs if row["mesher"] == name]
-        rate = statistics.median(row["cells"] / row["seconds"] for row in rows)
+        rates[name] = [row["cells"] / row["seconds"] for row in rows]
+        ahead = statistics.median(podm / rate for podm, rate in zip(rates["podm"], rates[name]))
         peak = max(row["peak_rss_bytes"] for row in rows) / 2**20
-        print(f"{name:28} {rows[0]['cells']:>10} cells {rate / 1e6:7.3f} M cells/s {peak:8.0f} MiB")
+        print(f"{name:28} {rows[0]['cells']:>10} cells {statistics.median(rates[name]) / 1e6:7.3f} M cells/s {peak:8.0f} MiB"
+              f"   podm is {ahead:.2f} times as fast")
 
 
 if __name__ == "__main__":

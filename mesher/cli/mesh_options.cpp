@@ -76,7 +76,7 @@ void add_algorithm_options(CLI::App& app, MeshCommand& command) {
           [&meshing](const std::string& text, const std::string& name) {
             meshing.initial_ratio = parse_positive(text, name, "number");
           });
-  add_one(app, "--initial-threads", "N", "threads of the initial mesh [default: all; 1 for pdr]",
+  add_one(app, "--initial-threads", "N", "threads of the initial mesh [default: all]",
           into_threads(meshing.initial_threads));
   add_one(app, "--leaf-size", "MM", "side of the octree's leaves, mm [default: from the initial bound]",
           into_length(meshing.leaf_size_mm));

@@ -69,7 +69,7 @@ struct MeshingOptions {
   int nodes = 0;             ///< computing nodes; default: NUMA nodes in use, for kPdr one a thread
   int cores_per_node = 0;    ///< threads of each; default: threads over nodes
   double initial_ratio = 4;  ///< circumradius bound and delta of the initial mesh over those of the final one
-  int initial_threads = 0;   ///< of the initial mesh; default: all, for kPdr one
+  int initial_threads = 0;   ///< of the initial mesh; default: all
   double leaf_size_mm = 0;   ///< side of the octree's leaves; default: from the initial mesh's bound
   bool with_schedule = false;  ///< report when which leaf was refined
   /// Of all phases. With one thread the same input makes the same mesh to the bit, with more one of the same
