@@ -14,8 +14,7 @@ RefinementQueue::RefinementQueue(const Octree& octree, unsigned num_nodes, LeafO
       share_of_(octree.num_leaves()),
       ready_(order == LeafOrder::kHome ? num_nodes : 1),
       resume_at_(num_nodes) {
-  for (LeafId leaf = 0; leaf < octree.num_leaves(); ++leaf)
-    share_of_[leaf] = leaf * ready_.size() / octree.num_leaves();
+  share_out();
   if (order_ != LeafOrder::kMorton) return;
   for (unsigned node = 0; node < num_nodes; ++node)
     resume_at_[node] = std::uint64_t{octree.num_leaves()} * node / num_nodes;
@@ -23,14 +22,65 @@ RefinementQueue::RefinementQueue(const Octree& octree, unsigned num_nodes, LeafO
 
 void RefinementQueue::share_out() {
   const std::lock_guard lock(mutex_);
-  const std::uint64_t total = std::reduce(num_poor_.begin(), num_poor_.end());
-  for (auto& ready : ready_) ready.clear();
-  std::uint64_t before = 0;
-  for (LeafId leaf = 0; leaf < octree_.num_leaves(); ++leaf) {
-    if (total > 0) share_of_[leaf] = std::min(before * ready_.size() / total, ready_.size() - 1);
-    before += num_poor_[leaf];
-    if (is_ready(leaf)) ready_of(leaf).insert(key(leaf));
+  std::vector<LeafId> leaves(octree_.num_leaves());
+  std::iota(leaves.begin(), leaves.end(), 0);
+  divide(leaves, 0, ready_.size());
+}
+
+// Into shares with equal work: recursive bisection. (Berger, Bokhari, IEEE Trans. Comput. C-36, 1987.)
+void RefinementQueue::divide(std::span<LeafId> leaves, std::size_t first_share, std::size_t num_shares) {
+  if (num_shares == 1) {
+    for (const LeafId leaf : leaves) move(leaf, first_share);
+    return;
   }
+  const std::size_t half = num_shares / 2;
+  const std::size_t middle = bisect(leaves, static_cast<double>(half) / static_cast<double>(num_shares));
+  divide(leaves.first(middle), first_share, half);
+  divide(leaves.subspan(middle), first_share + half, num_shares - half);
+}
+
+// Sorts the leaves along the longest side of their box; so many have that share of the poor cells, or where
+// there are none, of the leaves.
+std::size_t RefinementQueue::bisect(std::span<LeafId> leaves, double share) const {
+  GridPoint low{~0u, ~0u, ~0u}, high{};
+  double total = 0;
+  const auto work = [&](LeafId leaf) { return 1 + static_cast<double>(num_poor_[leaf]); };
+  for (const LeafId leaf : leaves) {
+    total += work(leaf);
+    for (unsigned axis = 0; axis < 3; ++axis) {
+      low[axis] = std::min(low[axis], octree_.cube(leaf).corner[axis]);
+      high[axis] = std::max(high[axis], octree_.cube(leaf).corner[axis]);
+    }
+  }
+  unsigned longest = 0;
+  for (unsigned axis = 1; axis < 3; ++axis)
+    if (high[axis] - low[axis] > high[longest] - low[longest]) longest = axis;
+  std::sort(leaves.begin(), leaves.end(), [&](LeafId a, LeafId b) {
+    return std::pair(octree_.cube(a).corner[longest], a) < std::pair(octree_.cube(b).corner[longest], b);
+  });
+  std::size_t count = 0;
+  for (double before = 0; count < leaves.size() && before < share * total; ++count)
+    before += work(leaves[count]);
+  return count;
+}
+
+void RefinementQueue::move(LeafId leaf, std::size_t to) {
+  if (is_ready(leaf)) ready_of(leaf).erase(key(leaf));
+  share_of_[leaf] = to;
+  if (is_ready(leaf)) ready_of(leaf).insert(key(leaf));
+}
+
+// Half of the share that has most poor cells, if the node's own has none.
+void RefinementQueue::take_over(unsigned node) {
+  std::vector<std::uint64_t> num_poor(ready_.size());
+  for (LeafId leaf = 0; leaf < octree_.num_leaves(); ++leaf) num_poor[share_of_[leaf]] += num_poor_[leaf];
+  if (num_poor[node] > 0) return;
+  const auto richest = static_cast<std::size_t>(
+      std::distance(num_poor.begin(), std::max_element(num_poor.begin(), num_poor.end())));
+  std::vector<LeafId> leaves;
+  for (LeafId leaf = 0; leaf < octree_.num_leaves(); ++leaf)
+    if (share_of_[leaf] == richest && num_poor_[leaf] > 0) leaves.push_back(leaf);
+  for (const LeafId leaf : std::span(leaves).first(bisect(leaves, 0.5))) move(leaf, node);
 }
 
 void RefinementQueue::push(LeafId leaf, std::uint64_t num_poor) {
@@ -42,6 +92,11 @@ void RefinementQueue::push(LeafId leaf, std::uint64_t num_poor) {
   if (!is_ready(leaf)) return;
   ready_of(leaf).insert(key(leaf));
   changed_.notify_all();
+}
+
+std::size_t RefinementQueue::home_of(LeafId leaf) const {
+  const std::lock_guard lock(mutex_);
+  return share_of_[leaf];
 }
 
 std::optional<LeafId> RefinementQueue::pop(unsigned node) {
@@ -120,6 +175,7 @@ void RefinementQueue::set_active(const std::vector<LeafId>& zones, bool is_activ
 }
 
 std::optional<LeafId> RefinementQueue::take(unsigned node) {
+  if (order_ == LeafOrder::kHome && ready_[node].empty()) take_over(node);
   const std::set<Key>& ready = ready_for(node);
   if (ready.empty()) return std::nullopt;
   Key& resume_at = resume_at_[order_ == LeafOrder::kMorton ? node : 0];

@@ -3,8 +3,9 @@
 // A leaf that is handed out is *active* until it is finished. Meanwhile no leaf within two rings of it (B1
 // and B2, see octree.h) is handed out: they are out of the queue, though they may be given poor cells. So the
 // regions of active leaves are disjoint. Orders in which leaves are handed out:
-//   home       most poor cells first, of the node's own share of the Morton curve, so that a node works
-//              where it has worked; if it has none ready, of the share that has most leaves ready
+//   home       most poor cells first, of the node's own share of space, so that a node works where it has
+//              worked; if none of it is ready, of the share that has most leaves ready. A node that is
+//              through with its share takes over half of the one that has most poor cells
 //   most work  most poor cells first
 //   Morton     each node goes along the curve from its last leaf; nodes start evenly spread
 //   coloring   by position modulo 3, colour by colour: leaves of one of the 27 do not keep each other waiting
@@ -15,6 +16,7 @@
 #include <mutex>
 #include <optional>
 #include <set>
+#include <span>
 #include <stop_token>
 #include <vector>
 
@@ -31,8 +33,11 @@ class RefinementQueue {
   /// For nodes 0 to num_nodes - 1, at least one. The octree must outlive the queue.
   RefinementQueue(const Octree& octree, unsigned num_nodes, LeafOrder order = LeafOrder::kHome);
 
-  /// Gives each node an equal share of the poor cells there are now; until then, of the leaves.
+  /// Gives each node a block of space that has an equal share of the poor cells there are now; until then, of
+  /// the leaves.
   void share_out();
+  /// The node whose share has the leaf; 0 where there are no shares.
+  std::size_t home_of(LeafId leaf) const;
 
   /// The leaf has `num_poor` more poor cells. Leaves that never had any are not handed out.
   void push(LeafId leaf, std::uint64_t num_poor);
@@ -62,6 +67,10 @@ class RefinementQueue {
   std::vector<LeafId> buffer_zones(LeafId leaf) const;
   void set_active(const std::vector<LeafId>& zones, bool is_active);
   std::optional<LeafId> take(unsigned node);
+  void move(LeafId leaf, std::size_t to);
+  void divide(std::span<LeafId> leaves, std::size_t first_share, std::size_t num_shares);
+  std::size_t bisect(std::span<LeafId> leaves, double share) const;
+  void take_over(unsigned node);
 
   const Octree& octree_;
   const LeafOrder order_;
@@ -69,7 +78,7 @@ class RefinementQueue {
   std::condition_variable_any changed_;
   std::vector<std::uint64_t> num_poor_;
   std::vector<std::uint32_t> num_active_near_;  // active leaves within two rings, the leaf itself included
-  std::vector<std::size_t> share_of_;           // by leaf: of the curve; one a node for home, else one
+  std::vector<std::size_t> share_of_;           // by leaf; there is one a node for home, else one
   std::vector<std::set<Key>> ready_;            // by share
   std::vector<Key> resume_at_;                  // by node: where in the order its next leaf is looked for
   Counts counts_;

@@ -130,26 +130,48 @@ INSTANTIATE_TEST_SUITE_P(Orders, Queue, testing::Combine(testing::ValuesIn(kOrde
 
 class Shares : public testing::TestWithParam<std::uint64_t> {};
 
-// Whichever node asks, it is given of its own share first; the shares have equal work within one leaf's.
-TEST_P(Shares, HaveEqualWork) {
+// A leaf may be on either side of a cut, and shares of three nodes have two cuts between them.
+TEST_P(Shares, HaveEqualWorkAndGoToTheirNodes) {
   constexpr unsigned kNumNodes = 3, kMost = 100;
   RandomOctree seeded{GetParam()};
   const Octree octree = seeded.pruned();
-  if (octree.num_leaves() == 0) return;
+  if (octree.num_leaves() < kNumNodes) return;
   RefinementQueue queue(octree, kNumNodes);
-  std::vector<unsigned> num_poor(octree.num_leaves());
-  for (LeafId leaf = 0; leaf < octree.num_leaves(); ++leaf)
-    queue.push(leaf, num_poor[leaf] = 1 + static_cast<unsigned>(seeded.random() % kMost));
+  std::vector<double> work_of_leaf(octree.num_leaves()), work_of_node(kNumNodes);
+  for (LeafId leaf = 0; leaf < octree.num_leaves(); ++leaf) {
+    work_of_leaf[leaf] = 1 + static_cast<double>(seeded.random() % kMost);
+    queue.push(leaf, static_cast<std::uint64_t>(work_of_leaf[leaf]));
+  }
   queue.share_out();
-  const double total = std::reduce(num_poor.begin(), num_poor.end());
+  for (LeafId leaf = 0; leaf < octree.num_leaves(); ++leaf)
+    work_of_node[queue.home_of(leaf)] += work_of_leaf[leaf] + 1;
+  const double mean = std::reduce(work_of_node.begin(), work_of_node.end()) / kNumNodes;
   for (unsigned node = 0; node < kNumNodes; ++node) {
+    EXPECT_NEAR(work_of_node[node], mean, 2 * (kMost + 1));
+    if (work_of_node[node] == 0) continue;
     const std::optional<LeafId> leaf = queue.pop(node);
     ASSERT_TRUE(leaf);
-    const double before = std::reduce(num_poor.begin(), num_poor.begin() + *leaf);
-    EXPECT_GE(before, total * node / kNumNodes - kMost);
-    EXPECT_LE(before, total * (node + 1) / kNumNodes + kMost);
+    EXPECT_EQ(queue.home_of(*leaf), node);
     queue.finish(*leaf);
   }
+}
+
+// Node 1 has refined its share when node 0 has begun: it takes over half of what is left.
+TEST(Share, OfWhoHasMostIsHalvedForWhoHasNone) {
+  const Octree octree{{0, 0, 0},
+                      {32, 1, 1},
+                      1,
+                      [](const Point&, const Point&) { return 1.0; },
+                      [](const Point&, const Point&) { return true; }};
+  RefinementQueue queue(octree, 2);
+  for (LeafId leaf = 0; leaf < 16; ++leaf) queue.push(leaf, 10);
+  ASSERT_EQ(queue.home_of(15), 0u);
+  const std::optional<LeafId> taken = queue.pop(1);
+  ASSERT_TRUE(taken);
+  unsigned num_taken_over = 0;
+  for (LeafId leaf = 0; leaf < 16; ++leaf) num_taken_over += queue.home_of(leaf) == 1;
+  EXPECT_EQ(num_taken_over, 8u);
+  EXPECT_EQ(queue.home_of(*taken), 1u);
 }
 
 INSTANTIATE_TEST_SUITE_P(Seeds, Shares, testing::Range(std::uint64_t{0}, std::uint64_t{12}));
