@@ -152,6 +152,8 @@ ProcessOutcome run_process(const ProcessRequest& request, const StopQuery& stop_
   outcome.system_s = seconds(usage.ru_stime);
   // The maximum survives exec: it is at least this program's own, a few MiB.
   outcome.peak_rss_bytes = 1024 * static_cast<std::uint64_t>(usage.ru_maxrss);
+  outcome.page_faults = static_cast<std::uint64_t>(usage.ru_minflt + usage.ru_majflt);
+  outcome.context_switches = static_cast<std::uint64_t>(usage.ru_nvcsw + usage.ru_nivcsw);
   if (WIFEXITED(status)) outcome.exit_code = WEXITSTATUS(status);
   if (WIFSIGNALED(status)) outcome.signal = WTERMSIG(status);
   if (WIFSIGNALED(status) && outcome.end == End::kExited) outcome.end = End::kSignalled;

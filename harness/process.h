@@ -25,7 +25,7 @@ struct ProcessOutcome {
   int signal = 0;           ///< when kSignalled
   std::string start_error;  ///< when kNotStarted: the system's reason
   double wall_s = 0, user_s = 0, system_s = 0;
-  std::uint64_t peak_rss_bytes = 0;
+  std::uint64_t peak_rss_bytes = 0, page_faults = 0, context_switches = 0;
 
   bool succeeded() const { return end == End::kExited && exit_code == 0; }
   /// How it ended, e.g. "exit code 2" or "killed by signal 11 (Segmentation fault)".

@@ -7,6 +7,7 @@
 #include <filesystem>
 #include <fstream>
 
+#include "counters.h"
 #include "mesher_options.h"
 #include "record.h"
 #include "warm_memory.h"
@@ -188,6 +189,7 @@ TrialResult TrialRunner::run(const Trial& trial, const std::string& scratch_fold
   warm_memory(kWarmBytes);
   result.preparation_s = watch.seconds();
   const std::string stderr_path = scratch_folder + "/stderr.txt";
+  const PerfCounters counters(CounterKinds::kSoftwareAndHardware);
   result.process =
       run_process({.arguments = result.command,
                    .stdout_path = {},
@@ -195,6 +197,7 @@ TrialResult TrialRunner::run(const Trial& trial, const std::string& scratch_fold
                    .timeout_s = trial.timeout_s,
                    .memory_limit_bytes = static_cast<std::uint64_t>(trial.memory_limit_gib * kBytesPerGib)},
                   stop_requested);
+  result.counters = counters.read(result.process);
   judge(trial, scratch_folder + kRecordName, result);
   std::error_code error;
   const auto mesh_bytes = std::filesystem::file_size(mesh_path(result.record, scratch_folder), error);

@@ -31,7 +31,8 @@ struct TrialResult {
   std::vector<std::string> command;  ///< as run
   nlohmann::ordered_json peer;       ///< name, hash and version of a mesher other than podm; else null
   ProcessOutcome process;
-  std::uint64_t mesh_bytes = 0;                  ///< of the mesh file
+  nlohmann::ordered_json counters = nlohmann::ordered_json::object();  ///< of the process
+  std::uint64_t mesh_bytes = 0;                                        ///< of the mesh file
   double preparation_s = 0, verification_s = 0;  ///< before the mesher starts and after it has ended
   std::string stderr_tail;                       ///< of a trial that is not kOk
   nlohmann::ordered_json record;                 ///< as the mesher wrote it; null when it did not

@@ -62,6 +62,7 @@ class Rows(unittest.TestCase):
             self.assertEqual(set(row["verdicts"].values()), {"pass"})
             self.assertGreater(row["verification_s"], 0)
             self.assertGreater(row["mesh_bytes"], 0)
+            self.assertGreater(row["process"]["counters"]["page_faults"]["value"], 0)
         self.assertEqual(len({row["mesh_sha256"] for row in self.made}), 1)
 
     def test_rows_that_lack_a_key_or_lie_are_refused(self):
@@ -71,6 +72,11 @@ class Rows(unittest.TestCase):
             self.assertFalse(VALIDATOR.is_valid(row), key)
         for key, value in (("schema", 1), ("key", "x"), ("repeat", 0), ("status", "skipped"), ("harness_s", -1)):
             self.assertFalse(VALIDATOR.is_valid(self.made[0] | {key: value}), key)
+        counters = {"zero": 0, "without source": {"value": 1}, "reason": "none", "share": {"value": 1, "source": "s", "running_share": 1}}
+        for name, counter in counters.items():
+            row = copy.deepcopy(self.made[0])
+            row["process"]["counters"][name] = counter
+            self.assertFalse(VALIDATOR.is_valid(row), name)
         self.assertFalse(VALIDATOR.is_valid(self.failed[0] | {"reason": ""}), "a failure without a reason")
 
 
