@@ -25,7 +25,7 @@ struct Variant {
 std::vector<Variant> read_matrix(Section& section, const std::string& folder);
 
 /// As `podm mesh` takes them: radius_mm = 2 is "--radius", "2"; true is the bare option, false none. Without
-/// those of the two keys above, which are the harness's business.
+/// those that are the harness's business: the two keys above and kCounters.
 std::vector<std::string> mesher_arguments(const nlohmann::ordered_json& options);
 
 /// `value` as it stands in the name of a trial, made of letters, digits and . _ -

@@ -12,10 +12,12 @@
 #include <algorithm>
 #include <chrono>
 #include <csignal>
+#include <cstdlib>
 #include <cstring>
 #include <fstream>
 #include <iterator>
 #include <new>
+#include <sstream>
 
 extern "C" {  // missing in the header of glibc 2.36
 #include <sys/pidfd.h>
@@ -177,6 +179,14 @@ std::string ProcessOutcome::describe() const {
       break;
   }
   return start_error;
+}
+
+bool is_installed(const std::string& program) {
+  const char* path = std::getenv("PATH");
+  std::istringstream folders(path == nullptr ? "" : path);
+  for (std::string folder; std::getline(folders, folder, ':');)
+    if (access((folder + "/" + program).c_str(), X_OK) == 0) return true;
+  return false;
 }
 
 std::string read_tail(const std::string& path, std::size_t max_bytes) {

@@ -36,6 +36,9 @@ struct ProcessOutcome {
 /// dies with this process, however that ends.
 ProcessOutcome run_process(const ProcessRequest& request, const StopQuery& stop_requested = {});
 
+/// Whether a program of this name is in PATH.
+bool is_installed(const std::string& program);
+
 /// The end of a text file, at most `max_bytes` of it; empty when there is none.
 std::string read_tail(const std::string& path, std::size_t max_bytes);
 

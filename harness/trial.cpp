@@ -23,6 +23,7 @@ constexpr int kExitUnmet = 1;
 constexpr double kBytesPerGib = 1024.0 * 1024 * 1024;
 constexpr const char* kMeshName = "/mesh.vtu";
 constexpr const char* kRecordName = "/record.jsonl";
+constexpr const char* kMessagesName = "/stderr.txt";
 
 class Stopwatch {
  public:
@@ -179,6 +180,34 @@ void TrialRunner::set_command(const Trial& trial, const std::string& scratch_fol
   result.peer = {{"name", trial.options[kMesher]}, {"sha256", peer.sha256()}, {"version", peer.version}};
 }
 
+const CounterTool* TrialRunner::counter_tool_of(const Trial& trial, const std::string& scratch_folder) {
+  const std::string choice = trial.options.value(kCounters, kPerfEvent);
+  const auto [entry, is_new] = counter_tools_.try_emplace(choice);
+  if (is_new) entry->second = counter_tool(choice, programs_.likwid_groups, scratch_folder);
+  return entry->second.get();
+}
+
+void TrialRunner::run_mesher(const Trial& trial, const std::string& scratch_folder,
+                             const StopQuery& stop_requested, TrialResult& result) {
+  const CounterTool* tool = counter_tool_of(trial, scratch_folder);
+  const std::string absence = tool == nullptr ? "" : tool->absence();
+  const bool is_used = tool != nullptr && absence.empty();
+  if (is_used) result.command = tool->wrap(result.command, scratch_folder);
+  // likwid-perfctr needs the processor's counters for itself.
+  const PerfCounters kernel(is_used ? CounterKinds::kSoftware : CounterKinds::kSoftwareAndHardware);
+  result.process =
+      run_process({.arguments = result.command,
+                   .stdout_path = {},
+                   .stderr_path = scratch_folder + kMessagesName,
+                   .timeout_s = trial.timeout_s,
+                   .memory_limit_bytes = static_cast<std::uint64_t>(trial.memory_limit_gib * kBytesPerGib)},
+                  stop_requested);
+  if (!is_used || !tool->is_simulation()) result.counters = kernel.read(result.process);
+  if (is_used) result.counters.update(tool->read(scratch_folder));
+  if (!absence.empty())
+    result.counters[trial.options[kCounters].get<std::string>()] = "unavailable: " + absence;
+}
+
 TrialResult TrialRunner::run(const Trial& trial, const std::string& scratch_folder,
                              const StopQuery& stop_requested) {
   TrialResult result;
@@ -188,23 +217,15 @@ TrialResult TrialRunner::run(const Trial& trial, const std::string& scratch_fold
   set_command(trial, scratch_folder, result);
   warm_memory(kWarmBytes);
   result.preparation_s = watch.seconds();
-  const std::string stderr_path = scratch_folder + "/stderr.txt";
-  const PerfCounters counters(CounterKinds::kSoftwareAndHardware);
-  result.process =
-      run_process({.arguments = result.command,
-                   .stdout_path = {},
-                   .stderr_path = stderr_path,
-                   .timeout_s = trial.timeout_s,
-                   .memory_limit_bytes = static_cast<std::uint64_t>(trial.memory_limit_gib * kBytesPerGib)},
-                  stop_requested);
-  result.counters = counters.read(result.process);
+  run_mesher(trial, scratch_folder, stop_requested, result);
   judge(trial, scratch_folder + kRecordName, result);
   std::error_code error;
   const auto mesh_bytes = std::filesystem::file_size(mesh_path(result.record, scratch_folder), error);
   if (!error) result.mesh_bytes = mesh_bytes;
   if (result.record.is_object() && !programs_.verifier.empty())
     verify(trial, scratch_folder, stop_requested, result);
-  if (result.status != Status::kOk) result.stderr_tail = read_tail(stderr_path, kTailBytes);
+  if (result.status != Status::kOk)
+    result.stderr_tail = read_tail(scratch_folder + kMessagesName, kTailBytes);
   return result;
 }
 

@@ -2,9 +2,11 @@
 #pragma once
 
 #include <map>
+#include <memory>
 #include <nlohmann/json.hpp>
 #include <string>
 
+#include "counter_tool.h"
 #include "experiment.h"
 #include "peer.h"
 #include "process.h"
@@ -55,12 +57,17 @@ class TrialRunner {
   // Status kSkipped and the reason where the trial cannot run here.
   bool skip(const Trial& trial, TrialResult& result);
   void set_command(const Trial& trial, const std::string& scratch_folder, TrialResult& result);
+  // Null: the kernel counts.
+  const CounterTool* counter_tool_of(const Trial& trial, const std::string& scratch_folder);
+  void run_mesher(const Trial& trial, const std::string& scratch_folder, const StopQuery& stop_requested,
+                  TrialResult& result);
   void verify(const Trial& trial, const std::string& scratch_folder, const StopQuery& stop_requested,
               TrialResult& result);
 
   Programs programs_;
   Peers peers_;
-  std::map<std::string, nlohmann::ordered_json> image_sizes_;  // each image is looked at once
+  std::map<std::string, nlohmann::ordered_json> image_sizes_;          // each image is looked at once
+  std::map<std::string, std::unique_ptr<CounterTool>> counter_tools_;  // each is asked once
 };
 
 }  // namespace podm::bench

@@ -148,6 +148,9 @@ TEST_F(ExperimentTest, FaultsNameFileLineAndColumn) {
       {kHead + kTrial + "repeats = 0\n", "some.toml:8:11:", "repeats"},
       {kHead + kTrial + "repeats = [1, 2]\n", "some.toml:8:11:", "repeats"},
       {kHead + kTrial + "memory_limit_gib = 0\n", "some.toml:8:20:", "memory_limit_gib"},
+      {kHead + kTrial + "counters = 'likwid:'\n", "some.toml:8:12:", "likwid:GROUP"},
+      {kHead + kTrial + "counters = 'likwid:a/b'\n", "some.toml:8:12:", "likwid:GROUP"},
+      {kHead + kTrial + "counters = ['perf_event', 'perf']\n", "some.toml:8:27:", "cachegrind"},
       {"tier = 'huge'\n" + kHead + kTrial, "some.toml:1:8:", "kick-tires"},
       {kHead + "[[trials]]\nname = 'x'\ninput = ['a', 'b']\n", "some.toml:7:15:", "inputs.b"},
       {kHead, "some.toml:1:", "trials"},  // what is missing

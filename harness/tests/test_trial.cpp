@@ -62,8 +62,8 @@ TEST_F(TrialTest, VerdictsOfTheVerifierDecide) {
 
 TEST_F(TrialTest, OptionsOfTheTrialReachTheMesher) {
   Trial trial = some_trial();
-  trial.options = {
-      {"threads", 3}, {"delta_mm", 0.25}, {"cores_per_node", 8}, {"pin", true}, {"oversubscribe", false}};
+  trial.options = {{"threads", 3}, {"delta_mm", 0.25},       {"cores_per_node", 8},
+                   {"pin", true},  {"oversubscribe", false}, {"counters", "perf_event"}};
   run(write_record(kGoodRecord), trial);
   const std::string arguments = " " + read_tail(folder_ / "arguments", 1000);
   EXPECT_TRUE(arguments.starts_with(" mesh image.nii --threads 3 --delta 0.25 --cores-per-node 8 --pin -o "))
