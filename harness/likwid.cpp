@@ -44,7 +44,7 @@ std::string architecture(const std::string& scratch_folder) {
   run_process(
       {.arguments = {kProgram, "-i"}, .stdout_path = path, .stderr_path = {}, .timeout_s = kAnswerTimeoutS});
   const std::string name = value_of(path, "CPU short");
-  return name.starts_with("unavailable") ? "" : name;
+  return name.starts_with("unavailable") || name == "nil" ? "" : name;
 }
 
 // Why likwid may not count the events; it says so itself.

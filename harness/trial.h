@@ -37,7 +37,7 @@ struct TrialResult {
   std::uint64_t mesh_bytes = 0;                                        ///< of the mesh file
   double preparation_s = 0, verification_s = 0;  ///< before the mesher starts and after it has ended
   std::string stderr_tail;                       ///< of a trial that is not kOk
-  nlohmann::ordered_json record;                 ///< as the mesher wrote it; null when it did not
+  nlohmann::ordered_json record;                 ///< as the program wrote it; null when it did not
   nlohmann::ordered_json image_size;             ///< voxels per axis; null when the mesher could not tell
 };
 
@@ -56,11 +56,16 @@ class TrialRunner {
   const nlohmann::ordered_json& image_size(const std::string& image, const std::string& scratch_folder);
   // Status kSkipped and the reason where the trial cannot run here.
   bool skip(const Trial& trial, TrialResult& result);
+  void make_mesh(const Trial& trial, const std::string& scratch_folder, const StopQuery& stop_requested,
+                 TrialResult& result);
+  // Of the machine, no mesh.
+  void measure(const Trial& trial, const std::string& scratch_folder, const StopQuery& stop_requested,
+               TrialResult& result);
   void set_command(const Trial& trial, const std::string& scratch_folder, TrialResult& result);
   // Null: the kernel counts.
   const CounterTool* counter_tool_of(const Trial& trial, const std::string& scratch_folder);
-  void run_mesher(const Trial& trial, const std::string& scratch_folder, const StopQuery& stop_requested,
-                  TrialResult& result);
+  void run_program(const Trial& trial, const std::string& scratch_folder, const StopQuery& stop_requested,
+                   TrialResult& result);
   void verify(const Trial& trial, const std::string& scratch_folder, const StopQuery& stop_requested,
               TrialResult& result);
 

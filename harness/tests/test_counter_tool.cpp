@@ -50,7 +50,8 @@ class CounterToolTest : public testing::Test {
     trial.options = {{"threads", 1}, {"counters", counters}};
     trial.timeout_s = 20;
     const std::string mesher = fake_mesher(folder_, "echo '" + kGoodRecord + "' > \"$record\"\n");
-    return TrialRunner({mesher, {}, {}, folder_ / "groups"}).run(trial, folder_.path());
+    return TrialRunner({.podm = mesher, .verifier = {}, .likwid_groups = folder_ / "groups"})
+        .run(trial, folder_.path());
   }
 
   TemporaryFolder folder_;

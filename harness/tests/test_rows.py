@@ -42,6 +42,30 @@ def rows_of(experiment, mesh_body=None):
         return [json.loads(line) for line in path.with_suffix(".jsonl").read_text().splitlines()]
 
 
+LATENCY = """
+title = "T"
+claim = "C"
+[[trials]]
+name = "latency"
+measure = "memory_latency"
+"""
+
+
+class MemoryLevels(unittest.TestCase):
+    def test_a_row_of_the_machine_fits_the_schema(self):
+        (row,) = rows_of(LATENCY)
+        VALIDATOR.validate(row)
+        self.assertEqual(row["status"], "ok", row["reason"])
+        self.assertGreaterEqual(len(row["latency"]), 10)
+        caches = [level for level in row["memory_levels"] if "cache" in level["module"]]
+        self.assertEqual([level["size_bytes"] for level in caches], sorted(level["size_bytes"] for level in caches))
+        self.assertGreater(len(row["memory_levels"]), len(caches), "there is memory behind them")
+        for level in ({"ns": 0}, {"cycles": "none"}, {"module": ""}, {"huge_page_share": 2}):
+            broken = copy.deepcopy(row)
+            broken["memory_levels"][0].update(level)
+            self.assertFalse(VALIDATOR.is_valid(broken), level)
+
+
 class Rows(unittest.TestCase):
     @classmethod
     def setUpClass(cls):

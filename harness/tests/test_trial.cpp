@@ -191,6 +191,31 @@ TEST_F(TrialTest, AbsentImageIsSkippedOnlyWhenItMayBeAbsent) {
   EXPECT_EQ(run(write_record(kGoodRecord), trial).status, Status::kOk);
 }
 
+TEST_F(TrialTest, MeasurementOfTheMachineIsARecordOfThisProgram) {
+  Trial trial;
+  trial.name = "latency";
+  trial.options = {{"threads", 1}, {"measure", "memory_latency"}};
+  trial.timeout_s = 20;
+  const auto measure = [&](const std::string& body) {
+    std::filesystem::remove(folder_ / "record.jsonl");
+    const std::string bench =
+        folder_.script("podm-bench", "[ \"$1 $2\" = 'latency --record' ] || exit 2\n" + body);
+    return TrialRunner({.podm = folder_ / "absent", .verifier = folder_ / "absent", .bench = bench})
+        .run(trial, folder_.path());
+  };
+  const TrialResult measured = measure("echo '{\"memory_levels\":[]}' > \"$3\"");
+  EXPECT_EQ(measured.status, Status::kOk) << measured.reason;
+  EXPECT_TRUE(measured.record.contains("memory_levels"));
+  EXPECT_FALSE(measured.counters.empty());
+  for (const char* body :
+       {"", "echo '{}' > \"$3\"", "echo x > \"$3\"", "echo '{\"memory_levels\":[]}' > \"$3\"; exit 3"}) {
+    const TrialResult failed = measure(body);
+    EXPECT_EQ(failed.status, Status::kFailed) << body;
+    EXPECT_NE(failed.reason, "") << body;
+    EXPECT_TRUE(failed.record.is_null()) << body;
+  }
+}
+
 TEST_F(TrialTest, StopRequestInterrupts) {
   const TrialResult result =
       TrialRunner({fake_mesher(folder_, "sleep 30"), {}}).run(some_trial(), folder_.path(), [] {

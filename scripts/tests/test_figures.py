@@ -100,11 +100,17 @@ class Hops(unittest.TestCase):
 
 class Levels(unittest.TestCase):
     def test_ours_stand_beside_the_published(self):
-        levels = [{"level": 1, "module": "L1 cache", "size_bytes": 49152, "cycles": 4.2}]
-        row = synthetic.row()
-        row["environment"]["memory_levels"] = levels
-        table = table3.table3(frame_of([row]))
-        self.assertEqual(list(table.query("basis == 'measured'")["size"]), ["48 KiB"])
+        def row(cycles, dram=300.0):
+            return synthetic.row(memory_levels=[
+                {"level": 1, "module": "L1 cache", "size_bytes": 49152, "cycles": cycles},
+                {"level": 2, "module": "memory of the own node 0", "size_bytes": 2**33, "cycles": dram}])
+
+        ours = table3.table3(frame_of([row(4.0), row(9.0), row(4.2)])).query("basis == 'measured'")
+        self.assertEqual(list(ours["size"]), ["48 KiB", "8 GiB"])
+        self.assertEqual(list(ours["access_clock_cycles"]), ["4.2", "300"])
+        why = "unavailable: not enough memory"
+        ours = table3.table3(frame_of([row(4.0, why)])).query("basis == 'measured'")
+        self.assertEqual(list(ours["access_clock_cycles"]), ["4", why])
         self.assertEqual(set(table3.table3(frame_of([synthetic.row()]))["basis"]), {"published"})
 
 
