@@ -85,6 +85,8 @@ class Rows(unittest.TestCase):
         for row in self.made:
             self.assertEqual(set(row["verdicts"].values()), {"pass"})
             self.assertGreater(row["verification_s"], 0)
+            for program in ("podm", "podm_verify"):
+                self.assertIn("ITK", row["programs"][program]["build"]["libraries"])
             self.assertGreater(row["mesh_bytes"], 0)
             self.assertGreater(row["process"]["counters"]["page_faults"]["value"], 0)
         self.assertEqual(len({row["mesh_sha256"] for row in self.made}), 1)
