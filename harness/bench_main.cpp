@@ -27,7 +27,8 @@ void add_run(CLI::App& program, int& exit_code) {
   };
   const auto state = std::make_shared<State>();
   RunCommand& command = state->command;
-  command.programs = {beside_this_program("podm"), beside_this_program("podm-verify"), PODM_PEERS};
+  command.programs = {beside_this_program("podm"), beside_this_program("podm-verify"), PODM_PEERS,
+                      beside_this_program("podm-bench"), PODM_LIKWID_GROUPS};
   CLI::App& app = *program.add_subcommand("run", "run the trials of experiments that are not measured yet");
   app.add_option("EXPERIMENT", command.experiment_paths, "files of experiments/")->required();
   app.add_option("--only", command.only,
@@ -58,6 +59,13 @@ void add_list(CLI::App& program, int& exit_code) {
   app.callback([folder, &exit_code] { exit_code = list(*folder); });
 }
 
+void add_latency(CLI::App& program, int& exit_code) {
+  const auto path = std::make_shared<std::string>();
+  CLI::App& app = *program.add_subcommand("latency", "measure a load from each level of memory, Table 3");
+  app.add_option("--record", *path, "write it as JSON to this file [default: standard output]");
+  app.callback([path, &exit_code] { exit_code = latency(*path); });
+}
+
 int main_or_throw(int argc, char** argv) {
   CLI::App program("Runs mesher experiments, one process a trial, and records each as a JSON line.",
                    "podm-bench");
@@ -66,6 +74,7 @@ int main_or_throw(int argc, char** argv) {
   int exit_code = 0;
   add_run(program, exit_code);
   add_list(program, exit_code);
+  add_latency(program, exit_code);
   add_compare(program, exit_code);
   add_gate(program, beside_this_program("podm"), exit_code);
   try {

@@ -34,4 +34,8 @@ int dry_run(const RunCommand& command);
 /// Prints title, tier, trials and time of the experiments in a folder.
 int list(const std::string& folder);
 
+/// Measures a load from each level of memory (memory_levels.h) and writes it as one line of JSON to the file,
+/// or prints it where `record_path` is empty.
+int latency(const std::string& record_path);
+
 }  // namespace podm::bench

@@ -7,6 +7,7 @@
 
 #include <cstdlib>
 #include <fstream>
+#include <sstream>
 
 #include "machine.h"
 #include "process.h"
@@ -82,10 +83,26 @@ Json sources(const std::string& scratch_folder) {
   return {{"commit", commit}, {"dirty", !changes.empty()}};
 }
 
+// Of the lines "key: value".
+Json build_of(std::istringstream& lines) {
+  Json build = Json::object();
+  for (std::string line; std::getline(lines, line);)
+    if (const auto colon = line.find(": "); colon != std::string::npos)
+      build[line.substr(0, colon)] = line.substr(colon + 2);
+  return build;
+}
+
+// What it prints is a line of name and version and then lines of its build.
 Json describe_program(const std::string& path, const std::string& scratch_folder) {
+  std::string answer;
+  if (!ask({path, "--version"}, scratch_folder, answer)) answer = "unavailable: --version fails";
+  std::istringstream lines(answer);
   std::string version;
-  if (!ask({path, "--version"}, scratch_folder, version)) version = "unavailable: --version fails";
-  return {{"sha256", sha256_of_file(path)}, {"version", version}};
+  std::getline(lines, version);
+  const Json build = build_of(lines);
+  return {{"sha256", sha256_of_file(path)},
+          {"version", version},
+          {"build", build.empty() ? Json("unavailable: --version tells nothing of it") : build}};
 }
 
 }  // namespace

@@ -33,6 +33,7 @@ std::string resolve_image(const std::string& image, const fs::path& folder) {
 
 Inputs read_inputs(Section& file, const fs::path& folder) {
   Inputs inputs;
+  if (!file.has("inputs")) return inputs;  // then no trial may name one
   for (auto& [name, section] : file.tables("inputs")) {
     inputs[name] = {resolve_image(section.text("image"), folder), section.flag("if_exists")};
     section.done();
@@ -66,7 +67,12 @@ std::string read_name(Section& section) {
   return name;
 }
 
+// One empty name where the trial needs no input.
 std::vector<std::string> read_input_names(Section& section, const Inputs& inputs) {
+  if (section.has(kMeasure)) {
+    if (section.has("input")) section.fail(section.place("input"), "input is an option of meshers");
+    return {""};
+  }
   std::vector<std::string> names;
   for (const toml::node* node : section.values("input")) {
     names.push_back(section.text_of(*node, "input"));
@@ -92,7 +98,7 @@ std::vector<Trial> read_trials(Section& section, const Inputs& inputs, const Tri
   for (const std::string& name : names)
     for (const Variant& variant : variants) {
       Trial trial = common;
-      const Input input = image.empty() ? inputs.at(name) : Input{image, false};
+      const Input input = name.empty() ? Input{} : image.empty() ? inputs.at(name) : Input{image, false};
       trial.name += (in_suffix ? ",input=" + in_name(name) : "") + variant.suffix;
       trial.image = input.image;
       trial.if_exists = input.if_exists;

@@ -20,7 +20,7 @@ Tier parse_tier(const std::string& text);
 /// The settings of one mesh to make, some number of times.
 struct Trial {
   std::string name;        ///< as in the file, then ",key=value" of each key given as an array
-  std::string image;       ///< a file or phantom:NAME[@SIZE]
+  std::string image;       ///< a file or phantom:NAME[@SIZE]; empty: it makes no mesh
   bool if_exists = false;  ///< skip the trial, saying so, when the image file is absent
   nlohmann::ordered_json options = nlohmann::ordered_json::object();  ///< of the mesher, by key of the file
   int repeats = 1, warmups = 0;
@@ -47,6 +47,9 @@ Experiment read_experiment(const std::string& path, const std::string& image = "
 
 /// Paths of the *.toml of a folder, sorted. Throws InputError when it cannot be read.
 std::vector<std::string> experiment_files(const std::string& folder);
+
+/// Whether the trial makes a mesh; otherwise it measures the machine.
+inline bool makes_mesh(const Trial& trial) { return !trial.image.empty(); }
 
 bool is_phantom(const std::string& image);
 

@@ -1,32 +1,19 @@
 #include "machine.h"
 
 #include <fmt/format.h>
-#include <hwloc.h>
 #include <sched.h>
 #include <unistd.h>
 
 #include <algorithm>
 #include <fstream>
-#include <memory>
 #include <sstream>
-#include <type_traits>
+
+#include "hwloc_topology.h"
 
 namespace podm::bench {
 namespace {
 
 using Json = nlohmann::ordered_json;
-
-struct DestroyTopology {
-  void operator()(hwloc_topology_t topology) const { hwloc_topology_destroy(topology); }
-};
-using Topology = std::unique_ptr<std::remove_pointer_t<hwloc_topology_t>, DestroyTopology>;
-
-Topology load_topology() {
-  hwloc_topology_t topology = nullptr;
-  if (hwloc_topology_init(&topology) != 0) return {};
-  Topology owner(topology);
-  return hwloc_topology_load(topology) == 0 ? std::move(owner) : Topology();
-}
 
 // hwloc writes one element a line; who owns the machine is nobody's business.
 std::string without_host_name(const std::string& xml) {

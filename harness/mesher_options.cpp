@@ -4,9 +4,11 @@
 
 #include <algorithm>
 #include <cctype>
+#include <cstring>
 #include <filesystem>
 #include <limits>
 
+#include "counter_tool.h"
 #include "machine.h"
 
 namespace podm::bench {
@@ -21,7 +23,19 @@ constexpr const char* kPerThread = "target_elements_per_thread";  // becomes tar
 constexpr const char* kPowersOfTwo = "1..all";
 constexpr const char* kMillimetres = "_mm";  // ends keys of lengths, but no option of podm
 
-enum class Kind { kPositive, kElements, kCount, kSeed, kWord, kSwitch, kFlag, kFile, kThreads };
+enum class Kind {
+  kPositive,
+  kElements,
+  kCount,
+  kSeed,
+  kWord,
+  kSwitch,
+  kFlag,
+  kFile,
+  kThreads,
+  kCounters,
+  kMeasure
+};
 
 struct MesherOption {
   const char* key;
@@ -49,6 +63,8 @@ constexpr MesherOption kMesherOptions[] = {
     {"seed", Kind::kSeed},
     {"topology", Kind::kFile},
     {kSchedule, Kind::kFlag},
+    {kCounters, Kind::kCounters},
+    {kMeasure, Kind::kMeasure},
 };
 
 // "all" is the number of usable processors, "1..all" the powers of two up to it and itself.
@@ -71,6 +87,23 @@ Json switch_value(const Section& section, const toml::node& node, std::string_vi
   return section.text_of(node, key);
 }
 
+// Groups are files: a name has no folder in it.
+std::string counters_value(const Section& section, const toml::node& node, std::string_view key) {
+  const std::string choice = section.text_of(node, key);
+  const bool is_group = choice.starts_with(kLikwid) && choice.size() > std::strlen(kLikwid) &&
+                        choice.find('/') == std::string::npos;
+  if (!is_group && choice != kPerfEvent && choice != kCachegrind)
+    section.fail(node.source(), fmt::format("{} must be \"{}\", \"{}\" or \"{}GROUP\"", key, kPerfEvent,
+                                            kCachegrind, kLikwid));
+  return choice;
+}
+
+std::string measure_value(const Section& section, const toml::node& node, std::string_view key) {
+  if (section.text_of(node, key) != kMemoryLatency)
+    section.fail(node.source(), fmt::format("{} must be \"{}\"", key, kMemoryLatency));
+  return kMemoryLatency;
+}
+
 std::vector<Json> read_value(const Section& section, const toml::node& node, const MesherOption& option,
                              const std::string& folder) {
   const std::string key = option.key;
@@ -91,6 +124,10 @@ std::vector<Json> read_value(const Section& section, const toml::node& node, con
       return {section.flag_of(node, key)};
     case Kind::kFile:
       return {(std::filesystem::path(folder) / section.text_of(node, key)).lexically_normal().string()};
+    case Kind::kCounters:
+      return {counters_value(section, node, key)};
+    case Kind::kMeasure:
+      return {measure_value(section, node, key)};
     case Kind::kThreads:
       break;
   }
@@ -134,6 +171,13 @@ void refuse_options_of_podm(const Section& section, const Json& options) {
       section.fail(section.place(key), fmt::format("{} is an option of podm alone", key));
 }
 
+void refuse_options_of_meshers(const Section& section, const Json& options) {
+  if (!options.contains(kMeasure)) return;
+  for (const MesherOption& option : kMesherOptions)
+    if (option.kind != Kind::kMeasure && section.has(option.key))
+      section.fail(section.place(option.key), fmt::format("{} is an option of meshers", option.key));
+}
+
 void scale_by_threads(const Section& section, Json& options) {
   if (!options.contains(kPerThread)) return;
   const std::int64_t elements =
@@ -165,6 +209,7 @@ std::vector<Variant> read_matrix(Section& section, const std::string& folder) {
     if (!values.empty()) multiply(variants, option.key, values, in_suffix);
   }
   for (Variant& variant : variants) {
+    refuse_options_of_meshers(section, variant.options);
     refuse_options_of_podm(section, variant.options);
     scale_by_threads(section, variant.options);
   }
@@ -174,7 +219,7 @@ std::vector<Variant> read_matrix(Section& section, const std::string& folder) {
 std::vector<std::string> mesher_arguments(const Json& options) {
   std::vector<std::string> arguments;
   for (const auto& [key, value] : options.items()) {
-    if (value == false || key == kMesher || key == kSchedule) continue;
+    if (value == false || key == kMesher || key == kSchedule || key == kCounters || key == kMeasure) continue;
     std::string name = key.ends_with(kMillimetres) ? key.substr(0, key.size() - 3) : key;
     std::replace(name.begin(), name.end(), '_', '-');
     arguments.push_back("--" + name);

@@ -13,6 +13,8 @@ namespace podm::bench {
 inline constexpr const char *kMesher = "mesher", *kPodm = "podm";
 /// The key that asks for the schedule of the leaves; its file is the trial's own.
 inline constexpr const char* kSchedule = "schedule";
+/// The key of a trial that makes no mesh but measures the machine, and what it measures.
+inline constexpr const char *kMeasure = "measure", *kMemoryLatency = "memory_latency";
 
 /// One member of the product.
 struct Variant {
@@ -25,7 +27,7 @@ struct Variant {
 std::vector<Variant> read_matrix(Section& section, const std::string& folder);
 
 /// As `podm mesh` takes them: radius_mm = 2 is "--radius", "2"; true is the bare option, false none. Without
-/// those of the two keys above, which are the harness's business.
+/// those that are the harness's business: the keys above and kCounters.
 std::vector<std::string> mesher_arguments(const nlohmann::ordered_json& options);
 
 /// `value` as it stands in the name of a trial, made of letters, digits and . _ -

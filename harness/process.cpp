@@ -12,10 +12,12 @@
 #include <algorithm>
 #include <chrono>
 #include <csignal>
+#include <cstdlib>
 #include <cstring>
 #include <fstream>
 #include <iterator>
 #include <new>
+#include <sstream>
 
 extern "C" {  // missing in the header of glibc 2.36
 #include <sys/pidfd.h>
@@ -152,6 +154,8 @@ ProcessOutcome run_process(const ProcessRequest& request, const StopQuery& stop_
   outcome.system_s = seconds(usage.ru_stime);
   // The maximum survives exec: it is at least this program's own, a few MiB.
   outcome.peak_rss_bytes = 1024 * static_cast<std::uint64_t>(usage.ru_maxrss);
+  outcome.page_faults = static_cast<std::uint64_t>(usage.ru_minflt + usage.ru_majflt);
+  outcome.context_switches = static_cast<std::uint64_t>(usage.ru_nvcsw + usage.ru_nivcsw);
   if (WIFEXITED(status)) outcome.exit_code = WEXITSTATUS(status);
   if (WIFSIGNALED(status)) outcome.signal = WTERMSIG(status);
   if (WIFSIGNALED(status) && outcome.end == End::kExited) outcome.end = End::kSignalled;
@@ -175,6 +179,14 @@ std::string ProcessOutcome::describe() const {
       break;
   }
   return start_error;
+}
+
+bool is_installed(const std::string& program) {
+  const char* path = std::getenv("PATH");
+  std::istringstream folders(path == nullptr ? "" : path);
+  for (std::string folder; std::getline(folders, folder, ':');)
+    if (access((folder + "/" + program).c_str(), X_OK) == 0) return true;
+  return false;
 }
 
 std::string read_tail(const std::string& path, std::size_t max_bytes) {

@@ -25,7 +25,7 @@ struct ProcessOutcome {
   int signal = 0;           ///< when kSignalled
   std::string start_error;  ///< when kNotStarted: the system's reason
   double wall_s = 0, user_s = 0, system_s = 0;
-  std::uint64_t peak_rss_bytes = 0;
+  std::uint64_t peak_rss_bytes = 0, page_faults = 0, context_switches = 0;
 
   bool succeeded() const { return end == End::kExited && exit_code == 0; }
   /// How it ended, e.g. "exit code 2" or "killed by signal 11 (Segmentation fault)".
@@ -35,6 +35,9 @@ struct ProcessOutcome {
 /// Runs to the end, a limit or a stop request; the latter two kill the child and its descendants. The child
 /// dies with this process, however that ends.
 ProcessOutcome run_process(const ProcessRequest& request, const StopQuery& stop_requested = {});
+
+/// Whether a program of this name is in PATH.
+bool is_installed(const std::string& program);
 
 /// The end of a text file, at most `max_bytes` of it; empty when there is none.
 std::string read_tail(const std::string& path, std::size_t max_bytes);

@@ -19,7 +19,8 @@ Json process_of(const Trial& trial, const TrialResult& result) {
           {"user_s", process.user_s},
           {"system_s", process.system_s},
           {"peak_rss_bytes", process.peak_rss_bytes},
-          {"bytes_per_cell_beyond_image", memory ? Json(*memory) : Json()}};
+          {"bytes_per_cell_beyond_image", memory ? Json(*memory) : Json()},
+          {"counters", result.counters}};
 }
 
 }  // namespace

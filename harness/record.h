@@ -12,6 +12,9 @@ namespace podm::bench {
 
 inline constexpr int kRowSchema = 2;  ///< results/schema/podm-bench-row.schema.json
 
+/// Of a row that measures the machine in place of a mesh: a list, Table 3.
+inline constexpr const char* kMemoryLevels = "memory_levels";
+
 /// What a row tells beside the trial and its result.
 struct RowContext {
   std::string experiment;              ///< its name

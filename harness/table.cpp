@@ -27,6 +27,7 @@ std::string verdict(const Rows& repeats) {
     return fmt::format("{}: {}", status == to_string(Status::kUnmet) ? "NOT met" : status,
                        text_in(**fault, "reason"));
   }
+  if (repeats.front()->contains(kMemoryLevels)) return memory_levels(*repeats.back());
   const Json verdicts = repeats.front()->value("verdicts", Json::object());
   const auto num_proved = std::count(verdicts.begin(), verdicts.end(), "pass");
   return num_proved > 0 ? fmt::format("met, {} claims proved", num_proved) : "met";
@@ -49,6 +50,9 @@ Line line_of(const Rows& repeats) {
   for (const Json* row : repeats)
     if (text_in(*row, "status") == to_string(Status::kOk)) proved.push_back(row);
   const auto number = [](const char* key) { return [key](const Json& row) { return number_in(row, key); }; };
+  const auto seconds = [](const Json& row) {
+    return row.contains("phases_s") ? std::optional<double>(meshing_seconds(row)) : std::nullopt;
+  };
   const auto of_process = [](const char* key) {
     return [key](const Json& row) { return number_in(row.value("process", Json::object()), key); };
   };
@@ -57,7 +61,7 @@ Line line_of(const Rows& repeats) {
           std::to_string(repeats.size()),
           median_over(proved, number("cells"), print_count),
           median_over(proved, number("vertices"), print_count),
-          median_over(proved, meshing_seconds, [](double s) { return fmt::format("{:.2f}", s); }),
+          median_over(proved, seconds, [](double s) { return fmt::format("{:.2f}", s); }),
           median_over(proved, number("refine_cells_per_second"), print_count),
           median_over(proved, of_process("peak_rss_bytes"),
                       [](double bytes) { return fmt::format("{:.0f}", bytes / kBytesPerMib); }),
@@ -79,6 +83,16 @@ double meshing_seconds(const Json& record) {
   for (const auto& [phase, phase_s] : record["phases_s"].items())
     if (phase != "write") seconds += phase_s.get<double>();
   return seconds;
+}
+
+std::string memory_levels(const Json& row) {
+  std::vector<std::string> parts;
+  for (const Json& level : row[kMemoryLevels]) {
+    const auto cycles = number_in(level, "cycles");
+    parts.push_back(fmt::format("{} {}", text_in(level, "module"),
+                                cycles ? fmt::format("{:.3g} cycles", *cycles) : text_in(level, "cycles")));
+  }
+  return fmt::format("{}", fmt::join(parts, ", "));
 }
 
 std::string align(const std::vector<Line>& lines, std::size_t num_text_columns) {

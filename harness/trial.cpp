@@ -7,6 +7,7 @@
 #include <filesystem>
 #include <fstream>
 
+#include "counters.h"
 #include "mesher_options.h"
 #include "record.h"
 #include "warm_memory.h"
@@ -22,6 +23,7 @@ constexpr int kExitUnmet = 1;
 constexpr double kBytesPerGib = 1024.0 * 1024 * 1024;
 constexpr const char* kMeshName = "/mesh.vtu";
 constexpr const char* kRecordName = "/record.jsonl";
+constexpr const char* kMessagesName = "/stderr.txt";
 
 class Stopwatch {
  public:
@@ -91,13 +93,33 @@ std::string unmet(const Json& record) {
   return text;
 }
 
-void judge(const Trial& trial, const std::string& record_path, TrialResult& result) {
+void judge_end(TrialResult& result) {
   using End = ProcessOutcome::End;
+  result.reason = result.process.describe();
+  if (result.process.end == End::kTimedOut) result.status = Status::kTimedOut;
+  if (result.process.end == End::kInterrupted) result.status = Status::kInterrupted;
+}
+
+void judge_measurement(const std::string& record_path, TrialResult& result) {
+  judge_end(result);
+  if (!result.process.succeeded()) return;
+  std::ifstream file(record_path);
+  Json record = Json::parse(file, nullptr, false);
+  if (!record.is_object() || !record.value(kMemoryLevels, Json()).is_array()) {
+    result.reason += ", without a record";
+    return;
+  }
+  result.record = std::move(record);
+  result.status = Status::kOk;
+  result.reason.clear();
+}
+
+void judge(const Trial& trial, const std::string& record_path, TrialResult& result) {
+  judge_end(result);
   const ProcessOutcome& process = result.process;
-  result.reason = process.describe();
-  if (process.end == End::kTimedOut) result.status = Status::kTimedOut;
-  if (process.end == End::kInterrupted) result.status = Status::kInterrupted;
-  if (process.end != End::kExited || (process.exit_code != 0 && process.exit_code != kExitUnmet)) return;
+  if (process.end != ProcessOutcome::End::kExited ||
+      (process.exit_code != 0 && process.exit_code != kExitUnmet))
+    return;
 
   std::ifstream file(record_path);
   if (!file) {
@@ -178,30 +200,67 @@ void TrialRunner::set_command(const Trial& trial, const std::string& scratch_fol
   result.peer = {{"name", trial.options[kMesher]}, {"sha256", peer.sha256()}, {"version", peer.version}};
 }
 
-TrialResult TrialRunner::run(const Trial& trial, const std::string& scratch_folder,
-                             const StopQuery& stop_requested) {
-  TrialResult result;
-  if (skip(trial, result)) return result;
+const CounterTool* TrialRunner::counter_tool_of(const Trial& trial, const std::string& scratch_folder) {
+  const std::string choice = trial.options.value(kCounters, kPerfEvent);
+  const auto [entry, is_new] = counter_tools_.try_emplace(choice);
+  if (is_new) entry->second = counter_tool(choice, programs_.likwid_groups, scratch_folder);
+  return entry->second.get();
+}
+
+void TrialRunner::run_program(const Trial& trial, const std::string& scratch_folder,
+                              const StopQuery& stop_requested, TrialResult& result) {
+  const CounterTool* tool = counter_tool_of(trial, scratch_folder);
+  const std::string absence = tool == nullptr ? "" : tool->absence();
+  const bool is_used = tool != nullptr && absence.empty();
+  if (is_used) result.command = tool->wrap(result.command, scratch_folder);
+  // likwid-perfctr needs the processor's counters for itself.
+  const PerfCounters kernel(is_used ? CounterKinds::kSoftware : CounterKinds::kSoftwareAndHardware);
+  result.process =
+      run_process({.arguments = result.command,
+                   .stdout_path = {},
+                   .stderr_path = scratch_folder + kMessagesName,
+                   .timeout_s = trial.timeout_s,
+                   .memory_limit_bytes = static_cast<std::uint64_t>(trial.memory_limit_gib * kBytesPerGib)},
+                  stop_requested);
+  if (!is_used || !tool->is_simulation()) result.counters = kernel.read(result.process);
+  if (is_used) result.counters.update(tool->read(scratch_folder));
+  if (!absence.empty())
+    result.counters[trial.options[kCounters].get<std::string>()] = "unavailable: " + absence;
+}
+
+void TrialRunner::measure(const Trial& trial, const std::string& scratch_folder,
+                          const StopQuery& stop_requested, TrialResult& result) {
+  result.command = {programs_.bench, "latency", "--record", scratch_folder + kRecordName};
+  run_program(trial, scratch_folder, stop_requested, result);
+  judge_measurement(scratch_folder + kRecordName, result);
+}
+
+void TrialRunner::make_mesh(const Trial& trial, const std::string& scratch_folder,
+                            const StopQuery& stop_requested, TrialResult& result) {
   const Stopwatch watch;
   result.image_size = image_size(trial.image, scratch_folder);
   set_command(trial, scratch_folder, result);
   warm_memory(kWarmBytes);
   result.preparation_s = watch.seconds();
-  const std::string stderr_path = scratch_folder + "/stderr.txt";
-  result.process =
-      run_process({.arguments = result.command,
-                   .stdout_path = {},
-                   .stderr_path = stderr_path,
-                   .timeout_s = trial.timeout_s,
-                   .memory_limit_bytes = static_cast<std::uint64_t>(trial.memory_limit_gib * kBytesPerGib)},
-                  stop_requested);
+  run_program(trial, scratch_folder, stop_requested, result);
   judge(trial, scratch_folder + kRecordName, result);
   std::error_code error;
   const auto mesh_bytes = std::filesystem::file_size(mesh_path(result.record, scratch_folder), error);
   if (!error) result.mesh_bytes = mesh_bytes;
   if (result.record.is_object() && !programs_.verifier.empty())
     verify(trial, scratch_folder, stop_requested, result);
-  if (result.status != Status::kOk) result.stderr_tail = read_tail(stderr_path, kTailBytes);
+}
+
+TrialResult TrialRunner::run(const Trial& trial, const std::string& scratch_folder,
+                             const StopQuery& stop_requested) {
+  TrialResult result;
+  if (skip(trial, result)) return result;
+  if (makes_mesh(trial))
+    make_mesh(trial, scratch_folder, stop_requested, result);
+  else
+    measure(trial, scratch_folder, stop_requested, result);
+  if (result.status != Status::kOk)
+    result.stderr_tail = read_tail(scratch_folder + kMessagesName, kTailBytes);
   return result;
 }
 

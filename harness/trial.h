@@ -2,9 +2,11 @@
 #pragma once
 
 #include <map>
+#include <memory>
 #include <nlohmann/json.hpp>
 #include <string>
 
+#include "counter_tool.h"
 #include "experiment.h"
 #include "peer.h"
 #include "process.h"
@@ -31,10 +33,11 @@ struct TrialResult {
   std::vector<std::string> command;  ///< as run
   nlohmann::ordered_json peer;       ///< name, hash and version of a mesher other than podm; else null
   ProcessOutcome process;
-  std::uint64_t mesh_bytes = 0;                  ///< of the mesh file
+  nlohmann::ordered_json counters = nlohmann::ordered_json::object();  ///< of the process
+  std::uint64_t mesh_bytes = 0;                                        ///< of the mesh file
   double preparation_s = 0, verification_s = 0;  ///< before the mesher starts and after it has ended
   std::string stderr_tail;                       ///< of a trial that is not kOk
-  nlohmann::ordered_json record;                 ///< as the mesher wrote it; null when it did not
+  nlohmann::ordered_json record;                 ///< as the program wrote it; null when it did not
   nlohmann::ordered_json image_size;             ///< voxels per axis; null when the mesher could not tell
 };
 
@@ -53,13 +56,23 @@ class TrialRunner {
   const nlohmann::ordered_json& image_size(const std::string& image, const std::string& scratch_folder);
   // Status kSkipped and the reason where the trial cannot run here.
   bool skip(const Trial& trial, TrialResult& result);
+  void make_mesh(const Trial& trial, const std::string& scratch_folder, const StopQuery& stop_requested,
+                 TrialResult& result);
+  // Of the machine, no mesh.
+  void measure(const Trial& trial, const std::string& scratch_folder, const StopQuery& stop_requested,
+               TrialResult& result);
   void set_command(const Trial& trial, const std::string& scratch_folder, TrialResult& result);
+  // Null: the kernel counts.
+  const CounterTool* counter_tool_of(const Trial& trial, const std::string& scratch_folder);
+  void run_program(const Trial& trial, const std::string& scratch_folder, const StopQuery& stop_requested,
+                   TrialResult& result);
   void verify(const Trial& trial, const std::string& scratch_folder, const StopQuery& stop_requested,
               TrialResult& result);
 
   Programs programs_;
   Peers peers_;
-  std::map<std::string, nlohmann::ordered_json> image_sizes_;  // each image is looked at once
+  std::map<std::string, nlohmann::ordered_json> image_sizes_;          // each image is looked at once
+  std::map<std::string, std::unique_ptr<CounterTool>> counter_tools_;  // each is asked once
 };
 
 }  // namespace podm::bench

@@ -16,8 +16,10 @@ std::string TrialKeys::of(const Trial& trial, const Turn& turn) {
   nlohmann::ordered_json options = trial.options;
   if (options.contains("topology")) options["topology"] = content_of(options["topology"]);
   const nlohmann::ordered_json identity = {
-      {"mesher", is_of_peer(trial) ? peers_.of(trial).sha256() : mesher_sha256_},
-      {"input", is_phantom(trial.image) ? trial.image : content_of(trial.image)},
+      {"mesher", !makes_mesh(trial)  ? "none"
+                 : is_of_peer(trial) ? peers_.of(trial).sha256()
+                                     : mesher_sha256_},
+      {"input", is_phantom(trial.image) || !makes_mesh(trial) ? trial.image : content_of(trial.image)},
       {"trial", trial.name},
       {"options", options},
       {"machine", machine_},

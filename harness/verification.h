@@ -14,8 +14,10 @@ inline constexpr const char* kScheduleName = "/schedule.jsonl";  ///< in the fol
 /// The programs that a trial runs.
 struct Programs {
   std::string podm;
-  std::string verifier;    ///< empty: meshes are not verified
-  std::string peers = {};  ///< folder of other meshers; empty: there are none
+  std::string verifier;            ///< empty: meshes are not verified
+  std::string peers = {};          ///< folder of other meshers; empty: there are none
+  std::string bench = {};          ///< this program, to measure the machine
+  std::string likwid_groups = {};  ///< folder of the groups of events for likwid-perfctr
 };
 
 struct Verification {

@@ -11,6 +11,7 @@
 #include <filesystem>
 #include <new>
 
+#include "build_info.h"
 #include "errors.h"
 #include "parallel.h"
 #include "report/reports.h"
@@ -143,7 +144,7 @@ void declare_report(CLI::App& app, Command& command) {
       ->option_text("N")
       ->check(CLI::Range(1, 4096));
   app.add_flag("--quiet", command.quiet, "no report for people");
-  app.set_version_flag("--version", "podm-verify " PODM_VERSION);
+  app.set_version_flag("--version", std::string("podm-verify " PODM_VERSION "\n") + build_info());
 }
 
 void declare_options(CLI::App& app, Command& command) {

@@ -150,6 +150,14 @@ TEST_F(ExperimentTest, FaultsNameFileLineAndColumn) {
       {kHead + kTrial + "repeats = 0\n", "some.toml:8:11:", "repeats"},
       {kHead + kTrial + "repeats = [1, 2]\n", "some.toml:8:11:", "repeats"},
       {kHead + kTrial + "memory_limit_gib = 0\n", "some.toml:8:20:", "memory_limit_gib"},
+      {kHead + kTrial + "counters = 'likwid:'\n", "some.toml:8:12:", "likwid:GROUP"},
+      {kHead + kTrial + "counters = 'likwid:a/b'\n", "some.toml:8:12:", "likwid:GROUP"},
+      {kHead + kTrial + "counters = ['perf_event', 'perf']\n", "some.toml:8:27:", "cachegrind"},
+      {kHead + "[[trials]]\nname = 'x'\nmeasure = 'weight'\n", "some.toml:7:11:", "memory_latency"},
+      {kHead + "[[trials]]\nname = 'x'\nmeasure = 'memory_latency'\ninput = 'a'\n",
+       "some.toml:8:9:", "input"},
+      {kHead + "[[trials]]\nname = 'x'\nmeasure = 'memory_latency'\nthreads = 2\n",
+       "some.toml:8:11:", "threads"},
       {"tier = 'huge'\n" + kHead + kTrial, "some.toml:1:8:", "kick-tires"},
       {kHead + "[[trials]]\nname = 'x'\ninput = ['a', 'b']\n", "some.toml:7:15:", "inputs.b"},
       {kHead, "some.toml:1:", "trials"},  // what is missing
@@ -202,6 +210,17 @@ TEST_F(ExperimentTest, ElementsPerThreadGrowWithTheThreads) {
   for (const Trial& trial : trials) {
     EXPECT_EQ(trial.options["target_elements"], 1000 * trial.options["threads"].get<int>());
     EXPECT_FALSE(trial.options.contains("target_elements_per_thread"));
+  }
+}
+
+TEST_F(ExperimentTest, MeasurementOfTheMachineNeedsNoInput) {
+  const std::string path = folder_.write(
+      "some.toml", "title = 'T'\nclaim = 'C'\n[[trials]]\nname = 'x'\nmeasure = 'memory_latency'\n");
+  for (const char* image : {"", "mine.nii"}) {
+    const auto trials = read_experiment(path, image).trials;
+    ASSERT_EQ(trials.size(), 1u);
+    EXPECT_EQ(trials[0].name, "x");
+    EXPECT_FALSE(makes_mesh(trials[0]));
   }
 }
 

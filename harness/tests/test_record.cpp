@@ -135,9 +135,13 @@ TEST(Environment, KnowsThisMachineOrSaysWhyNot) {
 
 TEST(Environment, ProgramsAreKnownByTheirBytesAndVersion) {
   const TemporaryFolder folder;
-  const Programs programs{folder.script("podm", "echo podm 9.9"), folder.script("podm-verify", "exit 3")};
+  const Programs programs{
+      folder.script("podm", R"(printf 'podm 9.9\ncommit: abc\nlibraries: ITK 5: a, zlib 1\n')"),
+      folder.script("podm-verify", "exit 3")};
   const Json described = describe_programs(programs, folder.path());
   EXPECT_EQ(described["podm"]["version"], "podm 9.9");
+  EXPECT_EQ(described["podm"]["build"], Json({{"commit", "abc"}, {"libraries", "ITK 5: a, zlib 1"}}));
+  EXPECT_TRUE(text_in(described["podm_verify"], "build").starts_with("unavailable"));
   EXPECT_TRUE(text_in(described["podm_verify"], "version").starts_with("unavailable"));
   EXPECT_NE(described["podm"]["sha256"], described["podm_verify"]["sha256"]);
   EXPECT_THROW(describe_programs({folder / "absent", {}}, folder.path()), InputError);

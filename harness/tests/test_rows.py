@@ -42,6 +42,30 @@ def rows_of(experiment, mesh_body=None):
         return [json.loads(line) for line in path.with_suffix(".jsonl").read_text().splitlines()]
 
 
+LATENCY = """
+title = "T"
+claim = "C"
+[[trials]]
+name = "latency"
+measure = "memory_latency"
+"""
+
+
+class MemoryLevels(unittest.TestCase):
+    def test_a_row_of_the_machine_fits_the_schema(self):
+        (row,) = rows_of(LATENCY)
+        VALIDATOR.validate(row)
+        self.assertEqual(row["status"], "ok", row["reason"])
+        self.assertGreaterEqual(len(row["latency"]), 10)
+        caches = [level for level in row["memory_levels"] if "cache" in level["module"]]
+        self.assertEqual([level["size_bytes"] for level in caches], sorted(level["size_bytes"] for level in caches))
+        self.assertGreater(len(row["memory_levels"]), len(caches), "there is memory behind them")
+        for level in ({"ns": 0}, {"cycles": "none"}, {"module": ""}, {"huge_page_share": 2}):
+            broken = copy.deepcopy(row)
+            broken["memory_levels"][0].update(level)
+            self.assertFalse(VALIDATOR.is_valid(broken), level)
+
+
 class Rows(unittest.TestCase):
     @classmethod
     def setUpClass(cls):
@@ -61,7 +85,10 @@ class Rows(unittest.TestCase):
         for row in self.made:
             self.assertEqual(set(row["verdicts"].values()), {"pass"})
             self.assertGreater(row["verification_s"], 0)
+            for program in ("podm", "podm_verify"):
+                self.assertIn("ITK", row["programs"][program]["build"]["libraries"])
             self.assertGreater(row["mesh_bytes"], 0)
+            self.assertGreater(row["process"]["counters"]["page_faults"]["value"], 0)
         self.assertEqual(len({row["mesh_sha256"] for row in self.made}), 1)
 
     def test_rows_that_lack_a_key_or_lie_are_refused(self):
@@ -71,6 +98,11 @@ class Rows(unittest.TestCase):
             self.assertFalse(VALIDATOR.is_valid(row), key)
         for key, value in (("schema", 1), ("key", "x"), ("repeat", 0), ("status", "skipped"), ("harness_s", -1)):
             self.assertFalse(VALIDATOR.is_valid(self.made[0] | {key: value}), key)
+        counters = {"zero": 0, "without source": {"value": 1}, "reason": "none", "share": {"value": 1, "source": "s", "running_share": 1}}
+        for name, counter in counters.items():
+            row = copy.deepcopy(self.made[0])
+            row["process"]["counters"][name] = counter
+            self.assertFalse(VALIDATOR.is_valid(row), name)
         self.assertFalse(VALIDATOR.is_valid(self.failed[0] | {"reason": ""}), "a failure without a reason")
 
     def test_podm_follows_the_crossover_that_is_stored(self):

@@ -62,8 +62,8 @@ TEST_F(TrialTest, VerdictsOfTheVerifierDecide) {
 
 TEST_F(TrialTest, OptionsOfTheTrialReachTheMesher) {
   Trial trial = some_trial();
-  trial.options = {
-      {"threads", 3}, {"delta_mm", 0.25}, {"cores_per_node", 8}, {"pin", true}, {"oversubscribe", false}};
+  trial.options = {{"threads", 3}, {"delta_mm", 0.25},       {"cores_per_node", 8},
+                   {"pin", true},  {"oversubscribe", false}, {"counters", "perf_event"}};
   run(write_record(kGoodRecord), trial);
   const std::string arguments = " " + read_tail(folder_ / "arguments", 1000);
   EXPECT_TRUE(arguments.starts_with(" mesh image.nii --threads 3 --delta 0.25 --cores-per-node 8 --pin -o "))
@@ -189,6 +189,31 @@ TEST_F(TrialTest, AbsentImageIsSkippedOnlyWhenItMayBeAbsent) {
   EXPECT_EQ(run(write_record(kGoodRecord), trial).status, Status::kOk);
   trial.image = "phantom:abdomen";
   EXPECT_EQ(run(write_record(kGoodRecord), trial).status, Status::kOk);
+}
+
+TEST_F(TrialTest, MeasurementOfTheMachineIsARecordOfThisProgram) {
+  Trial trial;
+  trial.name = "latency";
+  trial.options = {{"threads", 1}, {"measure", "memory_latency"}};
+  trial.timeout_s = 20;
+  const auto measure = [&](const std::string& body) {
+    std::filesystem::remove(folder_ / "record.jsonl");
+    const std::string bench =
+        folder_.script("podm-bench", "[ \"$1 $2\" = 'latency --record' ] || exit 2\n" + body);
+    return TrialRunner({.podm = folder_ / "absent", .verifier = folder_ / "absent", .bench = bench})
+        .run(trial, folder_.path());
+  };
+  const TrialResult measured = measure("echo '{\"memory_levels\":[]}' > \"$3\"");
+  EXPECT_EQ(measured.status, Status::kOk) << measured.reason;
+  EXPECT_TRUE(measured.record.contains("memory_levels"));
+  EXPECT_FALSE(measured.counters.empty());
+  for (const char* body :
+       {"", "echo '{}' > \"$3\"", "echo x > \"$3\"", "echo '{\"memory_levels\":[]}' > \"$3\"; exit 3"}) {
+    const TrialResult failed = measure(body);
+    EXPECT_EQ(failed.status, Status::kFailed) << body;
+    EXPECT_NE(failed.reason, "") << body;
+    EXPECT_TRUE(failed.record.is_null()) << body;
+  }
 }
 
 TEST_F(TrialTest, StopRequestInterrupts) {

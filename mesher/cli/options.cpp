@@ -6,6 +6,7 @@
 #include <algorithm>
 
 #include "cli/add_options.h"
+#include "cli/build_info.h"
 #include "cli/nearest_name.h"
 
 namespace podm::cli {
@@ -132,7 +133,8 @@ Command parse_command_line(std::vector<std::string> arguments) {
   program.formatter(std::make_shared<HelpFormatter>());
   program.get_formatter()->column_width(kHelpColumn);
   program.set_help_flag("-h,--help", "print this help and leave");
-  program.set_version_flag("--version", "podm " PODM_VERSION "\n", "print the version and leave");
+  program.set_version_flag("--version", std::string("podm " PODM_VERSION "\n") + build_info() + "\n",
+                           "print the version and leave");
   program.allow_extras()->require_subcommand(0, 1);
   program.footer(
       "Exit codes: 0 success, 1 a guarantee or limit is unmet, 2 bad usage or input, 3 internal error.");

@@ -1,5 +1,7 @@
 find_package(ITK REQUIRED COMPONENTS ITKCommon ITKIONRRD ITKIOMeta)
 find_package(ZLIB REQUIRED)
+podm_note_library(podm ITK ${ITK_VERSION})
+podm_note_library(podm zlib ${ZLIB_VERSION_STRING})
 find_package(Threads REQUIRED)
 find_library(NIFTIIO_LIBRARY niftiio REQUIRED)
 

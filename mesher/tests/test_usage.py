@@ -53,7 +53,15 @@ class Help(PodmTestCase):
     def test_version_is_data(self):
         process = run_podm("--version")
         self.assert_exit(process, 0)
-        self.assertRegex(process.stdout, r"^podm \d+\.\d+\.\d+\n$")
+        first, *build = process.stdout.splitlines()
+        self.assertRegex(first, r"^podm \d+\.\d+\.\d+$")
+        told = dict(line.split(": ", 1) for line in build)
+        self.assertEqual(list(told), ["compiler", "flags", "commit", "dirty", "libraries"])
+        self.assertRegex(told["commit"], r"^([0-9a-f]{40}|unknown)$")
+        self.assertIn(told["dirty"], ("true", "false", "unknown"))
+        self.assertIn("-ffp-contract=off", told["flags"])
+        for library in ("Boost", "CGAL", "hwloc", "ITK", "numa", "zlib"):
+            self.assertRegex(told["libraries"], rf"\b{library} \d")
 
     def test_standard_output_that_is_full_is_a_fault(self):
         with open("/dev/full", "w") as full:

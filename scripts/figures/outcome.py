@@ -3,7 +3,7 @@ from dataclasses import dataclass, field
 
 import pandas
 
-from . import fig1, fig2b, fig4a, fig4b, scaling, table1, table2, table3, verdicts
+from . import cache, fig1, fig2b, fig4a, fig4b, scaling, table1, table2, table3, verdicts
 
 
 @dataclass(frozen=True)
@@ -22,6 +22,8 @@ def make(frame, report=None, schedule=None, mesh=None):
     weak, hops, levels = table1.table1(series), table2.table2(frame), table3.table3(frame)
     tables = {"table1": (weak, table1.readable(weak)), "table2": (hops, table2.readable(hops)),
               "table3": (levels, table3.readable(levels))}
+    if len(caches := cache.cache(frame)):
+        tables["cache"] = (caches, cache.readable(caches))
     drawn, missing = _figures(frame, series, report, schedule, mesh)
     return Outcome(tables, drawn, verdicts.verdicts(frame, series, hops), missing)
 

@@ -1,4 +1,4 @@
-"""Table 3: memory levels and what an access costs. Ours come from `environment.memory_levels` of the newest row."""
+"""Table 3: memory levels and what an access costs. Ours come from `memory_levels` of rows that measured the machine."""
 import pandas
 
 from . import paper
@@ -7,14 +7,14 @@ COLUMNS = ["basis", "level", "memory_module", "size", "access_clock_cycles"]
 
 
 def table3(frame):
-    """One line a basis and level. Cycles are text as printed, or numbers of ours."""
+    """One line a basis and level. Cycles are text: as printed, or medians of the newest machine's, or why there are none."""
     blocks = [paper.table3().reset_index().assign(basis="published")]
-    if levels := _newest_levels(frame):
-        blocks.append(pandas.DataFrame([
-            {"basis": "measured", "level": level["level"], "memory_module": level["module"],
-             "size": _size(level.get("size_bytes")), "access_clock_cycles": f"{level['cycles']:.3g}"}
-            for level in levels
-        ]))
+    levels = _levels(frame)
+    for (level, module), group in levels.groupby(["level", "module"]) if len(levels) else ():
+        cycles = pandas.to_numeric(group["cycles"], errors="coerce").median()
+        blocks.append(pandas.DataFrame([{
+            "basis": "measured", "level": level, "memory_module": module, "size": _size(group["size_bytes"].iloc[-1]),
+            "access_clock_cycles": group["cycles"].iloc[-1] if pandas.isna(cycles) else f"{cycles:.3g}"}]))
     return pandas.concat(blocks, ignore_index=True)[COLUMNS]
 
 
@@ -23,10 +23,13 @@ def readable(table):
         columns={"memory_module": "memory module", "access_clock_cycles": "clock cycles"})
 
 
-def _newest_levels(frame):
-    name = "environment.memory_levels"
-    lists = [] if name not in frame else [levels for levels in frame[name] if isinstance(levels, list)]
-    return lists[-1] if lists else None
+def _levels(frame):
+    """Of all rows of the machine that the newest one measured."""
+    if "memory_levels" not in frame:
+        return pandas.DataFrame()
+    rows = frame[[isinstance(levels, list) for levels in frame["memory_levels"]]]
+    rows = rows[rows["machine"] == rows["machine"].iloc[-1]] if len(rows) else rows
+    return pandas.DataFrame([level for levels in rows["memory_levels"] for level in levels])
 
 
 def _size(number):

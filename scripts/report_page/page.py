@@ -16,7 +16,7 @@ FIGURE_TITLES = {"fig1": "Figure 1: quality of the cells",
                  "fig2b": "Figure 2 (b): two active leaves and their rings",
                  "fig4a": "Figure 4 (a): speed-up and efficiency", "fig4b": "Figure 4 (b): time and elements per second"}
 TABLE_TITLES = {"table1": "Table 1: weak scaling", "table2": "Table 2: visits by hops",
-                "table3": "Table 3: memory levels"}
+                "table3": "Table 3: memory levels", "cache": "Cache behaviour"}
 
 
 def page(records, outcome, mesh=None, mesh_fault=""):

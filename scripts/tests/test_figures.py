@@ -5,7 +5,7 @@ import unittest
 import paths  # noqa: F401
 import pandas
 import synthetic
-from figures import fig1, fig4a, fig4b, outcome, paper, scaling, spread, table1, table2, table3, verdicts
+from figures import cache, fig1, fig4a, fig4b, outcome, paper, scaling, spread, table1, table2, table3, verdicts
 from figures.load import derived
 from figures.write import markdown, svg_of
 
@@ -100,12 +100,53 @@ class Hops(unittest.TestCase):
 
 class Levels(unittest.TestCase):
     def test_ours_stand_beside_the_published(self):
-        levels = [{"level": 1, "module": "L1 cache", "size_bytes": 49152, "cycles": 4.2}]
-        row = synthetic.row()
-        row["environment"]["memory_levels"] = levels
-        table = table3.table3(frame_of([row]))
-        self.assertEqual(list(table.query("basis == 'measured'")["size"]), ["48 KiB"])
+        def row(cycles, dram=300.0):
+            return synthetic.row(memory_levels=[
+                {"level": 1, "module": "L1 cache", "size_bytes": 49152, "cycles": cycles},
+                {"level": 2, "module": "memory of the own node 0", "size_bytes": 2**33, "cycles": dram}])
+
+        ours = table3.table3(frame_of([row(4.0), row(9.0), row(4.2)])).query("basis == 'measured'")
+        self.assertEqual(list(ours["size"]), ["48 KiB", "8 GiB"])
+        self.assertEqual(list(ours["access_clock_cycles"]), ["4.2", "300"])
+        why = "unavailable: not enough memory"
+        ours = table3.table3(frame_of([row(4.0, why)])).query("basis == 'measured'")
+        self.assertEqual(list(ours["access_clock_cycles"]), ["4", why])
         self.assertEqual(set(table3.table3(frame_of([synthetic.row()]))["basis"]), {"published"})
+
+
+class Cache(unittest.TestCase):
+    SIMULATED = "valgrind cachegrind (simulated: some caches)"
+
+    def counted(self, insertions, misses, source, **changes):
+        return synthetic.row(counters={"insertions": {"R1": insertions - 100, "R2": 100}},
+                             used={"radius_mm": 1e4 / insertions},
+                             process={"counters": {"llc_load_misses": {"value": misses, "source": source},
+                                                   "page_faults": {"value": 7, "source": "perf_event"}}}, **changes)
+
+    def test_only_what_a_further_insertion_costs_counts(self):
+        # 1000 misses of the image, 20 an insertion.
+        table = cache.cache(frame_of([self.counted(number, 1000 + 20 * number, "perf_event") for number in (500, 200, 900)]))
+        self.assertEqual(list(table["per_insertion"]), [20, 20])
+        self.assertEqual(set(table["counter"]), {"llc_load_misses"}, "page faults are no matter of caches")
+
+    def test_simulated_and_measured_are_apart_and_simulated_gives_no_headline(self):
+        rows = [self.counted(number, cost * number, source) for number in (100, 300)
+                for cost, source in ((2, "perf_event"), (5, self.SIMULATED))]
+        frame = frame_of(rows)
+        costs = cache.cache(frame).set_index("basis")["per_insertion"]
+        self.assertEqual(dict(costs), {"measured": 2, "simulated": 5})
+        self.assertEqual(set(scaling.headline_rows(frame)["basis"]), {"measured"})
+
+    def test_what_was_not_counted_is_a_reason(self):
+        why = "unavailable: no such counter"
+        table = cache.cache(frame_of([synthetic.row(process={"counters": {"cycles": why}})]))
+        self.assertEqual(list(table["reason"]), [why])
+        self.assertIn(why, list(cache.readable(table)["per further insertion"]))
+        self.assertTrue(cache.cache(frame_of([synthetic.row()])).empty)
+
+    def test_meshes_that_failed_count_for_nothing(self):
+        rows = [self.counted(number, number, self.SIMULATED, status="unmet") for number in (100, 300)]
+        self.assertTrue(cache.cache(frame_of(rows)).empty)
 
 
 class Verdicts(unittest.TestCase):

@@ -1,0 +1,30 @@
+# Run by podm_build_info at every build: writes OUTPUT when it differs.
+separate_arguments(PATHS)
+find_package(Git QUIET)
+
+function(ask_git result output)
+  set(${result} 1 PARENT_SCOPE)
+  if(GIT_FOUND)
+    execute_process(COMMAND ${GIT_EXECUTABLE} --no-optional-locks -C ${ROOT} ${ARGN} RESULT_VARIABLE code OUTPUT_VARIABLE text ERROR_QUIET
+                    OUTPUT_STRIP_TRAILING_WHITESPACE)
+    set(${result} ${code} PARENT_SCOPE)
+    set(${output} "${text}" PARENT_SCOPE)
+  endif()
+endfunction()
+
+# Sources unpacked within some other checkout have no commit.
+set(COMMIT unknown)
+set(DIRTY unknown)
+ask_git(fault prefix rev-parse --show-prefix)
+if(fault EQUAL 0 AND prefix STREQUAL "")
+  ask_git(fault commit log -1 --format=%H -- ${PATHS})
+  ask_git(fault_of_status changes status --porcelain --untracked-files=no -- ${PATHS})
+  if(fault EQUAL 0 AND fault_of_status EQUAL 0 AND commit)
+    set(COMMIT ${commit})
+    set(DIRTY false)
+    if(changes)
+      set(DIRTY true)
+    endif()
+  endif()
+endif()
+configure_file(${CMAKE_CURRENT_LIST_DIR}/build_info.cpp.in ${OUTPUT} @ONLY)

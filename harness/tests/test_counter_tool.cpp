@@ -1,0 +1,167 @@
+// Trials counted by valgrind and likwid-perfctr: real where installed, played by scripts, absent, or failing.
+#include <gtest/gtest.h>
+
+#include <cstdlib>
+
+#include "counter_tool.h"
+#include "fake_mesher.h"
+#include "trial.h"
+
+namespace podm::bench {
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+const std::string kSourcesOfGroups = PODM_LIKWID_GROUPS;
+
+// Runs what follows `--` or the options of valgrind, as both tools do.
+const std::string kValgrindHead = R"(
+while [ "${1#--}" != "$1" ]; do
+  case $1 in --cachegrind-out-file=*) out=${1#*=};; esac
+  shift
+done
+)";
+const std::string kLikwidHead = R"(
+[ "$1" = -i ] && { printf 'CPU name:\tSome\nCPU short:\tsome\n'; exit 0; }
+events=$5; out=$7; shift 7
+)";
+const std::string kGroup = "SHORT x\n\nEVENTSET\nPMC0  LOADS\nPMC1 MISSES\nPMC2 OTHERS\n\nMETRICS\nx PMC0\n";
+
+class CounterToolTest : public testing::Test {
+ protected:
+  void SetUp() override {
+    path_ = std::getenv("PATH");
+    std::filesystem::create_directories(folder_ / "groups/some");
+    folder_.write("groups/some/CACHE.txt", kGroup);
+  }
+  void TearDown() override { setenv("PATH", path_.c_str(), 1); }
+
+  // The shell's programs and those of the test; neither valgrind nor likwid.
+  void hide_tools() {
+    std::filesystem::create_directory(folder_ / "bin");
+    for (const char* program : {"dirname", "true"})
+      std::filesystem::create_symlink(std::string("/usr/bin/") + program, folder_ / "bin/" + program);
+    setenv("PATH", (folder_ / "bin").c_str(), 1);
+  }
+  TrialResult run(const std::string& counters) {
+    Trial trial;
+    trial.name = "some";
+    trial.image = "image.nii";
+    trial.options = {{"threads", 1}, {"counters", counters}};
+    trial.timeout_s = 20;
+    const std::string mesher = fake_mesher(folder_, "echo '" + kGoodRecord + "' > \"$record\"\n");
+    return TrialRunner({.podm = mesher, .verifier = {}, .likwid_groups = folder_ / "groups"})
+        .run(trial, folder_.path());
+  }
+
+  TemporaryFolder folder_;
+
+ private:
+  std::string path_;
+};
+
+TEST_F(CounterToolTest, ValgrindSimulatesARealProgram) {
+  const Cachegrind cachegrind;
+  if (!cachegrind.absence().empty()) GTEST_SKIP() << cachegrind.absence();
+  const ProcessOutcome outcome = run_process({.arguments = cachegrind.wrap({"/bin/true"}, folder_.path()),
+                                              .stdout_path = {},
+                                              .stderr_path = {},
+                                              .timeout_s = 60});
+  ASSERT_TRUE(outcome.succeeded()) << outcome.describe();
+  const Json counts = cachegrind.read(folder_.path());
+  for (const auto& [name, count] : counts.items())
+    EXPECT_NE(count["source"].get<std::string>().find("simulated"), std::string::npos) << name;
+  const auto value = [&](const char* name) { return counts[name]["value"].get<std::uint64_t>(); };
+  EXPECT_GT(value("instructions"), value("loads"));
+  EXPECT_GT(value("loads"), value("l1_load_misses"));
+  EXPECT_GE(value("l1_load_misses"), value("llc_load_misses"));
+  EXPECT_GE(value("l1_store_misses"), value("llc_store_misses"));
+  EXPECT_GT(value("llc_load_misses"), 0u) << "a program starts with cold caches";
+}
+
+TEST_F(CounterToolTest, SimulatedCountsStandAlone) {
+  hide_tools();
+  folder_.script("bin/valgrind", kValgrindHead + R"(
+printf 'desc: x\nevents: Ir I1mr ILmr Dr D1mr DLmr Dw D1mw DLmw \n1 2 3\nsummary: 9 8 7 6 5 4 3 2 1\n' > "$out"
+exec "$@")");
+  const TrialResult result = run("cachegrind");
+  EXPECT_EQ(result.status, Status::kOk) << result.reason;
+  EXPECT_EQ(result.command.front(), "valgrind");
+  EXPECT_EQ(result.counters.size(), 9u) << "those of valgrind's own process are none of the mesher's";
+  EXPECT_EQ(result.counters["instructions"]["value"], 9);
+  EXPECT_EQ(result.counters["l1_load_misses"]["value"], 5);
+  EXPECT_EQ(result.counters["llc_store_misses"]["value"], 1);
+}
+
+TEST_F(CounterToolTest, SimulationThatWasCutShortIsUnavailable) {
+  hide_tools();
+  for (const char* text : {"", "events: Ir Bc \\nsummary: 1 2\\n",
+                           "events: Ir I1mr ILmr Dr D1mr DLmr Dw D1mw DLmw \\nsummary: 9 8 7\\n",
+                           "events: Ir I1mr ILmr Dr D1mr DLmr Dw D1mw DLmw \\n1 2 3\\n"}) {
+    folder_.script("bin/valgrind", kValgrindHead + "printf '" + text + "' > \"$out\"\nexec \"$@\"");
+    const Json counters = run("cachegrind").counters;
+    ASSERT_EQ(counters.size(), 1u) << text;
+    EXPECT_TRUE(counters["cachegrind"].get<std::string>().starts_with("unavailable: ")) << text;
+  }
+}
+
+TEST_F(CounterToolTest, WithoutTheToolTheTrialRunsAndSaysWhy) {
+  hide_tools();
+  for (const auto& [choice, program] :
+       {std::pair{"cachegrind", "valgrind"}, {"likwid:CACHE", "likwid-perfctr"}}) {
+    const TrialResult result = run(choice);
+    EXPECT_EQ(result.status, Status::kOk) << result.reason;
+    EXPECT_EQ(result.counters[choice], std::string("unavailable: ") + program + " is not installed");
+    EXPECT_TRUE(result.counters.contains("cycles")) << "the kernel's are there";
+  }
+}
+
+TEST_F(CounterToolTest, LikwidsCountsAreSummedOverProcessors) {
+  hide_tools();
+  folder_.script("bin/likwid-perfctr", kLikwidHead + R"(
+echo "$events" > "$(dirname "$0")/events"
+printf 'TABLE,Group 1 Raw,Custom,3\nEvent,Counter,HWThread 0,HWThread 1\nRuntime (RDTSC) [s],TSC,1.5,1.5\nLOADS,PMC0,100,2e3\nMISSES,PMC1,7,-\nOTHERS,PMC2,-,nan\n' > "$out"
+exec "$@")");
+  const TrialResult result = run("likwid:CACHE");
+  EXPECT_EQ(result.status, Status::kOk) << result.reason;
+  EXPECT_EQ(read_tail(folder_ / "bin/events", 100), "LOADS:PMC0,MISSES:PMC1,OTHERS:PMC2\n");
+  EXPECT_EQ(result.counters["LOADS"], Json({{"value", 2100.0}, {"source", "likwid-perfctr, group CACHE"}}));
+  EXPECT_EQ(result.counters["MISSES"]["value"], 7);
+  EXPECT_FALSE(result.counters.contains("OTHERS")) << "not counted is not 0";
+  EXPECT_TRUE(result.counters.contains("page_faults"));
+  EXPECT_FALSE(result.counters.contains("cycles")) << "likwid has the processor's counters";
+  EXPECT_FALSE(result.counters.contains("Runtime (RDTSC) [s]"));
+}
+
+TEST_F(CounterToolTest, LikwidThatMayNotCountSaysWhyAndTheTrialRuns) {
+  hide_tools();
+  folder_.script("bin/likwid-perfctr", kLikwidHead + "echo 'Cannot access MSR device' >&2; exit 1");
+  const TrialResult refused = run("likwid:CACHE");
+  EXPECT_EQ(refused.status, Status::kOk) << refused.reason;
+  EXPECT_EQ(refused.counters["likwid:CACHE"], "unavailable: likwid-perfctr: Cannot access MSR device");
+  EXPECT_NE(refused.command.front(), "likwid-perfctr");
+
+  folder_.script("bin/likwid-perfctr", kLikwidHead + "exit 0");
+  const Json no_file = run("likwid:CACHE").counters["likwid:CACHE"];
+  EXPECT_EQ(no_file, "unavailable: likwid-perfctr wrote no counts");
+  const Json no_group = run("likwid:ABSENT").counters["likwid:ABSENT"];
+  EXPECT_NE(no_group.get<std::string>().find("some/ABSENT.txt"), std::string::npos) << no_group;
+
+  folder_.script("bin/likwid-perfctr", "exit 1");
+  EXPECT_EQ(run("likwid:CACHE").counters["likwid:CACHE"],
+            "unavailable: likwid-perfctr does not know this processor");
+}
+
+TEST(LikwidGroups, EveryFileHasEvents) {
+  std::size_t number = 0;
+  for (const auto& entry : std::filesystem::recursive_directory_iterator(kSourcesOfGroups))
+    if (entry.path().extension() == ".txt") {
+      ++number;
+      EXPECT_NE(events_of_group(entry.path().string()).find(':'), std::string::npos) << entry.path();
+    }
+  EXPECT_GT(number, 0u);
+  EXPECT_EQ(events_of_group("/no/such/file"), "");
+}
+
+}  // namespace
+}  // namespace podm::bench
