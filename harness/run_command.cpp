@@ -9,6 +9,7 @@
 #include <utility>
 
 #include "commands.h"
+#include "counters.h"
 #include "environment.h"
 #include "machine.h"
 #include "plan.h"
@@ -36,6 +37,7 @@ struct Session {
   Json programs, environment;
   TrialKeys keys;
   TrialRunner runner;
+  CountersKeptReady counters;
 };
 
 // Stores the machine's topology in the folder of results once; what rows tell of the machine.
