@@ -97,6 +97,16 @@ int open_counter(perf_event_attr& attributes) {
   return descriptor < 0 ? -errno : static_cast<int>(descriptor);
 }
 
+CountersKeptReady::CountersKeptReady() {
+  perf_event_attr attributes = attributes_of(kEvents[0]);
+  attributes.inherit = attributes.enable_on_exec = 0;
+  descriptor_ = open_counter(attributes);
+}
+
+CountersKeptReady::~CountersKeptReady() {
+  if (descriptor_ >= 0) close(descriptor_);
+}
+
 PerfCounters::PerfCounters(CounterKinds kinds, const OpenCounter& open) {
   const bool all = kinds == CounterKinds::kSoftwareAndHardware;
   for (const Event& event : std::span(kEvents).first(all ? std::size(kEvents) : kNumSoftwareEvents)) {

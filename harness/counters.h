@@ -22,6 +22,19 @@ enum class CounterKinds {
   kSoftwareAndHardware,  ///< and by the processor
 };
 
+/// The first counter on a machine makes the kernel patch its scheduler, some 10 ms, and the last one undoes
+/// that. One of these, which counts nothing, spares each trial the wait.
+class CountersKeptReady {
+ public:
+  CountersKeptReady();
+  ~CountersKeptReady();
+  CountersKeptReady(const CountersKeptReady&) = delete;
+  CountersKeptReady& operator=(const CountersKeptReady&) = delete;
+
+ private:
+  int descriptor_;
+};
+
 /// Counts the programs that this thread starts, with their threads and children, while the object lives.
 class PerfCounters {
  public:

@@ -23,7 +23,7 @@ class PointerChase {
 
   /// Goes on from where it was.
   void walk(std::size_t num_loads);
-  /// Of so many loads; the clock is read twice.
+  /// Processor time of so many loads, each; the clock is read twice.
   double seconds_per_load(std::size_t num_loads);
 
   std::size_t num_lines() const { return num_lines_; }

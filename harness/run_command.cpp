@@ -9,6 +9,7 @@
 #include <utility>
 
 #include "commands.h"
+#include "counters.h"
 #include "crossover.h"
 #include "environment.h"
 #include "machine.h"
@@ -37,6 +38,7 @@ struct Session {
   Json programs, environment;
   TrialKeys keys;
   TrialRunner runner;
+  CountersKeptReady counters;
 };
 
 // Stores the machine's topology in the folder of results once; what rows tell of the machine.
