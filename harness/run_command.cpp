@@ -88,7 +88,7 @@ std::string one_line(const std::string& label, const TrialResult& result) {
   if (!result.record.is_object())
     return fmt::format("{}: {}: {}", label, to_string(result.status), result.reason);
   if (result.record.contains(kMemoryLevels))
-    return fmt::format("{}: {} in {:.2f} s", label, memory_levels(result.record), result.process.wall_s);
+    return fmt::format("{}: {} in {:.2f} s", label, memory_levels({&result.record}), result.process.wall_s);
   return fmt::format("{}: {}, {} cells in {:.2f} s, {:.2f} s in all", label, to_string(result.status),
                      result.record["cells"].get<std::uint64_t>(), meshing_seconds(result.record),
                      result.process.wall_s);

@@ -27,7 +27,7 @@ std::string verdict(const Rows& repeats) {
     return fmt::format("{}: {}", status == to_string(Status::kUnmet) ? "NOT met" : status,
                        text_in(**fault, "reason"));
   }
-  if (repeats.front()->contains(kMemoryLevels)) return memory_levels(*repeats.back());
+  if (repeats.front()->contains(kMemoryLevels)) return memory_levels(repeats);
   const Json verdicts = repeats.front()->value("verdicts", Json::object());
   const auto num_proved = std::count(verdicts.begin(), verdicts.end(), "pass");
   return num_proved > 0 ? fmt::format("met, {} claims proved", num_proved) : "met";
@@ -85,12 +85,13 @@ double meshing_seconds(const Json& record) {
   return seconds;
 }
 
-std::string memory_levels(const Json& row) {
+std::string memory_levels(const std::vector<const Json*>& rows) {
   std::vector<std::string> parts;
-  for (const Json& level : row[kMemoryLevels]) {
-    const auto cycles = number_in(level, "cycles");
-    parts.push_back(fmt::format("{} {}", text_in(level, "module"),
-                                cycles ? fmt::format("{:.3g} cycles", *cycles) : text_in(level, "cycles")));
+  const Json& levels = (*rows.front())[kMemoryLevels];
+  for (std::size_t i = 0; i < levels.size(); ++i) {
+    const auto cycles_of = [i](const Json& row) { return number_in(row[kMemoryLevels][i], "cycles"); };
+    const auto print = [](double cycles) { return fmt::format("{:.3g} cycles", cycles); };
+    parts.push_back(fmt::format("{} {}", text_in(levels[i], "module"), median_over(rows, cycles_of, print)));
   }
   return fmt::format("{}", fmt::join(parts, ", "));
 }

@@ -19,8 +19,8 @@ std::string format_table(const std::vector<std::vector<nlohmann::ordered_json>>&
 /// Of all phases of a mesher's record but writing, as in the paper's eq. (1).
 double meshing_seconds(const nlohmann::ordered_json& record);
 
-/// "L1 cache 4.1 cycles, L2 cache 14 cycles, ..." of a row that measures the machine.
-std::string memory_levels(const nlohmann::ordered_json& row);
+/// "L1 cache 4.1 cycles, L2 cache 14 cycles, ...": medians over rows that measure the same machine.
+std::string memory_levels(const std::vector<const nlohmann::ordered_json*>& rows);
 
 /// "1 234 567".
 std::string thousands(std::uint64_t number);

@@ -80,6 +80,17 @@ TEST_F(RowTest, MemoryPerCellLeavesOutLabelsAndTransform) {
   EXPECT_FALSE(bytes_per_cell_beyond_image(good).has_value());
 }
 
+TEST_F(RowTest, TableHasMediansOfTheMemoryLevels) {
+  std::vector<Json> rows;
+  for (const double cycles : {4.0, 9.0, 5.0}) {
+    rows.push_back({{"trial", "latency"}, {"status", "ok"}});
+    rows.back()["memory_levels"] = {{{"module", "L1 cache"}, {"cycles", cycles}},
+                                    {{"module", "memory"}, {"cycles", "unavailable: too little"}}};
+  }
+  const std::string table = format_table({rows});
+  EXPECT_NE(table.find("L1 cache 5 cycles, memory -\n"), std::string::npos) << table;
+}
+
 TEST_F(RowTest, TableIsAlignedAndTellsEveryTrial) {
   good.record["cells"] = 1234567u;
   const Json met = row_of(good);

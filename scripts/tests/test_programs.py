@@ -35,7 +35,7 @@ class Programs(unittest.TestCase):
         self.assertEqual(done.returncode, 0, done.stderr)
         self.assertIn("has no `schema`", done.stderr)
         made = {path.name for path in (self.folder / "out").iterdir()}
-        tables = {f"table{number}.{kind}" for number in "123" for kind in ("csv", "md")}
+        tables = {f"{name}.{kind}" for name in ("table1", "table2", "table3", "cache") for kind in ("csv", "md")}
         figures = {f"{name}.{kind}" for name in ("fig1", "fig4a", "fig4b") for kind in ("pdf", "png")}
         self.assertEqual(made, {"rows.csv", "verdicts.json", "verdicts.md"} | tables | figures)
         found = json.loads((self.folder / "out" / "verdicts.json").read_text())
