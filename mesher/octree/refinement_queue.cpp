@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <limits>
 #include <numeric>
+#include <utility>
 
 namespace podm {
 
@@ -12,7 +13,8 @@ RefinementQueue::RefinementQueue(const Octree& octree, unsigned num_nodes, LeafO
       num_poor_(octree.num_leaves()),
       num_active_near_(octree.num_leaves()),
       share_of_(octree.num_leaves()),
-      ready_(order == LeafOrder::kHome ? num_nodes : 1),
+      num_poor_of_share_(order == LeafOrder::kHome ? num_nodes : 1),
+      ready_(num_poor_of_share_.size()),
       resume_at_(num_nodes) {
   share_out();
   if (order_ != LeafOrder::kMorton) return;
@@ -66,17 +68,18 @@ std::size_t RefinementQueue::bisect(std::span<LeafId> leaves, double share) cons
 
 void RefinementQueue::move(LeafId leaf, std::size_t to) {
   if (is_ready(leaf)) ready_of(leaf).erase(key(leaf));
+  num_poor_of_share_[share_of_[leaf]] -= num_poor_[leaf];
+  num_poor_of_share_[to] += num_poor_[leaf];
   share_of_[leaf] = to;
   if (is_ready(leaf)) ready_of(leaf).insert(key(leaf));
 }
 
-// Half of the share that has most poor cells, if the node's own has none.
+// Half of the share that has most poor cells, if the node's own has none. Waiting nodes come here at every
+// change, so that leaves are looked through only when there is something to take.
 void RefinementQueue::take_over(unsigned node) {
-  std::vector<std::uint64_t> num_poor(ready_.size());
-  for (LeafId leaf = 0; leaf < octree_.num_leaves(); ++leaf) num_poor[share_of_[leaf]] += num_poor_[leaf];
-  if (num_poor[node] > 0) return;
-  const auto richest = static_cast<std::size_t>(
-      std::distance(num_poor.begin(), std::max_element(num_poor.begin(), num_poor.end())));
+  const auto most = std::max_element(num_poor_of_share_.begin(), num_poor_of_share_.end());
+  if (num_poor_of_share_[node] > 0 || *most == 0) return;
+  const auto richest = static_cast<std::size_t>(most - num_poor_of_share_.begin());
   std::vector<LeafId> leaves;
   for (LeafId leaf = 0; leaf < octree_.num_leaves(); ++leaf)
     if (share_of_[leaf] == richest && num_poor_[leaf] > 0) leaves.push_back(leaf);
@@ -89,6 +92,7 @@ void RefinementQueue::push(LeafId leaf, std::uint64_t num_poor) {
   if (is_ready(leaf)) ready_of(leaf).erase(key(leaf));
   if (num_poor_[leaf] == 0) ++counts_.pending;
   num_poor_[leaf] += num_poor;
+  num_poor_of_share_[share_of_[leaf]] += num_poor;
   if (!is_ready(leaf)) return;
   ready_of(leaf).insert(key(leaf));
   changed_.notify_all();
@@ -184,7 +188,7 @@ std::optional<LeafId> RefinementQueue::take(unsigned node) {
   if (order_ == LeafOrder::kMorton || order_ == LeafOrder::kColoring) resume_at = taken;
   const auto leaf = static_cast<LeafId>(taken);
   set_active(buffer_zones(leaf), true);
-  num_poor_[leaf] = 0;
+  num_poor_of_share_[share_of_[leaf]] -= std::exchange(num_poor_[leaf], 0);
   --counts_.pending;
   return leaf;
 }

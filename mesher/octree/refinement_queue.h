@@ -79,8 +79,9 @@ class RefinementQueue {
   std::vector<std::uint64_t> num_poor_;
   std::vector<std::uint32_t> num_active_near_;  // active leaves within two rings, the leaf itself included
   std::vector<std::size_t> share_of_;           // by leaf; there is one a node for home, else one
-  std::vector<std::set<Key>> ready_;            // by share
-  std::vector<Key> resume_at_;                  // by node: where in the order its next leaf is looked for
+  std::vector<std::uint64_t> num_poor_of_share_;
+  std::vector<std::set<Key>> ready_;  // by share
+  std::vector<Key> resume_at_;        // by node: where in the order its next leaf is looked for
   Counts counts_;
 };
 
