@@ -2,13 +2,14 @@
 
 MARCH = $(if $(NATIVE),native,x86-64-v3)
 CMAKE_FLAGS ?=
+CONFIGURE = cmake -S . -B build -G Ninja -DPODM_MARCH=$(MARCH) $(CMAKE_FLAGS)
 FIGURES = results/runs/figures
 INPUTS = --records results/runs --verified $(FIGURES)/abdomen_verified.json \
   --schedule $(FIGURES)/abdomen_leaves.jsonl --mesh $(FIGURES)/abdomen.vtu
 TIER ?= default
 
 .DEFAULT_GOAL := help
-.PHONY: help setup build test stress kill-matrix kick-tires experiments figures clean
+.PHONY: help setup build peers test stress kill-matrix kick-tires experiments figures clean
 
 help:
 	@echo "make kick-tires    the smallest runs of every experiment, in some minutes; tables and results/runs/"
@@ -20,7 +21,9 @@ help:
 	@echo "make figures       tables and figures of results/runs/ beside the paper's, a mesh cut open: $(FIGURES)/,"
 	@echo "                   and one page of it all: results/runs/report.html"
 	@echo "make build         the programs, in build/bin/"
-	@echo "make setup         install the Debian 12 packages needed (root or sudo; otherwise says what to run)"
+	@echo "make peers         what \`make experiments\` compares and counts with: TetGen, Gmsh and likwid as packages, and"
+	@echo "                   CGAL's mesher (GPL, compiles for some 3 minutes, stays in build/bin/)"
+	@echo "make setup         install the Debian 12 packages of all of these (root or sudo; otherwise says what to run)"
 	@echo "make clean         remove build folders; results stay"
 	@echo
 	@echo "Each makes what it needs, setup and build included."
@@ -32,28 +35,44 @@ help:
 setup:
 	@scripts/setup
 
-build: setup
-	cmake -S . -B build -G Ninja -DPODM_MARCH=$(MARCH) $(CMAKE_FLAGS)
+build:
+	@scripts/setup build
+	$(CONFIGURE)
 	cmake --build build
 
-test: build
+# Configured anew: the packages that it looks for may have come since.
+peers: build
+	@scripts/setup peers
+	$(CONFIGURE)
+	cmake --build build --target peers
+
+test:
+	@scripts/setup build run test
+	$(CONFIGURE) -DPODM_BUILD_TESTS=ON
+	cmake --build build --target all tests
 	$(if $(DATA),PODM_TEST_IMAGES="$(abspath $(DATA))") ctest --test-dir build -j2 --output-on-failure
+	@grep -ho 'skipped: .*' build/Testing/Temporary/LastTest.log | sort | uniq -c || true
 
 stress: build
+	@scripts/setup run
 	cd mesher/tests && PODM_PROGRAM=$(CURDIR)/build/bin/podm /usr/bin/python3 -B stress.py
 
 kill-matrix: build
-	cmake --build build --target kill-matrix
+	@scripts/setup run
+	/usr/bin/python3 -B verifiers/tests/kill_matrix.py build/bin/podm build/bin/podm-verify
 
 kick-tires:
 	$(MAKE) experiments TIER=kick-tires
 
-experiments: build
+# The least of the experiments goes without the meshers that it would compare with: their trials are skipped.
+experiments: build $(if $(filter kick-tires,$(TIER)),,peers)
+	@scripts/setup run
 	build/bin/podm-bench run --tier $(TIER) $(if $(IMAGE),--image "$(IMAGE)") experiments/*.toml
 
 # Tables and figures of the records in results/runs/, the phantom cut open, and one page of it all. The phantom is
 # meshed leaf by leaf by two nodes: its mesh and schedule make figure 2b too. The page shows at most 200 000 cells.
 figures: build
+	@scripts/setup run
 	mkdir -p $(FIGURES)
 	build/bin/podm mesh phantom:abdomen@256 --target-elements 190000 --algorithm pdr-podm --nodes 2 --cores-per-node 1 \
 	  --oversubscribe --initial-ratio 2 --schedule $(FIGURES)/abdomen_leaves.jsonl -o $(FIGURES)/abdomen.vtu

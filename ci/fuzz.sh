@@ -6,7 +6,7 @@ cd "$(dirname "$0")/.."
 
 cmake -S . -B build-fuzz -G Ninja -DCMAKE_C_COMPILER=clang -DCMAKE_CXX_COMPILER=clang++ \
   -DCMAKE_CXX_FLAGS="-include $PWD/ci/itk_with_clang.h" -DCMAKE_BUILD_TYPE=RelWithDebInfo \
-  -DPODM_BUILD_FUZZERS=ON -DPODM_BUILD_TESTS=OFF -DPODM_SANITIZE=address,undefined
+  -DPODM_BUILD_FUZZERS=ON -DPODM_SANITIZE=address,undefined
 sources=$(git ls-files -- '*/fuzz_*.cpp')
 targets=$(for source in $sources; do basename "$source" .cpp; done)
 # shellcheck disable=SC2086  # lists of words, here and below

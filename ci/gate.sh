@@ -13,7 +13,7 @@ build() {  # sources, folder, targets
   sources=$1
   folder=$2
   shift 2
-  cmake -S "$sources" -B "$folder" -G Ninja -DCMAKE_BUILD_TYPE=Release -DPODM_BUILD_TESTS=OFF
+  cmake -S "$sources" -B "$folder" -G Ninja -DCMAKE_BUILD_TYPE=Release
   cmake --build "$folder" --target "$@"
 }
 build build-gate/base-sources build-gate/base podm

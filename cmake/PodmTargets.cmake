@@ -1,4 +1,4 @@
-# How every target of this project is compiled, and the one way to declare a test.
+# How every target of this project is compiled, and the two ways to declare a test.
 
 find_package(Threads REQUIRED)
 
@@ -11,14 +11,32 @@ if(PODM_SANITIZE)
   add_link_options(-fsanitize=${PODM_SANITIZE})
 endif()
 
-# podm_add_test(NAME SOURCES... LIBS targets...): a GoogleTest program; each TEST is a ctest case.
+# A test that cannot run here says `skipped: why`, and ctest calls it skipped: it neither passes nor fails.
+set(PODM_SKIPPED "(^|\n)skipped: ")
+
+# podm_add_test(NAME SOURCES... LIBS targets...): a GoogleTest program, built by `tests`; each TEST is a ctest case.
 function(podm_add_test name)
   if(NOT PODM_BUILD_TESTS)
     return()
   endif()
   cmake_parse_arguments(ARG "" "" "SOURCES;LIBS" ${ARGN})
-  add_executable(${name} ${ARG_SOURCES})
+  add_executable(${name} EXCLUDE_FROM_ALL ${ARG_SOURCES})
+  add_dependencies(tests ${name})
   target_link_libraries(${name} PRIVATE ${ARG_LIBS} podm_flags GTest::gtest_main)
   include(GoogleTest)
   gtest_discover_tests(${name} PROPERTIES TIMEOUT 300 DISCOVERY_TIMEOUT 60)
+endfunction()
+
+# podm_add_python_test(NAME COMMAND Python's arguments... [TIMEOUT seconds] [ENVIRONMENT NAME=value...]): Python in
+# this folder as a ctest case. Debian's modules belong to the system's Python, which need not be first on the path.
+function(podm_add_python_test name)
+  cmake_parse_arguments(ARG "" "TIMEOUT" "COMMAND;ENVIRONMENT" ${ARGN})
+  if(NOT ARG_TIMEOUT)
+    set(ARG_TIMEOUT 300)
+  endif()
+  find_program(PODM_SYSTEM_PYTHON python3 PATHS /usr/bin NO_DEFAULT_PATH REQUIRED)
+  add_test(NAME ${name} COMMAND ${PODM_SYSTEM_PYTHON} -B ${ARG_COMMAND}
+           WORKING_DIRECTORY ${CMAKE_CURRENT_SOURCE_DIR})
+  set_tests_properties(${name} PROPERTIES TIMEOUT ${ARG_TIMEOUT} ENVIRONMENT "${ARG_ENVIRONMENT}"
+                                          SKIP_REGULAR_EXPRESSION "${PODM_SKIPPED}")
 endfunction()

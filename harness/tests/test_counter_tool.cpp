@@ -62,7 +62,7 @@ class CounterToolTest : public testing::Test {
 
 TEST_F(CounterToolTest, ValgrindSimulatesARealProgram) {
   const Cachegrind cachegrind;
-  if (!cachegrind.absence().empty()) GTEST_SKIP() << cachegrind.absence();
+  if (!cachegrind.absence().empty()) GTEST_SKIP() << "skipped: " << cachegrind.absence();
   const ProcessOutcome outcome = run_process({.arguments = cachegrind.wrap({"/bin/true"}, folder_.path()),
                                               .stdout_path = {},
                                               .stderr_path = {},

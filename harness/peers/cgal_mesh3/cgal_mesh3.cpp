@@ -47,6 +47,7 @@ struct Options {
   double facet_distance_mm = 0;  // 0: unbounded
   std::string output_path;       // empty: no file
   std::size_t threads = 0;       // 0: Sequential_tag
+  bool exude = false;            // weight vertices against slivers afterwards; not in the seconds
 };
 
 CGAL::Image_3 read_image(const std::string& path) {
@@ -71,7 +72,7 @@ void write_mesh(const Complex& complex, const std::string& path) {
   if (!file.flush()) throw std::runtime_error(path + ": cannot be written");
 }
 
-// Refinement alone: no perturbation, no exudation, no smoothing.
+// The seconds are those of refinement alone: no perturbation, no exudation, no smoothing.
 template <class Concurrency>
 Json mesh(const Domain& domain, const Options& options) {
   using Triangulation = typename CGAL::Mesh_triangulation_3<Domain, CGAL::Default, Concurrency>::type;
@@ -84,10 +85,10 @@ Json mesh(const Domain& domain, const Options& options) {
                           params::cell_radius_edge_ratio = kRadiusEdgeBound,
                           params::cell_size = options.cell_size_mm);
   const auto start = std::chrono::steady_clock::now();
-  const Complex complex =
-      CGAL::make_mesh_3<Complex>(domain, criteria, params::no_perturb(), params::no_exude());
+  Complex complex = CGAL::make_mesh_3<Complex>(domain, criteria, params::no_perturb(), params::no_exude());
   const std::chrono::duration<double> elapsed = std::chrono::steady_clock::now() - start;
 
+  if (options.exude) CGAL::exude_mesh_3(complex);
   write_mesh(complex, options.output_path);
   Json result;
   result["cells"] = complex.number_of_cells_in_complex();
@@ -112,6 +113,7 @@ Json run(const Options& options) {
                        {"facet_angle_deg", kFacetAngleDeg},
                        {"cell_radius_edge_ratio", kRadiusEdgeBound},
                        {"threads", options.threads},
+                       {"exude", options.exude},
                        {"queue", kQueue},
                        {"cgal", CGAL_VERSION_STR}};
   return result;
@@ -137,6 +139,7 @@ int main(int argc, char** argv) {
       ->check(CLI::PositiveNumber);
   app.add_option("--output", options.output_path, "Medit file of the mesh, .mesh [default: none]");
   app.add_option("--threads", options.threads, "0: CGAL's Sequential_tag [default: 0]");
+  app.add_flag("--exude", options.exude, "afterwards weight vertices against slivers [default: do not]");
   try {
     app.parse(argc, argv);
   } catch (const CLI::ParseError& error) {

@@ -36,7 +36,7 @@ class RealImage : public testing::TestWithParam<Measured> {};
 TEST_P(RealImage, IsReadAsMeasured) {
   const Measured& measured = GetParam();
   const std::string path = real_image(measured.file);
-  if (path.empty()) GTEST_SKIP() << "PODM_TEST_IMAGES is not set";
+  if (path.empty()) GTEST_SKIP() << "skipped: PODM_TEST_IMAGES is not set";
   const LabelImage image = read_image(path);
   EXPECT_EQ(image.size, measured.size);
   for (std::size_t axis = 0; axis < 3; ++axis)
@@ -82,7 +82,7 @@ INSTANTIATE_TEST_SUITE_P(
 
 TEST(RealImages, TwoFormatsOfOneImageGiveTheSameImage) {
   const std::string nifti_path = real_image("abdomen_mr_small.nii.gz");
-  if (nifti_path.empty()) GTEST_SKIP() << "PODM_TEST_IMAGES is not set";
+  if (nifti_path.empty()) GTEST_SKIP() << "skipped: PODM_TEST_IMAGES is not set";
   const LabelImage nifti = read_image(nifti_path), meta = read_image(real_image("abdomen_mr_small.mha"));
   EXPECT_EQ(nifti.voxels, meta.voxels);
   ASSERT_EQ(nifti.labels.size(), meta.labels.size());

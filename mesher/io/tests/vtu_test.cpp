@@ -59,7 +59,7 @@ class VtuFile : public testing::Test {
  protected:
   void SetUp() override {
     const std::string probe = std::string(PODM_VTK_PYTHON) + " -c 'import vtk' 2>/dev/null";
-    if (std::system(probe.c_str()) != 0) GTEST_SKIP() << "needs the package python3-vtk9";
+    if (std::system(probe.c_str()) != 0) GTEST_SKIP() << "skipped: needs the package python3-vtk9";
   }
   VtuContent read(const std::string& name) {
     const std::string text = folder_ / (name + ".txt");

@@ -44,7 +44,7 @@ TEST(NumaMemory, ComesToTheNodeOfTheThreadThatTouchesItFirst) {
       std::fill_n(&memory[0], kBytes, 'x');
     }).join();
     const PageNode home = node_of_page(&memory[kBytes / 2 + 1]);
-    if (!home.os_index) GTEST_SKIP() << home.unavailable;
+    if (!home.os_index) GTEST_SKIP() << "skipped: " << home.unavailable;
     EXPECT_EQ(*home.os_index, machine.node_os_index(processor.node));
   }
   EXPECT_FALSE(nodes.empty());

@@ -156,7 +156,7 @@ class RealVerifierImage : public testing::TestWithParam<Measured> {};
 
 TEST_P(RealVerifierImage, IsReadAsMeasured) {
   const char* folder = std::getenv("PODM_TEST_IMAGES");
-  if (folder == nullptr) GTEST_SKIP() << "PODM_TEST_IMAGES is not set";
+  if (folder == nullptr) GTEST_SKIP() << "skipped: PODM_TEST_IMAGES is not set";
   const Measured& measured = GetParam();
   const Image image = read_image((std::filesystem::path(folder) / measured.file).string());
   EXPECT_EQ(image.size, measured.size);

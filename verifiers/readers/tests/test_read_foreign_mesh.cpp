@@ -17,7 +17,7 @@ namespace {
 
 TEST(ReadVtkFiles, EveryWayVtkWritesAGrid) {
   if (std::system(PODM_VTK_PYTHON " -c 'import vtk' 2>/dev/null") != 0)
-    GTEST_SKIP() << "needs the package python3-vtk9";
+    GTEST_SKIP() << "skipped: needs the package python3-vtk9";
   const TestFolder folder;
   const std::string list = folder / "list";
   ASSERT_EQ(std::system((PODM_VTK_PYTHON " " PODM_VTK_VARIANTS " " + folder.path() + " > " + list).c_str()),
