@@ -47,7 +47,8 @@ std::string architecture(const std::string& scratch_folder) {
   return name.starts_with("unavailable") || name == "nil" ? "" : name;
 }
 
-// Why likwid may not count the events; it says so itself.
+// What likwid-perfctr says when it refuses to count `events`, or a group of its own, in one line; empty: it
+// counts.
 std::string refusal_of(const std::string& events, const std::string& scratch_folder) {
   const std::string path = scratch_folder + "/likwid_refusal.txt";
   std::vector<std::string> command = command_of(events, scratch_folder + "/likwid_probe.csv");
@@ -55,8 +56,16 @@ std::string refusal_of(const std::string& events, const std::string& scratch_fol
   const ProcessOutcome outcome = run_process(
       {.arguments = command, .stdout_path = {}, .stderr_path = path, .timeout_s = kAnswerTimeoutS});
   if (outcome.succeeded()) return {};
-  const std::string said = read_tail(path, kMaxAnswerBytes);
-  return fmt::format("{}: {}", kProgram, said.empty() ? outcome.describe() : said.substr(0, said.find('\n')));
+  std::istringstream said(read_tail(path, kMaxAnswerBytes));
+  std::string words;
+  for (std::string line; std::getline(said, line);) words += (words.empty() ? "" : "; ") + line;
+  return fmt::format("{}: {}", kProgram, words.empty() ? outcome.describe() : words);
+}
+
+// Why there are no counts on a processor of which likwid has no events. It may say more than its name does.
+std::string refusal_of_processor(const std::string& group, const std::string& scratch_folder) {
+  const std::string refusal = refusal_of(group, scratch_folder);
+  return refusal.empty() ? fmt::format("{} does not know this processor", kProgram) : refusal;
 }
 
 std::vector<std::string> cells_of(const std::string& line) {
@@ -97,7 +106,7 @@ Likwid::Likwid(const std::string& group, const std::string& groups_folder, const
   const std::string processor = architecture(scratch_folder);
   const std::string path = fmt::format("{}/{}/{}.txt", groups_folder, processor, group);
   events_ = events_of_group(path);
-  absence_ = processor.empty() ? fmt::format("{} does not know this processor", kProgram)
+  absence_ = processor.empty() ? refusal_of_processor(group, scratch_folder)
              : events_.empty() ? fmt::format("there are no events in {}", path)
                                : refusal_of(events_, scratch_folder);
 }

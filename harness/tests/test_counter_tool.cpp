@@ -1,7 +1,11 @@
 // Trials counted by valgrind and likwid-perfctr: real where installed, played by scripts, absent, or failing.
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cstdlib>
+#include <fstream>
+#include <regex>
+#include <set>
 
 #include "counter_tool.h"
 #include "fake_mesher.h"
@@ -146,21 +150,88 @@ TEST_F(CounterToolTest, LikwidThatMayNotCountSaysWhyAndTheTrialRuns) {
   EXPECT_EQ(no_file, "unavailable: likwid-perfctr wrote no counts");
   const Json no_group = run("likwid:ABSENT").counters["likwid:ABSENT"];
   EXPECT_NE(no_group.get<std::string>().find("some/ABSENT.txt"), std::string::npos) << no_group;
-
-  folder_.script("bin/likwid-perfctr", "exit 1");
-  EXPECT_EQ(run("likwid:CACHE").counters["likwid:CACHE"],
-            "unavailable: likwid-perfctr does not know this processor");
 }
 
-TEST(LikwidGroups, EveryFileHasEvents) {
-  std::size_t number = 0;
-  for (const auto& entry : std::filesystem::recursive_directory_iterator(kSourcesOfGroups))
-    if (entry.path().extension() == ".txt") {
-      ++number;
-      EXPECT_NE(events_of_group(entry.path().string()).find(':'), std::string::npos) << entry.path();
+// As likwid 5.2 does on a processor that is newer than itself.
+TEST_F(CounterToolTest, LikwidThatDoesNotKnowTheProcessorSaysSoInItsOwnWords) {
+  hide_tools();
+  const std::string head = "[ \"$1\" = -i ] && { printf 'CPU name:\\tNew\\nCPU short:\\tnil\\n'; exit 0; }\n";
+  folder_.script("bin/likwid-perfctr",
+                 head + "echo ERROR - Unsupported Processor >&2; echo No access >&2; exit 1");
+  EXPECT_EQ(run("likwid:NUMA").counters["likwid:NUMA"],
+            "unavailable: likwid-perfctr: ERROR - Unsupported Processor; No access");
+  folder_.script("bin/likwid-perfctr", head + "exit 0");
+  EXPECT_EQ(run("likwid:NUMA").counters["likwid:NUMA"],
+            "unavailable: likwid-perfctr does not know this processor");
+  folder_.script("bin/likwid-perfctr", "exit 3");
+  EXPECT_TRUE(run("likwid:NUMA")
+                  .counters["likwid:NUMA"]
+                  .get<std::string>()
+                  .starts_with("unavailable: likwid-perfctr: "))
+      << "how it ended, at least";
+}
+
+// Each counts for any group: likwid's real program, where it is installed.
+TEST_F(CounterToolTest, TheRealLikwidCountsOrSaysWhyNot) {
+  for (const char* group : {"CACHE", "NUMA"}) {
+    const Likwid likwid(group, kSourcesOfGroups, folder_.path());
+    if (likwid.absence() == "likwid-perfctr is not installed") GTEST_SKIP() << likwid.absence();
+    if (likwid.absence().empty()) continue;
+    EXPECT_TRUE(likwid.absence().starts_with("likwid-perfctr")) << likwid.absence();
+    EXPECT_EQ(likwid.absence().find('\n'), std::string::npos) << "one line of a row";
+  }
+}
+
+// The counters of a file's EVENTSET, and the text of its METRICS.
+struct Group {
+  std::set<std::string> counters;
+  std::vector<std::string> formulas;  // the last word of each line
+};
+Group read_group(const std::filesystem::path& path) {
+  std::ifstream file(path);
+  Group group;
+  std::string part;
+  for (std::string line; std::getline(file, line);) {
+    if (line == "EVENTSET" || line == "METRICS" || line == "LONG") {
+      part = line;
+    } else if (!line.empty() && part == "EVENTSET") {
+      EXPECT_TRUE(group.counters.insert(line.substr(0, line.find(' '))).second) << path << ": " << line;
+    } else if (!line.empty() && part == "METRICS") {
+      group.formulas.push_back(line.substr(line.rfind(' ') + 1));
     }
+  }
+  return group;
+}
+
+TEST(LikwidGroups, EveryArchitectureHasCachesAndNodes) {
+  std::size_t number = 0;
+  for (const auto& architecture : std::filesystem::directory_iterator(kSourcesOfGroups)) {
+    for (const char* name : {"CACHE.txt", "NUMA.txt"}) {
+      const std::filesystem::path path = architecture.path() / name;
+      const Group group = read_group(path);
+      const std::string events = events_of_group(path.string());
+      EXPECT_EQ(static_cast<std::size_t>(std::count(events.begin(), events.end(), ':')),
+                group.counters.size())
+          << path;
+      EXPECT_GT(group.counters.size(), 2u) << path;
+      ++number;
+    }
+  }
   EXPECT_GT(number, 0u);
   EXPECT_EQ(events_of_group("/no/such/file"), "");
+}
+
+// likwid refuses a formula of a counter that the group does not set.
+TEST(LikwidGroups, FormulasUseTheGroupsOwnCounters) {
+  const std::regex kCounter("[A-Z]+[0-9]+(C[0-9]+)?");
+  for (const auto& entry : std::filesystem::recursive_directory_iterator(kSourcesOfGroups)) {
+    if (entry.path().extension() != ".txt") continue;
+    const Group group = read_group(entry.path());
+    EXPECT_FALSE(group.formulas.empty()) << entry.path();
+    for (const std::string& formula : group.formulas)
+      for (std::sregex_iterator found(formula.begin(), formula.end(), kCounter), end; found != end; ++found)
+        EXPECT_TRUE(group.counters.contains(found->str())) << entry.path() << ": " << formula;
+  }
 }
 
 }  // namespace
