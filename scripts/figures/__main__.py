@@ -8,9 +8,10 @@ import json
 import sys
 from pathlib import Path
 
+from .experiment_verdicts import HOW, VerdictsError, counts, read_experiment_verdicts
 from .load import RecordError, load
 from .mesh import MeshError, read_vtu
-from .outcome import make, readable_verdicts
+from .outcome import make, readable_experiments, readable_verdicts
 from .schedule import ScheduleError, read_schedule
 from .write import markdown, write_figure, write_json, write_text
 
@@ -31,20 +32,26 @@ def parse_arguments(arguments):
 
 def add_inputs(parser):
     parser.add_argument("--records", type=Path, nargs="+", default=[Path("results/runs")], metavar="PATH",
-                        help="JSON-lines files, or folders of them (default: results/runs)")
-    parser.add_argument("--verified", type=Path, metavar="JSON", help="report of `podm-verify --json`, for the histograms")
+                        help="JSON-lines files, or folders of them, such as one of results/reference (default: "
+                             "results/runs)")
+    parser.add_argument("--experiment-verdicts", type=Path, metavar="JSON",
+                        help="of `podm-bench verdicts --json`: the claims of our experiments")
+    parser.add_argument("--verified", type=Path, metavar="JSON",
+                        help="report of `podm-verify --json`, for the histograms")
     parser.add_argument("--schedule", type=Path, metavar="JSONL",
                         help="schedule of a run of pdr or pdr-podm, for figure 2 (b)")
     parser.add_argument("--mesh", type=Path, metavar="VTU", help="the mesh of that run, to be cut")
 
 
 def read_inputs(arguments):
-    """(records, report, schedule, mesh), the last three None where not asked for. Raises what INPUT_ERRORS lists."""
-    records = load(arguments.records)
-    report = read_report(arguments.verified) if arguments.verified else None
-    schedule = read_schedule(arguments.schedule) if arguments.schedule else None
-    mesh = read_vtu(arguments.mesh) if arguments.mesh else None
-    return records, report, schedule, mesh
+    """The records, and what `make` takes beside them, None where not asked for. Raises what INPUT_ERRORS lists."""
+    def given(path, read):
+        return read(path) if path else None
+
+    return load(arguments.records), {
+        "report": given(arguments.verified, read_report), "schedule": given(arguments.schedule, read_schedule),
+        "mesh": given(arguments.mesh, read_vtu),
+        "experiments": given(arguments.experiment_verdicts, read_experiment_verdicts)}
 
 
 def read_report(path):
@@ -57,7 +64,7 @@ def read_report(path):
     return report
 
 
-INPUT_ERRORS = (RecordError, MeshError, ScheduleError, ReportError)
+INPUT_ERRORS = (RecordError, MeshError, ScheduleError, ReportError, VerdictsError)
 
 
 def write(outcome, frame, folder):
@@ -70,24 +77,39 @@ def write(outcome, frame, folder):
         write_figure(figure, folder, name)
     write_json(folder / "verdicts.json", outcome.verdicts)
     claims, cells = readable_verdicts(outcome.verdicts)
-    write_text(folder / "verdicts.md", f"# Claims\n\n{markdown(claims)}\n# Cells of Tables 1 and 2\n\n{markdown(cells)}")
+    experiments = markdown(readable_experiments(outcome.experiments)) if outcome.experiments else HOW + "\n"
+    write_text(folder / "verdicts.md",
+               f"# Claims of the paper\n\n{markdown(claims)}\n# Claims of the experiments\n\n{experiments}\n"
+               f"# Cells of Tables 1 and 2\n\n{markdown(cells)}")
+
+
+def print_experiments(found):
+    """A line for each claim of our experiments."""
+    if found is None:
+        print(HOW)
+        return
+    for line in readable_experiments(found).to_dict("records"):
+        print(f"{line['verdict'].replace('_', ' '):18} {line['experiment']}: {line['claim']} ({line['basis']}): "
+              f"{line['reason']}")
+    print(f"claims of experiments: {counts(found)}")
 
 
 def main(arguments=None):
     arguments = parse_arguments(arguments)
     try:
-        records, report, schedule, mesh = read_inputs(arguments)
+        records, others = read_inputs(arguments)
     except INPUT_ERRORS as error:
         print(f"make_figures: {error}", file=sys.stderr)
         return 2
-    outcome = make(records.frame, report, schedule, mesh)
+    outcome = make(records.frame, **others)
     write(outcome, records.frame, arguments.output)
+    print_experiments(outcome.experiments)
     for line in records.problems:
         print(f"make_figures: {line}", file=sys.stderr)
     for name, reason in outcome.missing.items():
         print(f"make_figures: {name} not drawn: {reason}", file=sys.stderr)
-    print(f"make_figures: {len(records.frame)} rows; {', '.join([*outcome.tables, *outcome.figures])} in {arguments.output}",
-          file=sys.stderr)
+    made = ", ".join([*outcome.tables, *outcome.figures])
+    print(f"make_figures: {len(records.frame)} rows; {made} in {arguments.output}", file=sys.stderr)
     return 0
 
 

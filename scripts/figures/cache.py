@@ -3,8 +3,8 @@ import pandas
 
 from . import load
 
-SERIES = ["basis", "source", "machine", "build", "input.path", "algorithm", "cores", "counter"]
-SIZE = ["options.target_elements", "used.radius_mm"]
+SERIES = ["basis", "source", "machine", "build", "image", "algorithm", "cores", "counter"]
+SIZE = ["used.radius_mm"]
 PREFIX = "process.counters."
 COLUMNS = ["basis", "source", "algorithm", "cores", "cells", "counter", "per_insertion", "n", "reason"]
 # Of the kernel: they say nothing of caches.

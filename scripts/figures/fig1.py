@@ -28,7 +28,8 @@ def fig1(report):
         one.stairs(100 * counts / max(counts.sum(), 1), edges, fill=True, color=style.COLOURS["podm"], alpha=0.85)
         if bound is not None:
             one.axvline(bound, color=style.GHOST, linestyle="--")
-        one.set(title=f"{title}\n{histogram['minimum']:.4g} to {histogram['maximum']:.4g}", xlabel=unit, ylabel="% of all")
+        one.set(title=f"{title}\n{histogram['minimum']:.4g} to {histogram['maximum']:.4g}", xlabel=unit,
+                ylabel="% of all")
     mesh = report["mesh"]
     style.finish(figure, f"{mesh['cells']:,} cells, counted exactly by podm-verify. Lines: guarantees of the method; "
                           "dihedral angles have none.")

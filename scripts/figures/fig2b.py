@@ -46,9 +46,10 @@ def _draw_leaves(axes, leaves, zones, height):
     """Each in the colour of the nearer of the two; hatched in the other's where it lies in the rings of both."""
     for one in numpy.flatnonzero((leaves[:, 2] <= height) & (height < leaves[:, 2] + leaves[:, 3])):
         i, j, _, side = leaves[one]
-        colours = [shades[zone[one]] for _, zone, shades in sorted(
-            ((zone[one], zone, shades) for zone, shades in zip(zones, SHADES) if one in zone), key=lambda each: each[0])]
-        axes.add_patch(Rectangle((i, j), side, side, facecolor=colours[0] if colours else "none", alpha=0.85, linewidth=0))
+        here = [(zone[one], shades) for zone, shades in zip(zones, SHADES) if one in zone]
+        colours = [shades[ring] for ring, shades in sorted(here, key=lambda each: each[0])]
+        colour = colours[0] if colours else "none"
+        axes.add_patch(Rectangle((i, j), side, side, facecolor=colour, alpha=0.85, linewidth=0))
         if len(colours) > 1:
             axes.add_patch(Rectangle((i, j), side, side, fill=False, hatch="//", edgecolor=colours[1], linewidth=0))
         axes.add_patch(Rectangle((i, j), side, side, fill=False, edgecolor=style.GHOST, linewidth=0.8))
@@ -71,6 +72,7 @@ def _caption(turns, zones, height, num_cut):
     begin, end = max(1e3 * turn["begin_s"] for turn in turns), min(1e3 * turn["end_s"] for turn in turns)
     inner = [{leaf for leaf, zone in one.items() if zone != SECOND} for one in zones]
     common = len(inner[0] & inner[1])
-    return (f"Both at work from {begin:.2f} to {end:.2f} ms of the refinement. Leaves with their first rings have {common or 'no'} leaf in "
-            f"common; hatched: also in the second ring of the other. Cut at k\N{NO-BREAK SPACE}=\N{NO-BREAK SPACE}{height:g} of the leaf grid through "
-            f"{num_cut:,} cells of the final mesh.")
+    return (f"Both at work from {begin:.2f} to {end:.2f} ms of the refinement. Leaves with their first rings have "
+            f"{common or 'no'} leaf in common; hatched: also in the second ring of the other. Cut at "
+            f"k\N{NO-BREAK SPACE}=\N{NO-BREAK SPACE}{height:g} of the leaf grid through {num_cut:,} cells of the final "
+            "mesh.")

@@ -5,11 +5,17 @@ from pathlib import Path
 
 import pandas
 
-SCHEMAS = (1, 2)
+SCHEMA = 3
 # A mesh counts as verified when these pass and no other claim fails; the rest may lack an input, such as the image.
 NEEDED_CLAIMS = ("structure", "delaunay", "radius_edge", "boundary_angles")
 SIMULATED_CACHES = "its seconds are those of a simulation of caches"
-LONG_LISTS = ["labels", "facet_pairs", "command"]
+LONG_LISTS = ["labels", "facet_pairs", "command", "workers"]
+# Phases in no second of equation 1: writing the mesh, finding the radius for a number of cells, drawing a phantom.
+UNTIMED = ("write", "calibrate", "draw")
+REFINING = ("octree", "initial", "refine", "closing")
+# What a series varies; any other choice in a trial's name makes another series.
+VARIED = ("algorithm", "threads", "seed", "mesher", "input")
+GROWING = "-growing"  # ends the name of trials whose image grows with the cores
 
 
 class RecordError(Exception):
@@ -26,30 +32,45 @@ class Records:
 
 
 def load(paths):
-    """Rows of the JSON-lines files in `paths` (files, or folders whose *.jsonl are read). Raises RecordError."""
+    """Rows of the JSON-lines files in `paths` (files, or folders and those within). Raises RecordError."""
     rows, problems = [], []
-    for path in _files(paths):
-        rows += _read_file(path, problems)
-    frame = pandas.json_normalize([{**row, **derived(row)} for row in rows], sep=".")
+    for path, is_named in _files(paths):
+        rows += _read_file(path, is_named, problems)
+    frame = pandas.json_normalize([{**row, **derived(row)} for row in _last_of_each_key(rows)], sep=".")
     return Records(frame.drop(columns=LONG_LISTS, errors="ignore"), problems)
 
 
 def derived(row):
-    """What the figures need of a row, under one name whatever the schema; None where the trial made no mesh."""
-    phases = row.get("phases_s") or {}
-    if row.get("virtual"):  # what was simulated; the other phases ran on the machine at hand
-        phases = {"refine": row["virtual"]["refine_s"]}
+    """What tables and figures need of a row; None where the trial made no mesh."""
+    timed = timed_phases(row)
     doubt = doubt_of(row)
     return {
-        "basis": "simulated" if row.get("executor") == "virtual" or simulates_caches(row) else "measured",
+        "basis": "simulated" if is_virtual(row) or simulates_caches(row) else "measured",
+        "mesher": mesher_of(row),
         "machine": row.get("environment", {}).get("cpu", "unknown machine"),
         "usable_cores": usable_cores(row.get("environment", {})),
         "build": build_of(row),
         "cores": row.get("threads", {}).get("used"),
-        "seconds": sum(phases.values()) - phases.get("write", 0.0) if phases else None,
+        "setting": setting_of(row),
+        "image": image_of(row),
+        "grows": is_growing(row),
+        "timed": timed,
+        "seconds": sum(timed.values()) if timed else None,
+        "refining_s": sum(timed.get(phase, 0.0) for phase in REFINING) if timed else None,
         "headline": not doubt,
         "doubt": doubt,
     }
+
+
+def timed_phases(row):
+    """Seconds by phase that equation 1 counts: virtual ones of a simulated row, whose others ran on the machine at
+    hand."""
+    phases = row["virtual"]["phases_s"] if row.get("virtual") else row.get("phases_s") or {}
+    return {phase: seconds for phase, seconds in phases.items() if phase not in UNTIMED}
+
+
+def is_virtual(row):
+    return row.get("executor") == "virtual"
 
 
 def simulates_caches(row):
@@ -58,10 +79,32 @@ def simulates_caches(row):
     return any("simulated" in counter["source"] for counter in counters.values() if isinstance(counter, dict))
 
 
+def mesher_of(row):
+    """`podm`, or the name of another mesher."""
+    return (row.get("programs", {}).get("peer") or {}).get("name", "podm")
+
+
+def setting_of(row):
+    """The trial's name without the choices that a series varies."""
+    base, *choices = row.get("trial", "").split(",")
+    if is_growing(row):
+        base = base.partition(GROWING)[0] + GROWING
+    return ",".join([base, *(one for one in choices if one.partition("=")[0] not in VARIED)])
+
+
+def is_growing(row):
+    return GROWING in row.get("trial", "").split(",")[0]
+
+
+def image_of(row):
+    """Empty where each number of cores has an image of its own."""
+    given = row.get("input", {})
+    return "" if is_growing(row) else Path(given.get("name") or given.get("path") or "").name
+
+
 def usable_cores(environment):
-    """Of the machine of a row: schema 2 names them, schema 1 holds them among `cores`; None where neither is there."""
-    cores = environment.get("cores")
-    return environment.get("usable_processors", cores.get("usable") if isinstance(cores, dict) else None)
+    """Of the machine of a row; None where it says nothing."""
+    return environment.get("usable_processors")
 
 
 def build_of(row):
@@ -80,7 +123,7 @@ def doubt_of(row):
     if row.get("warmup"):
         return "a warm-up"
     threads, cores = row.get("threads", {}).get("used", 0), usable_cores(row.get("environment", {}))
-    if cores and threads > cores and row.get("executor") != "virtual":
+    if cores and threads > cores and not is_virtual(row):
         return f"{threads} threads on {cores} cores"
     status = row.get("status", "ok")
     if status != "ok":
@@ -94,17 +137,27 @@ def doubt_of(row):
     return "; ".join(doubts) or (SIMULATED_CACHES if simulates_caches(row) else "")
 
 
+def _last_of_each_key(rows):
+    """A measurement that an experiment made again counts once, as of its newest row."""
+    newest = {(row.get("experiment"), row.get("key", number)): number for number, row in enumerate(rows)}
+    return [rows[number] for number in sorted(newest.values())]
+
+
 def _files(paths):
+    """Each file and whether it was named itself, for a folder also holds files of another kind; none below folders
+    that begin with a dot."""
     for path in map(Path, paths):
         if path.is_dir():
-            yield from sorted(path.glob("*.jsonl"))
+            inside = sorted(path.rglob("*.jsonl"))
+            yield from ((one, False) for one in inside
+                        if not any(part.startswith(".") for part in one.relative_to(path).parts))
         elif path.is_file():
-            yield path
+            yield path, True
         else:
             raise RecordError(f"{path}: no such file or folder; `make experiments` writes records")
 
 
-def _read_file(path, problems):
+def _read_file(path, is_named, problems):
     lines = path.read_text(errors="replace").splitlines()
     rows = []
     for number, line in enumerate(lines, start=1):
@@ -117,11 +170,12 @@ def _read_file(path, problems):
                 problems.append(f"{path}:{number}: last line is broken and was skipped: {error.msg}")
                 break
             raise RecordError(f"{path}:{number}: not JSON: {error.msg} in column {error.colno}") from None
-        if not isinstance(row, dict) or "schema" not in row:
-            problems.append(f"{path}: no rows of trials (line {number} has no `schema`); the file was skipped")
+        schema = row.get("schema") if isinstance(row, dict) else None
+        if not rows and not isinstance(schema, int):  # lines of another kind
+            if is_named:
+                problems.append(f"{path}: no rows of trials (line {number} has schema {schema!r}); skipped")
             return []
-        if row["schema"] not in SCHEMAS:
-            raise RecordError(f"{path}:{number}: schema {row['schema']!r}; this program reads "
-                              f"{' and '.join(map(str, SCHEMAS))}")
+        if schema != SCHEMA:
+            raise RecordError(f"{path}:{number}: schema {schema!r}; this program reads {SCHEMA}")
         rows.append(row)
     return rows

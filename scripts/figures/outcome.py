@@ -3,29 +3,44 @@ from dataclasses import dataclass, field
 
 import pandas
 
-from . import cache, fig1, fig2b, fig4a, fig4b, scaling, table1, table2, table3, verdicts
+from . import (cache, experiment_verdicts, fig1, fig2b, fig4a, fig4b, guarantees, peers, scaling, simulated, table1,
+               table2, table3, verdicts)
 
 
 @dataclass(frozen=True)
 class Outcome:
-    """`tables`: by name, as data and readable. `figures`: by name. `missing`: reason by name of what cannot be made."""
+    """`tables`: by name, as data and readable. `figures`: by name. `missing`: reason by name of what cannot be made.
+    `series`: of weak scaling; `experiments`: verdicts of podm-bench, or None."""
 
     tables: dict
     figures: dict
     verdicts: dict
     missing: dict = field(default_factory=dict)
+    series: list = field(default_factory=list)
+    experiments: dict = None
 
 
-def make(frame, report=None, schedule=None, mesh=None):
+def make(frame, report=None, schedule=None, mesh=None, experiments=None):
     """`report`: of podm-verify, or None; `schedule` and `mesh`: for figure 2 (b), or None."""
     series = scaling.weak_series(frame)
-    weak, hops, levels = table1.table1(series), table2.table2(frame), table3.table3(frame)
-    tables = {"table1": (weak, table1.readable(weak)), "table2": (hops, table2.readable(hops)),
-              "table3": (levels, table3.readable(levels))}
-    if len(caches := cache.cache(frame)):
-        tables["cache"] = (caches, cache.readable(caches))
+    hops = table2.table2(frame)
     drawn, missing = _figures(frame, series, report, schedule, mesh)
-    return Outcome(tables, drawn, verdicts.verdicts(frame, series, hops), missing)
+    return Outcome(_tables(frame, series, hops), drawn, verdicts.verdicts(frame, series, hops), missing, series,
+                   experiments)
+
+
+def _tables(frame, series, hops):
+    """Simulated values have tables of their own. The paper's tables are there always, others where rows fill them."""
+    is_simulated = hops["basis"] == "simulated"
+    always = {"table1": (table1.table1(series), table1), "table2": (hops[~is_simulated], table2),
+              "table3": (table3.table3(frame), table3)}
+    others = {"table1_simulated": (table1.table1_simulated(series), table1),
+              "table2_simulated": (hops[is_simulated], table2), "simulated": (simulated.simulated(frame), simulated),
+              "peers": (peers.peers(frame), peers), "cache": (cache.cache(frame), cache),
+              "guarantees": (guarantees.ours(frame), guarantees),
+              "guarantees_of_others": (guarantees.of_others(frame), guarantees)}
+    made = {**always, **{name: entry for name, entry in others.items() if len(entry[0])}}
+    return {name: (data, module.readable(data)) for name, (data, module) in made.items()}
 
 
 def _figures(frame, series, report, schedule, mesh):
@@ -45,6 +60,19 @@ def _figures(frame, series, report, schedule, mesh):
 def readable_verdicts(found):
     """Claims, then cells, each as one table for people."""
     claim_columns = ["claim", "basis", "verdict", "value", "paper", "reason", "statement"]
-    cell_columns = ["table", "cores", "algorithm", "column", "basis", "verdict", "value", "paper", "deviation", "reason"]
-    return (pandas.DataFrame(found["claims"], columns=claim_columns, dtype=object),
+    cell_columns = ["table", "cores", "algorithm", "column", "basis", "verdict", "value", "paper", "deviation",
+                    "reason"]
+    claims = [{**one, "value": _numbers(one["value"]), "paper": _numbers(one["paper"])} for one in found["claims"]]
+    return (pandas.DataFrame(claims, columns=claim_columns, dtype=object),
             pandas.DataFrame(found["cells"], columns=cell_columns, dtype=object))
+
+
+def readable_experiments(found):
+    return experiment_verdicts.table(found)
+
+
+def _numbers(value):
+    """A list as people write it."""
+    if not isinstance(value, list):
+        return value
+    return ", ".join("none" if one is None else f"{one:.3g}" for one in value)

@@ -1,47 +1,64 @@
-"""Weak-scaling series: verified rows of one machine, program and input whose cells grow in step with the cores.
+"""Weak-scaling series: verified rows of one machine, program, trial and image whose cells grow in step with the cores.
 
 Speed-up follows equation 1 of the paper: cells per second over those of PODM on one core; efficiency is speed-up
-over cores. Seconds are all phases but `write`.
+over cores. Seconds are the phases that load.py times. `refining` leaves all but the making of the mesh out: its
+efficiency is the median of ratios to PODM on one core in the same round, so that a machine that grows slower from
+round to round does not show.
 """
 import math
 from dataclasses import dataclass
-from pathlib import Path
 
 import numpy
 import pandas
 
 from .spread import median_interval, ratio_interval
 
-KEY = ["basis", "machine", "build", "experiment", "input.path"]
-# Cells per core may stray this far from one core's; the paper's own stray by 3 %, --target-elements by 5 %.
-WEAK_TOLERANCE = 0.10
+KEY = ["basis", "machine", "build", "experiment", "setting", "image"]
+# Cells per core may stray this far from one core's; the paper's own stray by 3 %, a radius for a target by 5 %.
+SIZE_TOLERANCE = 0.10
 PAPER_CELLS_PER_CORE = 3e6
-PHASES = ["read", "transform", "octree", "initial", "refine", "extract", "other"]
+PHASES = ["allocate", "read", "transform", "octree", "initial", "refine", "closing", "extract", "other"]
 
 
 @dataclass(frozen=True)
 class Series:
-    """`key`: values of KEY by name. `table`: indexed by (algorithm, cores), medians with their bounds and n."""
+    """`key`: values of KEY by name. `table`: indexed by (algorithm, cores), medians with their bounds and n. `grows`:
+    whether each number of cores has an image of its own."""
 
     key: dict
     cells_per_core: float
     table: pandas.DataFrame
+    grows: bool = False
 
     def label(self):
+        """What was run where."""
         key = self.key
+        image = "an image that grows with the cores" if self.grows else key["image"]
         size = f"{self.cells_per_core / 1e6:.2g} M cells per core"
-        return ", ".join(part for part in (key["experiment"], Path(key["input.path"]).name, size, key["machine"]) if part)
+        return ", ".join(part for part in (key["experiment"], key["setting"], image, size, key["machine"]) if part)
+
+    def kind(self):
+        """Of its numbers, for legends and tables."""
+        return self.key["basis"] + (", image grows" if self.grows else "")
 
 
 def headline_rows(frame):
     """The only rows that may give a number of a table or figure: `doubt_of` of load.py finds nothing."""
-    if frame.empty:
-        return frame
-    rows = frame[frame["headline"] & frame["cores"].notna()].copy()
+    return with_keys(frame[frame["headline"] & frame["cores"].notna()]) if len(frame) else frame
+
+
+def with_keys(rows):
+    """Rows with every column that groups them, empty where a row says nothing."""
+    rows = rows.copy()
     for name in [*KEY, "algorithm"]:
         rows[name] = rows[name].fillna("") if name in rows else ""
     rows["cores"] = rows["cores"].astype(int)
     return rows
+
+
+def of_one_size(rows):
+    """Those with about as many cells as the newest: sizes are never mixed in one number."""
+    return rows[abs(rows["cells"] / rows["cells"].iloc[-1] - 1) <= SIZE_TOLERANCE]
 
 
 def weak_series(frame):
@@ -54,20 +71,22 @@ def weak_series(frame):
     for values, group in rows.groupby(KEY, sort=False):
         alone = group[(group["algorithm"] == "podm") & (group["cores"] == 1)]
         for base in _clusters(alone["cells"]):
-            members = group[abs(group["cells"] / group["cores"] / base - 1) <= WEAK_TOLERANCE]
-            series = Series(dict(zip(KEY, values)), base, _table(members))
+            members = group[abs(group["cells"] / group["cores"] / base - 1) <= SIZE_TOLERANCE]
+            series = Series(dict(zip(KEY, values)), base, _table(members), bool(members["grows"].iloc[0]))
             found.append((len(series.table), -_octaves_from_paper(base), members.index.max(), series))
     return [series for *_, series in sorted(found, key=lambda entry: entry[:3], reverse=True)]
 
 
-def first_of(series, basis):
+def first_of(series, basis, grows=False):
     """The series of that basis to show, or None."""
-    return next((one for one in series if one.key["basis"] == basis), None)
+    return next((one for one in series if one.key["basis"] == basis and one.grows == grows), None)
 
 
-def shown_of(series):
-    """The series to show: one of each basis that there is."""
-    return [one for one in (first_of(series, basis) for basis in ("measured", "simulated")) if one is not None]
+def shown_of(series, bases=("measured", "simulated")):
+    """The series to show: of each basis one whose image is the same for all cores and one whose image grows, as far as
+    there are. One core alone shows no growth."""
+    chosen = [first_of(series, basis, grows) for basis in bases for grows in (False, True)]
+    return [one for one in chosen if one is not None and not (one.grows and len(core_counts([one.table])) < 2)]
 
 
 def core_counts(tables):
@@ -83,23 +102,28 @@ def _clusters(cells):
     """Medians of groups of sizes that lie within the tolerance of the smallest of the group."""
     rest = numpy.sort(cells.to_numpy(dtype=float))
     while rest.size:
-        near = rest <= rest[0] * (1 + WEAK_TOLERANCE)
+        near = rest <= rest[0] * (1 + SIZE_TOLERANCE)
         yield float(numpy.median(rest[near]))
         rest = rest[~near]
 
 
 def _table(members):
-    rate = members["cells"] / members["seconds"]
-    base = rate[(members["algorithm"] == "podm") & (members["cores"] == 1)]
+    rate, refining_rate = members["cells"] / members["seconds"], members["cells"] / members["refining_s"]
+    is_base = (members["algorithm"] == "podm") & (members["cores"] == 1)
+    rounds = members.get("repeat", pandas.Series(index=members.index, dtype=float))
+    base_of_round = refining_rate[is_base].groupby(rounds[is_base]).last()
     lines = {}
     for (algorithm, cores), group in members.groupby(["algorithm", "cores"]):
         line = {"n": len(group), "cells": group["cells"].median()}
         line.update(_bounds("seconds", median_interval(group["seconds"])))
         line.update(_bounds("rate", median_interval(rate[group.index])))
-        is_base = algorithm == "podm" and cores == 1
-        speedup = (1.0, numpy.nan, numpy.nan) if is_base else ratio_interval(rate[group.index], base)
+        alone = algorithm == "podm" and cores == 1
+        speedup = (1.0, numpy.nan, numpy.nan) if alone else ratio_interval(rate[group.index], rate[is_base])
         line.update(_bounds("speedup", speedup))
         line.update(_bounds("efficiency", [value / cores for value in speedup]))
+        line.update(_bounds("refining_rate", median_interval(refining_rate[group.index])))
+        ratios = (refining_rate[group.index] / rounds[group.index].map(base_of_round) / cores).dropna()
+        line.update(_bounds("refining_efficiency", (1.0, numpy.nan, numpy.nan) if alone else median_interval(ratios)))
         line.update(_phases(group))
         lines[algorithm, cores] = line
     table = pandas.DataFrame.from_dict(lines, orient="index")
@@ -109,7 +133,7 @@ def _table(members):
 
 def _phases(group):
     """Median seconds of each phase; `other` is what the phases known here leave of the whole."""
-    columns = {f"phases_s.{phase}": phase for phase in PHASES[:-1]}
+    columns = {f"timed.{phase}": phase for phase in PHASES[:-1]}
     phases = group.reindex(columns=columns).rename(columns=columns).astype(float).fillna(0.0)
     phases["other"] = (group["seconds"] - phases.sum(axis=1)).clip(lower=0)
     return phases.median()

@@ -19,9 +19,9 @@ def interval(samples):
 
 
 def median_interval(values):
-    """(median, low, high); low and high are nan for fewer than two values."""
+    """(median, low, high); low and high are nan for fewer than two values, all three for none."""
     if len(values) < 2:
-        return float(numpy.median(values)), numpy.nan, numpy.nan
+        return float(numpy.median(values)) if len(values) else numpy.nan, numpy.nan, numpy.nan
     return (float(numpy.median(values)), *interval(resampled_medians(values)))
 
 

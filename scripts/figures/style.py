@@ -8,9 +8,13 @@ GHOST = "#8c8c8c"
 COLOURS = {"podm": "#2b7bba", "pdr-podm": "#d1495b"}
 MARKERS = {"podm": "o", "pdr-podm": "s"}
 NAMES = {"podm": "PODM", "pdr-podm": "PDR.PODM"}
-PHASE_COLOURS = {"read": "#c9b458", "transform": "#8fb996", "octree": "#7a6c9d", "initial": "#e8a33d",
-                 "refine": "#d1495b", "extract": "#6d9dc5", "other": "#b0b0b0"}
-LINES = {"measured": {"linestyle": "-", "markerfacecolor": None}, "simulated": {"linestyle": ":", "markerfacecolor": "none"}}
+PHASE_COLOURS = {"allocate": "#4c6a5b", "read": "#c9b458", "transform": "#8fb996", "octree": "#7a6c9d",
+                 "initial": "#e8a33d", "refine": "#d1495b", "closing": "#8f575c", "extract": "#6d9dc5",
+                 "other": "#b0b0b0"}
+PHASE_NAMES = {"allocate": "allocation", "initial": "initial mesh", "refine": "refinement"}
+LINES = {"measured": {"linestyle": "-"}, "simulated": {"linestyle": ":", "markerfacecolor": "none"}}
+GROWING = {"linewidth": 1.0, "markersize": 4}
+REFINING = {"linestyle": "-.", "linewidth": 1.0, "markersize": 4}
 
 
 def new_figure(columns=1, rows=1, width=9.0, height=3.8):
@@ -52,25 +56,33 @@ def by_algorithm(table):
 def ghost(axes, table, column, scale=1.0):
     """The paper's series: grey and dashed, behind everything else."""
     for algorithm, part in by_algorithm(table):
-        axes.plot(part.index.get_level_values("cores"), part[column] * scale, color=GHOST, linestyle="--", linewidth=1.2,
-                  marker=MARKERS[algorithm], markersize=4, label=f"{NAMES[algorithm]}, paper", zorder=1)
+        axes.plot(part.index.get_level_values("cores"), part[column] * scale, color=GHOST, linestyle="--",
+                  linewidth=1.2, marker=MARKERS[algorithm], markersize=4, label=f"{NAMES[algorithm]}, paper", zorder=1)
 
 
-def plot_series(axes, series, column, scale=1.0):
-    """Our medians with their intervals; measured filled and solid, simulated hollow and dotted."""
-    basis = series.key["basis"]
+def plot_series(axes, series, column, scale=1.0, of="", **options):
+    """Our medians with their intervals; measured filled and solid, simulated hollow and dotted, thin where the image
+    grows. `of` ends the words of the legend, `options` change the line."""
+    options = {"linewidth": 1.8, "markersize": 6, **LINES[series.key["basis"]], **(GROWING if series.grows else {}),
+               **options}
     for algorithm, part in by_algorithm(series.table):
         middle = part[column] * scale
         spread = numpy.nan_to_num([middle - part[column + "_low"] * scale, part[column + "_high"] * scale - middle])
         axes.errorbar(part.index.get_level_values("cores"), middle, yerr=numpy.clip(spread, 0, None), capsize=3,
-                      color=COLOURS[algorithm], marker=MARKERS[algorithm], markersize=6, linewidth=1.8,
-                      label=f"{NAMES[algorithm]}, {basis}", zorder=3, **LINES[basis])
+                      color=COLOURS[algorithm], marker=MARKERS[algorithm], zorder=3,
+                      label=f"{NAMES[algorithm]}, {series.kind()}{of}", **options)
 
 
 def legend(axes, **options):
     made = axes.legend(frameon=False, fontsize=8, **options)
     for text in made.get_texts():
         text.set_color(INK)
+
+
+def legend_of(axes, ending, **options):
+    """A legend of the lines alone whose words end so."""
+    chosen = [pair for pair in zip(*axes.get_legend_handles_labels()) if pair[1].endswith(ending)]
+    legend(axes, handles=[handle for handle, _ in chosen], labels=[label for _, label in chosen], **options)
 
 
 def finish(figure, caption):
@@ -82,14 +94,16 @@ def finish(figure, caption):
     figure.set_label(caption)
 
 
-def caption_of(series):
+def caption_of(series, has_paper=True):
     """What was run, how often, and what the bars are."""
     parts = []
     for one in series:
         counts = sorted(set(one.table["n"].astype(int)))
         n = f"n\N{NO-BREAK SPACE}=\N{NO-BREAK SPACE}{counts[0]}" + (f" to {counts[-1]}" if len(counts) > 1 else "")
-        parts.append(f"{one.key['basis']}: {one.label()}, {n}")
+        parts.append(f"{one.kind()}: {one.label()}, {n}")
     text = "; ".join(parts) if parts else "no verified weak-scaling rows"
+    if not has_paper:
+        return text + "."
     if any((one.table["n"] > 1).any() for one in series):
         text += ". Medians; bars: bootstrap 95 % interval"
     return text + ". Grey, dashed: the paper, Blacklight."

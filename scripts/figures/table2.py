@@ -1,33 +1,48 @@
-"""Table 2: shares of the visits of cells and vertices by hops between the visiting and the owning node."""
+"""Table 2: shares of accesses by hops between the node that accesses and the one that owns what is accessed.
+
+As in the paper reads of the mesh are counted, visits of its cells and vertices; beside them stands the share when the
+kinds that it leaves out count too: writes of the mesh, reads of the image and of its transform.
+"""
 import numpy
 import pandas
 
 from . import paper, scaling
 from .table1 import in_order
 
-COLUMNS = ["basis", "algorithm", "cores", "hops", "share", "visits", "n"]
+COLUMNS = ["basis", "algorithm", "cores", "nodes", "hops", "share", "share_all_kinds", "visits", "n", "series"]
+PAPER_NODE = 16  # cores of a blade of the paper's machine
+KINDS = "hops_by_kind."
 
 
 def table2(frame):
-    """One line a basis, algorithm, number of cores and hops. Counts of a setting's verified rows are added up."""
+    """One line a basis, algorithm, number of cores and hops. A cell is of one trial's rows of one size: counts of its
+    repeats and seeds are added up."""
     published = paper.table2().melt(ignore_index=False, var_name="cores", value_name="share").reset_index()
-    blocks = [published.assign(basis="published", algorithm="pdr-podm", visits=numpy.nan, n=numpy.nan)]
-    rows = _rows_with_hops(frame)
-    for (basis, algorithm, cores), group in rows.groupby(["basis", "algorithm", "cores"]) if len(rows) else ():
-        counts = _sum_of(group["hops"])
-        blocks.append(pandas.DataFrame({
-            "hops": range(len(counts)), "share": counts / counts.sum(), "visits": counts, "basis": basis,
-            "algorithm": algorithm, "cores": cores, "n": len(group),
-        }))
-    return pandas.concat(blocks, ignore_index=True)[COLUMNS].astype({"n": "Int64"})
+    blocks = [published.assign(basis="published", algorithm="pdr-podm", nodes=-(-published["cores"] // PAPER_NODE),
+                               series="Table 2 of the paper")]
+    for rows in _shown(frame):
+        for (algorithm, cores), group in rows.groupby(["algorithm", "cores"]):
+            blocks.append(_block(scaling.of_one_size(group)).assign(algorithm=algorithm, cores=cores))
+    table = pandas.concat(blocks, ignore_index=True).reindex(columns=COLUMNS)
+    return table.astype({"n": "Int64", "nodes": "Int64", "cores": int})
 
 
 def readable(table):
-    """One line a number of cores, algorithm and basis; hops across, in percent."""
-    wide = table.pivot_table(index=["cores", "algorithm", "basis"], columns="hops", values="share")
-    wide.columns = [f"{hops} hops" for hops in wide.columns]
-    shown = wide.applymap(lambda share: "" if pandas.isna(share) else f"{100 * share:.2f} %").reset_index()
-    return in_order(shown)
+    """One line a number of cores, algorithm and basis; hops across, in percent. Simulated shares are so called."""
+    word = "simulated " if "simulated" in set(table["basis"]) else ""
+    lines = []
+    for (cores, algorithm, basis), group in table.groupby(["cores", "algorithm", "basis"]):
+        shares = dict(zip(group["hops"], group["share"]))
+        zero = group[group["hops"] == 0].iloc[0]
+        lines.append({"cores": cores, "algorithm": algorithm, "basis": basis,
+                      **{f"{word}{hops} hops": _percent(shares.get(hops)) for hops in range(_most_hops(table) + 1)},
+                      f"{word}0 hops, all kinds": _percent(zero["share_all_kinds"])})
+    return in_order(pandas.DataFrame(lines))
+
+
+def of_basis(table, basis):
+    """The lines of one basis."""
+    return table[table["basis"] == basis]
 
 
 def why_no_hops(frame):
@@ -37,20 +52,57 @@ def why_no_hops(frame):
     return said[-1] if said else "no verified row counts hops"
 
 
-def _rows_with_hops(frame):
-    """Of one machine, program and input: those with the most core counts, then the newest."""
+def zero_hop_share(counts):
+    """Of one row's counts: its share, or the reason why there is none."""
+    return counts[0] / sum(counts) if isinstance(counts, list) and sum(counts) else counts
+
+
+def _most_hops(table):
+    return int(table["hops"].max())
+
+
+def _percent(share):
+    return "" if share is None or pandas.isna(share) else f"{100 * share:.2f} %"
+
+
+def _block(group):
+    counts = _sum_of(group["hops"])
+    nodes = group["leaves.nodes"].max() if "leaves.nodes" in group else numpy.nan
+    return pandas.DataFrame({
+        "basis": group["basis"].iloc[0], "hops": range(len(counts)), "share": counts / counts.sum(), "visits": counts,
+        "share_all_kinds": _shares_of_all_kinds(group, len(counts)), "n": len(group), "nodes": nodes,
+        "series": _label(group.iloc[-1])})
+
+
+def _shares_of_all_kinds(group, length):
+    """nan where a row does not tell every kind."""
+    kinds = [name for name in group if name.startswith(KINDS)]
+    lists = [counts for name in kinds for counts in group[name]]
+    if not lists or not all(isinstance(counts, list) for counts in lists):
+        return numpy.full(length, numpy.nan)
+    counts = _sum_of(lists)[:length]
+    return counts / counts.sum()
+
+
+def _label(row):
+    parts = (row["experiment"], row["setting"], row["image"], f"{row['cells'] / 1e6:.2g} M cells", row["machine"])
+    return ", ".join(part for part in parts if part)
+
+
+def _shown(frame):
+    """Of each basis the rows of one machine, program, trial and image: those with the most core counts, then the most
+    cells, then the newest."""
     rows = scaling.headline_rows(frame)
     if rows.empty or "hops" not in rows:
-        return rows.iloc[:0]
+        return []
     rows = rows[[isinstance(hops, list) and sum(hops) > 0 for hops in rows["hops"]]]
-    if rows.empty:
-        return rows
     chosen = {}
-    for values, group in rows.groupby(scaling.KEY, sort=False):
-        rank = (group["cores"].nunique(), group.index.max())
-        if rank > chosen.get(values[0], ((0, 0), None))[0]:
+    for values, group in rows.groupby(scaling.KEY, sort=False) if len(rows) else ():
+        has_pdr_podm = (group["algorithm"] == "pdr-podm").any()
+        rank = (has_pdr_podm, group["cores"].nunique(), group["cells"].max(), group.index.max())
+        if values[0] not in chosen or rank > chosen[values[0]][0]:
             chosen[values[0]] = (rank, group)
-    return pandas.concat([group for _, group in chosen.values()])
+    return [group for _, group in chosen.values()]
 
 
 def _sum_of(lists):

@@ -7,20 +7,32 @@ COLUMNS = ["basis", "level", "memory_module", "size", "access_clock_cycles"]
 
 
 def table3(frame):
-    """One line a basis and level. Cycles are text: as printed, or medians of the newest machine's, or why there are none."""
-    blocks = [paper.table3().reset_index().assign(basis="published")]
-    levels = _levels(frame)
-    for (level, module), group in levels.groupby(["level", "module"]) if len(levels) else ():
-        cycles = pandas.to_numeric(group["cycles"], errors="coerce").median()
-        blocks.append(pandas.DataFrame([{
-            "basis": "measured", "level": level, "memory_module": module, "size": _size(group["size_bytes"].iloc[-1]),
-            "access_clock_cycles": group["cycles"].iloc[-1] if pandas.isna(cycles) else f"{cycles:.3g}"}]))
-    return pandas.concat(blocks, ignore_index=True)[COLUMNS]
+    """One line a basis and level. Cycles are text: as printed, or medians of the newest machine's, or why there are
+    none."""
+    published = paper.table3().reset_index().assign(basis="published")
+    lines = [{"basis": "measured", "level": row["level"], "memory_module": row["module"],
+              "size": _size(row["size_bytes"]), "access_clock_cycles": row["text"]}
+             for _, row in costs(frame).iterrows()]
+    return pandas.concat([published, pandas.DataFrame(lines)], ignore_index=True)[COLUMNS]
 
 
 def readable(table):
     return table[["level", "memory_module", "size", "access_clock_cycles", "basis"]].rename(
         columns={"memory_module": "memory module", "access_clock_cycles": "clock cycles"})
+
+
+def costs(frame):
+    """One line a level: median `cycles`, nan where they could not be measured, and as `text`, and whether it is memory
+    of another node."""
+    levels = _levels(frame)
+    lines = []
+    for (level, module), group in levels.groupby(["level", "module"]) if len(levels) else ():
+        cycles = pandas.to_numeric(group["cycles"], errors="coerce").dropna().median()
+        lines.append({"level": level, "module": module, "size_bytes": group["size_bytes"].iloc[-1], "cycles": cycles,
+                      "text": group["cycles"].iloc[-1] if pandas.isna(cycles) else f"{cycles:.3g}",
+                      "is_another": "another node" in module})
+    columns = ["level", "module", "size_bytes", "cycles", "text", "is_another"]
+    return pandas.DataFrame(lines, columns=columns).astype({"is_another": bool})
 
 
 def _levels(frame):

@@ -1,4 +1,5 @@
-"""Makes one HTML page from records: claims with verdicts, tables, figures, a mesh to turn and cut, the environment.
+"""Makes one HTML page from records: does it work, how fast, how does it scale, what of the paper holds; then all that
+these answers rest on: verdicts, tables, figures, a mesh to turn and cut, the environment.
 
 It needs no network. Exit codes: 0 made, 2 bad usage or input.
 """
@@ -23,17 +24,17 @@ def main(arguments=None):
                         help="file (default: %(default)s)")
     arguments = parser.parse_args(arguments)
     try:
-        records, report, schedule, mesh = read_inputs(arguments)
+        records, others = read_inputs(arguments)
     except INPUT_ERRORS as error:
         print(f"report: {error}", file=sys.stderr)
         return 2
     packed, fault = None, "No mesh was given (--mesh)."
     try:
-        packed = pack(mesh) if mesh else None
+        packed = pack(others["mesh"]) if others["mesh"] else None
     except TooManyCells as error:
         fault = f"No mesh is shown: {error}."
         print(f"report: {error}", file=sys.stderr)
-    outcome = make(records.frame, report, schedule, mesh)
+    outcome = make(records.frame, **others)
     arguments.output.parent.mkdir(parents=True, exist_ok=True)
     write_text(arguments.output, page(records, outcome, packed, fault))
     for line in records.problems:

@@ -1,12 +1,14 @@
-"""The page's HTML from an Outcome. Everything is inlined; every text is escaped."""
+"""The page's HTML from an Outcome: four answers first, then everything they rest on. Everything is inlined."""
 import json
 from html import escape
 from pathlib import Path
 
-import pandas
-
-from figures.outcome import readable_verdicts
+from figures import experiment_verdicts
+from figures.outcome import readable_experiments, readable_verdicts
 from figures.write import svg_of
+
+from .first_screen import first_screen
+from .html import box, fold, table_html, text_of
 
 HERE = Path(__file__).parent
 DOI = "https://doi.org/10.1016/j.proeng.2015.10.119"
@@ -14,14 +16,30 @@ SECTIONS = {"claims": "Claims", "guarantees": "Guarantees", "tables": "Tables", 
             "environment": "Environment"}
 FIGURE_TITLES = {"fig1": "Figure 1: quality of the cells",
                  "fig2b": "Figure 2 (b): two active leaves and their rings",
-                 "fig4a": "Figure 4 (a): speed-up and efficiency", "fig4b": "Figure 4 (b): time and elements per second"}
-TABLE_TITLES = {"table1": "Table 1: weak scaling", "table2": "Table 2: visits by hops",
-                "table3": "Table 3: memory levels", "cache": "Cache behaviour"}
+                 "fig4a": "Figure 4 (a): speed-up and efficiency",
+                 "fig4b": "Figure 4 (b): time and elements per second"}
+TABLE_TITLES = {"table1": "Table 1: weak scaling", "table2": "Table 2: accesses by hops",
+                "table3": "Table 3: memory levels", "peers": "Beside other meshers, one core",
+                "table1_simulated": "Table 1, simulated: weak scaling",
+                "table2_simulated": "Table 2, simulated: accesses by hops",
+                "simulated": "Simulated: every trial of virtual workers", "cache": "Cache behaviour"}
+FOLDED_TABLES = ("simulated", "cache")
+NOTES = {
+    "table1": "Refining: octree, initial mesh, refinement and closing alone; its efficiency is the median of ratios "
+              "within rounds.",
+    "table2": "All kinds: with writes of the mesh and reads of the image and its transform, which the other columns "
+              "leave out.",
+    "simulated": "Seconds, losses and hops are of virtual workers. The wall time is what playing them took here, and "
+                 "no time of theirs.",
+    "peers": "Each mesher has the image and bounds of PODM. One that tells no seconds of reading has no rate by "
+             "equation 1.",
+}
+NOTES["table2_simulated"] = NOTES["table2"]
 
 
 def page(records, outcome, mesh=None, mesh_fault=""):
     """`mesh`: of viewer.pack; without one, `mesh_fault` says why."""
-    parts = {"claims": _claims(outcome), "guarantees": _guarantees(records.frame), "tables": _tables(outcome),
+    parts = {"claims": _claims(outcome), "guarantees": _guarantees(outcome), "tables": _tables(outcome),
              "figures": _figures(outcome), "mesh": _viewer(mesh, mesh_fault), "environment": _environment(records)}
     body = "\n".join(_section(name, title, parts[name]) for name, title in SECTIONS.items())
     links = " ".join(f'<a href="#{name}">{title}</a>' for name, title in SECTIONS.items())
@@ -38,13 +56,12 @@ def page(records, outcome, mesh=None, mesh_fault=""):
 <body>
 <header>
 <h1>Parallel Delaunay image-to-mesh: results</h1>
-<p>Beside the values of <a href="{DOI}">Feng, Tsolakis, Chernikov and Chrisochoides, IMR24, 2015</a>. Published,
-measured and simulated values are never mixed; no mesh gives a number unless it verified. Machines differ, so shapes
-are compared, not seconds.</p>
-{_counts(records, outcome)}
-<nav aria-label="Sections">{links}</nav>
+<p class="faint">{_machines(records.frame)} Beside the values of <a href="{DOI}">Feng, Tsolakis, Chernikov and
+Chrisochoides, IMR24, 2015</a>. Published, measured and simulated values are never mixed.</p>
 </header>
 <main>
+{first_screen(records.frame, outcome)}
+<nav aria-label="Sections">{links}</nav>
 {body}
 </main>
 {script}
@@ -53,86 +70,68 @@ are compared, not seconds.</p>
 """
 
 
+def _machines(frame):
+    if frame.empty:
+        return "No trials."
+    fit = int(frame["headline"].sum())
+    machines = " and ".join(escape(name) for name in frame["machine"].unique())
+    return f"{len(frame)} trials on {machines}, {fit} of them verified and fit for numbers."
+
+
 def _section(name, title, content):
     heading = f'<h2 id="{name}-title">{title}</h2>'
     return f'<section id="{name}" aria-labelledby="{name}-title">{heading}\n{content}\n</section>'
 
 
-def _box(title, content):
-    """A box that scrolls sideways where the page is narrower than its content."""
-    return f'<div class="wide" tabindex="0" role="region" aria-label="{escape(title, quote=True)}">{content}</div>'
-
-
-def table_html(table, title, row_classes=None):
-    """A table in a box; a column `verdict` is marked, the first column heads its row."""
-    head = "".join(f'<th scope="col">{escape(str(name))}</th>' for name in table.columns)
-    lines = []
-    for position, row in enumerate(table.itertuples(index=False)):
-        cells = [_cell(name, value, is_first=at == 0) for at, (name, value) in enumerate(zip(table.columns, row))]
-        kind = f' class="{row_classes[position]}"' if row_classes is not None else ""
-        lines.append(f"<tr{kind}>{''.join(cells)}</tr>")
-    rows = "\n".join(lines)
-    return _box(title, f"<table><thead><tr>{head}</tr></thead>\n<tbody>{rows}</tbody></table>")
-
-
-def _cell(name, value, is_first):
-    if is_first:
-        return f'<th scope="row">{escape(_text(value))}</th>'
-    if name == "verdict":
-        return f'<td><span class="verdict {escape(value)}">{escape(value.replace("_", " "))}</span></td>'
-    text = _text(value)
-    kind = ' class="words"' if len(text) > 30 else ' class="number"' if text[:1].isdigit() else ""
-    return f"<td{kind}>{escape(text)}</td>"
-
-
-def _text(value):
-    if value is None or value is pandas.NA or value != value:
-        return ""
-    return f"{value:.4g}" if isinstance(value, float) else str(value)
-
-
-def _counts(records, outcome):
-    verdicts = [one["verdict"] for one in outcome.verdicts["cells"] + outcome.verdicts["claims"]]
-    frame = records.frame
-    counts = [
-        (len(frame), "trials recorded"),
-        (int(frame["headline"].sum()) if len(frame) else 0, "of them verified and fit for numbers"),
-        (verdicts.count("agrees") + verdicts.count("better"), "values and claims agree or are better"),
-        (verdicts.count("differs"), "differ"),
-        (verdicts.count("cannot_fill"), "cannot be filled, with the reason"),
-    ]
-    return '<ul class="counts">' + "".join(f"<li><b>{number}</b>{words}</li>" for number, words in counts) + "</ul>"
-
-
 def _claims(outcome):
     claims, cells = readable_verdicts(outcome.verdicts)
-    return (f"<p>What the paper finds, judged on our records by shape.</p>\n{table_html(claims, 'Claims')}\n"
-            f"<details><summary>Every cell of Tables 1 and 2: {len(cells)} verdicts</summary>\n"
-            f"{table_html(cells, 'Cells of Tables 1 and 2')}</details>")
+    return (f"<p>What the paper finds, judged on our records by shape: machines differ, so ratios and trends are "
+            f"compared, not seconds.</p>\n{_split(claims, 'Claims of the paper', 'cannot_fill')}\n"
+            f"<h3>Claims of our experiments</h3>\n{_experiments(outcome)}\n"
+            f"<h3>Cells of Tables 1 and 2</h3>\n{_split(cells, 'Cells of Tables 1 and 2', 'cannot_fill', False)}")
 
 
-def _guarantees(frame):
+def _experiments(outcome):
+    if outcome.experiments is None:
+        return f'<p class="faint">{escape(experiment_verdicts.HOW)}</p>'
+    return _split(readable_experiments(outcome.experiments), "Claims of our experiments", "cannot_be_decided")
+
+
+def _split(table, title, undecided, is_open=True):
+    """What is decided, then what is not, folded."""
+    is_decided = table["verdict"] != undecided
+    made = []
+    for part, words, shown in ((table[is_decided], "decided", is_open),
+                               (table[~is_decided], "not decided here", False)):
+        if len(part):
+            made.append(fold(f"{len(part)} {words}", table_html(part, f"{title}, {words}"), shown))
+    return "\n".join(made)
+
+
+def _guarantees(outcome):
     """How many meshes each claim of podm-verify was decided for."""
-    names = [name for name in frame.columns if name.startswith("verdicts.")]
-    if not names:
-        return "<p>No mesh was verified.</p>"
-    lines = [{"claim": name.removeprefix("verdicts.").replace("_", " "),
-              "verdict": "fail" if (frame[name] == "fail").any() else "pass" if (frame[name] == "pass").any() else "not_run",
-              **{word.replace("_", " "): int((frame[name] == word).sum()) for word in ("pass", "fail", "not_run")}}
-             for name in sorted(names)]
-    return ("<p>Claims about meshes, decided exactly by <code>podm-verify</code> after the clock stopped: numbers of "
-            "meshes.</p>\n" + table_html(pandas.DataFrame(lines), "Guarantees"))
+    made = ["<p>Claims about meshes, decided exactly by <code>podm-verify</code> after the clock stopped: numbers of "
+            "meshes.</p>"]
+    for name, title in (("guarantees", "Our meshes"), ("guarantees_of_others", "Meshes of other meshers")):
+        if name in outcome.tables:
+            made.append(f"<h3>{title}</h3>\n{table_html(outcome.tables[name][1], title)}")
+    if "guarantees_of_others" in outcome.tables:
+        made.append('<p class="faint">Other meshers answer for the claims that they promise; ours for all.</p>')
+    return "\n".join(made) if len(made) > 1 else "<p>No mesh was verified.</p>"
 
 
 def _tables(outcome):
     made = []
-    for name, (data, shown) in outcome.tables.items():
-        note = ""
-        if "series" in data:
-            series = escape("; ".join(data["series"].unique()))
-            note = f'<p class="faint">{series}. In brackets: bootstrap 95 % interval.</p>'
-        box = table_html(shown, TABLE_TITLES[name], list(shown["basis"]))
-        made.append(f"<h3>{TABLE_TITLES[name]}</h3>\n{box}\n{note}")
+    for name, title in TABLE_TITLES.items():
+        if name not in outcome.tables:
+            continue
+        data, shown = outcome.tables[name]
+        classes = list(shown["basis"]) if "basis" in shown else None
+        series = "; ".join(data["series"].dropna().unique()) + "." if "series" in data else ""
+        brackets = "In brackets: bootstrap 95 % interval." if name in ("table1", "table1_simulated", "peers") else ""
+        note = " ".join(part for part in (series, brackets, NOTES.get(name, "")) if part)
+        content = table_html(shown, title, classes) + (f'\n<p class="faint">{escape(note)}</p>' if note else "")
+        made.append(fold(title, content, name not in FOLDED_TABLES))
     return "\n".join(made)
 
 
@@ -140,8 +139,8 @@ def _figures(outcome):
     made = []
     for name, figure in outcome.figures.items():
         title = FIGURE_TITLES[name]
-        box = _box(title, _responsive(svg_of(figure, name), title))
-        made.append(f"<figure><h3>{title}</h3>{box}<figcaption>{escape(figure.get_label())}</figcaption></figure>")
+        picture = box(title, _responsive(svg_of(figure, name), title))
+        made.append(f"<figure><h3>{title}</h3>{picture}<figcaption>{escape(figure.get_label())}</figcaption></figure>")
     for name, reason in outcome.missing.items():
         made.append(f'<p class="faint">{FIGURE_TITLES[name]}: not drawn, {escape(reason)}.</p>')
     return "\n".join(made)
@@ -182,11 +181,12 @@ def _environment(records):
     skipped = "".join(f"<li>{escape(problem)}</li>" for problem in records.problems)
     doubts = frame.loc[~frame["headline"], "doubt"].value_counts() if len(frame) else {}
     unverified = "".join(f"<li>{count} × {escape(doubt)}</li>" for doubt, count in doubts.items())
-    return (f"<dl>{lines}</dl>" + (f"<h3>Rows that give no number</h3><ul>{unverified}</ul>" if unverified else "")
-            + (f"<h3>Skipped</h3><ul>{skipped}</ul>" if skipped else ""))
+    return ((f"<h3>Rows that give no number</h3><ul>{unverified}</ul>" if unverified else "")
+            + (f"<h3>Skipped</h3><ul>{skipped}</ul>" if skipped else "")
+            + fold("The machine and what ran on it", f"<dl>{lines}</dl>"))
 
 
 def _distinct(column):
     """Values that rows give; of many, how many and the first."""
-    values = list(dict.fromkeys(str(value) for value in column if _text(value)))
+    values = list(dict.fromkeys(str(value) for value in column if text_of(value)))
     return ", ".join(values) if len(values) <= 2 else f"{values[0]} ({len(values)} values)"

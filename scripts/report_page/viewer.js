@@ -126,7 +126,8 @@ async function show(root, mesh) {
       canvas.height = canvas.clientHeight * ratio;
       gl.viewport(0, 0, canvas.width, canvas.height);
       const scale = 0.92 * view.zoom * Math.min(canvas.width / view.wide, canvas.height / view.tall);
-      gl.uniform3f(uniform("scale"), 2 * scale / canvas.width, 2 * scale / canvas.height, -1.9 / Math.hypot(...mesh.size));
+      const depth = -1.9 / Math.hypot(...mesh.size);
+      gl.uniform3f(uniform("scale"), 2 * scale / canvas.width, 2 * scale / canvas.height, depth);
       gl.uniformMatrix3fv(uniform("turn"), false, turning(view.yaw, view.pitch));
       gl.uniform3fv(uniform("axis"), [0, 1, 2].map((one) => Number(one === Number(axis.value))));
       gl.uniform1f(uniform("cut"), mesh.size[axis.value] * cut.value);
@@ -176,7 +177,9 @@ function steer(canvas, move) {
     if (fingers.size === 2) move(0, 0, gap() / wide);
     else move((event.clientX - before.x) / 150, (event.clientY - before.y) / 150);
   });
-  for (const end of ["pointerup", "pointercancel"]) canvas.addEventListener(end, (event) => fingers.delete(event.pointerId));
+  for (const end of ["pointerup", "pointercancel"]) {
+    canvas.addEventListener(end, (event) => fingers.delete(event.pointerId));
+  }
   canvas.addEventListener("wheel", (event) => {
     event.preventDefault();
     move(0, 0, Math.exp(-event.deltaY / 500));
@@ -193,7 +196,7 @@ function steer(canvas, move) {
 // A switch for each label, of most cells first.
 function list(place, labels, toggle) {
   for (const { value, colour, cells } of [...labels].sort((a, b) => b.cells - a.cells)) {
-    const line = document.createElement("label"), box = document.createElement("input"), patch = document.createElement("i");
+    const [line, box, patch] = ["label", "input", "i"].map((name) => document.createElement(name));
     box.type = "checkbox";
     box.checked = true;
     box.addEventListener("input", () => toggle(value, box.checked));

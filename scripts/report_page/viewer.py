@@ -18,8 +18,8 @@ class TooManyCells(Exception):
 def pack(mesh):
     """What viewer.js reads. Points lose all but 16 bits a coordinate. Raises TooManyCells."""
     if len(mesh.cells) > MAX_CELLS:
-        raise TooManyCells(f"{len(mesh.cells):,} cells are too many for a page; give it a mesh of at most {MAX_CELLS:,}, "
-                           "for example of `podm mesh --target-elements 100000`")
+        raise TooManyCells(f"{len(mesh.cells):,} cells are too many for a page; give it a mesh of at most "
+                           f"{MAX_CELLS:,}, for example of `podm mesh --target-elements 100000`")
     used, cells = numpy.unique(mesh.cells, return_inverse=True)
     cells = _outward(mesh.points[used], cells.reshape(-1, 4))
     points, low, step_mm = _quantized(mesh.points[used])

@@ -6,8 +6,10 @@ import shutil
 import subprocess
 import tempfile
 
-FLAGS = ["--headless=new", "--no-sandbox", "--remote-debugging-pipe", "--disable-gpu-sandbox", "--use-angle=swiftshader",
-         "--enable-unsafe-swiftshader", "--hide-scrollbars", "--no-first-run", "--disable-dev-shm-usage"]
+FLAGS = ["--headless=new", "--no-sandbox", "--remote-debugging-pipe", "--disable-gpu-sandbox",
+         "--use-angle=swiftshader", "--enable-unsafe-swiftshader", "--hide-scrollbars", "--no-first-run",
+         "--disable-dev-shm-usage", "--disable-quic", "--disable-background-networking", "--disable-component-update",
+         "--disable-sync"]
 
 
 def find_chromium():
@@ -27,8 +29,8 @@ class Browser:
         # Chromium reads commands from descriptor 3 and answers on 4.
         command = f'exec "$@" 3<&{to_browser} 4>&{from_browser}'
         self._process = subprocess.Popen(
-            ["bash", "-c", command, "-", find_chromium(), *FLAGS, f"--user-data-dir={self._profile.name}", "about:blank"],
-            pass_fds=(to_browser, from_browser), stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL)
+            ["bash", "-c", command, "-", find_chromium(), *FLAGS, f"--user-data-dir={self._profile.name}",
+             "about:blank"], pass_fds=(to_browser, from_browser), stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL)
         os.close(to_browser)
         os.close(from_browser)
         self._answers = os.fdopen(self._in, "rb")
@@ -50,10 +52,12 @@ class Browser:
     def open(self, path, width, height=900, scheme="light"):
         """Loads a file as on a screen of that width, and waits until it is drawn."""
         self.errors.clear()
-        self._send("Emulation.setDeviceMetricsOverride", width=width, height=height, deviceScaleFactor=1, mobile=width < 600)
+        self._send("Emulation.setDeviceMetricsOverride", width=width, height=height, deviceScaleFactor=1,
+                   mobile=width < 600)
         self._send("Emulation.setEmulatedMedia", features=[{"name": "prefers-color-scheme", "value": scheme}])
         self._send("Page.navigate", url=path.resolve().as_uri())
-        self.evaluate("new Promise(done => document.readyState === 'complete' ? done() : addEventListener('load', done))")
+        self.evaluate("new Promise(done => "
+                      "document.readyState === 'complete' ? done() : addEventListener('load', done))")
         self.evaluate("new Promise(done => setTimeout(done, 1500))")  # the mesh is unpacked and drawn after the load
 
     def evaluate(self, expression):

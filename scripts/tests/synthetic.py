@@ -5,9 +5,11 @@ import random
 
 PASSED = {claim: "pass" for claim in ("structure", "delaunay", "radius_edge", "boundary_angles", "size", "conformity")}
 ROW = {
-    "schema": 2, "experiment": "weak", "trial": "made-up", "warmup": False, "status": "ok", "reason": "",
-    "algorithm": "podm", "input": {"path": "phantom:made-up"}, "threads": {"asked": 1, "used": 1},
-    "phases_s": {"read": 1.0, "transform": 1.0, "refine": 24.0, "extract": 1.18, "write": 5.0},
+    "schema": 3, "experiment": "weak", "trial": "made-up", "repeat": 1, "warmup": False, "status": "ok", "reason": "",
+    "algorithm": "podm", "input": {"name": "phantom:made-up", "path": "inputs/made-up.nii.gz"},
+    "threads": {"asked": 1, "used": 1}, "virtual": None, "replay": None,
+    "phases_s": {"read": 1.0, "transform": 1.0, "refine": 24.0, "extract": 1.18, "write": 5.0, "calibrate": 60.0,
+                 "draw": 7.0},
     "cells": 3_000_000, "quality": {"max_radius_edge": 1.92, "min_facet_angle_deg": 30.4}, "verdicts": PASSED,
     "programs": {"podm": {"sha256": "ab" * 32, "version": "podm 0.1.0"}},
     "environment": {"cpu": "Made-up CPU", "usable_processors": 2, "kernel": "Linux", "compiler": "GNU 12"},
@@ -16,9 +18,16 @@ BIG_MACHINE = ROW["environment"] | {"usable_processors": 256}
 
 
 def row(algorithm="podm", cores=1, **changes):
+    """Of a run in virtual time, its seconds are virtual; those of the machine at hand mean nothing then."""
     made = copy.deepcopy(ROW)
     made.update(algorithm=algorithm, threads={"asked": cores, "used": cores}, cells=3_000_000 * cores)
     made.update(changes)
+    if made.get("executor") == "virtual" and not made["virtual"]:
+        timed = {phase: made["phases_s"][phase] for phase in ("initial", "refine") if phase in made["phases_s"]}
+        timed["refine"] += sum(made["phases_s"].get(phase, 0) for phase in ("read", "transform", "octree", "extract"))
+        made["virtual"] = {"cost": "measured", "refine_s": sum(timed.values()), "phases_s": timed}
+        made.update(phases_s={"read": 1.0, "refine": 1e6, "write": 9.0}, process={"wall_s": 1234.5},
+                    overhead_s={"contention": 3.0, "begging": 2.0, "rollback": 1.0})
     return made
 
 
@@ -27,13 +36,47 @@ def like_the_paper(published, repeats=5, spread=0.02, **changes):
     changes.setdefault("environment", BIG_MACHINE)
     noise = random.Random(1)
     for (algorithm, cores), line in published.iterrows():
-        for _ in range(repeats):
+        for repeat in range(1, repeats + 1):
             total = line["seconds"] * (1 + noise.uniform(-spread, spread))
             phases = {"read": 0.02 * total, "transform": 0.03 * total, "refine": 0.9 * total, "extract": 0.05 * total,
                       "write": 9.0}
             if algorithm == "pdr-podm":
                 phases.update(octree=0.02 * total, initial=0.18 * total, refine=0.7 * total)
-            yield row(algorithm, cores, cells=int(line["cells"]), phases_s=phases, **changes)
+            yield row(algorithm, cores, cells=int(line["cells"]), phases_s=phases, repeat=repeat, **changes)
+
+
+def with_hops(rows, shares):
+    """Counts by hops for each row of PDR.PODM: `shares` of each number of cores, 16 cores a node."""
+    for one in rows:
+        cores = one["threads"]["used"]
+        if one["algorithm"] == "pdr-podm" and cores in shares:
+            one["hops"] = [int(1e7 * share) for share in shares[cores]]
+            one["leaves"] = {"nodes": -(-cores // 16)}
+        yield one
+
+
+def with_levels(cycles):
+    """A row that measured memory levels: caches, the own node's memory, another node's."""
+    modules = ["L1 cache", "L2 cache", "L3 cache", "memory of the own node 0", "memory of another node 1"]
+    return row(memory_levels=[{"level": level, "module": module, "size_bytes": 2**20, "cycles": cost}
+                              for level, (module, cost) in enumerate(zip(modules, cycles), start=1)])
+
+
+def peer(name, cells=1_000_000, **changes):
+    """A row of another mesher, which promises one claim and misses another."""
+    made = row(name, cells=cells, promises=["structure"], verdicts={**PASSED, "delaunay": "fail"},
+               phases_s={"refine": 10.0, "write": 3.0}, **changes)
+    made["programs"]["peer"] = {"name": name, "version": "made up"}
+    return made
+
+
+def experiment_verdicts(**verdicts):
+    """What podm-bench writes: a claim by name and verdict, all of one experiment."""
+    claims = [{"name": name, "statement": f"{name} is so", "basis": "measured", "verdict": verdict,
+               "reason": f"because of <{name}>", "value": 1.5, "bound": 2.0, "n": 3}
+              for name, verdict in verdicts.items()]
+    return {"schema": "podm-bench-verdicts/1", "experiments": [
+        {"experiment": "weak_scaling", "title": "Weak scaling", "claim": "so", "paper": "Table 1", "claims": claims}]}
 
 
 def schedule(side=9):
@@ -42,8 +85,8 @@ def schedule(side=9):
     head = {"schema": "podm-schedule/1", "algorithm": "pdr-podm", "leaves": leaves,
             "mesh_to_grid": [0.1, 0, 0, 0, 0, 0.1, 0, 0, 0, 0, 0.1, 0]}
     active = [(2 + 2 * side, 0, 0.0, 1.0, 900), (6 + 6 * side, 1, 0.5, 1.5, 800), (0, 0, 2.0, 3.0, 999)]
-    return [head] + [{"leaf": leaf, "node": node, "begin_s": begin, "end_s": end, "operations": operations, "deferred": 0,
-                      "touched_leaves": [leaf]} for leaf, node, begin, end, operations in active]
+    return [head] + [{"leaf": leaf, "node": node, "begin_s": begin, "end_s": end, "operations": operations,
+                      "deferred": 0, "touched_leaves": [leaf]} for leaf, node, begin, end, operations in active]
 
 
 def report():

@@ -5,20 +5,14 @@ import unittest
 import paths  # noqa: F401
 import pandas
 import synthetic
-from figures import cache, fig1, fig4a, fig4b, outcome, paper, scaling, spread, table1, table2, table3, verdicts
+from figures import (cache, experiment_verdicts, fig1, fig4a, fig4b, guarantees, outcome, paper, peers, scaling,
+                     simulated, spread, table1, table2, table3)
 from figures.load import derived
 from figures.write import markdown, svg_of
 
 
 def frame_of(rows):
     return pandas.json_normalize([{**row, **derived(row)} for row in rows], sep=".")
-
-
-def with_hops(rows, shares):
-    for row in rows:
-        if row["algorithm"] == "pdr-podm":
-            row["hops"] = [int(1e6 * share) for share in shares]
-        yield row
 
 
 class Spread(unittest.TestCase):
@@ -55,12 +49,14 @@ class Scaling(unittest.TestCase):
         rows = [synthetic.row(), synthetic.row(executor="virtual"), synthetic.row(cores=64, executor="virtual")]
         series = scaling.weak_series(frame_of(rows))
         self.assertEqual({one.key["basis"]: len(one.table) for one in series}, {"measured": 1, "simulated": 2})
-        self.assertEqual(set(table1.table1(series)["basis"]), {"published", "measured", "simulated"})
+        self.assertEqual(set(table1.table1(series)["basis"]), {"published", "measured"})
+        self.assertEqual(set(table1.table1_simulated(series)["basis"]), {"simulated"})
 
     def test_machines_programs_and_inputs_are_kept_apart(self):
         other = synthetic.row()["environment"] | {"cpu": "Another"}
         rows = [synthetic.row(), synthetic.row(cores=2), synthetic.row(cores=2, environment=other),
-                synthetic.row(cores=2, input={"path": "other.nii"}), synthetic.row(cores=2, programs={})]
+                synthetic.row(cores=2, input={"name": "other.nii"}), synthetic.row(cores=2, programs={}),
+                synthetic.row(cores=2, trial="made-up,contention=random")]
         (series,) = scaling.weak_series(frame_of(rows))
         self.assertEqual(series.table.loc[("podm", 2), "n"], 1)
 
@@ -72,8 +68,46 @@ class Scaling(unittest.TestCase):
         rows = [synthetic.row(cells=cells) for cells in (300_000, 3_000_000, 1_000_000)]
         self.assertEqual([series.cells_per_core for series in scaling.weak_series(frame_of(rows))], [3e6, 1e6, 3e5])
 
+    def test_refining_alone_is_a_median_of_ratios_within_rounds(self):
+        """The machine's speed drifts from round to round; each has its own. The cores share the transform."""
+        rows = [synthetic.row(cores=cores, repeat=repeat, cells=3_000_000 * cores,
+                              phases_s={"read": 1.0, "transform": 5.0 / cores, "calibrate": 99.0,
+                                        "refine": speed * 10.0 / efficiency})
+                for repeat, speed in ((1, 1.0), (2, 1.7), (3, 0.6))
+                for cores, efficiency in ((1, 1.0), (2, 0.96 if repeat == 1 else 0.98))]
+        (series,) = scaling.weak_series(frame_of(rows))
+        line = series.table.loc[("podm", 2)]
+        self.assertAlmostEqual(line["refining_efficiency"], 0.98)
+        self.assertLessEqual(line["refining_efficiency_low"], 0.98)
+        self.assertNotAlmostEqual(line["efficiency"], 0.98, places=2)
+        caption = fig4a.fig4a([series]).get_label()
+        by_equation_1 = f"{100 * line['efficiency']:.0f} % by equation 1"
+        self.assertIn(f"PODM on 2 cores has {by_equation_1} and 98 % in refining", caption)
+
+    def test_refining_includes_the_initial_mesh(self):
+        phases = {"read": 5.0, "octree": 1.0, "initial": 2.0, "refine": 20.0, "closing": 1.0, "extract": 3.0}
+        (series,) = scaling.weak_series(frame_of([synthetic.row(), synthetic.row("pdr-podm", phases_s=phases)]))
+        self.assertEqual(series.table.loc[("pdr-podm", 1), "refining_rate"], 3e6 / 24)
+
+    def test_a_round_without_one_core_gives_no_ratio(self):
+        rows = [synthetic.row(), synthetic.row(cores=2, repeat=2)]
+        (series,) = scaling.weak_series(frame_of(rows))
+        self.assertTrue(math.isnan(series.table.loc[("podm", 2), "refining_efficiency"]))
+        shown = table1.readable(table1.table1([series]))
+        self.assertEqual(list(shown[shown["cores"] == 2]["refining, efficiency %"]), [""])
+
+    def test_an_image_that_grows_is_a_series_of_its_own(self):
+        rows = [synthetic.row(cores=cores, trial=f"{name},threads={cores}", input={"name": f"{image}@{side * cores}"})
+                for name, image, side in (("0.5M", "phantom:abdomen", 0), ("0.5M-growing", "phantom:abdomen", 128))
+                for cores in (1, 2)]
+        series = scaling.weak_series(frame_of(rows))
+        self.assertEqual({one.grows: len(one.table) for one in series}, {False: 2, True: 2})
+        shown = table1.readable(table1.table1(series))
+        self.assertEqual(list(shown[shown["cores"] == 2]["images"]), ["one", "growing"])
+        self.assertIn("an image that grows with the cores", scaling.first_of(series, "measured", grows=True).label())
+
     def test_phases_of_other_names_and_peers_are_kept(self):
-        rows = [synthetic.row(phases_s={"refine": 20.0, "close": 5.0, "write": 1.0}), synthetic.row("some-peer")]
+        rows = [synthetic.row(phases_s={"refine": 20.0, "shut": 5.0, "write": 1.0}), synthetic.row("some-peer")]
         series = scaling.weak_series(frame_of(rows))
         self.assertEqual(series[0].table.loc[("podm", 1), "other"], 5.0)
         self.assertIn("some-peer", set(table1.table1(series)["algorithm"]))
@@ -86,16 +120,123 @@ class Scaling(unittest.TestCase):
 
 
 class Hops(unittest.TestCase):
+    def rows(self, *hops, cores=32, **changes):
+        return [synthetic.row("pdr-podm", cores, environment=synthetic.BIG_MACHINE, hops=one, **changes)
+                for one in hops]
+
+    def ours(self, rows):
+        return table2.table2(frame_of(rows)).query("basis == 'measured'").set_index(["cores", "hops"])
+
     def test_counts_are_added_up_into_shares(self):
-        rows = [synthetic.row("pdr-podm", 32, environment=synthetic.BIG_MACHINE, hops=hops)
-                for hops in ([90, 10], [100, 0, 0])]
-        ours = table2.table2(frame_of(rows)).query("basis == 'measured'").set_index("hops")["share"]
-        self.assertEqual([ours[0], ours[1], ours[2]], [0.95, 0.05, 0])
+        shares = self.ours(self.rows([90, 10], [100, 0, 0]))["share"]
+        self.assertEqual([shares[32, hops] for hops in range(3)], [0.95, 0.05, 0])
+
+    def test_experiments_sizes_and_settings_are_never_added_up(self):
+        shown = self.rows([99, 1], cores=32) + self.rows([98, 2], cores=64)
+        others = [*self.rows([1, 99], experiment="another"), *self.rows([1, 99], trial="made-up,initial_ratio=2"),
+                  *self.rows([1, 99], input={"name": "another.nii"}), *self.rows([1, 99], cells=5)]
+        ours = self.ours([*others, *shown])
+        self.assertEqual((ours.loc[(32, 0), "share"], ours.loc[(32, 0), "n"]), (0.99, 1))
+
+    def test_shares_with_the_kinds_that_the_paper_leaves_out(self):
+        kinds = {"mesh_reads": [90, 10], "mesh_writes": [10, 10], "image_reads": [0, 20], "transform_reads": [50, 10]}
+        ours = self.ours(self.rows([90, 10], hops_by_kind=kinds))
+        self.assertEqual((ours.loc[(32, 0), "share"], ours.loc[(32, 0), "share_all_kinds"]), (0.9, 0.75))
+        shown = table2.readable(table2.table2(frame_of(self.rows([90, 10], hops_by_kind=kinds))))
+        self.assertIn("75.00 %", list(shown["0 hops, all kinds"]))
+        ours = self.ours(self.rows([90, 10], hops_by_kind="unavailable: not counted"))
+        self.assertTrue(math.isnan(ours.loc[(32, 0), "share_all_kinds"]))
 
     def test_unavailable_is_a_reason_and_never_zero(self):
         frame = frame_of([synthetic.row("pdr-podm", 2, hops="unavailable: one node")])
         self.assertEqual(set(table2.table2(frame)["basis"]), {"published"})
         self.assertEqual(table2.why_no_hops(frame), "unavailable: one node")
+
+
+class Simulated(unittest.TestCase):
+    def row(self, **changes):
+        return synthetic.row("pdr-podm", 64, executor="virtual", hops=[3, 1],
+                             phases_s={"initial": 2.0, "refine": 6.0}, **changes)
+
+    def test_seconds_are_virtual_and_the_wall_time_is_in_its_own_column(self):
+        shown = simulated.readable(simulated.simulated(frame_of([self.row()])))
+        (line,) = shown.to_dict("records")
+        self.assertEqual(line["simulated seconds"], "8")
+        self.assertEqual(line["M cells per simulated second"], "24")
+        self.assertEqual(line["simulated contention, worker seconds"], "3")
+        self.assertEqual(line["simulated 0 hops"], "75.00 %")
+        self.assertEqual(line["wall time of playing it, s"], "1.23e+03")
+        heads = [head for head in shown if "second" in head or "hops" in head]
+        self.assertTrue(all("simulated" in head for head in heads), heads)
+        self.assertFalse([head for head in shown if "time" in head and "wall" not in head])
+
+    def test_measured_rows_are_in_no_table_of_simulated_ones(self):
+        made = outcome.make(frame_of([synthetic.row(), synthetic.row("pdr-podm", hops=[3, 1])])).tables
+        self.assertFalse([name for name in made if "simulated" in name])
+        made = outcome.make(frame_of([self.row(), synthetic.row(executor="virtual")])).tables
+        for name in ("simulated", "table1_simulated", "table2_simulated"):
+            data, shown = made[name]
+            self.assertEqual(set(data["basis"]), {"simulated"})
+            self.assertTrue([head for head in shown if "simulated" in head])
+        for name in ("table1", "table2"):
+            self.assertNotIn("simulated", set(made[name][0]["basis"]))
+
+    def test_what_was_not_counted_is_a_reason(self):
+        why = "unavailable: one NUMA node"
+        self.assertEqual(list(simulated.simulated(frame_of([{**self.row(), "hops": why}]))["zero_hops"]), [why])
+
+    def test_phases_of_figure_4b_are_virtual(self):
+        series = scaling.weak_series(frame_of([synthetic.row(executor="virtual"), self.row()]))
+        line = series[0].table.loc[("pdr-podm", 64)]
+        self.assertEqual((line["initial"], line["refine"], line["read"]), (2, 6, 0))
+        self.assertIn("virtual seconds of the phases", fig4b.fig4b(series).get_label())
+
+
+class Others(unittest.TestCase):
+    ROWS = [synthetic.row(), synthetic.row(repeat=2), synthetic.peer("tetgen"), synthetic.peer("cgal", status="failed"),
+            synthetic.row(warmup=True)]
+
+    def test_their_faults_are_not_ours(self):
+        ours = guarantees.ours(frame_of(self.ROWS)).set_index("claim")
+        self.assertEqual((ours.loc["delaunay", "pass"], ours.loc["delaunay", "fail"]), (3, 0))
+        theirs = guarantees.of_others(frame_of(self.ROWS)).set_index(["mesher", "claim"])
+        self.assertEqual(theirs.loc[("tetgen", "delaunay"), "fail"], 1)
+        self.assertEqual(theirs.loc[("tetgen", "structure"), "pass"], 1)
+        shown = guarantees.readable(guarantees.of_others(frame_of(self.ROWS))).set_index("claim")
+        self.assertEqual(shown.loc["delaunay", "tetgen"], "holds for 0 of 1")
+        self.assertEqual(shown.loc["structure", "tetgen"], "holds for 1 of 1, promised")
+
+    def test_one_failure_of_ours_is_a_failure(self):
+        rows = [*self.ROWS, synthetic.row(verdicts={**synthetic.PASSED, "delaunay": "fail"})]
+        shown = guarantees.readable(guarantees.ours(frame_of(rows))).set_index("claim")
+        self.assertEqual((shown.loc["delaunay", "verdict"], shown.loc["size", "verdict"]), ("fail", "pass"))
+
+    def test_rates_beside_each_other(self):
+        table = peers.peers(frame_of(self.ROWS)).set_index("mesher")
+        self.assertEqual(set(table.index), {"podm", "tetgen"}, "a failed run gives no rate")
+        self.assertEqual((table.loc["podm", "n"], table.loc["podm", "refining_rate"]), (2, 3e6 / 24))
+        self.assertEqual((table.loc["tetgen", "refining_rate"], table.loc["tetgen", "misses"]), (1e5, "delaunay"))
+        self.assertAlmostEqual(table.loc["podm", "rate"], 3e6 / 27.18)
+        self.assertTrue(math.isnan(table.loc["tetgen", "rate"]), "it tells no seconds of reading")
+        self.assertIn("unavailable: its seconds of reading are not told",
+                      list(peers.readable(peers.peers(frame_of(self.ROWS)))["equation 1, M cells/s"]))
+
+    def test_no_comparison_without_both(self):
+        for rows in ([], [synthetic.row()], [synthetic.peer("cgal")],
+                     [synthetic.row(), synthetic.peer("cgal", input={"name": "another"})]):
+            self.assertTrue(peers.peers(frame_of(rows)).empty)
+
+
+class Experiments(unittest.TestCase):
+    FOUND = synthetic.experiment_verdicts(one="holds", two="cannot_be_decided", three="does_not_hold", four="holds")
+
+    def test_what_does_not_hold_comes_first(self):
+        self.assertEqual(list(experiment_verdicts.table(self.FOUND)["claim"]), ["three", "one", "four", "two"])
+        self.assertEqual(experiment_verdicts.counts(self.FOUND), "2 hold, 1 do not, 1 cannot be decided here")
+
+    def test_without_any(self):
+        self.assertTrue(experiment_verdicts.table(None).empty)
+        self.assertEqual(experiment_verdicts.counts(None), "")
 
 
 class Levels(unittest.TestCase):
@@ -125,7 +266,8 @@ class Cache(unittest.TestCase):
 
     def test_only_what_a_further_insertion_costs_counts(self):
         # 1000 misses of the image, 20 an insertion.
-        table = cache.cache(frame_of([self.counted(number, 1000 + 20 * number, "perf_event") for number in (500, 200, 900)]))
+        table = cache.cache(frame_of([self.counted(number, 1000 + 20 * number, "perf_event")
+                                      for number in (500, 200, 900)]))
         self.assertEqual(list(table["per_insertion"]), [20, 20])
         self.assertEqual(set(table["counter"]), {"llc_load_misses"}, "page faults are no matter of caches")
 
@@ -149,65 +291,14 @@ class Cache(unittest.TestCase):
         self.assertTrue(cache.cache(frame_of(rows)).empty)
 
 
-class Verdicts(unittest.TestCase):
-    def verdicts(self, rows):
-        frame = frame_of(rows)
-        return verdicts.verdicts(frame, scaling.weak_series(frame), table2.table2(frame))
-
-    def cell(self, found, **where):
-        (cell,) = [one for one in found["cells"] if all(one[key] == value for key, value in where.items())]
-        return cell
-
-    def test_the_paper_agrees_with_itself(self):
-        rows = with_hops(synthetic.like_the_paper(paper.table1()), [0.99, 0.004, 0.003, 0.003])
-        found = self.verdicts(rows)
-        measured = [one for one in found["cells"] if one["basis"] == "measured" and one["cores"] != 16]
-        self.assertEqual({one["verdict"] for one in measured}, {"agrees", "reference"})
-        self.assertEqual({one["verdict"] for one in found["claims"] if one["basis"] == "measured"}, {"agrees"})
-
-    def test_every_cell_has_a_value_or_a_reason(self):
-        for rows in ([], [synthetic.row()], [synthetic.row("pdr-podm")]):
-            found = self.verdicts(rows)
-            self.assertEqual(len(found["cells"]), 2 * (2 * 8 * 5 + 8 * 5))
-            for cell in found["cells"]:
-                self.assertTrue(cell["reason"] if cell["value"] is None else cell["n"], cell)
-
-    def test_a_small_machine_is_the_reason(self):
-        found = self.verdicts([synthetic.row(), synthetic.row(cores=2)])
-        cell = self.cell(found, table="1", basis="measured", algorithm="podm", cores=32, column="speedup")
-        self.assertEqual((cell["verdict"], cell["reason"]), ("cannot_fill", "needs 32 cores, has 2"))
-        cell = self.cell(found, table="1", basis="measured", algorithm="pdr-podm", cores=1, column="rate")
-        self.assertEqual(cell["reason"], "no measured row of pdr-podm with 1 cores")
-
-    def test_rows_that_failed_are_the_reason(self):
-        failed = synthetic.row("pdr-podm", verdicts={**synthetic.PASSED, "size": "fail"})
-        cell = self.cell(self.verdicts([synthetic.row(), failed]), table="1", basis="measured", algorithm="pdr-podm",
-                         cores=1, column="rate")
-        self.assertEqual(cell["reason"], "no row to count: claim size failed")
-
-    def test_better_and_worse_than_the_paper(self):
-        def speedup(factor):
-            rows = list(synthetic.like_the_paper(paper.table1(), executor="virtual"))
-            for row in rows:
-                if row["threads"]["used"] == 256:
-                    row["phases_s"] = {phase: seconds / factor for phase, seconds in row["phases_s"].items()}
-            return self.cell(self.verdicts(rows), table="1", basis="simulated", algorithm="podm", cores=256, column="speedup")
-
-        self.assertEqual(speedup(2)["verdict"], "better")
-        self.assertEqual(speedup(0.5)["verdict"], "differs")
-
-    def test_crossover(self):
-        self.assertEqual(verdicts.crossover(paper.table1()), 160)
-        self.assertIsNone(verdicts.crossover(paper.table1().query("cores <= 128")))
-
-
 class Drawing(unittest.TestCase):
     def test_every_line_is_published_measured_or_simulated(self):
         rows = [synthetic.row(), synthetic.row(cores=2), *synthetic.like_the_paper(paper.table1(), executor="virtual")]
         series = scaling.weak_series(frame_of(rows))
         for draw in (fig4a.fig4a, fig4b.fig4b):
             figure = draw(series)
-            words = {text.get_text() for axes in figure.axes if axes.get_legend() for text in axes.get_legend().get_texts()}
+            legends = [axes.get_legend() for axes in figure.axes if axes.get_legend()]
+            words = {text.get_text() for legend in legends for text in legend.get_texts()}
             self.assertTrue({"PODM, paper", "PODM, measured", "PODM, simulated", "PDR.PODM, simulated"} <= words, words)
             self.assertNotIn("PDR.PODM, measured", words)
             self.assertIn("bootstrap 95 %", figure.get_label())

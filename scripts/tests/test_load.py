@@ -23,17 +23,18 @@ class Load(unittest.TestCase):
         self.load(synthetic.row(), synthetic.row(cores=2))
         records = load([self.file.parent])
         self.assertEqual(list(records.frame["cores"]), [1, 2])
-        self.assertAlmostEqual(records.frame["seconds"][0], 27.18)  # all phases but write
+        self.assertAlmostEqual(records.frame["seconds"][0], 27.18)  # all phases but write, calibrate and draw
         self.assertEqual(records.frame["environment.kernel"][0], "Linux")
         self.assertEqual(records.problems, [])
 
     def test_refuses_other_schemas_by_name(self):
-        for version in (0, 3, "podm-verify/1"):
-            with self.subTest(version=version), self.assertRaisesRegex(RecordError, rf"weak.jsonl:2: schema '?{version}"):
+        for version in (0, 1, 2, 4, "podm-verify/1"):
+            fault = rf"weak.jsonl:2: schema '?{version}"
+            with self.subTest(version=version), self.assertRaisesRegex(RecordError, fault):
                 self.load(synthetic.row(), synthetic.row(schema=version))
 
     def test_a_broken_last_line_is_reported_and_skipped(self):
-        records = self.load(synthetic.row(), tail='{"schema": 2, "exp')
+        records = self.load(synthetic.row(), tail='{"schema": 3, "exp')
         self.assertEqual(len(records.frame), 1)
         self.assertRegex(records.problems[0], r"weak.jsonl:2: last line is broken")
 
@@ -42,10 +43,37 @@ class Load(unittest.TestCase):
         with self.assertRaisesRegex(RecordError, r"weak.jsonl:1: not JSON"):
             load([self.file])
 
-    def test_files_of_other_rows_are_reported_and_skipped(self):
-        records = self.load({"kind": "alone", "cells": 3})
-        self.assertEqual(len(records.frame), 0)
-        self.assertIn("has no `schema`", records.problems[0])
+    def test_files_of_other_rows_are_skipped_and_reported_where_they_were_named(self):
+        for other in ({"kind": "alone", "cells": 3}, {"schema": "podm-schedule/1"}):
+            records = self.load(other)
+            self.assertEqual(len(records.frame), 0)
+            self.assertRegex(records.problems[0], "weak.jsonl: no rows of trials")
+            self.assertEqual(load([self.file.parent]).problems, [])
+
+    def test_folders_within_are_read_but_for_hidden_ones(self):
+        self.load(synthetic.row())
+        for name in ("default_tier", ".running"):
+            (self.file.parent / name).mkdir()
+            (self.file.parent / name / "more.jsonl").write_text(json.dumps(synthetic.row(cores=2)) + "\n")
+        self.assertEqual(sorted(load([self.file.parent]).frame["cores"]), [1, 2])
+
+    def test_of_rows_of_one_key_the_last_counts(self):
+        again = [synthetic.row(key=key, cells=cells) for key, cells in (("a", 1), ("b", 2), ("a", 3))]
+        elsewhere = synthetic.row(key="a", cells=4, experiment="another")
+        self.assertEqual(list(self.load(*again, elsewhere).frame["cells"]), [2, 3, 4])
+
+    def test_seconds_of_virtual_workers_are_virtual(self):
+        frame = self.load(synthetic.row(executor="virtual", phases_s={"read": 1.0, "refine": 7.0})).frame
+        self.assertEqual((frame["seconds"][0], frame["refining_s"][0], frame["basis"][0]), (8, 8, "simulated"))
+
+    def test_a_series_is_told_by_its_trial(self):
+        for trial, setting, image in (
+            ("1M,algorithm=podm,threads=2,initial_ratio=4,seed=1", "1M,initial_ratio=4", "made-up"),
+            ("peers,mesher=cgal,input=abdomen", "peers", "made-up"),
+            ("0.5M-growing-4,threads=4", "0.5M-growing", ""),
+        ):
+            frame = self.load(synthetic.row(trial=trial, input={"name": "made-up"})).frame
+            self.assertEqual((frame["setting"][0], frame["image"][0]), (setting, image))
 
     def test_missing_files_are_errors(self):
         with self.assertRaisesRegex(RecordError, "no such file"):
@@ -77,9 +105,11 @@ class Load(unittest.TestCase):
         frame = self.load(row).frame
         self.assertEqual((len(frame), bool(frame["headline"][0])), (1, False))
 
+    @unittest.skipUnless(paths.has_reference(), "the reference holds no rows of this schema")
     def test_reads_the_reference_runs(self):
         self.assertTrue(load([paths.REFERENCE]).frame["headline"].any())
 
+    @unittest.skipUnless(paths.has_reference(), "the reference holds no rows of this schema")
     def test_a_reference_file_holds_measured_or_simulated_rows(self):
         for path in paths.REFERENCE.glob("*.jsonl"):
             frame = load([path]).frame

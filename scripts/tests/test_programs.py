@@ -16,7 +16,8 @@ from figures import paper
 
 
 def call(program, *arguments):
-    return subprocess.run(["/usr/bin/python3", "-B", paths.SCRIPTS / program, *arguments], capture_output=True, text=True)
+    command = ["/usr/bin/python3", "-B", paths.SCRIPTS / program, *arguments]
+    return subprocess.run(command, capture_output=True, text=True)
 
 
 def write_rows(path, rows):
@@ -30,17 +31,48 @@ class Programs(unittest.TestCase):
         self.addCleanup(folder.cleanup)
         self.folder = Path(folder.name)
 
-    def test_makes_all_of_the_reference_runs(self):
-        done = call("make_figures", "--records", paths.REFERENCE, "-o", self.folder / "out")
+    def check_all_made(self, records):
+        """A folder of records gives every table and figure that needs no other file; returns what is said."""
+        done = call("make_figures", "--records", records, "-o", self.folder / "out")
         self.assertEqual(done.returncode, 0, done.stderr)
-        self.assertIn("has no `schema`", done.stderr)
         made = {path.name for path in (self.folder / "out").iterdir()}
-        tables = {f"{name}.{kind}" for name in ("table1", "table2", "table3", "cache") for kind in ("csv", "md")}
+        names = ("table1", "table2", "table3", "table2_simulated", "simulated", "peers", "cache", "guarantees",
+                 "guarantees_of_others")
+        tables = {f"{name}.{kind}" for name in names for kind in ("csv", "md")}
         figures = {f"{name}.{kind}" for name in ("fig1", "fig4a", "fig4b") for kind in ("pdf", "png")}
-        self.assertEqual(made, {"rows.csv", "verdicts.json", "verdicts.md"} | tables | figures)
+        self.assertLessEqual({"rows.csv", "verdicts.json", "verdicts.md"} | tables | figures, made)
         found = json.loads((self.folder / "out" / "verdicts.json").read_text())
         self.assertIn("reference", {cell["verdict"] for cell in found["cells"]})
         self.assertIn("needs 256 cores, has 2", {cell["reason"] for cell in found["cells"]})
+        return done
+
+    @unittest.skipUnless(paths.has_reference(), "the reference holds no rows of this schema")
+    def test_makes_all_of_the_reference_runs(self):
+        self.check_all_made(paths.REFERENCE)
+
+    def test_makes_all_of_a_folder_and_those_within(self):
+        (self.folder / "runs" / "default_tier").mkdir(parents=True)
+        virtual = synthetic.with_hops([synthetic.row("pdr-podm", 64, executor="virtual")], {64: [9, 1]})
+        unread = {"counters": {"cycles": "unavailable: no such counter"}}
+        write_rows(self.folder / "runs" / "default_tier" / "rows.jsonl",
+                   [synthetic.row(process=unread), synthetic.row(cores=2), synthetic.peer("tetgen"), *virtual])
+        write_rows(self.folder / "runs" / "radii.jsonl", [{"target_elements": 5}])
+        done = self.check_all_made(self.folder / "runs")
+        self.assertNotIn("radii", done.stderr)
+        self.assertIn("podm-bench verdicts", done.stdout, "it says how verdicts of experiments are made")
+
+    def test_verdicts_of_experiments_are_printed_and_written(self):
+        rows = write_rows(self.folder / "rows.jsonl", [synthetic.row()])
+        found = synthetic.experiment_verdicts(first="holds", second="does_not_hold", third="cannot_be_decided")
+        write_rows(self.folder / "found.json", [found])
+        done = call("make_figures", "--records", rows, "--experiment-verdicts", self.folder / "found.json",
+                    "-o", self.folder / "out")
+        self.assertEqual(done.returncode, 0, done.stderr)
+        written = (self.folder / "out" / "verdicts.md").read_text()
+        for words in (done.stdout, written):
+            self.assertLess(words.index("second"), words.index("first"), "what does not hold is not hidden")
+            self.assertIn("because of <third>", words)
+        self.assertIn("1 hold, 1 do not, 1 cannot be decided here", done.stdout)
 
     def test_equal_records_give_equal_files(self):
         rows = write_rows(self.folder / "weak.jsonl", synthetic.like_the_paper(paper.table1(), repeats=2))
@@ -52,12 +84,17 @@ class Programs(unittest.TestCase):
     def test_bad_input_is_named(self):
         newer = write_rows(self.folder / "newer.jsonl", [synthetic.row(schema=9)])
         fine = write_rows(self.folder / "fine.jsonl", [synthetic.row()])
+        odd = write_rows(self.folder / "odd.json", [synthetic.experiment_verdicts(one="perhaps")])
         for program, arguments, words in (
             ("make_figures", ["--records", self.folder / "none"], "none: no such file or folder"),
             ("make_figures", ["--records", newer], "newer.jsonl:1: schema 9"),
             ("report", ["--records", fine, "--mesh", fine], "fine.jsonl: no cells"),
             ("report", ["--records", fine, "--verified", fine], "fine.jsonl: not a report of schema podm-verify/1"),
-            ("report", ["--records", fine, "--schedule", fine], "fine.jsonl: schema 2; this program reads podm-schedule/1"),
+            ("report", ["--records", fine, "--schedule", fine],
+             "fine.jsonl: schema 3; this program reads podm-schedule/1"),
+            ("report", ["--records", fine, "--experiment-verdicts", fine],
+             "fine.jsonl: not verdicts of schema podm-bench-verdicts/1"),
+            ("make_figures", ["--records", fine, "--experiment-verdicts", odd], "weak_scaling: one: verdict 'perhaps'"),
             ("report", ["--unknown"], "unrecognized arguments"),
         ):
             with self.subTest(words=words):
@@ -75,16 +112,21 @@ class Programs(unittest.TestCase):
         self.assertNotIn("<canvas", text)
 
 
-def make_page(folder):
-    """A page with everything in it."""
-    rows = [synthetic.row(), synthetic.row(trial="<script>alert(1)</script>", status="failed", reason="<b>&"),
-            *synthetic.like_the_paper(paper.table1(), repeats=2, executor="virtual")]
+def make_page(folder, *more):
+    """A page with everything in it, and rows of `more`."""
+    rows = [*(synthetic.row(cores=cores, repeat=repeat) for cores in (1, 2) for repeat in (1, 2)),
+            synthetic.row(trial="<script>alert(1)</script>", status="failed", reason="<b>&"), synthetic.peer("tetgen"),
+            synthetic.with_levels([4, 11, 40, 200, 1500]),
+            *synthetic.like_the_paper(paper.table1(), repeats=2, executor="virtual"), *more]
     write_rows(folder / "rows.jsonl", rows)
     write_rows(folder / "schedule.jsonl", synthetic.schedule())
     write_rows(folder / "verified.json", [synthetic.report()])
+    write_rows(folder / "experiments.json",
+               [synthetic.experiment_verdicts(good="holds", bad="does_not_hold", open="cannot_be_decided")])
     synthetic.write_vtu(folder / "mesh.vtu", *synthetic.box_mesh(side=6))
     done = call("report", "--records", folder / "rows.jsonl", "--mesh", folder / "mesh.vtu", "--schedule",
-                folder / "schedule.jsonl", "--verified", folder / "verified.json", "-o", folder / "page.html")
+                folder / "schedule.jsonl", "--verified", folder / "verified.json", "--experiment-verdicts",
+                folder / "experiments.json", "-o", folder / "page.html")
     if done.returncode != 0:
         raise RuntimeError(done.stderr)
     return folder / "page.html"
@@ -97,6 +139,12 @@ class Page(unittest.TestCase):
         cls.addClassCleanup(folder.cleanup)
         cls.path = make_page(Path(folder.name))
         cls.text = cls.path.read_text()
+
+    def answers(self, text=None):
+        """The four answers by name."""
+        cards = re.findall(r'<section class="answer" id="(\w+)".*?</section>', text or self.text, re.DOTALL)
+        texts = re.findall(r'<section class="answer".*?</section>', text or self.text, re.DOTALL)
+        return dict(zip(cards, texts))
 
     def test_needs_no_network(self):
         loads = re.findall(r'(?:src|href)="([^"]*)"', self.text)
@@ -111,7 +159,51 @@ class Page(unittest.TestCase):
 
     def test_text_of_records_is_escaped(self):
         self.assertIn("status failed: &lt;b&gt;&amp;", self.text)
+        self.assertIn("because of &lt;bad&gt;", self.text)
         self.assertNotIn("<script>alert", self.text)
+
+    def test_four_answers_come_before_any_table(self):
+        answers = self.answers()
+        self.assertEqual(list(answers), ["works", "fast", "scales", "holds"])
+        self.assertLess(self.text.index(answers["holds"]), self.text.index("<table"))
+        for name in ("works", "fast", "scales"):
+            self.assertIn('class="bars"', answers[name])
+            self.assertIn("<p", answers[name])
+        self.assertIn("2 cores, refining", answers["scales"])
+        self.assertIn("2 cores, equation 1", answers["scales"])
+        self.assertNotIn("256", answers["scales"], "simulated cores are none of this machine's")
+
+    def test_our_meshes_are_not_blamed_for_others(self):
+        works = self.answers()["works"]
+        self.assertIn("none refuted; trials: 1 failed", works)
+        self.assertNotIn("tetgen", works)
+        self.assertIn("its meshes miss delaunay", self.answers()["fast"])
+        with tempfile.TemporaryDirectory() as folder:
+            wrong = synthetic.row(verdicts={**synthetic.PASSED, "size": "fail"})
+            works = self.answers(make_page(Path(folder), wrong).read_text())["works"]
+        self.assertIn("No: 1 claims about our", works)
+        self.assertIn("1 refuted", works)
+
+    def test_what_differs_is_told_and_what_is_open_is_folded(self):
+        holds = self.answers()["holds"]
+        shown, folded = re.sub(r"<details>.*?</details>", "", holds, flags=re.DOTALL), re.findall(
+            r"<details>.*?</details>", holds, re.DOTALL)
+        self.assertIn("weak_scaling: bad is so", shown)
+        self.assertIn("PDR.PODM overtakes PODM", shown)
+        self.assertNotIn("cannot_fill", shown)
+        self.assertNotIn("open is so", shown)
+        self.assertTrue(any("open is so" in one for one in folded))
+        self.assertTrue(any("cannot be decided here" in one and "cannot_fill" in one for one in folded))
+
+    def test_without_rows_nothing_is_claimed(self):
+        with tempfile.TemporaryDirectory() as folder:
+            write_rows(Path(folder) / "rows.jsonl", [])
+            done = call("report", "--records", Path(folder) / "rows.jsonl", "-o", Path(folder) / "page.html")
+            self.assertEqual(done.returncode, 0, done.stderr)
+            answers = self.answers((Path(folder) / "page.html").read_text())
+        for name in ("works", "fast", "scales"):
+            self.assertIn("Not known", answers[name])
+        self.assertIn("podm-bench verdicts", answers["holds"])
 
 
 @unittest.skipUnless(find_chromium(), "no Chromium here: Debian's package chromium")
@@ -125,13 +217,26 @@ class InBrowser(unittest.TestCase):
         cls.addClassCleanup(cls.browser.close)
 
     def test_loads_without_complaints_and_fits(self):
-        for width, scheme in ((1280, "light"), (1280, "dark"), (390, "light")):
+        for width, scheme in ((1400, "light"), (1400, "dark"), (400, "light"), (400, "dark"), (320, "light")):
             with self.subTest(width=width, scheme=scheme):
                 self.browser.open(self.path, width, scheme=scheme)
                 self.assertEqual(self.browser.errors, [])
                 self.assertEqual(self.browser.evaluate("document.documentElement.scrollWidth"), width)
                 self.assertEqual(self.browser.evaluate("document.querySelector('[data-fault]').textContent"), "")
+                self.check_answers()
                 self.assertGreater(self.colours_on_canvas(), 10)
+
+    def check_answers(self):
+        """All four are seen, none wider than its card or the page, its bars as long as their numbers say."""
+        overflowing = self.browser.evaluate("""[...document.querySelectorAll('.answer, .answer *')].filter(one =>
+            one.checkVisibility() && one.getBoundingClientRect().right > one.closest('.answer')
+            .getBoundingClientRect().right + 0.5).map(one => one.outerHTML)""")
+        self.assertEqual(overflowing, [])
+        self.assertEqual(self.browser.evaluate("document.querySelectorAll('.answer h2').length"), 4)
+        longest = self.browser.evaluate("""[...document.querySelectorAll('.bars')].map(one => Math.max(
+            ...[...one.querySelectorAll('.track i')].map(bar => bar.clientWidth / bar.parentElement.clientWidth)))""")
+        self.assertEqual(len(longest), 3)
+        self.assertTrue(all(0.7 < one <= 1.01 for one in longest), longest)
 
     def test_the_cut_and_the_labels_change_the_picture(self):
         self.browser.open(self.path, 1280)

@@ -1,0 +1,212 @@
+"""What the page says first: four questions, each answered in a sentence and a picture."""
+from html import escape
+
+from figures import experiment_verdicts, guarantees, scaling, style
+from figures.fig4a import WHY_ABOVE
+
+from .html import Bar, bars, findings, fold
+
+MOST_COUNTS = 4  # numbers of cores in the picture of scaling
+FAULTS = {"unmet": "missed a guarantee", "failed": "failed", "timed_out": "timed out", "interrupted": "interrupted"}
+NAMES = {**style.NAMES, "cgal": "CGAL", "gmsh": "Gmsh", "tetgen": "TetGen"}
+
+
+def first_screen(frame, outcome):
+    answers = [("works", "Does it work here?", works(frame, outcome)), ("fast", "How fast is it?", fast(outcome)),
+               ("scales", "How does it scale here?", scales(outcome)),
+               ("holds", "What of the paper holds?", holds(outcome))]
+    cards = "\n".join(f'<section class="answer" id="{name}" aria-labelledby="{name}-title">'
+                      f'<h2 id="{name}-title">{question}</h2>\n{content}\n</section>'
+                      for name, question, content in answers)
+    return f'<div class="answers">\n{cards}\n</div>'
+
+
+def _answer(text):
+    return f'<p class="said">{escape(text)}</p>'
+
+
+def _aside(text):
+    return f'<p class="faint">{escape(text)}</p>' if text else ""
+
+
+def works(frame, outcome):
+    """Of our meshes alone; other meshers have a table of their own."""
+    if "guarantees" not in outcome.tables:
+        return _answer("Not known: no mesh of ours was verified.")
+    table = outcome.tables["guarantees"][0]
+    lines = table.to_dict("records")
+    meshes = max(line["pass"] + line["fail"] + line["not_run"] for line in lines)
+    proved, refuted = int(table["pass"].sum()), int(table["fail"].sum())
+    faults = _faults(frame)
+    if refuted:
+        said = f"No: {refuted} claims about our {meshes} meshes are refuted, {proved:,} proved."
+    elif faults:
+        said = f"Not always: {proved:,} claims about our {meshes} meshes are proved, none refuted; trials: {faults}."
+    else:
+        said = f"Yes: {proved:,} claims about our {meshes} meshes are proved, none refuted, and no trial failed."
+    picture = [Bar(line["claim"].replace("_", " "), line["pass"],
+                   f"{line['pass']} of {meshes}" + (f", {line['fail']} refuted" if line["fail"] else ""),
+                   guarantees.verdict_of(line), f"not run for {line['not_run']}" if line["not_run"] else "")
+               for line in lines]
+    return (_answer(said) + bars("meshes by proved claim", picture, full=meshes)
+            + _aside("Meshes for which podm-verify proved each claim, exactly, after the clock had stopped."
+                     + (f" Trials: {faults}." if refuted and faults else "")))
+
+
+def _faults(frame):
+    """"3 timed out, 1 failed" among our trials; empty without any."""
+    ours = frame[frame["mesher"] == "podm"] if len(frame) else frame
+    counts = ours["status"].value_counts() if "status" in ours else {}
+    return ", ".join(f"{counts[status]} {words}" for status, words in FAULTS.items() if status in counts)
+
+
+def fast(outcome):
+    """Beside other meshers where an experiment ran them, by the largest of its meshes; else alone."""
+    on_all = _rates_of_ours(outcome)
+    if "peers" not in outcome.tables:
+        if not on_all:
+            return _answer("Not known: no verified run on one core.")
+        picture = [Bar(name, rate, f"{rate / 1e6:.2f} M/s", kind) for name, rate, kind in on_all]
+        return (_answer(_own_rates(on_all)) + bars("cells per second", picture)
+                + _aside("No other mesher ran beside it: experiments/single_core.toml compares."))
+    table = outcome.tables["peers"][0]
+    first = table.iloc[0]
+    rows = table[(table["experiment"] == first["experiment"]) & (table["setting"] == first["setting"])
+                 & (table["image"] == first["image"]) & (table["machine"] == first["machine"])]
+    own = rows[rows["mesher"] == "podm"].iloc[0]
+    others = rows[rows["mesher"] != "podm"]
+    ratios = [f"{own['refining_rate'] / rate:.1f} times as fast as {NAMES.get(mesher, mesher)}"
+              for mesher, rate in zip(others["mesher"], others["refining_rate"])]
+    said = f"On one core PODM refines {own['refining_rate'] / 1e6:.2f} million cells a second, {', '.join(ratios)}."
+    return (_answer(said) + bars("cells per second, one core", _bars_of_peers(rows))
+            + _aside(f"{first['setting']}: {first['image']}, the same bounds for all, medians of {_runs(rows)} runs. "
+                     "Refining: making the mesh alone, for Gmsh and TetGen without the surface, which they are given; "
+                     "equation 1: reading and all, but for writing. " + _own_rates(on_all)))
+
+
+def _bars_of_peers(rows):
+    picture = []
+    for line in rows.to_dict("records"):
+        kind = "own" if line["mesher"] == "podm" else "other"
+        name = NAMES.get(line["mesher"], line["mesher"])
+        missed = f"its meshes miss {line['misses'].replace('_', ' ')}" if line["misses"] else ""
+        picture.append(Bar(f"{name}, refining", line["refining_rate"], f"{line['refining_rate'] / 1e6:.2f} M/s", kind))
+        told = line["rate"] == line["rate"]
+        picture.append(Bar(f"{name}, equation 1", line["rate"] if told else 0, f"{line['rate'] / 1e6:.2f} M/s" if told
+                           else "reading not told", kind + " pale", missed))
+    return picture
+
+
+def _runs(rows):
+    low, high = rows["n"].min(), rows["n"].max()
+    return f"{low}" if low == high else f"{low} to {high}"
+
+
+def _rates_of_ours(outcome):
+    """(what, cells per second, colour) of PODM on one core and on the most, by refining and by equation 1."""
+    one = scaling.first_of(outcome.series, "measured")
+    if one is None:
+        return []
+    cores = sorted({1, one.table.loc["podm"].index.max()})
+    return [(f"{count} core{'s' if count > 1 else ''}, {words}", float(one.table.loc[("podm", count), column]), kind)
+            for count in cores for column, words, kind in (("refining_rate", "refining", "own"),
+                                                           ("rate", "equation 1", "own pale"))]
+
+
+def _own_rates(rates):
+    told = "; ".join(f"{name} {rate / 1e6:.2f}" for name, rate, _ in rates)
+    return f"Weak scaling of PODM, million cells a second: {told}." if rates else ""
+
+
+def scales(outcome):
+    """Measured rows alone."""
+    shown = scaling.shown_of(outcome.series, ["measured"])
+    counts = [count for count in scaling.core_counts([one.table for one in shown]) if count > 1]
+    if not counts:
+        return _answer("Not known: no verified run of weak scaling on more than one core.")
+    picture = [bar for count in _some(counts) for bar in _bars_of_scaling(shown, count)]
+    said = _scaling_said(shown[0], counts[-1])
+    return (_answer(said) + bars("efficiency of weak scaling", picture, full=max(1.2, *(bar.value for bar in picture)),
+                                 mark=1)
+            + _aside(f"Efficiency: cells per second and core over PODM's on one core; the line is 100 %. {WHY_ABOVE}. "
+                     f"{style.caption_of(shown, has_paper=False)}"))
+
+
+def _some(counts):
+    """At most MOST_COUNTS of them, the most cores among these."""
+    step = -(-len(counts) // MOST_COUNTS)
+    return counts[::-1][::step][::-1]
+
+
+def _bars_of_scaling(shown, count):
+    for algorithm, name in style.NAMES.items():
+        for one in shown:
+            if (algorithm, count) not in one.table.index:
+                continue
+            line = one.table.loc[(algorithm, count)]
+            kinds = [("efficiency", "equation 1, image grows" if one.grows else "equation 1", "pale")]
+            if not one.grows:
+                kinds.insert(0, ("refining_efficiency", "refining", ""))
+            for column, words, shade in kinds:
+                value = line[column]
+                if value == value:
+                    yield Bar(f"{name}, {count} cores, {words}", float(value), f"{100 * value:.0f} %",
+                              f"{algorithm} {shade}")
+
+
+def _scaling_said(series, count):
+    parts = []
+    for algorithm, name in style.NAMES.items():
+        if (algorithm, count) in series.table.index:
+            line = series.table.loc[(algorithm, count)]
+            parts.append(f"{name} {100 * line['refining_efficiency']:.0f} % in refining and "
+                         f"{100 * line['efficiency']:.0f} % by equation 1")
+    return f"On {count} cores, of one core's rate a core: {'; '.join(parts)}."
+
+
+def holds(outcome):
+    """What could be decided; the rest counted in a line and folded."""
+    found = outcome.verdicts["claims"]
+    decided = [one for one in found if one["verdict"] != "cannot_fill"]
+    rest = [one for one in found if one["verdict"] == "cannot_fill"]
+    agree = sum(one["verdict"] == "agrees" for one in decided)
+    said = (f"{len(decided)} of {len(found)} claims of the paper can be decided here: "
+            f"{_number(agree, 'agrees', 'agree')}, {_number(len(decided) - agree, 'differs', 'differ')}.")
+    lines = [(one["verdict"], f"{one['statement']} ({one['basis']}).", one["reason"])
+             for one in sorted(decided, key=lambda one: one["verdict"] == "agrees")]
+    folded = fold(f"{_number(len(rest), 'claim', 'claims')} and {_open_cells(outcome)} cells cannot be decided here",
+                  findings([("cannot_fill", f"{one['statement']} ({one['basis']}).", one["reason"]) for one in rest]))
+    return _answer(said) + findings(lines) + _aside(_cells_said(outcome)) + folded + _experiments(outcome)
+
+
+def _number(count, one, many):
+    return f"{count} {one if count == 1 else many}"
+
+
+def _open_cells(outcome):
+    return sum(one["verdict"] == "cannot_fill" for one in outcome.verdicts["cells"])
+
+
+def _cells_said(outcome):
+    """"Cells of Tables 1 and 2: measured 4 agree, 0 differ; simulated ..."."""
+    parts = []
+    for basis in ("measured", "simulated"):
+        verdicts = [one["verdict"] for one in outcome.verdicts["cells"] if one["basis"] == basis]
+        agree, differ = verdicts.count("agrees"), verdicts.count("differs")
+        if agree or differ:
+            parts.append(f"{basis}, {agree} agree and {differ} differ")
+    return f"Cells of Tables 1 and 2: {'; '.join(parts)}." if parts else ""
+
+
+def _experiments(outcome):
+    """Verdicts of podm-bench: what does not hold is told as plainly as what does."""
+    if outcome.experiments is None:
+        return _aside(experiment_verdicts.HOW)
+    lines = experiment_verdicts.table(outcome.experiments).to_dict("records")
+    parts = {word: [(word, f"{line['experiment']}: {line['statement']} ({line['basis']})", line["reason"])
+                    for line in lines if line["verdict"] == word] for word in experiment_verdicts.WORDS}
+    return (_answer(f"Claims of our own experiments: {experiment_verdicts.counts(outcome.experiments)}.")
+            + findings(parts["does_not_hold"])
+            + fold(f"What holds: {len(parts['holds'])}", findings(parts["holds"]))
+            + fold(f"What cannot be decided here: {len(parts['cannot_be_decided'])}",
+                   findings(parts["cannot_be_decided"])))

@@ -1,0 +1,82 @@
+"""Pieces of the page: tables, bars, folds. Every text is escaped here."""
+from dataclasses import dataclass
+from html import escape
+
+import pandas
+
+
+@dataclass(frozen=True)
+class Bar:
+    """`value` of what the longest bar shows; `text` says it in words; `kind` is the class that colours it."""
+
+    name: str
+    value: float
+    text: str
+    kind: str = ""
+    note: str = ""
+
+
+def bars(title, lines, full=None, mark=None):
+    """A picture of numbers that is read aloud as a list. `full`: the value that fills the width; `mark`: one to draw a
+    line at."""
+    full = full or max((line.value for line in lines), default=1) or 1
+    line_at = f'<b style="left:{_share(mark, full)}"></b>' if mark else ""
+    items = "".join(
+        f'<li class="{line.kind}"><span class="name">{escape(line.name)}</span>'
+        f'<span class="track" aria-hidden="true"><i style="width:{_share(line.value, full)}"></i>{line_at}</span>'
+        f'<span class="value">{escape(line.text)}</span>'
+        + (f'<small>{escape(line.note)}</small>' if line.note else "") + "</li>" for line in lines)
+    return f'<ul class="bars" aria-label="{escape(title, quote=True)}">{items}</ul>'
+
+
+def _share(value, full):
+    return f"{100 * min(1, max(0, value / full)):.1f}%"
+
+
+def box(title, content):
+    """A box that scrolls sideways where the page is narrower than its content."""
+    return f'<div class="wide" tabindex="0" role="region" aria-label="{escape(title, quote=True)}">{content}</div>'
+
+
+def fold(summary, content, is_open=False):
+    return f"<details{' open' if is_open else ''}><summary>{escape(summary)}</summary>\n{content}</details>"
+
+
+def verdict_span(verdict):
+    return f'<span class="verdict {escape(verdict)}">{escape(verdict.replace("_", " "))}</span>'
+
+
+def findings(lines):
+    """A list of (verdict, statement, reason)."""
+    items = "".join(f'<li>{verdict_span(verdict)}: {escape(statement)}<small>{escape(reason)}</small></li>'
+                    for verdict, statement, reason in lines)
+    return f'<ul class="findings">{items}</ul>' if lines else ""
+
+
+def table_html(table, title, row_classes=None):
+    """A table in a box; a column `verdict` is marked, the first column heads its row."""
+    head = "".join(f'<th scope="col">{escape(str(name))}</th>' for name in table.columns)
+    lines = []
+    for position, row in enumerate(table.itertuples(index=False)):
+        cells = [_cell(name, value, is_first=at == 0) for at, (name, value) in enumerate(zip(table.columns, row))]
+        kind = f' class="{row_classes[position]}"' if row_classes is not None else ""
+        lines.append(f"<tr{kind}>{''.join(cells)}</tr>")
+    rows = "\n".join(lines)
+    return box(title, f"<table><thead><tr>{head}</tr></thead>\n<tbody>{rows}</tbody></table>")
+
+
+def text_of(value):
+    if value is None or value is pandas.NA or value != value:
+        return ""
+    return f"{value:.4g}" if isinstance(value, float) else str(value)
+
+
+def _cell(name, value, is_first):
+    if is_first:
+        kind = ' class="short"' if len(text_of(value)) < 20 else ""
+        return f'<th scope="row"{kind}>{escape(text_of(value))}</th>'
+    if name == "verdict":
+        return f"<td>{verdict_span(value)}</td>"
+    text = text_of(value)
+    kind = ' class="words"' if len(text) > 30 else ' class="number"' if text[:1].isdigit() else ""
+    return f"<td{kind}>{escape(text)}</td>"
