@@ -89,7 +89,7 @@ def print_experiments(found):
         print(HOW)
         return
     for line in readable_experiments(found).to_dict("records"):
-        print(f"{line['verdict'].replace('_', ' '):18} {line['experiment']}: {line['claim']} ({line['basis']}): "
+        print(f"{line['verdict'].replace('_', ' '):18} {line['experiment']}: {line['statement']} ({line['basis']}): "
               f"{line['reason']}")
     print(f"claims of experiments: {counts(found)}")
 

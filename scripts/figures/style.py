@@ -95,7 +95,7 @@ def finish(figure, caption):
 
 
 def caption_of(series, has_paper=True):
-    """What was run, how often, and what the bars are."""
+    """What was run, how often, and, beside the paper's series, what the bars are."""
     parts = []
     for one in series:
         counts = sorted(set(one.table["n"].astype(int)))

@@ -40,11 +40,6 @@ def readable(table):
     return in_order(pandas.DataFrame(lines))
 
 
-def of_basis(table, basis):
-    """The lines of one basis."""
-    return table[table["basis"] == basis]
-
-
 def why_no_hops(frame):
     """What rows say in place of counts, or that there is no row."""
     rows = scaling.headline_rows(frame)
