@@ -34,7 +34,9 @@ void add_run(CLI::App& program, int& exit_code) {
   app.add_option("--only", command.only,
                  "run the trials of this name alone; * and ? match any [default: all]");
   app.add_option("--tier", state->tier, "run this much: kick-tires, default or full [default: all]");
-  app.add_option("--image", command.image, "a label image in place of all inputs [default: the inputs]");
+  app.add_option("--image", command.images,
+                 "a label image in place of all inputs; repeatable [default: the inputs]")
+      ->allow_extra_args(false);
   app.add_flag("--dry-run", state->is_dry, "print trials, time, memory and disk; run nothing [default: no]");
   app.add_flag("--again", command.again, "also run what is measured already [default: skip it]");
   app.add_flag("--keep", command.keep, "keep each trial's mesh and messages [default: delete them]");

@@ -68,6 +68,12 @@ struct Group {
   Rows a, b;
 };
 
+// A row's name for it; the path in a mesher's own record, which has no other.
+Json image_of(const Json& row) {
+  const Json name = at(row, "/input/name");
+  return name.is_null() ? at(row, "/input/path") : name;
+}
+
 // What two rows that measure the same share. A row without a mesh does not tell its options: those of another
 // row of its trial are taken.
 class Keys {
@@ -84,17 +90,22 @@ class Keys {
   }
 
  private:
-  static std::string trial(const Json& row) { return Json{at(row, "/trial"), at(row, "/input/path")}.dump(); }
+  static std::string trial(const Json& row) { return Json{at(row, "/trial"), image_of(row)}.dump(); }
+  // A radius that was found stands for a number of cells, which two meshers may reach by different ones.
   static std::string settings(const Json& row) {
-    return Json{at(row, "/algorithm"), at(row, "/options"), at(row, "/seed"), at(row, "/threads/asked")}
-        .dump();
+    Json options = at(row, "/options");
+    if (const Json elements = at(row, "/resolved/target_elements"); !elements.is_null()) {
+      for (const char* key : {"radius_mm", "delta_mm"}) options.erase(key);
+      options["target_elements"] = elements;
+    }
+    return Json{at(row, "/algorithm"), options, at(row, "/seed"), at(row, "/threads/asked")}.dump();
   }
   std::map<std::string, std::string> settings_;  // by trial
 };
 
 // The trial, or the image where a mesher's record has none.
 std::string name_of(const Json& row) {
-  const Json trial = at(row, "/trial"), image = at(row, "/input/path");
+  const Json trial = at(row, "/trial"), image = image_of(row);
   return trial.is_string() ? trial : image.is_string() ? image : Json("");
 }
 

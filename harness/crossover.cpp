@@ -47,7 +47,7 @@ void add(const Json& row, std::map<std::string, Series>& all) {
   const int threads = asked.value("threads", 1);
   const double cells = row["cells"];
   // Keys of a matrix follow the name; those that matter here are algorithm and threads.
-  Series& series = all[trial.substr(0, trial.find(',')) + '\n' + text_in(row["input"], "path")];
+  Series& series = all[trial.substr(0, trial.find(',')) + '\n' + text_in(row["input"], "name")];
   series.row = &row;
   series.cells_per_thread = std::max(series.cells_per_thread, cells / threads);
   Rates& rates = series.by_threads[threads];
@@ -90,7 +90,7 @@ Json crossover_of(const Series& series) {
           {"podm", row.value(Json::json_pointer("/programs/podm"), Json())},
           {"experiment", text_in(row, "experiment")},
           {"trial", text_in(row, "trial").substr(0, text_in(row, "trial").find(','))},
-          {"input", text_in(row["input"], "path")},
+          {"input", text_in(row["input"], "name")},
           {"measurements", measurements}};
 }
 

@@ -35,7 +35,13 @@ std::vector<Count> counts_of(const Plan& plan) {
   return counts;
 }
 
-void print_matrix(const Plan& plan, const std::vector<Count>& counts) {
+// With the radius where it is found already.
+nlohmann::ordered_json options_of(const Trial& trial, Preparer& preparer) {
+  const auto preparation = preparer.find(trial);
+  return preparation ? resolved_options(trial, *preparation) : trial.options;
+}
+
+void print_matrix(const Plan& plan, const std::vector<Count>& counts, Preparer& preparer) {
   std::vector<std::vector<std::string>> lines{
       {"trial", "input", "runs", "to run", "s/run", "MiB", "mesh MiB", "options"}};
   for (std::size_t i = 0; i < plan.trials.size(); ++i) {
@@ -46,7 +52,7 @@ void print_matrix(const Plan& plan, const std::vector<Count>& counts) {
                      std::to_string(counts[i].all), std::to_string(counts[i].to_run),
                      expected.seconds ? fmt::format("{:.1f}", *expected.seconds) : kUnknown,
                      mebibytes(expected.memory_bytes), mebibytes(expected.disk_bytes),
-                     fmt::format("{}", fmt::join(mesher_arguments(trial.options), " "))});
+                     fmt::format("{}", fmt::join(mesher_arguments(options_of(trial, preparer)), " "))});
   }
   fmt::print("{}", align(lines, 2));
 }
@@ -89,14 +95,16 @@ void print_total(const Plan& plan, const std::vector<Count>& counts, const std::
 
 int dry_run(const RunCommand& command) {
   const std::vector<Experiment> experiments = read_experiments(command);
-  TrialKeys keys(sha256_of_file(command.programs.podm), this_machine().summary,
-                 Peers(command.programs.peers, command.programs.podm));
+  const std::string mesher_sha256 = sha256_of_file(command.programs.podm);
+  TrialKeys keys(mesher_sha256, this_machine().summary, Peers(command.programs.peers, command.programs.podm));
+  Preparer preparer(command.programs.podm, mesher_sha256, command.results_folder);
   for (const Experiment& experiment : experiments) {
-    const Plan plan = make_plan(command, experiment, read_rows(rows_path(command, experiment)).rows, keys);
+    const Plan plan =
+        make_plan(command, experiment, read_rows(rows_path(command, experiment)).rows, preparer, keys);
     if (plan.turns.empty()) continue;
     const std::vector<Count> counts = counts_of(plan);
     fmt::print("{}\n", experiment.title);
-    print_matrix(plan, counts);
+    print_matrix(plan, counts, preparer);
     print_total(plan, counts, command.results_folder);
   }
   return 0;

@@ -28,7 +28,7 @@ void keep_largest(std::optional<double>& largest, const std::optional<double>& v
 
 bool is_of(const Json& row, const Trial& trial) {
   return text_in(row, "trial") == trial.name && is_finished(row) &&
-         text_in(row.value("input", Json::object()), "path") == trial.image;
+         text_in(row.value("input", Json::object()), "name") == trial.image;
 }
 
 }  // namespace

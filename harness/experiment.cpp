@@ -4,6 +4,8 @@
 
 #include <algorithm>
 #include <array>
+#include <charconv>
+#include <cmath>
 #include <filesystem>
 #include <map>
 #include <set>
@@ -83,26 +85,57 @@ std::vector<std::string> read_input_names(Section& section, const Inputs& inputs
   return names;
 }
 
-// The matrix of one [[trials]]. With an `image`, several inputs are one.
+// What the trials of one [[trials]] mesh, and what they call it: "" where the name needs no part for it.
+struct NamedInput {
+  std::string suffix;
+  Input input;
+};
+
+// Those of the file, or the images in their place.
+std::vector<NamedInput> inputs_of_trials(Section& section, const Inputs& inputs,
+                                         const std::vector<std::string>& images) {
+  std::vector<NamedInput> named;
+  const auto add = [&named](bool in_suffix, const std::string& name, Input input) {
+    named.push_back({in_suffix ? ",input=" + in_name(name) : "", std::move(input)});
+  };
+  const std::vector<std::string> names = read_input_names(section, inputs);
+  for (const std::string& name : names) {
+    if (name.empty()) return {NamedInput{}};
+    if (images.empty()) add(section.is_array("input"), name, inputs.at(name));
+  }
+  for (const std::string& image : images) add(images.size() > 1, image, {image, false});
+  return named;
+}
+
+// The voxels of a thread stay the same. An image that a person gives in place of a phantom stays as it is.
+void grow(const Section& section, bool is_given, Trial& trial) {
+  if (!trial.options.value(kImageGrows, false)) return;
+  const auto image = grown(trial.image, trial.options["threads"].get<double>());
+  if (image) trial.image = *image;
+  if (!image && !is_given)
+    section.fail(
+        section.place(kImageGrows),
+        fmt::format("{} needs a phantom and its size, phantom:NAME@SIZE, not {}", kImageGrows, trial.image));
+}
+
+// The matrix of one [[trials]].
 std::vector<Trial> read_trials(Section& section, const Inputs& inputs, const Trial& head,
-                               const std::string& folder, const std::string& image) {
+                               const std::string& folder, const std::vector<std::string>& images) {
   Trial common = head;
   common.name = read_name(section);
   read_conduct(section, common);
-  std::vector<std::string> names = read_input_names(section, inputs);
-  const bool in_suffix = section.is_array("input") && image.empty();
-  if (!image.empty()) names.resize(1);
+  const std::vector<NamedInput> named_inputs = inputs_of_trials(section, inputs, images);
   const std::vector<Variant> variants = read_matrix(section, folder);
   section.done();
   std::vector<Trial> trials;
-  for (const std::string& name : names)
+  for (const auto& [suffix, input] : named_inputs)
     for (const Variant& variant : variants) {
       Trial trial = common;
-      const Input input = name.empty() ? Input{} : image.empty() ? inputs.at(name) : Input{image, false};
-      trial.name += (in_suffix ? ",input=" + in_name(name) : "") + variant.suffix;
+      trial.name += suffix + variant.suffix;
       trial.image = input.image;
       trial.if_exists = input.if_exists;
       trial.options = variant.options;
+      grow(section, !images.empty(), trial);
       trials.push_back(std::move(trial));
     }
   return trials;
@@ -125,7 +158,7 @@ std::size_t Experiment::num_turns() const {
   return turns;
 }
 
-Experiment read_experiment(const std::string& path, const std::string& image) {
+Experiment read_experiment(const std::string& path, const std::vector<std::string>& images) {
   const toml::table table = parse_toml(path);
   Section file(path, table, "an experiment");
   const std::string folder = fs::path(path).parent_path().string();
@@ -144,7 +177,7 @@ Experiment read_experiment(const std::string& path, const std::string& image) {
   const Inputs inputs = read_inputs(file, folder);
   std::set<std::string> names;
   for (Section& section : file.table_array("trials"))
-    for (Trial& trial : read_trials(section, inputs, head, folder, image)) {
+    for (Trial& trial : read_trials(section, inputs, head, folder, images)) {
       if (!names.insert(trial.name).second)
         section.fail(section.place("name"), fmt::format("a second trial '{}'", trial.name));
       experiment.trials.push_back(std::move(trial));
@@ -164,6 +197,15 @@ std::vector<std::string> experiment_files(const std::string& folder) {
 }
 
 bool is_phantom(const std::string& image) { return image.starts_with("phantom:"); }
+
+std::optional<std::string> grown(const std::string& image, double factor) {
+  const std::size_t at = image.find('@');
+  int size = 0;
+  if (!is_phantom(image) || at == std::string::npos) return {};
+  const char* const end = image.data() + image.size();
+  if (std::from_chars(image.data() + at + 1, end, size).ptr != end) return {};
+  return fmt::format("{}@{}", image.substr(0, at), std::lround(size * std::cbrt(factor)));
+}
 
 bool image_exists(const Trial& trial) {
   std::error_code error;

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <nlohmann/json.hpp>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -41,9 +42,9 @@ struct Experiment {
   std::size_t num_turns() const;
 };
 
-/// Throws InputError "file:line:column: fault" on anything that is not exactly the format. A non-empty
-/// `image` stands for all inputs; it is relative to the working folder.
-Experiment read_experiment(const std::string& path, const std::string& image = "");
+/// Throws InputError "file:line:column: fault" on anything that is not exactly the format. `images`, where
+/// there are some, stand for all inputs, each an input of its own; they are relative to the working folder.
+Experiment read_experiment(const std::string& path, const std::vector<std::string>& images = {});
 
 /// Paths of the *.toml of a folder, sorted. Throws InputError when it cannot be read.
 std::vector<std::string> experiment_files(const std::string& folder);
@@ -52,6 +53,9 @@ std::vector<std::string> experiment_files(const std::string& folder);
 inline bool makes_mesh(const Trial& trial) { return !trial.image.empty(); }
 
 bool is_phantom(const std::string& image);
+
+/// The phantom with `factor` times as many voxels; nothing for another image or a phantom without its size.
+std::optional<std::string> grown(const std::string& image, double factor);
 
 /// Whether the trial's image is a phantom or a file that exists.
 bool image_exists(const Trial& trial);

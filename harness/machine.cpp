@@ -52,11 +52,20 @@ Machine this_machine() {
   return machine;
 }
 
-int usable_processors() {
+std::vector<int> usable_processor_ids() {
   cpu_set_t allowed;
   CPU_ZERO(&allowed);
-  if (sched_getaffinity(0, sizeof(allowed), &allowed) == 0) return std::max(1, CPU_COUNT(&allowed));
-  return std::max(1, static_cast<int>(sysconf(_SC_NPROCESSORS_ONLN)));  // more than 1024 processors
+  std::vector<int> ids;
+  if (sched_getaffinity(0, sizeof(allowed), &allowed) != 0) return ids;  // more than 1024 processors
+  for (int id = 0; id < CPU_SETSIZE; ++id)
+    if (CPU_ISSET(id, &allowed)) ids.push_back(id);
+  return ids;
+}
+
+int usable_processors() {
+  const std::size_t allowed = usable_processor_ids().size();
+  return std::max(1,
+                  allowed > 0 ? static_cast<int>(allowed) : static_cast<int>(sysconf(_SC_NPROCESSORS_ONLN)));
 }
 
 std::string value_of(const std::string& path, const std::string& key) {

@@ -3,6 +3,7 @@
 
 #include <nlohmann/json.hpp>
 #include <string>
+#include <vector>
 
 namespace podm::bench {
 
@@ -16,6 +17,9 @@ Machine this_machine();
 
 /// Processors that this process may run on, at least 1.
 int usable_processors();
+
+/// Their numbers, the lowest first; none where the kernel does not tell.
+std::vector<int> usable_processor_ids();
 
 /// The text after the colon of the first line "key : text" of a file, or "unavailable: why".
 std::string value_of(const std::string& path, const std::string& key);

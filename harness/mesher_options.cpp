@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
 #include <cctype>
 #include <cstring>
 #include <filesystem>
@@ -42,12 +43,24 @@ struct MesherOption {
   Kind kind;
 };
 
+// Of the harness, which passes them to no mesher.
+constexpr std::array kOfHarness{kMesher,     kSchedule, kReplay,   kFidelity,
+                                kImageGrows, kCopies,   kCounters, kMeasure};
+
+// Of all meshers.
+constexpr std::array kOfAll{kMesher, "radius_mm", "delta_mm", kTargetElements, kPerThread, "threads"};
+
+template <class Keys>
+bool is_among(const Keys& keys, std::string_view key) {
+  return std::find(keys.begin(), keys.end(), key) != keys.end();
+}
+
 constexpr MesherOption kMesherOptions[] = {
     {kMesher, Kind::kWord},
     {"algorithm", Kind::kWord},
     {"radius_mm", Kind::kPositive},
     {"delta_mm", Kind::kPositive},
-    {"target_elements", Kind::kElements},
+    {kTargetElements, Kind::kElements},
     {kPerThread, Kind::kElements},
     {"threads", Kind::kThreads},
     {"contention", Kind::kWord},
@@ -63,6 +76,10 @@ constexpr MesherOption kMesherOptions[] = {
     {"seed", Kind::kSeed},
     {"topology", Kind::kFile},
     {kSchedule, Kind::kFlag},
+    {kReplay, Kind::kFlag},
+    {kFidelity, Kind::kFlag},
+    {kImageGrows, Kind::kFlag},
+    {kCopies, Kind::kThreads},
     {kCounters, Kind::kCounters},
     {kMeasure, Kind::kMeasure},
 };
@@ -157,7 +174,7 @@ std::vector<Json> read_values(Section& section, const MesherOption& option, cons
 
 void refuse_second_size(const Section& section) {
   std::vector<const char*> given;
-  for (const char* key : {"radius_mm", "target_elements", kPerThread})
+  for (const char* key : {"radius_mm", kTargetElements, kPerThread})
     if (section.has(key)) given.push_back(key);
   if (given.size() > 1)
     section.fail(section.place(given.back()),
@@ -167,7 +184,7 @@ void refuse_second_size(const Section& section) {
 void refuse_options_of_podm(const Section& section, const Json& options) {
   if (options.value(kMesher, kPodm) == kPodm) return;
   for (const auto& [key, value] : options.items())
-    if (key != kMesher && key != "radius_mm" && key != "delta_mm" && key != "threads")
+    if (!is_among(kOfAll, key))
       section.fail(section.place(key), fmt::format("{} is an option of podm alone", key));
 }
 
@@ -178,6 +195,15 @@ void refuse_options_of_meshers(const Section& section, const Json& options) {
       section.fail(section.place(option.key), fmt::format("{} is an option of meshers", option.key));
 }
 
+// A copy has one processor, and the kernel counts all copies together.
+void refuse_crowded_copies(const Section& section, const Json& options) {
+  if (!options.contains(kCopies)) return;
+  if (options["threads"] != 1) section.fail(section.place(kCopies), "copies need threads = 1");
+  for (const char* key : {"pin", kCounters})
+    if (options.contains(key))
+      section.fail(section.place(key), fmt::format("{} and {} exclude each other", kCopies, key));
+}
+
 void scale_by_threads(const Section& section, Json& options) {
   if (!options.contains(kPerThread)) return;
   const std::int64_t elements =
@@ -186,7 +212,7 @@ void scale_by_threads(const Section& section, Json& options) {
     section.fail(section.place(kPerThread),
                  fmt::format("{} elements in all, more than {}", elements, kMaxElements));
   options.erase(kPerThread);
-  options["target_elements"] = elements;
+  options[kTargetElements] = elements;
 }
 
 }  // namespace
@@ -211,6 +237,7 @@ std::vector<Variant> read_matrix(Section& section, const std::string& folder) {
   for (Variant& variant : variants) {
     refuse_options_of_meshers(section, variant.options);
     refuse_options_of_podm(section, variant.options);
+    refuse_crowded_copies(section, variant.options);
     scale_by_threads(section, variant.options);
   }
   return variants;
@@ -219,7 +246,7 @@ std::vector<Variant> read_matrix(Section& section, const std::string& folder) {
 std::vector<std::string> mesher_arguments(const Json& options) {
   std::vector<std::string> arguments;
   for (const auto& [key, value] : options.items()) {
-    if (value == false || key == kMesher || key == kSchedule || key == kCounters || key == kMeasure) continue;
+    if (value == false || is_among(kOfHarness, key)) continue;
     std::string name = key.ends_with(kMillimetres) ? key.substr(0, key.size() - 3) : key;
     std::replace(name.begin(), name.end(), '_', '-');
     arguments.push_back("--" + name);

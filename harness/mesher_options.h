@@ -15,6 +15,15 @@ inline constexpr const char *kMesher = "mesher", *kPodm = "podm";
 inline constexpr const char* kSchedule = "schedule";
 /// The key of a trial that makes no mesh but measures the machine, and what it measures.
 inline constexpr const char *kMeasure = "measure", *kMemoryLatency = "memory_latency";
+/// The key that runs so many processes of the trial at the same time, each on a processor of its own.
+inline constexpr const char* kCopies = "copies";
+/// The keys of what is asked of a mesh that is made: to equal the replay of its operations, and to follow the
+/// image closely, a claim of podm-verify.
+inline constexpr const char *kReplay = "replay", *kFidelity = "fidelity";
+/// The key that has a phantom's voxels grow with the threads.
+inline constexpr const char* kImageGrows = "image_grows";
+/// The key of the number of cells aimed at, by a radius that is found once: radii.h.
+inline constexpr const char* kTargetElements = "target_elements";
 
 /// One member of the product.
 struct Variant {
@@ -27,7 +36,7 @@ struct Variant {
 std::vector<Variant> read_matrix(Section& section, const std::string& folder);
 
 /// As `podm mesh` takes them: radius_mm = 2 is "--radius", "2"; true is the bare option, false none. Without
-/// those that are the harness's business: the keys above and kCounters.
+/// those that are the harness's business: the keys above but the last, and kCounters.
 std::vector<std::string> mesher_arguments(const nlohmann::ordered_json& options);
 
 /// `value` as it stands in the name of a trial, made of letters, digits and . _ -

@@ -49,21 +49,22 @@ const Peer& Peers::of(const Trial& trial) {
   return peers_[name] = ask_for_version(program, podm_);
 }
 
-std::vector<std::string> peer_command(const Trial& trial, const Peer& peer, const std::string& image,
+std::vector<std::string> peer_command(const Trial& trial, const Preparation& preparation, const Peer& peer,
                                       const std::string& podm, const std::string& folder) {
-  std::vector<std::string> command{peer.program, "--podm", podm, "--image", image, "--output", folder};
-  const std::vector<std::string> options = mesher_arguments(trial.options);
+  std::vector<std::string> command{peer.program,      "--podm",   podm,  "--image",
+                                   preparation.image, "--output", folder};
+  const std::vector<std::string> options = mesher_arguments(resolved_options(trial, preparation));
   command.insert(command.end(), options.begin(), options.end());
   return command;
 }
 
-Json complete_record(const Trial& trial, Json record) {
+Json complete_record(const Trial& trial, const Preparation& preparation, Json record) {
   if (!record.is_object()) return record;
   record["schema"] = kMesherSchemaOfPeers;
   record["algorithm"] = trial.options[kMesher];
   record["guarantees"] = Json::object();  // it promises claims of the verifier instead
   record["stop_reason"] = "complete";
-  record["used"]["radius_mm"] = trial.options.value("radius_mm", 0.0);
+  record["used"]["radius_mm"] = resolved_options(trial, preparation).value("radius_mm", 0.0);
   const auto seconds = number_in(record.value("phases_s", Json::object()), "refine");
   const auto cells = number_in(record, "cells");
   if (seconds && *seconds > 0 && cells) record["refine_cells_per_second"] = *cells / *seconds;

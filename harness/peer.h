@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "experiment.h"
+#include "preparation.h"
 
 namespace podm::bench {
 
@@ -37,11 +38,12 @@ class Peers {
   std::map<std::string, Peer> peers_;
 };
 
-/// What runs the trial on the image file; mesh and record go to `folder`.
-std::vector<std::string> peer_command(const Trial& trial, const Peer& peer, const std::string& image,
+/// What runs the trial; mesh and record go to `folder`.
+std::vector<std::string> peer_command(const Trial& trial, const Preparation& preparation, const Peer& peer,
                                       const std::string& podm, const std::string& folder);
 
 /// A peer's record with what a row of podm has and a peer need not tell.
-nlohmann::ordered_json complete_record(const Trial& trial, nlohmann::ordered_json record);
+nlohmann::ordered_json complete_record(const Trial& trial, const Preparation& preparation,
+                                       nlohmann::ordered_json record);
 
 }  // namespace podm::bench

@@ -5,7 +5,9 @@
 
 #include <algorithm>
 #include <filesystem>
+#include <map>
 
+#include "mesher_options.h"
 #include "record.h"
 
 namespace podm::bench {
@@ -18,13 +20,23 @@ bool is_chosen(const Trial& trial, const RunCommand& command) {
          (!command.tier || trial.tier <= *command.tier);
 }
 
-// The newest finished row of each key; rows of schema 1 have none.
-std::map<std::string, const Json*> finished_rows(const std::vector<Json>& rows) {
-  std::map<std::string, const Json*> finished;
+FinishedRows finished_rows(const std::vector<Json>& rows) {
+  FinishedRows finished;
   for (const Json& row : rows)
-    if (is_finished(row)) finished[text_in(row, "key")] = &row;
-  finished.erase("");
+    if (is_finished(row)) finished[text_in(row, "key")] = row;
   return finished;
+}
+
+// Trials are told apart by the names of their images, as are phantoms and files of people.
+void check_images(const std::vector<std::string>& images) {
+  std::map<std::string, std::string> by_name;
+  for (const std::string& image : images) {
+    if (!is_phantom(image) && !std::filesystem::exists(image))
+      throw InputError(fmt::format("--image {}: no such file", image));
+    const auto [known, is_new] = by_name.emplace(in_name(image), image);
+    if (!is_new)
+      throw InputError(fmt::format("--image {} and --image {} have the same name", known->second, image));
+  }
 }
 
 }  // namespace
@@ -35,11 +47,10 @@ std::size_t Plan::num_present() const {
 }
 
 std::vector<Experiment> read_experiments(const RunCommand& command) {
-  if (!command.image.empty() && !is_phantom(command.image) && !std::filesystem::exists(command.image))
-    throw InputError(fmt::format("--image {}: no such file", command.image));
+  check_images(command.images);
   std::vector<Experiment> experiments;
   for (const std::string& path : command.experiment_paths)
-    experiments.push_back(read_experiment(path, command.image));
+    experiments.push_back(read_experiment(path, command.images));
   for (const Experiment& experiment : experiments)
     for (const Trial& trial : experiment.trials)
       if (is_chosen(trial, command)) return experiments;
@@ -53,19 +64,23 @@ std::string rows_path(const RunCommand& command, const Experiment& experiment) {
 }
 
 Plan make_plan(const RunCommand& command, const Experiment& experiment, const std::vector<Json>& rows,
-               TrialKeys& keys) {
+               Preparer& preparer, TrialKeys& keys) {
   Plan plan;
   const Expectations expectations(experiment, rows);
+  std::vector<std::optional<Preparation>> prepared;
   for (const Trial& trial : experiment.trials) {
     if (!is_chosen(trial, command)) continue;
     plan.trials.push_back(trial);
     plan.expected.push_back(expectations.of(trial));
+    prepared.push_back(preparer.find(trial));
   }
-  const auto finished = finished_rows(rows);
+  if (!command.again) plan.finished = finished_rows(rows);
   for (const Turn& turn : schedule(plan.trials, command.order_seed)) {
-    PlannedTurn planned{turn, keys.of(plan.trials[turn.trial], turn), {}};
-    const auto found = finished.find(planned.key);
-    if (found != finished.end() && !command.again) planned.row = *found->second;
+    PlannedTurn planned{turn, {}, {}};
+    if (const auto& preparation = prepared[turn.trial])
+      planned.key = keys.of(plan.trials[turn.trial], turn, *preparation);
+    const auto found = plan.finished.find(planned.key);
+    if (found != plan.finished.end()) planned.row = found->second;
     plan.turns.push_back(std::move(planned));
   }
   return plan;

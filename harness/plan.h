@@ -1,6 +1,7 @@
 // Which turns of an experiment a command asks for, and which of them are measured already.
 #pragma once
 
+#include <map>
 #include <nlohmann/json.hpp>
 #include <optional>
 #include <string>
@@ -15,14 +16,18 @@ namespace podm::bench {
 
 struct PlannedTurn {
   Turn turn;
-  std::string key;
+  std::string key;  ///< empty while the trial's radius is not found or its phantom not drawn
   std::optional<nlohmann::ordered_json> row;  ///< of an earlier run; it need not run again
 };
+
+/// The newest finished row of each key.
+using FinishedRows = std::map<std::string, nlohmann::ordered_json>;
 
 struct Plan {
   std::vector<Trial> trials;          ///< as chosen
   std::vector<Expectation> expected;  ///< of each trial
   std::vector<PlannedTurn> turns;     ///< in their order
+  FinishedRows finished;              ///< that need not run again
 
   std::size_t num_present() const;
 };
@@ -34,6 +39,6 @@ std::string rows_path(const RunCommand& command, const Experiment& experiment);
 
 /// `rows` are those recorded for the experiment before.
 Plan make_plan(const RunCommand& command, const Experiment& experiment,
-               const std::vector<nlohmann::ordered_json>& rows, TrialKeys& keys);
+               const std::vector<nlohmann::ordered_json>& rows, Preparer& preparer, TrialKeys& keys);
 
 }  // namespace podm::bench

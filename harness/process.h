@@ -3,6 +3,7 @@
 
 #include <cstdint>
 #include <functional>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -16,6 +17,7 @@ struct ProcessRequest {
   std::string stdout_path, stderr_path;  ///< overwritten; empty: thrown away
   double timeout_s = 0;                  ///< killed after it; 0: never
   std::uint64_t memory_limit_bytes = 0;  ///< killed when its resident memory is seen above it; 0: never
+  std::optional<int> processor = {};     ///< it may run on this one alone; nothing: where this process may
 };
 
 struct ProcessOutcome {
@@ -35,6 +37,10 @@ struct ProcessOutcome {
 /// Runs to the end, a limit or a stop request; the latter two kill the child and its descendants. The child
 /// dies with this process, however that ends.
 ProcessOutcome run_process(const ProcessRequest& request, const StopQuery& stop_requested = {});
+
+/// The same of several that run at the same time, until the last has ended.
+std::vector<ProcessOutcome> run_processes(const std::vector<ProcessRequest>& requests,
+                                          const StopQuery& stop_requested = {});
 
 /// Whether a program of this name is in PATH.
 bool is_installed(const std::string& program);

@@ -46,16 +46,25 @@ Progress::Progress(std::vector<std::optional<double>> expected_s)
 void Progress::start_turn(const std::string& label) {
   ++num_started_;
   label_ = label;
+  step_.clear();
   start_ = Clock::now();
   drawn_ = start_ - kRedraw;
   tick();
 }
 
+void Progress::tell(const std::string& step) {
+  step_ = step.empty() ? "" : ": " + step;
+  drawn_ = start_ - kRedraw;
+  tick();
+  if (!is_terminal_ && !step.empty())
+    fmt::print(stderr, "[{}/{}] {}{}\n", num_started_, num_turns_, label_, step_);
+}
+
 void Progress::tick() {
   if (!is_terminal_ || Clock::now() - drawn_ < kRedraw) return;
   drawn_ = Clock::now();
-  fmt::print(stderr, "{}[{}/{}] {}: {:.0f} s{}", kClearLine, num_started_, num_turns_, label_, elapsed_s(),
-             remaining_text(elapsed_s()));
+  fmt::print(stderr, "{}[{}/{}] {}{}: {:.0f} s{}", kClearLine, num_started_, num_turns_, label_, step_,
+             elapsed_s(), remaining_text(elapsed_s()));
   std::fflush(stderr);
 }
 

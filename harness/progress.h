@@ -32,6 +32,8 @@ class Progress {
   explicit Progress(std::vector<std::optional<double>> expected_s);
 
   void start_turn(const std::string& label);
+  /// What is done before the turn's own process runs; empty: that is over.
+  void tell(const std::string& step);
   void tick();
   void finish_turn(const std::string& line);
 
@@ -42,7 +44,7 @@ class Progress {
 
   RemainingTime remaining_;
   std::size_t num_turns_, num_started_ = 0;
-  std::string label_;
+  std::string label_, step_;
   Clock::time_point start_, drawn_;
   bool is_terminal_;
 };

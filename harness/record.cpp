@@ -23,6 +23,15 @@ Json process_of(const Trial& trial, const TrialResult& result) {
           {"counters", result.counters}};
 }
 
+// The file as the mesher knows it, a peer as the harness does.
+Json input_of(const Trial& trial, const TrialResult& result) {
+  Json input = {
+      {"name", trial.image}, {"path", result.preparation.image}, {"sha256", result.preparation.sha256}};
+  if (result.record.is_object()) input.update(result.record.value("input", Json::object()));
+  input["size"] = result.image_size;
+  return input;
+}
+
 }  // namespace
 
 std::optional<double> bytes_per_cell_beyond_image(const TrialResult& result) {
@@ -46,10 +55,13 @@ Json make_row(const RowContext& context, const Trial& trial, const Turn& turn, c
               {"reason", result.reason},
               {"asked", trial.options},
               {"command", result.command},
-              {"input", {{"path", trial.image}}}};
+              {"resolved", result.preparation.resolved},
+              {"input", Json()}};
   if (result.record.is_object()) row.update(result.record);
   row["schema"] = kRowSchema;  // the mesher's record has its own
-  row["input"]["size"] = result.image_size;
+  row["input"] = input_of(trial, result);
+  row["replay"] = result.replay;
+  row["side_by_side"] = result.side_by_side;
   row["mesh_bytes"] = result.mesh_bytes > 0 ? Json(result.mesh_bytes) : Json();
   row["process"] = process_of(trial, result);
   row["preparation_s"] = result.preparation_s;

@@ -10,7 +10,7 @@
 
 namespace podm::bench {
 
-inline constexpr int kRowSchema = 2;  ///< results/schema/podm-bench-row.schema.json
+inline constexpr int kRowSchema = 3;  ///< results/schema/podm-bench-row.schema.json
 
 /// Of a row that measures the machine in place of a mesh: a list, Table 3.
 inline constexpr const char* kMemoryLevels = "memory_levels";

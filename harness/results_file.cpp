@@ -18,8 +18,6 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
-constexpr int kOldestSchema = 1;  // rows without a key: never resumed, but told by
-
 // 0 or the number of the error.
 int write_all(int descriptor, const std::string& text) {
   for (std::size_t done = 0; done < text.size();) {
@@ -36,9 +34,9 @@ int write_all(int descriptor, const std::string& text) {
 
 void check_schema(const Json& row, const std::string& path, std::size_t line) {
   const Json schema = row.value("schema", Json());
-  if (schema.is_number_integer() && schema >= kOldestSchema && schema <= kRowSchema) return;
-  throw InputError(fmt::format("{}:{}: a row of schema {}; this program reads {} to {}", path, line,
-                               schema.is_null() ? "none" : schema.dump(), kOldestSchema, kRowSchema));
+  if (schema == kRowSchema) return;
+  throw InputError(fmt::format("{}:{}: a row of schema {}; this program reads {}: move the file away", path,
+                               line, schema.is_null() ? "none" : schema.dump(), kRowSchema));
 }
 
 }  // namespace

@@ -6,6 +6,7 @@
 #include <array>
 #include <cerrno>
 #include <cstring>
+#include <filesystem>
 #include <fstream>
 #include <memory>
 
@@ -54,6 +55,12 @@ std::string sha256_of_file(const std::string& path) {
   }
   if (!file.eof()) throw InputError(fmt::format("cannot read {}: {}", path, std::strerror(errno)));
   return hash.hex();
+}
+
+const std::string& FileHashes::of(const std::string& path) {
+  const auto [entry, is_new] = hashes_.try_emplace(path);
+  if (is_new) entry->second = std::filesystem::exists(path) ? sha256_of_file(path) : "absent";
+  return entry->second;
 }
 
 }  // namespace podm::bench

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <map>
 #include <string>
 
 namespace podm::bench {
@@ -9,5 +10,15 @@ std::string sha256_of(const std::string& text);
 
 /// Throws InputError naming the file when it cannot be read.
 std::string sha256_of_file(const std::string& path);
+
+/// Hashes of files, each read once.
+class FileHashes {
+ public:
+  /// "absent" where there is no file. Throws InputError when it cannot be read.
+  const std::string& of(const std::string& path);
+
+ private:
+  std::map<std::string, std::string> hashes_;
+};
 
 }  // namespace podm::bench

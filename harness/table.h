@@ -12,11 +12,13 @@ namespace podm::bench {
 /// the first `num_text_columns` are aligned to the left.
 std::string align(const std::vector<std::vector<std::string>>& lines, std::size_t num_text_columns);
 
-/// A line for each trial that has rows besides those of warm-ups. Seconds are those of all phases but
-/// writing; numbers are medians over the repeats that hold all they promise, and "-" without any.
+/// A line for each trial that has rows besides those of warm-ups. Seconds are those
+/// of meshing_seconds(); numbers are medians over the repeats that hold all they promise, and "-" without
+/// any.
 std::string format_table(const std::vector<std::vector<nlohmann::ordered_json>>& rows_of_trials);
 
-/// Of all phases of a mesher's record but writing, as in the paper's eq. (1).
+/// The time of the paper's eq. (1): of all phases of a mesher's record but those that make no part of the
+/// mesh, results/README.md.
 double meshing_seconds(const nlohmann::ordered_json& record);
 
 /// "L1 cache 4.1 cycles, L2 cache 14 cycles, ...": medians over rows that measure the same machine.

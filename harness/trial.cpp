@@ -1,15 +1,19 @@
 #include "trial.h"
 
 #include <fmt/format.h>
+#include <unistd.h>
 
 #include <algorithm>
-#include <chrono>
 #include <filesystem>
 #include <fstream>
 
 #include "counters.h"
+#include "judgement.h"
+#include "machine.h"
 #include "mesher_options.h"
 #include "record.h"
+#include "side_by_side.h"
+#include "stopwatch.h"
 #include "warm_memory.h"
 
 namespace podm::bench {
@@ -19,30 +23,20 @@ using Json = nlohmann::ordered_json;
 
 constexpr std::size_t kTailBytes = 2000;
 constexpr double kInfoTimeoutS = 120;
-constexpr int kExitUnmet = 1;
 constexpr double kBytesPerGib = 1024.0 * 1024 * 1024;
 constexpr const char* kMeshName = "/mesh.vtu";
-constexpr const char* kRecordName = "/record.jsonl";
 constexpr const char* kMessagesName = "/stderr.txt";
 
-class Stopwatch {
- public:
-  double seconds() const {
-    return std::chrono::duration<double>(std::chrono::steady_clock::now() - start_).count();
-  }
-
- private:
-  std::chrono::steady_clock::time_point start_ = std::chrono::steady_clock::now();
-};
-
-std::vector<std::string> mesh_command(const Trial& trial, const std::string& podm,
-                                      const std::string& folder) {
-  std::vector<std::string> command{podm, "mesh", trial.image};
-  const std::vector<std::string> options = mesher_arguments(trial.options);
-  command.insert(command.end(), options.begin(), options.end());
-  if (trial.options.value(kSchedule, false))
-    command.insert(command.end(), {"--schedule", folder + kScheduleName});
-  command.insert(command.end(), {"-o", folder + kMeshName, "--record", folder + kRecordName, "--quiet"});
+std::vector<std::string> mesh_command(const Trial& trial, const Preparation& preparation,
+                                      const std::string& podm, const std::string& folder) {
+  std::vector<std::string> command{podm, "mesh", preparation.image};
+  const auto add = [&command](const std::vector<std::string>& more) {
+    command.insert(command.end(), more.begin(), more.end());
+  };
+  add(mesher_arguments(resolved_options(trial, preparation)));
+  if (trial.options.value(kSchedule, false)) add({"--schedule", folder + kScheduleName});
+  if (trial.options.value(kReplay, false)) add({"--log", folder + kLogName});
+  add({"-o", folder + kMeshName, "--record", folder + kRecordName, "--quiet"});
   return command;
 }
 
@@ -65,85 +59,38 @@ Json read_image_size(const std::string& image_path, const std::string& podm, con
   return image.is_object() ? image.value("size", Json()) : Json();
 }
 
-// Why `record` cannot be used; empty: it can. Asks only for what is read here and in the table.
-std::string fault_of(const Json& record) {
-  if (!record.is_object()) return "is not a JSON object";
-  if (record.value("schema", Json()) != kMesherSchema)
-    return fmt::format("is not of schema {}", kMesherSchema);
-  const auto at = [&](const char* key) { return record.value(key, Json()); };
-  const Json phases = at("phases_s");
-  if (!phases.is_object() ||
-      !std::all_of(phases.begin(), phases.end(), [](const Json& s) { return s.is_number(); }))
-    return "has no seconds by phase";
-  for (const char* count : {"cells", "vertices"})
-    if (!at(count).is_number_unsigned()) return fmt::format("has no count '{}'", count);
-  if (!at("refine_cells_per_second").is_number()) return "has no number 'refine_cells_per_second'";
-  if (!at("guarantees").is_object()) return "has no 'guarantees'";
-  if (!at("stop_reason").is_string()) return "has no 'stop_reason'";
-  return {};
+ProcessRequest request_of(const Trial& trial, const std::vector<std::string>& command,
+                          const std::string& folder) {
+  return {.arguments = command,
+          .stdout_path = {},
+          .stderr_path = folder + kMessagesName,
+          .timeout_s = trial.timeout_s,
+          .memory_limit_bytes = static_cast<std::uint64_t>(trial.memory_limit_gib * kBytesPerGib)};
 }
 
-// Guarantees by name with the number of their misses, e.g. "radius_edge 3, facet_angle 1".
-std::string unmet(const Json& record) {
-  std::string text;
-  for (const auto& [name, misses] : record["guarantees"].items())
-    if (misses != 0) text += fmt::format("{}{} {}", text.empty() ? "" : ", ", name, misses.dump());
-  if (record["stop_reason"] != "complete")
-    text += fmt::format("{}stopped: {}", text.empty() ? "" : ", ", record["stop_reason"].get<std::string>());
-  return text;
+// Not more than half of what is free: it is to be touched, not to be had.
+void warm_memory_of(const Trial& trial) {
+  const auto free_bytes = static_cast<std::size_t>(std::max(0L, sysconf(_SC_AVPHYS_PAGES))) *
+                          static_cast<std::size_t>(sysconf(_SC_PAGESIZE));
+  const auto copies = static_cast<std::size_t>(std::max(1, num_copies(trial)));
+  warm_memory(std::max(kWarmBytes, std::min(copies * kWarmBytes, free_bytes / 2)));
 }
 
-void judge_end(TrialResult& result) {
-  using End = ProcessOutcome::End;
-  result.reason = result.process.describe();
-  if (result.process.end == End::kTimedOut) result.status = Status::kTimedOut;
-  if (result.process.end == End::kInterrupted) result.status = Status::kInterrupted;
-}
-
-void judge_measurement(const std::string& record_path, TrialResult& result) {
-  judge_end(result);
-  if (!result.process.succeeded()) return;
-  std::ifstream file(record_path);
-  Json record = Json::parse(file, nullptr, false);
-  if (!record.is_object() || !record.value(kMemoryLevels, Json()).is_array()) {
-    result.reason += ", without a record";
-    return;
-  }
-  result.record = std::move(record);
-  result.status = Status::kOk;
-  result.reason.clear();
-}
-
-void judge(const Trial& trial, const std::string& record_path, TrialResult& result) {
-  judge_end(result);
-  const ProcessOutcome& process = result.process;
-  if (process.end != ProcessOutcome::End::kExited ||
-      (process.exit_code != 0 && process.exit_code != kExitUnmet))
-    return;
-
-  std::ifstream file(record_path);
-  if (!file) {
-    result.reason += ", without a record";
-    return;
-  }
-  Json record = Json::parse(file, nullptr, false);
-  if (is_of_peer(trial)) record = complete_record(trial, std::move(record));
-  if (const std::string fault = fault_of(record); !fault.empty()) {
-    result.reason += ", with a record that " + fault;
-    return;
-  }
-  const std::string misses = unmet(record);
-  result.record = std::move(record);
-  if (process.exit_code == 0 && misses.empty()) {
-    result.status = Status::kOk;
-    result.reason.clear();
-    return;
-  }
-  result.status = Status::kUnmet;
-  if (!misses.empty()) result.reason = misses;
+// A mesh that does not prove itself is unmet.
+void add_fault(const std::string& fault, bool is_interrupted, TrialResult& result) {
+  if (fault.empty()) return;
+  result.status = is_interrupted ? Status::kInterrupted : Status::kUnmet;
+  result.reason += (result.reason.empty() ? "" : "; ") + fault;
 }
 
 }  // namespace
+
+struct TrialRunner::Run {
+  const Trial& trial;
+  const Preparation& preparation;
+  const std::string& folder;  ///< for its files
+  const StopQuery& stop_requested;
+};
 
 std::string to_string(Status status) {
   switch (status) {
@@ -169,96 +116,105 @@ const Json& TrialRunner::image_size(const std::string& image, const std::string&
   return entry->second;
 }
 
-void TrialRunner::verify(const Trial& trial, const std::string& scratch_folder,
-                         const StopQuery& stop_requested, TrialResult& result) {
-  const Stopwatch watch;
-  const Verification verification =
-      verify_mesh(trial, result.image_size, result.record, mesh_path(result.record, scratch_folder),
-                  programs_, scratch_folder, stop_requested);
-  result.verification_s = watch.seconds();
-  result.record["verdicts"] = verification.verdicts;
-  if (verification.fault.empty()) return;
-  result.status = verification.is_interrupted ? Status::kInterrupted : Status::kUnmet;
-  result.reason += (result.reason.empty() ? "" : "; ") + verification.fault;
+std::string TrialRunner::why_skipped(const Trial& trial) {
+  if (trial.if_exists && !image_exists(trial)) return trial.image + " is not there";
+  if (trial.options.value(kImageGrows, false) && !grown(trial.image, 1)) return trial.image + " cannot grow";
+  const int copies = num_copies(trial);
+  const auto processors = static_cast<int>(usable_processor_ids().size());
+  if (copies > processors)
+    return fmt::format("{} copies need as many processors, and there are {}", copies, processors);
+  return is_of_peer(trial) ? peers_.of(trial).absence : "";
 }
 
-bool TrialRunner::skip(const Trial& trial, TrialResult& result) {
-  if (trial.if_exists && !image_exists(trial)) result.reason = trial.image + " is not there";
-  if (is_of_peer(trial) && result.reason.empty()) result.reason = peers_.of(trial).absence;
-  if (!result.reason.empty()) result.status = Status::kSkipped;
-  return !result.reason.empty();
+std::vector<std::string> TrialRunner::command_of(const Run& run, const std::string& folder,
+                                                 TrialResult& result) {
+  if (!is_of_peer(run.trial)) return mesh_command(run.trial, run.preparation, programs_.podm, folder);
+  const Peer& peer = peers_.of(run.trial);
+  result.peer = {{"name", run.trial.options[kMesher]}, {"sha256", peer.sha256()}, {"version", peer.version}};
+  return peer_command(run.trial, run.preparation, peer, programs_.podm, folder);
 }
 
-void TrialRunner::set_command(const Trial& trial, const std::string& scratch_folder, TrialResult& result) {
-  if (!is_of_peer(trial)) {
-    result.command = mesh_command(trial, programs_.podm, scratch_folder);
-    return;
-  }
-  const Peer& peer = peers_.of(trial);
-  const std::string image = image_file(trial, result.image_size, programs_.podm, scratch_folder);
-  result.command = peer_command(trial, peer, image, programs_.podm, scratch_folder);
-  result.peer = {{"name", trial.options[kMesher]}, {"sha256", peer.sha256()}, {"version", peer.version}};
-}
-
-const CounterTool* TrialRunner::counter_tool_of(const Trial& trial, const std::string& scratch_folder) {
-  const std::string choice = trial.options.value(kCounters, kPerfEvent);
+const CounterTool* TrialRunner::counter_tool_of(const Run& run) {
+  const std::string choice = run.trial.options.value(kCounters, kPerfEvent);
   const auto [entry, is_new] = counter_tools_.try_emplace(choice);
-  if (is_new) entry->second = counter_tool(choice, programs_.likwid_groups, scratch_folder);
+  if (is_new) entry->second = counter_tool(choice, programs_.likwid_groups, run.folder);
   return entry->second.get();
 }
 
-void TrialRunner::run_program(const Trial& trial, const std::string& scratch_folder,
-                              const StopQuery& stop_requested, TrialResult& result) {
-  const CounterTool* tool = counter_tool_of(trial, scratch_folder);
+void TrialRunner::run_program(const Run& run, TrialResult& result) {
+  const CounterTool* tool = counter_tool_of(run);
   const std::string absence = tool == nullptr ? "" : tool->absence();
   const bool is_used = tool != nullptr && absence.empty();
-  if (is_used) result.command = tool->wrap(result.command, scratch_folder);
+  if (is_used) result.command = tool->wrap(result.command, run.folder);
   // likwid-perfctr needs the processor's counters for itself.
   const PerfCounters kernel(is_used ? CounterKinds::kSoftware : CounterKinds::kSoftwareAndHardware);
-  result.process =
-      run_process({.arguments = result.command,
-                   .stdout_path = {},
-                   .stderr_path = scratch_folder + kMessagesName,
-                   .timeout_s = trial.timeout_s,
-                   .memory_limit_bytes = static_cast<std::uint64_t>(trial.memory_limit_gib * kBytesPerGib)},
-                  stop_requested);
+  result.process = run_process(request_of(run.trial, result.command, run.folder), run.stop_requested);
   if (!is_used || !tool->is_simulation()) result.counters = kernel.read(result.process);
-  if (is_used) result.counters.update(tool->read(scratch_folder));
+  if (is_used) result.counters.update(tool->read(run.folder));
   if (!absence.empty())
-    result.counters[trial.options[kCounters].get<std::string>()] = "unavailable: " + absence;
+    result.counters[run.trial.options[kCounters].get<std::string>()] = "unavailable: " + absence;
 }
 
-void TrialRunner::measure(const Trial& trial, const std::string& scratch_folder,
-                          const StopQuery& stop_requested, TrialResult& result) {
-  result.command = {programs_.bench, "latency", "--record", scratch_folder + kRecordName};
-  run_program(trial, scratch_folder, stop_requested, result);
-  judge_measurement(scratch_folder + kRecordName, result);
+void TrialRunner::run_copies(const Run& run, TrialResult& result) {
+  std::vector<ProcessRequest> requests;
+  for (int copy = 0; copy < num_copies(run.trial); ++copy) {
+    const std::string folder = folder_of_copy(run.folder, copy);
+    std::filesystem::create_directories(folder);
+    requests.push_back(request_of(run.trial, command_of(run, folder, result), folder));
+  }
+  run_side_by_side(run.trial, std::move(requests), run.folder, run.stop_requested, result);
 }
 
-void TrialRunner::make_mesh(const Trial& trial, const std::string& scratch_folder,
-                            const StopQuery& stop_requested, TrialResult& result) {
+void TrialRunner::measure(const Run& run, TrialResult& result) {
+  result.command = {programs_.bench, "latency", "--record", run.folder + kRecordName};
+  run_program(run, result);
+  judge_measurement(run.folder + kRecordName, result);
+}
+
+void TrialRunner::make_mesh(const Run& run, TrialResult& result) {
   const Stopwatch watch;
-  result.image_size = image_size(trial.image, scratch_folder);
-  set_command(trial, scratch_folder, result);
-  warm_memory(kWarmBytes);
+  result.image_size = image_size(run.preparation.image, run.folder);
+  result.command = command_of(run, run.folder, result);
+  warm_memory_of(run.trial);
   result.preparation_s = watch.seconds();
-  run_program(trial, scratch_folder, stop_requested, result);
-  judge(trial, scratch_folder + kRecordName, result);
+  if (num_copies(run.trial) > 0) {
+    run_copies(run, result);
+  } else {
+    run_program(run, result);
+    judge(run.trial, run.folder + kRecordName, result);
+  }
   std::error_code error;
-  const auto mesh_bytes = std::filesystem::file_size(mesh_path(result.record, scratch_folder), error);
+  const auto mesh_bytes = std::filesystem::file_size(mesh_path(result.record, run.folder), error);
   if (!error) result.mesh_bytes = mesh_bytes;
-  if (result.record.is_object() && !programs_.verifier.empty())
-    verify(trial, scratch_folder, stop_requested, result);
+  if (result.record.is_object()) prove(run, result);
 }
 
-TrialResult TrialRunner::run(const Trial& trial, const std::string& scratch_folder,
-                             const StopQuery& stop_requested) {
+void TrialRunner::prove(const Run& run, TrialResult& result) {
+  const Stopwatch watch;
+  if (!programs_.verifier.empty()) {
+    const Verification verification =
+        verify_mesh(run.trial, run.preparation.image, result.record, mesh_path(result.record, run.folder),
+                    programs_.verifier, run.folder, run.stop_requested);
+    result.record["verdicts"] = verification.verdicts;
+    add_fault(verification.fault, verification.is_interrupted, result);
+  }
+  if (run.trial.options.value(kReplay, false) && result.status != Status::kInterrupted) {
+    const Replay replay = replay_mesh(run.preparation.image, programs_.podm, run.folder, run.stop_requested);
+    result.replay = replay.answer;
+    add_fault(replay.is_equal() ? "" : "replay " + replay.answer, replay.is_interrupted, result);
+  }
+  result.verification_s = watch.seconds();
+}
+
+TrialResult TrialRunner::run(const Trial& trial, const Preparation& preparation,
+                             const std::string& scratch_folder, const StopQuery& stop_requested) {
   TrialResult result;
-  if (skip(trial, result)) return result;
+  result.preparation = preparation;
+  const Run run{trial, preparation, scratch_folder, stop_requested};
   if (makes_mesh(trial))
-    make_mesh(trial, scratch_folder, stop_requested, result);
+    make_mesh(run, result);
   else
-    measure(trial, scratch_folder, stop_requested, result);
+    measure(run, result);
   if (result.status != Status::kOk)
     result.stderr_tail = read_tail(scratch_folder + kMessagesName, kTailBytes);
   return result;

@@ -9,12 +9,13 @@
 #include "counter_tool.h"
 #include "experiment.h"
 #include "peer.h"
+#include "preparation.h"
 #include "process.h"
 #include "verification.h"
 
 namespace podm::bench {
 
-inline constexpr int kMesherSchema = 1;  ///< of the mesher's records
+inline constexpr const char* kRecordName = "/record.jsonl";  ///< in the folder of a trial
 
 enum class Status {
   kOk,
@@ -22,7 +23,7 @@ enum class Status {
   kFailed,  ///< no mesh, or no record of it
   kTimedOut,
   kInterrupted,  ///< by the user, as are all trials after it
-  kSkipped,      ///< the image is absent and may be, or the peer is not installed
+  kSkipped,      ///< it cannot run here and need not
 };
 /// "ok", "unmet", "failed", "timed_out", "interrupted", "skipped".
 std::string to_string(Status status);
@@ -30,6 +31,7 @@ std::string to_string(Status status);
 struct TrialResult {
   Status status = Status::kFailed;
   std::string reason;                ///< why the status is not kOk
+  Preparation preparation;           ///< the image that was read, and the radius
   std::vector<std::string> command;  ///< as run
   nlohmann::ordered_json peer;       ///< name, hash and version of a mesher other than podm; else null
   ProcessOutcome process;
@@ -39,6 +41,8 @@ struct TrialResult {
   std::string stderr_tail;                       ///< of a trial that is not kOk
   nlohmann::ordered_json record;                 ///< as the program wrote it; null when it did not
   nlohmann::ordered_json image_size;             ///< voxels per axis; null when the mesher could not tell
+  nlohmann::ordered_json replay;        ///< "equal", "differs" or "failed: why"; null when not asked for
+  nlohmann::ordered_json side_by_side;  ///< an entry a copy; null where the trial asks for none
 };
 
 /// Runs trials one after the other.
@@ -47,27 +51,27 @@ class TrialRunner {
   explicit TrialRunner(Programs programs)
       : programs_(std::move(programs)), peers_(programs_.peers, programs_.podm) {}
 
-  /// Runs the mesher on the trial, then the verifier on its mesh, whose verdicts join the record. Files are
-  /// written into `scratch_folder`, which must exist.
-  TrialResult run(const Trial& trial, const std::string& scratch_folder,
+  /// Why the trial cannot run here and need not; empty: it can.
+  std::string why_skipped(const Trial& trial);
+
+  /// Runs the mesher on the trial, then the verifier on its mesh, whose verdicts join the record, and the
+  /// replay where it is asked for. Files are written into `scratch_folder`, which must exist.
+  TrialResult run(const Trial& trial, const Preparation& preparation, const std::string& scratch_folder,
                   const StopQuery& stop_requested = {});
 
  private:
+  // What a trial's steps have in common.
+  struct Run;
   const nlohmann::ordered_json& image_size(const std::string& image, const std::string& scratch_folder);
-  // Status kSkipped and the reason where the trial cannot run here.
-  bool skip(const Trial& trial, TrialResult& result);
-  void make_mesh(const Trial& trial, const std::string& scratch_folder, const StopQuery& stop_requested,
-                 TrialResult& result);
+  void make_mesh(const Run& run, TrialResult& result);
   // Of the machine, no mesh.
-  void measure(const Trial& trial, const std::string& scratch_folder, const StopQuery& stop_requested,
-               TrialResult& result);
-  void set_command(const Trial& trial, const std::string& scratch_folder, TrialResult& result);
+  void measure(const Run& run, TrialResult& result);
+  std::vector<std::string> command_of(const Run& run, const std::string& folder, TrialResult& result);
   // Null: the kernel counts.
-  const CounterTool* counter_tool_of(const Trial& trial, const std::string& scratch_folder);
-  void run_program(const Trial& trial, const std::string& scratch_folder, const StopQuery& stop_requested,
-                   TrialResult& result);
-  void verify(const Trial& trial, const std::string& scratch_folder, const StopQuery& stop_requested,
-              TrialResult& result);
+  const CounterTool* counter_tool_of(const Run& run);
+  void run_program(const Run& run, TrialResult& result);
+  void run_copies(const Run& run, TrialResult& result);
+  void prove(const Run& run, TrialResult& result);
 
   Programs programs_;
   Peers peers_;

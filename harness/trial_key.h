@@ -1,32 +1,29 @@
 // What makes two runs of the mesher the same measurement, so that a run may be resumed.
 #pragma once
 
-#include <map>
 #include <string>
 
 #include "peer.h"
+#include "preparation.h"
 #include "schedule.h"
 
 namespace podm::bench {
 
-/// Names a turn by all that can change its outcome: the mesher's bytes, the input's bytes (or the phantom),
-/// the options, the machine and the number of the repeat. Not by paths, limits or the verifier.
+/// Names a turn by all that can change its outcome: the mesher's bytes, the input's bytes, the options with
+/// the radius that was found, the machine and the number of the repeat. Not by paths, limits or the verifier.
 class TrialKeys {
  public:
   TrialKeys(std::string mesher_sha256, const nlohmann::ordered_json& machine_summary, Peers peers = {})
       : mesher_sha256_(std::move(mesher_sha256)), machine_(machine_summary), peers_(std::move(peers)) {}
 
-  /// 64 hexadecimal digits. Throws InputError when a file that is there cannot be read or a peer is unknown.
-  std::string of(const Trial& trial, const Turn& turn);
+  /// 64 hexadecimal digits. Throws InputError when a topology cannot be read or a peer is unknown.
+  std::string of(const Trial& trial, const Turn& turn, const Preparation& preparation);
 
  private:
-  // Files are read once.
-  const std::string& content_of(const std::string& path);
-
   std::string mesher_sha256_;
   nlohmann::ordered_json machine_;
   Peers peers_;
-  std::map<std::string, std::string> content_;
+  FileHashes hashes_;
 };
 
 }  // namespace podm::bench

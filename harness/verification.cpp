@@ -3,7 +3,6 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <filesystem>
 #include <fstream>
 
 #include "mesher_options.h"
@@ -16,6 +15,8 @@ using Json = nlohmann::ordered_json;
 
 constexpr const char* kClaims = "structure,radius_edge,boundary_angles,delaunay,conformity,surface,labels";
 constexpr double kTimeoutS = 600;
+constexpr int kExitDiffers = 1;  // of podm replay
+constexpr std::size_t kTailBytes = 500;
 
 Json read_json(const std::string& path) {
   std::ifstream file(path);
@@ -38,35 +39,22 @@ std::string fault_of(const Json& verdicts, const Json& record) {
 
 }  // namespace
 
-std::string image_file(const Trial& trial, const Json& image_size, const std::string& podm,
-                       const std::string& folder) {
-  if (!is_phantom(trial.image)) return trial.image;
-  const std::string phantom = trial.image.substr(trial.image.find(':') + 1);
-  int longest = 0;
-  for (const auto& voxels : image_size) longest = std::max(longest, voxels.get<int>());
-  const std::string path = folder + "/image.nii.gz";
-  if (std::filesystem::exists(path)) return path;
-  const ProcessRequest request{.arguments = {podm, "phantom", phantom.substr(0, phantom.find('@')), "--size",
-                                             std::to_string(longest), "-o", path},
-                               .stdout_path = {},
-                               .stderr_path = {},
-                               .timeout_s = kTimeoutS};
-  return run_process(request).succeeded() ? path : "";
-}
-
-Verification verify_mesh(const Trial& trial, const Json& image_size, const Json& record,
-                         const std::string& mesh_path, const Programs& programs, const std::string& folder,
+Verification verify_mesh(const Trial& trial, const std::string& image, const Json& record,
+                         const std::string& mesh_path, const std::string& verifier, const std::string& folder,
                          const StopQuery& stop_requested) {
-  const std::string image = image_file(trial, image_size, programs.podm, folder);
-  if (image.empty()) return {Json::object(), "not verified: the phantom was not written", false};
   const std::string report_path = folder + "/verification.json";
-  std::vector<std::string> command{programs.verifier, mesh_path,   "--image", image,
-                                   "--json",          report_path, "--quiet", "--claims"};
-  const double radius_mm = record.value("used", Json::object()).value("radius_mm", 0.0);
-  command.push_back(radius_mm > 0 ? std::string(kClaims) + ",size" : kClaims);
-  if (radius_mm > 0) command.insert(command.end(), {"--radius", fmt::format("{}", radius_mm)});
-  if (trial.options.value(kSchedule, false))
-    command.insert(command.end(), {"--schedule", folder + kScheduleName});
+  std::vector<std::string> command{verifier, mesh_path, "--image", image, "--json", report_path, "--quiet"};
+  const auto add = [&command](const std::string& option, const std::string& value) {
+    command.insert(command.end(), {option, value});
+  };
+  const Json used = record.value("used", Json::object());
+  const double radius_mm = used.value("radius_mm", 0.0);
+  const bool with_fidelity = trial.options.value(kFidelity, false);
+  add("--claims",
+      fmt::format("{}{}{}", kClaims, radius_mm > 0 ? ",size" : "", with_fidelity ? ",fidelity" : ""));
+  if (radius_mm > 0) add("--radius", fmt::format("{}", radius_mm));
+  if (with_fidelity) add("--delta", fmt::format("{}", used.value("delta_mm", 0.0)));
+  if (trial.options.value(kSchedule, false)) add("--schedule", folder + kScheduleName);
   const ProcessOutcome outcome = run_process(
       {.arguments = command, .stdout_path = {}, .stderr_path = {}, .timeout_s = kTimeoutS}, stop_requested);
   const Json report = read_json(report_path);
@@ -79,6 +67,22 @@ Verification verify_mesh(const Trial& trial, const Json& image_size, const Json&
   for (const auto& [claim, result] : claims.items()) verification.verdicts[claim] = result["verdict"];
   verification.fault = fault_of(verification.verdicts, record);
   return verification;
+}
+
+Replay replay_mesh(const std::string& image, const std::string& podm, const std::string& folder,
+                   const StopQuery& stop_requested) {
+  const std::string messages = folder + "/replay.txt";
+  const ProcessOutcome outcome = run_process({.arguments = {podm, "replay", image, folder + kLogName},
+                                              .stdout_path = {},
+                                              .stderr_path = messages,
+                                              .timeout_s = kTimeoutS},
+                                             stop_requested);
+  if (outcome.succeeded()) return {"equal"};
+  if (outcome.end == ProcessOutcome::End::kExited && outcome.exit_code == kExitDiffers) return {"differs"};
+  std::string why = outcome.describe();
+  if (const std::string said = read_tail(messages, kTailBytes); !said.empty())
+    why += ": " + said.substr(0, said.find_last_not_of('\n') + 1);
+  return {"failed: " + why, outcome.end == ProcessOutcome::End::kInterrupted};
 }
 
 }  // namespace podm::bench

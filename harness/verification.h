@@ -27,16 +27,23 @@ struct Verification {
   bool is_interrupted = false;
 };
 
-/// The file of an image, a phantom's written to `folder` unless it is there. Empty: it could not be.
-std::string image_file(const Trial& trial, const nlohmann::ordered_json& image_size, const std::string& podm,
-                       const std::string& folder);
-
-/// Every claim but fidelity, which is promised only for cells about as small as voxels. `record` is the
-/// mesher's, of the mesh at `mesh_path`. A phantom, whose voxels per axis are `image_size`, is written to
-/// `folder` first.
-Verification verify_mesh(const Trial& trial, const nlohmann::ordered_json& image_size,
-                         const nlohmann::ordered_json& record, const std::string& mesh_path,
-                         const Programs& programs, const std::string& folder,
+/// Every claim; fidelity only where the trial asks for it, as it is promised of cells about as small as
+/// voxels alone. `record` is the mesher's, of the mesh at `mesh_path`.
+Verification verify_mesh(const Trial& trial, const std::string& image, const nlohmann::ordered_json& record,
+                         const std::string& mesh_path, const std::string& verifier, const std::string& folder,
                          const StopQuery& stop_requested);
+
+inline constexpr const char* kLogName = "/run.log";  ///< of a trial's operations, in its folder
+
+struct Replay {
+  std::string answer;  ///< "equal", "differs" or "failed: why"
+  bool is_interrupted = false;
+
+  bool is_equal() const { return answer == "equal"; }
+};
+
+/// Whether the operations in the folder's log, one after the other, make the mesh that the run made.
+Replay replay_mesh(const std::string& image, const std::string& podm, const std::string& folder,
+                   const StopQuery& stop_requested);
 
 }  // namespace podm::bench

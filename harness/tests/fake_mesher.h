@@ -7,6 +7,8 @@
 #include <fstream>
 #include <string>
 
+#include "preparation.h"
+
 namespace podm::bench {
 
 class TemporaryFolder {
@@ -43,15 +45,22 @@ inline const std::string kGoodRecord =
     R"("refine_cells_per_second":1000.0,"phases_s":{"read":0.5,"refine":1.0,"extract":0.5,"write":5.0},)"
     R"("guarantees":{"radius_edge":0,"facet_angle":0},"stop_reason":"complete"})";
 
-/// A script for `podm`: answers --version, and `info` with 10 x 10 x 10 voxels; `mesh` runs `mesh_body`,
-/// where $record is the file asked for by --record and $output that of -o.
+/// Of a trial on an image that is a file and with a radius.
+inline Preparation prepared(const Trial& trial) { return {trial.image, "00", nullptr}; }
+
+/// A script for `podm`: answers --version, and `info` with 10 x 10 x 10 voxels; `phantom` writes its name and
+/// size and notes them in the file "drawn"; `replay` of a log runs the file "replay"; `mesh` notes its
+/// arguments in "arguments" and runs `mesh_body`, where $record is the file asked for by --record and $output
+/// that of -o.
 inline std::string fake_mesher(const TemporaryFolder& folder, const std::string& mesh_body) {
   return folder.script("podm", R"(
 [ "$1" = --version ] && { echo 'podm 9.9'; exit 0; }
 [ "$1" = info ] && { echo '{"size":[10,10,10]}'; exit 0; }
+[ "$1" = phantom ] && { echo "$2 $4" > "$6"; echo "$2 $4" >> "$(dirname "$0")/drawn"; exit 0; }
+[ "$1" = replay ] && { [ -e "$3" ] || exit 9; . "$(dirname "$0")/replay"; exit; }
 echo "$@" > "$(dirname "$0")/arguments"
 while [ $# -gt 0 ]; do
-  case $1 in --record) record=$2;; -o) output=$2;; esac
+  case $1 in --record) record=$2;; -o) output=$2;; --log) echo log > "$2";; esac
   shift
 done
 )" + mesh_body);

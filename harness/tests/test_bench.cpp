@@ -1,14 +1,10 @@
 // The program as a user runs it.
 #include <gtest/gtest.h>
 
-#include <algorithm>
 #include <chrono>
-#include <nlohmann/json.hpp>
 #include <thread>
-#include <vector>
 
-#include "fake_mesher.h"
-#include "process.h"
+#include "bench_test.h"
 #include "results_file.h"
 #include "schedule.h"
 #include "sha256.h"
@@ -16,85 +12,14 @@
 namespace podm::bench {
 namespace {
 
-const std::string kExperiment = R"(title = "Some title"
-claim = "C"
-[inputs.a]
-image = "phantom:torus"
-[inputs.b]
-image = "absent.nii"
-if_exists = true
-[[trials]]
-name = "one"
-input = "a"
-[[trials]]
-name = "two"
-input = "a"
-radius_mm = 2
-[[trials]]
-name = "three"
-input = "b"
-)";
-
-class BenchTest : public testing::Test {
- protected:
-  BenchTest() { folder_.write("exp.toml", kExperiment); }
-
-  // Exit code of podm-bench; what it prints is in the files "out" and "err".
-  int bench(std::vector<std::string> arguments) {
-    arguments.insert(arguments.begin(), PODM_BENCH);
-    return run_process({.arguments = arguments,
-                        .stdout_path = folder_ / "out",
-                        .stderr_path = folder_ / "err",
-                        .timeout_s = 60})
-        .exit_code;
-  }
-  int run_with(const std::string& mesh_body, const std::vector<std::string>& more = {}) {
-    std::vector<std::string> arguments{
-        "run",       folder_ / "exp.toml", "--podm",     fake_mesher(folder_, mesh_body),
-        "--results", folder_ / "results",  "--verifier", "none"};
-    arguments.insert(arguments.end(), more.begin(), more.end());
-    return bench(arguments);
-  }
-  std::string printed(const std::string& name) { return read_tail(folder_ / name, 10000); }
-  bool has_printed(const std::string& name, const std::string& words) {
-    return printed(name).find(words) != std::string::npos;
-  }
-  std::vector<nlohmann::json> rows() {
-    std::ifstream file(folder_ / "results/exp.jsonl");
-    std::vector<nlohmann::json> rows;
-    for (std::string line; std::getline(file, line);) rows.push_back(nlohmann::json::parse(line));
-    return rows;
-  }
-  // In the order in which they ran.
-  std::vector<std::string> in_order() {
-    std::vector<std::string> trials;
-    for (const auto& row : rows()) trials.push_back(row.at("trial"));
-    return trials;
-  }
-  std::vector<std::string> trials_recorded() {
-    std::vector<std::string> trials = in_order();
-    std::sort(trials.begin(), trials.end());
-    return trials;
-  }
-  // Whether rows, lock and topology are all that is left.
-  bool is_tidy() {
-    for (const auto& entry : std::filesystem::directory_iterator(folder_ / "results")) {
-      const std::string name = entry.path().filename();
-      if (name != "exp.jsonl" && name != ".lock" && !name.starts_with("topology-")) return false;
+// One with which trial "one" runs before trial "two".
+std::string seed_with_one_first() {
+  for (std::uint64_t seed = 0;; ++seed)
+    for (const Turn& turn : schedule(std::vector<Trial>(3), seed)) {
+      if (turn.trial == 0) return std::to_string(seed);
+      if (turn.trial == 1) break;
     }
-    return true;
-  }
-  // One with which trial "one" runs before trial "two".
-  static std::string seed_with_one_first() {
-    for (std::uint64_t seed = 0;; ++seed)
-      for (const Turn& turn : schedule(std::vector<Trial>(3), seed)) {
-        if (turn.trial == 0) return std::to_string(seed);
-        if (turn.trial == 1) break;
-      }
-  }
-  const std::string good_mesh_ = "echo mesh > \"$output\"; echo '" + kGoodRecord + "' > \"$record\"\n";
-  TemporaryFolder folder_;
-};
+}
 
 TEST_F(BenchTest, RecordsTheTrialsThatRanAndLeavesNoMesh) {
   EXPECT_EQ(run_with(good_mesh_), 0) << printed("err");
@@ -183,10 +108,10 @@ case $(cat arguments) in *--radius*) [ ! -e slow ] || { echo $$ > pid; exec slee
 
 TEST_F(BenchTest, BrokenLastLineIsReportedAndMovedAside) {
   run_with(good_mesh_, {"--only", "one"});
-  std::ofstream(folder_ / "results/exp.jsonl", std::ios::app) << R"({"schema":2,"key":")";
+  std::ofstream(folder_ / "results/exp.jsonl", std::ios::app) << R"({"schema":3,"key":")";
   EXPECT_EQ(run_with(good_mesh_), 0);
   EXPECT_TRUE(has_printed("err", "results/exp.jsonl:2: a broken line")) << printed("err");
-  EXPECT_EQ(printed("results/exp.jsonl.broken"), "{\"schema\":2,\"key\":\"\n");
+  EXPECT_EQ(printed("results/exp.jsonl.broken"), "{\"schema\":3,\"key\":\"\n");
   EXPECT_EQ(trials_recorded(), (std::vector<std::string>{"one", "two"}));
 }
 
@@ -213,6 +138,15 @@ TEST_F(BenchTest, DryRunTellsWhatIsToDoAndDoesNothing) {
   run_with(good_mesh_);
   EXPECT_EQ(run_with(good_mesh_, {"--dry-run"}), 0);
   EXPECT_TRUE(has_printed("out", "3 runs, 1 to do")) << printed("out");
+}
+
+TEST_F(BenchTest, SeveralImagesAreInputsOfTheirOwn) {
+  const std::string mine = folder_.write("mine.nii", "x"), yours = folder_.write("yours.nii", "y");
+  EXPECT_EQ(run_with(good_mesh_, {"--only", "one*", "--image", mine, "--image", yours}), 0) << printed("err");
+  EXPECT_EQ(trials_recorded(), (std::vector<std::string>{"one,input=mine.nii", "one,input=yours.nii"}));
+  std::filesystem::create_directory(folder_ / "other");
+  EXPECT_EQ(run_with(good_mesh_, {"--image", mine, "--image", folder_.write("other/mine.nii", "z")}), 2);
+  EXPECT_TRUE(has_printed("err", "have the same name")) << printed("err");
 }
 
 TEST_F(BenchTest, ImageStandsForAllInputs) {

@@ -55,7 +55,7 @@ class CounterToolTest : public testing::Test {
     trial.timeout_s = 20;
     const std::string mesher = fake_mesher(folder_, "echo '" + kGoodRecord + "' > \"$record\"\n");
     return TrialRunner({.podm = mesher, .verifier = {}, .likwid_groups = folder_ / "groups"})
-        .run(trial, folder_.path());
+        .run(trial, prepared(trial), folder_.path());
   }
 
   TemporaryFolder folder_;

@@ -18,7 +18,7 @@ Json row(const std::string& algorithm, int threads, double rate, const std::stri
   return {{"trial", trial + ",algorithm=" + algorithm},
           {"status", "ok"},
           {"asked", {{"algorithm", algorithm}, {"threads", threads}}},
-          {"input", {{"path", "image.nii"}}},
+          {"input", {{"name", "image.nii"}}},
           {"cells", cells},
           {"phases_s", {{"refine", cells / (1e6 * rate)}, {"write", 99.0}}},
           {"environment", {{"cpu", "some"}, {"cores", 64}, {"load_average", 0.1}}}};

@@ -216,26 +216,55 @@ TEST_F(ExperimentTest, ElementsPerThreadGrowWithTheThreads) {
 TEST_F(ExperimentTest, MeasurementOfTheMachineNeedsNoInput) {
   const std::string path = folder_.write(
       "some.toml", "title = 'T'\nclaim = 'C'\n[[trials]]\nname = 'x'\nmeasure = 'memory_latency'\n");
-  for (const char* image : {"", "mine.nii"}) {
-    const auto trials = read_experiment(path, image).trials;
+  for (const std::vector<std::string>& images :
+       {std::vector<std::string>{}, {"mine.nii"}, {"mine.nii", "yours.nii"}}) {
+    const auto trials = read_experiment(path, images).trials;
     ASSERT_EQ(trials.size(), 1u);
     EXPECT_EQ(trials[0].name, "x");
     EXPECT_FALSE(makes_mesh(trials[0]));
   }
 }
 
-TEST_F(ExperimentTest, OneImageStandsForAllInputs) {
+TEST_F(ExperimentTest, ImagesStandForAllInputs) {
   const std::string path =
       folder_.write("some.toml", kHead + "[inputs.b]\nimage = 'b.nii'\nif_exists = true\n" +
                                      "[[trials]]\nname = 'x'\ninput = ['a', 'b']\nthreads = [1, 2]\n");
   EXPECT_EQ(read_experiment(path).trials.size(), 4u);
-  const auto trials = read_experiment(path, "mine.nii").trials;
+  const auto trials = read_experiment(path, {"mine.nii"}).trials;
   ASSERT_EQ(trials.size(), 2u);
   for (const Trial& trial : trials) {
     EXPECT_EQ(trial.image, "mine.nii");
     EXPECT_FALSE(trial.if_exists);
     EXPECT_EQ(trial.name.find("input"), std::string::npos);
   }
+  const auto of_two = read_experiment(path, {"folder/mine.nii", "phantom:torus@64"}).trials;
+  ASSERT_EQ(of_two.size(), 4u);
+  EXPECT_EQ(of_two[0].name, "x,input=mine.nii,threads=1");
+  EXPECT_EQ(of_two[0].image, "folder/mine.nii");
+  EXPECT_EQ(of_two[3].name, "x,input=phantom_torus_64,threads=2");
+}
+
+TEST_F(ExperimentTest, ImageGrowsWithTheThreads) {
+  const std::string text = "title='T'\nclaim='C'\n[inputs.a]\nimage='phantom:torus@100'\n" + kTrial +
+                           "threads = [1, 8]\ntarget_elements_per_thread = 1000\nimage_grows = true\n";
+  const auto trials = read(text).trials;
+  ASSERT_EQ(trials.size(), 2u);
+  EXPECT_EQ(trials[0].image, "phantom:torus@100");
+  EXPECT_EQ(trials[1].image, "phantom:torus@200") << "as many voxels a thread";
+  const std::string path = folder_.write("some.toml", text);
+  EXPECT_EQ(read_experiment(path, {"mine.nii"}).trials[1].image, "mine.nii") << "it is skipped when run";
+  EXPECT_EQ(read_experiment(path, {"phantom:spheres@50"}).trials[1].image, "phantom:spheres@100");
+  EXPECT_NE(fault(kHead + kTrial + "image_grows = true\n").find(":8:15: image_grows needs a phantom"),
+            std::string::npos);
+}
+
+TEST_F(ExperimentTest, CopiesAreOfOneThread) {
+  const auto trials = read(kHead + kTrial + "copies = [1, 'all']\n").trials;
+  EXPECT_EQ(trials.front().name, "one,copies=1");
+  EXPECT_EQ(trials.back().options["copies"], usable_processors());
+  EXPECT_NE(fault(kHead + kTrial + "copies = 2\nthreads = 2\n").find("copies need threads = 1"),
+            std::string::npos);
+  EXPECT_NE(fault(kHead + kTrial + "copies = 2\npin = 'compact'\n").find("exclude"), std::string::npos);
 }
 
 TEST_F(ExperimentTest, TopologiesAreBesideTheExperimentAndOptionsKeepTheirTypes) {

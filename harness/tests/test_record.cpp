@@ -26,9 +26,11 @@ struct RowTest : testing::Test {
     trial.options = {{"threads", 2}};
     good.status = Status::kOk;
     good.record = Json::parse(kGoodRecord);
+    good.preparation = prepared(trial);
     good.image_size = {10, 10, 10};
     good.process.end = ProcessOutcome::End::kExited;
     good.process.peak_rss_bytes = 106'000;
+    failed.preparation = {trial.image, "", nullptr};
     failed.reason = "killed by signal 6";
     failed.process.end = ProcessOutcome::End::kSignalled;
     failed.process.signal = 6;
@@ -55,6 +57,7 @@ TEST_F(RowTest, HoldsTheMesherRecordAndWhatTheHarnessSaw) {
   EXPECT_EQ(row.at("experiment"), "exp");
   EXPECT_EQ(row.at("trial"), "some");
   EXPECT_EQ(row.at("status"), "ok");
+  EXPECT_EQ(row.at("input").at("name"), trial.image);
   EXPECT_EQ(row.at("input").at("sha256"), "00");
   EXPECT_EQ(row.at("input").at("size"), good.image_size);
   EXPECT_EQ(row.at("process").at("exit_code"), 0);
@@ -70,6 +73,23 @@ TEST_F(RowTest, OfAFailureSaysWhyAndOnWhat) {
   EXPECT_EQ(row.at("process").at("signal"), 6);
   EXPECT_TRUE(row.at("process").at("exit_code").is_null());
   EXPECT_FALSE(row.contains("cells"));
+}
+
+TEST_F(RowTest, TellsRadiusReplayAndCopies) {
+  for (const char* key : {"resolved", "replay", "side_by_side"})
+    EXPECT_TRUE(row_of(good).at(key).is_null()) << key;
+  good.preparation.resolved = {{"radius_mm", 2.0}};
+  good.replay = "equal";
+  good.side_by_side = {{{"processor", 1}}};
+  EXPECT_EQ(row_of(good).at("resolved").at("radius_mm"), 2.0);
+  EXPECT_EQ(row_of(good).at("replay"), "equal");
+  EXPECT_EQ(row_of(good).at("side_by_side").size(), 1u);
+}
+
+TEST_F(RowTest, SecondsOfTheTableAreThoseOfTheMeshAlone) {
+  good.record["phases_s"] = {{"draw", 100}, {"read", 0.5},     {"calibrate", 100}, {"allocate", 0.25},
+                             {"refine", 1}, {"extract", 0.25}, {"write", 100}};
+  EXPECT_DOUBLE_EQ(meshing_seconds(good.record), 2);
 }
 
 TEST_F(RowTest, MemoryPerCellLeavesOutLabelsAndTransform) {

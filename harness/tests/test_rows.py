@@ -35,7 +35,7 @@ def rows_of(experiment, mesh_body=None):
         podm = os.environ["PODM"]
         if mesh_body:
             podm = path.with_name("podm")
-            podm.write_text(f'#!/bin/sh\n[ "$1" != mesh ] || {mesh_body}\n')
+            podm.write_text(f'#!/bin/sh\n[ "$1" = mesh ] || exec "{os.environ["PODM"]}" "$@"\n{mesh_body}\n')
             podm.chmod(0o700)
         subprocess.run([os.environ["PODM_BENCH"], "run", path, "--results", folder, "--podm", podm, "--verifier",
                         os.environ["PODM_VERIFIER"]], check=False, capture_output=True, timeout=200)
@@ -48,6 +48,32 @@ claim = "C"
 [[trials]]
 name = "latency"
 measure = "memory_latency"
+"""
+
+
+ALL_ASKED = """
+title = "T"
+claim = "C"
+[inputs.ball]
+image = "phantom:torus@24"
+[[trials]]
+name = "proved"
+input = "ball"
+target_elements = 3_000
+replay = true
+fidelity = true
+[[trials]]
+name = "copies"
+input = "ball"
+target_elements = 3_000
+copies = "all"
+[[trials]]
+name = "growing"
+input = "ball"
+target_elements_per_thread = 3_000
+threads = 2
+oversubscribe = true
+image_grows = true
 """
 
 
@@ -96,7 +122,8 @@ class Rows(unittest.TestCase):
             row = copy.deepcopy(self.made[0])
             del row[key]
             self.assertFalse(VALIDATOR.is_valid(row), key)
-        for key, value in (("schema", 1), ("key", "x"), ("repeat", 0), ("status", "skipped"), ("harness_s", -1)):
+        for key, value in (("schema", 2), ("key", "x"), ("repeat", 0), ("status", "skipped"), ("harness_s", -1),
+                           ("replay", "maybe"), ("resolved", {}), ("side_by_side", []), ("input", {"path": "a"})):
             self.assertFalse(VALIDATOR.is_valid(self.made[0] | {key: value}), key)
         counters = {"zero": 0, "without source": {"value": 1}, "reason": "none", "share": {"value": 1, "source": "s", "running_share": 1}}
         for name, counter in counters.items():
@@ -104,6 +131,23 @@ class Rows(unittest.TestCase):
             row["process"]["counters"][name] = counter
             self.assertFalse(VALIDATOR.is_valid(row), name)
         self.assertFalse(VALIDATOR.is_valid(self.failed[0] | {"reason": ""}), "a failure without a reason")
+
+    def test_rows_tell_radius_replay_fidelity_and_copies(self):
+        rows = {row["trial"]: row for row in rows_of(ALL_ASKED)}
+        for row in rows.values():
+            VALIDATOR.validate(row)
+            self.assertEqual(row["status"], "ok", row["reason"])
+            self.assertEqual(row["used"]["radius_mm"], row["resolved"]["radius_mm"])
+            self.assertEqual(row["used"]["delta_mm"], row["resolved"]["delta_mm"])
+            self.assertTrue(row["input"]["path"].endswith(".nii.gz"))
+        self.assertEqual(rows["proved"]["replay"], "equal")
+        self.assertEqual(rows["proved"]["verdicts"]["fidelity"], "pass")
+        self.assertEqual(rows["proved"]["resolved"], rows["copies"]["resolved"])
+        processors = [copy["processor"] for copy in rows["copies"]["side_by_side"]]
+        self.assertEqual(len(set(processors)), len(os.sched_getaffinity(0)))
+        self.assertEqual(rows["copies"]["side_by_side"][0]["cells"], rows["copies"]["cells"])
+        self.assertEqual(rows["growing"]["input"]["name"], "phantom:torus@30")
+        self.assertEqual(max(rows["growing"]["input"]["size"]), 30)
 
     def test_podm_follows_the_crossover_that_is_stored(self):
         with tempfile.TemporaryDirectory() as folder:

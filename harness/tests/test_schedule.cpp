@@ -65,7 +65,7 @@ class TrialKeysTest : public testing::Test {
  protected:
   static std::string key(const Trial& trial, const Turn& turn = {}, const std::string& mesher = "m",
                          const Json& machine = {{"cpu", "c"}}) {
-    return TrialKeys(mesher, machine).of(trial, turn);
+    return TrialKeys(mesher, machine).of(trial, turn, prepared(trial));
   }
   TemporaryFolder folder_;
 };
@@ -83,8 +83,9 @@ TEST_F(TrialKeysTest, DifferWithAllThatChangesAMeasurement) {
   add_with("threads", 2);
   add_with("radius_mm", 2.5);
   add_with("pin", true);
-  trial.image = "phantom:sphere";
-  keys.insert(key(trial));
+  Preparation preparation = prepared(trial);
+  preparation.sha256 = "of another image";
+  keys.insert(TrialKeys("m", {{"cpu", "c"}}).of(trial, {}, preparation));
   EXPECT_EQ(keys.size(), 9u);
 }
 
@@ -95,12 +96,20 @@ TEST_F(TrialKeysTest, AreThoseOfTheSameMeasurementElsewhere) {
   trial.memory_limit_gib = 1;
   trial.repeats = 50;
   EXPECT_EQ(key(trial), before) << "limits and the number of repeats change no measurement";
-  trial.image = folder_.write("a.nii", "bytes");
-  const std::string of_bytes = key(trial);
-  trial.image = folder_.write("b.nii", "bytes");
-  EXPECT_EQ(key(trial), of_bytes) << "the file's bytes count, not its name";
-  folder_.write("b.nii", "others");
-  EXPECT_NE(key(trial), of_bytes);
+  trial.image = "elsewhere.nii";
+  EXPECT_EQ(key(trial), before) << "the file's bytes count, not its name";
+}
+
+TEST_F(TrialKeysTest, DifferWithTheRadiusThatWasFound) {
+  Trial trial = some_trials()[0];
+  trial.options = {{"threads", 1}, {"target_elements", 1000}};
+  const auto key_with = [&](double radius_mm) {
+    Preparation preparation = prepared(trial);
+    preparation.resolved = {{"radius_mm", radius_mm}, {"delta_mm", 1.0}};
+    return TrialKeys("m", Json()).of(trial, {}, preparation);
+  };
+  EXPECT_EQ(key_with(2), key_with(2));
+  EXPECT_NE(key_with(2), key_with(2.5));
 }
 
 TEST_F(TrialKeysTest, TopologyCountsByItsBytes) {
@@ -123,7 +132,7 @@ TEST(Expectations, ComeFromRowsOfTheTrialThenFromTheFile) {
   const auto row = [](double wall_s, const char* status) {
     return Json{{"trial", "0"},
                 {"status", status},
-                {"input", {{"path", "phantom:torus"}}},
+                {"input", {{"name", "phantom:torus"}}},
                 {"verification_s", 0.5},
                 {"mesh_bytes", 700},
                 {"process", {{"wall_s", wall_s}, {"peak_rss_bytes", 5000 * wall_s}}}};

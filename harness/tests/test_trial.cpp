@@ -2,6 +2,7 @@
 #include <gtest/gtest.h>
 
 #include "fake_mesher.h"
+#include "machine.h"
 #include "trial.h"
 
 namespace podm::bench {
@@ -19,7 +20,7 @@ Trial some_trial() {
 class TrialTest : public testing::Test {
  protected:
   TrialResult run(const std::string& mesh_body, const Trial& trial = some_trial()) {
-    return TrialRunner({fake_mesher(folder_, mesh_body), {}}).run(trial, folder_.path());
+    return TrialRunner({fake_mesher(folder_, mesh_body), {}}).run(trial, prepared(trial), folder_.path());
   }
   static std::string write_record(const std::string& record) {
     return "echo '" + record + "' > \"$record\"\n";
@@ -44,7 +45,8 @@ TEST_F(TrialTest, GoodRunIsOkWithItsRecordAndImageSize) {
 TEST_F(TrialTest, VerdictsOfTheVerifierDecide) {
   const std::string mesher = fake_mesher(folder_, write_record(kGoodRecord));
   const auto run_with_verifier = [&](const std::string& body) {
-    return TrialRunner({mesher, fake_verifier(folder_, body)}).run(some_trial(), folder_.path());
+    return TrialRunner({mesher, fake_verifier(folder_, body)})
+        .run(some_trial(), prepared(some_trial()), folder_.path());
   };
   const TrialResult proved =
       run_with_verifier(R"(echo '{"claims":{"size":{"verdict":"pass"}}}' > "$report")");
@@ -77,7 +79,7 @@ TEST_F(TrialTest, ScheduleOfTheMesherReachesTheVerifier) {
   const std::string mesher = fake_mesher(folder_, write_record(kGoodRecord));
   const std::string verifier =
       folder_.script("podm-verify", "echo \"$@\" > \"$(dirname \"$0\")/verifier_arguments\"");
-  TrialRunner({mesher, verifier}).run(trial, folder_.path());
+  TrialRunner({mesher, verifier}).run(trial, prepared(trial), folder_.path());
   const std::string option = " --schedule " + folder_.path() + "/schedule.jsonl";
   for (const char* program : {"arguments", "verifier_arguments"}) {
     const std::string arguments = " " + read_tail(folder_ / program, 1000);
@@ -98,9 +100,10 @@ TEST_F(TrialTest, MemoryAboveTheLimitEndsTheTrial) {
 TEST_F(TrialTest, EachImageIsLookedAtOnce) {
   const std::string mesher = fake_mesher(folder_, write_record(kGoodRecord));
   TrialRunner runner({mesher, {}});
-  runner.run(some_trial(), folder_.path());
+  runner.run(some_trial(), prepared(some_trial()), folder_.path());
   std::filesystem::remove(mesher);
-  EXPECT_EQ(runner.run(some_trial(), folder_.path()).image_size, nlohmann::ordered_json({10, 10, 10}));
+  EXPECT_EQ(runner.run(some_trial(), prepared(some_trial()), folder_.path()).image_size,
+            nlohmann::ordered_json({10, 10, 10}));
 }
 
 TEST_F(TrialTest, MissedGuaranteeIsUnmetAndNamed) {
@@ -175,20 +178,84 @@ TEST_F(TrialTest, MissingOrUnusableRecordFails) {
 }
 
 TEST_F(TrialTest, MissingMesherFails) {
-  const TrialResult result = TrialRunner({folder_ / "absent", {}}).run(some_trial(), folder_.path());
+  const TrialResult result =
+      TrialRunner({folder_ / "absent", {}}).run(some_trial(), prepared(some_trial()), folder_.path());
   EXPECT_EQ(result.status, Status::kFailed);
   EXPECT_NE(result.reason.find(folder_ / "absent"), std::string::npos);
 }
 
 TEST_F(TrialTest, AbsentImageIsSkippedOnlyWhenItMayBeAbsent) {
+  TrialRunner runner({fake_mesher(folder_, write_record(kGoodRecord)), {}});
   Trial trial = some_trial();
   trial.image = folder_ / "absent.nii";
+  EXPECT_EQ(runner.why_skipped(trial), "") << "then its mesher says what is missing";
   trial.if_exists = true;
-  EXPECT_EQ(run(write_record(kGoodRecord), trial).status, Status::kSkipped);
+  EXPECT_EQ(runner.why_skipped(trial), trial.image + " is not there");
   trial.image = folder_.write("present.nii", "");
-  EXPECT_EQ(run(write_record(kGoodRecord), trial).status, Status::kOk);
+  EXPECT_EQ(runner.why_skipped(trial), "");
   trial.image = "phantom:abdomen";
-  EXPECT_EQ(run(write_record(kGoodRecord), trial).status, Status::kOk);
+  EXPECT_EQ(runner.why_skipped(trial), "");
+}
+
+TEST_F(TrialTest, ImageThatCannotGrowAndCopiesWithoutProcessorsAreSkipped) {
+  TrialRunner runner({fake_mesher(folder_, ""), {}});
+  Trial trial = some_trial();
+  trial.options["image_grows"] = true;
+  EXPECT_NE(runner.why_skipped(trial).find("image.nii cannot grow"), std::string::npos);
+  trial.image = "phantom:abdomen@100";
+  EXPECT_EQ(runner.why_skipped(trial), "");
+  trial.options["copies"] = usable_processors();
+  EXPECT_EQ(runner.why_skipped(trial), "");
+  trial.options["copies"] = usable_processors() + 1;
+  EXPECT_NE(runner.why_skipped(trial).find("processors"), std::string::npos);
+}
+
+TEST_F(TrialTest, RadiusFoundReachesTheMesherInPlaceOfTheTarget) {
+  Trial trial = some_trial();
+  trial.options = {{"threads", 1}, {"target_elements", 1000}};
+  Preparation preparation = prepared(trial);
+  preparation.resolved = {{"radius_mm", 2.25}, {"delta_mm", 1.125}};
+  TrialRunner({fake_mesher(folder_, write_record(kGoodRecord)), {}}).run(trial, preparation, folder_.path());
+  const std::string arguments = " " + read_tail(folder_ / "arguments", 1000);
+  EXPECT_NE(arguments.find(" --radius 2.25 --delta 1.125 "), std::string::npos) << arguments;
+  EXPECT_EQ(arguments.find("target"), std::string::npos) << arguments;
+}
+
+TEST_F(TrialTest, ReplayDecides) {
+  Trial trial = some_trial();
+  trial.options["replay"] = true;
+  const auto run_with_replay = [&](const std::string& body) {
+    folder_.write("replay", body);
+    return run(write_record(kGoodRecord), trial);
+  };
+  const TrialResult equal = run_with_replay("exit 0");
+  EXPECT_EQ(equal.status, Status::kOk) << equal.reason;
+  EXPECT_EQ(equal.replay, "equal");
+  const TrialResult differs = run_with_replay("exit 1");
+  EXPECT_EQ(differs.status, Status::kUnmet);
+  EXPECT_EQ(differs.replay, "differs");
+  EXPECT_EQ(differs.reason, "replay differs");
+  const TrialResult failed = run_with_replay("echo 'podm: another image' >&2; exit 2");
+  EXPECT_EQ(failed.status, Status::kUnmet);
+  EXPECT_EQ(failed.replay, "failed: exit code 2: podm: another image");
+  trial.options["replay"] = false;
+  EXPECT_TRUE(run_with_replay("exit 1").replay.is_null());
+}
+
+TEST_F(TrialTest, FidelityIsAskedForWithTheDeltaThatWasUsed) {
+  Trial trial = some_trial();
+  const std::string mesher = fake_mesher(
+      folder_, good_record_but(R"("cells")", R"("used":{"radius_mm":2.5,"delta_mm":0.75},"cells")"));
+  const std::string verifier =
+      folder_.script("podm-verify", "echo \"$@\" > \"$(dirname \"$0\")/verifier_arguments\"");
+  const auto asked = [&] {
+    TrialRunner({mesher, verifier}).run(trial, prepared(trial), folder_.path());
+    return read_tail(folder_ / "verifier_arguments", 1000);
+  };
+  EXPECT_EQ(asked().find("fidelity"), std::string::npos);
+  trial.options["fidelity"] = true;
+  const std::string arguments = asked();
+  EXPECT_NE(arguments.find(",size,fidelity --radius 2.5 --delta 0.75"), std::string::npos) << arguments;
 }
 
 TEST_F(TrialTest, MeasurementOfTheMachineIsARecordOfThisProgram) {
@@ -201,7 +268,7 @@ TEST_F(TrialTest, MeasurementOfTheMachineIsARecordOfThisProgram) {
     const std::string bench =
         folder_.script("podm-bench", "[ \"$1 $2\" = 'latency --record' ] || exit 2\n" + body);
     return TrialRunner({.podm = folder_ / "absent", .verifier = folder_ / "absent", .bench = bench})
-        .run(trial, folder_.path());
+        .run(trial, prepared(trial), folder_.path());
   };
   const TrialResult measured = measure("echo '{\"memory_levels\":[]}' > \"$3\"");
   EXPECT_EQ(measured.status, Status::kOk) << measured.reason;
@@ -218,9 +285,8 @@ TEST_F(TrialTest, MeasurementOfTheMachineIsARecordOfThisProgram) {
 
 TEST_F(TrialTest, StopRequestInterrupts) {
   const TrialResult result =
-      TrialRunner({fake_mesher(folder_, "sleep 30"), {}}).run(some_trial(), folder_.path(), [] {
-        return true;
-      });
+      TrialRunner({fake_mesher(folder_, "sleep 30"), {}})
+          .run(some_trial(), prepared(some_trial()), folder_.path(), [] { return true; });
   EXPECT_EQ(result.status, Status::kInterrupted);
 }
 

@@ -1,0 +1,86 @@
+// Several processes of one trial at the same time.
+#include <gtest/gtest.h>
+
+#include "fake_mesher.h"
+#include "machine.h"
+#include "mesher_options.h"
+#include "trial.h"
+
+namespace podm::bench {
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+class SideBySideTest : public testing::Test {
+ protected:
+  void SetUp() override {
+    if (usable_processors() < 2) GTEST_SKIP() << "one processor";
+  }
+  // $copy is empty in the first copy, else the number of the copy.
+  TrialResult run(const std::string& mesh_body) {
+    Trial trial;
+    trial.name = "some";
+    trial.image = "image.nii";
+    trial.options = {{"threads", 1}, {kCopies, 2}};
+    trial.timeout_s = 20;
+    const std::string body = "copy=; case $record in */copy2/*) copy=2;; esac\n" + mesh_body;
+    return TrialRunner({fake_mesher(folder_, body), {}}).run(trial, prepared(trial), folder_.path());
+  }
+  // With the processors that the copy may run on as the hash of its mesh, or `hash`.
+  static std::string record(const std::string& hash) {
+    std::string text = kGoodRecord;
+    text.insert(1, R"("mesh_sha256":"')" + hash + R"('",)");
+    return "echo '" + text + "' > \"$record\"\n";
+  }
+  TemporaryFolder folder_;
+};
+
+// Each waits for the other's file: one after the other they would never end.
+TEST_F(SideBySideTest, CopiesRunAtTheSameTimeAndTheRowsOwnIsTheFirsts) {
+  const TrialResult result = run(R"(
+mine=$(dirname "$0")/is$copy other=$(dirname "$0")/is$([ "$copy" ] || echo 2)
+: > "$mine"; until [ -e "$other" ]; do sleep 0.01; done
+)" + record("same"));
+  EXPECT_EQ(result.status, Status::kOk) << result.reason;
+  ASSERT_EQ(result.side_by_side.size(), 2u);
+  EXPECT_EQ(result.record["cells"], 1000);
+  for (const Json& entry : result.side_by_side) {
+    EXPECT_EQ(entry["cells"], 1000);
+    EXPECT_EQ(entry["refine_cells_per_second"], 1000.0);
+    EXPECT_EQ(entry["phases_s"]["refine"], 1.0);
+  }
+  EXPECT_EQ(result.command.back(), "--quiet");
+}
+
+TEST_F(SideBySideTest, EachHasAProcessorOfItsOwn) {
+  const TrialResult result =
+      run("taskset -cp $$ | sed 's/.*: //' > \"$(dirname \"$0\")/processors$copy\"\n" + record("same"));
+  ASSERT_EQ(result.side_by_side.size(), 2u) << result.reason;
+  for (const int i : {0, 1})
+    EXPECT_EQ(
+        read_tail(folder_ / (i == 0 ? "processors" : "processors2"), 100),
+        std::to_string(result.side_by_side[static_cast<std::size_t>(i)]["processor"].get<int>()) + "\n");
+  EXPECT_NE(result.side_by_side[0]["processor"], result.side_by_side[1]["processor"]);
+}
+
+TEST_F(SideBySideTest, FaultOfAnyIsTheTrials) {
+  const TrialResult failed = run(record("same") + "[ -z \"$copy\" ] || exit 3\n");
+  EXPECT_EQ(failed.status, Status::kFailed);
+  EXPECT_EQ(failed.reason, "copy 2: exit code 3");
+  EXPECT_TRUE(failed.side_by_side.is_null());
+  const TrialResult first_failed = run(record("same") + "[ \"$copy\" ] || exit 3\n");
+  EXPECT_EQ(first_failed.status, Status::kFailed);
+  EXPECT_EQ(first_failed.reason, "exit code 3");
+  const TrialResult differs = run(record("of$copy"));
+  EXPECT_EQ(differs.status, Status::kUnmet);
+  EXPECT_EQ(differs.reason, "copy 2: another mesh");
+}
+
+TEST_F(SideBySideTest, CountersOfTheKernelAreNotMixedUp) {
+  const Json counters = run(record("same")).counters;
+  ASSERT_EQ(counters.size(), 1u);
+  EXPECT_TRUE(counters["perf_event"].get<std::string>().starts_with("unavailable: "));
+}
+
+}  // namespace
+}  // namespace podm::bench
