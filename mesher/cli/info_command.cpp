@@ -16,6 +16,15 @@ namespace {
 // The product of the spacings only where the axes are orthogonal.
 double voxel_volume_mm3(const LabelImage& image) { return std::abs(determinant(image.voxel_to_ras)); }
 
+// All of such an image is meshed: rarely what its maker wanted.
+std::string note_on_background(const LabelImage& image, const std::vector<std::uint64_t>& counts) {
+  if (counts[kBackground] > 0) return "";
+  return fmt::format(
+      "note       no background: no voxel has the value {}, so that all of the image is foreground\n"
+      "           (--background VALUE takes another for it)\n",
+      image.labels[kBackground].value);
+}
+
 std::string as_text(const std::string& path, const LabelImage& image) {
   const auto& affine = image.voxel_to_ras;
   const double voxel_mm3 = voxel_volume_mm3(image);
@@ -35,7 +44,7 @@ std::string as_text(const std::string& path, const LabelImage& image) {
     text += fmt::format("{:>10} {:>12} {:>16.6g}  {}\n", image.labels[i].value, counts[i],
                         static_cast<double>(counts[i]) * voxel_mm3,
                         i == kBackground ? "background" : image.labels[i].name);
-  return text;
+  return text + note_on_background(image, counts);
 }
 
 nlohmann::ordered_json as_json(const std::string& path, const LabelImage& image) {
@@ -53,13 +62,15 @@ nlohmann::ordered_json as_json(const std::string& path, const LabelImage& image)
           {"affine", affine_rows(image)},
           {"voxel_volume_mm3", voxel_mm3},
           {"background", {{"value", image.labels[kBackground].value}, {"voxels", counts[kBackground]}}},
-          {"labels", labels}};
+          {"labels", labels},
+          {"warnings", image.warnings}};
 }
 
 }  // namespace
 
 int run(const InfoCommand& command) {
   const LabelImage image = read_labelled_image(command.image);
+  for (const std::string& warning : image.warnings) fmt::print(stderr, "warning: {}\n", warning);
   write_standard_output(command.json ? json_line(as_json(command.image.path, image))
                                      : as_text(command.image.path, image));
   return 0;

@@ -88,7 +88,9 @@ int run(const MeshCommand& command) {
   run.options.crossover = run.crossover.threads;
   run.options.with_schedule = !command.schedule_path.empty();
   run.result = mesh_with_display(image, run.options, command.quiet);
-  if (!run.crossover.warning.empty()) run.result.report.warnings.push_back(run.crossover.warning);
+  auto& warnings = run.result.report.warnings;
+  if (!run.crossover.warning.empty()) warnings.push_back(run.crossover.warning);
+  warnings.insert(warnings.end(), image.warnings.begin(), image.warnings.end());
   run.write_s = timed([&] {
     canonicalize(run.result.mesh);
     run.mesh_sha256 = mesh_sha256(run.result.mesh);
@@ -101,7 +103,7 @@ int run(const MeshCommand& command) {
   if (!command.record_path.empty()) append_line(command.record_path, json_line(record(run)));
   if (!command.quiet) fmt::print(stderr, "{}", summary(run));
   if (command.stats) fmt::print(stderr, "{}", statistics(run));
-  for (const std::string& warning : run.result.report.warnings) fmt::print(stderr, "warning: {}\n", warning);
+  for (const std::string& warning : warnings) fmt::print(stderr, "warning: {}\n", warning);
   const auto unmet = run.unmet();
   for (const std::string& sentence : unmet) fmt::print(stderr, "podm: {}\n", sentence);
   return unmet.empty() ? 0 : 1;

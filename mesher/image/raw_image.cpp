@@ -76,6 +76,13 @@ std::size_t bytes_of(VoxelType type) {
   throw InternalError("unknown voxel type");
 }
 
+void swap_bytes(std::vector<unsigned char>& bytes, std::size_t width) {
+  for (std::size_t i = 0; i + width <= bytes.size(); i += width) {
+    std::reverse(bytes.begin() + static_cast<std::ptrdiff_t>(i),
+                 bytes.begin() + static_cast<std::ptrdiff_t>(i + width));
+  }
+}
+
 void refuse(const std::string& path, const std::string& fault) { throw InputError(path + ": " + fault); }
 
 std::size_t checked_num_voxels(const std::string& path, const std::vector<int>& size) {

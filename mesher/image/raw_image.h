@@ -16,9 +16,13 @@ struct RawImage {
   std::string path;       ///< for messages
   std::vector<int> size;  ///< voxels per axis, as many axes as the file has
   VoxelType type = VoxelType::kUint8;
-  std::array<double, 12> voxel_to_ras{};  ///< row-major 3x4, mm
-  std::vector<unsigned char> bytes;       ///< voxels, x fastest, this machine's byte order
+  std::array<double, 12> voxel_to_ras{};   ///< row-major 3x4, mm
+  std::vector<unsigned char> bytes;        ///< voxels, x fastest, this machine's byte order
+  std::vector<std::string> warnings = {};  ///< of LabelImage
 };
+
+/// Turns values of `width` bytes into the other byte order.
+void swap_bytes(std::vector<unsigned char>& bytes, std::size_t width);
 
 /// Throws InputError "path: fault".
 [[noreturn]] void refuse(const std::string& path, const std::string& fault);

@@ -34,6 +34,7 @@ LabelImage read_file(const std::string& path, std::size_t threads) {
   image.size = {raw.size[0], raw.size[1], raw.size[2]};
   image.spacing = checked_spacing(path, raw.voxel_to_ras);
   image.voxel_to_ras = raw.voxel_to_ras;
+  image.warnings = std::move(raw.warnings);
   index_voxels(raw, threads, image);
   return image;
 }

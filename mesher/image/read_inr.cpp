@@ -74,13 +74,6 @@ bool is_big_endian(const std::string& path, const Header& header) {
   refuse(path, "INR header: unknown CPU '" + field->second + "'");
 }
 
-void swap_bytes(std::vector<unsigned char>& bytes, std::size_t width) {
-  for (std::size_t i = 0; i + width <= bytes.size(); i += width) {
-    std::reverse(bytes.begin() + static_cast<std::ptrdiff_t>(i),
-                 bytes.begin() + static_cast<std::ptrdiff_t>(i + width));
-  }
-}
-
 }  // namespace
 
 RawImage read_inr(const std::string& path) {

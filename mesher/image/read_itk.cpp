@@ -1,8 +1,11 @@
-// NRRD and MetaImage through ITK's readers, guarded: the true size of the voxel data is checked first.
+// NRRD and MetaImage through ITK's readers, guarded: the true size of the voxel data is checked first. The
+// compressed voxels of a MetaImage are read here: ITK takes as many bytes as the header says, whatever the
+// stream needs, and headers that other programs have changed say what it was before.
 #include <itkMetaImageIO.h>
 #include <itkNrrdImageIO.h>
 
 #include <algorithm>
+#include <bit>
 #include <limits>
 
 #include "image/read_formats.h"
@@ -76,6 +79,23 @@ std::string one_line(std::string text) {
   return text;
 }
 
+void read_voxels(itk::ImageIOBase& io, RawImage& raw, std::size_t needed) {
+  raw.bytes.resize(needed);
+  itk::ImageIORegion region(io.GetNumberOfDimensions());
+  for (unsigned axis = 0; axis < io.GetNumberOfDimensions(); ++axis) {
+    region.SetIndex(axis, 0);
+    region.SetSize(axis, io.GetDimensions(axis));
+  }
+  io.SetIORegion(region);
+  io.Read(raw.bytes.data());
+}
+
+void read_compressed_voxels(const VoxelData& data, RawImage& raw, std::size_t needed) {
+  static_assert(std::endian::native == std::endian::little);
+  raw.bytes = decompressed_voxels(raw.path, data, needed, raw.warnings);
+  if (data.is_big_endian) swap_bytes(raw.bytes, bytes_of(raw.type));
+}
+
 }  // namespace
 
 RawImage read_with_itk(const std::string& path) {
@@ -95,16 +115,13 @@ RawImage read_with_itk(const std::string& path) {
     }
     raw.type = voxel_type(path, *io);
     const std::size_t needed = checked_num_voxels(path, raw.size) * bytes_of(raw.type);
-    expect_voxel_bytes(path, data, needed);
-    raw.voxel_to_ras = voxel_to_ras(path, *io);
-    raw.bytes.resize(needed);
-    itk::ImageIORegion region(io->GetNumberOfDimensions());
-    for (unsigned axis = 0; axis < io->GetNumberOfDimensions(); ++axis) {
-      region.SetIndex(axis, 0);
-      region.SetSize(axis, io->GetDimensions(axis));
+    if (data.is_compressed && !is_nrrd(path)) {
+      read_compressed_voxels(data, raw, needed);
+    } else {
+      expect_voxel_bytes(path, data, needed);
+      read_voxels(*io, raw, needed);
     }
-    io->SetIORegion(region);
-    io->Read(raw.bytes.data());
+    raw.voxel_to_ras = voxel_to_ras(path, *io);
   } catch (const itk::ExceptionObject& error) {
     refuse(path, "cannot be read (" + one_line(error.GetDescription()) + ")");
   }

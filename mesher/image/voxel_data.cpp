@@ -27,6 +27,11 @@ struct TextHeader {
     const auto found = fields.find(key);
     return found == fields.end() ? "" : found->second;
   }
+  // As ITK takes it.
+  bool flag(const std::string& key) const {
+    const std::string text = field(key);
+    return !text.empty() && std::string("tT1").find(text[0]) != std::string::npos;
+  }
 };
 
 std::string lower(std::string text) {
@@ -65,30 +70,81 @@ std::string beside(const std::string& path, const std::string& name) {
   return data_path;
 }
 
-// Bytes that the stream makes; only counted, so that a hostile one costs time alone.
-std::uint64_t decompressed_bytes(const std::string& path, std::ifstream& file) {
-  constexpr int kZlibOrGzip = 32 + MAX_WBITS;
-  z_stream stream{};
-  if (inflateInit2(&stream, kZlibOrGzip) != Z_OK) refuse(path, "zlib does not start");
-  const std::unique_ptr<z_stream, int (*)(z_stream*)> closer(&stream, inflateEnd);
-  std::array<char, 1 << 15> in;
-  std::array<char, 1 << 17> out;
-  std::uint64_t total = 0;
-  for (int code = Z_OK; code != Z_STREAM_END;) {
-    if (stream.avail_in == 0) {
-      file.read(in.data(), in.size());
-      stream.next_in = reinterpret_cast<Bytef*>(in.data());
-      stream.avail_in = static_cast<uInt>(file.gcount());
-      if (stream.avail_in == 0) refuse(path, "the file is truncated (its compressed voxels have no end)");
-    }
-    stream.next_out = reinterpret_cast<Bytef*>(out.data());
-    stream.avail_out = static_cast<uInt>(out.size());
-    code = inflate(&stream, Z_NO_FLUSH);
-    if (code != Z_OK && code != Z_STREAM_END && code != Z_BUF_ERROR)
-      refuse(path, "the compressed voxels are damaged");
-    total += out.size() - stream.avail_out;
+// One zlib or gzip stream, from where the data begin.
+class Inflater {
+ public:
+  Inflater(const std::string& path, const VoxelData& data)
+      : path_(path), file_(data.path, std::ios::binary), stream_(new z_stream{}) {
+    constexpr int kZlibOrGzip = 32 + MAX_WBITS;
+    if (inflateInit2(stream_.get(), kZlibOrGzip) != Z_OK) refuse(path, "zlib does not start");
+    file_.seekg(static_cast<std::streamoff>(data.offset));
   }
+
+  // Bytes put into `out`, fewer than `size` only at the end of the stream.
+  std::size_t read(unsigned char* out, std::size_t size) {
+    constexpr std::size_t kMostAtOnce = 1 << 30;  // zlib counts in int
+    std::size_t made = 0;
+    while (made < size && !is_at_end_) {
+      const std::size_t room = std::min(size - made, kMostAtOnce);
+      stream_->next_out = out + made;
+      stream_->avail_out = static_cast<uInt>(room);
+      inflate_some();
+      made += room - stream_->avail_out;
+    }
+    return made;
+  }
+  std::uint64_t bytes_taken() const { return stream_->total_in; }
+
+ private:
+  struct End {
+    void operator()(z_stream* stream) const {
+      inflateEnd(stream);
+      delete stream;
+    }
+  };
+
+  void inflate_some() {
+    if (stream_->avail_in == 0) {
+      file_.read(reinterpret_cast<char*>(in_.data()), static_cast<std::streamsize>(in_.size()));
+      stream_->next_in = in_.data();
+      stream_->avail_in = static_cast<uInt>(file_.gcount());
+      if (stream_->avail_in == 0) refuse(path_, "the file is truncated (its compressed voxels have no end)");
+    }
+    const int code = inflate(stream_.get(), Z_NO_FLUSH);
+    is_at_end_ = code == Z_STREAM_END;
+    if (code != Z_OK && code != Z_STREAM_END && code != Z_BUF_ERROR)
+      refuse(path_, "the compressed voxels are damaged");
+  }
+
+  const std::string& path_;
+  std::ifstream file_;
+  std::unique_ptr<z_stream, End> stream_;
+  std::array<unsigned char, 1 << 15> in_;
+  bool is_at_end_ = false;
+};
+
+// Reads the rest of the stream, which only counts: a hostile one costs time alone.
+std::uint64_t bytes_left(Inflater& stream) {
+  std::vector<unsigned char> out(1 << 17);
+  std::uint64_t total = 0;
+  while (const std::size_t made = stream.read(out.data(), out.size())) total += made;
   return total;
+}
+
+void expect_bytes(const std::string& path, std::uint64_t found, std::uint64_t needed) {
+  const std::string detail = " (its header announces " + std::to_string(needed) +
+                             " bytes of voxels, it holds " + std::to_string(found) + ")";
+  if (found < needed) refuse(path, "the file is truncated" + detail);
+  if (found > needed) refuse(path, "the file holds more data than its header announces" + detail);
+}
+
+std::uint64_t bytes_in_file(const VoxelData& data) {
+  const std::uint64_t size = file_bytes(data.path);
+  return size - std::min(size, data.offset);
+}
+
+bool can_hold(std::uint64_t compressed_bytes, std::uint64_t needed) {
+  return needed / kBestCompression <= compressed_bytes;
 }
 
 }  // namespace
@@ -122,31 +178,34 @@ VoxelData find_meta_voxels(const std::string& path) {
   if (lower(header.field("binarydata")) == "false") refuse(path, "voxels written as text are not supported");
   for (const char* key : {"dimsize", "elementtype"})  // ITK prints what it misses
     if (header.field(key).empty()) refuse(path, std::string("the MetaImage header has no '") + key + "'");
-  const bool is_compressed = lower(header.field("compresseddata")) == "true";
   const bool is_local = file == "LOCAL" || file == "Local" || file == "local";  // as ITK has it
-  const VoxelData data{is_local ? path : beside(path, file), is_local ? header.bytes : 0, is_compressed};
-  // ITK reads as many bytes as the header says, whatever the stream needs.
-  const std::string stream_bytes = header.field("compresseddatasize");
-  const std::uint64_t size = file_bytes(data.path);
-  if (is_compressed && !stream_bytes.empty() &&
-      stream_bytes != std::to_string(size - std::min(size, data.offset)))
-    refuse(path,
-           "the file is truncated (CompressedDataSize = " + stream_bytes + " is not the size of its stream)");
-  return data;
+  return {is_local ? path : beside(path, file), is_local ? header.bytes : 0, header.flag("compresseddata"),
+          header.flag("binarydatabyteordermsb") || header.flag("elementbyteordermsb"),
+          header.field("compresseddatasize")};
 }
 
 void expect_voxel_bytes(const std::string& path, const VoxelData& data, std::uint64_t needed) {
-  const std::uint64_t size = file_bytes(data.path);
-  std::uint64_t found = size - std::min(size, data.offset);
-  if (data.is_compressed && needed / kBestCompression <= found) {
-    std::ifstream file(data.path, std::ios::binary);
-    file.seekg(static_cast<std::streamoff>(data.offset));
-    found = decompressed_bytes(path, file);
+  std::uint64_t found = bytes_in_file(data);
+  if (data.is_compressed && can_hold(found, needed)) {
+    Inflater stream(path, data);
+    found = bytes_left(stream);
   }
-  const std::string detail = " (its header announces " + std::to_string(needed) +
-                             " bytes of voxels, it holds " + std::to_string(found) + ")";
-  if (found < needed) refuse(path, "the file is truncated" + detail);
-  if (found > needed) refuse(path, "the file holds more data than its header announces" + detail);
+  expect_bytes(path, found, needed);
+}
+
+std::vector<unsigned char> decompressed_voxels(const std::string& path, const VoxelData& data,
+                                               std::uint64_t needed, std::vector<std::string>& warnings) {
+  if (const std::uint64_t in_file = bytes_in_file(data); !can_hold(in_file, needed))
+    expect_bytes(path, in_file, needed);
+  std::vector<unsigned char> voxels(needed);
+  Inflater stream(path, data);
+  const std::size_t made = stream.read(voxels.data(), needed);
+  expect_bytes(path, made + bytes_left(stream), needed);
+  const std::string taken = std::to_string(stream.bytes_taken());
+  if (!data.announced_bytes.empty() && data.announced_bytes != taken)
+    warnings.push_back(path + ": CompressedDataSize is " + data.announced_bytes + ", but the stream has " +
+                       taken + " bytes; it is whole, and was read to its end");
+  return voxels;
 }
 
 }  // namespace podm

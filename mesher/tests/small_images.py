@@ -1,6 +1,7 @@
 """Small image files written by hand, sound ones and faulty ones."""
 
 import struct
+import zlib
 
 UINT8, FLOAT32, RGB24 = 2, 16, 128  # NIfTI-1 datatype codes
 _BYTES = {UINT8: 1, FLOAT32: 4, RGB24: 3}
@@ -35,9 +36,13 @@ def write_nifti(path, voxels, dimensions=(12, 12, 12), datatype=UINT8, affine=No
     return path
 
 
-def write_metaimage(path, voxels, size=12, spacing="1 1 1"):
-    """A MetaImage file; `spacing` is written as it stands."""
-    header = (f"ObjectType = Image\nNDims = 3\nDimSize = {size} {size} {size}\nElementSpacing = {spacing}\n"
+def write_metaimage(path, voxels, size=12, spacing="1 1 1", compressed_size=None):
+    """A MetaImage file; `spacing` is written as it stands, and so is the size of what is then a compressed stream."""
+    compression = ""
+    if compressed_size is not None:
+        voxels = zlib.compress(voxels)
+        compression = f"CompressedData = True\nCompressedDataSize = {compressed_size}\n"
+    header = (f"ObjectType = Image\nNDims = 3\n{compression}DimSize = {size} {size} {size}\nElementSpacing = {spacing}\n"
               "ElementType = MET_UCHAR\nElementByteOrderMSB = False\nBinaryData = True\n"
               "ElementDataFile = LOCAL\n")
     path.write_bytes(header.encode() + voxels)

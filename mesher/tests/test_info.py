@@ -55,6 +55,36 @@ class Info(PodmTestCase):
         self.assertEqual(process.stderr, "")
 
 
+    def test_an_image_without_background_says_so(self):
+        path = self.folder / "full.nii"
+        for voxels, is_full in (bytes([3, 4] * 864), True), (bytes([0, 4] * 864), False):
+            small_images.write_nifti(path, voxels)
+            process = run_podm("info", path)
+            self.assert_exit(process, 0)
+            self.assertEqual("no background" in process.stdout, is_full, process.stdout)
+        small_images.write_nifti(path, bytes([3, 4] * 864))
+        self.assertNotIn("no background", run_podm("info", path, "--background", "3").stdout)
+
+    def test_a_meta_image_whose_header_tells_an_old_stream_size_is_read_with_a_warning(self):
+        path = self.folder / "stale.mha"
+        voxels = small_images.ball_voxels(12)
+        small_images.write_metaimage(path, voxels, compressed_size=7)
+        process = run_podm("info", "--json", path)
+        self.assert_exit(process, 0)
+        info = json.loads(process.stdout)
+        self.assertEqual(info["labels"][0]["voxels"], sum(voxels))
+        self.assertEqual(len(info["warnings"]), 1)
+        self.assertIn("stale.mha: CompressedDataSize is 7", process.stderr)
+        self.assertEqual(self.info("phantom:spheres@24")["warnings"], [])
+        runs = self.folder / "runs.jsonl"
+        process = run_podm("mesh", path, "-o", self.folder / "out.mesh", "--verify", "--record", runs)
+        self.assert_exit(process, 0)
+        self.assertIn("CompressedDataSize is 7", process.stderr)
+        self.assertIn(info["warnings"][0], self.read_record(runs)["warnings"])
+        path.write_bytes(path.read_bytes()[:-4])
+        self.assert_refused(["info", path], "stale.mha", "truncated")
+
+
 class Phantom(PodmTestCase):
     def test_a_written_phantom_is_the_phantom(self):
         path = self.folder / "p.nii.gz"

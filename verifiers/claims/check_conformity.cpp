@@ -1,10 +1,10 @@
 // Claim conformity.
 //   Statements  what was made apart shares its facets: no two facets with one cell each lie at the same
-//               place, and no two vertices of such facets do. Given a schedule also: no two vertices at a
-//               leaf boundary lie at the same place, so that a facet which crosses or touches one is shared
-//               by two cells or is on the mesh's boundary; leaves do not overlap; no two leaves that are
-//               active at the same time are within two rings of each other; and no operation touched a vertex
-//               outside its leaf and the first ring.
+//               place, and no two vertices of such facets do. Given a schedule also: no two vertices of
+//               cells at a leaf boundary lie at the same place, so that a facet which crosses or touches one
+//               is shared by two cells or is on the mesh's boundary; leaves do not overlap; no two leaves
+//               that are active at the same time are within two rings of each other; and no operation touched
+//               a vertex outside its leaf and the first ring.
 //   Rests on    equality of coordinates, and integers on the leaf grid. Ring 1 of a leaf is the leaves whose
 //               closed cubes touch it, ring 2 those that touch ring 1. An activation lasts from its beginning
 //               up to, not including, its end; one without length is the instant between.
@@ -154,9 +154,10 @@ ClaimResult check_conformity(const Mesh& mesh, const Adjacency& adjacency, const
   std::string about = fmt::format("{} facets with one cell", open_facets.size());
   if (schedule != nullptr) {
     const LeafBoundaries boundaries(mesh, *schedule);
+    const std::vector<std::uint8_t> is_used = used_vertices(mesh);
     std::vector<VertexId> at_boundary;
     for (VertexId v = 0; v < mesh.vertices.size(); ++v)
-      if (boundaries.has(v)) at_boundary.push_back(v);
+      if (is_used[v] && boundaries.has(v)) at_boundary.push_back(v);
     add("doubled_vertices_at_leaf_boundaries",
         check_vertices(mesh, std::move(at_boundary),
                        "vertices at a leaf boundary at the same place are one"));

@@ -1,8 +1,9 @@
 // Claim structure.
 //   Statements  there are cells; their vertex ids are in range and coordinates finite; every cell is
-//               positively oriented; no two cells have the same vertices; no two vertices the same
+//               positively oriented; no two cells have the same vertices; no two vertices of cells the same
 //               coordinates; every facet belongs to at most two cells, on opposite sides of it; no two cells
-//               overlap; no vertex hangs on a facet or edge. Warning: vertices that no cell uses.
+//               overlap; no vertex hangs on a facet or edge. Warning: vertices that no cell uses, wherever
+//               they are.
 //   Rests on    exact orientation signs; what the overlap test rests on is said in check_structure_overlap.h.
 //               A mesh whose cells are all negative is told apart: it is sound but left-handed, and the other
 //               statements are judged for its mirror image.
@@ -135,9 +136,10 @@ Tally check_facets(const Mesh& mesh, const Adjacency& adjacency, const Orientati
   return tally;
 }
 
-Tally check_coincident_vertices(const Mesh& mesh) {
-  std::vector<VertexId> order(mesh.vertices.size());
-  for (VertexId v = 0; v < order.size(); ++v) order[v] = v;
+Tally check_coincident_vertices(const Mesh& mesh, const std::vector<std::uint8_t>& is_used) {
+  std::vector<VertexId> order;
+  for (VertexId v = 0; v < mesh.vertices.size(); ++v)
+    if (is_used[v]) order.push_back(v);
   std::sort(order.begin(), order.end(), [&](VertexId a, VertexId b) {
     return std::tie(mesh.vertices[a], a) < std::tie(mesh.vertices[b], b);  // -0 equals 0
   });
@@ -150,11 +152,6 @@ Tally check_coincident_vertices(const Mesh& mesh) {
                      .points = {mesh.vertices[order[i]]}});
   }
   return tally;
-}
-
-std::uint64_t count_orphans(const Mesh& mesh) {
-  const std::vector<std::uint8_t> used = used_vertices(mesh);
-  return static_cast<std::uint64_t>(std::count(used.begin(), used.end(), 0));
 }
 
 std::string sentence(const ClaimResult& result, const Mesh& mesh, bool is_left_handed) {
@@ -188,14 +185,15 @@ ClaimResult check_structure(const Mesh& mesh, const Adjacency& adjacency, const 
     };
     add("orientation", check_orientations(mesh, orientations, options.threads));
     add("facets", check_facets(mesh, adjacency, orientations, options.threads));
-    add("coincident_vertices", check_coincident_vertices(mesh));
+    const std::vector<std::uint8_t> is_used = used_vertices(mesh);
+    num_orphans = static_cast<std::uint64_t>(std::count(is_used.begin(), is_used.end(), 0));
+    add("coincident_vertices", check_coincident_vertices(mesh, is_used));
     if (orientations.is_consistent()) {
       add("overlap", check_overlap(mesh, adjacency, is_left_handed, options.threads));
       add("hanging_vertices", check_hanging_vertices(mesh, adjacency, options.threads));
     } else {
       details["overlap"] = "not judged: cells are inverted or flat";
     }
-    num_orphans = count_orphans(mesh);
   }
   ClaimResult result = result_of("structure", tally);
   result.method = "combinatorial; orientations and separating planes, filtered, then exact";

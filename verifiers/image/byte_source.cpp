@@ -45,6 +45,7 @@ ByteSource::ByteSource(const std::string& path, const std::string& file, std::ui
     if (magic != std::array<char, 2>{'\x1f', '\x8b'}) compression = Compression::kNone;
   }
   if (compression == Compression::kNone) return;
+  has_members_ = compression == Compression::kIfGzipped;
   most_bytes_ *= kBestRatio;
   compressed_.resize(1 << 18);
   stream_.reset(new z_stream{});
@@ -94,6 +95,7 @@ std::size_t ByteSource::inflate_some(void* bytes, std::size_t size) {
   const auto room = static_cast<uInt>(std::min<std::size_t>(size, std::numeric_limits<uInt>::max()));
   stream_->avail_out = room;
   while (stream_->avail_out == room) {
+    if (is_finished_ && !has_members_) return 0;
     if (stream_->avail_in == 0) {
       file_.read(reinterpret_cast<char*>(compressed_.data()),
                  static_cast<std::streamsize>(compressed_.size()));

@@ -14,7 +14,7 @@ namespace podm::verify {
 
 enum class Compression {
   kNone,
-  kStream,    ///< one zlib or gzip stream
+  kStream,    ///< one zlib or gzip stream, whatever follows it
   kIfGzipped  ///< gzip where the first bytes say so
 };
 
@@ -30,6 +30,8 @@ class ByteSource {
   void expect_end();
   /// Throws if the file cannot hold `size` bytes even at deflate's best ratio: ask before allocating them.
   void expect_room_for(std::uint64_t size) const;
+  /// Of the stream, once expect_end() has returned; 0: not compressed.
+  std::uint64_t compressed_bytes() const { return stream_ ? stream_->total_in : 0; }
 
  private:
   struct End {
@@ -45,6 +47,7 @@ class ByteSource {
   std::ifstream file_;
   std::uint64_t most_bytes_ = 0;
   std::unique_ptr<z_stream, End> stream_;  // null: not compressed
+  bool has_members_ = false;               // gzip's: streams may follow one another
   std::vector<unsigned char> compressed_;
   bool is_finished_ = false;  // the stream has met its end
 };

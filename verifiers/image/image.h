@@ -14,9 +14,10 @@ namespace podm::verify {
 struct Image {
   std::string path;
   std::array<int, 3> size{};
-  std::array<double, 3> spacing{};        ///< mm: column norms of voxel_to_ras
-  std::array<double, 12> voxel_to_ras{};  ///< row-major 3x4, voxel indices to world mm
-  std::vector<std::uint32_t> voxels;      ///< label values
+  std::array<double, 3> spacing{};         ///< mm: column norms of voxel_to_ras
+  std::array<double, 12> voxel_to_ras{};   ///< row-major 3x4, voxel indices to world mm
+  std::vector<std::uint32_t> voxels;       ///< label values
+  std::vector<std::string> warnings = {};  ///< what is odd about the file
 };
 
 /// NIfTI, NRRD, MetaImage (ITK, libnifti for oblique NIfTI), INRIMAGE, ".gz" of NIfTI and INR. Throws

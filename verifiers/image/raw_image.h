@@ -18,9 +18,10 @@ std::size_t bytes_of(VoxelType type);
 struct RawImage {
   std::vector<std::int64_t> size;  ///< voxels per axis, as many axes as the file has
   VoxelType type = VoxelType::kUint8;
-  bool is_swapped = false;                ///< voxels are in the byte order that is not this machine's
-  std::array<double, 12> voxel_to_ras{};  ///< row-major 3x4, mm
-  std::vector<unsigned char> bytes;       ///< voxels, x fastest
+  bool is_swapped = false;                 ///< voxels are in the byte order that is not this machine's
+  std::array<double, 12> voxel_to_ras{};   ///< row-major 3x4, mm
+  std::vector<unsigned char> bytes;        ///< voxels, x fastest
+  std::vector<std::string> warnings = {};  ///< of Image
 };
 
 /// Throws InputError "path: fault".

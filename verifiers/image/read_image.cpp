@@ -130,6 +130,7 @@ Image read_image(const std::string& path) {
   RawImage raw = read_raw(path);
   Image image;
   image.path = path;
+  image.warnings = raw.warnings;
   for (std::size_t axis = 0; axis < 3; ++axis) image.size[axis] = static_cast<int>(raw.size[axis]);
   image.voxel_to_ras = raw.voxel_to_ras;
   settle_affine(path, image);

@@ -63,6 +63,7 @@ std::string beside(const std::string& path, const std::string& name) {
 struct Voxels {
   ByteSource source;
   bool is_big_endian;
+  std::string announced_bytes = {};  // of a compressed stream, by the header; empty: it does not tell
 };
 
 // As ITK takes it.
@@ -103,9 +104,10 @@ Voxels meta_voxels(const std::string& path) {
   const Compression compression = is_compressed ? Compression::kStream : Compression::kNone;
   const bool is_big_endian =
       is_true(header["binarydatabyteordermsb"]) || is_true(header["elementbyteordermsb"]);
+  const std::string announced = is_compressed ? header["compresseddatasize"] : "";
   if (file == "LOCAL" || file == "Local" || file == "local")  // the spellings that ITK knows
-    return {{path, path, header.bytes(), compression}, is_big_endian};
-  return {{path, beside(path, file), 0, compression}, is_big_endian};
+    return {{path, path, header.bytes(), compression}, is_big_endian, announced};
+  return {{path, beside(path, file), 0, compression}, is_big_endian, announced};
 }
 
 VoxelType voxel_type(const std::string& path, const itk::ImageIOBase& io) {
@@ -161,6 +163,10 @@ RawImage read(const std::string& path, itk::ImageIOBase& io, Voxels voxels) {
   raw.is_swapped = voxels.is_big_endian != (std::endian::native == std::endian::big);
   if (raw.size.size() >= 3) raw.voxel_to_ras = voxel_to_ras(path, io);
   read_voxels(path, raw, voxels.source);
+  const std::string taken = std::to_string(voxels.source.compressed_bytes());
+  if (!voxels.announced_bytes.empty() && voxels.announced_bytes != taken)
+    raw.warnings.push_back(path + ": CompressedDataSize is " + voxels.announced_bytes +
+                           ", but the stream has " + taken + " bytes; it is whole, and was read to its end");
   return raw;
 }
 

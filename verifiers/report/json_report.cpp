@@ -40,6 +40,12 @@ Json file_of(const std::string& path) {
   return path.empty() ? Json(nullptr) : Json{{"path", path}, {"sha256", sha256_of(path)}};
 }
 
+Json image_of(const Inputs& inputs, const Options& options) {
+  Json json = file_of(options.image_path);
+  if (inputs.image && !inputs.image->warnings.empty()) json["warnings"] = inputs.image->warnings;
+  return json;
+}
+
 Json witness_of(const Witness& witness) {
   Json points = Json::array();
   for (const Point& p : witness.points) points.push_back({finite(p[0]), finite(p[1]), finite(p[2])});
@@ -120,7 +126,7 @@ std::string json_report(const Inputs& inputs, const Options& options, const std:
   const Json report{{"schema", "podm-verify/1"},
                     {"program", "podm-verify " PODM_VERSION},
                     {"mesh", mesh_json},
-                    {"image", file_of(options.image_path)},
+                    {"image", image_of(inputs, options)},
                     {"schedule", file_of(options.schedule_path)},
                     {"options", options_of(options)},
                     {"claims", claims},

@@ -210,6 +210,16 @@ def cracked(base):
     return mesh
 
 
+@operator("structure")
+def doubled_point(shop):
+    """a cell with a point of its own where the others have theirs; harmless: the same point, used by no cell"""
+    unused = shop.base.copy()
+    unused.vertices = np.vstack([unused.vertices, unused.vertices[shop.base.cells[23, 1]]])
+    used = unused.copy()
+    used.cells[23, 1] = len(used.vertices) - 1
+    return Mutant(Case(used), Case(unused, warnings=1))
+
+
 @operator("conformity")
 def crack(shop):
     """facets on two sides of a crack that are not one facet; harmless: without the crack"""
@@ -218,13 +228,15 @@ def crack(shop):
 
 @operator("conformity")
 def doubled_along_a_leaf(shop):
-    """a vertex doubled along a leaf boundary; harmless: the same schedule, no vertex doubled"""
+    """a cell's vertex doubled along a leaf boundary; harmless: the same vertex doubled, used by no cell"""
     schedule = shop.schedule([(0, 0, 1, [0])])
     cubes = kuhn_cubes(2, 1, 1)
     cubes.vertices = cubes.vertices * 16 + shop.base.vertices.min(axis=0)
-    doubled = cubes.copy()
-    doubled.vertices = np.vstack([doubled.vertices, doubled.vertices[0]])
-    return Mutant(Case(doubled, schedule), Case(cubes, schedule))
+    unused = cubes.copy()
+    unused.vertices = np.vstack([unused.vertices, unused.vertices[cubes.cells[0, 0]]])
+    doubled = unused.copy()
+    doubled.cells[0, 0] = len(doubled.vertices) - 1
+    return Mutant(Case(doubled, schedule), Case(unused, schedule))
 
 
 @operator("conformity")

@@ -7,6 +7,7 @@ import pathlib
 import subprocess
 import tempfile
 import unittest
+import zlib
 
 import jsonschema
 import numpy as np
@@ -146,6 +147,25 @@ class ProgramTest(unittest.TestCase):
                 self.assertEqual(self.read_overlaps(), {1})
                 self.verify(*claims)
                 self.assertNotEqual(self.read_overlaps(), {1}, "all labels of the image are other ones")
+
+    def test_a_meta_image_whose_header_tells_an_old_stream_size_is_read_with_a_warning(self):
+        voxels = np.random.default_rng(5).choice([1, 2], size=(6, 7, 8)).astype(np.uint8)
+        meshed_voxels(voxels, {}).write(self.mesh)
+        image = self.folder / "image.mha"
+        stream = zlib.compress(voxels.tobytes())
+        for size, num_warnings in (len(stream), 0), (7, 1):
+            header = ("ObjectType = Image\nNDims = 3\nBinaryData = True\nCompressedData = True\n"
+                      f"CompressedDataSize = {size}\nTransformMatrix = 1 0 0 0 1 0 0 0 1\nOffset = -0.5 -0.5 0.5\n"
+                      "DimSize = 8 7 6\nElementSpacing = 1 1 1\nElementType = MET_UCHAR\nElementDataFile = LOCAL\n")
+            image.write_bytes(header.encode() + stream)
+            options = ["--claims", "labels", "--image", image, "--space", "LPS", "--json", self.report]
+            process = self.verify(*options)
+            self.assertEqual(process.stdout.count("warning: "), num_warnings, process.stdout)
+            self.assertEqual(len(self.read_report()["image"].get("warnings", [])), num_warnings)
+        image.write_bytes(header.encode() + stream[:-5])
+        process = self.verify(*options)
+        self.assert_exit(process, 2)
+        self.assertIn("image.mha: the file is truncated", process.stderr)
 
     def test_bad_usage_and_input_exit_with_two_and_name_the_fault(self):
         for arguments, fault in ((["--claims", "structure,delauny"], "no claim 'delauny', nearest is 'delaunay'"),

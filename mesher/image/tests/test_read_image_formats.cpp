@@ -162,6 +162,38 @@ TEST_F(ReadImage, MetaImage) {
   }
 }
 
+// What programs leave that change a file and not its header; more follows the stream in some.
+TEST_F(ReadImage, MetaImageWhoseStreamIsNotAsLongAsItsHeaderSays) {
+  const std::string zipped = deflated(kVoxels, 15), size = std::to_string(zipped.size());
+  const auto read = [&](const std::string& announced, const std::string& tail) {
+    return read_image(folder_.write("a.mha", mha_header("CompressedData = True\nCompressedDataSize = " +
+                                                        announced + "\n" + kMhaFields + kMhaLocal) +
+                                                 zipped + tail));
+  };
+  for (const std::string& announced : {std::string("1"), std::string("123456"), size}) {
+    for (const std::string& tail : {std::string(), std::string("more")}) {
+      const LabelImage image = read(announced, tail);
+      expect_two_voxels(image);
+      expect_affine(image, kRasFromLps);
+      ASSERT_EQ(image.warnings.size(), announced == size ? 0u : 1u);
+      if (announced == size) continue;
+      EXPECT_NE(image.warnings[0].find("a.mha: "), std::string::npos) << image.warnings[0];
+      EXPECT_NE(image.warnings[0].find(announced), std::string::npos) << image.warnings[0];
+      EXPECT_NE(image.warnings[0].find(size), std::string::npos) << image.warnings[0];
+    }
+  }
+}
+
+TEST_F(ReadImage, CompressedMetaImageOfTheOtherByteOrder) {
+  std::vector<std::uint16_t> voxels;
+  for (const std::uint8_t v : two_voxels()) voxels.push_back(static_cast<std::uint16_t>(v << 8));
+  std::string header = mha_header("CompressedData = True\n" + kMhaFields + kMhaLocal);
+  for (const auto& [from, to] : {std::pair<std::string, std::string>{"MSB = False", "MSB = True"},
+                                 std::pair<std::string, std::string>{"UCHAR", "USHORT"}})
+    header.replace(header.find(from), from.size(), to);
+  expect_two_voxels(read_image(folder_.write("a.mha", header + deflated(bytes_of_values(voxels), 15))));
+}
+
 TEST_F(ReadImage, MetaImageWithItsVoxelsBeside) {
   folder_.write("a.raw", kVoxels);
   const LabelImage image =

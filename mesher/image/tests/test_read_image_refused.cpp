@@ -215,11 +215,22 @@ std::vector<BadFile> bad_other_files() {
       {"MhaTruncated", "a.mha", [] { return kMha + cut(kVoxels, 1); }, "truncated"},
       {"MhaTruncatedZlib", "a.mha", [] { return compressed_mha(cut(deflated(kVoxels, 15), 5)); },
        "truncated"},
-      {"MhaZlibLongerThanAnnounced", "a.mha",
+      {"MhaCutZlibThatAnnouncesMore", "a.mha",
        [] {
-         return replaced(compressed_mha(deflated(kVoxels, 15)), "CompressedDataSize = 1",
-                         "CompressedDataSize = 0");
+         const std::string file = compressed_mha(deflated(noise(24), 15));
+         return cut(file, 8);
        },
+       "truncated"},
+      {"MhaDamagedZlib", "a.mha",
+       [] {
+         std::string file = compressed_mha(deflated(kVoxels, 15));
+         file.back() ^= 1;  // in the checksum
+         return file;
+       },
+       "damaged"},
+      {"MhaLongZlib", "a.mha", [] { return compressed_mha(deflated(kVoxels + "x", 15)); }, "more data"},
+      {"MhaHugeZlib", "a.mha",
+       [] { return replaced(compressed_mha(deflated(kVoxels, 15)), "2 3 4", "2000 2000 2000"); },
        "truncated"},
       {"MhaUnknownLocal", "a.mha",
        [] { return mha_header(kMhaFields) + "ElementDataFile = LOCaL\n" + kVoxels; }, "LOCaL"},

@@ -27,8 +27,9 @@ struct LabelImage {
   std::array<double, 3> spacing{};  ///< mm, positive: the column norms of `voxel_to_ras`
   /// Row-major 3x4 affine from voxel indices to world mm, RAS (x right, y anterior, z superior).
   std::array<double, 12> voxel_to_ras{};
-  std::vector<LabelIndex> voxels;  ///< size[0]*size[1]*size[2]
-  std::vector<Label> labels;       ///< labels[0] is the background
+  std::vector<LabelIndex> voxels;          ///< size[0]*size[1]*size[2]
+  std::vector<Label> labels;               ///< labels[0] is the background
+  std::vector<std::string> warnings = {};  ///< what is odd about the file that it was read from
 
   std::size_t num_voxels() const {
     return static_cast<std::size_t>(size[0]) * static_cast<std::size_t>(size[1]) *

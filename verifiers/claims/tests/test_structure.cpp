@@ -106,23 +106,24 @@ TEST(Structure, RejectsTwoCellsOnOneSideOfAFacet) {
 }
 
 TEST(Structure, RejectsCoincidentVertices) {
-  const auto with_vertex = [](const Point& p) {
-    Mesh mesh = corner(1, 1, 1);
-    mesh.vertices.push_back(p);
-    return structure_of(mesh);
+  const auto with_cell_at = [](const Point& p) {  // beyond the vertex (0, 1, 0) of the other
+    const Mesh cell = mesh_of({p, {1, 2, 0}, {0, 3, 0}, {0, 2, 1}}, {{0, 1, 2, 3}});
+    return structure_of(joined(corner(1, 1, 1), cell));
   };
-  EXPECT_TRUE(names(with_vertex({0, 1, 0}), "no two vertices have the same coordinates"));
-  EXPECT_TRUE(names(with_vertex({-0.0, 1, -0.0}), "no two vertices have the same coordinates"));
-  EXPECT_EQ(with_vertex({std::numeric_limits<double>::denorm_min(), 1, 0}).verdict, Verdict::kPass);
+  EXPECT_TRUE(names(with_cell_at({0, 1, 0}), "no two vertices have the same coordinates"));
+  EXPECT_TRUE(names(with_cell_at({-0.0, 1, -0.0}), "no two vertices have the same coordinates"));
+  EXPECT_EQ(with_cell_at({0, std::nextafter(1.0, 2.0), 0}).verdict, Verdict::kPass);
 }
 
 TEST(Structure, WarnsOfUnusedVertices) {
   Mesh mesh = kuhn_cubes(1);
   mesh.vertices.push_back({99, 99, 99});
   mesh.vertices.push_back({-0.5, 0, 0});  // on a facet, where a used one would hang
+  mesh.vertices.push_back(mesh.vertices[3]);
+  mesh.vertices.push_back({99, 99, 99});
   const ClaimResult result = structure_of(mesh);
   EXPECT_EQ(result.verdict, Verdict::kPass) << result.reason;
-  EXPECT_EQ(result.num_warnings, 2);
+  EXPECT_EQ(result.num_warnings, 4);
 }
 
 TEST(Structure, RejectsHangingVertices) {

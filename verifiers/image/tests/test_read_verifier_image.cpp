@@ -106,6 +106,26 @@ TEST(ReadVerifierImage, MetaImage) {
   expect_small_image(folder.write("c.mhd", kMetaHeader + "ElementDataFile = c.raw\n"), kFromLps);
 }
 
+// What programs leave that change a file and not its header; more follows the stream in some.
+TEST(ReadVerifierImage, MetaImageWhoseStreamIsNotAsLongAsItsHeaderSays) {
+  const Folder folder;
+  const std::string zipped = deflated(kVoxels, 15), size = std::to_string(zipped.size());
+  for (const std::string& announced : {std::string("1"), std::string("123456"), size}) {
+    for (const std::string& tail : {std::string(), std::string("more")}) {
+      const std::string path =
+          folder.write("a.mha", "CompressedData = True\nCompressedDataSize = " + announced + "\n" +
+                                    kMetaHeader + "ElementDataFile = LOCAL\n" + zipped + tail);
+      expect_small_image(path, kFromLps);
+      const Image image = read_image(path);
+      ASSERT_EQ(image.warnings.size(), announced == size ? 0u : 1u);
+      if (announced == size) continue;
+      EXPECT_TRUE(image.warnings[0].starts_with(path + ": ")) << image.warnings[0];
+      EXPECT_NE(image.warnings[0].find(announced), std::string::npos) << image.warnings[0];
+      EXPECT_NE(image.warnings[0].find(size), std::string::npos) << image.warnings[0];
+    }
+  }
+}
+
 template <class T>
 void expect_type(const Folder& folder, int datatype) {
   const std::string file = nifti_file(bytes_of_values(two_voxels<T>()),

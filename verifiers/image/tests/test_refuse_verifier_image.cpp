@@ -109,6 +109,15 @@ std::vector<BadFile> bad_files() {
       {"MetaVoxels", "a.mha", text(kMeta + cut(kVoxels, 1)), "truncated"},
       {"MetaShortZlib", "a.mha", text(kZippedMeta + deflated(cut(kVoxels, 1), 15)), "truncated"},
       {"MetaCutZlib", "a.mha", text(kZippedMeta + cut(deflated(kVoxels, 15), 5)), "truncated"},
+      {"MetaCutZlibThatAnnouncesMore", "a.mha",
+       text("CompressedDataSize = 999\n" + kZippedMeta + cut(deflated(kVoxels, 15), 5)), "truncated"},
+      {"MetaDamagedZlib", "a.mha",
+       [] {
+         std::string file = kZippedMeta + deflated(kVoxels, 15);
+         file.back() ^= 1;  // in the checksum
+         return file;
+       },
+       "damaged"},
       {"MetaNoSize", "a.mha", text(replaced(kMeta, "DimSize = 2 3 4\n", "") + kVoxels), "dimsize"},
       {"MetaHuge", "a.mha", text(replaced(kMeta, "2 3 4", "2000 2000 2000") + kVoxels), "truncated"},
       {"MetaMissing", "a.mhd", text(kMetaHeader + "ElementDataFile = no.raw\n"), "no.raw"},
