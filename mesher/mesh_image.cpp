@@ -10,12 +10,13 @@
 
 #include "cost_model.h"
 #include "extract_mesh.h"
+#include "image_owners.h"
 #include "measure_quality.h"
+#include "page_sampler.h"
 #include "placement_of_crew.h"
 #include "podm.h"
 #include "podm/operation_log.h"
 #include "replay.h"
-#include "sample_pages.h"
 
 namespace podm {
 
@@ -104,6 +105,7 @@ class Run {
     MeshingResult result;
     MeshingReport& report = result.report;
     report.phases_s["transform"] = seconds_since(start);
+    locate_memory(isosurface);
 
     Refinement refinement = options_.target_elements > 0
                                 ? refine_to_target(isosurface, report)
@@ -112,7 +114,8 @@ class Run {
     report.counters = refinement.counters;
     report.workers = refinement.workers;
     report.num_nodes = placement_.machine.num_nodes();
-    report.pages = sample_pages(*refinement.mesh, placement_.machine);
+    report.pages = pages_ ? std::move(refinement.pages) : PageSamples{{}, why_no_pages()};
+    if (owners_) report.image_reads_unavailable = owners_->unavailable();
     report.store_cells = refinement.mesh->num_cells();
     const auto& [low, high] = refinement.mesh->box();
     report.virtual_box = {low.x, low.y, low.z, high.x, high.y, high.z};
@@ -128,6 +131,18 @@ class Run {
  private:
   void announce(const char* phase, double fraction, std::uint64_t cells) const {
     if (progress_) progress_({phase, std::clamp(fraction, 0.0, 1.0), cells, seconds_since(start_)});
+  }
+
+  // Whose memory is what; on one node all is near.
+  void locate_memory(const Isosurface& isosurface) {
+    if (placement_.machine.num_nodes() == 1) return;
+    owners_ = owners_of_image(image_, isosurface.transform(), placement_, options_.seed, nodes_of_pages);
+    if (placement_.is_real) pages_.emplace(placement_.machine, *owners_, nodes_of_pages);
+  }
+  std::string why_no_pages() const {
+    return placement_.machine.num_nodes() == 1    ? "the machine has one NUMA node"
+           : placement_.machine.is_this_machine() ? "workers of virtual time are on no node"
+                                                  : "the machine is a described one";
   }
 
   Refinement refine(const Isosurface& isosurface, double radius_mm, double delta_mm, MeshingReport& report) {
@@ -189,9 +204,14 @@ class Run {
   }
 
   Crew crew() const {
-    return {options_.executor,     {num_workers(), options_.contention, placement_.groups, options_.seed},
-            options_.virtual_cost, options_.log,
-            &placement_.machine,   placement_.places};
+    return {options_.executor,
+            {num_workers(), options_.contention, placement_.groups, options_.seed},
+            options_.virtual_cost,
+            options_.log,
+            &placement_.machine,
+            placement_.places,
+            owners_ ? &*owners_ : nullptr,
+            pages_ ? &*pages_ : nullptr};
   }
   int num_workers() const {
     if (options_.threads > 0) return options_.threads;
@@ -251,6 +271,8 @@ class Run {
   const ProgressCallback& progress_;
   std::stop_token stop_;
   const PlacementOfCrew placement_;
+  std::optional<ImageOwners> owners_;
+  std::optional<PageSampler> pages_;
   const Clock::time_point start_ = Clock::now();
 };
 

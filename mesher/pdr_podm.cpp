@@ -128,6 +128,7 @@ Refinement refine_by_leaves(const Problem& problem, const Crew& crew, const Leaf
   refiner.timed("refine", [&] {
     left = refiner.refine_leaves<Locks>(final, *octree, options.num_nodes, options.with_schedule);
   });
+  refiner.sample_pages("refine");
   refiner.refine_anywhere("closing", final, left, refiner.num_workers());
   Refinement result = refiner.finish();
   if (result.schedule) describe(*octree, *result.schedule);

@@ -33,8 +33,8 @@ WorkerGroups groups_of(const std::vector<Place>& places) {
 PlacementOfCrew place_crew(const MeshingOptions& options, int num_workers) try {
   const bool is_described = !options.topology_path.empty();
   PlacementOfCrew placement{
-      is_described ? Topology::from_file(options.topology_path) : Topology::of_this_machine(), {}, {}};
-  const bool is_real = options.executor == Executor::kThreads && !is_described;
+      is_described ? Topology::from_file(options.topology_path) : Topology::of_this_machine(), {}, {}, {}};
+  const bool is_real = placement.is_real = options.executor == Executor::kThreads && !is_described;
   placement.places = place_workers(placement.machine, PinPlan::parse(options.pin), num_workers,
                                    options.oversubscribe || !is_real);
   if (!is_real) {

@@ -14,6 +14,7 @@ struct PlacementOfCrew {
   Topology machine;  // this one, or the one described
   std::vector<Place> places;
   WorkerGroups groups;  // of the begging list
+  bool is_real = true;  // threads of this machine, neither virtual workers nor those of a described one
 };
 
 /// A place for each of `num_workers`. Workers of a described machine, and virtual ones, are bound to nothing.

@@ -35,6 +35,7 @@ Refiner::Refiner(const Problem& problem, const Box& clamp_box, const Crew& crew,
     const Place place = place_of(worker);
     pools_.push_back(std::make_unique<Pool>(*result_.mesh, static_cast<NodeIndex>(place.node)));
     result_.workers.push_back({place.node, place.socket, place.processor, {}, {}});
+    accesses_.push_back({place.node, {}});
   }
 }
 
@@ -57,13 +58,20 @@ Refiner::Workers<Locks> Refiner::make_workers(const Parameters& parameters, int 
   Workers<Locks> workers;
   for (WorkerId id = 0; id < static_cast<WorkerId>(num_workers); ++id)
     workers.push_back(std::make_unique<Worker<Locks>>(*result_.mesh, problem_.isosurface, parameters, id,
-                                                      *pools_[id], crew_.log));
+                                                      *pools_[id], crew_.log, crew_.owners));
   return workers;
 }
 
 template <class Locks>
 void Refiner::account(const Worker<Locks>& worker, WorkerId id, const Overhead& overhead) {
   add(counters_of(worker, overhead, place_of(id), crew_.machine), result_.workers[id].counters);
+  if (worker.accesses()) accesses_[id].addresses = worker.accesses()->samples();
+}
+
+void Refiner::sample_pages(const std::string& phase) {
+  if (crew_.pages == nullptr) return;
+  crew_.pages->sample(phase, mesh(), accesses_, result_.pages);
+  for (SampledAccesses& of_worker : accesses_) of_worker.addresses.clear();
 }
 
 // All workers start at once; those without cells beg until the first has some to share.
@@ -101,6 +109,7 @@ void Refiner::refine_anywhere(const std::string& phase, const Parameters& parame
       result_.workers[0].bound_to = processor_of_this_thread().bound_to;
     }
   });
+  sample_pages(phase);
 }
 
 // Each node on its threads; the first node's master is the calling thread.

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "octree/octree.h"
+#include "page_sampler.h"
 #include "podm/operation_log.h"
 #include "refine/coordination.h"
 #include "refine/executor.h"
@@ -30,9 +31,11 @@ struct Crew {
   CoordinationOptions coordination;
   VirtualCost cost = VirtualCost::kMeasured;
   OperationLogWriter* log = nullptr;
-  const Topology* machine = nullptr;  // whose nodes the places name; none: all are on one
-  std::vector<Place> places = {};     // of the workers; none: anywhere
-  bool locks_alone = false;           // a single worker locks too: to measure what locks cost
+  const Topology* machine = nullptr;    // whose nodes the places name; none: all are on one
+  std::vector<Place> places = {};       // of the workers; none: anywhere
+  const ImageOwners* owners = nullptr;  // of the machine's nodes, image and transform; none: not counted
+  const PageSampler* pages = nullptr;   // asked at the end of each phase, if any
+  bool locks_alone = false;             // a single worker locks too: to measure what locks cost
 };
 
 struct Refinement {
@@ -44,6 +47,7 @@ struct Refinement {
   std::map<std::string, double> phases_s;  // initial, octree, refine, closing
   std::uint64_t num_leaves = 0;
   std::optional<LeafSchedule> schedule;
+  PageSamples pages;
 };
 
 class Refiner {
@@ -72,6 +76,8 @@ class Refiner {
     result_.phases_s[phase] +=
         std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
   }
+  /// Where pages are at the end of a phase; in none of its seconds.
+  void sample_pages(const std::string& phase);
   const Mesh& mesh() const { return *result_.mesh; }
   bool is_over() const { return watch_.reason() != StopReason::kComplete; }
   int num_workers() const { return crew_.coordination.num_workers; }
@@ -97,6 +103,7 @@ class Refiner {
   const Crew& crew_;
   Watch& watch_;
   std::vector<std::unique_ptr<Pool>> pools_;  // of the workers, from phase to phase
+  std::vector<SampledAccesses> accesses_;     // by worker, of the last phase
   Refinement result_;
 };
 

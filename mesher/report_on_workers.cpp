@@ -13,18 +13,32 @@ constexpr std::uint64_t Counters::*kCounts[] = {&Counters::removals,       &Coun
 constexpr double Counters::*kSeconds[] = {&Counters::contention_s, &Counters::begging_s,
                                           &Counters::rollback_s};
 
+constexpr std::pair<std::vector<std::uint64_t> HopsByKind::*, AccessKind> kHops[] = {
+    {&HopsByKind::mesh_reads, AccessKind::kMeshRead},
+    {&HopsByKind::mesh_writes, AccessKind::kMeshWrite},
+    {&HopsByKind::image_reads, AccessKind::kImageRead},
+    {&HopsByKind::transform_reads, AccessKind::kTransformRead}};
+static_assert(std::size(kHops) == kNumAccessKinds);
+
 void add(const std::vector<std::uint64_t>& terms, std::vector<std::uint64_t>& sums) {
   sums.resize(std::max(sums.size(), terms.size()));
   for (std::size_t i = 0; i < terms.size(); ++i) sums[i] += terms[i];
 }
 
 std::vector<std::uint64_t> by_hops(const std::vector<std::uint64_t>& by_node, int own_node,
-                                   const Topology* machine) {
-  if (by_node.empty() || machine == nullptr) return {};
-  std::vector<std::uint64_t> by_hops(static_cast<std::size_t>(machine->max_hops()) + 1);
+                                   const Topology& machine) {
+  std::vector<std::uint64_t> by_hops(static_cast<std::size_t>(machine.max_hops()) + 1);
   for (std::size_t node = 0; node < by_node.size(); ++node)
-    by_hops[static_cast<std::size_t>(machine->hops(own_node, static_cast<int>(node)))] += by_node[node];
+    by_hops[static_cast<std::size_t>(machine.hops(own_node, static_cast<int>(node)))] += by_node[node];
   return by_hops;
+}
+
+HopsByKind hops_of(const std::optional<AccessTally>& accesses, int own_node, const Topology* machine) {
+  if (!accesses || machine == nullptr) return {};
+  HopsByKind hops;
+  for (const auto& [member, kind] : kHops)
+    hops.*member = by_hops(accesses->by_node(kind), own_node, *machine);
+  return hops;
 }
 
 }  // namespace
@@ -49,7 +63,7 @@ Counters counters_of(const Worker<Locks>& worker, const Overhead& overhead, cons
   c.contention_s = overhead.contention_s;
   c.begging_s = overhead.begging_s;
   c.rollback_s = overhead.rollback_s;
-  c.accesses_by_hops = by_hops(o.accesses_by_node, place.node, machine);
+  c.hops = hops_of(worker.accesses(), place.node, machine);
   return c;
 }
 
@@ -58,7 +72,7 @@ void add(const Counters& c, Counters& sum) {
     sum.insertions_by_rule[rule] += c.insertions_by_rule[rule];
   for (const auto count : kCounts) sum.*count += c.*count;
   for (const auto seconds : kSeconds) sum.*seconds += c.*seconds;
-  add(c.accesses_by_hops, sum.accesses_by_hops);
+  for (const auto& [member, kind] : kHops) add(c.hops.*member, sum.hops.*member);
 }
 
 Counters sum_of(const std::vector<WorkerReport>& workers) {

@@ -55,15 +55,37 @@ Json placement_of(const MeshingReport& report) {
   return places;
 }
 
-// Accesses by distance; why there are none on a machine of one node.
+Json unavailable(const std::string& why) { return "unavailable: " + why; }
+
+// Accesses by kind and distance; why there are none on a machine of one node.
+Json hops_by_kind(const HopsByKind& hops, const MeshingReport& report) {
+  if (hops.mesh_reads.empty()) return unavailable("one NUMA node or one thread");
+  Json kinds = {{"mesh_reads", hops.mesh_reads},
+                {"mesh_writes", hops.mesh_writes},
+                {"image_reads", hops.image_reads},
+                {"transform_reads", hops.transform_reads}};
+  if (!report.image_reads_unavailable.empty())
+    kinds["image_reads"] = kinds["transform_reads"] = unavailable(report.image_reads_unavailable);
+  return kinds;
+}
+
+// What Table 2 counts.
 Json hops_of(const MeshingReport& report) {
-  if (report.counters.accesses_by_hops.empty()) return "unavailable: one NUMA node or one thread";
-  return report.counters.accesses_by_hops;
+  const Json kinds = hops_by_kind(report.counters.hops, report);
+  return kinds.is_object() ? kinds["mesh_reads"] : kinds;
 }
 
 Json pages_of(const MeshingReport& report) {
-  if (!report.pages.unavailable.empty()) return "unavailable: " + report.pages.unavailable;
-  return {{"as_claimed", report.pages.as_claimed}, {"elsewhere", report.pages.elsewhere}};
+  if (!report.pages.unavailable.empty()) return unavailable(report.pages.unavailable);
+  Json phases = Json::object();
+  for (const PageSamples::AtPhase& at : report.pages.phases) {
+    Json& phase = phases[at.phase];
+    for (const PageSamples::OfArray& pages : at.arrays)
+      phase[pages.array] = {
+          {"as_claimed", pages.as_claimed}, {"elsewhere", pages.elsewhere}, {"untouched", pages.untouched}};
+    phase["accesses_by_hops"] = at.accesses_by_hops;
+  }
+  return phases;
 }
 
 Json workers_of(const MeshingReport& report) {
@@ -79,7 +101,7 @@ Json workers_of(const MeshingReport& report) {
                        {"contention_s", c.contention_s},
                        {"begging_s", c.begging_s},
                        {"rollback_s", c.rollback_s},
-                       {"accesses_by_hops", c.accesses_by_hops}});
+                       {"hops_by_kind", hops_by_kind(c.hops, report)}});
   }
   return workers;
 }
@@ -199,6 +221,7 @@ Json record(const MeshRun& run) {
         {"begging", report.counters.begging_s},
         {"rollback", report.counters.rollback_s}}},
       {"hops", hops_of(report)},
+      {"hops_by_kind", hops_by_kind(report.counters.hops, report)},
       {"pages", pages_of(report)},
       {"counters", counters_of(report)},
       {"workers", workers_of(report)},

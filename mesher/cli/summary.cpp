@@ -105,7 +105,7 @@ std::string statistics_line(const std::string& name, const std::string& place, c
   return fmt::format("{:>6} {:>11} {:>11} {:>11} {:>9} {:>9} {:>9.1f} {:>9.3f} {:>8.3f} {:>8.3f} {}\n", name,
                      place, committed, c.stale_cells, c.lock_conflicts, c.rejected,
                      committed > 0 ? visited / static_cast<double>(committed) : 0, c.contention_s,
-                     c.begging_s, c.rollback_s, hops_text(c.accesses_by_hops));
+                     c.begging_s, c.rollback_s, hops_text(c.hops.mesh_reads));
 }
 
 }  // namespace
@@ -117,9 +117,9 @@ std::string statistics(const MeshRun& run) {
       "{:>6} {:>11} {:>11} {:>11} {:>9} {:>9} {:>9} {:>28}{}\n"
       "{:>6} {:>11} {:>11} {:>11} {:>9} {:>9} {:>9} {:>9} {:>8} {:>8}{}\n",
       "", "", "", "", "", "", "cells", is_virtual ? "simulated seconds lost to" : "seconds lost to",
-      report.counters.accesses_by_hops.empty() ? "" : "  % of accesses", "worker", "cpu/node", "committed",
+      report.counters.hops.mesh_reads.empty() ? "" : "  % of accesses", "worker", "cpu/node", "committed",
       "stale", "conflict", "rejected", "visited", "waiting", "begging", "rollback",
-      report.counters.accesses_by_hops.empty() ? "" : "  at 0, 1, ... hops");
+      report.counters.hops.mesh_reads.empty() ? "" : "  at 0, 1, ... hops");
   for (std::size_t i = 0; i < report.workers.size(); ++i) {
     const WorkerReport& worker = report.workers[i];
     const std::string processor = worker.bound_to ? std::to_string(*worker.bound_to) : "any";

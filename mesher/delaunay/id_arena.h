@@ -11,9 +11,9 @@
 #include <new>
 #include <vector>
 
-namespace podm {
+#include "runtime/access_tally.h"
 
-using NodeIndex = std::uint16_t;  // of a NUMA node, from 0
+namespace podm {
 
 class IdArena {
  public:

@@ -90,6 +90,7 @@ class Mesh {
 
   Cell& cell(CellId c) { return cells_[c]; }
   const Cell& cell(CellId c) const { return cells_[c]; }
+  const CellState& state(CellId c) const { return states_[c]; }
   LabelIndex& label(CellId c) { return states_[c].label; }
   LabelIndex label(CellId c) const { return states_[c].label; }
   Vertex& vertex(VertexId v) { return vertices_[v]; }

@@ -23,7 +23,7 @@ Outcome Operation<Locks>::reserve(CellId c, std::uint32_t stamp) {
 
 template <class Locks>
 Outcome Operation<Locks>::lock(VertexId v) {
-  if (counts_accesses()) ++counters_.accesses_by_node[mesh_.node_of_vertex(v)];
+  count_vertex(AccessKind::kMeshRead, v);
   return locks_.try_lock(mesh_.vertex(v));
 }
 
@@ -53,9 +53,9 @@ void Operation<Locks>::add_to_region(CellId c) {
 }
 
 template <class Locks>
-bool Operation<Locks>::is_in_conflict(CellId c, const Point& p) {
+inline bool Operation<Locks>::is_in_conflict(CellId c, const Point& p) {
   ++counters_.conflict_tests;
-  if (counts_accesses()) ++counters_.accesses_by_node[mesh_.node_of_cell(c)];
+  count(AccessKind::kMeshRead, c);
   const Side side = side_of(mesh_.cell(c).sphere, p);
   if (side != Side::kUndecided) return side == Side::kInside;
   ++counters_.exact_decisions;
@@ -153,6 +153,7 @@ Outcome Operation<Locks>::commit_insertion(const Point& p, VertexKind kind, doub
     hole_.plan(mesh_, region_, &p);
   }
   reserve_memory(is_star ? star_.num_cells() : hole_.num_cells());
+  count_gluing();
   inserted_ = pool_.take_vertex();
   place(mesh_.vertex(inserted_), p, kind);  // its lock may be tried by who has a stale entry
   const std::size_t num_destroyed = region_.cells.size();
@@ -161,6 +162,7 @@ Outcome Operation<Locks>::commit_insertion(const Point& p, VertexKind kind, doub
   } else {
     hole_.fill(mesh_, pool_, region_, inserted_);
   }
+  count_vertex(AccessKind::kMeshWrite, inserted_);
   finish(num_destroyed);
   return Outcome::kCommitted;
 }
@@ -170,13 +172,35 @@ void Operation<Locks>::commit_removals() {
   collect_boundary();
   hole_.plan(mesh_, region_, nullptr);
   reserve_memory(hole_.num_cells());
+  count_gluing();
   const std::size_t num_destroyed = region_.cells.size();
   hole_.fill(mesh_, pool_, region_, kNoVertex);
   finish(num_destroyed);
 }
 
+// Before the filling: the cells beyond the boundary, each as often as a facet of it is glued.
+template <class Locks>
+void Operation<Locks>::count_gluing() {
+  if (!counts()) return;
+  for (const FacetId f : region_.boundary) {
+    const FacetId mirror = mesh_.cell(cell_of(f)).mirrors[static_cast<unsigned>(index_in_cell(f))];
+    if (mirror != kNoFacet) count(AccessKind::kMeshWrite, cell_of(mirror));
+  }
+}
+
+// After it: the cells made, the slots that stay empty, the vertices that go.
+template <class Locks>
+void Operation<Locks>::count_filling() {
+  if (!counts()) return;
+  for (const CellId c : region_.created) count(AccessKind::kMeshWrite, c);
+  for (const CellId c : region_.cells)
+    if (!mesh_.cell(c).is_alive()) count(AccessKind::kMeshWrite, c);
+  for (const VertexId v : region_.removed) count_vertex(AccessKind::kMeshWrite, v);
+}
+
 template <class Locks>
 void Operation<Locks>::finish(std::size_t num_destroyed) {
+  count_filling();
   counters_.cells_destroyed += num_destroyed;
   counters_.cells_created += region_.created.size();
   for (const VertexId v : region_.removed) pool_.release_vertex(v);

@@ -26,16 +26,15 @@ namespace podm {
 struct OperationCounters {
   std::uint64_t conflict_tests = 0, exact_decisions = 0, cells_created = 0, cells_destroyed = 0;
   std::uint64_t region_cells = 0;  // that plans collected, carried out or not
-  // Cells tested and vertices locked, by the NUMA node whose pool made them; empty on one node.
-  std::vector<std::uint64_t> accesses_by_node;
 };
 
 template <class Locks>
 class Operation {
  public:
-  Operation(Mesh& mesh, Pool& pool, WorkerId self) : mesh_(mesh), pool_(pool), locks_(self) {
-    if (mesh.num_nodes() > 1) counters_.accesses_by_node.resize(static_cast<std::size_t>(mesh.num_nodes()));
-  }
+  /// `tally`, if given, counts accesses to the mesh by the node whose pool made the cell or vertex. Locks
+  /// that nobody shares count none: such a run is on one node.
+  Operation(Mesh& mesh, Pool& pool, WorkerId self, AccessTally* tally = nullptr)
+      : mesh_(mesh), pool_(pool), locks_(self), tally_(tally) {}
 
   /// Locks two vertices of the cell c of that stamp, so that it and its neighbours may be read. kStaleCell:
   /// it has died. kLockConflict: conflicting_worker() tells with whom. Unless committed nothing is held.
@@ -81,8 +80,17 @@ class Operation {
   Outcome lock_cell(CellId c);
   Outcome lock_beyond(FacetId facet);
   Outcome lock(VertexId v);
-  // A run that nobody shares is on one node.
-  bool counts_accesses() const { return Locks::kIsShared && !counters_.accesses_by_node.empty(); }
+  void count(AccessKind kind, CellId c) {
+    if (counts()) [[unlikely]]
+      tally_->add(kind, mesh_.node_of_cell(c), &mesh_.cell(c));
+  }
+  void count_vertex(AccessKind kind, VertexId v) {
+    if (counts()) [[unlikely]]
+      tally_->add(kind, mesh_.node_of_vertex(v), &mesh_.vertex(v));
+  }
+  bool counts() const { return Locks::kIsShared && tally_ != nullptr; }
+  void count_gluing();
+  void count_filling();
   void add_to_region(CellId c);
   bool is_in_conflict(CellId c, const Point& p);
   void collect_boundary();
@@ -101,6 +109,7 @@ class Operation {
   VertexId inserted_ = kNoVertex;
   std::vector<VertexId> removed_;
   OperationCounters counters_;
+  AccessTally* tally_;
 };
 
 extern template class Operation<NoLocks>;

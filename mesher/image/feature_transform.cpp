@@ -260,11 +260,13 @@ std::size_t checked_num_voxels(const LabelImage& image) {
 
 }  // namespace
 
-FeatureTransform::FeatureTransform(const LabelImage& image, int threads) : words_(checked_num_voxels(image)) {
+FeatureTransform::FeatureTransform(const LabelImage& image, int threads)
+    : HugeArray<std::uint32_t>(checked_num_voxels(image)), Features<NoReads>(&(*this)[0], {}) {
+  HugeArray<std::uint32_t>& words = *this;
   const auto num_y = static_cast<std::size_t>(image.size[1]), num_z = static_cast<std::size_t>(image.size[2]);
   const std::size_t used = std::clamp<std::size_t>(num_threads(threads), 1, std::max(num_y, num_z));
   std::vector<Workspace> workspaces(used, Workspace(image));
-  Transformer transformer(image, words_);
+  Transformer transformer(image, words);
   parallel_for(num_z, used, [&](std::size_t z, std::size_t thread) {
     transformer.transform_slice(static_cast<int>(z), workspaces[thread]);
   });
@@ -275,7 +277,7 @@ FeatureTransform::FeatureTransform(const LabelImage& image, int threads) : words
   const std::size_t slice = image.num_voxels() / num_z;
   parallel_for(num_z, used, [&](std::size_t z, std::size_t) {
     for (std::size_t v = z * slice; v < (z + 1) * slice; ++v) {
-      if (words_[v] == v) words_[v] = kSurface | finder.bits(v);
+      if (words[v] == v) words[v] = kSurface | finder.bits(v);
     }
   });
 }

@@ -11,7 +11,10 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <optional>
+#include <span>
 
+#include "image/oracle_reads.h"
 #include "podm/label_image.h"
 #include "runtime/huge_array.h"
 
@@ -47,30 +50,54 @@ class Neighborhood {
   std::uint32_t bits_;  // 27 positions; bit 30: two labels
 };
 
-class FeatureTransform {
+/// The transform of an image, whose words lie elsewhere. `Reads` is told of each word read.
+template <class Reads>
+class Features {
  public:
   /// Position of a voxel in LabelImage::voxels.
   using VoxelIndex = std::uint32_t;
   /// What an image of one label has everywhere.
   static constexpr VoxelIndex kNone = 0x7fffffff;
 
+  Features(const std::uint32_t* words, const Reads& reads) : words_(words), reads_(reads) {}
+
+  /// The surface voxel whose centre is nearest to the centre of `voxel`.
+  VoxelIndex nearest(std::size_t voxel) const {
+    const std::uint32_t word = read(voxel);
+    return (word & kSurface) != 0 ? static_cast<VoxelIndex>(voxel) : word;
+  }
+  void prefetch(std::size_t voxel) const { __builtin_prefetch(&words_[voxel]); }
+  bool is_surface(std::size_t voxel) const { return (read(voxel) & kSurface) != 0; }
+  /// Of a surface voxel.
+  Neighborhood neighborhood(std::size_t voxel) const { return Neighborhood(read(voxel)); }
+  /// None of others.
+  std::optional<Neighborhood> neighborhood_if_surface(std::size_t voxel) const {
+    const std::uint32_t word = read(voxel);
+    return (word & kSurface) != 0 ? std::optional(Neighborhood(word)) : std::nullopt;
+  }
+
+ protected:
+  static constexpr std::uint32_t kSurface = 0x80000000;  // else the word is the feature
+
+ private:
+  std::uint32_t read(std::size_t voxel) const {
+    reads_.transform(voxel);
+    return words_[voxel];
+  }
+
+  const std::uint32_t* words_;
+  [[no_unique_address]] Reads reads_;
+};
+
+/// The words, and a look at them that nobody counts.
+class FeatureTransform : private HugeArray<std::uint32_t>, public Features<NoReads> {
+ public:
   /// Runs on `threads` threads (0: all cores); the result is the same for any number.
   /// Throws InputError if the image has more than 2^31 - 1 voxels.
   FeatureTransform(const LabelImage& image, int threads);
 
-  /// The surface voxel whose centre is nearest to the centre of `voxel`.
-  VoxelIndex nearest(std::size_t voxel) const {
-    const std::uint32_t word = words_[voxel];
-    return (word & kSurface) != 0 ? static_cast<VoxelIndex>(voxel) : word;
-  }
-  void prefetch(std::size_t voxel) const { __builtin_prefetch(&words_[voxel]); }
-  bool is_surface(std::size_t voxel) const { return (words_[voxel] & kSurface) != 0; }
-  /// Of a surface voxel.
-  Neighborhood neighborhood(std::size_t voxel) const { return Neighborhood(words_[voxel]); }
-
- private:
-  static constexpr std::uint32_t kSurface = 0x80000000;
-  HugeArray<std::uint32_t> words_;  // the feature, or kSurface and the neighbourhood
+  /// One a voxel: the feature, or kSurface and the neighbourhood.
+  std::span<const std::uint32_t> words() const { return {&(*this)[0], capacity()}; }
 };
 
 }  // namespace podm

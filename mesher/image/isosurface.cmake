@@ -1,6 +1,6 @@
 add_library(podm_isosurface STATIC feature_transform.cpp isosurface.cpp isosurface_block.cpp isosurface_closest.cpp
                                    isosurface_cubic.cpp isosurface_trace.cpp)
-target_link_libraries(podm_isosurface PUBLIC podm_geometry Threads::Threads PRIVATE podm_flags)
+target_link_libraries(podm_isosurface PUBLIC podm_geometry podm_runtime Threads::Threads PRIVATE podm_flags)
 
 podm_add_test(isosurface_tests
               SOURCES tests/test_feature_transform.cpp tests/test_isosurface.cpp tests/isosurface_reference.cpp

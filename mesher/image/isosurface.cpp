@@ -21,9 +21,13 @@ constexpr std::uint64_t kFirstCorners = 0x0777'0777'0777;  // {0..2}^3, by which
 
 }  // namespace
 
-Isosurface::Isosurface(const LabelImage& image, int threads)
-    : grid_(image),
-      features_(image, threads),
+template <class Reads>
+Oracle<Reads>::Oracle(const LabelImage& image, std::shared_ptr<const FeatureTransform> transform,
+                      const Reads& reads)
+    : image_(&image),
+      transform_(std::move(transform)),
+      grid_(image, reads),
+      features_(transform_->words().data(), reads),
       spacing_{image.spacing[0], image.spacing[1], image.spacing[2]},
       inverse_spacing_{1 / spacing_.x, 1 / spacing_.y, 1 / spacing_.z},
       end_{image.size[0] - 0.5, image.size[1] - 0.5, image.size[2] - 0.5},
@@ -32,16 +36,19 @@ Isosurface::Isosurface(const LabelImage& image, int threads)
       longest_side_mm_(std::max({spacing_.x, spacing_.y, spacing_.z})),
       weight_mm_(1 / std::sqrt(squared_length(inverse_spacing_))) {}
 
-LabelIndex Isosurface::label_on_surface_voxel(const Point& u) const {
+template <class Reads>
+LabelIndex Oracle<Reads>::label_on_surface_voxel(const Point& u) const {
   const Voxel block = block_of(u);
   return winner(grid_.block(block), u - center(block)).label;
 }
 
-Point Isosurface::clamped_to_grid(const Point& u) const {
+template <class Reads>
+Point Oracle<Reads>::clamped_to_grid(const Point& u) const {
   return {clamped(u.x, 0, end_.x - 0.5), clamped(u.y, 0, end_.y - 0.5), clamped(u.z, 0, end_.z - 0.5)};
 }
 
-double Isosurface::distance_lower_bound(const Point& p, double radius) const {
+template <class Reads>
+double Oracle<Reads>::distance_lower_bound(const Point& p, double radius) const {
   const Point u = to_voxels(p);
   const double bound = clearance(u);
   const bool may_blocks_tell = bound <= radius && radius < kMostByBlocks * shortest_side_mm_ && is_inside(u);
@@ -50,7 +57,8 @@ double Isosurface::distance_lower_bound(const Point& p, double radius) const {
 
 // The isosurface lies within half a voxel of the grid. p projects to p' on that convex box, and
 // |p - s|^2 >= |p - p'|^2 + |p' - s|^2 for any s in it.
-double Isosurface::bound_from_outside(const Point& u) const {
+template <class Reads>
+double Oracle<Reads>::bound_from_outside(const Point& u) const {
   const Point inside{clamped(u.x, -0.5, end_.x), clamped(u.y, -0.5, end_.y), clamped(u.z, -0.5, end_.z)};
   const double bound = std::max(0.0, bound_by_feature(inside, nearest_voxel(clamped_to_grid(inside))));
   return std::sqrt(squared_length(to_mm(u - inside)) + square(bound));
@@ -58,16 +66,18 @@ double Isosurface::bound_from_outside(const Point& u) const {
 
 // By the lemma every isosurface point is within half a voxel diagonal of a surface voxel, and no surface
 // voxel is nearer to v than its feature. May be negative.
-double Isosurface::bound_by_feature(const Point& u, const Voxel& v) const {
+template <class Reads>
+double Oracle<Reads>::bound_by_feature(const Point& u, const Voxel& v) const {
   const auto feature = features_.nearest(grid_.index(v));
-  if (feature == FeatureTransform::kNone) return std::numeric_limits<double>::infinity();
+  if (feature == Features<Reads>::kNone) return std::numeric_limits<double>::infinity();
   return length_mm(center(v) - center(grid_.voxel(feature))) - length_mm(u - center(v)) - half_diagonal_mm_;
 }
 
 // No isosurface passes a block of one label: the nearest of the 26 neighbours that has another bounds the
 // distance, or else their outer hull does. Where u's own block has several, the winner's weight tells: it has
 // to fall to 1/2, and changes by at most 1 a voxel along each axis.
-double Isosurface::bound_by_blocks(const Point& u) const {
+template <class Reads>
+double Oracle<Reads>::bound_by_blocks(const Point& u) const {
   const Voxel block = block_of(u);
   const Point f = u - center(block);
   const BlockLabels labels = grid_.block(block);
@@ -91,5 +101,20 @@ double Isosurface::bound_by_blocks(const Point& u) const {
   }
   return std::sqrt(squared);
 }
+
+// Members are spread over files, each of which makes its own for both oracles.
+template Oracle<NoReads>::Oracle(const LabelImage&, std::shared_ptr<const FeatureTransform>, const NoReads&);
+template Oracle<CountedReads>::Oracle(const LabelImage&, std::shared_ptr<const FeatureTransform>,
+                                      const CountedReads&);
+template LabelIndex Oracle<NoReads>::label_on_surface_voxel(const Point&) const;
+template LabelIndex Oracle<CountedReads>::label_on_surface_voxel(const Point&) const;
+template Point Oracle<NoReads>::clamped_to_grid(const Point&) const;
+template Point Oracle<CountedReads>::clamped_to_grid(const Point&) const;
+template double Oracle<NoReads>::distance_lower_bound(const Point&, double) const;
+template double Oracle<CountedReads>::distance_lower_bound(const Point&, double) const;
+template double Oracle<NoReads>::bound_from_outside(const Point&) const;
+template double Oracle<CountedReads>::bound_from_outside(const Point&) const;
+template double Oracle<NoReads>::bound_by_feature(const Point&, const Voxel&) const;
+template double Oracle<CountedReads>::bound_by_feature(const Point&, const Voxel&) const;
 
 }  // namespace podm

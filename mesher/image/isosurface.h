@@ -13,6 +13,7 @@
 #pragma once
 
 #include <cstdint>
+#include <memory>
 #include <optional>
 
 #include "geometry/point.h"
@@ -22,11 +23,21 @@
 
 namespace podm {
 
-class Isosurface {
+/// A point of the isosurface that is near to another point.
+struct NearPoint {
+  Point point;  // to about a hundredth of a voxel
+  Voxel surface_voxel;
+  bool is_midpoint;  // of two neighbouring voxels
+};
+
+/// `Reads` is told of every read of the image and of its transform.
+template <class Reads>
+class Oracle {
  public:
-  /// Runs the feature transform on `threads` threads (0: all cores). Keeps a reference to `image`.
-  /// Throws InputError if the image has more than 2^31 - 1 voxels.
-  Isosurface(const LabelImage& image, int threads);
+  /// Keeps a reference to `image`, whose transform is given.
+  Oracle(const LabelImage& image, std::shared_ptr<const FeatureTransform> transform, const Reads& reads);
+  const LabelImage& image() const { return *image_; }
+  const FeatureTransform& transform() const { return *transform_; }
 
   /// Greatest trilinear weight; a single look-up away from any label change.
   LabelIndex label_at(const Point& p) const { return label_at_voxels(to_voxels(p)); }
@@ -48,11 +59,6 @@ class Isosurface {
   /// `radius` of p. Among several bumps of voxel size the search may take the second nearest: on smooth
   /// shapes it exceeds the nearest distance typically by nothing, in 1 % of cases by more than 0.2 and never
   /// by more than 1 of a voxel's shortest side.
-  struct NearPoint {
-    Point point;  // to about a hundredth of a voxel
-    Voxel surface_voxel;
-    bool is_midpoint;  // of two neighbouring voxels
-  };
   std::optional<NearPoint> near_point(const Point& p, double radius) const;
   /// The same, less than 1e-6 voxel from the isosurface, for p's near point. May be a little beyond `radius`.
   Point settled(const NearPoint& near, const Point& p) const;
@@ -63,6 +69,10 @@ class Isosurface {
   /// If the labels at a and b differ one is always found. Double crossings are found down to 1e-6 of the
   /// segment's part in a block.
   std::optional<Point> segment_intersection(const Point& a, const Point& b) const;
+
+ protected:
+  const LabelImage* image_;
+  std::shared_ptr<const FeatureTransform> transform_;
 
  private:
   struct LabelChange {
@@ -90,7 +100,7 @@ class Isosurface {
   LabelIndex label_on_surface_voxel(const Point& u) const;
   /// The nearest point of the box of all voxel centres; (0,0,0) for NaN.
   Point clamped_to_grid(const Point& u) const;
-  bool is_empty() const { return features_.nearest(0) == FeatureTransform::kNone; }
+  bool is_empty() const { return features_.nearest(0) == Features<Reads>::kNone; }
   double clearance(const Point& u) const {
     return is_inside(u) ? bound_by_feature(u, nearest_voxel(u)) : bound_from_outside(u);
   }
@@ -109,8 +119,8 @@ class Isosurface {
   std::optional<Vector> tangent_step(Sheet& sheet, const Point& u, const Point& z) const;
   void descend(Sheet& sheet, const Point& u, Nearest& best) const;
 
-  LabelGrid grid_;
-  FeatureTransform features_;
+  LabelGrid<Reads> grid_;
+  Features<Reads> features_;
   Vector spacing_, inverse_spacing_;           // mm a voxel, voxels a mm
   Point end_;                                  // half a voxel beyond the last
   double half_diagonal_mm_;                    // of a voxel
@@ -118,7 +128,19 @@ class Isosurface {
   double weight_mm_;                           // no weight grows by 1 within less
 };
 
-inline LabelIndex Isosurface::label_at_voxels(const Point& u) const {
+/// The oracle as most ask it: nobody counts.
+class Isosurface : public Oracle<NoReads> {
+ public:
+  /// Runs the feature transform on `threads` threads (0: all cores). Keeps a reference to `image`.
+  /// Throws InputError if the image has more than 2^31 - 1 voxels.
+  Isosurface(const LabelImage& image, int threads)
+      : Oracle(image, std::make_shared<FeatureTransform>(image, threads), {}) {}
+  /// The same answers, by one whose reads are counted.
+  Oracle<CountedReads> counted(const CountedReads& reads) const { return {*image_, transform_, reads}; }
+};
+
+template <class Reads>
+inline LabelIndex Oracle<Reads>::label_at_voxels(const Point& u) const {
   // Half a voxel outside the grid background has at least half the weight.
   if (!is_inside(u)) return kBackground;
   const Voxel v = nearest_voxel(u);

@@ -17,15 +17,17 @@ Winner winner(const BlockLabels& labels, const Point& f) {
   return best;
 }
 
-std::uint64_t LabelGrid::corners_of_other_label(const Voxel& b, LabelIndex label) const {
+template <class Reads>
+std::uint64_t LabelGrid<Reads>::corners_of_other_label(const Voxel& b, LabelIndex label) const {
   std::uint64_t bits = 0;
   const bool is_interior =
       b.i >= 1 && b.j >= 1 && b.k >= 1 && b.i + 2 < num_x_ && b.j + 2 < num_y_ && b.k + 2 < num_z_;
   if (is_interior) {
-    const LabelIndex* const first = voxels_ + index({b.i - 1, b.j - 1, b.k - 1});
+    const std::size_t first = index({b.i - 1, b.j - 1, b.k - 1});
     for (std::size_t line = 0; line < 16; ++line) {
       std::uint64_t four_labels;
-      std::memcpy(&four_labels, first + (line & 3) * row_ + (line >> 2) * slice_, sizeof four_labels);
+      std::memcpy(&four_labels, row_from(first + (line & 3) * row_ + (line >> 2) * slice_),
+                  sizeof four_labels);
       bits |= std::uint64_t{differing(four_labels, repeated(label))} << (4 * line);
     }
   } else {
@@ -36,5 +38,8 @@ std::uint64_t LabelGrid::corners_of_other_label(const Voxel& b, LabelIndex label
   }
   return bits;
 }
+
+template class LabelGrid<NoReads>;
+template class LabelGrid<CountedReads>;
 
 }  // namespace podm

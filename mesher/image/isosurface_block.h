@@ -10,6 +10,7 @@
 #include <cstring>
 
 #include "geometry/point.h"
+#include "image/oracle_reads.h"
 #include "podm/label_image.h"
 
 namespace podm {
@@ -46,15 +47,16 @@ using CornerMask = unsigned;
 inline constexpr CornerMask kAllCorners = 0xff;
 using CornerValues = std::array<double, 8>;
 
+/// The bits of each number below 16, as numbers.
+inline constexpr auto kBits = [] {
+  std::array<std::array<double, 4>, 16> bits{};
+  for (std::size_t m = 0; m < 16; ++m) {
+    for (std::size_t b = 0; b < 4; ++b) bits[m][b] = static_cast<double>(m >> b & 1);
+  }
+  return bits;
+}();
 /// 1 at the corners of the set, 0 elsewhere.
-inline CornerValues indicator(CornerMask mask) {
-  static constexpr auto kBits = [] {
-    std::array<std::array<double, 4>, 16> bits{};
-    for (std::size_t m = 0; m < 16; ++m) {
-      for (std::size_t b = 0; b < 4; ++b) bits[m][b] = static_cast<double>(m >> b & 1);
-    }
-    return bits;
-  }();
+constexpr CornerValues indicator(CornerMask mask) {
   const auto &low = kBits[mask & 15], &high = kBits[mask >> 4];
   return {low[0], low[1], low[2], low[3], high[0], high[1], high[2], high[3]};
 }
@@ -78,7 +80,7 @@ struct BlockLabels {
 /// A function that is linear along each axis, given by its values at a block's corners.
 class Trilinear {
  public:
-  explicit Trilinear(const CornerValues& v)
+  constexpr explicit Trilinear(const CornerValues& v)
       : value_(v[0]),
         x_(v[1] - v[0]),
         y_(v[2] - v[0]),
@@ -111,7 +113,7 @@ class Trilinear {
 };
 
 /// The weight of the corners `a` less that of the corners `b`.
-inline Trilinear weight_difference(CornerMask a, CornerMask b) {
+constexpr Trilinear weight_difference(CornerMask a, CornerMask b) {
   CornerValues v = indicator(a);
   const CornerValues w = indicator(b);
   for (std::size_t c = 0; c < 8; ++c) v[c] -= w[c];
@@ -133,11 +135,14 @@ struct Winner {
 /// The label of greatest weight at `f`, ties to the smaller label.
 Winner winner(const BlockLabels& labels, const Point& f);
 
-/// Labels of an image, background outside. Keeps a reference to the image.
+/// Labels of an image, background outside. Keeps a reference to its voxels. `Reads` is told of each piece of
+/// a row that is read.
+template <class Reads>
 class LabelGrid {
  public:
-  explicit LabelGrid(const LabelImage& image)
-      : voxels_(image.voxels.data()),
+  LabelGrid(const LabelImage& image, const Reads& reads)
+      : reads_(reads),
+        voxels_(image.voxels.data()),
         num_x_(image.size[0]),
         num_y_(image.size[1]),
         num_z_(image.size[2]),
@@ -167,17 +172,17 @@ class LabelGrid {
   }
 
   void prefetch(std::size_t index) const { __builtin_prefetch(voxels_ + index); }
-  LabelIndex label(std::size_t index) const { return voxels_[index]; }
-  LabelIndex label(const Voxel& v) const { return contains(v) ? voxels_[index(v)] : kBackground; }
+  LabelIndex label(std::size_t index) const { return *row_from(index); }
+  LabelIndex label(const Voxel& v) const { return contains(v) ? label(index(v)) : kBackground; }
 
   BlockLabels block(const Voxel& b) const {
     BlockLabels labels;
     if (is_in(b.i, num_x_ - 1) && is_in(b.j, num_y_ - 1) && is_in(b.k, num_z_ - 1)) {
-      const LabelIndex* const first = voxels_ + index(b);
-      std::memcpy(&labels.corner[0], first, 2 * sizeof(LabelIndex));
-      std::memcpy(&labels.corner[2], first + row_, 2 * sizeof(LabelIndex));
-      std::memcpy(&labels.corner[4], first + slice_, 2 * sizeof(LabelIndex));
-      std::memcpy(&labels.corner[6], first + slice_ + row_, 2 * sizeof(LabelIndex));
+      const std::size_t first = index(b);
+      std::memcpy(&labels.corner[0], row_from(first), 2 * sizeof(LabelIndex));
+      std::memcpy(&labels.corner[2], row_from(first + row_), 2 * sizeof(LabelIndex));
+      std::memcpy(&labels.corner[4], row_from(first + slice_), 2 * sizeof(LabelIndex));
+      std::memcpy(&labels.corner[6], row_from(first + slice_ + row_), 2 * sizeof(LabelIndex));
     } else {
       for (int c = 0; c < 8; ++c) {
         const Voxel v{b.i + (c & 1), b.j + (c >> 1 & 1), b.k + (c >> 2)};
@@ -193,11 +198,19 @@ class LabelGrid {
 
  private:
   static bool is_in(int i, int n) { return static_cast<unsigned>(i) < static_cast<unsigned>(n); }
+  const LabelIndex* row_from(std::size_t index) const {
+    reads_.image(index);
+    return voxels_ + index;
+  }
 
+  [[no_unique_address]] Reads reads_;
   const LabelIndex* voxels_;
   int num_x_, num_y_, num_z_;
   std::size_t row_, slice_;  // voxels
   double inverse_row_, inverse_slice_;
 };
+
+extern template class LabelGrid<NoReads>;
+extern template class LabelGrid<CountedReads>;
 
 }  // namespace podm

@@ -4,6 +4,7 @@
 // it is nearer to u, otherwise try a shorter step.
 #include <algorithm>
 #include <limits>
+#include <utility>
 
 #include "image/isosurface.h"
 
@@ -23,26 +24,22 @@ constexpr double kIrregular = 1e4;
 constexpr double square(double x) { return x * x; }
 
 // For two labels the isosurface is where the weights of a block's corners, some against all others, balance.
-const Trilinear& balance(CornerMask corners) {
-  static const std::vector<Trilinear> kBalances = [] {
-    std::vector<Trilinear> all;
-    for (CornerMask mask = 0; mask <= kAllCorners; ++mask)
-      all.push_back(weight_difference(mask, ~mask & kAllCorners));
-    return all;
-  }();
-  return kBalances[corners];
+constexpr auto kBalances = []<std::size_t... mask>(std::index_sequence<mask...>) {
+  return std::array{weight_difference(mask, ~mask & kAllCorners)...};
 }
+(std::make_index_sequence<kAllCorners + 1>());
 
 }  // namespace
 
 // The function that vanishes on the isosurface around a point: the weight of the label of a surface voxel
 // less the greatest weight of another label.
-class Isosurface::Sheet {
+template <class Reads>
+class Oracle<Reads>::Sheet {
  public:
-  Sheet(const Isosurface& isosurface, const Voxel& surface_voxel)
-      : isosurface_(isosurface),
+  Sheet(const Oracle& oracle, const Voxel& surface_voxel)
+      : oracle_(oracle),
         center_(surface_voxel),
-        around_(isosurface.features_.neighborhood(isosurface.grid_.index(surface_voxel))) {}
+        around_(oracle.features_.neighborhood(oracle.grid_.index(surface_voxel))) {}
 
   /// Goes to the sheet at u; false if no isosurface is in its block, or none of u's nearest voxel.
   bool move_to(const Point& u) {
@@ -54,7 +51,7 @@ class Isosurface::Sheet {
     origin_ = podm::center(block);
     at_ = u - origin_;
     if (around_.has_two_labels()) {
-      lead_ = &balance(others);
+      lead_ = &kBalances[others];
     } else {
       own_lead_ = lead_of_many(block, others);
       lead_ = &*own_lead_;
@@ -72,16 +69,17 @@ class Isosurface::Sheet {
     return is_beside(block.i, center_.i) && is_beside(block.j, center_.j) && is_beside(block.k, center_.k);
   }
   bool recenter(const Point& u) {
-    if (!isosurface_.is_inside(u)) return false;
+    if (!oracle_.is_inside(u)) return false;
     const Voxel nearest = nearest_voxel(u);
-    const std::size_t index = isosurface_.grid_.index(nearest);
-    if (!isosurface_.features_.is_surface(index)) return false;
+    const std::size_t index = oracle_.grid_.index(nearest);
+    const std::optional<Neighborhood> around = oracle_.features_.neighborhood_if_surface(index);
+    if (!around) return false;
     center_ = nearest;
-    around_ = isosurface_.features_.neighborhood(index);
+    around_ = *around;
     return true;
   }
   Trilinear lead_of_many(const Voxel& block, CornerMask others) const {
-    const BlockLabels labels = isosurface_.grid_.block(block);
+    const BlockLabels labels = oracle_.grid_.block(block);
     CornerMask strongest = 0;
     double greatest = -1;
     for (CornerMask rest = others; rest != 0;) {
@@ -96,7 +94,7 @@ class Isosurface::Sheet {
     return weight_difference(strongest, ~others & kAllCorners);
   }
 
-  const Isosurface& isosurface_;
+  const Oracle& oracle_;
   Voxel center_;
   Neighborhood around_;
   Point origin_{};
@@ -107,7 +105,8 @@ class Isosurface::Sheet {
 
 // The squared distance from u, which lies -d mm from a surface voxel, to the nearest midpoint between it and
 // a 6-neighbour of another label.
-double Isosurface::squared_distance_to_midpoint(Neighborhood around, const Vector& d) const {
+template <class Reads>
+double Oracle<Reads>::squared_distance_to_midpoint(Neighborhood around, const Vector& d) const {
   constexpr std::array<unsigned, 3> kStep{1, 3, 9};
   constexpr unsigned kCenter = Neighborhood::position(0, 0, 0);
   double least = std::numeric_limits<double>::infinity();
@@ -126,12 +125,13 @@ double Isosurface::squared_distance_to_midpoint(Neighborhood around, const Vecto
 
 // The feature of a voxel around u that has the nearest midpoint beside it. All look-ups are asked for before
 // the first is needed.
-Voxel Isosurface::feature_near(const Point& u) const {
+template <class Reads>
+Voxel Oracle<Reads>::feature_near(const Point& u) const {
   const Point inside = clamped_to_grid(u);
   const Voxel low = block_of(inside);
   const Voxel high{std::min(low.i + 1, grid_.num_x() - 1), std::min(low.j + 1, grid_.num_y() - 1),
                    std::min(low.k + 1, grid_.num_z() - 1)};
-  std::array<FeatureTransform::VoxelIndex, 8> features;
+  std::array<typename Features<Reads>::VoxelIndex, 8> features;
   for (unsigned c = 0; c < 8; ++c) {
     features[c] = features_.nearest(
         grid_.index({c & 1 ? high.i : low.i, c & 2 ? high.j : low.j, c & 4 ? high.k : low.k}));
@@ -161,7 +161,8 @@ Voxel Isosurface::feature_near(const Point& u) const {
   return voxels[best];
 }
 
-struct Isosurface::Nearest {
+template <class Reads>
+struct Oracle<Reads>::Nearest {
   Voxel surface_voxel;  // beside u
   Point u{};
   double squared_mm = std::numeric_limits<double>::infinity();
@@ -169,7 +170,8 @@ struct Isosurface::Nearest {
 
 // Takes the nearest midpoint of the 54 edges of the 27 voxels around the surface voxel of `best`, if it is
 // nearer.
-bool Isosurface::try_midpoints_around(const Point& u, Nearest& best) const {
+template <class Reads>
+bool Oracle<Reads>::try_midpoints_around(const Point& u, Nearest& best) const {
   struct Position {
     std::uint8_t i, j, k;
   };
@@ -217,7 +219,8 @@ bool Isosurface::try_midpoints_around(const Point& u, Nearest& best) const {
 
 // Moves z along the gradient until the sheet's value says that it is on the isosurface, to `tolerance`
 // voxels.
-bool Isosurface::pull(Sheet& sheet, Point& z, int max_pulls) const {
+template <class Reads>
+bool Oracle<Reads>::pull(Sheet& sheet, Point& z, int max_pulls) const {
   for (int i = 0; i < max_pulls; ++i) {
     if (!sheet.move_to(z)) return false;
     const Vector gradient = sheet.gradient(), normal = per_mm(per_mm(gradient));
@@ -231,7 +234,8 @@ bool Isosurface::pull(Sheet& sheet, Point& z, int max_pulls) const {
 
 // The step along the tangent plane at z towards the foot of u. A midpoint lies on an edge of four blocks: the
 // one that holds the way to u counts.
-std::optional<Vector> Isosurface::tangent_step(Sheet& sheet, const Point& u, const Point& z) const {
+template <class Reads>
+std::optional<Vector> Oracle<Reads>::tangent_step(Sheet& sheet, const Point& u, const Point& z) const {
   if (!sheet.move_to(z + kTowards * (u - z)) && !sheet.move_to(z)) return std::nullopt;
   const Vector gradient = sheet.gradient(), normal = per_mm(per_mm(gradient));  // a voxel; voxels a mm^2
   const double length2 = dot(gradient, normal);
@@ -248,7 +252,8 @@ std::optional<Vector> Isosurface::tangent_step(Sheet& sheet, const Point& u, con
 }
 
 // From a point of the isosurface to the foot of u.
-void Isosurface::descend(Sheet& sheet, const Point& u, Nearest& best) const {
+template <class Reads>
+void Oracle<Reads>::descend(Sheet& sheet, const Point& u, Nearest& best) const {
   std::optional<Vector> step = tangent_step(sheet, u, best.u);
   for (int i = 0; step && i < kMaxSteps; ++i) {
     // What the step may bring in squared distance.
@@ -267,7 +272,8 @@ void Isosurface::descend(Sheet& sheet, const Point& u, Nearest& best) const {
   }
 }
 
-std::optional<Isosurface::NearPoint> Isosurface::near_point(const Point& p, double radius) const {
+template <class Reads>
+std::optional<NearPoint> Oracle<Reads>::near_point(const Point& p, double radius) const {
   if (is_empty()) return std::nullopt;
   const Point u = to_voxels(p);
   Nearest best{feature_near(u)};
@@ -282,7 +288,8 @@ std::optional<Isosurface::NearPoint> Isosurface::near_point(const Point& p, doub
 
 // Midpoints lie on a lattice, and vertices of a lattice make flat cells that rounding can turn inside out:
 // take a point of the isosurface a little beside it, as irregular as p itself.
-Point Isosurface::settled(const NearPoint& near, const Point& p) const {
+template <class Reads>
+Point Oracle<Reads>::settled(const NearPoint& near, const Point& p) const {
   const Point u = to_voxels(p);
   Point z = to_voxels(near.point);
   if (near.is_midpoint) {
@@ -297,11 +304,19 @@ Point Isosurface::settled(const NearPoint& near, const Point& p) const {
   return to_mm(midpoint.u);
 }
 
-std::optional<Point> Isosurface::closest_point(const Point& p, double radius) const {
+template <class Reads>
+std::optional<Point> Oracle<Reads>::closest_point(const Point& p, double radius) const {
   const auto near = near_point(p, radius);
   if (!near) return std::nullopt;
   const Point z = settled(*near, p);
   return squared_distance(z, p) <= square(radius) ? std::optional(z) : std::nullopt;
 }
+
+template std::optional<NearPoint> Oracle<NoReads>::near_point(const Point&, double) const;
+template std::optional<NearPoint> Oracle<CountedReads>::near_point(const Point&, double) const;
+template Point Oracle<NoReads>::settled(const NearPoint&, const Point&) const;
+template Point Oracle<CountedReads>::settled(const NearPoint&, const Point&) const;
+template std::optional<Point> Oracle<NoReads>::closest_point(const Point&, double) const;
+template std::optional<Point> Oracle<CountedReads>::closest_point(const Point&, double) const;
 
 }  // namespace podm

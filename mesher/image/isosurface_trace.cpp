@@ -56,10 +56,10 @@ constexpr int kBlocksBetweenJumps = 3;
 
 }  // namespace
 
-std::optional<Isosurface::LabelChange> Isosurface::change_in_block(const Point& from, const Vector& d,
-                                                                   const Voxel& block,
-                                                                   const BlockLabels& labels,
-                                                                   LabelIndex label) const {
+template <class Reads>
+auto Oracle<Reads>::change_in_block(const Point& from, const Vector& d, const Voxel& block,
+                                    const BlockLabels& labels, LabelIndex label) const
+    -> std::optional<LabelChange> {
   std::optional<LabelChange> first;
   const CornerMask mask = labels.mask(label);
   for (CornerMask rest = ~mask & kAllCorners; rest != 0;) {
@@ -74,8 +74,9 @@ std::optional<Isosurface::LabelChange> Isosurface::change_in_block(const Point& 
 }
 
 // The first point of u + t d, t in [0,1], where `label`, the label at u, no longer wins.
-std::optional<Isosurface::LabelChange> Isosurface::first_change(const Point& u, const Vector& d,
-                                                                LabelIndex label) const {
+template <class Reads>
+auto Oracle<Reads>::first_change(const Point& u, const Vector& d, LabelIndex label) const
+    -> std::optional<LabelChange> {
   double t = 0, t_end = 1;
   if (!clip(u.x, d.x, -1, grid_.num_x(), t, t_end) || !clip(u.y, d.y, -1, grid_.num_y(), t, t_end) ||
       !clip(u.z, d.z, -1, grid_.num_z(), t, t_end)) {
@@ -110,12 +111,16 @@ std::optional<Isosurface::LabelChange> Isosurface::first_change(const Point& u, 
   }
 }
 
-std::optional<Point> Isosurface::segment_intersection(const Point& a, const Point& b) const {
+template <class Reads>
+std::optional<Point> Oracle<Reads>::segment_intersection(const Point& a, const Point& b) const {
   const Point u = to_voxels(a), v = to_voxels(b);
   const LabelIndex label = label_at_voxels(u);
   if (const auto change = first_change(u, v - u, label)) return a + change->t * (b - a);
   if (label_at_voxels(v) == label) return std::nullopt;
   return b;  // a change too close to b for the roundings above
 }
+
+template std::optional<Point> Oracle<NoReads>::segment_intersection(const Point&, const Point&) const;
+template std::optional<Point> Oracle<CountedReads>::segment_intersection(const Point&, const Point&) const;
 
 }  // namespace podm

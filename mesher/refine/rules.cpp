@@ -17,21 +17,28 @@ constexpr double kSquaredRatio = square(kRadiusEdgeBound * (1 - kMargin));
 
 }  // namespace
 
-Rules::Rules(Mesh& mesh, const Isosurface& isosurface, const Parameters& parameters)
+Rules::Rules(Mesh& mesh, const Isosurface& isosurface, const Parameters& parameters,
+             const std::optional<CountedReads>& reads)
     : mesh_(mesh),
       isosurface_(isosurface),
       parameters_(parameters),
       squared_delta_(square(parameters.delta_mm)),
-      squared_two_delta_(square(2 * parameters.delta_mm)) {}
+      squared_two_delta_(square(2 * parameters.delta_mm)) {
+  if (reads) counted_.emplace(isosurface.counted(*reads));
+}
 
 // Several workers may ask for a neighbour's label at a time. Relaxed: all of them write the same.
 LabelIndex Rules::label_of(CellId c) const {
   LabelIndex label = load(mesh_.label(c), std::memory_order_relaxed);
   if (label == kUnknownLabel) {
-    label = isosurface_.label_at(mesh_.cell(c).sphere.center);
+    label = ask([&](const auto& oracle) { return oracle.label_at(mesh_.cell(c).sphere.center); });
     store(mesh_.label(c), label, std::memory_order_relaxed);
   }
   return label;
+}
+
+double Rules::distance_lower_bound(const Point& p, double radius) const {
+  return ask([&](const auto& oracle) { return oracle.distance_lower_bound(p, radius); });
 }
 
 // A vertex on the isosurface lies within 2r of z: below r = delta/2 it silences R1, and R2 with it.
@@ -48,9 +55,9 @@ Examination Rules::examine(CellId c) const {
   if (std::isnan(t.squared_radius))
     t.squared_radius = squared_distance(center, mesh_.point(cell.vertices[0]));
   const double radius = std::sqrt(t.squared_radius);
-  t.isosurface_distance = isosurface_.distance_lower_bound(center, radius);
+  t.isosurface_distance = distance_lower_bound(center, radius);
   if (t.isosurface_distance > radius || is_settled(cell, t.squared_radius)) return t;
-  t.nearest = isosurface_.near_point(center, radius);
+  t.nearest = ask([&](const auto& oracle) { return oracle.near_point(center, radius); });
   t.is_distance_proven = false;
   t.isosurface_distance = kNearestTrust * (t.nearest ? distance(center, t.nearest->point) : radius);
   return t;
@@ -66,7 +73,7 @@ std::optional<Point> Rules::r1_sample(const Examination& t) const {
   for (const VertexId v : mesh_.cell(t.cell).vertices) {
     if (is_covered(t.nearest->point, v)) return std::nullopt;
   }
-  return isosurface_.settled(*t.nearest, t.center);
+  return ask([&](const auto& oracle) { return oracle.settled(*t.nearest, t.center); });
 }
 
 std::optional<Point> Rules::r2_center(const Examination& t) const {
@@ -109,7 +116,8 @@ std::optional<SurfaceCenter> Rules::r3_surface_center(const Examination& t) cons
     // From the smaller centre to the larger: the same point whichever cell asks.
     const Point *from = &t.center, *to = &mesh_.cell(neighbor).sphere.center;
     if (lexicographically_less(*to, *from)) std::swap(from, to);
-    const std::optional<Point> z = isosurface_.segment_intersection(*from, *to);
+    const std::optional<Point> z =
+        ask([&](const auto& oracle) { return oracle.segment_intersection(*from, *to); });
     if (!z) continue;
     for (const CellId start : {t.cell, neighbor}) {
       if (mesh_.is_in_conflict(start, *z)) return SurfaceCenter{*z, start};
@@ -138,7 +146,7 @@ std::optional<Rule> Rules::volume_rule(const Examination& t) const {
 bool Rules::is_large_in_shell(const Examination& t) const {
   return parameters_.shell_mm > 0 && t.squared_radius > square(parameters_.shell_radius_mm) &&
          is_in(parameters_.clamp_box, t.center) &&
-         isosurface_.distance_lower_bound(t.center, parameters_.shell_mm) < parameters_.shell_mm;
+         distance_lower_bound(t.center, parameters_.shell_mm) < parameters_.shell_mm;
 }
 
 bool Rules::is_doomed(VertexId v, const Point& z) const {

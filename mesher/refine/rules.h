@@ -45,7 +45,7 @@ struct Examination {
   double isosurface_distance;  // a lower bound, from the centre
   bool is_distance_proven;     // else it rests on the nearest point found
   // z, if the circumball meets the isosurface and R1 or R2 may care
-  std::optional<Isosurface::NearPoint> nearest;
+  std::optional<NearPoint> nearest;
 };
 
 struct SurfaceCenter {
@@ -55,7 +55,9 @@ struct SurfaceCenter {
 
 class Rules {
  public:
-  Rules(Mesh& mesh, const Isosurface& isosurface, const Parameters& parameters);
+  /// `reads`, if given, counts what the oracle reads for these rules.
+  Rules(Mesh& mesh, const Isosurface& isosurface, const Parameters& parameters,
+        const std::optional<CountedReads>& reads = {});
 
   Examination examine(CellId c) const;
   /// Asks for what examine(c) will read, the cell itself apart.
@@ -77,6 +79,14 @@ class Rules {
   LabelIndex label_of(CellId c) const;
 
  private:
+  // Answers are the same; a run that counts nothing pays for one test a question.
+  template <class Question>
+  auto ask(const Question& question) const {
+    if (counted_) [[unlikely]]
+      return question(*counted_);
+    return question(isosurface_);
+  }
+  double distance_lower_bound(const Point& p, double radius) const;
   bool has_poor_ratio(CellId c, double squared_radius) const;
   bool may_be_restricted(const Examination& t, CellId neighbor) const;
   bool is_settled(const Cell& cell, double squared_radius) const;
@@ -85,6 +95,7 @@ class Rules {
 
   Mesh& mesh_;
   const Isosurface& isosurface_;
+  std::optional<Oracle<CountedReads>> counted_;
   const Parameters& parameters_;
   double squared_delta_, squared_two_delta_;
 };

@@ -11,14 +11,27 @@ constexpr std::size_t kOperationsToFlush = 4096;
 // A clock costs 2 % when every attempt reads it; one in so many stands for the others.
 constexpr std::uint64_t kAttemptsForOneTimed = 16;
 
+// A run that nobody shares is on one node.
+template <class Locks>
+std::optional<AccessTally> tally_for(const Mesh& mesh) {
+  if (!Locks::kIsShared || mesh.num_nodes() == 1) return std::nullopt;
+  return AccessTally(mesh.num_nodes());
+}
+
+std::optional<CountedReads> reads_for(std::optional<AccessTally>& tally, const ImageOwners* owners) {
+  if (!tally || owners == nullptr || !owners->unavailable().empty()) return std::nullopt;
+  return CountedReads(*owners, *tally);
+}
+
 }  // namespace
 
 template <class Locks>
 Worker<Locks>::Worker(Mesh& mesh, const Isosurface& isosurface, const Parameters& parameters, WorkerId self,
-                      Pool& pool, OperationLogWriter* log)
+                      Pool& pool, OperationLogWriter* log, const ImageOwners* owners)
     : mesh_(mesh),
-      rules_(mesh, isosurface, parameters),
-      operation_(mesh, pool, self),
+      accesses_(tally_for<Locks>(mesh)),
+      rules_(mesh, isosurface, parameters, reads_for(accesses_, owners)),
+      operation_(mesh, pool, self, accesses_ ? &*accesses_ : nullptr),
       min_distance_(kSpacingFloor * parameters.spacing_mm),
       self_(self),
       log_(log) {

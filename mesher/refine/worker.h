@@ -23,9 +23,12 @@ struct WorkerCounters {
 template <class Locks>
 class Worker {
  public:
-  /// `log`, if given, learns of every commit.
+  /// `log`, if given, learns of every commit. `owners` of the image, if given and known, let its reads be
+  /// counted too; accesses are counted where the mesh lies on several nodes.
   Worker(Mesh& mesh, const Isosurface& isosurface, const Parameters& parameters, WorkerId self, Pool& pool,
-         OperationLogWriter* log = nullptr);
+         OperationLogWriter* log = nullptr, const ImageOwners* owners = nullptr);
+  Worker(const Worker&) = delete;
+  Worker& operator=(const Worker&) = delete;
 
   void give(CellId c) { poor_.push(c, mesh_.stamp(c)); }
   void give(const std::vector<PoorElementList::Entry>& entries) {
@@ -60,6 +63,8 @@ class Worker {
 
   const WorkerCounters& counters() const { return counters_; }
   const OperationCounters& operation_counters() const { return operation_.counters(); }
+  /// None where nothing is counted.
+  const std::optional<AccessTally>& accesses() const { return accesses_; }
   /// Cells this worker has added to the mesh, net.
   std::int64_t net_cells() const {
     return static_cast<std::int64_t>(operation_.counters().cells_created) -
@@ -77,6 +82,7 @@ class Worker {
   void list_created();
 
   Mesh& mesh_;
+  std::optional<AccessTally> accesses_;
   Rules rules_;
   Operation<Locks> operation_;
   PoorElementList poor_;

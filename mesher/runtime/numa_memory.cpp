@@ -4,24 +4,26 @@
 #include <numaif.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <cerrno>
 #include <cstdint>
 #include <cstring>
 
 namespace podm {
 
-PageNode node_of_page(const void* address) {
+PageNodes nodes_of_pages(std::span<const void* const> addresses) {
   if (numa_available() < 0) return {{}, "this system has no NUMA support"};
   const auto page_size = static_cast<std::uintptr_t>(sysconf(_SC_PAGESIZE));
-  void* page = reinterpret_cast<void*>(reinterpret_cast<std::uintptr_t>(address) & ~(page_size - 1));
-  int status = 0;
-  // Without target nodes move_pages moves nothing and tells where each page is.
-  if (move_pages(0, 1, &page, nullptr, &status, 0) != 0)
+  std::vector<void*> pages;
+  for (const void* address : addresses)
+    pages.push_back(reinterpret_cast<void*>(reinterpret_cast<std::uintptr_t>(address) & ~(page_size - 1)));
+  std::vector<int> status(pages.size(), PageNodes::kNowhere);
+  // Without target nodes move_pages moves nothing and tells where each page is: minus an error for what is
+  // nowhere.
+  if (move_pages(0, pages.size(), pages.data(), nullptr, status.data(), 0) != 0)
     return {{}, std::string("the system refuses the query: ") + std::strerror(errno)};
-  if (status == -ENOENT) return {{}, "the page was never touched"};
-  if (status == -EFAULT) return {{}, "no page of this process, or one only read so far"};
-  if (status < 0) return {{}, std::strerror(-status)};
-  return {status, ""};
+  for (int& node : status) node = std::max(node, PageNodes::kNowhere);
+  return {std::move(status), ""};
 }
 
 }  // namespace podm

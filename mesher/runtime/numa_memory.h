@@ -2,17 +2,24 @@
 // that first writes to it, so a worker's arrays (HugeArray) lie near it when it fills them itself.
 #pragma once
 
-#include <optional>
+#include <functional>
+#include <span>
 #include <string>
+#include <vector>
 
 namespace podm {
 
-struct PageNode {
-  std::optional<int> os_index;  // the operating system's number of the node (Topology::node_os_index)
-  std::string unavailable;      // why there is none, e.g. the page was never touched; otherwise empty
+struct PageNodes {
+  static constexpr int kNowhere = -1;  // never touched, or no page of this process
+
+  std::vector<int>
+      os_indices;           // by address: the operating system's number of the node (Topology::node_os_index)
+  std::string unavailable;  // why none were told; otherwise empty
 };
 
-/// The node that holds the page of an address. Looks only: a page that was never touched stays so.
-PageNode node_of_page(const void* address);
+/// The nodes that hold the pages of some addresses.
+using PageQuery = std::function<PageNodes(std::span<const void* const>)>;
+/// The system's answer. Looks only: a page that was never touched stays so.
+PageNodes nodes_of_pages(std::span<const void* const> addresses);
 
 }  // namespace podm

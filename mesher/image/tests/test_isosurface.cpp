@@ -49,6 +49,64 @@ TEST(IsosurfaceLabel, EqualsTheDefinition) {
   }
 }
 
+struct Reads {
+  std::uint64_t image = 0, transform = 0;
+};
+
+// What `ask` has the oracle read, whose answers must be those of the one that counts nothing. Two nodes own
+// pieces in turn.
+template <class Ask>
+Reads reads_of(const LabelImage& image, const Isosurface& isosurface, const Ask& ask) {
+  const std::vector<NodeIndex> nodes{0, 1};
+  const ImageOwners owners{MemoryOwners::deal(std::span(image.voxels), 3, nodes, 1),
+                           MemoryOwners::deal(isosurface.transform().words(), 3, nodes, 2)};
+  AccessTally tally(2);
+  const Oracle<CountedReads> counted = isosurface.counted({owners, tally});
+  EXPECT_EQ(ask(isosurface), ask(counted));
+  const auto sum = [&](AccessKind kind) { return tally.by_node(kind)[0] + tally.by_node(kind)[1]; };
+  return {sum(AccessKind::kImageRead), sum(AccessKind::kTransformRead)};
+}
+
+TEST(IsosurfaceReads, AreCountedAndChangeNoAnswer) {
+  Random random(7);
+  for (const LabelImage& image : noisy_images()) {
+    const Isosurface isosurface(image, 1);
+    const auto reads = [&](const auto& ask) { return reads_of(image, isosurface, ask); };
+    for (int n = 0; n < 200; ++n) {
+      const Point p = random_point(random, image, 1), q = random_point(random, image, 1);
+      const double radius = 3;
+      const Reads of_label = reads([&](const auto& oracle) { return oracle.label_at(p); });
+      EXPECT_LE(of_label.transform, 1u) << "a single look-up";
+      EXPECT_LE(of_label.image, 8u) << "a block";
+      const Reads of_bound =
+          reads([&](const auto& oracle) { return oracle.distance_lower_bound(p, radius); });
+      EXPECT_EQ(of_bound.transform, 1u);
+      const Reads of_crossing = reads([&](const auto& oracle) {
+        const auto z = oracle.segment_intersection(p, q);
+        return z ? std::array{z->x, z->y, z->z} : std::array<double, 3>{};
+      });
+      EXPECT_LE(of_label.image, of_crossing.image);
+      const Reads of_nearest = reads([&](const auto& oracle) {
+        const auto z = oracle.closest_point(p, radius);
+        return z ? std::array{z->x, z->y, z->z} : std::array<double, 3>{};
+      });
+      EXPECT_GT(of_nearest.transform, 0u);
+    }
+  }
+}
+
+// Away from any label change one word of the transform and one label tell all.
+TEST(IsosurfaceReads, AreTwoDeepInside) {
+  LabelImage image = empty_image({20, 20, 20}, {1, 1, 1});
+  std::fill(image.voxels.begin(), image.voxels.end(), LabelIndex{1});
+  const Isosurface isosurface(image, 1);
+  const Reads reads = reads_of(image, isosurface, [](const auto& oracle) {
+    return oracle.label_at({9.1, 10.2, 9.8});
+  });
+  EXPECT_EQ(reads.image, 1u);
+  EXPECT_EQ(reads.transform, 1u);
+}
+
 // Spacing 1: weights at quarters of a voxel are exact, so are ties.
 TEST(IsosurfaceLabel, TiesGoToTheSmallerLabel) {
   Random random(4);

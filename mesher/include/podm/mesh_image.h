@@ -132,6 +132,15 @@ struct Quality {
   double max_radius_mm = 0, shortest_edge_mm = 0;
 };
 
+/// Accesses to memory, by the hops from the worker's NUMA node to the one that owns the memory. Empty on one
+/// node.
+struct HopsByKind {
+  std::vector<std::uint64_t> mesh_reads;   ///< cells tested, vertices locked; owned by whose worker made them
+  std::vector<std::uint64_t> mesh_writes;  ///< cells and vertices that filling and gluing wrote; likewise
+  std::vector<std::uint64_t> image_reads;  ///< labels of the image, one or some of a row at a time
+  std::vector<std::uint64_t> transform_reads;  ///< words of the feature transform
+};
+
 /// Operations by outcome and work done, exact counts.
 struct Counters {
   std::array<std::uint64_t, 5> insertions_by_rule{};  ///< R1..R5
@@ -147,9 +156,7 @@ struct Counters {
   std::uint64_t region_cells = 0;    ///< cells that operations collected to replace, carried out or not
   // Seconds lost, of all workers.
   double contention_s = 0, begging_s = 0, rollback_s = 0;
-  /// Cells tested and vertices locked, by the hops to the NUMA node whose worker made them; empty on one
-  /// node.
-  std::vector<std::uint64_t> accesses_by_hops;
+  HopsByKind hops;
 };
 
 /// One worker: where it was, and what it did.
@@ -160,9 +167,22 @@ struct WorkerReport {
   Counters counters;
 };
 
-/// Pages of the mesh store asked for where they are, against the node that the pools say.
+/// Pages that the system was asked about, at the ends of phases.
 struct PageSamples {
-  std::uint64_t as_claimed = 0, elsewhere = 0;
+  /// Against the node that owns the memory: of cells, their states and vertices the node whose worker made
+  /// them, of image and transform the node that had them first.
+  struct OfArray {
+    std::string array;  ///< cells, cell_states, vertices, image, transform
+    std::uint64_t as_claimed = 0, elsewhere = 0;
+    std::uint64_t untouched = 0;  ///< in nobody's memory yet
+  };
+  struct AtPhase {
+    std::string phase;
+    std::vector<OfArray> arrays;
+    /// A sample of the workers' accesses, by the hops to where the page is.
+    std::vector<std::uint64_t> accesses_by_hops;
+  };
+  std::vector<AtPhase> phases;
   std::string unavailable;  ///< why none were asked
 };
 
@@ -199,6 +219,7 @@ struct MeshingReport {
   std::uint64_t num_leaves = 0;
   std::optional<LeafSchedule> schedule;
   PageSamples pages;
+  std::string image_reads_unavailable;  ///< why HopsByKind lacks reads of the image; otherwise empty
   std::map<std::uint32_t, std::uint64_t> cells_of_label;  ///< by label value
   std::map<std::uint32_t, double> volume_of_label_mm3;    ///< by label value, of the mesh
   std::uint64_t store_cells = 0;                          ///< cells of the whole virtual box

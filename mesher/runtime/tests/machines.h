@@ -1,6 +1,7 @@
 // Described machines that the tests of the runtime share.
 #pragma once
 
+#include <algorithm>
 #include <cstdint>
 #include <vector>
 
@@ -20,6 +21,14 @@ std::vector<std::uint64_t> latency_rows(int num_nodes, const Latency& latency) {
   for (int a = 0; a < num_nodes; ++a)
     for (int b = 0; b < num_nodes; ++b) rows.push_back(latency(a, b));
   return rows;
+}
+
+// A ring of four nodes: neighbours are one hop apart, opposite ones two.
+inline Topology four_nodes() {
+  return Topology::synthetic("numa:4 core:4 pu:1", latency_rows(4, [](int a, int b) {
+                               const auto apart = static_cast<std::uint64_t>(a > b ? a - b : b - a);
+                               return 10 + 5 * std::min(apart, 4 - apart);
+                             }));
 }
 
 }  // namespace podm::test

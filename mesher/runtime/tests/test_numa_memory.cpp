@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <set>
 #include <thread>
+#include <vector>
 
 #include "runtime/huge_array.h"
 #include "runtime/numa_memory.h"
@@ -18,19 +19,23 @@ constexpr std::size_t kBytes = std::size_t{1} << 24;
 TEST(NumaMemory, IsKnownOrSaysWhyNot) {
   HugeArray<char> memory(kBytes);
   memory[0] = 1;
-  for (const void* address :
-       {static_cast<const void*>(&memory[0]), static_cast<const void*>(&memory[kBytes - 1]),
-        static_cast<const void*>(nullptr)}) {
-    const PageNode home = node_of_page(address);
-    EXPECT_EQ(home.os_index.has_value(), home.unavailable.empty());
-  }
+  const PageNodes homes = nodes_of_pages(std::vector<const void*>{&memory[0], &memory[kBytes - 1], nullptr});
+  EXPECT_EQ(homes.os_indices.size(), homes.unavailable.empty() ? 3u : 0u);
+  EXPECT_TRUE(nodes_of_pages({}).os_indices.empty());
 }
 
 TEST(NumaMemory, IsNowhereBeforeItsFirstTouch) {
   HugeArray<char> memory(kBytes);
-  EXPECT_FALSE(node_of_page(&memory[kBytes / 2]).os_index);
-  EXPECT_FALSE(node_of_page(&memory[kBytes / 2]).os_index) << "the query itself does not touch";
-  EXPECT_FALSE(node_of_page(nullptr).os_index);
+  const std::vector<const void*> addresses{&memory[kBytes / 2], &memory[0], nullptr};
+  for (int n = 0; n < 2; ++n) {  // the query itself does not touch
+    const PageNodes homes = nodes_of_pages(addresses);
+    if (!homes.unavailable.empty()) GTEST_SKIP() << "skipped: " << homes.unavailable;
+    EXPECT_EQ(homes.os_indices, std::vector<int>(3, PageNodes::kNowhere));
+  }
+  memory[0] = 1;
+  const PageNodes homes = nodes_of_pages(addresses);
+  EXPECT_EQ(homes.os_indices[0], PageNodes::kNowhere);
+  EXPECT_GE(homes.os_indices[1], 0);
 }
 
 TEST(NumaMemory, ComesToTheNodeOfTheThreadThatTouchesItFirst) {
@@ -43,9 +48,9 @@ TEST(NumaMemory, ComesToTheNodeOfTheThreadThatTouchesItFirst) {
       pin_this_thread(processor.os_index);
       std::fill_n(&memory[0], kBytes, 'x');
     }).join();
-    const PageNode home = node_of_page(&memory[kBytes / 2 + 1]);
-    if (!home.os_index) GTEST_SKIP() << "skipped: " << home.unavailable;
-    EXPECT_EQ(*home.os_index, machine.node_os_index(processor.node));
+    const PageNodes home = nodes_of_pages(std::vector<const void*>{&memory[kBytes / 2 + 1]});
+    if (!home.unavailable.empty()) GTEST_SKIP() << "skipped: " << home.unavailable;
+    EXPECT_EQ(home.os_indices.front(), machine.node_os_index(processor.node));
   }
   EXPECT_FALSE(nodes.empty());
 }

@@ -1,0 +1,57 @@
+"""Accesses by kind and distance of virtual workers on a described machine, as the record tells them."""
+
+import json
+import os
+import unittest
+
+from podm_process import PodmTestCase, run_podm
+
+IMAGE = "phantom:abdomen@40"
+BLACKLIGHT = os.path.join(os.path.dirname(__file__), "../../experiments/machines/blacklight_256.xml")
+KINDS = "mesh_reads", "mesh_writes", "image_reads", "transform_reads"
+
+
+class Hops(PodmTestCase):
+    def mesh(self, *arguments):
+        runs = self.folder / "runs.jsonl"
+        process = run_podm("mesh", IMAGE, "--radius", 12, "-o", self.folder / "out.vtu", "--record", runs,
+                           "--oversubscribe", *arguments)
+        self.assert_exit(process, 0)
+        return json.loads(runs.read_text().splitlines()[-1])
+
+    def mesh_on_blades(self, *arguments):
+        return self.mesh("--executor", "virtual", "--topology", BLACKLIGHT, "--pin", "compact", "--threads", 32,
+                         *arguments)
+
+    def test_every_kind_is_counted_by_distance(self):
+        for algorithm in "podm", "pdr", "pdr-podm":
+            with self.subTest(algorithm=algorithm):
+                record = self.mesh_on_blades("--algorithm", algorithm)
+                kinds = record["hops_by_kind"]
+                self.assertEqual(set(kinds), set(KINDS))
+                self.assertEqual(record["hops"], kinds["mesh_reads"])
+                for kind in KINDS:
+                    self.assertEqual(len(kinds[kind]), 4, "0 to 3 hops")
+                    self.assertGreater(kinds[kind][0], 0)
+                    self.assertGreater(sum(kinds[kind][1:]), 0, "32 workers are on two blades")
+                    of_workers = [worker["hops_by_kind"][kind] for worker in record["workers"]]
+                    self.assertEqual(kinds[kind], [sum(counts) for counts in zip(*of_workers)])
+
+    def test_counts_are_the_same_for_the_same_seed(self):
+        first, again, other = (self.mesh_on_blades("--seed", seed)["hops_by_kind"] for seed in (3, 3, 4))
+        self.assertEqual(first, again)
+        self.assertNotEqual(first, other)
+
+    def test_counting_changes_no_mesh(self):
+        # Workers that beg at random act alike wherever they stand, counted or not.
+        uncounted = self.mesh("--executor", "virtual", "--threads", 32, "--begging", "random", "--pin", "none")
+        counted = self.mesh_on_blades("--begging", "random")
+        self.assertEqual(counted["mesh_sha256"], uncounted["mesh_sha256"])
+        self.assertIsInstance(counted["hops"], list)
+
+    def test_what_cannot_be_counted_says_why(self):
+        record = self.mesh("--threads", 1)
+        self.assertEqual(record["hops"], "unavailable: one NUMA node or one thread")
+        self.assertEqual(record["hops_by_kind"], record["hops"])
+        self.assertEqual(record["workers"][0]["hops_by_kind"], record["hops"])
+        self.assertEqual(self.mesh_on_blades()["pages"], "unavailable: the machine is a described one")
