@@ -68,6 +68,36 @@ void add_latency(CLI::App& program, int& exit_code) {
   app.callback([path, &exit_code] { exit_code = latency(*path); });
 }
 
+void add_compare(CLI::App& program, int& exit_code) {
+  const auto paths = std::make_shared<std::pair<std::string, std::string>>();
+  CLI::App& app =
+      *program.add_subcommand("compare", "compare two files of records; exits with 1 when B is worse");
+  app.add_option("A", paths->first, "JSON lines of the program before")->required();
+  app.add_option("B", paths->second, "JSON lines of the program after")->required();
+  app.callback([paths, &exit_code] { exit_code = compare_files(paths->first, paths->second); });
+}
+
+void add_gate(CLI::App& program, int& exit_code) {
+  struct State {
+    GateOptions options;
+    bool renews = false;
+  };
+  const auto state = std::make_shared<State>();
+  GateOptions& options = state->options;
+  options.head = beside_this_program("podm");
+  CLI::App& app =
+      *program.add_subcommand("gate", "judge a change of the mesher; exits with 1 when it may not go in");
+  app.add_option("--head", options.head, "file of the mesher to judge [default: podm beside this program]");
+  app.add_option("--base", options.base,
+                 "file of the mesher before the change [default: compare no seconds]");
+  app.add_option("--tier", options.tiers, "1 work, 2 seconds, 3 scaling; repeatable [default: all]")
+      ->check(CLI::Range(1, 3));
+  app.add_option("--budgets", options.budgets_path, "committed work [default: ci/gate_budgets.json]");
+  app.add_option("--order-seed", options.order_seed, "of the order within each round [default: 1]");
+  app.add_flag("--renew", state->renews, "put what the head does into the file of budgets [default: judge]");
+  app.callback([state, &exit_code] { exit_code = run_gate(state->options, state->renews); });
+}
+
 int main_or_throw(int argc, char** argv) {
   CLI::App program("Runs mesher experiments, one process a trial, and records each as a JSON line.",
                    "podm-bench");
@@ -78,7 +108,7 @@ int main_or_throw(int argc, char** argv) {
   add_list(program, exit_code);
   add_latency(program, exit_code);
   add_compare(program, exit_code);
-  add_gate(program, beside_this_program("podm"), exit_code);
+  add_gate(program, exit_code);
   try {
     program.parse(argc, argv);
   } catch (const CLI::ParseError& error) {

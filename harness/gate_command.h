@@ -1,14 +1,15 @@
-// `podm-bench gate` and `podm-bench compare` on the command line.
+// What `podm-bench gate` and `podm-bench compare` do. Both return the exit code and throw InputError.
 #pragma once
 
-#include <CLI/CLI.hpp>
 #include <string>
+
+#include "gate.h"
 
 namespace podm::bench {
 
-/// Each adds its command; when that is chosen, it runs inside parse() and leaves its exit code. They throw
-/// InputError. `podm` is the mesher to judge where none is named.
-void add_gate(CLI::App& program, const std::string& podm, int& exit_code);
-void add_compare(CLI::App& program, int& exit_code);
+/// Judges the head; with `renews`, puts what the head does into the file of budgets instead.
+int run_gate(const GateOptions& options, bool renews);
+/// Two files of records, before and after.
+int compare_files(const std::string& before, const std::string& after);
 
 }  // namespace podm::bench

@@ -1,64 +1,37 @@
-// How options are declared with CLI11: one line each, text in, a checked value stored.
+// How options are declared: one line each, text in, a checked value stored. CLI11 itself is seen by
+// options.cpp alone: each source that includes it compiles for seconds.
 #pragma once
 
-#include <CLI/CLI.hpp>
-#include <limits>
 #include <string>
-#include <vector>
 
 #include "cli/option_values.h"
 #include "cli/options.h"
-#include "podm/errors.h"
+
+namespace CLI {
+class App;
+class Option;
+}  // namespace CLI
 
 namespace podm::cli {
 
-// An option taking one value, given once or, when `many`, any number of times; `take(text, name)` stores it.
-template <class Take>
-CLI::Option* add_value(CLI::App& app, const std::string& names, const std::string& type, bool many,
-                       const std::string& description, Take take) {
-  const std::string name = names.substr(names.rfind(',') + 1);
-  auto take_all = [take, name](const std::vector<std::string>& texts) {
-    for (const std::string& text : texts) take(text, name);
-  };
-  CLI::Option* option = app.add_option_function<std::vector<std::string>>(names, take_all, description);
-  option->type_name(type)->type_size(1)->allow_extra_args(false);
-  if (!many) option->expected(1)->multi_option_policy(CLI::MultiOptionPolicy::Throw);
-  return option;
-}
+/// A command of the program. Its options come in groups: those that follow begin_group.
+CLI::App& add_command(CLI::App& program, const std::string& name, const std::string& description);
+void begin_group(CLI::App& app, const std::string& title);
 
-template <class Take>
+/// An option taking one value, given once or, add_many, any number of times.
 CLI::Option* add_one(CLI::App& app, const std::string& names, const std::string& type,
-                     const std::string& description, Take take) {
-  return add_value(app, names, type, false, description, take);
-}
-
-template <class Take>
+                     const std::string& description, const Take& take);
 CLI::Option* add_many(CLI::App& app, const std::string& names, const std::string& type,
-                      const std::string& description, Take take) {
-  return add_value(app, names, type, true, description, take);
-}
-
-inline auto into(std::string& target) {
-  return [&target](const std::string& text, const std::string& name) {
-    if (text.empty()) throw InputError(name + ": the name of a file is empty");
-    target = text;
-  };
-}
-
-inline auto into_length(double& target_mm) {
-  return [&target_mm](const std::string& text, const std::string& name) {
-    target_mm = parse_positive(text, name, "length in mm");
-  };
-}
-
-inline auto into_count(std::uint64_t& target) {
-  return [&target](const std::string& text, const std::string& name) {
-    target = parse_integer(text, name, 1, std::numeric_limits<std::uint32_t>::max());
-  };
-}
+                      const std::string& description, const Take& take);
+void add_flag(CLI::App& app, const std::string& names, bool& target, const std::string& description);
+void require(CLI::Option* option);
+void exclude(CLI::Option* option, CLI::Option* other);
 
 /// IMAGE and what is kept of its labels.
 void add_image_options(CLI::App& app, ImageArguments& image);
 void add_mesh_command(CLI::App& program, MeshCommand& command);
+void add_replay_command(CLI::App& program, ReplayCommand& command);
+void add_info_command(CLI::App& program, InfoCommand& command);
+void add_phantom_command(CLI::App& program, PhantomCommand& command);
 
 }  // namespace podm::cli

@@ -2,6 +2,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <limits>
 
 #include "cli/add_options.h"
 #include "cli/crossover.h"
@@ -13,7 +14,7 @@ constexpr double kBytesPerGib = 1024.0 * 1024 * 1024;
 
 void add_sizing_options(CLI::App& app, MeshCommand& command) {
   MeshingOptions& meshing = command.meshing;
-  app.option_defaults()->group("Size of the cells");
+  begin_group(app, "Size of the cells");
   CLI::Option* radius = add_one(app, "--radius", "MM",
                                 "largest circumradius of a cell, mm [default: unbounded, the surface drives]",
                                 into_length(meshing.radius_mm));
@@ -24,14 +25,15 @@ void add_sizing_options(CLI::App& app, MeshCommand& command) {
            });
   add_one(app, "--delta", "MM", "sampling distance of the surfaces, mm [default: from voxel size and radius]",
           into_length(meshing.delta_mm));
-  add_one(app, "--target-elements", "N", "choose the radius for this many cells within 5 % [default: none]",
-          into_count(meshing.target_elements))
-      ->excludes(radius);
+  exclude(add_one(app, "--target-elements", "N",
+                  "choose the radius for this many cells within 5 % [default: none]",
+                  into_count(meshing.target_elements)),
+          radius);
 }
 
 void add_limit_options(CLI::App& app, MeshCommand& command) {
   MeshingOptions& meshing = command.meshing;
-  app.option_defaults()->group("Limits (a run that meets one writes a valid mesh and exits with 1)");
+  begin_group(app, "Limits (a run that meets one writes a valid mesh and exits with 1)");
   add_one(app, "--max-elements", "N", "stop at this many cells [default: none]",
           into_count(meshing.max_elements));
   add_one(app, "--max-seconds", "S", "stop meshing after this many seconds [default: none]",
@@ -53,7 +55,7 @@ void add_algorithm_options(CLI::App& app, MeshCommand& command) {
       target = static_cast<int>(parse_integer(text, name, 1, kMaxThreads));
     };
   };
-  app.option_defaults()->group("Algorithm");
+  begin_group(app, "Algorithm");
   add_one(app, "--algorithm", "NAME",
           "podm: threads anywhere, with locks; pdr-podm: leaf by leaf of an octree,\n"
           "by nodes of several threads; pdr: leaf by leaf, a thread each, no locks;\n"
@@ -110,8 +112,8 @@ void add_run_options(CLI::App& app, MeshCommand& command) {
           "bind threads to processors: compact, scatter, none,\n"
           "or processors such as 0,2,4-7 [default: none]",
           into(meshing.pin));
-  app.add_flag("--oversubscribe", meshing.oversubscribe,
-               "allow more threads than processors [default: refused]");
+  add_flag(app, "--oversubscribe", meshing.oversubscribe,
+           "allow more threads than processors [default: refused]");
   add_one(app, "--topology", "FILE",
           "hwloc XML of a machine that the threads stand for [default: this machine]",
           into(meshing.topology_path));
@@ -137,14 +139,13 @@ void add_run_options(CLI::App& app, MeshCommand& command) {
 }  // namespace
 
 void add_mesh_command(CLI::App& program, MeshCommand& command) {
-  CLI::App& app = *program.add_subcommand("mesh", "mesh a label image into tetrahedra with guarantees");
+  CLI::App& app = add_command(program, "mesh", "mesh a label image into tetrahedra with guarantees");
   add_image_options(app, command.image);
   add_sizing_options(app, command);
   add_limit_options(app, command);
-  app.option_defaults()->group("Output");
-  add_one(app, "-o,--output", "MESH", "mesh file: .vtu, .mesh (medit) or .msh (Gmsh 4.1) [required]",
-          into(command.mesh_path))
-      ->required();
+  begin_group(app, "Output");
+  require(add_one(app, "-o,--output", "MESH", "mesh file: .vtu, .mesh (medit) or .msh (Gmsh 4.1) [required]",
+                  into(command.mesh_path)));
   add_one(app, "--surface", "FILE", "also the closed surface of each label: .stl or .ply [default: none]",
           into(command.surface_path));
   add_one(app, "--space", "SPACE",
@@ -155,16 +156,15 @@ void add_mesh_command(CLI::App& program, MeshCommand& command) {
   add_one(app, "--record", "FILE", "append one JSON line that describes the run [default: none]",
           into(command.record_path));
   add_algorithm_options(app, command);
-  app.option_defaults()->group("Run");
+  begin_group(app, "Run");
   add_run_options(app, command);
-  app.add_flag("--verify", command.verify,
-               "have podm-verify check the written mesh; exit 1 unless all holds [default: no]");
-  app.add_flag_callback(
-      "--verify-fidelity", [&command] { command.verify = command.verify_fidelity = true; },
-      "the same, and that surfaces of mesh and image are within a voxel or 2 delta of\n"
-      "each other; a mesh much coarser than a structure may miss it [default: no]");
-  app.add_flag("--stats", command.stats, "a table of what each thread did and lost [default: no]");
-  app.add_flag("--quiet", command.quiet, "neither progress nor summary [default: both, on standard error]");
+  add_flag(app, "--verify", command.verify,
+           "have podm-verify check the written mesh; exit 1 unless all holds [default: no]");
+  add_flag(app, "--verify-fidelity", command.verify_fidelity,
+           "the same, and that surfaces of mesh and image are within a voxel or 2 delta of\n"
+           "each other; a mesh much coarser than a structure may miss it [default: no]");
+  add_flag(app, "--stats", command.stats, "a table of what each thread did and lost [default: no]");
+  add_flag(app, "--quiet", command.quiet, "neither progress nor summary [default: both, on standard error]");
 }
 
 }  // namespace podm::cli

@@ -4,6 +4,7 @@
 
 #include <charconv>
 #include <cmath>
+#include <limits>
 
 #include "podm/errors.h"
 
@@ -41,6 +42,25 @@ std::pair<std::string, double> parse_label_length(const std::string& text, const
     throw InputError(fmt::format("{}: '{}' is not LABEL=MM, as in liver=2 or 7=0.5", option, text));
   const std::string label = text.substr(0, equals);
   return {label, parse_positive(text.substr(equals + 1), option + " " + label, "length in mm")};
+}
+
+Take into(std::string& file_name) {
+  return [&file_name](const std::string& text, const std::string& name) {
+    if (text.empty()) throw InputError(name + ": the name of a file is empty");
+    file_name = text;
+  };
+}
+
+Take into_length(double& length_mm) {
+  return [&length_mm](const std::string& text, const std::string& name) {
+    length_mm = parse_positive(text, name, "length in mm");
+  };
+}
+
+Take into_count(std::uint64_t& count) {
+  return [&count](const std::string& text, const std::string& name) {
+    count = parse_integer(text, name, 1, std::numeric_limits<std::uint32_t>::max());
+  };
 }
 
 }  // namespace podm::cli

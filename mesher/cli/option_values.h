@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstdint>
+#include <functional>
 #include <initializer_list>
 #include <string>
 #include <utility>
@@ -33,5 +34,12 @@ Choice parse_choice(const std::string& text, const std::string& option,
 
 /// "liver=2" or "7=0.5": a label, by name or value, and a length in mm.
 std::pair<std::string, double> parse_label_length(const std::string& text, const std::string& option);
+
+/// Stores the text given to the option of this name, or refuses it with an InputError.
+using Take = std::function<void(const std::string& text, const std::string& name)>;
+
+Take into(std::string& file_name);
+Take into_length(double& length_mm);
+Take into_count(std::uint64_t& count);
 
 }  // namespace podm::cli

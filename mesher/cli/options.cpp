@@ -3,16 +3,18 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
+#include <CLI/CLI.hpp>
 #include <algorithm>
+#include <memory>
 
 #include "cli/add_options.h"
 #include "cli/build_info.h"
 #include "cli/nearest_name.h"
+#include "podm/errors.h"
 
 namespace podm::cli {
 namespace {
 
-constexpr int kMaxPhantomSize = 4096;
 constexpr int kHelpColumn = 30;
 
 // What stands beside an option's name in the help: its type alone. The description tells the rest.
@@ -24,68 +26,45 @@ class HelpFormatter : public CLI::Formatter {
   }
 };
 
+CLI::Option* add_value(CLI::App& app, const std::string& names, const std::string& type,
+                       const std::string& description, const Take& take) {
+  const std::string name = names.substr(names.rfind(',') + 1);
+  const auto take_all = [take, name](const std::vector<std::string>& texts) {
+    for (const std::string& text : texts) take(text, name);
+  };
+  CLI::Option* option = app.add_option_function<std::vector<std::string>>(names, take_all, description);
+  return option->type_name(type)->type_size(1)->allow_extra_args(false);
+}
+
 }  // namespace
 
-void add_image_options(CLI::App& app, ImageArguments& image) {
-  add_one(app, "IMAGE", "",
-          fmt::format("NIfTI, NRRD, MetaImage or INR label image, or phantom:NAME[@SIZE],\n"
-                      "NAME one of {}",
-                      fmt::join(phantom_names(), ", ")),
-          into(image.path))
-      ->required();
-  app.option_defaults()->group("Labels");
-  add_one(app, "--labels", "RANGES", "keep these label values only, e.g. 1,3-7 [default: all]",
-          [&image](const std::string& text, const std::string& name) {
-            image.selection.keep = parse_label_ranges(text, name);
-          });
-  add_one(app, "--drop", "RANGES", "turn these label values into background [default: none]",
-          [&image](const std::string& text, const std::string& name) {
-            image.selection.drop = parse_label_ranges(text, name);
-          });
-  add_many(app, "--merge", "VALUES=NAME",
-           "make one label of several, e.g. 2,3=kidney; repeatable [default: none]",
-           [&image](const std::string& text, const std::string&) {
-             image.selection.merges.push_back(parse_merge(text));
-           });
-  add_one(app, "--background", "VALUE", "label value of the background [default: 0]",
-          [&image](const std::string& text, const std::string& name) {
-            image.selection.background = static_cast<std::uint32_t>(
-                parse_integer(text, name, 0, std::numeric_limits<std::uint32_t>::max()));
-          });
-  add_one(app, "--label-names", "FILE",
-          "names of labels: an ITK-SNAP table or lines \"value name\" [default: none]",
-          into(image.label_names_path));
-  app.option_defaults()->group("Options");
+CLI::App& add_command(CLI::App& program, const std::string& name, const std::string& description) {
+  return *program.add_subcommand(name, description);
 }
+
+void begin_group(CLI::App& app, const std::string& title) { app.option_defaults()->group(title); }
+
+CLI::Option* add_one(CLI::App& app, const std::string& names, const std::string& type,
+                     const std::string& description, const Take& take) {
+  return add_value(app, names, type, description, take)
+      ->expected(1)
+      ->multi_option_policy(CLI::MultiOptionPolicy::Throw);
+}
+
+CLI::Option* add_many(CLI::App& app, const std::string& names, const std::string& type,
+                      const std::string& description, const Take& take) {
+  return add_value(app, names, type, description, take);
+}
+
+void add_flag(CLI::App& app, const std::string& names, bool& target, const std::string& description) {
+  app.add_flag(names, target, description);
+}
+
+void require(CLI::Option* option) { option->required(); }
+
+void exclude(CLI::Option* option, CLI::Option* other) { option->excludes(other); }
 
 namespace {
-
-void add_replay_command(CLI::App& program, ReplayCommand& command) {
-  CLI::App& app = *program.add_subcommand(
-      "replay", "carry out a run's logged operations on one thread and compare the mesh");
-  add_image_options(app, command.image);
-  add_one(app, "LOG", "", "what podm mesh --log wrote, with the same image and label options",
-          into(command.log_path))
-      ->required();
-}
-
-void add_info_command(CLI::App& program, InfoCommand& command) {
-  CLI::App& app = *program.add_subcommand("info", "print size, spacing (mm), affine and labels of an image");
-  add_image_options(app, command.image);
-  app.add_flag("--json", command.json, "print one JSON object [default: text]");
-}
-
-void add_phantom_command(CLI::App& program, PhantomCommand& command) {
-  CLI::App& app = *program.add_subcommand("phantom", "write an analytic phantom as a label image");
-  add_one(app, "NAME", "", fmt::format("one of {}", fmt::join(phantom_names(), ", ")), into(command.name))
-      ->required();
-  add_one(app, "--size", "N", fmt::format("voxels along the longest axis [default: {}]", command.size),
-          [&command](const std::string& text, const std::string& name) {
-            command.size = static_cast<int>(parse_integer(text, name, 1, kMaxPhantomSize));
-          });
-  add_one(app, "-o,--output", "FILE", "NIfTI file: .nii or .nii.gz [required]", into(command.output_path))
-      ->required();
-}
 
 std::vector<std::string> names_of_options(const CLI::App& app) {
   std::vector<std::string> names;
@@ -155,6 +134,7 @@ Command parse_command_line(std::vector<std::string> arguments) {
   }
   refuse_unknown(program);
   const std::string chosen = program.get_subcommands().front()->get_name();
+  mesh.verify = mesh.verify || mesh.verify_fidelity;
   if (chosen == "mesh") return mesh;
   if (chosen == "replay") return replay;
   if (chosen == "info") return info;

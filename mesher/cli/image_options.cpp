@@ -1,0 +1,73 @@
+// The image that commands read and what is kept of its labels; the options of all commands but mesh.
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <limits>
+
+#include "cli/add_options.h"
+
+namespace podm::cli {
+namespace {
+
+constexpr int kMaxPhantomSize = 4096;
+
+}  // namespace
+
+void add_image_options(CLI::App& app, ImageArguments& image) {
+  require(add_one(app, "IMAGE", "",
+                  fmt::format("NIfTI, NRRD, MetaImage or INR label image, or phantom:NAME[@SIZE],\n"
+                              "NAME one of {}",
+                              fmt::join(phantom_names(), ", ")),
+                  into(image.path)));
+  begin_group(app, "Labels");
+  add_one(app, "--labels", "RANGES", "keep these label values only, e.g. 1,3-7 [default: all]",
+          [&image](const std::string& text, const std::string& name) {
+            image.selection.keep = parse_label_ranges(text, name);
+          });
+  add_one(app, "--drop", "RANGES", "turn these label values into background [default: none]",
+          [&image](const std::string& text, const std::string& name) {
+            image.selection.drop = parse_label_ranges(text, name);
+          });
+  add_many(app, "--merge", "VALUES=NAME",
+           "make one label of several, e.g. 2,3=kidney; repeatable [default: none]",
+           [&image](const std::string& text, const std::string&) {
+             image.selection.merges.push_back(parse_merge(text));
+           });
+  add_one(app, "--background", "VALUE", "label value of the background [default: 0]",
+          [&image](const std::string& text, const std::string& name) {
+            image.selection.background = static_cast<std::uint32_t>(
+                parse_integer(text, name, 0, std::numeric_limits<std::uint32_t>::max()));
+          });
+  add_one(app, "--label-names", "FILE",
+          "names of labels: an ITK-SNAP table or lines \"value name\" [default: none]",
+          into(image.label_names_path));
+  begin_group(app, "Options");
+}
+
+void add_replay_command(CLI::App& program, ReplayCommand& command) {
+  CLI::App& app = add_command(program, "replay",
+                              "carry out a run's logged operations on one thread and compare the mesh");
+  add_image_options(app, command.image);
+  require(add_one(app, "LOG", "", "what podm mesh --log wrote, with the same image and label options",
+                  into(command.log_path)));
+}
+
+void add_info_command(CLI::App& program, InfoCommand& command) {
+  CLI::App& app = add_command(program, "info", "print size, spacing (mm), affine and labels of an image");
+  add_image_options(app, command.image);
+  add_flag(app, "--json", command.json, "print one JSON object [default: text]");
+}
+
+void add_phantom_command(CLI::App& program, PhantomCommand& command) {
+  CLI::App& app = add_command(program, "phantom", "write an analytic phantom as a label image");
+  require(add_one(app, "NAME", "", fmt::format("one of {}", fmt::join(phantom_names(), ", ")),
+                  into(command.name)));
+  add_one(app, "--size", "N", fmt::format("voxels along the longest axis [default: {}]", command.size),
+          [&command](const std::string& text, const std::string& name) {
+            command.size = static_cast<int>(parse_integer(text, name, 1, kMaxPhantomSize));
+          });
+  require(add_one(app, "-o,--output", "FILE", "NIfTI file: .nii or .nii.gz [required]",
+                  into(command.output_path)));
+}
+
+}  // namespace podm::cli
