@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <filesystem>
 
 #include "mesher_options.h"
@@ -36,7 +37,14 @@ Peer ask_for_version(const std::string& program, const std::string& podm) {
 
 }  // namespace
 
-std::string Peer::sha256() const { return sha256_of(sha256_of_file(program) + version); }
+std::string Peer::sha256() const {
+  const auto folder = std::filesystem::path(program).parent_path().parent_path();
+  std::vector<std::string> hashes;
+  for (const auto& entry : std::filesystem::directory_iterator(folder))
+    if (entry.path().extension() == ".py") hashes.push_back(sha256_of_file(entry.path().string()));
+  std::sort(hashes.begin(), hashes.end());
+  return sha256_of(fmt::format("{} {} {}", sha256_of_file(program), version, fmt::join(hashes, " ")));
+}
 
 bool is_of_peer(const Trial& trial) { return trial.options.value(kMesher, kPodm) != kPodm; }
 

@@ -16,7 +16,7 @@ struct Peer {
   std::string version;  ///< and licence, in one line
   std::string absence;  ///< why it cannot run here; empty: it can
 
-  /// Its bytes and version.
+  /// Of its bytes and version, and of what the adapters share, the *.py beside their folders.
   std::string sha256() const;
 };
 

@@ -77,6 +77,19 @@ TEST_F(PeerTest, FailsWithoutAUsableRecord) {
   EXPECT_EQ(run(version_, "echo nothing > $output/record.jsonl\n").status, Status::kFailed);
 }
 
+TEST_F(PeerTest, IsAnotherWithAnotherProgramVersionOrSharedPart) {
+  std::filesystem::create_directories(folder_ / "other");
+  const Peer peer{folder_.script("other/run", "exit 0"), "Other 1.0", {}};
+  const std::string before = peer.sha256();
+  EXPECT_EQ(peer.sha256(), before);
+  EXPECT_NE((Peer{peer.program, "Other 1.1", {}}.sha256()), before);
+  folder_.write("shared.py", "shared");
+  const std::string with_shared = peer.sha256();
+  EXPECT_NE(with_shared, before);
+  folder_.script("other/run", "exit 1");
+  EXPECT_NE(peer.sha256(), with_shared);
+}
+
 TEST(Peers, UnknownNamesAreRefused) {
   Trial trial;
   trial.name = "some";

@@ -8,7 +8,8 @@ from .html import Bar, bars, findings, fold
 
 MOST_COUNTS = 4  # numbers of cores in the picture of scaling
 FAULTS = {"unmet": "missed a guarantee", "failed": "failed", "timed_out": "timed out", "interrupted": "interrupted"}
-NAMES = {**style.NAMES, "cgal": "CGAL", "gmsh": "Gmsh", "tetgen": "TetGen"}
+NAMES = {**style.NAMES, "cgal": "CGAL, parallel", "cgal_sequential": "CGAL", "cgal_unsorted": "CGAL, unsorted queue",
+         "gmsh": "Gmsh", "tetgen": "TetGen"}
 
 
 def first_screen(frame, outcome):
@@ -68,7 +69,7 @@ def fast(outcome):
             return _answer("Not known: no verified run on one core.")
         picture = [Bar(name, rate, f"{rate / 1e6:.2f} M/s", kind) for name, rate, kind in on_all]
         return (_answer(_own_rates(on_all)) + bars("cells per second", picture)
-                + _aside("No other mesher ran beside it: experiments/single_core.toml compares."))
+                + _aside("No other mesher ran beside it: experiments/peers.toml compares."))
     table = outcome.tables["peers"][0]
     first = table.iloc[0]
     rows = table[(table["experiment"] == first["experiment"]) & (table["setting"] == first["setting"])
