@@ -4,6 +4,7 @@
 #include <cmath>
 #include <iterator>
 #include <limits>
+#include <numeric>
 
 #include "runtime/parallel_for.h"
 
@@ -11,95 +12,71 @@ namespace podm {
 
 namespace {
 
-// Fitted to a few runs, right to about 30 %: cells = kVolumeCells V / r^3 + kSurfaceCells A / delta^2, with A
-// counted in voxel faces.
-constexpr double kVolumeCells = 4.5;
-constexpr double kSurfaceCells = 4.0;
 constexpr double kMaxDeltaVoxels = 2;
 constexpr double kBytesPerCell = 110;
 constexpr double kBytesPerVoxel = 6;
 
-struct Geometry {
-  double volume_mm3 = 0, area_mm2 = 0;
-  std::vector<double> volume_of_label_mm3;
-};
-
-std::uint64_t count_differing(const LabelIndex* a, const LabelIndex* b, int size) {
+std::uint64_t count_foreground(const LabelIndex* row, int size) {
   std::uint32_t count = 0;
-  for (int i = 0; i < size; ++i) count += a[i] != b[i];
+  for (int i = 0; i < size; ++i) count += row[i] != kBackground;
   return count;
 }
 
-// What the rows of voxels along x that one thread has seen add up to.
-class alignas(64) RowCounts {
- public:
-  explicit RowCounts(const LabelImage& image)
-      : image_(image), outside_(static_cast<std::size_t>(image.size[0])), voxels_(image.labels.size()) {}
+// Sides of interfaces that have a label.
+std::uint64_t count_sides(const LabelIndex* a, const LabelIndex* b, int size) {
+  std::uint32_t count = 0;
+  for (int i = 0; i < size; ++i)
+    count += a[i] == b[i] ? 0u : (a[i] != kBackground ? 1u : 0u) + (b[i] != kBackground ? 1u : 0u);
+  return count;
+}
 
-  void add_row(int j, int k) {
-    const LabelIndex* const row = &image_.voxels[image_.index(0, j, k)];
-    const std::size_t to_next_y = outside_.size(),
-                      to_next_z = to_next_y * static_cast<std::size_t>(image_.size[1]);
-    add_runs(row);
-    add_faces(1, row, j, to_next_y);
-    add_faces(2, row, k, to_next_z);
+// Between voxels `lag` apart along the axis, of all pairs whose first is in the row or whose second is its
+// first in the image. Outside is background.
+std::uint64_t count_sides(const LabelImage& image, std::size_t axis, int lag, int j, int k) {
+  const int size = image.size[0];
+  const LabelIndex* const row = &image.voxels[image.index(0, j, k)];
+  if (axis == 0) {
+    const int inside = std::max(0, size - lag), border = size - inside;
+    return count_sides(row, row + lag, inside) + count_foreground(row, border) +
+           count_foreground(row + inside, border);
   }
+  const int position = axis == 1 ? j : k;
+  const std::size_t step = image.index(0, axis == 1 ? 1 : 0, axis == 1 ? 0 : 1);
+  const std::uint64_t foreground =
+      position < lag || position + lag >= image.size[axis] ? count_foreground(row, size) : 0;
+  const std::uint64_t after = position + lag < image.size[axis]
+                                  ? count_sides(row, row + step * static_cast<std::size_t>(lag), size)
+                                  : foreground;
+  return after + (position < lag ? foreground : 0);
+}
 
-  void operator+=(const RowCounts& b) {
-    for (std::size_t label = 0; label < voxels_.size(); ++label) voxels_[label] += b.voxels_[label];
-    for (std::size_t axis = 0; axis < 3; ++axis) faces_[axis] += b.faces_[axis];
-  }
+// Sums what `count(counts, j, k)` adds for all rows along x; `none` is the sum of no row.
+template <class Counts, class Count>
+Counts sum_over_rows(const LabelImage& image, int threads, const Counts& none, const Count& count) {
+  struct alignas(64) OfThread {
+    Counts counts;
+  };
+  std::vector<OfThread> sums(num_threads(threads), OfThread{none});
+  parallel_for(static_cast<std::size_t>(image.size[2]), sums.size(), [&](std::size_t k, std::size_t thread) {
+    for (int j = 0; j < image.size[1]; ++j) count(sums[thread].counts, j, static_cast<int>(k));
+  });
+  for (std::size_t t = 1; t < sums.size(); ++t) sums[0].counts += sums[t].counts;
+  return std::move(sums[0].counts);
+}
 
-  Geometry geometry() const {
-    const auto [sx, sy, sz] = image_.spacing;
-    const std::array<double, 3> face_mm2{sy * sz, sx * sz, sx * sy};
-    Geometry g;
-    for (std::size_t axis = 0; axis < 3; ++axis)
-      g.area_mm2 += static_cast<double>(faces_[axis]) * face_mm2[axis];
-    for (const std::uint64_t voxels : voxels_)
-      g.volume_of_label_mm3.push_back(static_cast<double>(voxels) * sx * sy * sz);
-    g.volume_of_label_mm3[kBackground] = 0;
-    for (const double v : g.volume_of_label_mm3) g.volume_mm3 += v;
-    return g;
-  }
-
- private:
-  // A face lies between two runs of one label; outside is background.
-  void add_runs(const LabelIndex* row) {
-    const int size = image_.size[0];
-    LabelIndex last = kBackground;
+// Voxels of each label.
+struct VoxelCounts {
+  std::vector<std::uint64_t> of_label;
+  void add_row(const LabelIndex* row, int size) {
     for (int i = 0, end = 0; i < size; i = end) {
       while (end < size && row[end] == row[i]) ++end;
-      voxels_[row[i]] += static_cast<std::uint64_t>(end - i);
-      faces_[0] += row[i] != last;
-      last = row[i];
+      of_label[row[i]] += static_cast<std::uint64_t>(end - i);
     }
-    faces_[0] += last != kBackground;
   }
-
-  // To the row after, and to the one before where that is outside.
-  void add_faces(std::size_t axis, const LabelIndex* row, int position, std::size_t to_next) {
-    const int size = image_.size[0];
-    const bool is_last = position + 1 == image_.size[axis];
-    faces_[axis] += count_differing(row, is_last ? outside_.data() : row + to_next, size);
-    if (position == 0) faces_[axis] += count_differing(row, outside_.data(), size);
+  void operator+=(const VoxelCounts& b) {
+    for (std::size_t label = 0; label < of_label.size(); ++label) of_label[label] += b.of_label[label];
   }
-
-  const LabelImage& image_;
-  std::vector<LabelIndex> outside_;       // a row of background
-  std::vector<std::uint64_t> voxels_;     // by label
-  std::array<std::uint64_t, 3> faces_{};  // between labels, by the axis they are normal to
 };
-
-Geometry measure(const LabelImage& image, int threads) {
-  std::vector<RowCounts> counts(num_threads(threads), RowCounts(image));
-  parallel_for(static_cast<std::size_t>(image.size[2]), counts.size(),
-               [&](std::size_t k, std::size_t thread) {
-                 for (int j = 0; j < image.size[1]; ++j) counts[thread].add_row(j, static_cast<int>(k));
-               });
-  for (std::size_t t = 1; t < counts.size(); ++t) counts[0] += counts[t];
-  return counts[0].geometry();
-}
 
 // Of the foreground that one thread has seen.
 struct alignas(64) VoxelBounds {
@@ -124,20 +101,6 @@ struct alignas(64) VoxelBounds {
   }
 };
 
-double cells_at(const LabelImage& image, const Geometry& g, const MeshingOptions& options) {
-  double cells = 0, smallest = std::numeric_limits<double>::infinity();
-  for (std::size_t i = 1; i < image.labels.size(); ++i) {
-    const auto own = options.radius_of_mm.find(image.labels[i].value);
-    const double radius = own != options.radius_of_mm.end() ? own->second : options.radius_mm;
-    if (radius <= 0) continue;
-    cells += kVolumeCells * g.volume_of_label_mm3[i] / (radius * radius * radius);
-    smallest = std::min(smallest, radius);
-  }
-  const double delta =
-      options.delta_mm > 0 ? options.delta_mm : default_delta_mm(image, std::isinf(smallest) ? 0 : smallest);
-  return cells + kSurfaceCells * g.area_mm2 / (delta * delta);
-}
-
 }  // namespace
 
 double default_delta_mm(const LabelImage& image, double radius_mm) {
@@ -145,23 +108,69 @@ double default_delta_mm(const LabelImage& image, double radius_mm) {
   return radius_mm > 0 ? std::min(kMaxDeltaVoxels * voxel, radius_mm / 2) : voxel;
 }
 
-Estimate estimate(const LabelImage& image, const MeshingOptions& options) {
-  const double cells = options.target_elements > 0
-                           ? static_cast<double>(options.target_elements)
-                           : cells_at(image, measure(image, options.loop_threads()), options);
-  return {cells, cells * kBytesPerCell + static_cast<double>(image.num_voxels()) * kBytesPerVoxel};
+CostModel::CostModel(const LabelImage& image, int threads) : image_(image), threads_(threads) {
+  const VoxelCounts none{std::vector<std::uint64_t>(image.labels.size())};
+  const VoxelCounts voxels = sum_over_rows(image, threads, none, [&](VoxelCounts& counts, int j, int k) {
+    counts.add_row(&image.voxels[image.index(0, j, k)], image.size[0]);
+  });
+  for (const std::uint64_t n : voxels.of_label)
+    volume_of_label_mm3_.push_back(static_cast<double>(n) * image.spacing[0] * image.spacing[1] *
+                                   image.spacing[2]);
+  volume_of_label_mm3_[kBackground] = 0;
+  volume_mm3_ = std::accumulate(volume_of_label_mm3_.begin(), volume_of_label_mm3_.end(), 0.0);
 }
 
-double radius_for_cells(const LabelImage& image, double cells, int threads) {
-  const Geometry g = measure(image, threads);
-  double low = 1e-9, high = 1e9;  // mm; the number of cells falls with the radius
-  while (high / low > 1.001) {
-    const double radius = std::sqrt(low * high), delta = radius / 2;
-    const double expected = kVolumeCells * g.volume_mm3 / (radius * radius * radius) +
-                            kSurfaceCells * g.area_mm2 / (delta * delta);
-    (expected > cells ? low : high) = radius;
+double CostModel::area_along_mm2(std::size_t axis, std::size_t lag) const {
+  auto& known = area_along_mm2_[axis][lag];
+  if (known) return *known;
+  const std::uint64_t sides = sum_over_rows(
+      image_, threads_, std::uint64_t{0},
+      [&](std::uint64_t& sum, int j, int k) { sum += count_sides(image_, axis, kLags[lag], j, k); });
+  const double face_mm2 = image_.spacing[(axis + 1) % 3] * image_.spacing[(axis + 2) % 3];
+  known = static_cast<double>(sides) / kLags[lag] * face_mm2;
+  return *known;
+}
+
+double CostModel::area_mm2(double distance_mm) const {
+  double area_mm2 = 0;
+  for (std::size_t axis = 0; axis < 3; ++axis) {
+    const double lag = std::clamp(distance_mm / image_.spacing[axis], 1.0, static_cast<double>(kLags.back()));
+    std::size_t low = 0;
+    while (low + 2 < kLags.size() && lag >= kLags[low + 1]) ++low;
+    const double share = (lag - kLags[low]) / (kLags[low + 1] - kLags[low]);
+    area_mm2 += (1 - share) * area_along_mm2(axis, low);
+    if (share > 0) area_mm2 += share * area_along_mm2(axis, low + 1);
   }
-  return high;
+  return area_mm2;
+}
+
+double CostModel::cells(const MeshingOptions& options) const {
+  const double area = area_mm2(kSeenOverDelta * options.delta_mm);
+  double cells = kSurfaceCells * area / (options.delta_mm * options.delta_mm);
+  for (std::size_t i = 1; i < image_.labels.size(); ++i) {
+    const auto own = options.radius_of_mm.find(image_.labels[i].value);
+    const double radius = own != options.radius_of_mm.end() ? own->second : options.radius_mm;
+    if (radius <= 0 || volume_of_label_mm3_[i] == 0) continue;
+    const double core = std::max(0.0, 1 - kGradedOverRadius * radius * area / (3 * volume_mm3_));
+    cells += kVolumeCells * volume_of_label_mm3_[i] * core * core * core / (radius * radius * radius);
+  }
+  return cells;
+}
+
+double smallest_radius_mm(const MeshingOptions& options) {
+  double smallest = options.radius_mm > 0 ? options.radius_mm : std::numeric_limits<double>::infinity();
+  for (const auto& [value, radius] : options.radius_of_mm) smallest = std::min(smallest, radius);
+  return std::isinf(smallest) ? 0 : smallest;
+}
+
+Estimate estimate(const LabelImage& image, const MeshingOptions& options) {
+  double cells = static_cast<double>(options.target_elements);
+  if (options.target_elements == 0) {
+    MeshingOptions resolved = options;
+    if (resolved.delta_mm <= 0) resolved.delta_mm = default_delta_mm(image, smallest_radius_mm(options));
+    cells = CostModel(image, options.loop_threads()).cells(resolved);
+  }
+  return {cells, cells * kBytesPerCell + static_cast<double>(image.num_voxels()) * kBytesPerVoxel};
 }
 
 Box foreground_bounds(const LabelImage& image, int threads) {

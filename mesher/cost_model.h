@@ -2,6 +2,10 @@
 // delta^-2. `threads`: 0 for all cores.
 #pragma once
 
+#include <array>
+#include <optional>
+#include <vector>
+
 #include "delaunay/mesh.h"
 #include "podm/mesh_image.h"
 
@@ -10,7 +14,41 @@ namespace podm {
 /// Bounds of the foreground, mm: centres of the labelled voxels and one voxel more on every side.
 Box foreground_bounds(const LabelImage& image, int threads = 1);
 
-/// The uniform radius, mm, at which this many cells are expected, with delta half of it.
-double radius_for_cells(const LabelImage& image, double cells, int threads);
+/// Of all labels; 0: unbounded.
+double smallest_radius_mm(const MeshingOptions& options);
+
+/// Cells that the labels' volumes and interfaces ask for:
+///   kVolumeCells V / r_t^3 in the core of each label, kSurfaceCells A / delta^2 along the interfaces,
+/// where A counts an interface for each label at it, since cells stand on both sides of one between two
+/// labels, and in voxel faces. Cells grow from delta to r_t in a layer; the core is what a ball of the same
+/// share of volume and surface has left without it. What is thinner than the surface is sampled is missed:
+/// A is that of label changes between voxels so far apart, each counted once.
+/// Constants were fitted to 166 meshes of eleven images, segmentations and phantoms. With delta = r_t / 2,
+/// meshes of 0.06 to 5.5 million cells are predicted within 8 %, two of three within 3 %; smaller ones within
+/// 18 %, and with other deltas within 34 %.
+class CostModel {
+ public:
+  /// The image must outlive the model, which looks at its interfaces as they are asked for.
+  CostModel(const LabelImage& image, int threads);
+
+  /// With the radii and the delta of `options`, which is not 0.
+  double cells(const MeshingOptions& options) const;
+
+ private:
+  static constexpr double kVolumeCells = 4.82, kSurfaceCells = 1.57;
+  static constexpr double kGradedOverRadius = 0.555;  // thickness of the layer
+  static constexpr double kSeenOverDelta = 1.6;       // distance of the voxels compared
+  // In voxels; between these it is interpolated.
+  static constexpr std::array<int, 13> kLags{1, 2, 3, 4, 6, 8, 12, 16, 24, 32, 48, 64, 96};
+
+  double area_mm2(double distance_mm) const;
+  double area_along_mm2(std::size_t axis, std::size_t lag) const;
+
+  const LabelImage& image_;
+  int threads_;
+  std::vector<double> volume_of_label_mm3_;
+  double volume_mm3_ = 0;
+  mutable std::array<std::array<std::optional<double>, kLags.size()>, 3> area_along_mm2_;  // by axis and lag
+};
 
 }  // namespace podm

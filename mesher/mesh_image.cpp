@@ -16,6 +16,7 @@
 #include "placement_of_crew.h"
 #include "podm.h"
 #include "podm/operation_log.h"
+#include "radius_search.h"
 #include "replay.h"
 
 namespace podm {
@@ -104,12 +105,14 @@ class Run {
     const Isosurface isosurface(image_, options_.loop_threads());
     MeshingResult result;
     MeshingReport& report = result.report;
+    object_ = foreground_bounds(image_, options_.loop_threads());
     report.phases_s["transform"] = seconds_since(start);
     locate_memory(isosurface);
 
     Refinement refinement = options_.target_elements > 0
                                 ? refine_to_target(isosurface, report)
                                 : refine(isosurface, options_.radius_mm, delta(), report);
+    report.phases_s.merge(refinement.phases_s);
     report.stop_reason = refinement.stop_reason;
     report.counters = refinement.counters;
     report.workers = refinement.workers;
@@ -119,7 +122,7 @@ class Run {
     report.store_cells = refinement.mesh->num_cells();
     const auto& [low, high] = refinement.mesh->box();
     report.virtual_box = {low.x, low.y, low.z, high.x, high.y, high.z};
-    report.virtual_s = refinement.virtual_s;
+    report.virtual_phases_s = refinement.virtual_phases_s;
     report.algorithm = algorithm();
     report.computing_nodes = algorithm() == Algorithm::kPodm ? 1 : leaf_options().num_nodes;
     report.num_leaves = refinement.num_leaves;
@@ -148,11 +151,7 @@ class Run {
   Refinement refine(const Isosurface& isosurface, double radius_mm, double delta_mm, MeshingReport& report) {
     report.radius_mm = radius_mm;
     report.delta_mm = delta_mm;
-    MeshingOptions resolved = options_;
-    resolved.radius_mm = radius_mm;
-    resolved.delta_mm = report.delta_mm;
-    resolved.target_elements = 0;
-    const double expected = estimate(image_, resolved).cells;
+    const double expected = estimate(image_, options_).cells;
     Limits limits{options_.max_elements, Clock::time_point::max()};
     if (options_.max_seconds > 0) {
       limits.deadline = start_ + std::chrono::duration_cast<Clock::duration>(
@@ -162,12 +161,9 @@ class Run {
       announce("refine", static_cast<double>(cells) / expected, cells);
     });
     if (options_.log != nullptr) options_.log->restart();
-    Refinement refinement =
-        run({isosurface, foreground_bounds(image_, options_.loop_threads()), report.delta_mm,
-             size_field(image_, options_, radius_mm), cell_capacity(options_)},
-            watch);
-    for (const auto& [phase, seconds] : refinement.phases_s) report.phases_s[phase] += seconds;
-    return refinement;
+    return run({isosurface, object_, report.delta_mm, size_field(image_, options_, radius_mm),
+                cell_capacity(options_)},
+               watch);
   }
 
   Refinement run(const Problem& problem, Watch& watch) const {
@@ -220,33 +216,34 @@ class Run {
 
   double delta() const {
     if (options_.delta_mm > 0) return options_.delta_mm;
-    double smallest = options_.radius_mm > 0 ? options_.radius_mm : kInfinity;
-    for (const auto& [value, radius] : options_.radius_of_mm) smallest = std::min(smallest, radius);
-    return default_delta_mm(image_, std::isinf(smallest) ? 0 : smallest);
+    return default_delta_mm(image_, smallest_radius_mm(options_));
   }
 
-  // A cheap coarse run calibrates the power law cells ~ radius^exponent, then full runs are corrected by it
-  // until they are close. Unless given, delta follows the radius, or the interfaces alone could exceed the
-  // target.
+  // Most predicted radii meet the target with the first mesh; where one does not, its cells tell how the
+  // prediction errs, and it is made again. What is spent on meshes that are dropped is calibration.
   Refinement refine_to_target(const Isosurface& isosurface, MeshingReport& report) {
+    const Clock::time_point start = Clock::now();
     const auto target = static_cast<double>(options_.target_elements);
-    double radius = radius_for_cells(image_, target / 8, options_.loop_threads()), last_radius = 0,
-           last_cells = 0;
-    for (int runs = 1;; ++runs) {
-      Refinement refinement =
-          refine(isosurface, radius, options_.delta_mm > 0 ? options_.delta_mm : radius / 2, report);
-      const auto cells = std::max(
-          1.0, static_cast<double>(label_cells(*refinement.mesh, isosurface, options_.loop_threads())));
-      const bool is_met = std::abs(cells / target - 1) <= kTargetTolerance;
-      if (is_met || runs == kMaxTargetRuns || refinement.stop_reason != StopReason::kComplete) {
+    Calibration& calibration = report.calibration.emplace();
+    calibration.target_elements = options_.target_elements;
+    RadiusSearch search(image_, options_);
+    for (;;) {
+      const Clock::time_point mesh_start = Clock::now();
+      calibration.seconds = std::chrono::duration<double>(mesh_start - start).count();
+      Refinement refinement = refine(isosurface, search.radius_mm(), search.delta_mm(), report);
+      const Clock::time_point label_start = Clock::now();
+      const std::uint64_t cells = label_cells(*refinement.mesh, isosurface, options_.loop_threads());
+      const bool is_met = std::abs(static_cast<double>(cells) / target - 1) <= kTargetTolerance;
+      if (is_met || calibration.meshes.size() == kMostTrialMeshes ||
+          refinement.stop_reason != StopReason::kComplete) {
         if (!is_met) report.warnings.push_back("the target number of elements was not met within 5 %");
+        calibration.radius_mm = search.radius_mm();
+        report.phases_s["calibrate"] = calibration.seconds;
+        report.phases_s["extract"] = seconds_since(label_start);
         return refinement;
       }
-      const double exponent =
-          last_radius > 0 ? std::log(cells / last_cells) / std::log(radius / last_radius) : kFirstExponent;
-      last_radius = radius;
-      last_cells = cells;
-      radius *= std::pow(target / cells, 1 / std::clamp(exponent, -4.0, -0.5));
+      calibration.meshes.push_back({search.radius_mm(), cells, seconds_since(mesh_start)});
+      search.learn(std::max(1.0, static_cast<double>(cells)));
     }
   }
 
@@ -258,14 +255,13 @@ class Run {
     result.mesh = extract_mesh(*refinement.mesh, isosurface, image_, is_voxel ? Space::kRas : options_.space,
                                options_.loop_threads(), report.guarantees.facet_vertices);
     refinement.mesh.reset();
-    report.phases_s["extract"] = seconds_since(start);
+    report.phases_s["extract"] += seconds_since(start);
     measure_quality(result.mesh, image_, size_field(image_, options_, report.radius_mm), report);
     if (is_voxel) convert_to_voxel_space(result.mesh, image_);
   }
 
-  static constexpr int kMaxTargetRuns = 8;
+  static constexpr std::size_t kMostTrialMeshes = 5;
   static constexpr double kTargetTolerance = 0.045;  // of the 5 % promised
-  static constexpr double kFirstExponent = -2.6;     // between the surface's -2 and the volume's -3
   const LabelImage& image_;
   const MeshingOptions& options_;
   const ProgressCallback& progress_;
@@ -273,6 +269,7 @@ class Run {
   const PlacementOfCrew placement_;
   std::optional<ImageOwners> owners_;
   std::optional<PageSampler> pages_;
+  Box object_{};  // bounds of the foreground
   const Clock::time_point start_ = Clock::now();
 };
 

@@ -124,11 +124,8 @@ Refinement refine_by_leaves(const Problem& problem, const Crew& crew, const Leaf
   refiner.timed("octree", [&] {
     octree = fit_octree(problem, radii, clamp, options, refiner.num_workers() / options.num_nodes);
   });
-  Refiner::Entries left;
-  refiner.timed("refine", [&] {
-    left = refiner.refine_leaves<Locks>(final, *octree, options.num_nodes, options.with_schedule);
-  });
-  refiner.sample_pages("refine");
+  const Refiner::Entries left =
+      refiner.refine_leaves<Locks>("refine", final, *octree, options.num_nodes, options.with_schedule);
   refiner.refine_anywhere("closing", final, left, refiner.num_workers());
   Refinement result = refiner.finish();
   if (result.schedule) describe(*octree, *result.schedule);

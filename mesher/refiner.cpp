@@ -12,6 +12,9 @@ namespace podm {
 
 namespace {
 
+// The phase in which store, pools, workers and threads are made ready.
+constexpr const char* kAllocate = "allocate";
+
 // The groups of the first workers alone.
 WorkerGroups first_of(WorkerGroups groups, int num_workers) {
   for (std::vector<int>& level : groups)
@@ -29,14 +32,16 @@ std::vector<Place> part_of(const std::vector<Place>& places, std::size_t first, 
 
 Refiner::Refiner(const Problem& problem, const Box& clamp_box, const Crew& crew, Watch& watch)
     : problem_(problem), crew_(crew), watch_(watch) {
-  const int num_nodes = crew.machine != nullptr ? crew.machine->num_nodes() : 1;
-  result_.mesh = std::make_unique<Mesh>(virtual_box(clamp_box), problem.cell_capacity, num_nodes);
-  for (WorkerId worker = 0; worker < static_cast<WorkerId>(num_workers()); ++worker) {
-    const Place place = place_of(worker);
-    pools_.push_back(std::make_unique<Pool>(*result_.mesh, static_cast<NodeIndex>(place.node)));
-    result_.workers.push_back({place.node, place.socket, place.processor, {}, {}});
-    accesses_.push_back({place.node, {}});
-  }
+  timed(kAllocate, [&] {
+    const int num_nodes = crew.machine != nullptr ? crew.machine->num_nodes() : 1;
+    result_.mesh = std::make_unique<Mesh>(virtual_box(clamp_box), problem.cell_capacity, num_nodes);
+    for (WorkerId worker = 0; worker < static_cast<WorkerId>(num_workers()); ++worker) {
+      const Place place = place_of(worker);
+      pools_.push_back(std::make_unique<Pool>(*result_.mesh, static_cast<NodeIndex>(place.node)));
+      result_.workers.push_back({place.node, place.socket, place.processor, {}, {}});
+      accesses_.push_back({place.node, {}});
+    }
+  });
 }
 
 Refiner::Entries Refiner::all_cells() const {
@@ -53,12 +58,22 @@ CoordinationOptions Refiner::coordination(int num_workers) const {
   return options;
 }
 
+// A computing node is one group.
+CoordinationOptions Refiner::node_coordination(int num_nodes) const {
+  CoordinationOptions options = crew_.coordination;
+  options.num_workers = num_workers() / num_nodes;
+  options.groups.clear();
+  return options;
+}
+
 template <class Locks>
 Refiner::Workers<Locks> Refiner::make_workers(const Parameters& parameters, int num_workers) {
   Workers<Locks> workers;
-  for (WorkerId id = 0; id < static_cast<WorkerId>(num_workers); ++id)
-    workers.push_back(std::make_unique<Worker<Locks>>(*result_.mesh, problem_.isosurface, parameters, id,
-                                                      *pools_[id], crew_.log, crew_.owners));
+  timed(kAllocate, [&] {
+    for (WorkerId id = 0; id < static_cast<WorkerId>(num_workers); ++id)
+      workers.push_back(std::make_unique<Worker<Locks>>(*result_.mesh, problem_.isosurface, parameters, id,
+                                                        *pools_[id], crew_.log, crew_.owners));
+  });
   return workers;
 }
 
@@ -92,12 +107,13 @@ void Refiner::refine_anywhere(const std::string& phase, const Parameters& parame
       VirtualExecutor<VertexLocks> executor(watch_, coordination(num_workers), crew_.cost);
       refine(
           workers, [&] { return executor.run(workers); }, [&](WorkerId id) { return executor.overhead(id); });
-      result_.virtual_s += executor.elapsed_s();
+      result_.virtual_phases_s[phase] += executor.elapsed_s();
     } else if (num_workers > 1 || crew_.locks_alone) {
       auto workers = make_workers<VertexLocks>(parameters, num_workers);
       ThreadExecutor<VertexLocks> executor(watch_, coordination(num_workers), crew_.places);
       refine(
           workers, [&] { return executor.run(workers); }, [&](WorkerId id) { return executor.overhead(id); });
+      charge(kAllocate, executor.start_s());
       for (WorkerId id = 0; id < workers.size(); ++id)
         result_.workers[id].bound_to = executor.processor(id).bound_to;
     } else {
@@ -112,16 +128,19 @@ void Refiner::refine_anywhere(const std::string& phase, const Parameters& parame
   sample_pages(phase);
 }
 
-// Each node on its threads; the first node's master is the calling thread.
+// Each node on its threads; the first node's master is the calling thread. What goes by before it refines is
+// allocation, though other nodes may have begun.
 template <class Locks>
 void Refiner::run_on_threads(const CoordinationOptions& options, std::vector<ComputingNode<Locks>>& nodes) {
   std::vector<std::exception_ptr> failures(nodes.size());
+  double start_s = 0;
   const auto run = [&](std::size_t n) {
     const std::size_t per_node = nodes[n].workers().size(), first = n * per_node;
     try {
       ThreadExecutor<Locks> executor(watch_, options, part_of(crew_.places, first, per_node),
                                      static_cast<WorkerId>(first));
       executor.run(nodes[n].workers(), &nodes[n]);
+      if (n == 0) start_s += executor.start_s();
       for (WorkerId i = 0; i < per_node; ++i) {
         account(*nodes[n].workers()[i], static_cast<WorkerId>(first) + i, executor.overhead(i));
         result_.workers[first + i].bound_to = executor.processor(i).bound_to;
@@ -133,9 +152,12 @@ void Refiner::run_on_threads(const CoordinationOptions& options, std::vector<Com
   };
   {
     std::vector<boost::scoped_thread<>> masters;
-    for (std::size_t n = 1; n < nodes.size(); ++n) masters.emplace_back([&run, n] { run(n); });
+    timed(kAllocate, [&] {
+      for (std::size_t n = 1; n < nodes.size(); ++n) masters.emplace_back([&run, n] { run(n); });
+    });
     run(0);
   }
+  charge(kAllocate, start_s);
   for (const std::exception_ptr& failure : failures)
     if (failure) std::rethrow_exception(failure);
 }
@@ -162,41 +184,50 @@ Refiner::Entries Refiner::run_leaves(const Parameters& parameters, const Octree&
 }
 
 template <class Locks>
-Refiner::Entries Refiner::refine_leaves(const Parameters& parameters, const Octree& octree, int num_nodes,
-                                        bool with_schedule) {
-  if (is_over()) return {};
-  const int per_node = num_workers() / num_nodes;
-  CoordinationOptions options = crew_.coordination;
-  options.num_workers = per_node;
-  options.groups.clear();  // a computing node is one group
-  result_.num_leaves = octree.num_leaves();
-
-  if (crew_.executor == Executor::kVirtual) {
-    VirtualExecutor<Locks> executor(watch_, options, crew_.cost, num_nodes);
-    const double start_s = result_.virtual_s;
-    const auto run = [&](auto workers, std::vector<ComputingNode<Locks>>& nodes) {
-      std::vector<CellSource*> sources;
-      for (auto& node : nodes) sources.push_back(&node);
-      executor.run(workers, sources);
-      for (WorkerId id = 0; id < workers.size(); ++id) account(*workers[id], id, executor.overhead(id));
-    };
-    Entries left = run_leaves<Locks>(
-        parameters, octree, num_nodes, with_schedule, [&] { return executor.elapsed_s(); }, run);
-    result_.virtual_s = start_s + executor.elapsed_s();
-    return left;
-  }
-
-  const auto start = std::chrono::steady_clock::now();
-  const auto clock = [start] {
-    return std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+Refiner::Entries Refiner::refine_leaves_in_virtual_time(const std::string& phase,
+                                                        const Parameters& parameters, const Octree& octree,
+                                                        int num_nodes, bool with_schedule) {
+  VirtualExecutor<Locks> executor(watch_, node_coordination(num_nodes), crew_.cost, num_nodes);
+  const auto run = [&](auto workers, std::vector<ComputingNode<Locks>>& nodes) {
+    std::vector<CellSource*> sources;
+    for (auto& node : nodes) sources.push_back(&node);
+    executor.run(workers, sources);
+    for (WorkerId id = 0; id < workers.size(); ++id) account(*workers[id], id, executor.overhead(id));
   };
-  const auto run = [&](auto, std::vector<ComputingNode<Locks>>& nodes) { run_on_threads(options, nodes); };
-  return run_leaves<Locks>(parameters, octree, num_nodes, with_schedule, clock, run);
+  Entries left = run_leaves<Locks>(
+      parameters, octree, num_nodes, with_schedule, [&] { return executor.elapsed_s(); }, run);
+  result_.virtual_phases_s[phase] += executor.elapsed_s();
+  return left;
 }
 
-template Refiner::Entries Refiner::refine_leaves<LeafLocks<NoLocks>>(const Parameters&, const Octree&, int,
-                                                                     bool);
-template Refiner::Entries Refiner::refine_leaves<LeafLocks<VertexLocks>>(const Parameters&, const Octree&,
+template <class Locks>
+Refiner::Entries Refiner::refine_leaves(const std::string& phase, const Parameters& parameters,
+                                        const Octree& octree, int num_nodes, bool with_schedule) {
+  Entries left;
+  timed(phase, [&] {
+    if (is_over()) return;
+    result_.num_leaves = octree.num_leaves();
+    if (crew_.executor == Executor::kVirtual) {
+      left = refine_leaves_in_virtual_time<Locks>(phase, parameters, octree, num_nodes, with_schedule);
+      return;
+    }
+    const auto start = std::chrono::steady_clock::now();
+    const auto clock = [start] {
+      return std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+    };
+    const auto run = [&](auto, std::vector<ComputingNode<Locks>>& nodes) {
+      run_on_threads(node_coordination(num_nodes), nodes);
+    };
+    left = run_leaves<Locks>(parameters, octree, num_nodes, with_schedule, clock, run);
+  });
+  sample_pages(phase);
+  return left;
+}
+
+template Refiner::Entries Refiner::refine_leaves<LeafLocks<NoLocks>>(const std::string&, const Parameters&,
+                                                                     const Octree&, int, bool);
+template Refiner::Entries Refiner::refine_leaves<LeafLocks<VertexLocks>>(const std::string&,
+                                                                         const Parameters&, const Octree&,
                                                                          int, bool);
 
 Refinement Refiner::finish() {

@@ -43,8 +43,8 @@ struct Refinement {
   StopReason stop_reason = StopReason::kComplete;
   Counters counters;  // of all workers
   std::vector<WorkerReport> workers;
-  double virtual_s = 0;                    // of Executor::kVirtual
-  std::map<std::string, double> phases_s;  // initial, octree, refine, closing
+  std::map<std::string, double> phases_s;          // allocate, initial, octree, refine, closing
+  std::map<std::string, double> virtual_phases_s;  // of Executor::kVirtual; some of these phases
   std::uint64_t num_leaves = 0;
   std::optional<LeafSchedule> schedule;
   PageSamples pages;
@@ -66,18 +66,18 @@ class Refiner {
   /// PDR.PODM: `num_nodes` computing nodes refine leaf after leaf. Locks: LeafLocks<NoLocks> for nodes of one
   /// worker. Returns what no leaf could refine.
   template <class Locks>
-  Entries refine_leaves(const Parameters& parameters, const Octree& octree, int num_nodes,
-                        bool with_schedule);
+  Entries refine_leaves(const std::string& phase, const Parameters& parameters, const Octree& octree,
+                        int num_nodes, bool with_schedule);
 
+  /// Charges the phase with the action's seconds, but for those that were charged to others meanwhile.
   template <class Action>
   void timed(const std::string& phase, Action&& action) {
     const auto start = std::chrono::steady_clock::now();
+    const double charged_before_s = charged_s_;
     action();
-    result_.phases_s[phase] +=
-        std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+    const std::chrono::duration<double> elapsed = std::chrono::steady_clock::now() - start;
+    charge(phase, elapsed.count() - (charged_s_ - charged_before_s));
   }
-  /// Where pages are at the end of a phase; in none of its seconds.
-  void sample_pages(const std::string& phase);
   const Mesh& mesh() const { return *result_.mesh; }
   bool is_over() const { return watch_.reason() != StopReason::kComplete; }
   int num_workers() const { return crew_.coordination.num_workers; }
@@ -90,6 +90,9 @@ class Refiner {
   template <class Locks>
   Workers<Locks> make_workers(const Parameters& parameters, int num_workers);
   template <class Locks>
+  Entries refine_leaves_in_virtual_time(const std::string& phase, const Parameters& parameters,
+                                        const Octree& octree, int num_nodes, bool with_schedule);
+  template <class Locks>
   void account(const Worker<Locks>& worker, WorkerId id, const Overhead& overhead);
   template <class Locks>
   void run_on_threads(const CoordinationOptions& options, std::vector<ComputingNode<Locks>>& nodes);
@@ -97,7 +100,13 @@ class Refiner {
   Entries run_leaves(const Parameters& parameters, const Octree& octree, int num_nodes, bool with_schedule,
                      std::function<double()> clock, const RunNodes& run_nodes);
   Place place_of(WorkerId worker) const { return crew_.places.empty() ? Place{} : crew_.places[worker]; }
+  void sample_pages(const std::string& phase);  // at its end; in none of its seconds
   CoordinationOptions coordination(int num_workers) const;
+  CoordinationOptions node_coordination(int num_nodes) const;
+  void charge(const std::string& phase, double seconds) {
+    result_.phases_s[phase] += seconds;
+    charged_s_ += seconds;
+  }
 
   const Problem& problem_;
   const Crew& crew_;
@@ -105,6 +114,7 @@ class Refiner {
   std::vector<std::unique_ptr<Pool>> pools_;  // of the workers, from phase to phase
   std::vector<SampledAccesses> accesses_;     // by worker, of the last phase
   Refinement result_;
+  double charged_s_ = 0;  // to all phases
 };
 
 }  // namespace podm

@@ -8,14 +8,15 @@ namespace podm::cli {
 
 std::map<std::string, double> MeshRun::phases_s() const {
   std::map<std::string, double> phases = result.report.phases_s;
-  phases["read"] = read_s;
+  phases[command.image.path.starts_with("phantom:") ? "draw" : "read"] = read_s;
   phases["write"] = write_s;
   return phases;
 }
 
 double MeshRun::cells_per_second() const {
-  double seconds = read_s;
-  for (const auto& [phase, phase_s] : result.report.phases_s) seconds += phase_s;
+  double seconds = 0;
+  for (const auto& [phase, phase_s] : phases_s())
+    if (phase != "draw" && phase != "calibrate" && phase != "write") seconds += phase_s;
   return static_cast<double>(result.mesh.cells.size()) / seconds;
 }
 

@@ -24,9 +24,10 @@ struct MeshRun {
   std::uint64_t peak_rss_bytes = 0;
   std::map<std::string, std::string> verdicts;  ///< of podm-verify by claim; empty: not asked
 
-  /// Seconds by phase: those of the library between "read" and "write".
+  /// Seconds by phase: those of the library between "read", of a phantom "draw", and "write".
   std::map<std::string, double> phases_s() const;
-  /// Cells over the seconds of all phases but writing: the elements per second of the paper's eq. (1).
+  /// The elements per second of the paper's eq. (1): cells over the seconds of all phases but writing, the
+  /// drawing of a phantom and calibration.
   double cells_per_second() const;
   double refine_cells_per_second() const;
   /// One sentence for each guarantee or limit that is unmet; none: the run is a success.

@@ -124,7 +124,23 @@ Json counters_of(const MeshingReport& report) {
 // What a virtual executor says of time is simulated: it stands apart from what was measured.
 Json virtual_of(const MeshRun& run) {
   if (run.options.executor != Executor::kVirtual) return nullptr;
-  return {{"cost", to_string(run.options.virtual_cost)}, {"refine_s", run.result.report.virtual_s}};
+  double refine_s = 0;
+  for (const auto& [phase, seconds] : run.result.report.virtual_phases_s) refine_s += seconds;
+  return {{"cost", to_string(run.options.virtual_cost)},
+          {"refine_s", refine_s},
+          {"phases_s", run.result.report.virtual_phases_s}};
+}
+
+Json calibration_of(const MeshingReport& report) {
+  if (!report.calibration) return nullptr;
+  const Calibration& calibration = *report.calibration;
+  Json meshes = Json::array();
+  for (const Calibration::TrialMesh& mesh : calibration.meshes)
+    meshes.push_back({{"radius_mm", mesh.radius_mm}, {"cells", mesh.cells}, {"seconds", mesh.seconds}});
+  return {{"target_elements", calibration.target_elements},
+          {"radius_mm", calibration.radius_mm},
+          {"meshes", meshes},
+          {"seconds", calibration.seconds}};
 }
 
 Json leaves_of(const MeshRun& run) {
@@ -202,6 +218,7 @@ Json record(const MeshRun& run) {
       {"executor", to_string(run.options.executor)},
       {"virtual", virtual_of(run)},
       {"phases_s", run.phases_s()},
+      {"calibration", calibration_of(report)},
       {"cells", mesh.cells.size()},
       {"vertices", mesh.vertices.size()},
       {"boundary_facets", mesh.facets.size()},

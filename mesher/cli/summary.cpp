@@ -57,15 +57,27 @@ std::string quality_text(const Quality& quality) {
       quality.shortest_edge_mm);
 }
 
+std::string calibration_text(const MeshingReport& report) {
+  if (!report.calibration) return "";
+  const Calibration& calibration = *report.calibration;
+  const std::size_t dropped = calibration.meshes.size();
+  return fmt::format(
+      "target     {} cells: radius {:.6g} mm, found in {:.2f} s{}; not in the speed\n",
+      calibration.target_elements, calibration.radius_mm, calibration.seconds,
+      dropped > 0 ? fmt::format(" with {} mesh{} that missed", dropped, dropped > 1 ? "es" : "") : "");
+}
+
 std::string time_text(const MeshRun& run) {
   const auto phases = run.phases_s();
   std::string text = "time      ";
-  for (const char* phase :
-       {"read", "transform", "initial", "octree", "refine", "closing", "extract", "write"})
+  for (const char* phase : {"read", "draw", "transform", "allocate", "initial", "octree", "refine", "closing",
+                            "extract", "write"})
     if (const auto found = phases.find(phase); found != phases.end())
       text += fmt::format(" {} {:.2f} s", phase, found->second);
-  return text + fmt::format("\nspeed      {:.0f} cells/s in all but writing, {:.0f} cells/s refining\n",
-                            run.cells_per_second(), run.refine_cells_per_second());
+  return text +
+         fmt::format("\nspeed      {:.0f} cells/s from image to mesh, {:.0f} cells/s refining\n",
+                     run.cells_per_second(), run.refine_cells_per_second()) +
+         calibration_text(run.result.report);
 }
 
 }  // namespace

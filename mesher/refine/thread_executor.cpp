@@ -40,6 +40,7 @@ StopReason ThreadExecutor<Locks>::run(Workers workers, CellSource* source) {
   {
     std::vector<boost::scoped_thread<>> threads;
     try {
+      const SecondsInto total(start_s_);
       threads.reserve(workers.size());
       for (WorkerId self = 1; self < workers.size(); ++self)
         threads.emplace_back([&, self] { work(*workers[self], self); });

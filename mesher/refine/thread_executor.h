@@ -34,6 +34,8 @@ class ThreadExecutor {
   /// observes. What a worker throws ends the run and is thrown again here, but for std::bad_alloc, which ends
   /// it as a limit does.
   StopReason run(Workers workers, CellSource* source = nullptr);
+  /// Seconds of run() that went by before worker 0 began: threads were started for the others.
+  double start_s() const { return start_s_; }
   /// What the system said of the worker's thread after it was bound.
   const ThreadProcessor& processor(WorkerId worker) const { return desks_[worker].processor; }
   const Overhead& overhead(WorkerId worker) const { return desks_[worker].overhead; }
@@ -63,6 +65,7 @@ class ThreadExecutor {
   std::vector<Desk> desks_;
   std::atomic<bool> is_over_ = false;
   StopReason stop_reason_ = StopReason::kComplete;
+  double start_s_ = 0;
   std::exception_ptr failure_;
 };
 

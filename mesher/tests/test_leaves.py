@@ -35,7 +35,11 @@ class Leaves(PodmTestCase):
                 record = self.mesh("--verify", *arguments)
                 self.assertEqual(set(record["verdicts"].values()), {"pass"})
                 self.assertGreater(record["leaves"]["number"], 10)
-                self.assertLessEqual({"initial", "octree", "refine", "closing"}, set(record["phases_s"]))
+                self.assertLessEqual({"allocate", "initial", "octree", "refine", "closing"}, set(record["phases_s"]))
+                if record["virtual"]:
+                    phases = record["virtual"]["phases_s"]
+                    self.assertEqual(set(phases), {"initial", "refine", "closing"})
+                    self.assertAlmostEqual(sum(phases.values()), record["virtual"]["refine_s"], places=12)
                 self.assert_schedule_passes()
                 self.assert_exit(run_podm("replay", IMAGE, self.log), 0)
 

@@ -47,15 +47,23 @@ class Mesh(PodmTestCase):
         self.assertLessEqual(record["quality"]["max_radius_mm"], 6)
 
     def test_speeds_follow_from_the_phases(self):
-        self.assert_exit(self.mesh(), 0)
-        record = self.read_record(self.runs)
-        phases = record["phases_s"]
-        self.assertLessEqual({"read", "transform", "refine", "extract", "write"}, set(phases))
-        self.assertGreaterEqual(min(phases.values()), 0)
-        counted = sum(phases.values()) - phases["write"]
-        self.assertAlmostEqual(record["cells_per_second"] * counted / record["cells"], 1, places=6)
-        self.assertAlmostEqual(record["refine_cells_per_second"] * phases["refine"] / record["cells"], 1, places=6)
-        self.assertGreater(record["peak_rss_bytes"], 1 << 20)
+        image = self.folder / "spheres.nii.gz"
+        self.assert_exit(run_podm("phantom", "spheres", "--size", "32", "-o", image), 0)
+        for source, first_phase in ("phantom:spheres@32", "draw"), (image, "read"):
+            for arguments, more in ([], set()), (["--target-elements", 20000], {"calibrate"}):
+                with self.subTest(source=source, arguments=arguments):
+                    self.runs.unlink(missing_ok=True)
+                    self.assert_exit(self.mesh(*arguments, image=source), 0)
+                    record = self.read_record(self.runs)
+                    phases = record["phases_s"]
+                    self.assertEqual(set(phases), {first_phase, "transform", "allocate", "refine", "extract",
+                                                   "write"} | more)
+                    self.assertGreaterEqual(min(phases.values()), 0)
+                    in_eq_1 = set(phases) - {"draw", "calibrate", "write"}
+                    for rate, counted in (("cells_per_second", in_eq_1), ("refine_cells_per_second", {"refine"})):
+                        seconds = sum(phases[phase] for phase in counted)
+                        self.assertAlmostEqual(record[rate] * seconds / record["cells"], 1, places=6)
+                    self.assertGreater(record["peak_rss_bytes"], 1 << 20)
 
     def test_the_same_run_twice_gives_the_same_mesh(self):
         for _ in range(2):
@@ -117,7 +125,18 @@ class Mesh(PodmTestCase):
             with self.subTest(target=target):
                 self.runs.unlink(missing_ok=True)
                 self.assert_exit(self.mesh("--target-elements", target), 0)
-                self.assertLessEqual(abs(self.read_record(self.runs)["cells"] - target), 0.05 * target)
+                record = self.read_record(self.runs)
+                self.assertLessEqual(abs(record["cells"] - target), 0.05 * target)
+                calibration = record["calibration"]
+                self.assertEqual(calibration["target_elements"], target)
+                self.assertEqual(calibration["radius_mm"], record["used"]["radius_mm"])
+                self.assertEqual(calibration["seconds"], record["phases_s"]["calibrate"])
+                self.assertLessEqual(sum(mesh["seconds"] for mesh in calibration["meshes"]), calibration["seconds"])
+                used = [f"--{key}={record['used'][f'{key}_mm']!r}" for key in ("radius", "delta")]
+                self.assert_exit(self.mesh(*used), 0)
+                again = json.loads(self.runs.read_text().splitlines()[-1])
+                self.assertEqual(again["mesh_sha256"], record["mesh_sha256"])
+                self.assertIsNone(again["calibration"])
 
     def test_surfaces_are_written_for_each_label(self):
         for extension in ("stl", "ply"):

@@ -186,6 +186,20 @@ struct PageSamples {
   std::string unavailable;  ///< why none were asked
 };
 
+/// How the radius for a target number of cells was found: from the image, and from whole meshes that missed.
+struct Calibration {
+  std::uint64_t target_elements = 0;
+  double radius_mm = 0;  ///< found
+  struct TrialMesh {
+    double radius_mm = 0;
+    std::uint64_t cells = 0;
+    double seconds = 0;
+  };
+  std::vector<TrialMesh>
+      meshes;          ///< made and dropped, in this order; the mesh that is returned is not among them
+  double seconds = 0;  ///< of all this: phases_s["calibrate"]
+};
+
 /// The leaves of an octree and when each was refined.
 struct LeafSchedule {
   std::array<double, 3> origin_mm{};  ///< of the grid, image frame
@@ -205,9 +219,13 @@ struct LeafSchedule {
 };
 
 struct MeshingReport {
-  std::map<std::string, double> phases_s;  ///< transform, initial, octree, refine, closing, extract
+  /// Seconds of the mesh that is returned. "transform"; "allocate": store, pools, workers and threads made
+  /// ready; "initial", "octree", "refine", "closing" (of kPodm "refine" alone); "extract". And "calibrate":
+  /// all that finding the radius of a target cost.
+  std::map<std::string, double> phases_s;
   double radius_mm = 0;                    ///< as used; 0 when unbounded
   double delta_mm = 0;                     ///< as used
+  std::optional<Calibration> calibration;  ///< of a target number of cells
   StopReason stop_reason = StopReason::kComplete;
   Guarantees guarantees;
   Quality quality;
@@ -224,7 +242,8 @@ struct MeshingReport {
   std::map<std::uint32_t, double> volume_of_label_mm3;    ///< by label value, of the mesh
   std::uint64_t store_cells = 0;                          ///< cells of the whole virtual box
   std::array<double, 6> virtual_box{};                    ///< its low and high corner, mm, image frame
-  double virtual_s = 0;                                   ///< refinement in virtual time: simulated
+  /// Of Executor::kVirtual: simulated seconds of initial, refine and closing.
+  std::map<std::string, double> virtual_phases_s;
   std::vector<std::string> warnings;
 };
 

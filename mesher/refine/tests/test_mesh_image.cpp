@@ -114,13 +114,27 @@ TEST(MeshImageSizes, LabelsHaveTheirOwnRadius) {
   EXPECT_GT(result.report.cells_of_label.at(20), 3 * result.report.cells_of_label.at(10));
 }
 
-TEST(MeshImageSizes, TargetIsMetWithinFivePercent) {
-  for (const std::uint64_t target : {20000u, 100000u}) {
-    MeshingOptions options;
-    options.target_elements = target;
-    const MeshingResult result = mesh_image(ball(40, 15), options);
-    EXPECT_NEAR(static_cast<double>(result.mesh.cells.size()), static_cast<double>(target),
-                0.05 * static_cast<double>(target));
+TEST(MeshImagePhases, EachAlgorithmTellsItsOwn) {
+  for (const int threads : {1, 3}) {
+    for (const Executor executor : {Executor::kThreads, Executor::kVirtual}) {
+      MeshingOptions options = radius(2);
+      options.threads = threads;
+      options.oversubscribe = true;
+      options.executor = executor;
+      const auto phases = [&](Algorithm algorithm) {
+        options.algorithm = algorithm;
+        std::set<std::string> names;
+        for (const auto& [phase, seconds] : mesh_image(ball(24, 9), options).report.phases_s) {
+          EXPECT_GE(seconds, 0) << phase;
+          names.insert(phase);
+        }
+        return names;
+      };
+      using Names = std::set<std::string>;
+      EXPECT_EQ(phases(Algorithm::kPodm), (Names{"transform", "allocate", "refine", "extract"}));
+      EXPECT_EQ(phases(Algorithm::kPdrPodm),
+                (Names{"transform", "allocate", "initial", "octree", "refine", "closing", "extract"}));
+    }
   }
 }
 

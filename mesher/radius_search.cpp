@@ -1,0 +1,54 @@
+#include "radius_search.h"
+
+#include <algorithm>
+#include <cmath>
+#include <utility>
+
+namespace podm {
+
+RadiusSearch::RadiusSearch(const LabelImage& image, const MeshingOptions& options)
+    : model_(image, options.loop_threads()),
+      options_(options),
+      largest_mm_(std::hypot(image.size[0] * image.spacing[0], image.size[1] * image.spacing[1],
+                             image.size[2] * image.spacing[2])),
+      radius_mm_(radius_for(static_cast<double>(options.target_elements))) {}
+
+MeshingOptions RadiusSearch::at(double radius_mm) const {
+  MeshingOptions options = options_;
+  options.radius_mm = radius_mm;
+  if (options.delta_mm <= 0) options.delta_mm = radius_mm / 2;
+  return options;
+}
+
+// Cells become fewer as the radius grows.
+double RadiusSearch::radius_for(double cells) const {
+  double low = 1e-9 * largest_mm_, high = largest_mm_;
+  while (high / low > 1.0001) {
+    const double radius = std::sqrt(low * high);
+    (model_.cells(at(radius)) > cells ? low : high) = radius;
+  }
+  return high;
+}
+
+// The first mesh tells by what factor the model errs, more of them how cells follow the radius: not by a
+// power where a sheet comes or goes with it, but between one that has too many and one that has too few.
+void RadiusSearch::learn(double cells) {
+  const double target = static_cast<double>(options_.target_elements);
+  const Sample mesh{radius_mm_, cells};
+  std::optional<Sample>& near = cells > target ? too_many_ : too_few_;
+  const std::optional<Sample> before = std::exchange(near, mesh);
+  const auto to_target = [&](double exponent) { return std::pow(target / cells, 1 / exponent); };
+  const auto exponent_between = [](const Sample& a, const Sample& b) {
+    return std::log(a.cells / b.cells) / std::log(a.radius_mm / b.radius_mm);
+  };
+  if (too_many_ && too_few_) {
+    radius_mm_ *= to_target(exponent_between(*too_many_, *too_few_));
+  } else if (before) {
+    radius_mm_ *= to_target(std::clamp(exponent_between(*before, mesh), -4.0, -0.5));
+    radius_mm_ = std::min(radius_mm_, largest_mm_);
+  } else {
+    radius_mm_ = radius_for(target / cells * model_.cells(at(radius_mm_)));
+  }
+}
+
+}  // namespace podm
