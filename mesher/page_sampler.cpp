@@ -14,13 +14,12 @@ class Question {
   /// Some of `size` elements, spread evenly.
   template <class AddressOf, class NodeOf>
   void add(const std::string& name, std::size_t size, const AddressOf& address_of, const NodeOf& node_of) {
-    arrays_.push_back({name, addresses_.size(), 0});
     const std::size_t step = std::max<std::size_t>(1, size / kMostSamples);
     for (std::size_t i = 0; i < size; i += step) {
       addresses_.push_back(address_of(i));
       nodes_.push_back(node_of(i));
     }
-    arrays_.back().end = addresses_.size();
+    arrays_.push_back({name, addresses_.size()});
   }
   void add(const SampledAccesses& accesses) {
     for (const void* address : accesses.addresses) {
@@ -36,7 +35,7 @@ class Question {
  private:
   struct Array {
     std::string name;
-    std::size_t begin, end;  // of addresses_
+    std::size_t end;  // of its part of addresses_, which begins where the last one ends
   };
   std::vector<Array> arrays_;
   std::vector<const void*> addresses_;

@@ -175,7 +175,8 @@ TEST_F(CounterToolTest, LikwidThatDoesNotKnowTheProcessorSaysSoInItsOwnWords) {
 TEST_F(CounterToolTest, TheRealLikwidCountsOrSaysWhyNot) {
   for (const char* group : {"CACHE", "NUMA"}) {
     const Likwid likwid(group, kSourcesOfGroups, folder_.path());
-    if (likwid.absence() == "likwid-perfctr is not installed") GTEST_SKIP() << likwid.absence();
+    if (likwid.absence() == "likwid-perfctr is not installed")
+      GTEST_SKIP() << "skipped: " << likwid.absence();
     if (likwid.absence().empty()) continue;
     EXPECT_TRUE(likwid.absence().starts_with("likwid-perfctr")) << likwid.absence();
     EXPECT_EQ(likwid.absence().find('\n'), std::string::npos) << "one line of a row";

@@ -125,6 +125,14 @@ class Rows(unittest.TestCase):
         for key, value in (("schema", 2), ("key", "x"), ("repeat", 0), ("status", "skipped"), ("harness_s", -1),
                            ("replay", "maybe"), ("resolved", {}), ("side_by_side", []), ("input", {"path": "a"})):
             self.assertFalse(VALIDATOR.is_valid(self.made[0] | {key: value}), key)
+        by_hops = {kind: [5, 1] for kind in ("mesh_reads", "mesh_writes", "image_reads", "transform_reads")}
+        of_array = {"as_claimed": 9, "elsewhere": 0, "untouched": 1}
+        pages = dict.fromkeys(("cells", "cell_states", "vertices"), of_array) | {"accesses_by_hops": [5, 1]}
+        for key, good, bad in (("hops", [5, 1], [5]), ("hops", "unavailable: w", 0), ("hops_by_kind", by_hops, {}),
+                               ("hops_by_kind", by_hops | {"image_reads": "unavailable: w"}, "none"),
+                               ("pages", {"refine": pages}, {"refine": pages | {"cells": {}}}), ("pages", {}, 0)):
+            self.assertTrue(VALIDATOR.is_valid(self.made[0] | {key: good}), key)
+            self.assertFalse(VALIDATOR.is_valid(self.made[0] | {key: bad}), key)
         counters = {"zero": 0, "without source": {"value": 1}, "reason": "none", "share": {"value": 1, "source": "s", "running_share": 1}}
         for name, counter in counters.items():
             row = copy.deepcopy(self.made[0])
