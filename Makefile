@@ -2,7 +2,7 @@
 
 MARCH = $(if $(NATIVE),native,x86-64-v3)
 CMAKE_FLAGS ?=
-CONFIGURE = cmake -S . -B build -G Ninja -DPODM_MARCH=$(MARCH) $(CMAKE_FLAGS)
+CONFIGURE = cmake -S . -B build -G Ninja -DPODM_MARCH=$(MARCH) -DPODM_UNITE=ON $(CMAKE_FLAGS)
 FIGURES = results/runs/figures
 INPUTS = --records results/runs --verified $(FIGURES)/abdomen_verified.json \
   --schedule $(FIGURES)/abdomen_leaves.jsonl --mesh $(FIGURES)/abdomen.vtu
