@@ -61,6 +61,21 @@ void add_list(CLI::App& program, int& exit_code) {
   app.callback([folder, &exit_code] { exit_code = list(*folder); });
 }
 
+void add_verdicts(CLI::App& program, int& exit_code) {
+  struct State {
+    std::vector<std::string> experiment_paths;
+    std::string results_folder = "results/runs", json_path;
+  };
+  const auto state = std::make_shared<State>();
+  CLI::App& app = *program.add_subcommand("verdicts", "judge the claims of experiments by their rows");
+  app.add_option("EXPERIMENT", state->experiment_paths, "files of experiments/")->required();
+  app.add_option("--results", state->results_folder, "folder of the JSON lines [default: results/runs]");
+  app.add_option("--json", state->json_path, "also write them as JSON to this file [default: none]");
+  app.callback([state, &exit_code] {
+    exit_code = verdicts(state->experiment_paths, state->results_folder, state->json_path);
+  });
+}
+
 void add_latency(CLI::App& program, int& exit_code) {
   const auto path = std::make_shared<std::string>();
   CLI::App& app = *program.add_subcommand("latency", "measure a load from each level of memory, Table 3");
@@ -106,6 +121,7 @@ int main_or_throw(int argc, char** argv) {
   int exit_code = 0;
   add_run(program, exit_code);
   add_list(program, exit_code);
+  add_verdicts(program, exit_code);
   add_latency(program, exit_code);
   add_compare(program, exit_code);
   add_gate(program, exit_code);

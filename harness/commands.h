@@ -34,6 +34,11 @@ int dry_run(const RunCommand& command);
 /// Prints title, tier, trials and time of the experiments in a folder.
 int list(const std::string& folder);
 
+/// Judges the claims of experiments by the rows of a folder of results and prints a table of the verdicts;
+/// writes them as JSON too unless `json_path` is empty. No verdict changes the exit code.
+int verdicts(const std::vector<std::string>& experiment_paths, const std::string& results_folder,
+             const std::string& json_path);
+
 /// Measures a load from each level of memory (memory_levels.h) and writes it as one line of JSON to the file,
 /// or prints it where `record_path` is empty.
 int latency(const std::string& record_path);

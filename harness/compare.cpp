@@ -9,6 +9,7 @@
 #include <optional>
 #include <set>
 
+#include "record.h"
 #include "statistics.h"
 #include "table.h"
 
@@ -20,23 +21,8 @@ using Rows = std::vector<Json>;
 
 constexpr double kNegligible = 1.02;
 
-Json at(const Json& row, const char* place) { return row.value(Json::json_pointer(place), Json()); }
-
-std::optional<double> number_at(const Json& row, const char* place) {
-  const Json value = at(row, place);
-  return value.is_number() ? std::optional<double>(value.get<double>()) : std::nullopt;
-}
-
 std::optional<double> seconds(const Json& row, const char* phases) {
   return at(row, phases).is_object() ? std::optional<double>(meshing_seconds(row)) : std::nullopt;
-}
-
-std::optional<double> sum_at(const Json& row, const char* place) {
-  const Json parts = at(row, place);
-  if (!parts.is_object()) return {};
-  double sum = 0;
-  for (const Json& part : parts) sum += part.get<double>();
-  return sum;
 }
 
 enum class Better { kLess, kMore, kNeither };

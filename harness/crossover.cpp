@@ -54,14 +54,6 @@ void add(const Json& row, std::map<std::string, Series>& all) {
   (algorithm == "podm" ? rates.podm : rates.pdr_podm).push_back(cells / meshing_seconds(row));
 }
 
-// Some keys of an object, those that it has.
-Json part_of(const Json& object, std::initializer_list<const char*> keys) {
-  Json part = Json::object();
-  for (const char* key : keys)
-    if (object.contains(key)) part[key] = object[key];
-  return part;
-}
-
 Json crossover_of(const Series& series) {
   Json threshold, measurements = Json::array();
   bool is_ahead = true;
@@ -85,8 +77,7 @@ Json crossover_of(const Series& series) {
   return {{"schema", kSchema},
           {"threads", threshold},
           {"measured_up_to", most},
-          {"machine", part_of(row.value("environment", Json::object()),
-                              {"cpu", "packages", "numa_nodes", "cores", "processors", "usable_processors"})},
+          {"machine", machine_of(row)},
           {"podm", row.value(Json::json_pointer("/programs/podm"), Json())},
           {"experiment", text_in(row, "experiment")},
           {"trial", text_in(row, "trial").substr(0, text_in(row, "trial").find(','))},

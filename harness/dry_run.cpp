@@ -99,8 +99,8 @@ int dry_run(const RunCommand& command) {
   TrialKeys keys(mesher_sha256, this_machine().summary, Peers(command.programs.peers, command.programs.podm));
   Preparer preparer(command.programs.podm, mesher_sha256, command.results_folder);
   for (const Experiment& experiment : experiments) {
-    const Plan plan =
-        make_plan(command, experiment, read_rows(rows_path(command, experiment)).rows, preparer, keys);
+    const Plan plan = make_plan(
+        command, experiment, read_rows(rows_path(command.results_folder, experiment)).rows, preparer, keys);
     if (plan.turns.empty()) continue;
     const std::vector<Count> counts = counts_of(plan);
     fmt::print("{}\n", experiment.title);

@@ -141,6 +141,19 @@ std::vector<Trial> read_trials(Section& section, const Inputs& inputs, const Tri
   return trials;
 }
 
+std::vector<Claim> read_claims(Section& file, const std::vector<Trial>& trials) {
+  std::vector<ClaimedTrial> claimed;
+  for (const Trial& trial : trials) claimed.push_back({stem_of(trial.name), complete_options(trial.options)});
+  std::vector<Claim> claims;
+  std::set<std::string> names;
+  for (Section& section : file.table_array("claims")) {
+    claims.push_back(read_claim(section, claimed));
+    if (!names.insert(claims.back().name).second)
+      section.fail(section.place("name"), fmt::format("a second claim '{}'", claims.back().name));
+  }
+  return claims;
+}
+
 }  // namespace
 
 std::string to_string(Tier tier) { return kTierNames[static_cast<std::size_t>(tier)]; }
@@ -167,7 +180,6 @@ Experiment read_experiment(const std::string& path, const std::vector<std::strin
   experiment.title = file.text("title");
   experiment.claim = file.text("claim");
   experiment.paper = file.text("paper", "");
-  experiment.tolerance = file.text("tolerance", "");
   experiment.expected_minutes = file.positive("expected_minutes", 0);
   experiment.stores_crossover = file.flag("stores_crossover");
   Trial head;
@@ -182,6 +194,7 @@ Experiment read_experiment(const std::string& path, const std::vector<std::strin
         section.fail(section.place("name"), fmt::format("a second trial '{}'", trial.name));
       experiment.trials.push_back(std::move(trial));
     }
+  experiment.claims = read_claims(file, experiment.trials);
   file.done();
   return experiment;
 }

@@ -7,6 +7,7 @@
 #include <string>
 #include <vector>
 
+#include "claim.h"
 #include "errors.h"
 
 namespace podm::bench {
@@ -31,12 +32,13 @@ struct Trial {
 };
 
 struct Experiment {
-  std::string name;                            ///< the file's name without .toml
-  std::string title, claim, paper, tolerance;  ///< the last two may be empty
+  std::string name;                 ///< the file's name without .toml
+  std::string title, claim, paper;  ///< the last may be empty
   Tier tier = Tier::kDefault;
   double expected_minutes = 0;
   bool stores_crossover = false;  ///< at its end, for podm mesh --algorithm auto: crossover.h
   std::vector<Trial> trials;      ///< the matrix, expanded, in the order of the file
+  std::vector<Claim> claims;      ///< what its rows are to show; at least one
 
   /// Times that a mesh is made, warm-ups included.
   std::size_t num_turns() const;

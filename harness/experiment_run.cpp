@@ -17,6 +17,7 @@
 #include "sha256.h"
 #include "stopwatch.h"
 #include "table.h"
+#include "verdicts.h"
 
 namespace podm::bench {
 namespace {
@@ -73,7 +74,7 @@ class ExperimentRun {
       : session_(session),
         experiment_(experiment),
         plan_(std::move(plan)),
-        path_(rows_path(session.command, experiment)),
+        path_(rows_path(session.command.results_folder, experiment)),
         file_(path_),
         rows_(plan_.trials.size()) {}
 
@@ -87,6 +88,7 @@ class ExperimentRun {
       rows_[planned.turn.trial].push_back(planned.row ? *planned.row : run_turn(planned, progress, clock));
     }
     fmt::print("{}Recorded in {}\n", format_table(rows_), path_);
+    if (!session_.is_interrupted()) print_verdicts();
     if (experiment_.stores_crossover && !session_.is_interrupted()) store_crossover();
     return !session_.is_interrupted() && summarize();
   }
@@ -180,6 +182,13 @@ class ExperimentRun {
                                          trial.name, turn.is_warmup ? "warmup" : "repeat", turn.repeat);
     scratch.keep(path);
     fmt::print(stderr, "kept: {}\n", path);
+  }
+
+  // By the turns asked for, as for the crossover below.
+  void print_verdicts() const {
+    std::vector<Json> rows;
+    for (const auto& of_trial : rows_) rows.insert(rows.end(), of_trial.begin(), of_trial.end());
+    fmt::print("\n{}", format_verdicts({judge(experiment_, rows)}));
   }
 
   // Of the turns asked for: their keys make them this machine's and this mesher's.

@@ -59,8 +59,8 @@ std::vector<Experiment> read_experiments(const RunCommand& command) {
                                command.tier ? " --tier " + to_string(*command.tier) : ""));
 }
 
-std::string rows_path(const RunCommand& command, const Experiment& experiment) {
-  return fmt::format("{}/{}.jsonl", command.results_folder, experiment.name);
+std::string rows_path(const std::string& results_folder, const Experiment& experiment) {
+  return fmt::format("{}/{}.jsonl", results_folder, experiment.name);
 }
 
 Plan make_plan(const RunCommand& command, const Experiment& experiment, const std::vector<Json>& rows,

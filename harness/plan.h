@@ -35,7 +35,7 @@ struct Plan {
 /// All experiments of the command, read before anything runs.
 std::vector<Experiment> read_experiments(const RunCommand& command);
 
-std::string rows_path(const RunCommand& command, const Experiment& experiment);
+std::string rows_path(const std::string& results_folder, const Experiment& experiment);
 
 /// `rows` are those recorded for the experiment before.
 Plan make_plan(const RunCommand& command, const Experiment& experiment,

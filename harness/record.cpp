@@ -84,6 +84,29 @@ std::optional<double> number_in(const Json& row, const char* key) {
   return found != row.end() && found->is_number() ? std::optional<double>(*found) : std::nullopt;
 }
 
+Json at(const Json& row, const std::string& place) { return row.value(Json::json_pointer(place), Json()); }
+
+std::optional<double> number_at(const Json& row, const char* place) {
+  const Json value = at(row, place);
+  return value.is_number() ? std::optional<double>(value.get<double>()) : std::nullopt;
+}
+
+std::optional<double> sum_at(const Json& row, const char* place) {
+  const Json parts = at(row, place);
+  if (!parts.is_structured()) return {};
+  double sum = 0;
+  for (const Json& part : parts) sum += part.get<double>();
+  return sum;
+}
+
+Json machine_of(const Json& row) {
+  Json machine = Json::object();
+  const Json environment = row.value("environment", Json::object());
+  for (const char* key : {"cpu", "packages", "numa_nodes", "cores", "processors", "usable_processors"})
+    if (environment.contains(key)) machine[key] = environment[key];
+  return machine;
+}
+
 bool is_finished(const Json& row) {
   const std::string status = text_in(row, "status");
   return status == to_string(Status::kOk) || status == to_string(Status::kUnmet);

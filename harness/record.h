@@ -37,6 +37,16 @@ std::string text_in(const nlohmann::ordered_json& row, const char* key);
 /// The number at `key`; nothing when there is none.
 std::optional<double> number_in(const nlohmann::ordered_json& row, const char* key);
 
+/// What is at a place of a row, "/process/counters"; null when there is nothing.
+nlohmann::ordered_json at(const nlohmann::ordered_json& row, const std::string& place);
+/// The number at a place; nothing when there is none.
+std::optional<double> number_at(const nlohmann::ordered_json& row, const char* place);
+/// The sum of the members of the object or list at a place; nothing when there is none.
+std::optional<double> sum_at(const nlohmann::ordered_json& row, const char* place);
+
+/// Processor and numbers of packages, nodes, cores and processors of the row's machine, as far as it tells.
+nlohmann::ordered_json machine_of(const nlohmann::ordered_json& row);
+
 /// Whether a row holds a mesh that met its guarantees or is known not to: "ok" or "unmet".
 bool is_finished(const nlohmann::ordered_json& row);
 

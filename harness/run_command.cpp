@@ -40,8 +40,9 @@ int run(const RunCommand& command) {
   Session session(command, mesher_sha256, this_machine(), [] { return interrupted.load(); });
   std::vector<Plan> plans;  // all, so that a bad file is refused before anything runs
   for (const Experiment& experiment : experiments)
-    plans.push_back(make_plan(command, experiment, recorded_rows(rows_path(command, experiment)),
-                              session.preparer, session.keys));
+    plans.push_back(make_plan(command, experiment,
+                              recorded_rows(rows_path(command.results_folder, experiment)), session.preparer,
+                              session.keys));
   bool all_well = true;
   for (std::size_t i = 0; i < experiments.size() && !interrupted; ++i)
     if (!plans[i].turns.empty())

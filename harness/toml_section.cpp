@@ -2,6 +2,8 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
+#include <cmath>
 #include <filesystem>
 #include <limits>
 
@@ -24,6 +26,12 @@ void Section::fail(const toml::source_region& place, const std::string& fault) c
 std::string Section::text_of(const toml::node& node, std::string_view key) const {
   const auto value = node.value_exact<std::string>();
   if (!value || value->empty()) fail(node.source(), fmt::format("{} must be a non-empty string", key));
+  return *value;
+}
+
+double Section::number_of(const toml::node& node, std::string_view key) const {
+  const auto value = node.is_number() ? node.value<double>() : std::nullopt;
+  if (!value || !std::isfinite(*value)) fail(node.source(), fmt::format("{} must be a number", key));
   return *value;
 }
 
@@ -65,6 +73,11 @@ double Section::positive(std::string_view key, double otherwise) {
   return node == nullptr ? otherwise : positive_of(*node, key);
 }
 
+std::optional<double> Section::number(std::string_view key) {
+  const toml::node* node = find(key);
+  return node == nullptr ? std::nullopt : std::optional(number_of(*node, key));
+}
+
 std::int64_t Section::count(std::string_view key, std::int64_t otherwise, std::int64_t least,
                             std::int64_t most) {
   const toml::node* node = find(key);
@@ -79,6 +92,25 @@ std::vector<const toml::node*> Section::values(std::string_view key) {
   for (const toml::node& member : *node->as_array()) members.push_back(&member);
   if (members.empty()) fail(node->source(), fmt::format("{} must not be empty", key));
   return members;
+}
+
+Section Section::table(std::string_view key) {
+  const toml::node& node = required(key);
+  if (!node.is_table()) fail(node.source(), fmt::format("{} must be a table", key));
+  return {path_, *node.as_table(), std::string(key)};
+}
+
+std::vector<std::string> Section::keys() {
+  std::vector<const toml::key*> keys;
+  for (const auto& [key, node] : *table_) keys.push_back(&key);
+  std::sort(keys.begin(), keys.end(), [](const toml::key* a, const toml::key* b) {
+    return std::pair(a->source().begin.line, a->source().begin.column) <
+           std::pair(b->source().begin.line, b->source().begin.column);
+  });
+  std::vector<std::string> names;
+  for (const toml::key* key : keys) names.emplace_back(key->str());
+  asked_.insert(names.begin(), names.end());
+  return names;
 }
 
 std::vector<std::pair<std::string, Section>> Section::tables(std::string_view key) {

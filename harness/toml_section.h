@@ -4,6 +4,7 @@
 #include <toml++/toml.h>
 
 #include <cstdint>
+#include <optional>
 #include <set>
 #include <string>
 #include <utility>
@@ -27,6 +28,7 @@ class Section {
   const toml::source_region& place(std::string_view key) const { return table_->find(key)->second.source(); }
   bool has(std::string_view key) const { return table_->contains(key); }
   bool is_array(std::string_view key) const { return has(key) && table_->get(key)->is_array(); }
+  bool is_table(std::string_view key) const { return has(key) && table_->get(key)->is_table(); }
   bool is_text(std::string_view key, std::string_view text) const {
     return has(key) && table_->get(key)->value<std::string>() == text;
   }
@@ -36,9 +38,15 @@ class Section {
   std::string text(std::string_view key, const std::string& otherwise);
   bool flag(std::string_view key);
   double positive(std::string_view key, double otherwise);
+  /// Any number; nothing when the key is absent.
+  std::optional<double> number(std::string_view key);
   std::int64_t count(std::string_view key, std::int64_t otherwise, std::int64_t least, std::int64_t most);
   /// The members of an array, or the one value; none when the key is absent. An empty array is refused.
   std::vector<const toml::node*> values(std::string_view key);
+  /// The table at `key`, which is there.
+  Section table(std::string_view key);
+  /// In the order of the file, each asked for.
+  std::vector<std::string> keys();
   /// The tables [key.NAME], by name.
   std::vector<std::pair<std::string, Section>> tables(std::string_view key);
   /// The tables [[key]], in the order of the file.
@@ -48,6 +56,7 @@ class Section {
 
   std::string text_of(const toml::node& node, std::string_view key) const;
   bool flag_of(const toml::node& node, std::string_view key) const;
+  double number_of(const toml::node& node, std::string_view key) const;
   double positive_of(const toml::node& node, std::string_view key) const;
   std::int64_t count_of(const toml::node& node, std::string_view key, std::int64_t least,
                         std::int64_t most) const;

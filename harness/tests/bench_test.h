@@ -30,7 +30,7 @@ radius_mm = 2
 [[trials]]
 name = "three"
 input = "b"
-)";
+)" + kClaim;
 
 class BenchTest : public testing::Test {
  protected:

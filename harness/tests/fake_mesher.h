@@ -39,6 +39,17 @@ class TemporaryFolder {
   std::string path_;
 };
 
+/// The claim of an experiment that is about something else; comes last.
+inline const std::string kClaim = R"(
+[[claims]]
+name = "all-pass"
+statement = "Every trial passes."
+basis = "any"
+kind = "share"
+value = "passed"
+at_least = 1.0
+)";
+
 /// What a healthy mesher records; `cells` a second are refined in 2 s of meshing and 5 s of writing.
 inline const std::string kGoodRecord =
     R"({"schema":1,"input":{"path":"image.nii","sha256":"00"},"cells":1000,"vertices":300,)"

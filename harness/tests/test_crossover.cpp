@@ -104,7 +104,7 @@ image = "phantom:torus"
 name = "some"
 input = "a"
 algorithm = ["podm", "pdr-podm"]
-)");
+)" + kClaim);
   std::string faster = kGoodRecord;
   faster.replace(faster.find("\"read\":0.5"), 10, "\"read\":0.1");
   const std::string podm =

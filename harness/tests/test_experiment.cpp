@@ -24,7 +24,10 @@ input = "a"
 
 class ExperimentTest : public testing::Test {
  protected:
-  Experiment read(const std::string& text) { return read_experiment(folder_.write("some.toml", text)); }
+  Experiment read(const std::string& text) {
+    const bool has_claims = text.find("[[claims]]") != std::string::npos;
+    return read_experiment(folder_.write("some.toml", has_claims ? text : text + kClaim));
+  }
   // What read_experiment() says of the text, without the folder.
   std::string fault(const std::string& text) {
     try {
@@ -44,7 +47,6 @@ TEST_F(ExperimentTest, EveryKeyIsRead) {
 title = "Title"
 claim = "Claim"
 paper = "Table 1"
-tolerance = "Some text"
 tier = "full"
 expected_minutes = 1.5
 stores_crossover = true
@@ -77,7 +79,8 @@ target_elements = 1_000
   EXPECT_EQ(experiment.title, "Title");
   EXPECT_EQ(experiment.claim, "Claim");
   EXPECT_EQ(experiment.paper, "Table 1");
-  EXPECT_EQ(experiment.tolerance, "Some text");
+  ASSERT_EQ(experiment.claims.size(), 1u);
+  EXPECT_EQ(experiment.claims[0].name, "all-pass");
   EXPECT_EQ(experiment.tier, Tier::kFull);
   EXPECT_EQ(experiment.expected_minutes, 1.5);
   EXPECT_TRUE(experiment.stores_crossover);
@@ -215,7 +218,7 @@ TEST_F(ExperimentTest, ElementsPerThreadGrowWithTheThreads) {
 
 TEST_F(ExperimentTest, MeasurementOfTheMachineNeedsNoInput) {
   const std::string path = folder_.write(
-      "some.toml", "title = 'T'\nclaim = 'C'\n[[trials]]\nname = 'x'\nmeasure = 'memory_latency'\n");
+      "some.toml", "title = 'T'\nclaim = 'C'\n[[trials]]\nname = 'x'\nmeasure = 'memory_latency'\n" + kClaim);
   for (const std::vector<std::string>& images :
        {std::vector<std::string>{}, {"mine.nii"}, {"mine.nii", "yours.nii"}}) {
     const auto trials = read_experiment(path, images).trials;
@@ -226,9 +229,9 @@ TEST_F(ExperimentTest, MeasurementOfTheMachineNeedsNoInput) {
 }
 
 TEST_F(ExperimentTest, ImagesStandForAllInputs) {
-  const std::string path =
-      folder_.write("some.toml", kHead + "[inputs.b]\nimage = 'b.nii'\nif_exists = true\n" +
-                                     "[[trials]]\nname = 'x'\ninput = ['a', 'b']\nthreads = [1, 2]\n");
+  const std::string path = folder_.write(
+      "some.toml", kHead + "[inputs.b]\nimage = 'b.nii'\nif_exists = true\n" +
+                       "[[trials]]\nname = 'x'\ninput = ['a', 'b']\nthreads = [1, 2]\n" + kClaim);
   EXPECT_EQ(read_experiment(path).trials.size(), 4u);
   const auto trials = read_experiment(path, {"mine.nii"}).trials;
   ASSERT_EQ(trials.size(), 2u);
@@ -246,7 +249,8 @@ TEST_F(ExperimentTest, ImagesStandForAllInputs) {
 
 TEST_F(ExperimentTest, ImageGrowsWithTheThreads) {
   const std::string text = "title='T'\nclaim='C'\n[inputs.a]\nimage='phantom:torus@100'\n" + kTrial +
-                           "threads = [1, 8]\ntarget_elements_per_thread = 1000\nimage_grows = true\n";
+                           "threads = [1, 8]\ntarget_elements_per_thread = 1000\nimage_grows = true\n" +
+                           kClaim;
   const auto trials = read(text).trials;
   ASSERT_EQ(trials.size(), 2u);
   EXPECT_EQ(trials[0].image, "phantom:torus@100");
@@ -296,10 +300,10 @@ TEST_F(ExperimentTest, OtherMeshersTakeRadiusDeltaAndThreadsAlone) {
 }
 
 // What stands in experiments/ is complete, and each has a part for every reader's patience.
-TEST(Experiments, StateClaimToleranceAndTimeAndHaveAKickTiresTier) {
+TEST(Experiments, StateClaimsAndTimeAndHaveAKickTiresTier) {
   for (const std::string& path : experiment_files(PODM_EXPERIMENTS)) {
     const Experiment experiment = read_experiment(path);
-    EXPECT_NE(experiment.tolerance, "") << path;
+    EXPECT_FALSE(experiment.claims.empty()) << path;
     EXPECT_GT(experiment.expected_minutes, 0) << path;
     std::set<Tier> tiers;
     for (const Trial& trial : experiment.trials) tiers.insert(trial.tier);

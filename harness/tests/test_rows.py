@@ -14,6 +14,16 @@ ROOT = pathlib.Path(__file__).resolve().parents[2]
 VALIDATOR = jsonschema.Draft202012Validator(
     json.loads((ROOT / "results/schema/podm-bench-row.schema.json").read_text()))
 
+CLAIM = """
+[[claims]]
+name = "all-pass"
+statement = "Every trial passes."
+basis = "any"
+kind = "share"
+value = "passed"
+at_least = 1.0
+"""
+
 EXPERIMENT = """
 title = "T"
 claim = "C"
@@ -31,7 +41,7 @@ def rows_of(experiment, mesh_body=None):
     """The rows of a run of the experiment with the mesher, or with a shell script in its place."""
     with tempfile.TemporaryDirectory() as folder:
         path = pathlib.Path(folder, "exp.toml")
-        path.write_text(experiment)
+        path.write_text(experiment + CLAIM)
         podm = os.environ["PODM"]
         if mesh_body:
             podm = path.with_name("podm")
@@ -160,7 +170,8 @@ class Rows(unittest.TestCase):
     def test_podm_follows_the_crossover_that_is_stored(self):
         with tempfile.TemporaryDirectory() as folder:
             path = pathlib.Path(folder, "exp.toml")
-            path.write_text("stores_crossover = true" + EXPERIMENT + 'algorithm = ["podm", "pdr-podm"]\nradius_mm = 12\n')
+            path.write_text("stores_crossover = true" + EXPERIMENT + 'algorithm = ["podm", "pdr-podm"]\nradius_mm = 12\n' +
+                            CLAIM)
             subprocess.run([os.environ["PODM_BENCH"], "run", path, "--results", folder, "--podm", os.environ["PODM"],
                             "--verifier", "none"], check=True, capture_output=True, timeout=200)
             stored = path.with_name("crossover.json")

@@ -1,0 +1,55 @@
+// The numbers of a row that claims of experiments speak of, by name. experiments/README.md lists them.
+#pragma once
+
+#include <nlohmann/json.hpp>
+#include <optional>
+#include <span>
+#include <string>
+
+namespace podm::bench {
+
+/// Where a row's numbers come from. A row is simulated when its workers or its caches are, or its machine is
+/// a described one.
+enum class Basis { kMeasured, kSimulated, kAny };
+/// "measured", "simulated", "any".
+std::string to_string(Basis basis);
+
+/// A number, or why a row has none.
+struct Value {
+  std::optional<double> number;
+  std::string absence;
+};
+
+enum class Better { kLess, kMore };
+
+/// What a measure's numbers are of; it decides which rows have one and what may stand together.
+enum class Meaning {
+  kClock,         ///< time of the clock: of measured rows alone
+  kVirtualClock,  ///< virtual time: of simulated rows alone
+  kCost,          ///< work, losses, accesses: measured and simulated ones never in one claim
+  kFaults,        ///< faults of a mesh, whoever made it, and whatever it misses
+  kAnswer,        ///< 1 or 0, of such a mesh
+  kOutcome,       ///< 1 or 0, of a trial, also one without a mesh
+};
+
+struct Measure {
+  const char* name;
+  const char* unit;
+  Better better;
+  Meaning meaning;
+  Value (*read)(const nlohmann::ordered_json& row);
+  /// Where it is there, the measure is the growth of read() over that of `per` from the smallest to the
+  /// largest target_elements: what is the same for both, reading the image, falls out.
+  Value (*per)(const nlohmann::ordered_json& row) = nullptr;
+};
+
+std::span<const Measure> measures();
+/// Null where there is none of this name.
+const Measure* find_measure(const std::string& name);
+/// Whether a claim of this basis may ask for the measure.
+bool fits(const Measure& measure, Basis basis);
+/// Whether its numbers vary from repeat to repeat and are told by their median; others hold of each row.
+bool varies(const Measure& measure);
+bool is_yes_or_no(const Measure& measure);
+
+}  // namespace podm::bench

@@ -1,0 +1,268 @@
+// Every claim of every experiment in experiments/, by rows made up from the claim's own form: some bear it
+// out, some break it, some decide nothing. What the kinds mean is in test_judge.cpp, what the measures read
+// in test_measure.cpp.
+#include <fnmatch.h>
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <functional>
+
+#include "experiment.h"
+#include "judge.h"
+#include "made_up_rows.h"
+#include "mesher_options.h"
+
+namespace podm::bench {
+namespace {
+
+using Json = nlohmann::ordered_json;
+using Rows = std::vector<Json>;
+
+constexpr double kMuch = 1e6;  // so that counts, which are whole, keep small differences
+
+// Makes the row's measure so much.
+void set_value(Json& row, const std::string& measure, double value) {
+  const double threads = row["asked"]["threads"];
+  const Json counts = {{"radius_edge", value}};
+  const auto set_rate = [&](double cells_per_second) {
+    row["cells"] = kMuch * cells_per_second;
+    row["phases_s"] = {{"refine", kMuch}};
+  };
+  const auto levels = [&](double first, double second, double own, double other) {
+    row["memory_levels"] = {{{"module", "L1 cache"}, {"cycles", first}},
+                            {{"module", "L2 cache"}, {"cycles", second}},
+                            {{"module", "memory of the own node 0"}, {"cycles", own}},
+                            {{"module", "memory of another node 1"}, {"cycles", other}}};
+  };
+  const std::map<std::string, std::function<void()>> setters = {
+      {"seconds",
+       [&] {
+         row["phases_s"] = {{"refine", value}};
+       }},
+      {"refining_seconds",
+       [&] {
+         row["phases_s"] = {{"refine", value}};
+       }},
+      {"cells_per_second", [&] { set_rate(value); }},
+      {"cells_per_second_and_core", [&] { set_rate(value * threads); }},
+      {"refining_cells_per_second", [&] { set_rate(value); }},
+      {"refining_cells_per_second_and_core", [&] { set_rate(value * threads); }},
+      {"side_by_side_refining_cells_per_second", [&] { set_rate(value); }},
+      {"virtual_refining_seconds",
+       [&] {
+         row["virtual"] = {{"refine_s", value}};
+       }},
+      {"virtual_cells_per_second",
+       [&] {
+         row["cells"] = value;
+         row["virtual"] = {{"refine_s", 1.0}};
+       }},
+      {"lost_seconds",
+       [&] {
+         row["overhead_s"] = {{"contention", value}, {"rollback", 0.0}, {"begging", 0.0}};
+       }},
+      {"contention_seconds",
+       [&] {
+         row["overhead_s"] = {{"contention", value}};
+       }},
+      {"rollback_seconds",
+       [&] {
+         row["overhead_s"] = {{"rollback", value}};
+       }},
+      {"begging_seconds",
+       [&] {
+         row["overhead_s"] = {{"begging", value}};
+       }},
+      {"deferred_operations",
+       [&] {
+         row["outcomes"] = {{"out_of_leaf", value}};
+       }},
+      {"zero_hop_share",
+       [&] {
+         row["hops"] = {value, 1 - value};
+       }},
+      {"zero_hop_share_of_all_kinds",
+       [&] {
+         row["hops_by_kind"] = {{"mesh_reads", {value, 1 - value}}};
+       }},
+      {"last_level_misses_per_further_insertion",
+       [&] {
+         const double size = row["asked"]["target_elements"];
+         const bool is_likwid = row["asked"].value("counters", "").starts_with("likwid");
+         row["counters"] = {{"insertions", {{"R1", size}}}};
+         row["process"]["counters"] = {
+             {is_likwid ? "MEM_LOAD_RETIRED_L3_MISS" : "llc_load_misses", {{"value", value * size}}}};
+       }},
+      {"first_cache_cycles", [&] { levels(value, 100, 1000, 2000); }},
+      {"least_step_between_levels", [&] { levels(100, 100 * value, 100 * value * value, 5000); }},
+      {"memory_over_last_cache", [&] { levels(4, 100, 100 * value, 5000); }},
+      {"other_node_over_own", [&] { levels(4, 10, 100, 100 * value); }},
+      {"guarantee_misses", [&] { row["guarantees"] = counts; }},
+      {"unproved_claims",
+       [&] {
+         row["verdicts"] = {{"structure", "pass"}};
+         for (int i = 0; i < value; ++i)
+           row["verdicts"]["claim " + std::to_string(i)] = i == 0 ? "fail" : "not_run";
+       }},
+      {"conformity_proved",
+       [&] {
+         row["verdicts"] = {{"conformity", value == 1 ? "pass" : "fail"}};
+       }},
+      {"fidelity_proved",
+       [&] {
+         row["verdicts"] = {{"fidelity", value == 1 ? "pass" : "not_run"}};
+       }},
+      {"replay_equal", [&] { row["replay"] = value == 1 ? "equal" : "differs"; }},
+      {"ended", [&] { row["status"] = value == 1 ? "unmet" : "timed_out"; }},
+      {"passed", [&] { row["status"] = value == 1 ? "ok" : "unmet"; }},
+  };
+  const auto setter = setters.find(measure);
+  ASSERT_NE(setter, setters.end()) << "this test does not know how to make rows of " << measure;
+  setter->second();
+}
+
+// Rows of the first trials that the claim takes, of several numbers of threads where those are the machine's.
+Rows rows_of(const Experiment& experiment, const Claim& claim) {
+  Rows rows;
+  const std::string pattern = claim.trials.empty() ? "*" : claim.trials.front();
+  for (const Trial& trial : experiment.trials) {
+    if (fnmatch(pattern.c_str(), stem_of(trial.name).c_str(), 0) != 0) continue;
+    std::vector<Json> asked{trial.options};
+    const char* number = trial.options.contains("copies") ? "copies" : "threads";
+    if (!is_simulated({{"asked", trial.options}}))
+      for (const int processors : {1, 2, 4, 8}) {
+        asked.push_back(trial.options);
+        asked.back()[number] = processors;
+      }
+    for (const Json& options : asked) {
+      rows.push_back(made_up_row(trial.name, options));
+      rows.back()["input"]["name"] = trial.image;
+      const int cores = std::max(claim.needs_cores, 16);
+      rows.back()["environment"].update({{"packages", 1}, {"cores", cores}, {"usable_processors", cores}});
+    }
+  }
+  return rows;
+}
+
+// The value of a row where the claim's ratio, bound or factor comes to `value`.
+double value_of(const Claim& claim, const Json& row, double value) {
+  const Json options = options_of(row);
+  if (claim.kind == ClaimKind::kTrend) {
+    const Json place = option(options, claim.along);
+    if (!place.is_number()) return 1;  // not part of the trend
+    return std::pow(value, (claim.grows ? 1 : -1) * std::log2(place.get<double>()));
+  }
+  if (claim.kind != ClaimKind::kRatio && claim.kind != ClaimKind::kOrder) return value;
+  const bool is_over = claim.over_best ? !matches(options, claim.of) : matches(options, claim.over);
+  return is_over ? 0.5 : matches(options, claim.of) ? 0.5 * value : 0.25;
+}
+
+Rows with_value(const Claim& claim, Rows rows, double value) {
+  for (Json& row : rows) set_value(row, claim.value->name, value_of(claim, row, value));
+  return rows;
+}
+
+double within(const Claim& claim) {
+  switch (claim.kind) {
+    case ClaimKind::kOrder:
+      return 1.01;
+    case ClaimKind::kTrend:
+      return 1.01 * std::max(1.0, claim.factor_per_doubling);
+    default:
+      return claim.at_least && claim.at_most ? (*claim.at_least + *claim.at_most) / 2
+             : claim.at_least                ? *claim.at_least
+                                             : *claim.at_most;
+  }
+}
+
+// Values just beyond the bounds.
+std::vector<double> beyond(const Claim& claim) {
+  if (claim.kind == ClaimKind::kOrder) return {1, 0.99};
+  if (claim.kind == ClaimKind::kTrend) return {0.99 * std::max(1.0, claim.factor_per_doubling)};
+  if (is_yes_or_no(*claim.value)) return {0};
+  std::vector<double> values;
+  if (claim.at_least) values.push_back(0.99 * *claim.at_least);
+  if (claim.at_most) values.push_back(varies(*claim.value) ? 1.01 * *claim.at_most : *claim.at_most + 1);
+  return values;
+}
+
+std::string told(const Judgement& judgement) {
+  return to_string(judgement.verdict) + ": " + judgement.reason;
+}
+
+void expect_open(const Claim& claim, const Rows& rows, const std::string& why) {
+  const Judgement judgement = judge(claim, rows);
+  EXPECT_EQ(judgement.verdict, Verdict::kCannotBeDecided) << why << ": " << told(judgement);
+  EXPECT_FALSE(judgement.value) << why;
+  EXPECT_NE(judgement.reason, "") << why;
+}
+
+void expect_either_way(const Experiment& experiment, const Claim& claim) {
+  const Rows rows = rows_of(experiment, claim), fine = with_value(claim, rows, within(claim));
+  EXPECT_EQ(judge(claim, fine).verdict, Verdict::kHolds) << told(judge(claim, fine));
+  for (const double value : beyond(claim)) {
+    const Judgement judgement = judge(claim, with_value(claim, rows, value));
+    EXPECT_EQ(judgement.verdict, Verdict::kDoesNotHold) << "by " << value << ": " << told(judgement);
+  }
+}
+
+Rows with_status(Rows rows, const char* status) {
+  for (Json& row : rows) row["status"] = status;
+  return rows;
+}
+
+void expect_undecided(const Experiment& experiment, const Claim& claim) {
+  const Rows fine = with_value(claim, rows_of(experiment, claim), within(claim));
+  expect_open(claim, {}, "without rows");
+  expect_open(claim, with_status(fine, "skipped"), "skipped");
+  if (claim.value->meaning != Meaning::kOutcome) expect_open(claim, with_status(fine, "failed"), "failed");
+  if (claim.basis != Basis::kAny) {
+    Rows other = fine;
+    for (Json& row : other)
+      row["asked"]["executor"] = claim.basis == Basis::kMeasured ? "virtual" : "threads";
+    if (claim.basis == Basis::kSimulated)
+      for (Json& row : other) row["asked"].erase("topology");
+    if (claim.basis == Basis::kSimulated)
+      for (Json& row : other) row["asked"].erase("counters");
+    expect_open(claim, other, "of another basis");
+  }
+  Rows lonely = fine;  // a series without the one it is compared with
+  std::erase_if(lonely, [&](const Json& row) { return matches(options_of(row), claim.of); });
+  if (!claim.of.empty() && !names(claim.over, "threads")) expect_open(claim, lonely, "without a series");
+  Rows small = fine;
+  for (Json& row : small) row["environment"]["cores"] = claim.needs_cores - 1;
+  if (claim.needs_cores > 0) expect_open(claim, small, "on a small machine");
+}
+
+TEST(ExperimentClaims, TurnEitherWayOrAreLeftOpen) {
+  for (const std::string& path : experiment_files(PODM_EXPERIMENTS)) {
+    const Experiment experiment = read_experiment(path);
+    ASSERT_FALSE(experiment.claims.empty()) << path;
+    for (const Claim& claim : experiment.claims) {
+      SCOPED_TRACE(path + ": " + claim.name);
+      expect_either_way(experiment, claim);
+      expect_undecided(experiment, claim);
+    }
+  }
+}
+
+// What is published as failed is claimed, so that a verdict says so.
+TEST(ExperimentClaims, StateWhatFailedWithItsReason) {
+  const std::pair<const char*, const char*> published[] = {
+      {"contention", "local-loses-least-simulated"},
+      {"crossover", "pdr-podm-ahead-on-256-simulated-cores"},
+      {"crossover", "auto-takes-the-faster-simulated"},
+      {"numa_hops", "pdr-podm-on-several-blades"},
+      {"initial_mesh", "ratio-4"},
+  };
+  for (const auto& [name, claimed] : published) {
+    const Experiment experiment = read_experiment(std::string(PODM_EXPERIMENTS) + "/" + name + ".toml");
+    const auto claim = std::find_if(experiment.claims.begin(), experiment.claims.end(),
+                                    [&](const Claim& one) { return one.name == claimed; });
+    ASSERT_NE(claim, experiment.claims.end()) << claimed;
+    EXPECT_NE(claim->note, "") << claimed;
+  }
+}
+
+}  // namespace
+}  // namespace podm::bench

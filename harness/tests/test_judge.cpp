@@ -1,0 +1,408 @@
+// Rows that must turn each kind of claim either way, and rows that decide nothing.
+#include "judge.h"
+
+#include <gtest/gtest.h>
+
+#include "made_up_rows.h"
+
+namespace podm::bench {
+namespace {
+
+using Json = nlohmann::ordered_json;
+using Rows = std::vector<Json>;
+
+constexpr auto kHolds = Verdict::kHolds, kFails = Verdict::kDoesNotHold, kOpen = Verdict::kCannotBeDecided;
+
+Rows operator+(Rows a, const Rows& b) {
+  a.insert(a.end(), b.begin(), b.end());
+  return a;
+}
+
+Verdict verdict_of(const Claim& claim, const Rows& rows) { return judge(claim, rows).verdict; }
+
+bool has(const std::string& text, const std::string& words) { return text.find(words) != std::string::npos; }
+
+// Of a trial that came to no mesh.
+Json failed(Json row, const std::string& status = "timed_out") {
+  row["status"] = status;
+  row["reason"] = "killed after 300 s";
+  row.erase("phases_s");
+  return row;
+}
+
+TEST(JudgeBound, HoldsInEveryGroupOrNot) {
+  const Claim claim = read_claim_of(
+      "basis = 'measured'\nkind = 'bound'\nvalue = 'refining_seconds'\nat_least = 1\nat_most = 2\n");
+  const Rows fine{refined_in(1.5, {{"threads", 1}}), refined_in(1.9, {{"threads", 2}})};
+  EXPECT_EQ(verdict_of(claim, fine), kHolds);
+  for (const double seconds : {0.9, 2.1}) {
+    const Judgement judgement = judge(claim, fine + Rows{refined_in(seconds, {{"threads", 4}})});
+    EXPECT_EQ(judgement.verdict, kFails);
+    EXPECT_EQ(judgement.value, seconds);
+    EXPECT_EQ(judgement.num_rows, 3u);
+    EXPECT_TRUE(has(judgement.reason, "threads=4")) << judgement.reason;
+  }
+}
+
+TEST(JudgeBound, OfTimesIsAboutTheMedianOfRepeats) {
+  const Claim claim =
+      read_claim_of("basis = 'measured'\nkind = 'bound'\nvalue = 'refining_seconds'\nat_most = 2\n");
+  Rows rows;
+  for (const double seconds : {1.0, 1.5, 9.0})
+    rows.push_back(refined_in(seconds, {}, static_cast<int>(rows.size())));
+  EXPECT_EQ(judge(claim, rows).value, 1.5);
+  rows.push_back(refined_in(9, {}, 4));
+  EXPECT_EQ(verdict_of(claim, rows), kFails);
+}
+
+TEST(JudgeBound, OfFaultsIsAboutEachRepeatAndUnmetRowsToo) {
+  const Claim claim =
+      read_claim_of("basis = 'any'\nkind = 'bound'\nvalue = 'guarantee_misses'\nat_most = 0\n");
+  Rows rows;
+  for (int repeat = 1; repeat <= 3; ++repeat) {
+    rows.push_back(made_up_row("1M", {}, repeat));
+    rows.back()["guarantees"] = {{"radius_edge", 0}, {"facet_angle", 0}};
+  }
+  EXPECT_EQ(verdict_of(claim, rows), kHolds);
+  rows[1]["guarantees"]["facet_angle"] = 1;
+  rows[1]["status"] = "unmet";
+  EXPECT_EQ(judge(claim, rows).value, 1);
+  EXPECT_EQ(verdict_of(claim, rows), kFails) << "one in three";
+  EXPECT_EQ(verdict_of(claim, rows + Rows{failed(rows[0])}), kFails) << "a failed row takes nothing back";
+  EXPECT_EQ(verdict_of(claim, {rows[0], failed(rows[2])}), kOpen);
+}
+
+const char* kRatio = R"(
+basis = "measured"
+kind = "ratio"
+value = "refining_seconds"
+of = {algorithm = "pdr-podm"}
+over = {algorithm = "podm"}
+at_most = 1.1
+)";
+
+TEST(JudgeRatio, ComparesWithinGroupsOfEqualOptions) {
+  const Claim claim = read_claim_of(kRatio);
+  // Of podm 1 s on one thread and 0.5 s on two.
+  const auto rows = [](double one, double two) {
+    return Rows{refined_in(1, {{"algorithm", "podm"}, {"threads", 1}}),
+                refined_in(one, {{"algorithm", "pdr-podm"}, {"threads", 1}}),
+                refined_in(0.5, {{"algorithm", "podm"}, {"threads", 2}}),
+                refined_in(two, {{"algorithm", "pdr-podm"}, {"threads", 2}})};
+  };
+  EXPECT_EQ(verdict_of(claim, rows(1.05, 0.5)), kHolds);
+  const Judgement judgement = judge(claim, rows(1.05, 0.6));
+  EXPECT_EQ(judgement.verdict, kFails) << "0.6 is less than 1 s of another number of threads";
+  EXPECT_NEAR(*judgement.value, 1.2, 1e-12);
+  EXPECT_TRUE(has(judgement.reason, "1 of 2 hold; threads=2: 0.6 over 0.5 s")) << judgement.reason;
+}
+
+TEST(JudgeRatio, IsTheMedianOfRatiosWithinRounds) {
+  const Claim claim = read_claim_of(kRatio);
+  Rows rows;
+  // Each round on a slower machine; 1.05 within each, while the medians alone would say the same of any
+  // order.
+  for (int round = 1; round <= 3; ++round) {
+    rows.push_back(refined_in(round, {{"algorithm", "podm"}}, round));
+    rows.push_back(refined_in(1.05 * round, {{"algorithm", "pdr-podm"}}, round));
+  }
+  Judgement judgement = judge(claim, rows);
+  EXPECT_NEAR(*judgement.value, 1.05, 1e-12);
+  EXPECT_TRUE(has(judgement.reason, "95 % interval 1.05 to 1.05")) << judgement.reason;
+  // Rounds of 1, 2, 3 s against 3, 1, 2 s: ratios 3, 1/2 and 2/3, while the medians are equal.
+  const double seconds[] = {3, 1, 2};
+  for (int round = 0; round < 3; ++round)
+    rows[static_cast<std::size_t>(2 * round + 1)] =
+        refined_in(seconds[round], {{"algorithm", "pdr-podm"}}, round + 1);
+  judgement = judge(claim, rows);
+  EXPECT_NEAR(*judgement.value, 2.0 / 3, 1e-12);
+}
+
+TEST(JudgeRatio, OfSeriesWithoutCommonRoundsIsThatOfMedians) {
+  const Claim claim = read_claim_of(kRatio);
+  Rows rows;
+  for (int round = 1; round <= 3; ++round) {
+    rows.push_back(refined_in(round, {{"algorithm", "podm"}}, round));
+    rows.push_back(refined_in(round, {{"algorithm", "pdr-podm"}}, round + 3));
+  }
+  const Judgement judgement = judge(claim, rows);
+  EXPECT_EQ(judgement.value, 1);
+  EXPECT_TRUE(has(judgement.reason, "95 % interval 0.3")) << judgement.reason;
+}
+
+TEST(JudgeRatio, OverTheBestOfTheOthers) {
+  const auto claim_of = [](const std::string& measure) {
+    return read_claim_of("basis = 'measured'\nkind = 'ratio'\nvalue = '" + measure +
+                         "'\nof = {contention = 'local'}\nover = 'best of the others'\nat_least = 0.9\n"
+                         "at_most = 1.1\n");
+  };
+  const Rows rows{refined_in(2, {{"contention", "local"}}), refined_in(1, {{"contention", "random"}}),
+                  refined_in(4, {{"contention", "aggressive"}})};
+  const Judgement seconds = judge(claim_of("refining_seconds"), rows);
+  EXPECT_EQ(seconds.value, 2) << "the best takes the least time";
+  EXPECT_TRUE(has(seconds.reason, "contention=random")) << seconds.reason;
+  EXPECT_EQ(judge(claim_of("refining_cells_per_second"), rows).value, 0.5) << "the best makes the most";
+  EXPECT_EQ(
+      verdict_of(claim_of("refining_seconds"), {refined_in(1, {{"contention", "local"}}), rows[1], rows[2]}),
+      kHolds);
+  EXPECT_EQ(verdict_of(claim_of("refining_seconds"), {rows[0]}), kOpen) << "nobody to compare with";
+}
+
+TEST(JudgeRatio, OverOneThreadIsTheBaseOfAllNumbersOfThreads) {
+  const Claim claim = read_claim_of(R"(
+basis = "measured"
+kind = "ratio"
+value = "refining_cells_per_second_and_core"
+of = {algorithm = "podm"}
+over = {algorithm = "podm", threads = 1}
+across = "target_elements"
+at_least = 0.7
+)");
+  // A thousand cells a thread in so many seconds, on 1, 2 and 4 threads.
+  const auto rows = [](std::vector<double> seconds) {
+    Rows made;
+    int threads = 1;
+    for (const double s : seconds) {
+      made.push_back(
+          refined_in(s, {{"algorithm", "podm"}, {"threads", threads}, {"target_elements", 1000 * threads}}));
+      made.back()["cells"] = 1000 * threads;
+      threads *= 2;
+    }
+    return made;
+  };
+  EXPECT_EQ(verdict_of(claim, rows({1, 1.1, 1.3})), kHolds);
+  const Judgement judgement = judge(claim, rows({1, 1.1, 2}));
+  EXPECT_EQ(judgement.verdict, kFails);
+  EXPECT_EQ(judgement.value, 0.5);
+  EXPECT_TRUE(has(judgement.reason, "1 of 2 hold")) << judgement.reason;
+  EXPECT_TRUE(has(judgement.reason, "threads=4")) << judgement.reason;
+  EXPECT_EQ(verdict_of(claim, rows({1})), kOpen) << "one thread says nothing of others";
+}
+
+TEST(JudgeRatio, ImagesAreGroupsUnlessTheyMayDiffer) {
+  Rows rows{refined_in(1, {{"algorithm", "podm"}}), refined_in(1, {{"algorithm", "pdr-podm"}})};
+  rows[1]["input"]["name"] = "another";
+  EXPECT_EQ(verdict_of(read_claim_of(kRatio), rows), kOpen);
+  EXPECT_EQ(verdict_of(read_claim_of(std::string(kRatio) + "across = 'input'\n"), rows), kHolds);
+}
+
+TEST(JudgeRatio, OverNothingIsInfiniteAndOfNothingIsOne) {
+  const Claim claim = read_claim_of(
+      "basis = 'measured'\nkind = 'ratio'\nvalue = 'lost_seconds'\nof = {contention = 'local'}\n"
+      "over = {contention = 'random'}\nat_most = 1.1\n");
+  const auto rows = [](double local, double random) {
+    Rows made{made_up_row("1M", {{"contention", "local"}}), made_up_row("1M", {{"contention", "random"}})};
+    made[0]["overhead_s"] = {{"contention", local}, {"rollback", 0.0}, {"begging", 5.0}};
+    made[1]["overhead_s"] = {{"contention", random}, {"rollback", 0.0}, {"begging", 0.0}};
+    return made;
+  };
+  EXPECT_EQ(verdict_of(claim, rows(0, 0)), kHolds);
+  EXPECT_EQ(verdict_of(claim, rows(0, 1)), kHolds);
+  const Judgement judgement = judge(claim, rows(1, 0));
+  EXPECT_EQ(judgement.verdict, kFails);
+  EXPECT_FALSE(judgement.value) << "infinity is no number of JSON's";
+}
+
+TEST(JudgeOrder, OneSeriesIsAboveTheOtherInEveryGroup) {
+  const Claim claim = read_claim_of(
+      "basis = 'measured'\nkind = 'order'\nvalue = 'refining_cells_per_second'\nabove = {algorithm = "
+      "'podm'}\n"
+      "below = {algorithm = 'pdr-podm'}\n");
+  const auto rows = [](double podm, double pdr_podm) {
+    return Rows{refined_in(podm, {{"algorithm", "podm"}}), refined_in(pdr_podm, {{"algorithm", "pdr-podm"}})};
+  };
+  EXPECT_EQ(verdict_of(claim, rows(1, 1.01)), kHolds) << "less time, more cells a second";
+  EXPECT_EQ(verdict_of(claim, rows(1, 0.99)), kFails);
+  EXPECT_EQ(verdict_of(claim, rows(1, 1)), kFails) << "as many is not more";
+  Rows on_two_inputs = rows(1, 2);
+  for (const Json& row : rows(2, 1)) on_two_inputs.push_back(row);
+  for (std::size_t i = 2; i < 4; ++i) on_two_inputs[i]["input"]["name"] = "another";
+  EXPECT_EQ(verdict_of(claim, on_two_inputs), kFails);
+}
+
+TEST(JudgeTrend, FallsByAFactorADoublingUpToOneSocket) {
+  const Claim claim = read_claim_of(R"(
+basis = "measured"
+kind = "trend"
+value = "refining_seconds"
+extent = "one socket"
+along = "threads"
+direction = "falls"
+factor_per_doubling = 1.4
+)");
+  const auto rows = [](const std::map<int, double>& seconds) {
+    Rows made;
+    for (const auto& [threads, s] : seconds) made.push_back(refined_in(s, {{"threads", threads}}));
+    return made;
+  };
+  EXPECT_EQ(verdict_of(claim, rows({{1, 8}, {2, 5}, {4, 3}, {8, 2}})), kHolds);
+  EXPECT_EQ(verdict_of(claim, rows({{1, 8}, {2, 5}, {4, 3}, {8, 2}, {16, 2}})), kHolds)
+      << "16 are two sockets";
+  EXPECT_EQ(verdict_of(claim, rows({{1, 8}, {2, 5}, {4, 4}, {8, 2}})), kFails);
+  EXPECT_EQ(verdict_of(claim, rows({{1, 8}, {8, 3}})), kFails) << "2.67 in three doublings is 1.39 each";
+  EXPECT_EQ(verdict_of(claim, rows({{1, 8}, {8, 2.9}})), kHolds);
+  const Judgement one = judge(claim, rows({{1, 8}, {16, 2}}));
+  EXPECT_EQ(one.verdict, kOpen);
+  EXPECT_EQ(one.reason, "needs two values of threads, has 1");
+}
+
+TEST(JudgeTrend, WithoutAFactorMayRestOnTheWayButNotTurn) {
+  const auto claim_of = [](const std::string& direction) {
+    return read_claim_of(
+        "basis = 'measured'\nkind = 'trend'\nvalue = 'deferred_operations'\nalong = 'leaf_size'\n"
+        "direction = '" +
+        direction + "'\n");
+  };
+  const auto rows = [](const std::vector<int>& numbers) {
+    Rows made;
+    double size = 10;
+    for (const int number : numbers) {
+      made.push_back(made_up_row("1M", {{"leaf_size", size}}));
+      made.back()["outcomes"] = {{"out_of_leaf", number}};
+      size *= 2;
+    }
+    return made;
+  };
+  EXPECT_EQ(verdict_of(claim_of("falls"), rows({900, 5, 5, 0, 0})), kHolds);
+  EXPECT_EQ(verdict_of(claim_of("falls"), rows({900, 5, 6})), kFails);
+  EXPECT_EQ(verdict_of(claim_of("falls"), rows({5, 5, 5})), kFails);
+  EXPECT_EQ(verdict_of(claim_of("grows"), rows({0, 0, 7})), kHolds);
+  EXPECT_EQ(verdict_of(claim_of("grows"), rows({900, 5})), kFails);
+}
+
+TEST(JudgeShare, OfTrialsThatEnded) {
+  const auto claim_of = [](const std::string& least) {
+    return read_claim_of("basis = 'any'\nkind = 'share'\nvalue = 'ended'\nat_least = " + least + "\n");
+  };
+  const Rows ended(3, made_up_row("1M", {}));
+  EXPECT_EQ(verdict_of(claim_of("1"), ended), kHolds);
+  const Rows rows = ended + Rows{failed(made_up_row("1M", {{"contention", "local"}}))};
+  EXPECT_EQ(verdict_of(claim_of("1"), rows), kFails);
+  EXPECT_EQ(judge(claim_of("1"), rows).value, 0.75);
+  EXPECT_TRUE(has(judge(claim_of("1"), rows).reason, "3 of 4, not 1M"));
+  EXPECT_EQ(verdict_of(claim_of("0.75"), rows), kHolds);
+}
+
+TEST(Judge, TakesTheFirstTrialsThatHaveAllTheyNeed) {
+  const Claim claim = read_claim_of(std::string(kRatio) + "trials = ['10M', '1M', '0.1M']\n");
+  const auto rows = [](const std::string& trial, double ratio) {
+    return Rows{refined_in(1, {{"algorithm", "podm"}}, 1, trial + ",algorithm=podm"),
+                refined_in(ratio, {{"algorithm", "pdr-podm"}}, 1, trial + ",algorithm=pdr-podm")};
+  };
+  EXPECT_EQ(judge(claim, rows("0.1M", 1) + rows("1M", 2)).value, 2);
+  Rows half = rows("0.1M", 3) + rows("1M", 2);
+  half.push_back(rows("10M", 1)[0]);
+  EXPECT_EQ(judge(claim, half).value, 2) << "10M lacks pdr-podm";
+  const Judgement none = judge(claim, {rows("10M", 1)[0]});
+  EXPECT_EQ(none.verdict, kOpen);
+  EXPECT_EQ(none.reason, "no rows: algorithm=pdr-podm");
+  EXPECT_EQ(judge(claim, {}).reason, "no rows: trial 10M or 1M or 0.1M");
+}
+
+TEST(Judge, AFailedLargeSizeIsNotPassedOver) {
+  const Claim claim = read_claim_of(std::string(kRatio) + "trials = ['10M', '1M']\n");
+  const Rows rows{refined_in(1, {{"algorithm", "podm"}}, 1, "10M"),
+                  failed(refined_in(1, {{"algorithm", "pdr-podm"}}, 1, "10M")),
+                  refined_in(1, {{"algorithm", "podm"}}, 1, "1M"),
+                  refined_in(1, {{"algorithm", "pdr-podm"}}, 1, "1M")};
+  const Judgement judgement = judge(claim, rows);
+  EXPECT_EQ(judgement.verdict, kOpen);
+  EXPECT_EQ(judgement.reason, "rows failed: 10M: timed_out: killed after 300 s");
+}
+
+TEST(Judge, AGroupThatBreaksTheClaimDecidesAndOneThatLacksRowsLeavesItOpen) {
+  const Claim claim = read_claim_of(kRatio);
+  const Rows broken{refined_in(1, {{"algorithm", "podm"}, {"seed", 1}}),
+                    refined_in(2, {{"algorithm", "pdr-podm"}, {"seed", 1}})};
+  const Rows fine{refined_in(1, {{"algorithm", "podm"}, {"seed", 2}}),
+                  refined_in(1, {{"algorithm", "pdr-podm"}, {"seed", 2}})};
+  const Rows half{refined_in(1, {{"algorithm", "podm"}, {"seed", 3}})};
+  EXPECT_EQ(verdict_of(claim, fine + half), kOpen);
+  EXPECT_TRUE(has(judge(claim, fine + half).reason, "seed=3: no rows: algorithm=pdr-podm"));
+  EXPECT_EQ(verdict_of(claim, fine + half + broken), kFails);
+}
+
+TEST(Judge, EachValueOfAListNeedsRowsAndARangeDoesNot) {
+  const std::string share = "basis = 'any'\nkind = 'share'\nvalue = 'ended'\nat_least = 1\nwhere = ";
+  const Rows rows{made_up_row("1M", {{"contention", "local"}, {"threads", 4}})};
+  EXPECT_EQ(verdict_of(read_claim_of(share + "{contention = 'local'}\n"), rows), kHolds);
+  const Judgement judgement = judge(read_claim_of(share + "{contention = ['local', 'random']}\n"), rows);
+  EXPECT_EQ(judgement.verdict, kOpen);
+  EXPECT_EQ(judgement.reason, "no rows: contention=random");
+  EXPECT_EQ(verdict_of(read_claim_of(share + "{threads = {at_least = 2, at_most = 8}}\n"), rows), kHolds);
+  EXPECT_EQ(verdict_of(read_claim_of(share + "{threads = {at_least = 5}}\n"), rows), kOpen);
+}
+
+TEST(Judge, EachSeriesOfAListIsComparedAndNeeded) {
+  const Claim claim = read_claim_of(
+      "basis = 'measured'\nkind = 'order'\nvalue = 'refining_cells_per_second'\nabove = {contention = "
+      "'local'}\n"
+      "below = {contention = ['random', 'aggressive']}\n");
+  const auto rows = [](double random, double aggressive) {
+    return Rows{refined_in(1, {{"contention", "local"}}), refined_in(random, {{"contention", "random"}}),
+                refined_in(aggressive, {{"contention", "aggressive"}})};
+  };
+  EXPECT_EQ(verdict_of(claim, rows(2, 3)), kHolds);
+  EXPECT_EQ(verdict_of(claim, rows(2, 0.5)), kFails);
+  EXPECT_EQ(verdict_of(claim, rows(0.5, 2)), kFails);
+  Rows one = rows(2, 3);
+  one.pop_back();
+  EXPECT_EQ(judge(claim, one).reason, "no rows: contention=aggressive");
+}
+
+TEST(Judge, AnOptionThatIsNotGivenIsNone) {
+  const Claim claim = read_claim_of(
+      "basis = 'measured'\nkind = 'ratio'\nvalue = 'refining_seconds'\nof = {leaf_size = 'none'}\n"
+      "over = 'best of the others'\nat_most = 1.1\n");
+  const auto rows = [](double own) {
+    return Rows{refined_in(own, {}), refined_in(1, {{"leaf_size", 10.0}}),
+                refined_in(2, {{"leaf_size", 20.0}})};
+  };
+  EXPECT_EQ(verdict_of(claim, rows(1.05)), kHolds);
+  EXPECT_EQ(verdict_of(claim, rows(1.5)), kFails);
+}
+
+TEST(Judge, RowsOfAnotherBasisNeverEnter) {
+  const std::string lines = "kind = 'bound'\nvalue = 'lost_seconds'\nat_most = 1\nbasis = ";
+  Rows rows{made_up_row("1M", {}), made_up_row("1M", {{"executor", "virtual"}}),
+            made_up_row("1M", {{"topology", "machine.xml"}}),
+            made_up_row("1M", {{"counters", "cachegrind"}})};
+  for (Json& row : rows) row["overhead_s"] = {{"contention", 5.0}, {"rollback", 0.0}, {"begging", 0.0}};
+  rows[0]["overhead_s"]["contention"] = 0.5;
+  const Judgement measured = judge(read_claim_of(lines + "'measured'\n"), rows);
+  EXPECT_EQ(measured.verdict, kHolds);
+  EXPECT_EQ(measured.num_rows, 1u);
+  const Judgement simulated = judge(read_claim_of(lines + "'simulated'\n"), rows);
+  EXPECT_EQ(simulated.verdict, kFails);
+  EXPECT_EQ(simulated.num_rows, 3u);
+}
+
+TEST(Judge, MachinesTooSmallDecideNothing) {
+  const Claim claim = read_claim_of(std::string(kRatio) + "needs_cores = 17\n");
+  const Rows rows{refined_in(1, {{"algorithm", "podm"}}), refined_in(1, {{"algorithm", "pdr-podm"}})};
+  EXPECT_EQ(judge(claim, rows).reason, "needs 17 cores, has 16");
+  EXPECT_EQ(verdict_of(read_claim_of(std::string(kRatio) + "needs_cores = 16\n"), rows), kHolds);
+}
+
+TEST(Judge, MostThreadsAreThoseOfTheRows) {
+  const Claim claim = read_claim_of(std::string(kRatio) + "extent = 'most threads'\n");
+  const auto rows = [](int threads, double ratio) {
+    return Rows{refined_in(1, {{"algorithm", "podm"}, {"threads", threads}}),
+                refined_in(ratio, {{"algorithm", "pdr-podm"}, {"threads", threads}})};
+  };
+  EXPECT_EQ(verdict_of(claim, rows(1, 2) + rows(8, 1)), kHolds);
+  EXPECT_EQ(verdict_of(claim, rows(1, 1) + rows(8, 2)), kFails);
+}
+
+TEST(Judge, SkippedRowsSayWhy) {
+  const Claim claim = read_claim_of(
+      "basis = 'measured'\nkind = 'order'\nvalue = 'refining_cells_per_second'\nabove = {mesher = 'podm'}\n"
+      "below = {mesher = 'other'}\n");
+  Rows rows{refined_in(1, {}), failed(refined_in(1, {{"mesher", "other"}}), "skipped")};
+  rows[1]["reason"] = "not installed";
+  EXPECT_EQ(judge(claim, rows).reason, "no rows: mesher=other (1M skipped: not installed)");
+  EXPECT_EQ(verdict_of(claim, {rows[0], refined_in(2, {{"mesher", "other"}})}), kHolds);
+}
+
+}  // namespace
+}  // namespace podm::bench

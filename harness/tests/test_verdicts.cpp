@@ -1,0 +1,146 @@
+// podm-bench verdicts, and what run prints of claims.
+#include "verdicts.h"
+
+#include <gtest/gtest.h>
+
+#include "bench_test.h"
+#include "made_up_rows.h"
+#include "record.h"
+
+namespace podm::bench {
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+const std::string kExperimentWithClaims = R"(title = "Title"
+claim = "Headline"
+paper = "Table 7"
+[inputs.a]
+image = "phantom:torus"
+[[trials]]
+name = "some"
+input = "a"
+threads = [1, 2]
+[[claims]]
+name = "fast"
+statement = "It is fast."
+note = "The reason is known."
+basis = "measured"
+kind = "bound"
+value = "refining_seconds"
+at_most = 2
+[[claims]]
+name = "sound"
+statement = "It is sound."
+basis = "any"
+kind = "share"
+value = "passed"
+at_least = 1.0
+[[claims]]
+name = "near"
+statement = "It reads nearby."
+basis = "simulated"
+kind = "bound"
+value = "zero_hop_share"
+at_least = 0.9
+)";
+
+class VerdictsTest : public BenchTest {
+ protected:
+  VerdictsTest() : path_(folder_.write("exp.toml", kExperimentWithClaims)) {
+    std::filesystem::create_directory(folder_ / "results");
+  }
+  int verdicts(const std::vector<std::string>& more = {}) {
+    std::vector<std::string> arguments{"verdicts", "--results", folder_ / "results", path_};
+    arguments.insert(arguments.end(), more.begin(), more.end());
+    return bench(arguments);
+  }
+  void write_rows(const std::vector<double>& seconds) {
+    std::string lines;
+    int threads = 0;
+    for (const double s : seconds) {
+      Json row = refined_in(s, {{"threads", ++threads}}, 1, "some,threads=" + std::to_string(threads));
+      row["schema"] = kRowSchema;
+      lines += row.dump() + "\n";
+    }
+    folder_.write("results/exp.jsonl", lines);
+  }
+  std::string path_;
+};
+
+TEST_F(VerdictsTest, ArePrintedForEachClaimAndNeverChangeTheExitCode) {
+  write_rows({1, 5});
+  EXPECT_EQ(verdicts(), 0) << printed("err");
+  for (const char* words :
+       {"DOES NOT HOLD      exp         fast", "holds              exp         sound", "cannot be decided",
+        "at most 2", "threads=2: 5 s", "It is fast. The reason is known.",
+        "3 claims: 1 hold, 1 do not hold, 1 cannot be decided here"})
+    EXPECT_TRUE(has_printed("out", words)) << words << "\n" << printed("out");
+  EXPECT_FALSE(has_printed("out", "It is sound.")) << "what holds needs no words";
+}
+
+TEST_F(VerdictsTest, WorkWithoutAnyRows) {
+  EXPECT_EQ(verdicts(), 0);
+  EXPECT_TRUE(has_printed("out", "3 claims: 0 hold, 0 do not hold, 3 cannot be decided here"));
+  EXPECT_EQ(bench({"verdicts", "--results", folder_ / "absent", path_}), 0);
+}
+
+TEST_F(VerdictsTest, RefuseBadInput) {
+  EXPECT_EQ(bench({"verdicts", folder_ / "absent.toml"}), 2);
+  folder_.write("results/exp.jsonl", "{\"schema\":99}\n");
+  EXPECT_EQ(verdicts(), 2);
+  EXPECT_NE(printed("err").find("exp.jsonl:1:"), std::string::npos);
+}
+
+TEST_F(VerdictsTest, AreWrittenAsJson) {
+  write_rows({1, 5});
+  EXPECT_EQ(verdicts({"--json", folder_ / "verdicts.json"}), 0);
+  std::ifstream file(folder_ / "verdicts.json");
+  const Json json = Json::parse(file, nullptr, false);
+  EXPECT_EQ(json["schema"], "podm-bench-verdicts/1");
+  ASSERT_EQ(json["experiments"].size(), 1u);
+  const Json& experiment = json["experiments"][0];
+  EXPECT_EQ(experiment["experiment"], "exp");
+  EXPECT_EQ(experiment["title"], "Title");
+  EXPECT_EQ(experiment["claim"], "Headline");
+  EXPECT_EQ(experiment["paper"], "Table 7");
+  ASSERT_EQ(experiment["claims"].size(), 3u);
+  EXPECT_EQ(experiment["claims"][0], (Json{{"name", "fast"},
+                                           {"statement", "It is fast."},
+                                           {"basis", "measured"},
+                                           {"verdict", "does_not_hold"},
+                                           {"reason", "1 of 2 hold; threads=2: 5 s. The reason is known."},
+                                           {"value", 5.0},
+                                           {"bound", "at most 2"},
+                                           {"n", 2}}));
+  EXPECT_EQ(experiment["claims"][2]["verdict"], "cannot_be_decided");
+  EXPECT_TRUE(experiment["claims"][2]["value"].is_null());
+  EXPECT_EQ(experiment["claims"][2]["reason"], "no rows");
+}
+
+TEST_F(VerdictsTest, RowsOfTrialsThatTheExperimentNoLongerHasDoNotCount) {
+  write_rows({1, 1});
+  std::string renamed = kExperimentWithClaims;
+  renamed.replace(renamed.find("\"some\""), 6, "\"other\"");
+  folder_.write("exp.toml", renamed);
+  EXPECT_EQ(verdicts(), 0);
+  EXPECT_TRUE(has_printed("out", "3 cannot be decided here"));
+}
+
+TEST_F(VerdictsTest, ARunPrintsThemAndOnlyAFailedTrialChangesItsExitCode) {
+  const auto make = [](const std::string& record) { return "echo '" + record + "' > \"$record\"\n"; };
+  std::string slow = kGoodRecord;
+  slow.replace(slow.find("\"refine\":1.0"), 12, "\"refine\":3.0");
+  EXPECT_EQ(run_with(make(slow)), 0) << printed("err");
+  EXPECT_TRUE(has_printed("out", "DOES NOT HOLD      exp         fast"));
+  EXPECT_TRUE(has_printed("out", "3 claims: 1 hold, 1 do not hold"));
+  EXPECT_EQ(run_with(make(kGoodRecord)), 0);
+  EXPECT_TRUE(has_printed("out", "3 claims: 2 hold, 0 do not hold")) << "of this mesher's rows";
+  std::string unmet = kGoodRecord;
+  unmet.replace(unmet.find("\"radius_edge\":0"), 15, "\"radius_edge\":1");
+  EXPECT_EQ(run_with(make(unmet)), 1);
+  EXPECT_TRUE(has_printed("out", "0 of 2, not some,threads=1"));
+}
+
+}  // namespace
+}  // namespace podm::bench
