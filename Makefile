@@ -5,7 +5,8 @@ CMAKE_FLAGS ?=
 CONFIGURE = cmake -S . -B build -G Ninja -DPODM_MARCH=$(MARCH) -DPODM_UNITE=ON $(CMAKE_FLAGS)
 FIGURES = results/runs/figures
 INPUTS = --records results/runs --verified $(FIGURES)/abdomen_verified.json \
-  --schedule $(FIGURES)/abdomen_leaves.jsonl --mesh $(FIGURES)/abdomen.vtu
+  --schedule $(FIGURES)/abdomen_leaves.jsonl --mesh $(FIGURES)/abdomen.vtu \
+  --experiment-verdicts $(FIGURES)/experiment_verdicts.json
 TIER ?= default
 
 .DEFAULT_GOAL := help
@@ -79,6 +80,7 @@ figures: build
 	/usr/bin/python3 scripts/render_mesh.py $(FIGURES)/abdomen.vtu -o $(FIGURES)/abdomen_cut.png
 	build/bin/podm-verify $(FIGURES)/abdomen.vtu --schedule $(FIGURES)/abdomen_leaves.jsonl \
 	  --json $(FIGURES)/abdomen_verified.json
+	build/bin/podm-bench verdicts --json $(FIGURES)/experiment_verdicts.json experiments/*.toml > /dev/null
 	scripts/make_figures $(INPUTS) -o $(FIGURES)
 	scripts/report $(INPUTS) -o results/runs/report.html
 
