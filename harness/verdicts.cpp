@@ -62,8 +62,8 @@ std::string format_verdicts(const std::vector<ExperimentVerdicts>& all) {
       failed += fmt::format("{}: {} DOES NOT HOLD: {}{}{}\n", experiment.name, claim.name, claim.statement,
                             claim.note.empty() ? "" : " ", claim.note);
   });
-  return fmt::format("{}{}{} claims: {} hold, {} do not hold, {} cannot be decided here\n", align(lines, 4),
-                     failed, lines.size() - 1, numbers[0], numbers[1], numbers[2]);
+  return fmt::format("{}{}Claims: {} hold, {} do not hold, {} cannot be decided here\n", align(lines, 4),
+                     failed, numbers[0], numbers[1], numbers[2]);
 }
 
 Json verdicts_as_json(const std::vector<ExperimentVerdicts>& all) {
