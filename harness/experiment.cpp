@@ -135,6 +135,7 @@ std::vector<Trial> read_trials(Section& section, const Inputs& inputs, const Tri
       trial.image = input.image;
       trial.if_exists = input.if_exists;
       trial.options = variant.options;
+      if (!images.empty()) trial.options.erase(kFidelity);  // asked where voxels are as large as cells
       grow(section, !images.empty(), trial);
       trials.push_back(std::move(trial));
     }

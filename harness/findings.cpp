@@ -59,16 +59,26 @@ void judge_bound(const Claim& claim, const RowPointers& rows, Findings& findings
   for (std::size_t i = 0; i < groups.size(); ++i) judge_bound_of(claim, groups[i].rows, labels[i], findings);
 }
 
+// What rows that cannot tell might still say does not save a claim that the others refute.
 void judge_share(const Claim& claim, const RowPointers& rows, Findings& findings) {
-  Samples samples = sample(rows, *claim.value);
-  if (!samples.absence.empty()) return lack(findings, samples.absence, "");
-  const auto num_yes = std::count(samples.numbers.begin(), samples.numbers.end(), 1.0);
-  const double share = static_cast<double>(num_yes) / static_cast<double>(samples.numbers.size());
-  std::string text = fmt::format("{} of {}", num_yes, samples.numbers.size());
-  if (const auto no = std::find(samples.numbers.begin(), samples.numbers.end(), 0.0);
-      no != samples.numbers.end())
-    text += ", not " + text_in(*rows[static_cast<std::size_t>(no - samples.numbers.begin())], "trial");
-  findings.found.push_back({share >= *claim.at_least, share, beyond(claim, share), text, "", rows.size()});
+  std::size_t num_yes = 0, num_open = 0;
+  std::string absence, no;
+  for (const Json* row : rows) {
+    const Samples samples = sample({row}, *claim.value);
+    if (!samples.absence.empty()) {
+      absence = samples.absence;
+      ++num_open;
+    } else if (samples.middle() == 1) {
+      ++num_yes;
+    } else if (no.empty()) {
+      no = ", not " + text_in(*row, "trial");
+    }
+  }
+  const double share = static_cast<double>(num_yes) / static_cast<double>(rows.size() - num_open);
+  const double most = static_cast<double>(num_yes + num_open) / static_cast<double>(rows.size());
+  if (num_open > 0 && most >= *claim.at_least) return lack(findings, absence, "");
+  findings.found.push_back({share >= *claim.at_least, share, beyond(claim, share),
+                            fmt::format("{} of {}{}", num_yes, rows.size() - num_open, no), "", rows.size()});
 }
 
 std::string interval_of(const SeriesRatio& compared) {
@@ -131,11 +141,13 @@ void compare_series(const Claim& claim, const RowGroup& group, const std::string
       return lack(findings, "no rows: " + value, label);
     if (rows->empty()) return lack(findings, "no rows: " + describe(*filter), label);
   }
-  const std::vector<Side> ofs = sides_of(of_rows, claim, is_free),
-                          overs = sides_of(over_rows, claim, is_free);
-  for (const auto* sides : {&ofs, &overs})
-    for (const Side& side : *sides)
-      if (!side.samples.absence.empty()) return lack(findings, side.samples.absence, label);
+  std::vector<Side> ofs = sides_of(of_rows, claim, is_free), overs = sides_of(over_rows, claim, is_free);
+  for (auto* sides : {&ofs, &overs})
+    std::erase_if(*sides, [&](const Side& side) {
+      if (!side.samples.absence.empty()) lack(findings, side.samples.absence, label);
+      return !side.samples.absence.empty();
+    });
+  if (overs.empty()) return;
   for (const Side& of : ofs) {
     std::string place = label;
     if (!of.label.empty()) place += (place.empty() ? "" : ", ") + of.label;
@@ -184,9 +196,11 @@ void judge_trend_of(const Claim& claim, const RowGroup& group, const std::string
     return lack(findings, fmt::format("needs two values of {}, has {}", claim.along, by_place.size()), label);
   std::vector<Place> places;
   for (const auto& [at, rows] : by_place) {
-    places.push_back({at, sample(rows, *claim.value)});
-    if (const std::string& absence = places.back().samples.absence; !absence.empty())
-      return lack(findings, absence, label);
+    Place place{at, sample(rows, *claim.value)};
+    if (place.samples.absence.empty())
+      places.push_back(std::move(place));
+    else
+      lack(findings, place.samples.absence, label);
   }
   for (std::size_t i = 1; i < places.size(); ++i)
     findings.found.push_back(judge_step(claim, places[i - 1], places[i], places.size() == 2, label));

@@ -235,15 +235,15 @@ class Run {
       const std::uint64_t cells = label_cells(*refinement.mesh, isosurface, options_.loop_threads());
       const bool is_met = std::abs(static_cast<double>(cells) / target - 1) <= kTargetTolerance;
       if (is_met || calibration.meshes.size() == kMostTrialMeshes ||
-          refinement.stop_reason != StopReason::kComplete) {
+          refinement.stop_reason != StopReason::kComplete ||
+          !search.learn(std::max(1.0, static_cast<double>(cells)))) {
         if (!is_met) report.warnings.push_back("the target number of elements was not met within 5 %");
-        calibration.radius_mm = search.radius_mm();
+        calibration.radius_mm = report.radius_mm;
         report.phases_s["calibrate"] = calibration.seconds;
         report.phases_s["extract"] = seconds_since(label_start);
         return refinement;
       }
-      calibration.meshes.push_back({search.radius_mm(), cells, seconds_since(mesh_start)});
-      search.learn(std::max(1.0, static_cast<double>(cells)));
+      calibration.meshes.push_back({report.radius_mm, cells, seconds_since(mesh_start)});
     }
   }
 

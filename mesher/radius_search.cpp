@@ -32,7 +32,7 @@ double RadiusSearch::radius_for(double cells) const {
 
 // The first mesh tells by what factor the model errs, more of them how cells follow the radius: not by a
 // power where a sheet comes or goes with it, but between one that has too many and one that has too few.
-void RadiusSearch::learn(double cells) {
+bool RadiusSearch::learn(double cells) {
   const double target = static_cast<double>(options_.target_elements);
   const Sample mesh{radius_mm_, cells};
   std::optional<Sample>& near = cells > target ? too_many_ : too_few_;
@@ -49,6 +49,7 @@ void RadiusSearch::learn(double cells) {
   } else {
     radius_mm_ = radius_for(target / cells * model_.cells(at(radius_mm_)));
   }
+  return radius_mm_ != mesh.radius_mm;
 }
 
 }  // namespace podm

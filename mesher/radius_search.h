@@ -14,8 +14,10 @@ class RadiusSearch {
 
   double radius_mm() const { return radius_mm_; }
   double delta_mm() const { return at(radius_mm_).delta_mm; }
-  /// A mesh with this radius has so many cells: changes the radius accordingly.
-  void learn(double cells);
+  /// A mesh with this radius has so many cells: changes the radius accordingly. False where it cannot: a
+  /// larger radius than the image changes nothing, as where the surfaces alone take more cells than the
+  /// target.
+  bool learn(double cells);
 
  private:
   struct Sample {

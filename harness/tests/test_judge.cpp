@@ -283,6 +283,44 @@ TEST(JudgeShare, OfTrialsThatEnded) {
   EXPECT_EQ(verdict_of(claim_of("0.75"), rows), kHolds);
 }
 
+TEST(JudgeShare, ARefutationIsNotTakenBackByRowsThatCannotTell) {
+  const Claim claim = read_claim_of("basis = 'any'\nkind = 'share'\nvalue = 'replay_equal'\nat_least = 1\n");
+  const auto replayed = [](const Json& replay) {
+    Json row = made_up_row("1M", {});
+    row["replay"] = replay;
+    return row;
+  };
+  EXPECT_EQ(verdict_of(claim, {replayed("equal"), replayed("differs"), replayed(nullptr)}), kFails);
+  EXPECT_EQ(verdict_of(claim, {replayed("equal"), replayed(nullptr)}), kOpen);
+  EXPECT_EQ(verdict_of(claim, {replayed(nullptr)}), kOpen);
+  EXPECT_EQ(verdict_of(claim, {replayed("equal")}), kHolds);
+}
+
+TEST(JudgeRatio, ASeriesThatFailedDoesNotHideAnotherThatRefutes) {
+  const Claim claim = read_claim_of(
+      "basis = 'measured'\nkind = 'ratio'\nvalue = 'refining_seconds'\nof = {contention = 'local'}\n"
+      "over = 'best of the others'\nat_most = 1.1\n");
+  const auto rows = [](double aggressive) {
+    return Rows{refined_in(2, {{"contention", "local"}}),
+                refined_in(aggressive, {{"contention", "aggressive"}}),
+                failed(refined_in(1, {{"contention", "random"}}))};
+  };
+  EXPECT_EQ(verdict_of(claim, rows(1)), kFails);
+  EXPECT_EQ(verdict_of(claim, rows(2)), kOpen);
+}
+
+TEST(JudgeTrend, AFailedPlaceDoesNotHideAStepThatRefutes) {
+  const Claim claim = read_claim_of(
+      "basis = 'measured'\nkind = 'trend'\nvalue = 'refining_seconds'\nalong = 'threads'\n"
+      "direction = 'falls'\n");
+  const auto rows = [](double on_two) {
+    return Rows{refined_in(2, {{"threads", 1}}), refined_in(on_two, {{"threads", 2}}),
+                failed(refined_in(1, {{"threads", 4}}))};
+  };
+  EXPECT_EQ(verdict_of(claim, rows(3)), kFails);
+  EXPECT_EQ(verdict_of(claim, rows(1)), kOpen);
+}
+
 TEST(Judge, TakesTheFirstTrialsThatHaveAllTheyNeed) {
   const Claim claim = read_claim_of(std::string(kRatio) + "trials = ['10M', '1M', '0.1M']\n");
   const auto rows = [](const std::string& trial, double ratio) {

@@ -215,6 +215,8 @@ TEST(Calibration, WarnsWhereATargetCannotBeMet) {
   EXPECT_EQ(result.report.warnings.size(), 1u);
   EXPECT_TRUE(result.report.guarantees.all_met());
   EXPECT_GT(result.mesh.cells.size(), 1000u);
+  EXPECT_TRUE(std::isfinite(result.report.radius_mm));
+  EXPECT_LE(result.report.calibration->meshes.size(), 1u) << "no radius changes anything";
 }
 
 TEST(Calibration, LimitsHold) {
