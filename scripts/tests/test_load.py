@@ -105,11 +105,9 @@ class Load(unittest.TestCase):
         frame = self.load(row).frame
         self.assertEqual((len(frame), bool(frame["headline"][0])), (1, False))
 
-    @unittest.skipUnless(paths.has_reference(), "the reference holds no rows of this schema")
     def test_reads_the_reference_runs(self):
         self.assertTrue(load([paths.REFERENCE]).frame["headline"].any())
 
-    @unittest.skipUnless(paths.has_reference(), "the reference holds no rows of this schema")
     def test_a_reference_file_holds_measured_or_simulated_rows(self):
         for path in paths.REFERENCE.glob("*.jsonl"):
             frame = load([path]).frame
