@@ -2,7 +2,6 @@
 
 import json
 import os
-import pty
 import re
 import signal
 import subprocess
@@ -179,22 +178,6 @@ class Display(PodmTestCase):
         process = self.mesh("--quiet")
         self.assert_exit(process, 0)
         self.assertEqual((process.stdout, process.stderr), ("", ""))
-
-    def test_a_bar_on_a_terminal_which_the_summary_does_not_share_a_line_with(self):
-        ours, theirs = pty.openpty()
-        process = subprocess.Popen([PROGRAM, "mesh", "phantom:spheres@24", "-o", str(self.folder / "out.vtu")],
-                                   stderr=theirs, env={**os.environ, "TERM": "xterm"})
-        os.close(theirs)
-        text = b""
-        try:
-            while block := os.read(ours, 4096):
-                text += block
-        except OSError:  # the terminal's other end is closed
-            pass
-        os.close(ours)
-        self.assertEqual(process.wait(), 0)
-        self.assertRegex(text, rb"\r\x1b\[K\[#*\.*\] refine")
-        self.assertRegex(text, rb"\r\x1b\[K[^\r\n]*out\.vtu: \d+ cells")
 
 
 class EarlyEnd(PodmTestCase):
