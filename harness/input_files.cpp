@@ -58,8 +58,8 @@ std::string InputFiles::size_of(const std::string& phantom, const std::string& s
   const ProcessRequest request = request_of({podm_, "info", phantom, "--json"}, scratch_folder);
   const ProcessOutcome outcome = run_process(request, stop_requested);
   std::ifstream file(request.stdout_path);
-  const auto info = nlohmann::json::parse(file, nullptr, false);
-  if (!outcome.succeeded() || !info.is_object() || !info.value("size", nlohmann::json()).is_array())
+  const auto info = nlohmann::ordered_json::parse(file, nullptr, false);
+  if (!outcome.succeeded() || !info.is_object() || !info.value("size", nlohmann::ordered_json()).is_array())
     throw PreparationError(phantom + " has no size", request, outcome);
   int longest = 0;
   for (const auto& voxels : info["size"]) longest = std::max(longest, voxels.get<int>());

@@ -20,8 +20,8 @@ using Json = nlohmann::ordered_json;
 
 constexpr const char* kProgram = "likwid-perfctr";
 constexpr const char* kOutput = "/likwid.csv";
-constexpr double kAnswerTimeoutS = 30;
-constexpr std::size_t kMaxAnswerBytes = 500;
+constexpr double kLikwidTimeoutS = 30;
+constexpr std::size_t kMaxLikwidBytes = 500;
 
 // "0,1,4": what this process may run on.
 std::string usable_processor_list() {
@@ -42,7 +42,7 @@ std::vector<std::string> command_of(const std::string& events, const std::string
 std::string architecture(const std::string& scratch_folder) {
   const std::string path = scratch_folder + "/likwid_info.txt";
   run_process(
-      {.arguments = {kProgram, "-i"}, .stdout_path = path, .stderr_path = {}, .timeout_s = kAnswerTimeoutS});
+      {.arguments = {kProgram, "-i"}, .stdout_path = path, .stderr_path = {}, .timeout_s = kLikwidTimeoutS});
   const std::string name = value_of(path, "CPU short");
   return name.starts_with("unavailable") || name == "nil" ? "" : name;
 }
@@ -54,9 +54,9 @@ std::string refusal_of(const std::string& events, const std::string& scratch_fol
   std::vector<std::string> command = command_of(events, scratch_folder + "/likwid_probe.csv");
   command.push_back("true");
   const ProcessOutcome outcome = run_process(
-      {.arguments = command, .stdout_path = {}, .stderr_path = path, .timeout_s = kAnswerTimeoutS});
+      {.arguments = command, .stdout_path = {}, .stderr_path = path, .timeout_s = kLikwidTimeoutS});
   if (outcome.succeeded()) return {};
-  std::istringstream said(read_tail(path, kMaxAnswerBytes));
+  std::istringstream said(read_tail(path, kMaxLikwidBytes));
   std::string words;
   for (std::string line; std::getline(said, line);) words += (words.empty() ? "" : "; ") + line;
   return fmt::format("{}: {}", kProgram, words.empty() ? outcome.describe() : words);

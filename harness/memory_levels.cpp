@@ -27,7 +27,7 @@ constexpr int kRepeats = 7;
 constexpr std::size_t kLoads = 250'000;  // a repeat takes some 30 ms from memory
 constexpr std::uint64_t kSeed = 1;
 constexpr double kBenchTimeoutS = 60;
-constexpr std::size_t kMaxAnswerBytes = 4000;
+constexpr std::size_t kMaxBenchBytes = 4000;
 
 struct Cache {
   int level;

@@ -120,7 +120,7 @@ std::map<std::string, std::string> verify_mesh(const MeshRun& run) {
   const auto command = verifier_command(run, scratch, report_path);
   run_to_end(command, run.command.quiet);
   std::ifstream file(report_path);
-  const auto report = nlohmann::json::parse(file, nullptr, false);
+  const auto report = nlohmann::ordered_json::parse(file, nullptr, false);
   if (!report.is_object()) throw InputError(fmt::format("--verify: {} gave no report", command[0]));
   std::map<std::string, std::string> verdicts;
   for (const auto& [claim, result] : report.at("claims").items()) verdicts[claim] = result.at("verdict");

@@ -91,7 +91,7 @@ class Reader {
   OperationLogHead take_head() {
     const std::string text(std::istreambuf_iterator<char>(stream_), {});
     try {
-      const auto json = nlohmann::json::parse(text);
+      const auto json = nlohmann::ordered_json::parse(text);
       if (json.at("schema") != kSchema) fail(fmt::format("schema is not {}", kSchema));
       OperationLogHead head;
       json.at("box").get_to(head.box);
@@ -101,7 +101,7 @@ class Reader {
       json.at("space").get_to(head.space);
       json.at("mesh_sha256").get_to(head.mesh_sha256);
       return head;
-    } catch (const nlohmann::json::exception& error) {
+    } catch (const nlohmann::ordered_json::exception& error) {
       fail(fmt::format("the description of the run: {}", error.what()));
     }
   }
