@@ -11,7 +11,7 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
-// Of meshes of a million cells: 118 to 156 bytes of memory beyond the image (results/reference), and a VTU
+// Of meshes of a million cells: 130 to 153 bytes of memory beyond the image (results/reference), and a VTU
 // file.
 constexpr double kMemoryBytesPerCell = 160, kDiskBytesPerCell = 50;
 

@@ -28,6 +28,9 @@ struct Trial {
   int repeats = 1, warmups = 0;
   double timeout_s = 0;
   double memory_limit_gib = 0;  ///< 0: none
+  std::uint64_t memory_limit_bytes() const {
+    return static_cast<std::uint64_t>(memory_limit_gib * 1024 * 1024 * 1024);
+  }
   Tier tier = Tier::kDefault;
 };
 

@@ -15,6 +15,7 @@ using Json = nlohmann::ordered_json;
 
 constexpr int kMesherSchema = 1;  // of the mesher's records
 constexpr int kExitUnmet = 1;
+constexpr int kExitRefused = 77;  // of a peer: peers/README.md
 
 // Why `record` cannot be used; empty: it can. Asks only for what is read here and in the table.
 std::string fault_of(const Json& record) {
@@ -70,9 +71,9 @@ void judge_measurement(const std::string& record_path, TrialResult& result) {
 void judge(const Trial& trial, const std::string& record_path, TrialResult& result) {
   judge_end(result);
   const ProcessOutcome& process = result.process;
-  if (process.end != ProcessOutcome::End::kExited ||
-      (process.exit_code != 0 && process.exit_code != kExitUnmet))
-    return;
+  if (process.end != ProcessOutcome::End::kExited) return;
+  if (is_of_peer(trial) && process.exit_code == kExitRefused) result.status = Status::kSkipped;
+  if (process.exit_code != 0 && process.exit_code != kExitUnmet) return;
 
   std::ifstream file(record_path);
   if (!file) {

@@ -33,7 +33,7 @@ std::optional<Preparation> Preparer::find(const Trial& trial) {
 Preparation Preparer::make(const Trial& trial, const std::string& scratch_folder, const Announce& announce,
                            const StopQuery& stop_requested) {
   const Json wanted = {trial.image, trial.options.value(kTargetElements, Json()),
-                       trial.options.value("delta_mm", Json())};
+                       trial.options.value("delta_mm", Json()), trial.timeout_s, trial.memory_limit_gib};
   if (const auto failed = failures_.find(wanted.dump()); failed != failures_.end()) throw failed->second;
   try {
     return make_anew(trial, scratch_folder, announce, stop_requested);

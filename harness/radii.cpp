@@ -19,7 +19,6 @@ namespace {
 using Json = nlohmann::ordered_json;
 
 constexpr const char* kSchema = "podm-bench-radius/1";
-constexpr double kBytesPerGib = 1024.0 * 1024 * 1024;
 
 std::string now() {
   return fmt::format("{:%Y-%m-%dT%H:%M:%SZ}", fmt::gmtime(std::chrono::system_clock::now()));
@@ -29,12 +28,11 @@ ProcessRequest request_of(const Trial& trial, const std::string& podm, const std
                           const std::string& folder) {
   Json options = {{kTargetElements, trial.options[kTargetElements]}, {"threads", usable_processors()}};
   if (trial.options.contains("delta_mm")) options["delta_mm"] = trial.options["delta_mm"];
-  ProcessRequest request{
-      .arguments = {podm, "mesh", image},
-      .stdout_path = {},
-      .stderr_path = folder + "/stderr.txt",
-      .timeout_s = trial.timeout_s,
-      .memory_limit_bytes = static_cast<std::uint64_t>(trial.memory_limit_gib * kBytesPerGib)};
+  ProcessRequest request{.arguments = {podm, "mesh", image},
+                         .stdout_path = {},
+                         .stderr_path = folder + "/stderr.txt",
+                         .timeout_s = trial.timeout_s,
+                         .memory_limit_bytes = trial.memory_limit_bytes()};
   const auto arguments = mesher_arguments(options);
   request.arguments.insert(request.arguments.end(), arguments.begin(), arguments.end());
   for (const std::string& argument : {std::string("-o"), folder + "/mesh.vtu", std::string("--record"),

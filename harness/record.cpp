@@ -1,5 +1,8 @@
 #include "record.h"
 
+#include "counter_tool.h"
+#include "measure.h"
+
 namespace podm::bench {
 namespace {
 
@@ -34,6 +37,14 @@ Json input_of(const Trial& trial, const TrialResult& result) {
 
 }  // namespace
 
+std::string basis_of(const Json& asked, const Json& counters) {
+  const bool is_on_simulated_core =
+      asked.value(kCounters, "") == kCachegrind && !counters.value(kCachegrind, Json()).is_string();
+  const bool is_simulated =
+      asked.value("executor", "threads") != "threads" || asked.contains("topology") || is_on_simulated_core;
+  return to_string(is_simulated ? Basis::kSimulated : Basis::kMeasured);
+}
+
 std::optional<double> bytes_per_cell_beyond_image(const TrialResult& result) {
   if (!result.record.is_object() || !result.image_size.is_array()) return {};
   const double cells = result.record["cells"];
@@ -54,6 +65,7 @@ Json make_row(const RowContext& context, const Trial& trial, const Turn& turn, c
               {"status", to_string(result.status)},
               {"reason", result.reason},
               {"asked", trial.options},
+              {"basis", basis_of(trial.options, result.counters)},
               {"command", result.command},
               {"resolved", result.preparation.resolved},
               {"input", Json()}};

@@ -10,7 +10,7 @@
 
 namespace podm::bench {
 
-inline constexpr int kRowSchema = 3;  ///< results/schema/podm-bench-row.schema.json
+inline constexpr int kRowSchema = 4;  ///< results/schema/podm-bench-row.schema.json
 
 /// Of a row that measures the machine in place of a mesh: a list, Table 3.
 inline constexpr const char* kMemoryLevels = "memory_levels";
@@ -24,6 +24,10 @@ struct RowContext {
   nlohmann::ordered_json programs;     ///< describe_programs()
   nlohmann::ordered_json environment;  ///< before the trial
 };
+
+/// What a row with these options and counters is: "simulated" in virtual time, on a described machine or on
+/// cachegrind's core, else "measured".
+std::string basis_of(const nlohmann::ordered_json& asked, const nlohmann::ordered_json& counters);
 
 /// Peak resident bytes a cell beyond labels and feature transform of the image; nothing without a mesh.
 std::optional<double> bytes_per_cell_beyond_image(const TrialResult& result);

@@ -5,7 +5,6 @@
 #include <algorithm>
 #include <map>
 
-#include "counter_tool.h"
 #include "mesher_options.h"
 #include "record.h"
 
@@ -33,6 +32,12 @@ std::string origin_of(const Json& row) {
   const std::string maker = maker_of(row);
   const Json program = maker == kPodm ? at(row, "/programs/podm/sha256") : at(row, "/programs/peer/sha256");
   return machine_of(row).dump() + program.dump();
+}
+
+// What a later row replaces. A trial that could not be prepared, or whose options or radius changed since,
+// has another key.
+Json turn_of(const Json& row) {
+  return {text_in(row, "trial"), row.value("repeat", 1), at(row, "/input/name")};
 }
 
 }  // namespace
@@ -99,11 +104,7 @@ std::string missing_value(const Filter& filter, const RowPointers& rows) {
   return "";
 }
 
-bool is_simulated(const Json& row) {
-  const Json options = options_of(row);
-  return options[kExecutor] != kThreads || options.contains("topology") ||
-         option(options, kCounters) == kCachegrind;
-}
+bool is_simulated(const Json& row) { return text_in(row, "basis") == to_string(Basis::kSimulated); }
 
 bool is_of(const Json& row, Basis basis) {
   return basis == Basis::kAny || is_simulated(row) == (basis == Basis::kSimulated);
@@ -118,15 +119,15 @@ std::vector<Json> rows_to_judge(const std::vector<Json>& rows) {
   std::map<std::string, std::string> newest_origins;  // by maker
   for (const Json& row : rows)
     if (machine_of(row) == newest_machine) newest_origins[maker_of(row)] = origin_of(row);
-  std::map<std::string, std::size_t> places;
+  std::map<Json, std::size_t> places;
   for (const Json& row : rows) {
     if (row.value("warmup", false) || text_in(row, "status") == to_string(Status::kInterrupted)) continue;
     if (origin_of(row) != newest_origins[maker_of(row)]) continue;
-    const auto [place, is_new] = places.emplace(text_in(row, "key"), chosen.size());
-    if (!is_new && !place->first.empty())
-      chosen[place->second] = row;
-    else
+    const auto [place, is_new] = places.emplace(turn_of(row), chosen.size());
+    if (is_new)
       chosen.push_back(row);
+    else
+      chosen[place->second] = row;
   }
   return chosen;
 }

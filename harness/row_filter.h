@@ -53,8 +53,8 @@ bool is_of(const nlohmann::ordered_json& row, Basis basis);
 /// A trial's name as the experiment's file has it, without ",key=value".
 std::string stem_of(const std::string& trial);
 
-/// The rows that may be judged, in their order: those of the newest row's machine and mesher, of each key the
-/// last, without warm-ups and what the user interrupted.
+/// The rows that may be judged, in their order: those of the newest row's machine and mesher, of each trial,
+/// repeat and image the last, without warm-ups and what the user interrupted.
 std::vector<nlohmann::ordered_json> rows_to_judge(const std::vector<nlohmann::ordered_json>& rows);
 
 }  // namespace podm::bench

@@ -23,7 +23,6 @@ using Json = nlohmann::ordered_json;
 
 constexpr std::size_t kTailBytes = 2000;
 constexpr double kInfoTimeoutS = 120;
-constexpr double kBytesPerGib = 1024.0 * 1024 * 1024;
 constexpr const char* kMeshName = "/mesh.vtu";
 constexpr const char* kMessagesName = "/stderr.txt";
 
@@ -65,7 +64,7 @@ ProcessRequest request_of(const Trial& trial, const std::vector<std::string>& co
           .stdout_path = {},
           .stderr_path = folder + kMessagesName,
           .timeout_s = trial.timeout_s,
-          .memory_limit_bytes = static_cast<std::uint64_t>(trial.memory_limit_gib * kBytesPerGib)};
+          .memory_limit_bytes = trial.memory_limit_bytes()};
 }
 
 // Not more than half of what is free: it is to be touched, not to be had.
@@ -217,6 +216,8 @@ TrialResult TrialRunner::run(const Trial& trial, const Preparation& preparation,
     measure(run, result);
   if (result.status != Status::kOk)
     result.stderr_tail = read_tail(scratch_folder + kMessagesName, kTailBytes);
+  if (result.status == Status::kSkipped)
+    result.reason = result.stderr_tail.substr(0, result.stderr_tail.find('\n'));
   return result;
 }
 

@@ -106,6 +106,7 @@ class Run {
     MeshingResult result;
     MeshingReport& report = result.report;
     object_ = foreground_bounds(image_, options_.loop_threads());
+    expected_cells_ = estimate(image_, options_).cells;
     report.phases_s["transform"] = seconds_since(start);
     locate_memory(isosurface);
 
@@ -151,14 +152,13 @@ class Run {
   Refinement refine(const Isosurface& isosurface, double radius_mm, double delta_mm, MeshingReport& report) {
     report.radius_mm = radius_mm;
     report.delta_mm = delta_mm;
-    const double expected = estimate(image_, options_).cells;
     Limits limits{options_.max_elements, Clock::time_point::max()};
     if (options_.max_seconds > 0) {
       limits.deadline = start_ + std::chrono::duration_cast<Clock::duration>(
                                      std::chrono::duration<double>(options_.max_seconds));
     }
     Watch watch(limits, stop_, [&](std::uint64_t cells) {
-      announce("refine", static_cast<double>(cells) / expected, cells);
+      announce("refine", static_cast<double>(cells) / expected_cells_, cells);
     });
     if (options_.log != nullptr) options_.log->restart();
     return run({isosurface, object_, report.delta_mm, size_field(image_, options_, radius_mm),
@@ -270,6 +270,7 @@ class Run {
   std::optional<ImageOwners> owners_;
   std::optional<PageSampler> pages_;
   Box object_{};  // bounds of the foreground
+  double expected_cells_ = 1;
   const Clock::time_point start_ = Clock::now();
 };
 

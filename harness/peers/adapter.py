@@ -22,6 +22,12 @@ def absent(reason):
     sys.exit(EXIT_ABSENT)
 
 
+def refuse(reason):
+    """Ends the adapter: its mesher cannot take this image."""
+    print(reason, file=sys.stderr)
+    sys.exit(EXIT_ABSENT)
+
+
 def parse_arguments(version):
     """The contract's options. Answers --version with version(options), which may call absent()."""
     parser = argparse.ArgumentParser()

@@ -33,21 +33,23 @@ def path_of(program, options):
 
 
 def read_nifti(path):
-    """Labels, first axis fastest."""
+    """Labels, first axis fastest, and how many along each axis."""
+    if not path.endswith((".nii", ".nii.gz")):
+        adapter.refuse("CGAL is given NIfTI and INR images")
     with (gzip.open if path.endswith(".gz") else open)(path, "rb") as file:
         data = file.read()
     order = "<" if data[:4] == (348).to_bytes(4, "little") else ">"
     size = np.frombuffer(data, order + "i2", 3, 42)
     kind = int(np.frombuffer(data, order + "i2", 1, 70)[0])
     if kind not in NIFTI_TYPES:
-        sys.exit(f"{path}: CGAL is given NIfTI images of integer labels, and INR")
+        adapter.refuse("CGAL is given NIfTI images of integer labels")
     begin = int(np.frombuffer(data, order + "f4", 1, 108)[0])
     return np.frombuffer(data, order + NIFTI_TYPES[kind], int(np.prod(size.astype(int))), begin), size
 
 
 def write_inr(path, labels, size, spacing_mm):
     if labels.min() < 0 or labels.max() > 0xFFFF:
-        sys.exit("labels are not in 0..65535")
+        adapter.refuse("CGAL is given labels of 0..65535")
     header = "#INRIMAGE-4#{\n" + "".join(f"{axis}DIM={n}\n" for axis, n in zip("XYZ", size)) + "VDIM=1\n"
     header += "".join(f"V{axis}={mm!r}\n" for axis, mm in zip("XYZ", spacing_mm))
     header += "TYPE=unsigned fixed\nPIXSIZE=16 bits\nSCALE=2**0\nCPU=decm\n"

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "claim.h"
+#include "record.h"
 
 namespace podm::bench {
 
@@ -13,7 +14,8 @@ namespace podm::bench {
 inline nlohmann::ordered_json made_up_row(const std::string& trial, const nlohmann::ordered_json& asked,
                                           int repeat = 1) {
   static int num_rows = 0;
-  nlohmann::ordered_json options = asked;
+  using Json = nlohmann::ordered_json;
+  Json options = asked;
   if (!options.contains("threads")) options["threads"] = 1;
   return {{"key", "key " + std::to_string(++num_rows)},
           {"trial", trial},
@@ -22,6 +24,7 @@ inline nlohmann::ordered_json made_up_row(const std::string& trial, const nlohma
           {"status", "ok"},
           {"reason", ""},
           {"asked", options},
+          {"basis", basis_of(options, Json::object())},
           {"input", {{"name", "image"}, {"path", "image.nii"}}},
           {"environment", {{"cpu", "some"}, {"packages", 2}, {"cores", 16}, {"usable_processors", 16}}},
           {"programs", {{"podm", {{"sha256", "build"}}}}}};

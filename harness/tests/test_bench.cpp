@@ -108,10 +108,10 @@ case $(cat arguments) in *--radius*) [ ! -e slow ] || { echo $$ > pid; exec slee
 
 TEST_F(BenchTest, BrokenLastLineIsReportedAndMovedAside) {
   run_with(good_mesh_, {"--only", "one"});
-  std::ofstream(folder_ / "results/exp.jsonl", std::ios::app) << R"({"schema":3,"key":")";
+  std::ofstream(folder_ / "results/exp.jsonl", std::ios::app) << R"({"schema":4,"key":")";
   EXPECT_EQ(run_with(good_mesh_), 0);
   EXPECT_TRUE(has_printed("err", "results/exp.jsonl:2: a broken line")) << printed("err");
-  EXPECT_EQ(printed("results/exp.jsonl.broken"), "{\"schema\":3,\"key\":\"\n");
+  EXPECT_EQ(printed("results/exp.jsonl.broken"), "{\"schema\":4,\"key\":\"\n");
   EXPECT_EQ(trials_recorded(), (std::vector<std::string>{"one", "two"}));
 }
 

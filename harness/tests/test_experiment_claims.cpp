@@ -219,11 +219,7 @@ void expect_undecided(const Experiment& experiment, const Claim& claim) {
   if (claim.basis != Basis::kAny) {
     Rows other = fine;
     for (Json& row : other)
-      row["asked"]["executor"] = claim.basis == Basis::kMeasured ? "virtual" : "threads";
-    if (claim.basis == Basis::kSimulated)
-      for (Json& row : other) row["asked"].erase("topology");
-    if (claim.basis == Basis::kSimulated)
-      for (Json& row : other) row["asked"].erase("counters");
+      row["basis"] = to_string(claim.basis == Basis::kMeasured ? Basis::kSimulated : Basis::kMeasured);
     expect_open(claim, other, "of another basis");
   }
   Rows lonely = fine;  // a series without the one it is compared with

@@ -71,6 +71,12 @@ TEST_F(PeerTest, IsSkippedWithItsReasonWhereItCannotRun) {
   EXPECT_EQ(reason_to_skip_, "other is not installed");
 }
 
+TEST_F(PeerTest, IsSkippedWithItsReasonWhereItCannotTakeTheImage) {
+  const TrialResult result = run(version_, "echo 'only cubes' >&2; exit 77");
+  EXPECT_EQ(result.status, Status::kSkipped);
+  EXPECT_EQ(result.reason, "only cubes");
+}
+
 TEST_F(PeerTest, FailsWithoutAUsableRecord) {
   EXPECT_EQ(run(version_, "exit 4").status, Status::kFailed);
   EXPECT_EQ(run(version_, "echo '{\"cells\":1}' > $output/record.jsonl\n").status, Status::kFailed);

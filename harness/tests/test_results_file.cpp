@@ -10,8 +10,8 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
-const std::string kOne = R"({"schema":3,"trial":"one"})" + std::string("\n");
-const std::string kTwo = R"({"schema":3,"trial":"two"})" + std::string("\n");
+const std::string kOne = R"({"schema":4,"trial":"one"})" + std::string("\n");
+const std::string kTwo = R"({"schema":4,"trial":"two"})" + std::string("\n");
 
 class ResultsFileTest : public testing::Test {
  protected:
@@ -22,8 +22,8 @@ class ResultsFileTest : public testing::Test {
 
 TEST_F(ResultsFileTest, EachAppendAddsOneWholeLineToWhatWasThere) {
   const std::string path = folder_.write("rows.jsonl", kOne);
-  RecordFile(path).append({{"schema", 3}, {"trial", "not UTF-8: \xff"}});
-  RecordFile(path).append({{"schema", 3}, {"trial", "two\nlines"}});
+  RecordFile(path).append({{"schema", 4}, {"trial", "not UTF-8: \xff"}});
+  RecordFile(path).append({{"schema", 4}, {"trial", "two\nlines"}});
   const auto rows = read_rows(path).rows;
   ASSERT_EQ(rows.size(), 3u);
   EXPECT_EQ(rows[0].at("trial"), "one");
@@ -74,7 +74,7 @@ TEST_F(ResultsFileTest, BrokenLinesAmongOthersAreCollected) {
 
 TEST_F(ResultsFileTest, UnknownSchemaIsRefusedWithItsPlaceAndLeftAlone) {
   for (const std::string row :
-       {R"({"schema":2})", R"({"schema":4})", R"({"schema":"x"})", R"({"trial":"none"})"}) {
+       {R"({"schema":3})", R"({"schema":5})", R"({"schema":"x"})", R"({"trial":"none"})"}) {
     const std::string path = folder_.write("rows.jsonl", kOne + row + "\n" + "{half");
     try {
       repair_rows(path);

@@ -14,7 +14,7 @@ using Rows = std::vector<Json>;
 TEST(RowsToJudge, AreTheNewestOfEachKeyOfOneBuildAndMachine) {
   const auto row = [](const std::string& key, const std::string& build, const std::string& cpu = "some") {
     Json made = refined_in(1, {});
-    made["key"] = key;
+    made["key"] = made["trial"] = key;
     made["programs"]["podm"]["sha256"] = build;
     made["environment"]["cpu"] = cpu;
     return made;
@@ -39,6 +39,15 @@ TEST(RowsToJudge, AreTheNewestOfEachKeyOfOneBuildAndMachine) {
   peer["programs"]["peer"] = {{"sha256", "its own"}};
   machine["asked"]["measure"] = "memory_latency";
   EXPECT_EQ(keys({peer, machine, row("a", "1"), row("b", "2")}), "pmb") << "they are not of podm's build";
+  Json changed = row("a", "1");  // as after a preparation that failed
+  changed["key"] = "another";
+  EXPECT_EQ(keys({row("a", "1"), changed}), "another");
+  EXPECT_EQ(keys({changed, row("a", "1")}), "a");
+  changed["repeat"] = 2;
+  EXPECT_EQ(keys({row("a", "1"), changed}), "aanother");
+  changed["repeat"] = 1;
+  changed["input"]["name"] = "other image";
+  EXPECT_EQ(keys({row("a", "1"), changed}), "aanother");
   EXPECT_EQ(keys({}), "");
 }
 

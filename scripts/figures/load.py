@@ -5,7 +5,7 @@ from pathlib import Path
 
 import pandas
 
-SCHEMA = 3
+SCHEMA = 4
 # A mesh counts as verified when these pass and no other claim fails; the rest may lack an input, such as the image.
 NEEDED_CLAIMS = ("structure", "delaunay", "radius_edge", "boundary_angles")
 SIMULATED_CACHES = "its seconds are those of a simulation of caches"
@@ -36,7 +36,7 @@ def load(paths):
     rows, problems = [], []
     for path, is_named in _files(paths):
         rows += _read_file(path, is_named, problems)
-    frame = pandas.json_normalize([{**row, **derived(row)} for row in _last_of_each_key(rows)], sep=".")
+    frame = pandas.json_normalize([{**row, **derived(row)} for row in _newest_of_each_turn(rows)], sep=".")
     return Records(frame.drop(columns=LONG_LISTS, errors="ignore"), problems)
 
 
@@ -45,7 +45,7 @@ def derived(row):
     timed = timed_phases(row)
     doubt = doubt_of(row)
     return {
-        "basis": "simulated" if is_virtual(row) or simulates_caches(row) else "measured",
+        "basis": row["basis"],
         "mesher": mesher_of(row),
         "machine": row.get("environment", {}).get("cpu", "unknown machine"),
         "usable_cores": usable_cores(row.get("environment", {})),
@@ -137,10 +137,18 @@ def doubt_of(row):
     return "; ".join(doubts) or (SIMULATED_CACHES if simulates_caches(row) else "")
 
 
-def _last_of_each_key(rows):
+def _newest_of_each_turn(rows):
     """A measurement that an experiment made again counts once, as of its newest row."""
-    newest = {(row.get("experiment"), row.get("key", number)): number for number, row in enumerate(rows)}
+    newest = {turn_of(row): number for number, row in enumerate(rows)}
     return [rows[number] for number in sorted(newest.values())]
+
+
+def turn_of(row):
+    """What a later row replaces. A trial that could not be prepared, or whose options or radius changed since, has
+    another key."""
+    machine = row.get("environment", {}).get("cpu")
+    return (machine, mesher_of(row), build_of(row), row.get("experiment"), row.get("trial"), row.get("repeat"),
+            row.get("warmup"), row.get("input", {}).get("name"))
 
 
 def _files(paths):

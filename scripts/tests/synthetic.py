@@ -5,7 +5,7 @@ import random
 
 PASSED = {claim: "pass" for claim in ("structure", "delaunay", "radius_edge", "boundary_angles", "size", "conformity")}
 ROW = {
-    "schema": 3, "experiment": "weak", "trial": "made-up", "repeat": 1, "warmup": False, "status": "ok", "reason": "",
+    "schema": 4, "experiment": "weak", "repeat": 1, "warmup": False, "status": "ok", "reason": "",
     "algorithm": "podm", "input": {"name": "phantom:made-up", "path": "inputs/made-up.nii.gz"},
     "threads": {"asked": 1, "used": 1}, "virtual": None, "replay": None,
     "phases_s": {"read": 1.0, "transform": 1.0, "refine": 24.0, "extract": 1.18, "write": 5.0, "calibrate": 60.0,
@@ -14,13 +14,15 @@ ROW = {
     "programs": {"podm": {"sha256": "ab" * 32, "version": "podm 0.1.0"}},
     "environment": {"cpu": "Made-up CPU", "usable_processors": 2, "kernel": "Linux", "compiler": "GNU 12"},
 }
+SEEDS = itertools.count(1)  # no row replaces another
 BIG_MACHINE = ROW["environment"] | {"usable_processors": 256}
 
 
 def row(algorithm="podm", cores=1, **changes):
     """Of a run in virtual time, its seconds are virtual; those of the machine at hand mean nothing then."""
     made = copy.deepcopy(ROW)
-    made.update(algorithm=algorithm, threads={"asked": cores, "used": cores}, cells=3_000_000 * cores)
+    made.update(algorithm=algorithm, threads={"asked": cores, "used": cores}, cells=3_000_000 * cores,
+                trial=f"made-up,algorithm={algorithm},threads={cores},seed={next(SEEDS)}")
     made.update(changes)
     if made.get("executor") == "virtual" and not made["virtual"]:
         timed = {phase: made["phases_s"][phase] for phase in ("initial", "refine") if phase in made["phases_s"]}
@@ -28,6 +30,9 @@ def row(algorithm="podm", cores=1, **changes):
         made["virtual"] = {"cost": "measured", "refine_s": sum(timed.values()), "phases_s": timed}
         made.update(phases_s={"read": 1.0, "refine": 1e6, "write": 9.0}, process={"wall_s": 1234.5},
                     overhead_s={"contention": 3.0, "begging": 2.0, "rollback": 1.0})
+    counted = made.get("process", {}).get("counters", {}).values()
+    on_simulated_core = any("simulated" in one["source"] for one in counted if isinstance(one, dict))
+    made["basis"] = "simulated" if made.get("executor") == "virtual" or on_simulated_core else "measured"
     return made
 
 

@@ -28,13 +28,13 @@ class Load(unittest.TestCase):
         self.assertEqual(records.problems, [])
 
     def test_refuses_other_schemas_by_name(self):
-        for version in (0, 1, 2, 4, "podm-verify/1"):
+        for version in (0, 1, 2, 3, "podm-verify/1"):
             fault = rf"weak.jsonl:2: schema '?{version}"
             with self.subTest(version=version), self.assertRaisesRegex(RecordError, fault):
                 self.load(synthetic.row(), synthetic.row(schema=version))
 
     def test_a_broken_last_line_is_reported_and_skipped(self):
-        records = self.load(synthetic.row(), tail='{"schema": 3, "exp')
+        records = self.load(synthetic.row(), tail='{"schema": 4, "exp')
         self.assertEqual(len(records.frame), 1)
         self.assertRegex(records.problems[0], r"weak.jsonl:2: last line is broken")
 
@@ -57,9 +57,9 @@ class Load(unittest.TestCase):
             (self.file.parent / name / "more.jsonl").write_text(json.dumps(synthetic.row(cores=2)) + "\n")
         self.assertEqual(sorted(load([self.file.parent]).frame["cores"]), [1, 2])
 
-    def test_of_rows_of_one_key_the_last_counts(self):
-        again = [synthetic.row(key=key, cells=cells) for key, cells in (("a", 1), ("b", 2), ("a", 3))]
-        elsewhere = synthetic.row(key="a", cells=4, experiment="another")
+    def test_of_rows_of_one_turn_the_last_counts(self):
+        again = [synthetic.row(trial="1M", repeat=repeat, cells=cells, key=cells) for repeat, cells in ((1, 1), (2, 2), (1, 3))]
+        elsewhere = synthetic.row(trial="1M", cells=4, experiment="another")
         self.assertEqual(list(self.load(*again, elsewhere).frame["cells"]), [2, 3, 4])
 
     def test_seconds_of_virtual_workers_are_virtual(self):

@@ -86,7 +86,7 @@ class Programs(unittest.TestCase):
             ("report", ["--records", fine, "--mesh", fine], "fine.jsonl: no cells"),
             ("report", ["--records", fine, "--verified", fine], "fine.jsonl: not a report of schema podm-verify/1"),
             ("report", ["--records", fine, "--schedule", fine],
-             "fine.jsonl: schema 3; this program reads podm-schedule/1"),
+             "fine.jsonl: schema 4; this program reads podm-schedule/1"),
             ("report", ["--records", fine, "--experiment-verdicts", fine],
              "fine.jsonl: not verdicts of schema podm-bench-verdicts/1"),
             ("make_figures", ["--records", fine, "--experiment-verdicts", odd], "weak_scaling: one: verdict 'perhaps'"),
