@@ -10,6 +10,7 @@
 #include "counters.h"
 #include "judgement.h"
 #include "machine.h"
+#include "measure.h"
 #include "mesher_options.h"
 #include "record.h"
 #include "side_by_side.h"
@@ -67,8 +68,9 @@ ProcessRequest request_of(const Trial& trial, const std::vector<std::string>& co
           .memory_limit_bytes = trial.memory_limit_bytes()};
 }
 
-// Not more than half of what is free: it is to be touched, not to be had.
+// Not more than half of what is free: it is to be touched, not to be had. Simulated times need none.
 void warm_memory_of(const Trial& trial) {
+  if (basis_of(trial.options, Json::object()) == to_string(Basis::kSimulated)) return;
   const auto free_bytes = static_cast<std::size_t>(std::max(0L, sysconf(_SC_AVPHYS_PAGES))) *
                           static_cast<std::size_t>(sysconf(_SC_PAGESIZE));
   const auto copies = static_cast<std::size_t>(std::max(1, num_copies(trial)));

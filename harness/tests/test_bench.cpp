@@ -190,6 +190,31 @@ TEST_F(BenchTest, FailedTrialIsRecordedTheOthersStillRunAndTheExitCodeTells) {
   EXPECT_TRUE(is_tidy());
 }
 
+TEST_F(BenchTest, PromiseThatAnotherMesherBreaksIsRecordedAndNoFailure) {
+  std::filesystem::create_directories(folder_ / "peers/other");
+  folder_.script("peers/other/run", R"([ "$1" = --version ] && { echo 'Other 1.0, MIT'; exit 0; }
+while [ $# -gt 0 ]; do
+  case $1 in --output) output=$2;; esac
+  shift
+done
+echo '{"mesh":"m","cells":9,"vertices":9,"phases_s":{"refine":1},"promises":["structure"]}' > $output/record.jsonl
+echo mesh > $output/m
+)");
+  const std::string head =
+      "title = 't'\nclaim = 'c'\n[inputs.a]\nimage = '" + folder_.write("a.nii", "x") + "'\n";
+  const std::string verifier =
+      fake_verifier(folder_, "echo '{\"claims\":{\"structure\":{\"verdict\":\"fail\"}}}' > \"$report\"\n");
+  const auto run = [&](const std::string& trial) {
+    folder_.write("exp.toml", head + "[[trials]]\nname = 'one'\ninput = 'a'\n" + trial + kClaim);
+    return bench({"run", folder_ / "exp.toml", "--podm", fake_mesher(folder_, good_mesh_), "--results",
+                  folder_ / "results", "--verifier", verifier, "--peers", folder_ / "peers"});
+  };
+  EXPECT_EQ(run("mesher = 'other'\n"), 0) << printed("err");
+  EXPECT_EQ(rows().back().at("status"), "unmet");
+  EXPECT_EQ(run(""), 1) << "our own count";
+  EXPECT_EQ(rows().back().at("status"), "unmet");
+}
+
 TEST_F(BenchTest, InterruptEndsTheTrialRecordsItAndStops) {
   EXPECT_EQ(run_with("kill -INT $PPID; sleep 30"), 1);  // what Ctrl-C sends to podm-bench
   ASSERT_EQ(rows().size(), 1u);
