@@ -13,7 +13,8 @@ may_include() {
     mesher/refine) echo mesher/delaunay mesher/octree mesher/image mesher/geometry mesher/runtime mesher/include ;;
     mesher/io | examples/*) echo mesher/include ;;
     mesher | mesher/*) echo "mesher mesher/*" ;;  # the algorithms, the command line, whole-mesher tests
-    harness | verifiers) ;;                       # they know the mesher as a program and by its files
+    harness) echo mesher/runtime ;;  # asks the system as the mesher does, whom it knows as a program and by its files
+    verifiers) ;;                    # they know it by its files alone
   esac
 }
 

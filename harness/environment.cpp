@@ -11,6 +11,7 @@
 
 #include "machine.h"
 #include "process.h"
+#include "runtime/control_group.h"
 #include "sha256.h"
 
 namespace podm::bench {
@@ -20,7 +21,6 @@ using Json = nlohmann::ordered_json;
 
 constexpr double kAnswerTimeoutS = 30;
 constexpr std::size_t kMaxAnswerBytes = 4096;
-constexpr const char* kCgroupRoot = "/sys/fs/cgroup";
 
 std::string first_line(const std::string& path) {
   std::ifstream file(path);
@@ -47,17 +47,21 @@ std::string kernel() {
   return fmt::format("{} {} {}", name.sysname, name.release, name.machine);
 }
 
-// The limits of this process's own group, version 2. In a container its root is seen as /.
+// Of this process's own group; `unified` and `legacy` are its files in versions 2 and 1.
+std::string limit_in_group(const std::string& controller, const std::string& unified,
+                           const std::vector<std::string>& legacy) {
+  const ControlGroup group = control_group_of(controller);
+  if (group.folders.empty()) return "unavailable: no control group of " + controller;
+  if (group.is_unified) return first_line(group.folders.front() + unified);
+  std::vector<std::string> lines;
+  for (const std::string& file : legacy) lines.push_back(first_line(group.folders.front() + file));
+  return fmt::format("{}", fmt::join(lines, " "));
+}
+
 Json cgroup_limits() {
-  std::ifstream file("/proc/self/cgroup");
-  std::string group;
-  for (std::string line; std::getline(file, line);)
-    if (line.starts_with("0::")) group = line.substr(3);
-  if (group == "/") group.clear();
-  const std::string folder = kCgroupRoot + group;
-  return {{"cpu_max", first_line(folder + "/cpu.max")},
-          {"cpuset", first_line(folder + "/cpuset.cpus.effective")},
-          {"memory_max", first_line(folder + "/memory.max")}};
+  return {{"cpu_max", limit_in_group("cpu", "/cpu.max", {"/cpu.cfs_quota_us", "/cpu.cfs_period_us"})},
+          {"cpuset", limit_in_group("cpuset", "/cpuset.cpus.effective", {"/cpuset.effective_cpus"})},
+          {"memory_max", limit_in_group("memory", "/memory.max", {"/memory.limit_in_bytes"})}};
 }
 
 std::string trimmed(std::string text) {

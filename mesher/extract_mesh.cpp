@@ -38,12 +38,21 @@ constexpr std::size_t kChunk = 1 << 13;
 
 std::size_t num_chunks(std::uint32_t num_ids) { return (num_ids + kChunk - 1) / kChunk; }
 
-/// Calls work(chunk, begin, end) for every chunk of the ids below `num_ids`.
+/// Calls work(chunk, begin, end) for every chunk of the ids from `first`, where one begins, to `last`.
 template <class Work>
-void for_each_chunk(std::uint32_t num_ids, std::size_t threads, const Work& work) {
-  parallel_for_ranges(num_ids, kChunk, threads, [&](std::size_t begin, std::size_t end, std::size_t) {
-    work(begin / kChunk, static_cast<std::uint32_t>(begin), static_cast<std::uint32_t>(end));
+void for_each_chunk(std::uint32_t first, std::uint32_t last, std::size_t threads, const Work& work) {
+  parallel_for_ranges(last - first, kChunk, threads, [&](std::size_t begin, std::size_t end, std::size_t) {
+    work((first + begin) / kChunk, first + static_cast<std::uint32_t>(begin),
+         first + static_cast<std::uint32_t>(end));
   });
+}
+
+/// Calls work(begin, end) for some sixteen slices of the ids below `num_ids`, chunks each, one after another.
+template <class Work>
+void for_each_slice(std::uint32_t num_ids, const Work& work) {
+  const auto length = static_cast<std::uint32_t>(kChunk * std::max<std::size_t>(1, num_chunks(num_ids) / 16));
+  for (std::uint32_t begin = 0; begin < num_ids; begin += std::min(length, num_ids - begin))
+    work(begin, begin + std::min(length, num_ids - begin));
 }
 
 // How many a chunk adds to the output; summed up, where in the output they begin.
@@ -59,6 +68,8 @@ class Shares {
  public:
   explicit Shares(std::uint32_t num_ids) : shares_(num_chunks(num_ids) + 1) {}
   Share& operator[](std::size_t chunk) { return shares_[chunk]; }
+  /// Of all chunks before the id, where one ends.
+  const Share& before(std::uint32_t id) const { return shares_[num_chunks(id)]; }
   void sum_up() { std::exclusive_scan(shares_.begin(), shares_.end(), shares_.begin(), Share{}); }
   const Share& total() const { return shares_.back(); }
 
@@ -69,23 +80,24 @@ class Shares {
 // Of a mesh whose labels are known. Each thread counts what its chunks add, then knows where to write.
 class Extractor {
  public:
-  Extractor(const Mesh& mesh, const WorldFrame& frame, std::size_t threads, TetMesh& out)
+  Extractor(Mesh& mesh, const WorldFrame& frame, std::size_t threads, TetMesh& out)
       : mesh_(mesh), frame_(frame), threads_(threads), out_(out), out_ids_(mesh.vertex_bound(), kNoVertex) {}
 
   std::uint64_t operator()() {
     Shares shares(mesh_.cell_bound());
-    for_each_chunk(mesh_.cell_bound(), threads_, [&](std::size_t chunk, CellId begin, CellId end) {
+    for_each_chunk(0, mesh_.cell_bound(), threads_, [&](std::size_t chunk, CellId begin, CellId end) {
       shares[chunk] = count_cells(begin, end);
     });
     shares.sum_up();
-    parallel_resize(out_.cells, shares.total().cells, threads_);
-    parallel_resize(out_.cell_labels, shares.total().cells, threads_);
-    parallel_resize(out_.facets, shares.total().facets, threads_);
-    parallel_resize(out_.facet_labels, shares.total().facets, threads_);
     write_vertices();
+    reserve(shares.total());
     std::atomic<std::uint64_t> facets_off_isosurface = 0;
-    for_each_chunk(mesh_.cell_bound(), threads_, [&](std::size_t chunk, CellId begin, CellId end) {
-      facets_off_isosurface += write_cells(begin, end, shares[chunk]);
+    for_each_slice(mesh_.cell_bound(), [&](CellId first, CellId last) {
+      resize(shares.before(last));
+      for_each_chunk(first, last, threads_, [&](std::size_t chunk, CellId begin, CellId end) {
+        facets_off_isosurface += write_cells(begin, end, shares[chunk]);
+      });
+      mesh_.release_cells(first, last);
     });
     return facets_off_isosurface;
   }
@@ -114,6 +126,20 @@ class Extractor {
   // The cell of the larger label writes the facet.
   bool is_written_here(CellId c, unsigned k) const { return label_across(c, k) < mesh_.label(c); }
 
+  // Addresses; memory comes with resize().
+  void reserve(const Share& total) {
+    out_.cells.reserve(total.cells);
+    out_.cell_labels.reserve(total.cells);
+    out_.facets.reserve(total.facets);
+    out_.facet_labels.reserve(total.facets);
+  }
+  void resize(const Share& share) {
+    parallel_resize(out_.cells, share.cells, threads_);
+    parallel_resize(out_.cell_labels, share.cells, threads_);
+    parallel_resize(out_.facets, share.facets, threads_);
+    parallel_resize(out_.facet_labels, share.facets, threads_);
+  }
+
   // Marks their vertices as used.
   Share count_cells(CellId begin, CellId end) {
     Share share;
@@ -132,20 +158,27 @@ class Extractor {
 
   void write_vertices() {
     Shares shares(mesh_.vertex_bound());
-    for_each_chunk(mesh_.vertex_bound(), threads_, [&](std::size_t chunk, VertexId begin, VertexId end) {
+    for_each_chunk(0, mesh_.vertex_bound(), threads_, [&](std::size_t chunk, VertexId begin, VertexId end) {
       for (VertexId v = begin; v < end; ++v) shares[chunk].vertices += out_ids_[v] == kUsed;
     });
     shares.sum_up();
-    parallel_resize(out_.vertices, shares.total().vertices, threads_);
-    for_each_chunk(mesh_.vertex_bound(), threads_, [&](std::size_t chunk, VertexId begin, VertexId end) {
-      std::size_t at = shares[chunk].vertices;
-      for (VertexId v = begin; v < end; ++v) {
-        if (out_ids_[v] != kUsed) continue;
-        out_ids_[v] = static_cast<std::uint32_t>(at);
-        if (mesh_.vertex(v).kind != VertexKind::kIsosurface) out_ids_[v] |= kOffIsosurface;
-        out_.vertices[at++] = frame_(mesh_.point(v));
-      }
+    out_.vertices.reserve(shares.total().vertices);
+    for_each_slice(mesh_.vertex_bound(), [&](VertexId first, VertexId last) {
+      parallel_resize(out_.vertices, shares.before(last).vertices, threads_);
+      for_each_chunk(first, last, threads_, [&](std::size_t chunk, VertexId begin, VertexId end) {
+        write_vertices(begin, end, shares[chunk].vertices);
+      });
+      mesh_.release_vertices(first, last);
     });
+  }
+
+  void write_vertices(VertexId begin, VertexId end, std::size_t at) {
+    for (VertexId v = begin; v < end; ++v) {
+      if (out_ids_[v] != kUsed) continue;
+      out_ids_[v] = static_cast<std::uint32_t>(at);
+      if (mesh_.vertex(v).kind != VertexKind::kIsosurface) out_ids_[v] |= kOffIsosurface;
+      out_.vertices[at++] = frame_(mesh_.point(v));
+    }
   }
 
   // Returns how many facets have a vertex off the isosurface.
@@ -181,7 +214,7 @@ class Extractor {
     return is_off;
   }
 
-  const Mesh& mesh_;
+  Mesh& mesh_;
   const WorldFrame& frame_;
   const bool is_mirrored_ = frame_.is_mirrored();
   std::size_t threads_;
@@ -193,7 +226,7 @@ class Extractor {
 
 std::uint64_t label_cells(Mesh& mesh, const Isosurface& isosurface, int threads) {
   std::atomic<std::uint64_t> labelled = 0;
-  for_each_chunk(mesh.cell_bound(), num_threads(threads), [&](std::size_t, CellId begin, CellId end) {
+  for_each_chunk(0, mesh.cell_bound(), num_threads(threads), [&](std::size_t, CellId begin, CellId end) {
     std::uint64_t count = 0;
     for (CellId c = begin; c < end; ++c) {
       LabelIndex& label = mesh.label(c);

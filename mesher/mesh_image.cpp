@@ -1,9 +1,11 @@
 // The public API: options checked, phases timed, PODM run, mesh extracted and measured.
 #include "podm/mesh_image.h"
 
+#include <malloc.h>
 #include <unistd.h>
 
 #include <algorithm>
+#include <bit>
 #include <cmath>
 #include <limits>
 #include <set>
@@ -29,7 +31,13 @@ double seconds_since(Clock::time_point start) {
 }
 
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
-constexpr std::size_t kBytesPerCell = sizeof(Cell) + sizeof(CellState) + sizeof(Vertex) / 4;
+// Of the store: a cell, a quarter of a vertex at most, an entry of a list that may just have doubled, and
+// what extraction takes more.
+constexpr std::uint64_t kBytesPerCell = sizeof(Cell) + sizeof(CellState) + sizeof(Vertex) / 4 + 28;
+// Scratch of operations, and of those on threads a stack and an allocator's arena.
+constexpr std::uint64_t kBytesPerWorker = 5 << 15, kBytesPerThread = 1 << 20;
+constexpr std::uint64_t kLeastCells = 1 << 12;
+static_assert(4 * kMostStoredCells - 1 < kNoFacet);
 
 bool is_positive_or_zero(double x) { return std::isfinite(x) && x >= 0; }
 
@@ -79,11 +87,20 @@ SizeField size_field(const LabelImage& image, const MeshingOptions& options, dou
   return SizeField(std::move(radius));
 }
 
-std::size_t cell_capacity(const MeshingOptions& options) {
+std::size_t cell_capacity(const MeshingOptions& options, int num_workers) {
   const std::uint64_t machine = static_cast<std::uint64_t>(sysconf(_SC_PHYS_PAGES)) *
                                 static_cast<std::uint64_t>(sysconf(_SC_PAGE_SIZE));
   const std::uint64_t bytes = options.max_memory_bytes > 0 ? options.max_memory_bytes : machine;
-  return std::min<std::uint64_t>(bytes / kBytesPerCell + (1 << 17), 1u << 30);
+  const auto workers = static_cast<std::uint64_t>(num_workers);
+  const std::uint64_t of_workers =
+      workers * (options.executor == Executor::kVirtual ? kBytesPerWorker : kBytesPerThread);
+  const auto fits = [&](std::uint64_t cells) {
+    return of_workers + PoorElementList::stale_bytes(cells, workers) + cells * kBytesPerCell <= bytes;
+  };
+  std::uint64_t cells = kLeastCells;
+  for (std::uint64_t step = std::bit_floor(kMostStoredCells); step > 0; step /= 2)
+    if (cells + step <= kMostStoredCells && fits(cells + step)) cells += step;
+  return cells;
 }
 
 // One call of mesh_image: what its phases share.
@@ -162,7 +179,7 @@ class Run {
     });
     if (options_.log != nullptr) options_.log->restart();
     return run({isosurface, object_, report.delta_mm, size_field(image_, options_, radius_mm),
-                cell_capacity(options_)},
+                cell_capacity(options_, num_workers())},
                watch);
   }
 
@@ -250,6 +267,7 @@ class Run {
   void extract(const Isosurface& isosurface, Refinement& refinement, MeshingResult& result) {
     announce("extract", 0, 0);
     const Clock::time_point start = Clock::now();
+    malloc_trim(0);  // what workers had is for the mesh now
     MeshingReport& report = result.report;
     const bool is_voxel = options_.space == Space::kVoxel;
     result.mesh = extract_mesh(*refinement.mesh, isosurface, image_, is_voxel ? Space::kRas : options_.space,

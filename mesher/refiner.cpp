@@ -15,6 +15,9 @@ namespace {
 // The phase in which store, pools, workers and threads are made ready.
 constexpr const char* kAllocate = "allocate";
 
+// Octree, queue and list of a leaf.
+constexpr std::size_t kBytesPerLeaf = 192;
+
 // The groups of the first workers alone.
 WorkerGroups first_of(WorkerGroups groups, int num_workers) {
   for (std::vector<int>& level : groups)
@@ -37,7 +40,8 @@ Refiner::Refiner(const Problem& problem, const Box& clamp_box, const Crew& crew,
     result_.mesh = std::make_unique<Mesh>(virtual_box(clamp_box), problem.cell_capacity, num_nodes);
     for (WorkerId worker = 0; worker < static_cast<WorkerId>(num_workers()); ++worker) {
       const Place place = place_of(worker);
-      pools_.push_back(std::make_unique<Pool>(*result_.mesh, static_cast<NodeIndex>(place.node)));
+      pools_.push_back(std::make_unique<Pool>(*result_.mesh, static_cast<NodeIndex>(place.node),
+                                              static_cast<std::size_t>(num_workers())));
       result_.workers.push_back({place.node, place.socket, place.processor, {}, {}});
       accesses_.push_back({place.node, {}});
     }
@@ -152,10 +156,15 @@ void Refiner::run_on_threads(const CoordinationOptions& options, std::vector<Com
   };
   {
     std::vector<boost::scoped_thread<>> masters;
-    timed(kAllocate, [&] {
-      for (std::size_t n = 1; n < nodes.size(); ++n) masters.emplace_back([&run, n] { run(n); });
-    });
-    run(0);
+    try {
+      timed(kAllocate, [&] {
+        for (std::size_t n = 1; n < nodes.size(); ++n) masters.emplace_back([&run, n] { run(n); });
+      });
+      run(0);
+    } catch (...) {  // a thread was not to be had: those that run already end now
+      watch_.end(StopReason::kCancelled);
+      throw;
+    }
   }
   charge(kAllocate, start_s);
   for (const std::exception_ptr& failure : failures)
@@ -166,6 +175,7 @@ template <class Locks, class RunNodes>
 Refiner::Entries Refiner::run_leaves(const Parameters& parameters, const Octree& octree, int num_nodes,
                                      bool with_schedule, std::function<double()> clock,
                                      const RunNodes& run_nodes) {
+  result_.mesh->withhold(octree.num_leaves() * kBytesPerLeaf);
   auto workers = make_workers<Locks>(parameters, num_workers());
   LeafRefinement leaves(mesh(), octree, static_cast<unsigned>(num_nodes), all_cells(), std::move(clock),
                         watch_.over());

@@ -14,6 +14,8 @@ namespace {
 constexpr double kShareOfAvailableMemory = 0.8;
 constexpr double kBytesPerGib = 1024.0 * 1024 * 1024;
 constexpr std::uint64_t kTransformBytesPerVoxel = 4;
+constexpr std::uint64_t kBytesOfOutput = 6 << 20;  // buffers, record, code not yet touched
+constexpr std::uint64_t kLeastBytesForMesh = 1 << 20;
 
 void refuse_coarse_sampling(const MeshCommand& command, const LabelImage& image) {
   double longest_mm = 0;
@@ -28,6 +30,11 @@ void refuse_coarse_sampling(const MeshCommand& command, const LabelImage& image)
 void refuse_what_cannot_fit(const std::string& image_path, const LabelImage& image,
                             const MeshingOptions& options, std::uint64_t limit_bytes) {
   const Estimate expected = estimate(image, options);
+  if (expected.cells > static_cast<double>(kMostStoredCells))
+    throw InputError(fmt::format(
+        "{}: these options ask for about {:.2g} cells, and no more than 2^30 can be numbered; use a "
+        "larger radius or delta",
+        image_path, expected.cells));
   if (options.max_elements > 0 && static_cast<double>(options.max_elements) < expected.cells) return;
   if (expected.memory_bytes <= static_cast<double>(limit_bytes)) return;
   throw InputError(fmt::format(
@@ -42,10 +49,16 @@ std::uint64_t memory_limit_bytes(const MeshCommand& command) {
   return static_cast<std::uint64_t>(kShareOfAvailableMemory * static_cast<double>(available_memory_bytes()));
 }
 
-// What the image and its transform leave of the limit is for the mesh store.
-std::uint64_t store_bytes(std::uint64_t limit_bytes, const LabelImage& image) {
-  const std::uint64_t others = resident_bytes() + kTransformBytesPerVoxel * image.num_voxels();
-  return others < limit_bytes ? limit_bytes - others : 1;
+// What program, image and transform leave of the limit.
+std::uint64_t bytes_for_mesh(std::uint64_t limit_bytes, const std::string& image_path,
+                             const LabelImage& image) {
+  const std::uint64_t others =
+      resident_bytes() + kTransformBytesPerVoxel * image.num_voxels() + kBytesOfOutput;
+  if (others + kLeastBytesForMesh <= limit_bytes) return limit_bytes - others;
+  throw InputError(fmt::format(
+      "{}: the image takes {:.3g} GiB, which leaves no room for a mesh below the limit of {:.3g} GiB",
+      image_path, static_cast<double>(others) / kBytesPerGib,
+      static_cast<double>(limit_bytes) / kBytesPerGib));
 }
 
 }  // namespace
@@ -56,7 +69,7 @@ MeshingOptions meshing_options(const MeshCommand& command, const LabelImage& ima
   refuse_coarse_sampling(command, image);
   const std::uint64_t limit_bytes = memory_limit_bytes(command);
   refuse_what_cannot_fit(command.image.path, image, options, limit_bytes);
-  options.max_memory_bytes = store_bytes(limit_bytes, image);
+  options.max_memory_bytes = bytes_for_mesh(limit_bytes, command.image.path, image);
   return options;
 }
 

@@ -2,10 +2,10 @@
 
 #include <algorithm>
 #include <fstream>
-#include <limits>
 #include <string>
 
 #include "podm/errors.h"
+#include "runtime/control_group.h"
 
 namespace podm::cli {
 namespace {
@@ -19,23 +19,10 @@ std::uint64_t read_kib_as_bytes(const std::string& path, const std::string& key)
   throw InternalError(path + " has no line " + key);
 }
 
-// A file that holds one number; false if it is missing or says "max".
-bool read_number(const std::string& path, std::uint64_t& number) {
-  std::ifstream file(path);
-  return static_cast<bool>(file >> number);
-}
-
-std::uint64_t left_in_control_group() {
-  std::uint64_t most = 0, used = 0;
-  if (!read_number("/sys/fs/cgroup/memory.max", most) || !read_number("/sys/fs/cgroup/memory.current", used))
-    return std::numeric_limits<std::uint64_t>::max();
-  return most - std::min(most, used);
-}
-
 }  // namespace
 
 std::uint64_t available_memory_bytes() {
-  return std::min(read_kib_as_bytes("/proc/meminfo", "MemAvailable"), left_in_control_group());
+  return std::min(read_kib_as_bytes("/proc/meminfo", "MemAvailable"), memory_left_in_control_groups());
 }
 
 std::uint64_t resident_bytes() { return read_kib_as_bytes("/proc/self/status", "VmRSS"); }

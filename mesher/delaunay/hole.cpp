@@ -25,7 +25,6 @@ std::uint64_t key_of(std::array<std::uint16_t, 3> local) {
 }  // namespace
 
 HoleFiller::Local HoleFiller::add_local(VertexId v, const Point& p) {
-  if (ids_.size() == 0xffff) throw InternalError("hole with more than 65535 vertices");
   ids_.push_back(v);
   points_.push_back(p);
   return static_cast<Local>(ids_.size() - 1);
@@ -38,7 +37,8 @@ HoleFiller::Local HoleFiller::local_of(Mesh& mesh, VertexId v) {
   return vertex.local_index;
 }
 
-void HoleFiller::collect(Mesh& mesh, const Region& region, const Point* added) {
+// False: too many vertices. Those of the boundary are among those of the cells.
+bool HoleFiller::collect(Mesh& mesh, const Region& region, const Point* added) {
   ids_.clear();
   points_.clear();
   open_.clear();
@@ -51,6 +51,7 @@ void HoleFiller::collect(Mesh& mesh, const Region& region, const Point* added) {
       if (std::find(region.removed.begin(), region.removed.end(), v) == region.removed.end())
         local_of(mesh, v);
     }
+    if (ids_.size() >= max_vertices_) return false;  // one more is added
   }
   if (added != nullptr) add_local(kNoVertex, *added);
   for (const FacetId f : region.boundary) {
@@ -62,10 +63,11 @@ void HoleFiller::collect(Mesh& mesh, const Region& region, const Point* added) {
     }
     add_or_match(facet);
   }
+  return true;
 }
 
-void HoleFiller::plan(Mesh& mesh, const Region& region, const Point* added) {
-  collect(mesh, region, added);
+bool HoleFiller::plan(Mesh& mesh, const Region& region, const Point* added) {
+  if (!collect(mesh, region, added)) return false;
   for (std::size_t i = 0; i < open_.size(); ++i) {
     if (is_closed_[i]) continue;
     const OpenFacet facet = open_[i];
@@ -81,6 +83,7 @@ void HoleFiller::plan(Mesh& mesh, const Region& region, const Point* added) {
                     {first + k, true}});
     }
   }
+  return true;
 }
 
 void HoleFiller::fill(Mesh& mesh, Pool& pool, Region& region, VertexId added) {

@@ -17,8 +17,12 @@ namespace podm {
 
 class HoleFiller {
  public:
+  static constexpr std::size_t kMaxVertices = 0xffff;
+  explicit HoleFiller(std::size_t max_vertices = kMaxVertices) : max_vertices_(max_vertices) {}
+
   /// Finds the Delaunay cells of the region's remaining vertices and of `added`, if given. Writes nothing.
-  void plan(Mesh& mesh, const Region& region, const Point* added);
+  /// False: there are more vertices than it can number.
+  bool plan(Mesh& mesh, const Region& region, const Point* added);
   std::size_t num_cells() const { return cells_.size(); }
   /// Replaces the region by the planned cells; `added` is the vertex whose point was given, or kNoVertex.
   void fill(Mesh& mesh, Pool& pool, Region& region, VertexId added);
@@ -39,7 +43,7 @@ class HoleFiller {
     std::uint32_t open = 0;
   };
 
-  void collect(Mesh& mesh, const Region& region, const Point* added);
+  bool collect(Mesh& mesh, const Region& region, const Point* added);
   Local local_of(Mesh& mesh, VertexId v);
   Local add_local(VertexId v, const Point& p);
   Local apex_of(const Mesh& mesh, const OpenFacet& facet);
@@ -48,6 +52,7 @@ class HoleFiller {
   Slot& slot_of(std::uint64_t key);
   void rebuild_table(std::size_t size);
 
+  std::size_t max_vertices_;
   std::vector<VertexId> ids_;  // kNoVertex: the added one
   std::vector<Point> points_;
   std::vector<std::uint8_t> is_inner_;  // candidate on the inner side of the facet at hand

@@ -17,12 +17,20 @@ namespace podm {
 
 class IdArena {
  public:
-  /// Ids below `capacity`. 2^run_bits ids make a run, of which blocks are taken.
+  /// Ids below `capacity`. 2^run_bits ids make a run, of which blocks are taken; none is larger.
   IdArena(std::size_t capacity, int num_nodes, unsigned run_bits)
       : capacity_(capacity), run_bits_(run_bits), nodes_(static_cast<std::size_t>(num_nodes)) {
     if (num_nodes > 1) node_of_run_.resize((capacity >> run_bits) + 1);
   }
 
+  /// How many ids each of so many workers should take at once: what lies unused in blocks is a thirty-second
+  /// at most.
+  std::uint32_t block_for(std::size_t num_workers) const {
+    constexpr std::size_t kLeast = 8, kMost = 1024, kBlocksAWorker = 32;
+    const std::size_t longest = node_of_run_.empty() ? kMost : std::min(kMost, std::size_t{1} << run_bits_);
+    return static_cast<std::uint32_t>(
+        std::clamp(capacity_ / (kBlocksAWorker * num_workers), std::min(kLeast, longest), longest));
+  }
   /// A block of `count` ids; returns the first. Any worker, any time: the mutex is taken once in a thousand
   /// cells. Throws std::bad_alloc when the capacity is used up.
   std::uint32_t take(std::uint32_t count, NodeIndex node) {
@@ -31,6 +39,11 @@ class IdArena {
     if (own.end - own.next < count) start_run(count, node);
     own.next += count;
     return own.next - count;
+  }
+  /// So many ids less may be taken from now on, if there are as many left.
+  void withhold(std::size_t count) {
+    const std::scoped_lock lock(mutex_);
+    capacity_ = std::max<std::size_t>(bound(), capacity_ - std::min(capacity_, count));
   }
   /// Ids of any node that nobody uses; takes them out of `ids` one by one. Throws std::bad_alloc.
   void give_back(std::vector<std::uint32_t>& ids) {

@@ -1,6 +1,7 @@
 #include "delaunay/mesh.h"
 
 #include <algorithm>
+#include <bit>
 #include <cmath>
 #include <new>
 
@@ -18,6 +19,13 @@ std::size_t vertex_capacity_for(std::size_t cell_capacity) { return cell_capacit
 constexpr unsigned kCellRunBits = 15, kVertexRunBits = 16;
 static_assert(sizeof(Cell) << kCellRunBits == 1 << 21 && sizeof(Vertex) << kVertexRunBits == 1 << 21);
 
+// Shorter where a node would else have few runs of a small store, or none.
+unsigned run_bits_for(std::size_t capacity, int num_nodes, unsigned most_bits) {
+  const std::size_t longest = capacity / (16 * static_cast<std::size_t>(num_nodes));
+  constexpr unsigned kLeastBits = 3;  // the box takes eight vertices at once
+  return std::clamp(static_cast<unsigned>(std::bit_width(longest / 2)), kLeastBits, most_bits);
+}
+
 double largest_coordinate(const Box& b) {
   return std::max({std::abs(b.low.x), std::abs(b.low.y), std::abs(b.low.z), std::abs(b.high.x),
                    std::abs(b.high.y), std::abs(b.high.z)});
@@ -31,8 +39,9 @@ Mesh::Mesh(const Box& box, std::size_t cell_capacity, int num_nodes)
       cells_(cell_capacity),
       states_(cell_capacity),
       vertices_(vertex_capacity_for(cell_capacity)),
-      cell_ids_(cells_.capacity(), num_nodes, kCellRunBits),
-      vertex_ids_(vertices_.capacity(), num_nodes, kVertexRunBits) {
+      cell_ids_(cells_.capacity(), num_nodes, run_bits_for(cell_capacity, num_nodes, kCellRunBits)),
+      vertex_ids_(vertices_.capacity(), num_nodes,
+                  run_bits_for(vertices_.capacity(), num_nodes, kVertexRunBits)) {
   // Kuhn's six cells around the diagonal from corner 0 to corner 7 (bit 0: x, 1: y, 2: z). All eight corners
   // are cospherical; the perturbation of predicates.h, which lowers the largest corner most, picks these.
   vertex_ids_.take(8, 0);

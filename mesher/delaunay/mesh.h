@@ -147,6 +147,14 @@ class Mesh {
   bool is_in_conflict(CellId c, const Point& p) const;  // exact, unique by perturbation
   std::uint64_t num_cells() const;
 
+  /// Give memory back while a finished mesh is taken apart: cells but for their labels, vertices. What is
+  /// released is not to be asked for any more.
+  void release_cells(CellId begin, CellId end) { cells_.release(begin, end); }
+  void release_vertices(VertexId begin, VertexId end) { vertices_.release(begin, end); }
+
+  /// The store is to take so many bytes less than it might have: others need them.
+  void withhold(std::size_t bytes) { cell_ids_.withhold(bytes / (sizeof(Cell) + sizeof(CellState))); }
+
   /// Which ids there are, and whose; pools take them.
   IdArena& cell_ids() { return cell_ids_; }
   IdArena& vertex_ids() { return vertex_ids_; }

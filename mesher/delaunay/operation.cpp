@@ -150,7 +150,7 @@ Outcome Operation<Locks>::commit_insertion(const Point& p, VertexKind kind, doub
   if (nearest < min_distance * min_distance) return Outcome::kRejected;
   if (!is_star) {
     if (!is_cavity_) collect_boundary();
-    hole_.plan(mesh_, region_, &p);
+    if (!hole_.plan(mesh_, region_, &p)) return Outcome::kRejected;
   }
   reserve_memory(is_star ? star_.num_cells() : hole_.num_cells());
   count_gluing();
@@ -168,14 +168,15 @@ Outcome Operation<Locks>::commit_insertion(const Point& p, VertexKind kind, doub
 }
 
 template <class Locks>
-void Operation<Locks>::commit_removals() {
+Outcome Operation<Locks>::commit_removals() {
   collect_boundary();
-  hole_.plan(mesh_, region_, nullptr);
+  if (!hole_.plan(mesh_, region_, nullptr)) return Outcome::kRejected;
   reserve_memory(hole_.num_cells());
   count_gluing();
   const std::size_t num_destroyed = region_.cells.size();
   hole_.fill(mesh_, pool_, region_, kNoVertex);
   finish(num_destroyed);
+  return Outcome::kCommitted;
 }
 
 // Before the filling: the cells beyond the boundary, each as often as a facet of it is glued.

@@ -62,10 +62,11 @@ class Operation {
   std::size_t num_planned_removals() const { return region_.removed.size(); }
 
   /// Carries the plan out; created() then lists the new cells.
-  /// kRejected: a vertex that stays lies nearer to p than `min_distance` (mm); nothing was written, roll
-  /// back.
+  /// kRejected: a vertex that stays lies nearer to p than `min_distance` (mm), or the region has more
+  /// vertices than HoleFiller numbers; nothing was written, roll back.
   Outcome commit_insertion(const Point& p, VertexKind kind, double min_distance);
-  void commit_removals();
+  /// kRejected: the region has more vertices than HoleFiller numbers.
+  Outcome commit_removals();
   /// Gives the plan up; nothing was written. Locks are kept until release().
   void rollback();
 

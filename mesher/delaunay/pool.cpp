@@ -16,14 +16,14 @@ void reserve_more(std::vector<T>& vector, std::size_t count) {
 }  // namespace
 
 void FreeIds::reserve(std::size_t wanted, std::size_t released) {
-  reserve_more(free_, std::max<std::size_t>(released, wanted) + 2 * kBlock);
-  if (foreign_.size() >= kBlock) arena_.give_back(foreign_);
+  reserve_more(free_, std::max<std::size_t>(released, wanted) + 2 * block_);
+  if (foreign_.size() >= block_) arena_.give_back(foreign_);
   reserve_more(foreign_, released);
   while (free_.size() + (end_ - next_) < wanted) {
-    if (arena_.take_returned(kBlock, node_, free_)) continue;
+    if (arena_.take_returned(block_, node_, free_)) continue;
     for (; next_ != end_; ++next_) free_.push_back(next_);
-    next_ = arena_.take(kBlock, node_);
-    end_ = next_ + kBlock;
+    next_ = arena_.take(block_, node_);
+    end_ = next_ + block_;
   }
 }
 

@@ -12,7 +12,10 @@ namespace podm {
 /// Ids of other nodes go home through the arena, so that a node's cells stay in its own memory.
 class FreeIds {
  public:
-  FreeIds(IdArena& arena, NodeIndex node) : arena_(arena), node_(node) {}
+  /// `num_workers` share the arena: none takes so many ids at once that others could lack them long before
+  /// the end.
+  FreeIds(IdArena& arena, NodeIndex node, std::size_t num_workers)
+      : arena_(arena), node_(node), block_(arena.block_for(num_workers)) {}
   bool is_own(std::uint32_t id) const { return arena_.node_of(id) == node_; }
   /// Makes room: `wanted` take() and `released` release() then allocate nothing. Throws std::bad_alloc.
   void reserve(std::size_t wanted, std::size_t released);
@@ -20,9 +23,9 @@ class FreeIds {
   void release(std::uint32_t id) { (is_own(id) ? free_ : foreign_).push_back(id); }
 
  private:
-  static constexpr std::uint32_t kBlock = 1024;
   IdArena& arena_;
   NodeIndex node_;
+  std::uint32_t block_;  // ids taken at once
   std::vector<std::uint32_t> free_, foreign_;
   std::uint32_t next_ = 0, end_ = 0;  // of the block at hand
 };
@@ -30,8 +33,11 @@ class FreeIds {
 /// One worker's cells and vertices.
 class Pool {
  public:
-  explicit Pool(Mesh& mesh, NodeIndex node = 0)
-      : mesh_(mesh), cells_(mesh.cell_ids(), node), vertices_(mesh.vertex_ids(), node) {}
+  /// One of those of `num_workers` workers.
+  explicit Pool(Mesh& mesh, NodeIndex node = 0, std::size_t num_workers = 1)
+      : mesh_(mesh),
+        cells_(mesh.cell_ids(), node, num_workers),
+        vertices_(mesh.vertex_ids(), node, num_workers) {}
   /// Makes room: an operation that replaces `dying` by `created` cells, adds a vertex and removes `removed`
   /// then allocates nothing. Throws std::bad_alloc.
   void reserve(const std::vector<CellId>& dying, std::size_t created, std::size_t removed);

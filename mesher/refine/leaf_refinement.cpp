@@ -54,11 +54,7 @@ void LeafRefinement::finish(LeafSchedule::Activation activation) {
   queue_.finish(leaf);
 }
 
-LeafRefinement::Entries LeafRefinement::take_leftover() {
-  Entries all = std::move(leftover_);
-  for (const Entries& cells : cells_of_leaf_) all.insert(all.end(), cells.begin(), cells.end());
-  return all;
-}
+LeafRefinement::Entries LeafRefinement::take_leftover() { return std::move(leftover_); }
 
 template <class Locks>
 std::optional<CellSource::Entries> ComputingNode<Locks>::next(bool may_wait) {

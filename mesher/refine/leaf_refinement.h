@@ -34,7 +34,7 @@ class LeafRefinement {
   Entries take_cells(LeafId leaf);
   void finish(LeafSchedule::Activation activation);
 
-  /// Deferred cells, those that are in no leaf, and after an early end those of all leaves.
+  /// Deferred cells and those that are in no leaf.
   Entries take_leftover();
   std::vector<LeafSchedule::Activation> take_schedule() { return std::move(schedule_); }
   const Octree& octree() const { return octree_; }

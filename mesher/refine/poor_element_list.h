@@ -17,12 +17,21 @@ class PoorElementList {
     CellId cell;
     std::uint16_t stamp;
   };
+  /// Of a worker on a store of so many cells.
+  explicit PoorElementList(std::size_t cell_capacity)
+      : first_cleaning_(std::min(kFirstCleaning, cell_capacity / kCellsAnEntry)) {}
+  /// Bytes that the lists of so many workers take at most beside entries of live cells: they hold stale ones
+  /// too.
+  static std::size_t stale_bytes(std::size_t cell_capacity, std::size_t num_workers) {
+    return num_workers * 2 * sizeof(Entry) * std::min(kFirstCleaning, cell_capacity / kCellsAnEntry);
+  }
+
   void push(CellId cell, std::uint16_t stamp) { entries_.push_back({cell, stamp}); }
   /// Most entries at the bottom are stale. Dropping them whenever the list has doubled keeps it short.
   bool is_due_for_cleaning() const { return entries_.size() >= next_cleaning_; }
   void drop_stale(const Mesh& mesh) {
     std::erase_if(entries_, [&](const Entry& e) { return mesh.stamp(e.cell) != e.stamp; });
-    next_cleaning_ = std::max(kFirstCleaning, 2 * entries_.size());
+    next_cleaning_ = std::max(first_cleaning_, 2 * entries_.size());
   }
   /// Removes the older half, of which the live entries are returned, at most `max`.
   std::vector<Entry> take_oldest(std::size_t max, const Mesh& mesh) {
@@ -47,9 +56,11 @@ class PoorElementList {
   }
 
  private:
-  static constexpr std::size_t kFirstCleaning = 1 << 16;
+  // Before it a list is as short as it need be, in a small store too.
+  static constexpr std::size_t kFirstCleaning = 1 << 16, kCellsAnEntry = 64;
+  std::size_t first_cleaning_;
   std::vector<Entry> entries_;
-  std::size_t next_cleaning_ = kFirstCleaning;
+  std::size_t next_cleaning_ = first_cleaning_;
 };
 
 }  // namespace podm

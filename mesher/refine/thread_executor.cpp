@@ -60,7 +60,10 @@ void ThreadExecutor<Locks>::work(Worker<Locks>& worker, WorkerId self) try {
   int conflicts = 0, successes = 0, attempts = 0;  // the first two in a row
   // Relaxed: whoever ends the run leaves through the mutex or a join anyway.
   while (!is_over_.load(std::memory_order_relaxed)) {
-    if (!worker.has_work() && !beg(worker, self)) break;
+    if (!worker.has_work()) {  // a gift may be empty: a leaf's cells can have been taken with its last ones
+      beg(worker, self);
+      continue;
+    }
     const Outcome outcome = worker.attempt();
     worker.release();
     if (outcome == Outcome::kLockConflict) {
@@ -86,19 +89,16 @@ void ThreadExecutor<Locks>::work(Worker<Locks>& worker, WorkerId self) try {
   end(StopReason::kCancelled, std::current_exception());
 }
 
-// False: the run is over.
 template <class Locks>
-bool ThreadExecutor<Locks>::beg(Worker<Locks>& worker, WorkerId self) {
+void ThreadExecutor<Locks>::beg(Worker<Locks>& worker, WorkerId self) {
   const SecondsInto total(desks_[self].overhead.begging_s);
   std::unique_lock lock(mutex_);
   if (!coordination_.beg(self) && !refill(self)) {
     lock.unlock();
-    end(StopReason::kComplete);
-    return false;
+    return end(StopReason::kComplete);
   }
   desks_[self].woken.wait(lock, [&] { return coordination_.is_running(self) || is_over_; });
   worker.give(coordination_.take_gift(self));
-  return !is_over_;
 }
 
 // Asks for more cells when the whole group begs. The others wait without the mutex.

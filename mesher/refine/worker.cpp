@@ -32,6 +32,7 @@ Worker<Locks>::Worker(Mesh& mesh, const Isosurface& isosurface, const Parameters
       accesses_(tally_for<Locks>(mesh)),
       rules_(mesh, isosurface, parameters, reads_for(accesses_, owners)),
       operation_(mesh, pool, self, accesses_ ? &*accesses_ : nullptr),
+      poor_(mesh.cell_capacity()),
       min_distance_(kSpacingFloor * parameters.spacing_mm),
       self_(self),
       log_(log) {

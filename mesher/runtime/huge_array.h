@@ -3,8 +3,10 @@
 #pragma once
 
 #include <sys/mman.h>
+#include <unistd.h>
 
 #include <cstddef>
+#include <cstdint>
 #include <new>
 #include <type_traits>
 #include <utility>
@@ -33,6 +35,13 @@ class HugeArray {
   T& operator[](std::size_t i) { return data_[i]; }
   const T& operator[](std::size_t i) const { return data_[i]; }
   std::size_t capacity() const { return capacity_; }
+  /// Gives the memory of elements begin to end back, whole pages of it. They are not to be read any more.
+  void release(std::size_t begin, std::size_t end) {
+    const auto page = static_cast<std::uintptr_t>(sysconf(_SC_PAGESIZE));
+    const auto address = [&](std::size_t i) { return reinterpret_cast<std::uintptr_t>(data_ + i); };
+    const std::uintptr_t first = (address(begin) + page - 1) / page * page, last = address(end) / page * page;
+    if (first < last) madvise(reinterpret_cast<void*>(first), last - first, MADV_DONTNEED);
+  }
 
  private:
   T* data_ = nullptr;

@@ -10,14 +10,14 @@
 
 namespace podm {
 
-/// An empty vector becomes `size` zeros.
+/// The vector grows to `size` elements, the new ones zeros. Reserve first what several calls will need.
 template <class T>
 void parallel_resize(std::vector<T>& vector, std::size_t size, std::size_t threads) {
   constexpr std::uintptr_t kPage = 4096, kPiece = 1 << 20;
   vector.reserve(size);
-  const auto address = reinterpret_cast<std::uintptr_t>(vector.data());
-  const std::uintptr_t begin = (address + kPage - 1) / kPage * kPage,
-                       end = std::max(begin, (address + size * sizeof(T)) / kPage * kPage);
+  const auto address = [&](std::size_t i) { return reinterpret_cast<std::uintptr_t>(vector.data() + i); };
+  const std::uintptr_t begin = (address(vector.size()) + kPage - 1) / kPage * kPage,
+                       end = std::max(begin, address(size) / kPage * kPage);
   parallel_for_ranges(end - begin, kPiece, threads, [&](std::size_t from, std::size_t to, std::size_t) {
     // Where the kernel cannot, resize() meets the faults.
     madvise(reinterpret_cast<void*>(begin + from), to - from, MADV_POPULATE_WRITE);

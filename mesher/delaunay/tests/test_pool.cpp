@@ -14,7 +14,8 @@ constexpr int kNumNodes = 3;
 TEST(FreeIds, AreOfTheWorkersNodeAndNobodyElses) {
   IdArena arena(1 << 20, kNumNodes, 12);
   std::vector<FreeIds> workers;
-  for (NodeIndex node = 0; node < 2 * kNumNodes; ++node) workers.emplace_back(arena, node % kNumNodes);
+  for (NodeIndex node = 0; node < 2 * kNumNodes; ++node)
+    workers.emplace_back(arena, node % kNumNodes, 2 * kNumNodes);
   std::mt19937_64 random(1);
   std::vector<std::uint32_t> used;
   std::set<std::uint32_t> distinct;
@@ -39,7 +40,7 @@ TEST(FreeIds, AreOfTheWorkersNodeAndNobodyElses) {
 // One node sets free what another has made, again and again: the ids go home, and no new ones are needed.
 TEST(FreeIds, GoHome) {
   IdArena arena(1 << 16, 2, 12);
-  FreeIds maker(arena, 0), eater(arena, 1);
+  FreeIds maker(arena, 0, 2), eater(arena, 1, 2);
   for (int i = 0; i < 1'000; ++i) {
     maker.reserve(500, 0);
     eater.reserve(0, 500);

@@ -1,6 +1,9 @@
 // Properties of the kernel alone: validity, uniqueness, and that a removal undoes an insertion.
 #include <gtest/gtest.h>
 
+#include <set>
+
+#include "delaunay/hole.h"
 #include "point_sets.h"
 #include "triangulator.h"
 
@@ -82,6 +85,32 @@ TEST(TriangulationEdge, PointTooNearIsRejectedAndNothingChanges) {
   t.operation.rollback();
   EXPECT_EQ(t.cells(), before);
   EXPECT_TRUE(is_valid(t.mesh));
+}
+
+// The cavity of a point among many, planned by fillers that number fewer vertices than it has, or as many.
+TEST(TriangulationEdge, HoleOfMoreVerticesThanCanBeNumberedIsNotPlanned) {
+  Triangulator t(kBox);
+  for (const Point& p : random_points(4, 200, 9)) t.insert(p);
+  const Point p{0.1, 0.2, 0.3};
+  Region region;
+  std::set<VertexId> vertices;
+  for (CellId c = 0; c < t.mesh.cell_bound(); ++c) {
+    if (!t.mesh.cell(c).is_alive() || !t.mesh.is_in_conflict(c, p)) continue;
+    region.cells.push_back(c);
+    t.mesh.mark(c, true);
+    vertices.insert(t.mesh.cell(c).vertices.begin(), t.mesh.cell(c).vertices.end());
+  }
+  for (const CellId c : region.cells)
+    for (unsigned k = 0; k < 4; ++k)
+      if (const FacetId mirror = t.mesh.cell(c).mirrors[k];
+          mirror == kNoFacet || !t.mesh.is_marked(cell_of(mirror)))
+        region.boundary.push_back(4 * c + k);
+  ASSERT_GT(vertices.size(), 8u);
+  for (std::size_t room = 5; room <= vertices.size(); ++room)
+    EXPECT_FALSE(HoleFiller(room).plan(t.mesh, region, &p)) << room;
+  HoleFiller enough(vertices.size() + 1);
+  EXPECT_TRUE(enough.plan(t.mesh, region, &p));
+  EXPECT_EQ(enough.num_cells(), region.boundary.size()) << "the star of the point";
 }
 
 TEST(TriangulationEdge, ValidityCheckSeesDamage) {

@@ -87,11 +87,15 @@ struct MeshingOptions {
   // Limits end the run with a valid Delaunay mesh that says what is unmet. 0: none.
   std::uint64_t max_elements = 0;
   double max_seconds = 0;
-  std::uint64_t max_memory_bytes = 0;  ///< of the mesh store
+  std::uint64_t max_memory_bytes = 0;  ///< beside image and transform
 
   /// Of all phases but refinement: the threads of virtual time are none of this machine's.
   int loop_threads() const { return executor == Executor::kVirtual ? 0 : threads; }
 };
+
+/// The most cells of a mesh while it is made, those of the background among them: facets have numbers of 32
+/// bits.
+inline constexpr std::uint64_t kMostStoredCells = (std::uint64_t{1} << 30) - 1;
 
 /// What a run is expected to cost, from the image and the options alone.
 struct Estimate {

@@ -1,25 +1,45 @@
 // Memory that ends, and limits that strike, at any moment of a run with any executor: all workers stop
 // between operations, and the mesh is a valid triangulation.
 #include <gtest/gtest.h>
+#include <unistd.h>
 
 #include <new>
 
 #include "cost_model.h"
 #include "failing_allocator.h"
+#include "failing_threads.h"
 #include "images.h"
 #include "podm.h"
+#include "podm/operation_log.h"
 
 namespace podm::test {
 namespace {
 
-Crew crew(Executor executor, int num_workers) { return {executor, {num_workers, Contention::kLocal, {}, 3}}; }
-const std::vector<Crew> kCrews{crew(Executor::kThreads, 1), crew(Executor::kThreads, 4),
-                               crew(Executor::kVirtual, 6)};
+struct Setup {
+  Algorithm algorithm;
+  Executor executor;
+  int num_workers;
+};
+const std::vector<Setup> kSetups{
+    {Algorithm::kPodm, Executor::kThreads, 1},    {Algorithm::kPodm, Executor::kThreads, 4},
+    {Algorithm::kPodm, Executor::kVirtual, 6},    {Algorithm::kPdr, Executor::kThreads, 2},
+    {Algorithm::kPdr, Executor::kVirtual, 4},     {Algorithm::kPdrPodm, Executor::kThreads, 4},
+    {Algorithm::kPdrPodm, Executor::kVirtual, 6},
+};
 
-class Faults : public testing::TestWithParam<Crew> {
+class Faults : public testing::TestWithParam<Setup> {
  protected:
   Refinement refine(Watch& watch, std::size_t cell_capacity = 1 << 20) {
-    return podm({isosurface_, foreground_bounds(image_), 1.2, sizes_, cell_capacity}, GetParam(), watch);
+    const auto [algorithm, executor, num_workers] = GetParam();
+    const Problem problem{isosurface_, foreground_bounds(image_), 1.2, sizes_, cell_capacity};
+    const Crew crew{executor, {num_workers, Contention::kLocal, {}, 3}};
+    if (algorithm == Algorithm::kPodm) return podm(problem, crew, watch);
+    const LeafOptions leaves{.num_nodes = algorithm == Algorithm::kPdr ? num_workers : 2,
+                             .initial_ratio = 2,
+                             .initial_workers = num_workers,
+                             .leaf_size_mm = 4};
+    return algorithm == Algorithm::kPdr ? pdr(problem, crew, leaves, watch)
+                                        : pdr_podm(problem, crew, leaves, watch);
   }
   static Watch patient() {
     return {{}, {}, [](std::uint64_t) {}};
@@ -84,8 +104,40 @@ TEST_P(Faults, StopRequestsAndLimitsLeaveAValidMesh) {
   EXPECT_EQ(refine(late).stop_reason, StopReason::kTimeLimit);
 }
 
-INSTANTIATE_TEST_SUITE_P(Crews, Faults, testing::ValuesIn(kCrews), [](const auto& test) {
-  return to_string(test.param.executor) + std::to_string(test.param.coordination.num_workers);
+// Nodes whose masters run already end at once, instead of refining everything before anybody learns of it.
+TEST(Threads, ThatCannotBeStartedEndTheRun) {
+  const LabelImage image = ball(32, 13);
+  const Isosurface isosurface(image, 1);
+  const std::string path = testing::TempDir() + "/threads-" + std::to_string(getpid()) + ".log";
+  const auto operations_of = [&](int threads_that_start) {
+    OperationLogWriter log(path);
+    Crew crew{Executor::kThreads, {4, Contention::kLocal, {}, 3}};
+    crew.log = &log;
+    Watch watch({}, {}, [](std::uint64_t) {});
+    const LeafOptions leaves{.num_nodes = 4, .initial_ratio = 4, .initial_workers = 1, .leaf_size_mm = 4};
+    const Problem problem{isosurface, foreground_bounds(image), 0.7, SizeField(std::vector<double>(2, 0.7)),
+                          1 << 22};
+    threads_left = threads_that_start;
+    try {
+      pdr(problem, crew, leaves, watch);
+      EXPECT_LT(threads_that_start, 0) << "a thread that could not be started went unnoticed";
+    } catch (const std::exception&) {
+      EXPECT_GE(threads_that_start, 0);
+      EXPECT_EQ(watch.reason(), StopReason::kCancelled);
+    }
+    threads_left = -1;
+    return log.next_sequence();
+  };
+  const std::uint64_t all = operations_of(-1);
+  for (const int threads : {0, 1, 2})
+    EXPECT_LT(operations_of(threads), all / 2) << threads << " of 3 started";
+}
+
+INSTANTIATE_TEST_SUITE_P(Setups, Faults, testing::ValuesIn(kSetups), [](const auto& test) {
+  std::string name = to_string(test.param.algorithm) + to_string(test.param.executor) +
+                     std::to_string(test.param.num_workers);
+  std::erase(name, '-');
+  return name;
 });
 
 }  // namespace

@@ -1,0 +1,131 @@
+#include "runtime/control_group.h"
+
+#include <algorithm>
+#include <filesystem>
+#include <fstream>
+#include <limits>
+#include <optional>
+#include <sstream>
+
+namespace podm {
+
+namespace {
+
+constexpr std::uint64_t kNoLimit = std::numeric_limits<std::uint64_t>::max();
+
+struct Mount {
+  std::string root, point, type, options;
+};
+
+bool lists(const std::string& names, const std::string& name) {
+  return ("," + names + ",").find("," + name + ",") != std::string::npos;
+}
+
+// Mountinfo writes blanks and backslashes as three octal digits.
+std::string unescaped(const std::string& text) {
+  std::string plain;
+  for (std::size_t i = 0; i < text.size(); ++i) {
+    if (text[i] == '\\' && i + 3 < text.size()) {
+      plain += static_cast<char>(std::stoi(text.substr(i + 1, 3), nullptr, 8));
+      i += 3;
+    } else {
+      plain += text[i];
+    }
+  }
+  return plain;
+}
+
+// "36 35 0:30 / /sys/fs/cgroup rw shared:9 - cgroup2 cgroup2 rw"
+std::optional<Mount> parse_mount(const std::string& line) {
+  const auto dash = line.find(" - ");
+  if (dash == std::string::npos) return {};
+  std::istringstream before(line.substr(0, dash)), after(line.substr(dash + 3));
+  std::string ignored, root, point, type, source, options;
+  before >> ignored >> ignored >> ignored >> root >> point;
+  after >> type >> source >> options;
+  return Mount{unescaped(root), unescaped(point), type, options};
+}
+
+std::optional<Mount> find_mount(const std::string& root, const std::string& type,
+                                const std::string& controller) {
+  std::ifstream file(root + "/proc/self/mountinfo");
+  for (std::string line; std::getline(file, line);)
+    if (const auto mount = parse_mount(line);
+        mount && mount->type == type && (controller.empty() || lists(mount->options, controller)))
+      return mount;
+  return {};
+}
+
+// Of the hierarchy that has the controller, or of version 2 for an empty name: the line
+// "4:memory:/some/group".
+std::optional<std::string> group_path(const std::string& root, const std::string& controller) {
+  std::ifstream file(root + "/proc/self/cgroup");
+  for (std::string line; std::getline(file, line);) {
+    const auto first = line.find(':'), second = line.find(':', first + 1);
+    if (second == std::string::npos) continue;
+    const std::string controllers = line.substr(first + 1, second - first - 1);
+    if (controller.empty() ? controllers.empty() : lists(controllers, controller))
+      return line.substr(second + 1);
+  }
+  return {};
+}
+
+// From the group up to what is mounted. A container may see less of the path than it is told.
+std::vector<std::string> folders_of(const std::string& root, const Mount& mount, const std::string& group) {
+  std::string inside = group;
+  if (mount.root != "/") inside = group.starts_with(mount.root) ? group.substr(mount.root.size()) : "";
+  std::vector<std::string> folders;
+  for (std::filesystem::path path(inside); path.has_relative_path(); path = path.parent_path())
+    if (const std::string folder = root + mount.point + path.string(); std::filesystem::exists(folder))
+      folders.push_back(folder);
+  folders.push_back(root + mount.point);
+  return folders;
+}
+
+// One number; none where the file is missing or says "max".
+std::optional<std::uint64_t> read_number(const std::string& path) {
+  std::ifstream file(path);
+  std::uint64_t number = 0;
+  if (file >> number) return number;
+  return {};
+}
+
+// The number beside `key` in a file of such lines; 0 where there is none.
+std::uint64_t read_value(const std::string& path, const std::string& key) {
+  std::ifstream file(path);
+  std::uint64_t value = 0;
+  for (std::string name; file >> name >> value;)
+    if (name == key) return value;
+  return 0;
+}
+
+std::uint64_t memory_left_in(const std::string& folder, bool is_unified) {
+  const auto most = read_number(folder + (is_unified ? "/memory.max" : "/memory.limit_in_bytes"));
+  const auto used = read_number(folder + (is_unified ? "/memory.current" : "/memory.usage_in_bytes"));
+  if (!most || !used) return kNoLimit;
+  const std::uint64_t droppable =
+      read_value(folder + "/memory.stat", is_unified ? "inactive_file" : "total_inactive_file");
+  const std::uint64_t needed = *used - std::min(*used, droppable);
+  return *most - std::min(*most, needed);
+}
+
+}  // namespace
+
+ControlGroup control_group_of(const std::string& controller, const std::string& root) {
+  if (const auto group = group_path(root, controller))
+    if (const auto mount = find_mount(root, "cgroup", controller))
+      return {folders_of(root, *mount, *group), false};
+  if (const auto group = group_path(root, ""))
+    if (const auto mount = find_mount(root, "cgroup2", "")) return {folders_of(root, *mount, *group), true};
+  return {};
+}
+
+std::uint64_t memory_left_in_control_groups(const std::string& root) {
+  const ControlGroup groups = control_group_of("memory", root);
+  std::uint64_t left = kNoLimit;
+  for (const std::string& folder : groups.folders)
+    left = std::min(left, memory_left_in(folder, groups.is_unified));
+  return left;
+}
+
+}  // namespace podm

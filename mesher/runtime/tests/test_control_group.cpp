@@ -1,0 +1,100 @@
+// Limits of control groups, from trees of /proc and /sys as such systems show them.
+#include <gtest/gtest.h>
+
+#include <cstdlib>
+#include <filesystem>
+#include <fstream>
+#include <limits>
+
+#include "runtime/control_group.h"
+
+namespace podm::test {
+namespace {
+
+namespace fs = std::filesystem;
+
+constexpr std::uint64_t kNoLimit = std::numeric_limits<std::uint64_t>::max();
+
+class Tree : public testing::Test {
+ protected:
+  Tree() {
+    std::string name = (fs::temp_directory_path() / "podm-groups-XXXXXX").string();
+    root_ = mkdtemp(name.data());
+  }
+  ~Tree() override { fs::remove_all(root_); }
+  void write(const std::string& path, const std::string& text) {
+    fs::create_directories(fs::path(root_ + path).parent_path());
+    std::ofstream(root_ + path) << text << "\n";
+  }
+  // A group of version 2 with its limit, what it uses and what of that are files that can be dropped.
+  void unified_group(const std::string& path, const std::string& most, int used, int droppable = 0) {
+    write(path + "/memory.max", most);
+    write(path + "/memory.current", std::to_string(used));
+    write(path + "/memory.stat", "anon 5\ninactive_file " + std::to_string(droppable) + "\nactive_file 7");
+  }
+  std::uint64_t left() const { return memory_left_in_control_groups(root_); }
+  std::string root_;
+};
+
+constexpr const char* kUnifiedMount =
+    "30 24 0:26 / /sys/fs/cgroup rw,nosuid shared:4 - cgroup2 cgroup2 rw,nsdelegate";
+
+TEST_F(Tree, NothingThereLimitsNothing) {
+  EXPECT_EQ(left(), kNoLimit);
+  EXPECT_TRUE(control_group_of("memory", root_).folders.empty());
+}
+
+TEST_F(Tree, NestedGroupsOfVersion2AllCount) {
+  write("/proc/self/mountinfo", kUnifiedMount);
+  write("/proc/self/cgroup", "0::/system.slice/slurm.scope/job 7/step");
+  const std::string slice = "/sys/fs/cgroup/system.slice", job = slice + "/slurm.scope/job 7";
+  unified_group(slice, "9000", 100);
+  unified_group(job, "5000", 1500, 500);
+  unified_group(job + "/step", "max", 300);
+  EXPECT_EQ(left(), 4000u) << "of the job, which can drop 500 of its 1500";
+  unified_group(job + "/step", "400", 300);
+  EXPECT_EQ(left(), 100u);
+  unified_group(slice, "50", 100);
+  EXPECT_EQ(left(), 0u) << "it is over its limit already";
+  const ControlGroup group = control_group_of("cpu", root_);
+  EXPECT_TRUE(group.is_unified);
+  EXPECT_EQ(group.folders.front(), root_ + job + "/step");
+}
+
+// The group's own folder is what the container sees mounted.
+TEST_F(Tree, ContainersSeeTheirGroupAsTheRoot) {
+  write("/proc/self/mountinfo", "40 30 0:26 /docker/17 /sys/fs/cgroup ro - cgroup2 cgroup rw");
+  write("/proc/self/cgroup", "0::/docker/17");
+  unified_group("/sys/fs/cgroup", "3000", 1000);
+  EXPECT_EQ(left(), 2000u);
+  write("/proc/self/cgroup", "0::/");
+  EXPECT_EQ(left(), 2000u) << "with a namespace of groups";
+  write("/proc/self/cgroup", "0::/../../elsewhere");
+  EXPECT_EQ(left(), 2000u) << "outside of the namespace";
+}
+
+TEST_F(Tree, Version1HasAHierarchyAController) {
+  write("/proc/self/mountinfo",
+        "33 31 0:30 / /sys/fs/cgroup/cpu,cpuacct rw - cgroup cgroup rw,cpu,cpuacct\n"
+        "35 31 0:32 / /sys/fs/cgroup/my\\040memory rw - cgroup cgroup rw,memory\n"
+        "36 31 0:33 / /sys/fs/cgroup/unified rw - cgroup2 cgroup2 rw");
+  write("/proc/self/cgroup", "4:memory:/batch/job\n3:cpu,cpuacct:/batch\n0::/init.scope");
+  const std::string memory = "/sys/fs/cgroup/my memory", job = memory + "/batch/job";
+  write(memory + "/memory.limit_in_bytes", "9223372036854771712");
+  write(memory + "/memory.usage_in_bytes", "100");
+  write(job + "/memory.limit_in_bytes", "7000");
+  write(job + "/memory.usage_in_bytes", "3000");
+  write(job + "/memory.stat", "inactive_file 1\ntotal_inactive_file 1000");
+  EXPECT_EQ(left(), 5000u);
+  EXPECT_FALSE(control_group_of("memory", root_).is_unified);
+  EXPECT_EQ(control_group_of("cpu", root_).folders.back(), root_ + "/sys/fs/cgroup/cpu,cpuacct");
+}
+
+TEST_F(Tree, OfThisProcessAreReadable) {
+  for (const std::string& folder : control_group_of("memory").folders)
+    EXPECT_TRUE(fs::is_directory(folder)) << folder;
+  EXPECT_GT(memory_left_in_control_groups(), std::uint64_t{1} << 20) << "or this test could not run";
+}
+
+}  // namespace
+}  // namespace podm::test

@@ -1,0 +1,56 @@
+"""podm mesh in a control group with a limit on memory, nested in one without."""
+
+import os
+import pathlib
+import sys
+import unittest
+
+import small_images
+from podm_process import PodmTestCase, run_podm
+from test_memory import TOO_FEW
+
+LIMIT_BYTES = 100 * 2 ** 20
+
+
+def own_folder():
+    """Of this process's group for memory, in version 1 or 2; None where it cannot be found."""
+    for line in pathlib.Path("/proc/self/cgroup").read_text().splitlines():
+        _, controllers, path = line.split(":", 2)
+        for root, legacy in (("/sys/fs/cgroup/memory", True), ("/sys/fs/cgroup", False)):
+            folder = pathlib.Path(root + path)
+            has_memory = controllers == "memory" if legacy else controllers == ""
+            if has_memory and (folder / ("memory.limit_in_bytes" if legacy else "memory.max")).exists():
+                return folder, legacy
+    return None
+
+
+class InAControlGroup(PodmTestCase):
+    @classmethod
+    def setUpClass(cls):
+        super().setUpClass()
+        cls.groups = []
+        cls.addClassCleanup(lambda: [group.rmdir() for group in reversed(cls.groups)])
+        try:
+            folder, legacy = own_folder()
+            for name in (f"podm-test-{os.getpid()}", "inner"):
+                folder = folder / name
+                folder.mkdir()
+                cls.groups.append(folder)
+            outer = folder.parent
+            (outer / ("memory.limit_in_bytes" if legacy else "memory.max")).write_text(str(LIMIT_BYTES))
+        except (OSError, TypeError) as error:
+            print(f"skipped: no control group can be made: {error}", file=sys.stderr)
+            raise unittest.SkipTest("no control group") from error
+
+    def test_the_limit_of_the_group_around_ends_the_run_before_the_kernel_does(self):
+        image = small_images.write_nifti(self.folder / "ball.nii", small_images.ball_voxels(40), (40, 40, 40))
+        procs = self.groups[-1] / "cgroup.procs"
+        process = run_podm("mesh", image, *TOO_FEW, "-o", self.folder / "out.vtu", "--verify", "--quiet",
+                           preexec_fn=lambda: procs.write_text(str(os.getpid())))
+        self.assert_exit(process, 1)
+        self.assertIn("memory limit", process.stderr)
+        self.assertTrue((self.folder / "out.vtu").exists())
+
+
+if __name__ == "__main__":
+    unittest.main()
