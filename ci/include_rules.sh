@@ -7,11 +7,13 @@ cd "$(dirname "$0")/.."
 may_include() {
   case $1 in
     mesher/geometry | mesher/runtime | mesher/include) ;;
-    mesher/image) echo mesher/geometry mesher/runtime mesher/include ;;
+    mesher/files) echo mesher/include ;;
+    mesher/image) echo mesher/files mesher/geometry mesher/runtime mesher/include ;;
     mesher/octree) echo mesher/geometry mesher/runtime mesher/include ;;
     mesher/delaunay) echo mesher/octree mesher/geometry mesher/runtime mesher/include ;;
     mesher/refine) echo mesher/delaunay mesher/octree mesher/image mesher/geometry mesher/runtime mesher/include ;;
-    mesher/io | examples/*) echo mesher/include ;;
+    mesher/io) echo mesher/files mesher/include ;;
+    examples/*) echo mesher/include ;;
     mesher | mesher/*) echo "mesher mesher/*" ;;  # the algorithms, the command line, whole-mesher tests
     harness) echo mesher/runtime ;;  # asks the system as the mesher does, whom it knows as a program and by its files
     verifiers) ;;                    # they know it by its files alone

@@ -1,5 +1,5 @@
 // The podm program: command line in, exit code out. 0 success, 1 a guarantee or limit is unmet, 2 bad usage
-// or input, 3 internal error.
+// or input, 3 internal error. A signal before there is a mesh ends it as that signal does.
 #include <fmt/format.h>
 
 #include <csignal>

@@ -178,6 +178,7 @@ class Run {
       announce("refine", static_cast<double>(cells) / expected_cells_, cells);
     });
     if (options_.log != nullptr) options_.log->restart();
+    announce("refine", 0, 0);
     return run({isosurface, object_, report.delta_mm, size_field(image_, options_, radius_mm),
                 cell_capacity(options_, num_workers())},
                watch);

@@ -1,7 +1,6 @@
 #include "cli/append_line.h"
 
 #include <fcntl.h>
-#include <fmt/format.h>
 #include <sys/file.h>
 #include <sys/stat.h>
 #include <unistd.h>
@@ -10,29 +9,31 @@
 #include <filesystem>
 #include <system_error>
 
-#include "podm/errors.h"
+#include "files/leftovers.h"
+#include "files/temporary_file.h"
 
 namespace podm::cli {
 namespace {
 
-[[noreturn]] void fail(const std::string& path, int error_number) {
-  throw InputError(fmt::format("cannot write {}: {}", path, std::generic_category().message(error_number)));
-}
-
 class LockedFile {
  public:
-  explicit LockedFile(const std::string& path)
-      : descriptor_(::open(path.c_str(), O_WRONLY | O_CREAT | O_APPEND | O_CLOEXEC, 0666)) {
-    if (descriptor_ < 0) fail(path, errno);
+  explicit LockedFile(const std::string& path) {
+    constexpr int kFlags = O_WRONLY | O_APPEND | O_CLOEXEC;
+    descriptor_ = ::open(path.c_str(), kFlags | O_CREAT | O_EXCL, 0666);
+    is_new_ = descriptor_ >= 0;
+    if (!is_new_) descriptor_ = ::open(path.c_str(), kFlags | O_CREAT, 0666);
+    if (descriptor_ < 0) fail_to_write(path, errno);
     ::flock(descriptor_, LOCK_EX);
   }
   ~LockedFile() { ::close(descriptor_); }
   LockedFile(const LockedFile&) = delete;
   LockedFile& operator=(const LockedFile&) = delete;
   int descriptor() const { return descriptor_; }
+  bool is_new() const { return is_new_; }
 
  private:
   int descriptor_;
+  bool is_new_;
 };
 
 // 0 or the number of the error.
@@ -49,20 +50,22 @@ int write_all(int descriptor, const std::string& text) {
 
 void check_appendable(const std::string& path) {
   std::error_code error;
-  if (std::filesystem::is_directory(path, error)) fail(path, EISDIR);
+  if (std::filesystem::is_directory(path, error)) fail_to_write(path, EISDIR);
   const std::filesystem::path folder = std::filesystem::absolute(path).parent_path();
   const bool exists = std::filesystem::exists(path, error);
-  if (::access(exists ? path.c_str() : folder.c_str(), W_OK) != 0) fail(path, errno);
+  if (::access(exists ? path.c_str() : folder.c_str(), W_OK) != 0) fail_to_write(path, errno);
 }
 
 void append_line(const std::string& path, const std::string& line) {
+  const HeldLeftovers no_signal_ends_this_halfway;
   const LockedFile file(path);
   struct stat before;
-  if (::fstat(file.descriptor(), &before) != 0) fail(path, errno);
+  if (::fstat(file.descriptor(), &before) != 0) fail_to_write(path, errno);
   const int error_number = write_all(file.descriptor(), line);
   if (error_number == 0) return;
-  if (::ftruncate(file.descriptor(), before.st_size) == 0 && before.st_size == 0) ::unlink(path.c_str());
-  fail(path, error_number);
+  if (::ftruncate(file.descriptor(), before.st_size) == 0 && before.st_size == 0 && file.is_new())
+    ::unlink(path.c_str());
+  fail_to_write(path, error_number);
 }
 
 }  // namespace podm::cli

@@ -15,9 +15,10 @@
 #include "cli/process_memory.h"
 #include "cli/progress_display.h"
 #include "cli/record.h"
-#include "cli/stop_on_signal.h"
+#include "cli/signal_thread.h"
 #include "cli/summary.h"
 #include "cli/verify_mesh.h"
+#include "files/atomic_file.h"
 #include "podm/mesh_io.h"
 #include "podm/operation_log.h"
 
@@ -40,17 +41,19 @@ void check_outputs(const MeshCommand& command) {
   const Algorithm algorithm = command.meshing.algorithm;
   if (!command.schedule_path.empty() && algorithm == Algorithm::kPodm)
     throw InputError(command.schedule_path + ": podm has no leaves; use --algorithm pdr or pdr-podm");
+  if (!command.schedule_path.empty()) const AtomicFile trial(command.schedule_path);
 }
 
-MeshingResult mesh_with_display(const LabelImage& image, const MeshingOptions& options, bool quiet) {
-  StopOnSignal stop;
+// Once refinement has begun there is a mesh to keep.
+MeshingResult mesh_with_display(const LabelImage& image, const MeshingOptions& options, bool quiet,
+                                SignalThread& signals) {
   using Style = ProgressDisplay::Style;
   ProgressDisplay display(stderr, quiet ? Style::kNone : ProgressDisplay::style_for(stderr));
   const auto progress = [&](const Progress& now) {
-    stop.poll();
+    if (now.phase != "transform") signals.heed_first(quiet);
     display.show(now);
   };
-  return mesh_image(image, options, progress, stop.token());
+  return mesh_image(image, options, progress, signals.token());
 }
 
 // The mesh must be canonical and hashed.
@@ -70,6 +73,7 @@ void write_outputs(const MeshCommand& command, const TetMesh& mesh) {
 }  // namespace
 
 int run(const MeshCommand& command) {
+  SignalThread signals;
   check_outputs(command);
   Crossover crossover = choose_crossover(command);
   LabelImage image;
@@ -87,7 +91,7 @@ int run(const MeshCommand& command) {
   if (!command.log_path.empty()) run.options.log = &log.emplace(command.log_path);
   run.options.crossover = run.crossover.threads;
   run.options.with_schedule = !command.schedule_path.empty();
-  run.result = mesh_with_display(image, run.options, command.quiet);
+  run.result = mesh_with_display(image, run.options, command.quiet, signals);
   auto& warnings = run.result.report.warnings;
   if (!run.crossover.warning.empty()) warnings.push_back(run.crossover.warning);
   warnings.insert(warnings.end(), image.warnings.begin(), image.warnings.end());
@@ -99,7 +103,7 @@ int run(const MeshCommand& command) {
   if (log) finish_log(*log, run);
   if (!command.schedule_path.empty()) write_schedule(run, command.schedule_path);
   run.peak_rss_bytes = peak_resident_bytes();
-  if (command.verify && !run.result.mesh.cells.empty()) run.verdicts = verify_mesh(run);
+  if (command.verify && !run.result.mesh.cells.empty()) run.verdicts = verify_mesh(run, signals);
   if (!command.record_path.empty()) append_line(command.record_path, json_line(record(run)));
   if (!command.quiet) fmt::print(stderr, "{}", summary(run));
   if (command.stats) fmt::print(stderr, "{}", statistics(run));

@@ -22,7 +22,7 @@ struct MeshRun {
   std::string mesh_sha256;
   double read_s = 0, write_s = 0;
   std::uint64_t peak_rss_bytes = 0;
-  std::map<std::string, std::string> verdicts;  ///< of podm-verify by claim; empty: not asked
+  std::map<std::string, std::string> verdicts;  ///< of podm-verify by claim; empty: none
 
   /// Seconds by phase: those of the library between "read", of a phantom "draw", and "write".
   std::map<std::string, double> phases_s() const;

@@ -4,11 +4,13 @@
 #include <cstdio>
 
 #include "cli/commands.h"
+#include "cli/signal_thread.h"
 #include "podm/image_io.h"
 
 namespace podm::cli {
 
 int run(const PhantomCommand& command) {
+  const SignalThread signals;  // leave no part of the image behind
   const LabelImage image = make_phantom(command.name, command.size);
   write_nifti(image, command.output_path);
   fmt::print(stderr, "{}: {} x {} x {} voxels of {:g} x {:g} x {:g} mm, {} labels\n", command.output_path,

@@ -13,6 +13,7 @@
 #include <fstream>
 #include <nlohmann/json.hpp>
 
+#include "files/leftovers.h"
 #include "podm/errors.h"
 #include "podm/image_io.h"
 
@@ -27,11 +28,14 @@ namespace fs = std::filesystem;
 class ScratchFolder {
  public:
   ScratchFolder() : path_(fs::temp_directory_path() / "podm-XXXXXX") {
+    HeldLeftovers leftovers;
     if (mkdtemp(path_.data()) == nullptr) throw InputError(fmt::format("cannot make a folder {}", path_));
+    leftovers.add(path_);
   }
   ~ScratchFolder() {
     std::error_code error;
     fs::remove_all(path_, error);
+    HeldLeftovers().drop(path_);
   }
   ScratchFolder(const ScratchFolder&) = delete;
   ScratchFolder& operator=(const ScratchFolder&) = delete;
@@ -92,11 +96,16 @@ std::vector<std::string> verifier_command(const MeshRun& run, const ScratchFolde
   return command;
 }
 
-// Runs to the end; standard output goes to standard error, or nowhere.
-void run_to_end(const std::vector<std::string>& command, bool quiet) {
+// As the program was started: standard output goes to standard error, or nowhere; no signal is blocked by
+// this one.
+pid_t start(const std::vector<std::string>& command, bool quiet, const SignalThread& signals) {
   std::vector<char*> arguments;
   for (const std::string& argument : command) arguments.push_back(const_cast<char*>(argument.c_str()));
   arguments.push_back(nullptr);
+  posix_spawnattr_t attributes;
+  posix_spawnattr_init(&attributes);
+  posix_spawnattr_setsigmask(&attributes, &signals.mask_before());
+  posix_spawnattr_setflags(&attributes, POSIX_SPAWN_SETSIGMASK);
   posix_spawn_file_actions_t actions;
   posix_spawn_file_actions_init(&actions);
   if (quiet) {
@@ -105,22 +114,36 @@ void run_to_end(const std::vector<std::string>& command, bool quiet) {
     posix_spawn_file_actions_adddup2(&actions, STDERR_FILENO, STDOUT_FILENO);
   }
   pid_t child = 0;
-  const int error = posix_spawn(&child, arguments[0], &actions, nullptr, arguments.data(), environ);
+  const int error = posix_spawn(&child, arguments[0], &actions, &attributes, arguments.data(), environ);
   posix_spawn_file_actions_destroy(&actions);
+  posix_spawnattr_destroy(&attributes);
   if (error != 0) throw InputError(fmt::format("--verify: {} cannot be run", command[0]));
+  return child;
+}
+
+// To its end, or to that which a signal asks for.
+void wait_for(pid_t child, const SignalThread& signals) {
+  {
+    const std::stop_callback end_it(signals.token(), [child] { kill(child, SIGKILL); });
+    siginfo_t ended;
+    while (waitid(P_PID, static_cast<id_t>(child), &ended, WEXITED | WNOWAIT) < 0 && errno == EINTR) {
+    }
+  }  // until then no other process has its number
   while (waitpid(child, nullptr, 0) < 0 && errno == EINTR) {
   }
 }
 
 }  // namespace
 
-std::map<std::string, std::string> verify_mesh(const MeshRun& run) {
+std::map<std::string, std::string> verify_mesh(const MeshRun& run, const SignalThread& signals) {
+  if (signals.token().stop_requested()) return {};
   const ScratchFolder scratch;
   const std::string report_path = scratch / "report.json";
   const auto command = verifier_command(run, scratch, report_path);
-  run_to_end(command, run.command.quiet);
+  wait_for(start(command, run.command.quiet, signals), signals);
   std::ifstream file(report_path);
   const auto report = nlohmann::ordered_json::parse(file, nullptr, false);
+  if (!report.is_object() && signals.token().stop_requested()) return {};
   if (!report.is_object()) throw InputError(fmt::format("--verify: {} gave no report", command[0]));
   std::map<std::string, std::string> verdicts;
   for (const auto& [claim, result] : report.at("claims").items()) verdicts[claim] = result.at("verdict");

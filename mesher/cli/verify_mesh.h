@@ -5,6 +5,7 @@
 #include <string>
 
 #include "cli/mesh_run.h"
+#include "cli/signal_thread.h"
 
 namespace podm::cli {
 
@@ -12,7 +13,7 @@ namespace podm::cli {
 /// promised only for cells about as small as voxels. The image goes with it as it is in its file, with the
 /// options that selected its labels; a phantom as a file written for the purpose. The report for people goes
 /// to standard error unless the run is quiet. Returns the verdicts by claim; throws InputError where the
-/// verifier is not there or tells nothing.
-std::map<std::string, std::string> verify_mesh(const MeshRun& run);
+/// verifier is not there or tells nothing, but none and no verdicts where a signal has ended it.
+std::map<std::string, std::string> verify_mesh(const MeshRun& run, const SignalThread& signals);
 
 }  // namespace podm::cli

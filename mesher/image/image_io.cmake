@@ -11,7 +11,7 @@ add_library(podm_image_io STATIC index_voxels.cpp input_file.cpp label_names.cpp
 podm_unite(podm_image_io images index_voxels.cpp input_file.cpp label_names.cpp phantom.cpp phantom_abdomen.cpp
            phantom_shapes.cpp raw_image.cpp read_image.cpp read_inr.cpp write_nifti.cpp)
 target_include_directories(podm_image_io SYSTEM PRIVATE ${ITK_INCLUDE_DIRS})
-target_link_libraries(podm_image_io PUBLIC podm_geometry PRIVATE podm_flags ${ITK_LIBRARIES} ${NIFTIIO_LIBRARY}
+target_link_libraries(podm_image_io PUBLIC podm_geometry PRIVATE podm_flags podm_files ${ITK_LIBRARIES} ${NIFTIIO_LIBRARY}
                                                                  ZLIB::ZLIB Threads::Threads)
 
 podm_add_test(image_io_tests

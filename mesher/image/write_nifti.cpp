@@ -1,5 +1,4 @@
 // NIfTI-1 label images.
-#include <fcntl.h>
 #include <nifti/nifti1_io.h>
 #include <unistd.h>
 #include <zlib.h>
@@ -8,12 +7,11 @@
 #include <array>
 #include <cerrno>
 #include <cmath>
-#include <cstdio>
 #include <cstring>
 #include <limits>
-#include <system_error>
 #include <utility>
 
+#include "files/temporary_file.h"
 #include "podm/errors.h"
 #include "podm/image_io.h"
 
@@ -26,10 +24,6 @@ constexpr int kLongestAxis = std::numeric_limits<short>::max();
 
 [[noreturn]] void fail(const std::string& path, const std::string& fault) {
   throw InputError(path + ": " + fault);
-}
-
-[[noreturn]] void fail_to_write(const std::string& path, int error_number) {
-  fail(path, "cannot write: " + std::generic_category().message(error_number));
 }
 
 struct VoxelFormat {
@@ -97,27 +91,16 @@ nifti_1_header header_of(const LabelImage& image, const VoxelFormat& format) {
   return header;
 }
 
-/// A file beside `path`, compressed or not, that takes its name when all of it is on the disk.
+// A temporary beside `path`, compressed or not.
 class PendingFile {
  public:
-  PendingFile(const std::string& path, bool is_compressed) : path_(path) {
-    int suffix = 0;
-    do {  // a killed run may have left such a file
-      temporary_ = path + ".tmp" + std::to_string(::getpid()) + "-" + std::to_string(suffix++);
-      descriptor_ = ::open(temporary_.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC, 0666);
-    } while (descriptor_ < 0 && errno == EEXIST);
-    if (descriptor_ < 0) fail_to_write(path_, errno);
+  PendingFile(const std::string& path, bool is_compressed) : path_(path), file_(path) {
     // The stream gets a descriptor of its own: gzclose() would take the one that fsync() needs.
-    stream_ = ::gzdopen(::dup(descriptor_), is_compressed ? "wb6" : "wbT");
-    if (stream_ == nullptr) {
-      const int error_number = errno;
-      discard();
-      fail_to_write(path_, error_number);
-    }
+    stream_ = ::gzdopen(::dup(file_.descriptor()), is_compressed ? "wb6" : "wbT");
+    if (stream_ == nullptr) fail_to_write(path_, errno);
   }
   ~PendingFile() {
     if (stream_ != nullptr) ::gzclose(stream_);
-    discard();
   }
   PendingFile(const PendingFile&) = delete;
   PendingFile& operator=(const PendingFile&) = delete;
@@ -129,21 +112,13 @@ class PendingFile {
 
   void publish() {
     errno = 0;
-    const bool is_closed = ::gzclose(std::exchange(stream_, nullptr)) == Z_OK;
-    if (!is_closed || ::fsync(descriptor_) != 0) fail_to_write(path_, errno != 0 ? errno : EIO);
-    if (std::rename(temporary_.c_str(), path_.c_str()) != 0) fail_to_write(path_, errno);
-    temporary_.clear();
+    if (::gzclose(std::exchange(stream_, nullptr)) != Z_OK) fail_to_write(path_, errno != 0 ? errno : EIO);
+    TemporaryFile::publish(std::array{&file_});
   }
 
  private:
-  void discard() {
-    if (!temporary_.empty()) ::unlink(temporary_.c_str());
-    ::close(descriptor_);
-  }
-
   std::string path_;
-  std::string temporary_;  // empty once published
-  int descriptor_ = -1;
+  TemporaryFile file_;
   gzFile stream_ = nullptr;
 };
 

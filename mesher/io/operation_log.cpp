@@ -11,7 +11,7 @@
 #include <nlohmann/json.hpp>
 #include <numeric>
 
-#include "io/atomic_file.h"
+#include "files/atomic_file.h"
 #include "podm/errors.h"
 
 namespace podm {

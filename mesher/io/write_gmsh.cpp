@@ -11,7 +11,7 @@
 #include <limits>
 #include <span>
 
-#include "io/atomic_file.h"
+#include "files/atomic_file.h"
 #include "io/grouping.h"
 #include "io/label_table.h"
 #include "io/mesh_formats.h"

@@ -2,7 +2,7 @@
 #include <fmt/compile.h>
 #include <fmt/format.h>
 
-#include "io/atomic_file.h"
+#include "files/atomic_file.h"
 #include "io/label_table.h"
 #include "io/mesh_formats.h"
 

@@ -5,7 +5,7 @@
 #include <filesystem>
 #include <span>
 
-#include "io/atomic_file.h"
+#include "files/atomic_file.h"
 #include "io/mesh_formats.h"
 #include "podm/errors.h"
 #include "podm/mesh_io.h"

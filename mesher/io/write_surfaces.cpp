@@ -6,7 +6,7 @@
 #include <cmath>
 #include <filesystem>
 
-#include "io/atomic_file.h"
+#include "files/atomic_file.h"
 #include "io/vertex_subset.h"
 #include "podm/errors.h"
 #include "podm/mesh_io.h"

@@ -10,7 +10,7 @@
 #include <functional>
 #include <limits>
 
-#include "io/atomic_file.h"
+#include "files/atomic_file.h"
 #include "io/label_table.h"
 #include "io/mesh_formats.h"
 #include "io/vertex_subset.h"

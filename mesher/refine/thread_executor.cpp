@@ -66,9 +66,10 @@ void ThreadExecutor<Locks>::work(Worker<Locks>& worker, WorkerId self) try {
     }
     const Outcome outcome = worker.attempt();
     worker.release();
+    bool has_slept = false;  // which takes the time of thousands of attempts
     if (outcome == Outcome::kLockConflict) {
       successes = 0;
-      yield_after_conflict(self, worker.conflicting_worker(), ++conflicts);
+      has_slept = yield_after_conflict(self, worker.conflicting_worker(), ++conflicts);
     } else if (outcome == Outcome::kCommitted) {
       conflicts = 0;
       if (++successes % ContentionManager::kSuccessesToWake == 0 && coordination_.has_waiting()) {
@@ -80,7 +81,7 @@ void ThreadExecutor<Locks>::work(Worker<Locks>& worker, WorkerId self) try {
         coordination_.share(self, worker);
       }
     }
-    if (++attempts % Watch::kAttemptsBetweenChecks == 0) check(worker, self);
+    if (++attempts % Watch::kAttemptsBetweenChecks == 0 || has_slept) check(worker, self);
   }
   desks_[self].overhead.rollback_s += std::chrono::duration<double>(worker.counters().rollback).count();
 } catch (const std::bad_alloc&) {
@@ -111,8 +112,9 @@ bool ThreadExecutor<Locks>::refill(WorkerId self) {
   return true;
 }
 
+// Whether the worker has waited or paused.
 template <class Locks>
-void ThreadExecutor<Locks>::yield_after_conflict(WorkerId self, WorkerId holder, int in_a_row) {
+bool ThreadExecutor<Locks>::yield_after_conflict(WorkerId self, WorkerId holder, int in_a_row) {
   const SecondsInto total(desks_[self].overhead.contention_s);
   std::unique_lock lock(mutex_);
   const auto answer = coordination_.conflict(self, holder - first_id_, in_a_row);
@@ -122,6 +124,7 @@ void ThreadExecutor<Locks>::yield_after_conflict(WorkerId self, WorkerId holder,
     lock.unlock();
     std::this_thread::sleep_for(std::chrono::duration<double>(answer.pause_s));
   }
+  return answer.kind != ContentionManager::Answer::kTryOn;
 }
 
 template <class Locks>

@@ -52,7 +52,7 @@ class ThreadExecutor {
   void work(Worker<Locks>& worker, WorkerId self);
   void beg(Worker<Locks>& worker, WorkerId self);
   bool refill(WorkerId self);
-  void yield_after_conflict(WorkerId self, WorkerId holder, int in_a_row);
+  bool yield_after_conflict(WorkerId self, WorkerId holder, int in_a_row);
   void check(const Worker<Locks>& worker, WorkerId self);
   void end(StopReason reason, const std::exception_ptr& failure = nullptr);
 

@@ -19,12 +19,13 @@ def run_podm(*arguments, program=PROGRAM, **popen_options):
                           **popen_options)
 
 
-def start_podm(*arguments):
-    """A running process with the default action for SIGINT, whatever this process inherited."""
+def start_podm(*arguments, **popen_options):
+    """A running process with the default action for signals, whatever this process inherited."""
     def defaults():
-        signal.signal(signal.SIGINT, signal.SIG_DFL)
+        for number in signal.SIGINT, signal.SIGTERM, signal.SIGHUP, signal.SIGQUIT:
+            signal.signal(number, signal.SIG_DFL)
     return subprocess.Popen([PROGRAM, *map(str, arguments)], stdout=subprocess.PIPE, stderr=subprocess.PIPE,
-                            text=True, preexec_fn=defaults)
+                            text=True, **{"preexec_fn": defaults, **popen_options})
 
 
 class PodmTestCase(unittest.TestCase):

@@ -3,7 +3,6 @@ that names the file and the fault, and nothing left behind."""
 
 import gzip
 import os
-import resource
 import struct
 import unittest
 
@@ -12,11 +11,6 @@ from podm_process import PodmTestCase, run_podm
 
 SIZE = 12
 BALL = small_images.ball_voxels(SIZE)
-
-
-def file_size_limit(size):
-    """Stands in for a disk that is full: no file grows past `size` bytes."""
-    return lambda: resource.setrlimit(resource.RLIMIT_FSIZE, (size, size))
 
 
 class BadImage(PodmTestCase):
@@ -151,6 +145,9 @@ class BadOutput(PodmTestCase):
         out = self.folder / "out.vtu"
         self.assert_refused(self.mesh("-o", out, "--surface", gone / "s.stl"), "gone/s.stl")
         self.assert_refused(self.mesh("-o", out, "--record", gone / "runs.jsonl"), "gone/runs.jsonl")
+        self.assert_refused(self.mesh("-o", out, "--log", gone / "run.log"), "gone/run.log")
+        self.assert_refused(self.mesh("-o", out, "--algorithm", "pdr", "--schedule", gone / "leaves.jsonl"),
+                            "gone/leaves.jsonl")
         self.assert_refused(["phantom", "spheres", "--size", "16", "-o", gone / "p.nii.gz"], "gone/p.nii.gz")
 
     def test_a_folder_in_the_way(self):
@@ -163,32 +160,6 @@ class BadOutput(PodmTestCase):
         locked = self.folder / "locked"
         locked.mkdir(mode=0o555)
         self.assert_refused(self.mesh("-o", locked / "out.vtu"), "locked/out.vtu")
-
-    def test_a_disk_that_fills_while_writing(self):
-        for extension in ("vtu", "mesh", "msh"):
-            with self.subTest(extension=extension):
-                name = f"out.{extension}"
-                self.assert_refused(self.mesh("-o", self.folder / name, "--quiet"), name,
-                                    preexec_fn=file_size_limit(4096))
-        self.assert_refused(["phantom", "abdomen", "--size", "64", "-o", self.folder / "p.nii"], "p.nii",
-                            preexec_fn=file_size_limit(4096))
-
-    def test_an_older_file_survives_a_disk_that_fills(self):
-        (self.folder / "out.mesh").write_text("older")
-        self.assert_refused(self.mesh("-o", self.folder / "out.mesh"), "out.mesh",
-                            preexec_fn=file_size_limit(4096))
-        self.assertEqual((self.folder / "out.mesh").read_text(), "older")
-
-    def test_a_record_that_does_not_fit_is_not_cut(self):
-        record = self.folder / "runs.jsonl"
-        limit = 1 << 20  # the mesh fits, the line does not
-        record.write_text("x" * (limit - 20) + "\n")
-        before = record.read_bytes()
-        process = run_podm(*self.mesh("-o", self.folder / "out.mesh", "--record", record),
-                           preexec_fn=file_size_limit(limit))
-        self.assert_exit(process, 2)
-        self.assertIn("runs.jsonl", process.stderr)
-        self.assertEqual(record.read_bytes(), before)
 
 
 if __name__ == "__main__":

@@ -10,16 +10,14 @@
 #include <string_view>
 #include <type_traits>
 
+#include "files/temporary_file.h"
+
 namespace podm {
 
 class AtomicFile {
  public:
   /// Creates the temporary. Every member throws InputError naming `path` and the system's reason on failure.
   explicit AtomicFile(const std::string& path);
-  /// Removes the temporary unless published.
-  ~AtomicFile();
-  AtomicFile(const AtomicFile&) = delete;
-  AtomicFile& operator=(const AtomicFile&) = delete;
 
   void write(const void* bytes, std::size_t size);
   void write(std::string_view text) { write(text.data(), text.size()); }
@@ -40,14 +38,11 @@ class AtomicFile {
 
  private:
   static constexpr std::size_t kBufferBytes = 1 << 18;
+  friend void publish_together(std::deque<AtomicFile>& files);
 
   void flush();
-  void write_through(const char* bytes, std::size_t size);
 
-  std::string path_;       // as the caller wrote it, for messages
-  std::string target_;     // path_ with symbolic links followed: a link is kept, its target replaced
-  std::string temporary_;  // empty once published
-  int descriptor_ = -1;
+  TemporaryFile file_;
   std::unique_ptr<char[]> buffer_;
   std::size_t buffered_ = 0;
 };

@@ -1,0 +1,320 @@
+"""podm under signals: at any moment a whole mesh or none, older files kept, nothing left behind, and an end within a
+second and what writing takes.
+
+$PODM_SIGNAL_MOMENTS is the number of moments for each algorithm and signal, spread over a run by a seed.
+"""
+
+import collections
+import fcntl
+import json
+import os
+import pathlib
+import random
+import re
+import resource
+import signal
+import struct
+import subprocess
+import sys
+import tempfile
+import time
+import unittest
+
+from podm_process import PROGRAM, TIMEOUT_S, PodmTestCase, run_podm, start_podm
+
+VERIFIER = os.path.join(os.path.dirname(PROGRAM), "podm-verify")
+MOMENTS = int(os.environ.get("PODM_SIGNAL_MOMENTS", "4"))
+LONGEST_S = 1
+IMAGE = "phantom:abdomen@80"
+ENDLESS = ["mesh", "phantom:abdomen@48", "--radius", 1, "--max-memory-gib", 1000, "--oversubscribe"]
+ALGORITHMS = {"podm": ["--threads", 2],
+              "pdr": ["--algorithm", "pdr", "--threads", 2],
+              "pdr-podm": ["--algorithm", "pdr-podm", "--nodes", 1, "--cores-per-node", 2]}
+
+End = collections.namedtuple("End", "code stderr seconds")
+
+
+def end_of(process, first, *others, pause_s=0):
+    """How the process ends after these signals, and how long after the last."""
+    sent = time.monotonic()
+    process.send_signal(first)
+    for number in others:
+        time.sleep(pause_s)
+        sent = time.monotonic()
+        process.send_signal(number)
+    _, stderr = process.communicate(timeout=TIMEOUT_S)
+    return End(process.returncode, stderr, time.monotonic() - sent)
+
+
+def start_refining(*arguments, **popen_options):
+    process = start_podm(*arguments, **popen_options)
+    for line in process.stderr:
+        if re.match("refine", line):
+            return process
+    raise AssertionError(f"no refinement: exit {process.wait()}")
+
+
+def mesh_command(image, folder, algorithm):
+    """Every output there is; about a second."""
+    leaves = [] if algorithm == "podm" else ["--schedule", folder / "leaves.jsonl"]
+    return ["mesh", image, "--radius", 9, "--oversubscribe", *ALGORITHMS[algorithm], *leaves, "-o",
+            folder / "out.vtu", "--surface", folder / "s.stl", "--log", folder / "run.log", "--record",
+            folder / "runs.jsonl"]
+
+
+def seconds_of_writing(record):
+    return record["phases_s"]["extract"] + record["phases_s"]["write"]
+
+
+def is_whole(path):
+    content = path.read_bytes()
+    if path.suffix == ".stl":
+        return len(content) == 84 + 50 * struct.unpack_from("<I", content, 80)[0]
+    if path.suffix == ".log":
+        _, start, rest = content.rpartition(b'{"schema"')
+        return len(json.loads(start + rest)["mesh_sha256"]) == 64
+    if path.suffix == ".jsonl":
+        return content.endswith(b"\n") and all(json.loads(line) for line in content.splitlines())
+    return path.suffix == ".vtu" and content.endswith(b"</VTKFile>\n")
+
+
+class AnyMoment(PodmTestCase):
+    """Every file of a run has an older one in its place but for the record, which is one line."""
+
+    def setUp(self):
+        super().setUp()
+        self.image = self.folder / "image.nii.gz"
+        self.assert_exit(run_podm("phantom", "abdomen", "--size", 96, "-o", self.image), 0)
+
+    def undisturbed(self, algorithm):
+        """The names of the files, and the seconds."""
+        with tempfile.TemporaryDirectory(dir=self.folder) as folder:
+            start = time.monotonic()
+            self.assert_exit(run_podm(*mesh_command(self.image, pathlib.Path(folder), algorithm)), 0)
+            return set(os.listdir(folder)), time.monotonic() - start
+
+    def assert_kept(self, folder, names, end, signals):
+        """What the README promises of a run that was ended so; tells how it ended."""
+        older = {name: f"older {name}".encode() for name in names - {"runs.jsonl"}}
+        left = {path.name: path.read_bytes() for path in folder.iterdir()}
+        self.assertLessEqual(set(left), names, end.stderr)
+        self.assertLessEqual(set(older), set(left), end.stderr)
+        new = {name for name, content in left.items() if content != older.get(name)}
+        for name in new:
+            self.assertTrue(is_whole(folder / name), name)
+        has_mesh = "out.vtu" in new
+        self.assertEqual(has_mesh, "out_facets.vtu" in new)
+        if has_mesh:
+            self.assert_exit(run_podm(folder / "out.vtu", "--claims", "structure,delaunay", program=VERIFIER), 0)
+        writing_s = 0
+        if end.code < 0:
+            self.assertIn(-end.code, signals, end.stderr)
+            if len(signals) == 1:
+                self.assertEqual(new, set(), end.stderr)
+        else:
+            record = self.read_record(folder / "runs.jsonl")
+            writing_s = seconds_of_writing(record)
+            self.assertEqual((end.code, record["stop_reason"]),
+                             (0, "complete") if end.code == 0 else (1, "cancelled"), end.stderr)
+            self.assertEqual(has_mesh, "the mesh has no cell" not in end.stderr)
+        limit = LONGEST_S + (writing_s if len(signals) == 1 else 0)
+        self.assertLessEqual(end.seconds, limit, end.stderr)
+        return {0: "whole mesh", 1: "mesh so far" if has_mesh else "no cell yet"}.get(end.code, "ended"), writing_s
+
+    def disturb(self, algorithm, signals, moments, seed):
+        """Runs that get the signals at moments from start to end, in parts of which each has one."""
+        names, whole_s = self.undisturbed(algorithm)
+        rng = random.Random(f"{seed} {algorithm} {signals}")
+        ends, worst_s, longest_writing_s = collections.Counter(), 0, 0
+        for part in range(moments):
+            moment_s = (part + rng.random()) / moments * whole_s
+            with self.subTest(algorithm=algorithm, signals=signals, moment_s=moment_s), \
+                    tempfile.TemporaryDirectory(dir=self.folder) as folder:
+                folder = pathlib.Path(folder)
+                for name in names - {"runs.jsonl"}:
+                    (folder / name).write_text(f"older {name}")
+                process = start_podm(*mesh_command(self.image, folder, algorithm))
+                time.sleep(moment_s)
+                end = end_of(process, *signals, pause_s=rng.uniform(0, 0.05))
+                how, writing_s = self.assert_kept(folder, names, end, signals)
+                ends[how] += 1
+                worst_s = max(worst_s, end.seconds - writing_s)
+                longest_writing_s = max(longest_writing_s, writing_s)
+        names_of_signals = " then ".join(signal.Signals(number).name for number in signals)
+        print(f"{algorithm}, {names_of_signals}: {moments} moments of {whole_s:.2f} s, {dict(ends)}; at worst "
+              f"{worst_s:.3f} s to the end, but for extraction and writing, at most {longest_writing_s:.3f} s",
+              file=sys.stderr)
+
+    def test_one_signal(self):
+        for algorithm in ALGORITHMS:
+            for number in signal.SIGINT, signal.SIGTERM:
+                self.disturb(algorithm, [number], MOMENTS, seed=1)
+
+    def test_a_second_signal_ends_at_once(self):
+        for algorithm in ALGORITHMS:
+            self.disturb(algorithm, [signal.SIGINT, signal.SIGTERM], MOMENTS // 2, seed=2)
+
+
+class Refinement(PodmTestCase):
+    def mesh_command(self, *more):
+        return [*ENDLESS, "-o", self.folder / "out.vtu", "--log", self.folder / "run.log", *more]
+
+    def assert_stopped(self, end):
+        self.assertEqual(end.code, 1, end.stderr)
+        self.assertIn("ended early: cancelled", end.stderr)
+        self.assertEqual(set(self.files()), {self.folder / name for name in ("out.vtu", "out_facets.vtu", "run.log")})
+
+    def assert_ended_by(self, number, end):
+        self.assertEqual(end.code, -number, end.stderr)
+        self.assertLessEqual(end.seconds, LONGEST_S)
+        self.assertEqual(self.files(), {})
+
+    def test_a_hangup_is_told_of_and_heeded(self):
+        end = end_of(start_refining(*self.mesh_command()), signal.SIGHUP)
+        self.assertIn("podm: SIGHUP: ", end.stderr)
+        self.assert_stopped(end)
+
+    def test_a_signal_that_was_ignored_stays_ignored(self):
+        def nohup():
+            signal.signal(signal.SIGHUP, signal.SIG_IGN)
+        process = start_refining(*self.mesh_command(), preexec_fn=nohup)
+        process.send_signal(signal.SIGHUP)
+        time.sleep(0.3)
+        self.assertIsNone(process.poll())
+        end = end_of(process, signal.SIGTERM)
+        self.assertNotIn("SIGHUP", end.stderr)
+        self.assert_stopped(end)
+
+    def test_signals_of_batch_systems_and_a_quit_end_at_once_without_leftovers(self):
+        def no_core():
+            resource.setrlimit(resource.RLIMIT_CORE, (0, 0))
+            signal.signal(signal.SIGQUIT, signal.SIG_DFL)
+        for number in signal.SIGQUIT, signal.SIGUSR1, signal.SIGUSR2, signal.SIGXCPU:
+            end = end_of(start_refining(*self.mesh_command(), preexec_fn=no_core), number)
+            self.assert_ended_by(number, end)
+
+    def test_a_node_that_never_has_a_leaf_keeps_nobody_waiting(self):
+        """One leaf holds the whole object, so that all nodes but one wait until that one is through."""
+        with tempfile.TemporaryDirectory() as elsewhere:
+            runs = pathlib.Path(elsewhere) / "runs.jsonl"
+            process = start_refining(*self.mesh_command("--algorithm", "pdr", "--threads", 4, "--leaf-size", 1000,
+                                                        "--initial-ratio", 8, "--record", runs))
+            time.sleep(1)
+            end = end_of(process, signal.SIGINT)
+            self.assert_stopped(end)
+            self.assertLessEqual(end.seconds, LONGEST_S + seconds_of_writing(self.read_record(runs)))
+
+    def test_a_full_pipe_keeps_nobody_waiting(self):
+        read_end, write_end = os.pipe()
+        try:
+            size = fcntl.fcntl(write_end, fcntl.F_SETPIPE_SZ, 4096)
+            os.write(write_end, bytes(size))
+            process = subprocess.Popen([PROGRAM, *map(str, self.mesh_command())], stderr=write_end)
+            while not any(path.name.startswith("run.log.tmp") for path in self.folder.iterdir()):
+                time.sleep(0.01)
+            time.sleep(0.3)
+            self.assert_ended_by(signal.SIGTERM, end_of(process, signal.SIGTERM, signal.SIGTERM, pause_s=0.1))
+        finally:
+            os.close(read_end)
+            os.close(write_end)
+
+
+class Killed(PodmTestCase):
+    """kill -9 leaves temporaries; the next run of the same name removes them, but none of a process that lives."""
+
+    def mesh(self):
+        return run_podm("mesh", "phantom:spheres@24", "-o", self.folder / "out.vtu", "--log", self.folder / "run.log")
+
+    def names(self):
+        return {path.name for path in self.folder.iterdir()}
+
+    def test_the_next_run_removes_what_is_left(self):
+        process = start_refining(*ENDLESS, "-o", self.folder / "out.vtu", "--log", self.folder / "run.log")
+        end_of(process, signal.SIGKILL)
+        self.assertRegex(" ".join(self.names()), rf"^run.log.tmp{process.pid}-\d+$")
+        others = {"other.vtu.tmp4194305-0", "run.log.tmp", f"run.log.tmp{process.pid}"}
+        for name in others:
+            (self.folder / name).touch()
+        self.assert_exit(self.mesh(), 0)
+        self.assertEqual(self.names() - others, {"out.vtu", "out_facets.vtu", "run.log"})
+        self.assertLessEqual(others, self.names())
+
+    def test_a_run_that_lives_keeps_its_own(self):
+        process = start_refining(*ENDLESS, "-o", self.folder / "out.vtu", "--log", self.folder / "run.log")
+        try:
+            before = self.names()
+            self.assertRegex(" ".join(before), rf"^run.log.tmp{process.pid}-\d+$")
+            self.assert_exit(self.mesh(), 0)
+            self.assertEqual(self.names(), before | {"out.vtu", "out_facets.vtu", "run.log"})
+        finally:
+            self.assertEqual(end_of(process, signal.SIGINT).code, 1)
+
+
+def child_that_runs(process, program):
+    """The number of a process; None where there is none."""
+    for entry in pathlib.Path("/proc").glob("[0-9]*"):
+        try:
+            parent = int((entry / "stat").read_text().rpartition(")")[2].split()[1])
+            if parent == process.pid and os.path.basename(os.readlink(entry / "exe")) == program:
+                return entry.name
+        except OSError:  # it has ended
+            pass
+    return None
+
+
+class Verification(PodmTestCase):
+    def test_a_signal_ends_the_verifier_too(self):
+        scratch, out = self.folder / "scratch", self.folder / "out"
+        scratch.mkdir()
+        out.mkdir()
+        process = start_podm("mesh", "phantom:abdomen@48", "--radius", 8, "-o", out / "out.vtu", "--verify",
+                             env={**os.environ, "TMPDIR": str(scratch)})
+        child = None
+        while child is None:
+            time.sleep(0.005)
+            self.assertIsNone(process.poll())
+            child = child_that_runs(process, "podm-verify")
+        blocked = re.search(r"SigBlk:\s*(\w+)", pathlib.Path(f"/proc/{child}/status").read_text())[1]
+        self.assertEqual(int(blocked, 16), 0)
+        end = end_of(process, signal.SIGTERM)
+        self.assertEqual(end.code, 1, end.stderr)
+        self.assertLessEqual(end.seconds, LONGEST_S)
+        self.assertIn("podm-verify: ended early", end.stderr)
+        self.assertFalse(os.path.exists(f"/proc/{child}"))
+        self.assertEqual(list(scratch.iterdir()), [])
+        self.assertEqual({path.name for path in out.iterdir()}, {"out.vtu", "out_facets.vtu"})
+        self.assert_exit(run_podm(out / "out.vtu", "--claims", "structure,delaunay", program=VERIFIER), 0)
+
+
+class OtherCommands(PodmTestCase):
+    def test_a_phantom_is_written_whole_or_not_at_all(self):
+        image = self.folder / "p.nii.gz"
+        command = ["phantom", "abdomen", "--size", 128, "-o", image]
+        start = time.monotonic()
+        self.assert_exit(run_podm(*command), 0)
+        whole_s = time.monotonic() - start
+        whole = image.read_bytes()
+        rng = random.Random(3)
+        for part in range(8):
+            image.write_text("older")
+            process = start_podm(*command)
+            time.sleep((part + rng.random()) / 8 * whole_s)
+            end = end_of(process, signal.SIGINT)
+            self.assertLessEqual(end.seconds, LONGEST_S)
+            self.assertEqual(self.files(), {image: whole if end.code == 0 else b"older"})
+            self.assertIn(end.code, (0, -signal.SIGINT))
+
+    def test_a_replay_ends_at_once(self):
+        log = self.folder / "run.log"
+        self.assert_exit(run_podm("mesh", IMAGE, "--radius", 8, "-o", self.folder / "out.vtu", "--log", log), 0)
+        before = self.files()
+        process = start_podm("replay", IMAGE, log)
+        time.sleep(0.2)
+        end = end_of(process, signal.SIGTERM)
+        self.assertEqual(end.code, -signal.SIGTERM, end.stderr)
+        self.assertLessEqual(end.seconds, LONGEST_S)
+        self.assertEqual(self.files(), before)
+
+
+if __name__ == "__main__":
+    unittest.main()
