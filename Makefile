@@ -8,6 +8,7 @@ INPUTS = --records results/runs --verified $(FIGURES)/abdomen_verified.json \
   --schedule $(FIGURES)/abdomen_leaves.jsonl --mesh $(FIGURES)/abdomen.vtu \
   --experiment-verdicts $(FIGURES)/experiment_verdicts.json
 TIER ?= default
+SECONDS ?= 600
 
 .DEFAULT_GOAL := help
 .PHONY: help setup build peers test stress kill-matrix kick-tires experiments figures clean
@@ -17,7 +18,8 @@ help:
 	@echo "make experiments   the experiments at the size of a laptop (TIER=full: of the whole machine); a second call"
 	@echo "                   goes on where the first ended"
 	@echo "make test          all tests"
-	@echo "make stress        2200 runs of up to 256 workers, each verified and replayed; some 10 minutes on 2 cores"
+	@echo "make stress        random runs of up to 256 workers on random images for SECONDS=600, each verified and"
+	@echo "                   replayed; SEED=N repeats one"
 	@echo "make kill-matrix   every mutant of a mesh and the claim of podm-verify that rejects it"
 	@echo "make figures       tables and figures of results/runs/ beside the paper's, a mesh cut open: $(FIGURES)/,"
 	@echo "                   and one page of it all: results/runs/report.html"
@@ -54,9 +56,12 @@ test:
 	$(if $(DATA),PODM_TEST_IMAGES="$(abspath $(DATA))") ctest --test-dir build -j2 --output-on-failure
 	@grep -ho 'skipped: .*' build/Testing/Temporary/LastTest.log | sort | uniq -c || true
 
+# A failing seed joins those that `make test` repeats.
 stress: build
 	@scripts/setup run
-	cd mesher/tests && PODM_PROGRAM=$(CURDIR)/build/bin/podm /usr/bin/python3 -B stress.py
+	cd mesher/tests && PODM_PROGRAM=$(CURDIR)/build/bin/podm /usr/bin/python3 -B stress.py \
+	  $(if $(SEED),--seed $(SEED),--seconds $(SECONDS) --keep stress_seeds.txt $(if $(FIRST),--first $(FIRST)) \
+	  $(if $(RECORD),--record "$(abspath $(RECORD))"))
 
 kill-matrix: build
 	@scripts/setup run

@@ -1,26 +1,78 @@
 #!/bin/sh
-# Builds the libFuzzer targets and runs each for FUZZ_SECONDS (15) from its seeds, the folder corpus/TARGET beside
-# its source where there is one. A finding exits 1; the input that shows it stays in build-fuzz/findings/.
+# Usage: ci/fuzz.sh [--merge] [TARGET...]
+# Builds the libFuzzer targets and runs each (all, or those named) for FUZZ_SECONDS (15), or with FUZZ_RUNS for so many
+# executions, from the folder corpus/TARGET beside its source: inputs that between them take every branch ever taken.
+# Ends with a table of executions. A finding exits 1; the input that shows it stays in build-fuzz/findings/.
+#
+# What is learnt stays in build-fuzz/corpus/. With --merge nothing is fuzzed: the corpora of the tree are made anew, of
+# theirs and of what was learnt the fewest and shortest inputs that take all branches. Inputs with names stay, others
+# are named by their hash.
 set -eu
 cd "$(dirname "$0")/.."
+is_merge=""
+[ "${1-}" != --merge ] || { is_merge=1; shift; }
 
-cmake -S . -B build-fuzz -G Ninja -DCMAKE_C_COMPILER=clang -DCMAKE_CXX_COMPILER=clang++ \
-  -DCMAKE_CXX_FLAGS="-include $PWD/ci/itk_with_clang.h" -DCMAKE_BUILD_TYPE=RelWithDebInfo \
-  -DPODM_BUILD_FUZZERS=ON -DPODM_SANITIZE=address,undefined
+build=build-fuzz
+longest=4096  # bytes of an input
 sources=$(git ls-files -- '*/fuzz_*.cpp')
 targets=$(for source in $sources; do basename "$source" .cpp; done)
-# shellcheck disable=SC2086  # lists of words, here and below
-cmake --build build-fuzz --target $targets
-
-mkdir -p build-fuzz/findings
-for source in $sources; do
-  target=$(basename "$source" .cpp)
-  corpus=build-fuzz/corpus/$target
-  mkdir -p "$corpus"  # what the fuzzer learns stays here, the seeds are read only
-  seeds=$(dirname "$source")/corpus/$target
-  [ -d "$seeds" ] || seeds=""
-  echo "== $target"
-  # shellcheck disable=SC2086
-  "build-fuzz/bin/$target" "$corpus" $seeds -max_total_time="${FUZZ_SECONDS:-15}" -timeout=10 -rss_limit_mb=4096 \
-    -artifact_prefix="build-fuzz/findings/$target-" -print_final_stats=0 -verbosity=0
+for asked; do
+  echo "$targets" | grep -qx "$asked" || { echo "ci/fuzz.sh: no target '$asked':" $targets >&2; exit 2; }
 done
+[ $# -gt 0 ] || set -- $targets
+
+cmake -S . -B $build -G Ninja -DCMAKE_C_COMPILER=clang -DCMAKE_CXX_COMPILER=clang++ \
+  -DCMAKE_CXX_FLAGS="-include $PWD/ci/itk_with_clang.h" -DCMAKE_BUILD_TYPE=RelWithDebInfo \
+  -DPODM_BUILD_FUZZERS=ON -DPODM_SANITIZE=address,undefined
+cmake --build $build --target "$@"
+
+# Files of the readers in memory; allocations are told with few frames, which is faster.
+TMPDIR=$(mktemp -d "$([ -w /dev/shm ] && echo /dev/shm || echo "${TMPDIR:-/tmp}")/podm-fuzz-XXXXXX")
+trap 'rm -rf "$TMPDIR"' EXIT
+trap 'exit 130' INT TERM
+export TMPDIR
+export ASAN_OPTIONS=malloc_context_size=6:quarantine_size_mb=16:${ASAN_OPTIONS-}
+export UBSAN_OPTIONS=halt_on_error=1:print_stacktrace=1:${UBSAN_OPTIONS-}
+
+corpus_of() { echo "$(dirname "$(echo "$sources" | grep "/$1\.cpp$")")/corpus/$1"; }
+files_in() { find "$1" -type f | wc -l; }
+bytes_in() { find "$1" -type f -printf '%s\n' | awk '{ sum += $1 } END { print sum + 0 }'; }
+told() { sed -n "s/^stat::$1: *//p" "$2"; }
+
+# Inputs of a hash for a name compete anew with what was learnt.
+merge() {
+  target=$1 seeds=$(corpus_of "$1") learnt=$build/corpus/$1
+  mkdir -p "$seeds" "$learnt"
+  find "$seeds" -type f | grep -E '/[0-9a-f]{40}$' | xargs -r mv -t "$learnt"
+  $build/bin/"$target" -merge=1 -use_counters=0 -print_funcs=0 -max_len=$longest -timeout=30 "$seeds" "$learnt" \
+    > $build/log/"$target" 2>&1 || { tail -n 30 $build/log/"$target"; exit 1; }
+}
+
+fuzz() {
+  target=$1 seeds=$(corpus_of "$1") learnt=$build/corpus/$1 log=$build/log/$1
+  mkdir -p "$seeds" "$learnt"
+  start=$(date +%s)
+  if [ -n "${FUZZ_RUNS-}" ]; then set -- -runs="$FUZZ_RUNS" -max_total_time="${FUZZ_SECONDS:-0}"
+  else set -- -max_total_time="${FUZZ_SECONDS:-15}"; fi
+  $build/bin/"$target" "$learnt" "$seeds" "$@" -max_len=$longest -timeout=30 -rss_limit_mb=4096 \
+    -artifact_prefix=$build/findings/"$target"- -print_final_stats=1 -verbosity=0 -print_funcs=0 > "$log" 2>&1 ||
+    { tail -n 60 "$log"; echo "ci/fuzz.sh: $target found something, see $log and $build/findings/" >&2; exit 1; }
+  printf '%s %s %s\n' "$target" "$(told number_of_executed_units "$log")" $(($(date +%s) - start)) >> $build/log/table
+}
+
+mkdir -p $build/findings $build/log
+: > $build/log/table
+for target; do
+  echo "== $target"
+  if [ -n "$is_merge" ]; then merge "$target"; echo "$target - -" >> $build/log/table; else fuzz "$target"; fi
+done
+
+printf '\n%-26s %12s %8s %9s %8s %8s\n' reader executions seconds per_s corpus bytes
+while read -r target runs seconds; do
+  corpus=$(corpus_of "$target")
+  per_second=-
+  [ "$runs" = - ] || per_second=$((runs / (seconds > 0 ? seconds : 1)))
+  printf '%-26s %12s %8s %9s %8s %8s\n' "$target" "$runs" "$seconds" "$per_second" "$(files_in "$corpus")" \
+    "$(bytes_in "$corpus")"
+done < $build/log/table
+awk '{ runs += $2; seconds += $3 } END { printf "%-26s %12d %8d\n", "all", runs, seconds }' $build/log/table

@@ -1,4 +1,4 @@
-# How every target of this project is compiled, and the two ways to declare a test.
+# How every target of this project is compiled, and the ways to declare a test and a fuzzer.
 
 find_package(Threads REQUIRED)
 
@@ -46,4 +46,20 @@ function(podm_add_python_test name)
            WORKING_DIRECTORY ${CMAKE_CURRENT_SOURCE_DIR})
   set_tests_properties(${name} PROPERTIES TIMEOUT ${ARG_TIMEOUT} ENVIRONMENT "${ARG_ENVIRONMENT}"
                                           SKIP_REGULAR_EXPRESSION "${PODM_SKIPPED}")
+endfunction()
+
+# podm_add_fuzzer(NAME [SOURCES...] LIBS targets... [LEARN targets...]): the libFuzzer program of fuzz/NAME.cpp and other
+# sources. It is guided by the branches taken in its own sources and in the libraries LEARN.
+function(podm_add_fuzzer name)
+  if(NOT PODM_BUILD_FUZZERS)
+    return()
+  endif()
+  cmake_parse_arguments(ARG "" "" "SOURCES;LIBS;LEARN" ${ARGN})
+  add_executable(${name} EXCLUDE_FROM_ALL fuzz/${name}.cpp ${ARG_SOURCES})
+  target_include_directories(${name} PRIVATE ${PROJECT_SOURCE_DIR}/ci)
+  target_link_libraries(${name} PRIVATE ${ARG_LIBS} podm_flags)
+  target_link_options(${name} PRIVATE -fsanitize=fuzzer)
+  foreach(target ${name} ${ARG_LEARN})
+    target_compile_options(${target} PRIVATE -fsanitize=fuzzer-no-link)
+  endforeach()
 endfunction()

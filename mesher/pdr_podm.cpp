@@ -1,5 +1,7 @@
 // PDR: Chernikov, Chrisochoides, ICS 2004; SISC 28 (2006). PDR.PODM: Feng, Tsolakis, Chernikov,
 // Chrisochoides, IMR 2015, section 3.
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <cmath>
 #include <memory>
@@ -7,6 +9,7 @@
 
 #include "octree/leaf_region.h"
 #include "podm.h"
+#include "podm/errors.h"
 #include "refine/virtual_box.h"
 
 namespace podm {
@@ -69,6 +72,18 @@ Octree make_octree(const Problem& problem, const Radii& radii, const Box& box, d
   return Octree(box.low, box.high, finest_mm, largest_side, is_needed);
 }
 
+// Leaves of a size that was asked for fill the whole box: they must not take more memory than the mesh.
+void check_leaf_size(double asked_mm, const Box& box) {
+  constexpr double kMostLeaves = 1 << 21;
+  const auto along = [&](double length_mm) { return std::max(1.0, std::ceil(length_mm / asked_mm)); };
+  const Vector extent = box.high - box.low;
+  const double leaves = along(extent.x) * along(extent.y) * along(extent.z);
+  if (leaves <= kMostLeaves) return;
+  throw InputError(
+      fmt::format("a leaf size of {:g} mm makes {:.2g} leaves, the most are {}; {:.3g} mm makes fewer",
+                  asked_mm, leaves, kMostLeaves, 1.1 * asked_mm * std::cbrt(leaves / kMostLeaves)));
+}
+
 // Sides by the labels' bounds, longer where a leaf has to feed several workers, so that each has as much as
 // one has of a leaf of its own: 256 simulated cores, 16 a node, were 1.46 times faster, and 16 % instead of
 // 27 % of their operations rolled back. Then shorter until there are leaves enough to keep all nodes at work.
@@ -112,6 +127,7 @@ Refinement refine_by_leaves(const Problem& problem, const Crew& crew, const Leaf
   const double initial_radius_mm = ratio * radii.least;
   const double shell_mm = kShellOverRadius * initial_radius_mm;
   const Box clamp = grown(problem.object, std::max(2 * ratio * problem.delta_mm, shell_mm));
+  if (options.leaf_size_mm > 0) check_leaf_size(options.leaf_size_mm, clamp);
 
   Parameters initial = parameters_for(problem, ratio, clamp);
   initial.shell_mm = shell_mm;

@@ -15,8 +15,8 @@ constexpr int kMaxPhantomSize = 4096;
 
 void add_image_options(CLI::App& app, ImageArguments& image) {
   require(add_one(app, "IMAGE", "",
-                  fmt::format("NIfTI, NRRD, MetaImage or INR label image, or phantom:NAME[@SIZE],\n"
-                              "NAME one of {}",
+                  fmt::format("NIfTI, NRRD, MetaImage or INR label image of fewer than 2^31 voxels,\n"
+                              "or phantom:NAME[@SIZE], NAME one of {}",
                               fmt::join(phantom_names(), ", ")),
                   into(image.path)));
   begin_group(app, "Labels");

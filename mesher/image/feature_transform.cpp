@@ -251,9 +251,10 @@ class NeighborhoodFinder {
 };
 
 std::size_t checked_num_voxels(const LabelImage& image) {
-  if (image.num_voxels() > kNone) {
+  static_assert(kMaxVoxels == kNone, "kNone is no voxel");
+  if (image.num_voxels() > kMaxVoxels) {
     throw InputError("image: " + std::to_string(image.num_voxels()) +
-                     " voxels; the feature transform takes at most 2147483647");
+                     " voxels; the feature transform takes at most " + std::to_string(kMaxVoxels));
   }
   return image.num_voxels();
 }

@@ -93,7 +93,7 @@ class Features {
 class FeatureTransform : private HugeArray<std::uint32_t>, public Features<NoReads> {
  public:
   /// Runs on `threads` threads (0: all cores); the result is the same for any number.
-  /// Throws InputError if the image has more than 2^31 - 1 voxels.
+  /// Throws InputError if the image has more than kMaxVoxels.
   FeatureTransform(const LabelImage& image, int threads);
 
   /// One a voxel: the feature, or kSurface and the neighbourhood.

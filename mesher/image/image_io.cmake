@@ -20,11 +20,5 @@ podm_add_test(image_io_tests
                       tests/test_read_image_refused.cpp tests/test_write_nifti.cpp
               LIBS podm_image_io ZLIB::ZLIB)
 
-if(PODM_BUILD_FUZZERS)
-  foreach(target fuzz_read_image fuzz_label_options)
-    add_executable(${target} fuzz/${target}.cpp)
-    target_link_libraries(${target} PRIVATE podm_image_io podm_flags)
-    target_link_options(${target} PRIVATE -fsanitize=fuzzer)
-  endforeach()
-  target_compile_options(podm_image_io PRIVATE -fsanitize=fuzzer-no-link)
-endif()
+podm_add_fuzzer(fuzz_read_image LIBS podm_image_io LEARN podm_image_io)
+podm_add_fuzzer(fuzz_label_options LIBS podm_image_io)

@@ -23,13 +23,11 @@ template <class Voxel>
 constexpr bool kIsSmall = sizeof(Voxel) <= 2;
 constexpr std::size_t kNumSmall = 1 << 16;
 
-std::uint32_t label_value(double voxel, const std::string& path) {
+template <class Voxel>
+bool is_label(Voxel voxel) {
   constexpr double kEnd = 4294967296.0;
-  if (!(voxel >= 0 && voxel < kEnd))
-    refuse(path, "a label image is needed: value " + std::to_string(voxel) + " is no label (0 to 2^32 - 1)");
-  if (std::floor(voxel) != voxel)
-    refuse(path, "a label image is needed: value " + std::to_string(voxel) + " is not integral");
-  return static_cast<std::uint32_t>(voxel);
+  const auto value = static_cast<double>(voxel);
+  return value >= 0 && value < kEnd && std::floor(value) == value;  // NaN is none
 }
 
 template <class Voxel>
@@ -39,7 +37,20 @@ Voxel voxel_at(const RawImage& raw, std::size_t i) {
   return voxel;
 }
 
-// The different voxels that one thread meets, while they are not too many.
+// There is one.
+template <class Voxel>
+[[noreturn]] void refuse_first_without_label(const RawImage& raw) {
+  std::size_t i = 0;
+  while (is_label(voxel_at<Voxel>(raw, i))) ++i;
+  const auto num_x = static_cast<std::size_t>(raw.size[0]), num_y = static_cast<std::size_t>(raw.size[1]);
+  refuse(raw.path, "a label image is needed: voxel (" + std::to_string(i % num_x) + ", " +
+                       std::to_string(i / num_x % num_y) + ", " + std::to_string(i / num_x / num_y) +
+                       ") is " + std::to_string(voxel_at<Voxel>(raw, i)) +
+                       ", no label (an integer, 0 to 2^32 - 1)");
+}
+
+// The different voxels that one thread meets, while they are not too many and all are labels: a set of values
+// that differ from themselves would take forever.
 template <class Voxel>
 class VoxelSet {
  public:
@@ -50,11 +61,18 @@ class VoxelSet {
       if constexpr (kIsSmall<Voxel>) {
         is_met[static_cast<std::uint16_t>(voxel)] = true;
       } else if (last_ != voxel) {
+        if (!is_label(voxel)) {
+          has_other_ = true;
+          return;
+        }
         last_ = voxel;
         if (met_.size() <= kMostValues) met_.insert(voxel);
       }
     }
   }
+
+  /// Whether a large voxel was met that is no label; the rest of its range is not looked at.
+  bool has_other() const { return has_other_; }
 
   template <class Use>
   void for_each(const Use& use) const {
@@ -67,6 +85,7 @@ class VoxelSet {
   std::vector<char> is_met_ = std::vector<char>(kIsSmall<Voxel> ? kNumSmall : 0);
   std::optional<Voxel> last_;
   std::unordered_set<Voxel> met_;
+  bool has_other_ = false;
 };
 
 // The position of a voxel that is a value, among the values.
@@ -106,8 +125,13 @@ std::vector<std::uint32_t> different_values(const RawImage& raw, std::size_t thr
       raw.bytes.size() / sizeof(Voxel), kChunk, threads,
       [&](std::size_t begin, std::size_t end, std::size_t thread) { met[thread].add(raw, begin, end); });
   std::set<std::uint32_t> values;
-  for (const VoxelSet<Voxel>& set : met)
-    set.for_each([&](Voxel voxel) { values.insert(label_value(static_cast<double>(voxel), raw.path)); });
+  for (const VoxelSet<Voxel>& set : met) {
+    if (set.has_other()) refuse_first_without_label<Voxel>(raw);
+    set.for_each([&](Voxel voxel) {
+      if (!is_label(voxel)) refuse_first_without_label<Voxel>(raw);
+      values.insert(static_cast<std::uint32_t>(voxel));
+    });
+  }
   if (values.size() > kMostValues)
     refuse(raw.path,
            "a label image is needed: more than " + std::to_string(kMostValues) + " different values");

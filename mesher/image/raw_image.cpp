@@ -2,9 +2,9 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 
 #include "podm/errors.h"
+#include "podm/label_image.h"
 
 namespace podm {
 
@@ -86,8 +86,6 @@ void swap_bytes(std::vector<unsigned char>& bytes, std::size_t width) {
 void refuse(const std::string& path, const std::string& fault) { throw InputError(path + ": " + fault); }
 
 std::size_t checked_num_voxels(const std::string& path, const std::vector<int>& size) {
-  // Far above any real image; keeps the bytes of eight-byte voxels in range.
-  constexpr std::size_t kMostVoxels = std::numeric_limits<std::size_t>::max() / 16;
   std::string sizes;
   for (const int n : size) sizes += (sizes.empty() ? "" : " x ") + std::to_string(n);
   if (size.size() < 3) refuse(path, "a 3-D image is needed (" + sizes + " voxels)");
@@ -96,7 +94,9 @@ std::size_t checked_num_voxels(const std::string& path, const std::vector<int>& 
     if (size[axis] < 1) refuse(path, "the image has no voxels (" + sizes + ")");
     if (axis >= 3 && size[axis] > 1) refuse(path, "a 3-D image is needed (" + sizes + " voxels)");
     const auto n = static_cast<std::size_t>(size[axis]);
-    if (n > kMostVoxels / voxels) refuse(path, "the image is too large (" + sizes + " voxels)");
+    if (n > kMaxVoxels / voxels)
+      refuse(path, "the image is too large (" + sizes + " voxels, the most are " +
+                       std::to_string(kMaxVoxels) + " in all)");
     voxels *= n;
   }
   return voxels;

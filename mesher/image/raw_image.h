@@ -28,7 +28,7 @@ void swap_bytes(std::vector<unsigned char>& bytes, std::size_t width);
 [[noreturn]] void refuse(const std::string& path, const std::string& fault);
 
 /// The number of voxels. Throws InputError unless the image has three axes (further ones of length 1), none
-/// empty, and can be addressed.
+/// empty, and at most kMaxVoxels.
 std::size_t checked_num_voxels(const std::string& path, const std::vector<int>& size);
 
 /// The voxel spacing, mm. Axes that are orthogonal but for the rounding of the file's header are made exactly

@@ -60,7 +60,7 @@ class Reader {
   // In steps, so that a count that lies asks for no more memory than the file has bytes.
   template <class T>
   void take_all(std::vector<T>& into, std::uint32_t count, const char* what) {
-    constexpr std::uint32_t kStep = 1 << 16;
+    constexpr std::uint32_t kStep = 1 << 12;
     for (std::uint32_t left = count; left > 0;) {
       const std::uint32_t step = std::min(left, kStep);
       into.resize(into.size() + step);

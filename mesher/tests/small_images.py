@@ -3,8 +3,9 @@
 import struct
 import zlib
 
-UINT8, FLOAT32, RGB24 = 2, 16, 128  # NIfTI-1 datatype codes
-_BYTES = {UINT8: 1, FLOAT32: 4, RGB24: 3}
+# NIfTI-1 datatype codes.
+UINT8, INT16, INT32, FLOAT32, RGB24, INT8, UINT16, UINT32 = 2, 4, 8, 16, 128, 256, 512, 768
+_BYTES = {UINT8: 1, INT16: 2, INT32: 4, FLOAT32: 4, RGB24: 3, INT8: 1, UINT16: 2, UINT32: 4}
 
 
 def voxels_of(size, label_at):
@@ -18,8 +19,8 @@ def ball_voxels(size):
     return voxels_of(size, lambda *ijk: sum((x - middle) ** 2 for x in ijk) <= (size / 3) ** 2)
 
 
-def write_nifti(path, voxels, dimensions=(12, 12, 12), datatype=UINT8, affine=None, magic=b"n+1\0"):
-    """A NIfTI-1 file; `affine` is three rows of four numbers."""
+def nifti_bytes(voxels, dimensions=(12, 12, 12), datatype=UINT8, affine=None, magic=b"n+1\0"):
+    """Of a NIfTI-1 file; `affine` is three rows of four numbers."""
     header = bytearray(352)
     struct.pack_into("<i", header, 0, 348)
     struct.pack_into("<8h", header, 40, len(dimensions), *dimensions, *([1] * (7 - len(dimensions))))
@@ -32,7 +33,12 @@ def write_nifti(path, voxels, dimensions=(12, 12, 12), datatype=UINT8, affine=No
     rows = affine or ((1, 0, 0, 0), (0, 1, 0, 0), (0, 0, 1, 0))
     struct.pack_into("<12f", header, 280, *rows[0], *rows[1], *rows[2])
     header[344:348] = magic
-    path.write_bytes(bytes(header) + voxels)
+    return bytes(header) + voxels
+
+
+def write_nifti(path, *arguments, **options):
+    """What nifti_bytes() makes, as a file."""
+    path.write_bytes(nifti_bytes(*arguments, **options))
     return path
 
 

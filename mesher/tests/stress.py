@@ -1,109 +1,232 @@
-"""Runs of many workers on small and odd images, each verified by podm-verify and replayed to the same hash.
+"""Random runs of many workers on small and odd images: each must end as asked, verify, and equal its replay.
 
-Every run is drawn from its seed alone: `stress.py --first SEED --virtual 1 --threads 0` repeats a virtual one.
-$PODM_PROGRAM is the podm program. Exits with 1 when a run fails, and names its seed and command.
+Every run is drawn from its seed alone. `--seed SEED` does one and keeps its files; a run on threads may need some tries
+to fail again. $PODM_PROGRAM is the podm program. Exits with 1 when a run fails, and names its seed and command.
 """
 
 import argparse
+import collections
 import concurrent.futures
+import itertools
+import json
 import os
 import pathlib
-import random
+import shlex
+import shutil
 import subprocess
 import sys
 import tempfile
+import threading
+import time
 
-import small_images
+import random_images
+import random_runs
 from podm_process import PROGRAM
 
 VERIFIER = os.path.join(os.path.dirname(PROGRAM), "podm-verify")
-MANAGERS = ["aggressive", "random", "global", "local"]
 TIMEOUT_S = 300
-SIZE = 10
+# What holds of a mesh whenever its run ends.
+ALWAYS = {"structure", "delaunay", "conformity", "surface", "labels"}
+IN_MEMORY = "/dev/shm" if os.access("/dev/shm", os.W_OK) else None
 
 
-def write_images(folder):
-    """Images whose interfaces are as degenerate as voxels can make them: paths or phantoms, and a small radius, mm."""
-    voxels = small_images.voxels_of
-    shapes = {
-        "ball": small_images.ball_voxels(SIZE),
-        "voxel": voxels(SIZE, lambda x, y, z: x == y == z == 5),
-        "slice": voxels(SIZE, lambda x, y, z: z == 4),
-        "full": voxels(SIZE, lambda x, y, z: 1),
-        "checkerboard": voxels(SIZE, lambda x, y, z: (x + y + z) % 2),
-        "three_labels": voxels(SIZE, lambda x, y, z: 1 + (x > 4) + (y > 4) if z > 2 else 0),
-        "edge_contact": voxels(SIZE, lambda x, y, z: (x < 5) == (y < 5) and 0 < x < 9 and 0 < y < 9),
-        "noise": voxels(SIZE, lambda x, y, z: hash((x, y, z)) % 3),
-    }
-    images = [(small_images.write_nifti(folder / f"{name}.nii", shape, (SIZE, SIZE, SIZE)),
-               {"voxel": 0.1, "slice": 0.3}.get(name, 1)) for name, shape in shapes.items()]
-    return images + [("phantom:spheres@20", 5), ("phantom:torus@24", 5), ("phantom:abdomen@24", 16)]
+class Failed(Exception):
+    """What is wrong with a run."""
 
 
-def draw(seed, is_virtual, images):
-    """The arguments of `podm mesh`, all but its outputs."""
-    rng = random.Random(2 * seed + is_virtual)
-    image, radius_mm = rng.choice(images)
-    threads = round(2 ** rng.uniform(1, 8 if is_virtual else 4))
-    algorithm = rng.choice(["podm", "podm", "pdr", "pdr-podm"])
-    arguments = [image, "--radius", f"{radius_mm * 2 ** rng.uniform(0, 2.5):.3f}", "--threads", threads,
-                 "--contention", rng.choice(MANAGERS), "--seed", seed]
-    arguments += ["--begging", rng.choice(["random", "hierarchical"]), "--oversubscribe"]
-    if algorithm != "podm":
-        arguments += ["--algorithm", algorithm, "--initial-ratio", rng.choice([1, 2, 4, 7.5]),
-                      "--initial-threads", rng.randint(1, threads)]
-        if rng.random() < 0.5:
-            arguments += ["--leaf-size", f"{radius_mm * 2 ** rng.uniform(0, 5):.3f}"]
-    if algorithm == "pdr-podm":
-        nodes = rng.choice([n for n in range(1, threads + 1) if threads % n == 0])
-        arguments += ["--nodes", nodes]
-    if is_virtual:
-        arguments += ["--executor", "virtual", "--virtual-cost", rng.choice(["unit", "measured"])]
-    return [str(argument) for argument in arguments]
+def call(*arguments, accepted=(0,)):
+    environment = os.environ | ({"TMPDIR": IN_MEMORY} if IN_MEMORY else {})
+    try:
+        process = subprocess.run([str(argument) for argument in arguments], capture_output=True, text=True,
+                                 timeout=TIMEOUT_S, env=environment, check=False)
+    except subprocess.TimeoutExpired as error:
+        raise Failed(f"{arguments[1]} did not end within {TIMEOUT_S} s") from error
+    if process.returncode not in accepted:
+        raise Failed(f"{arguments[1]}: exit {process.returncode}: {process.stderr.strip()[-2000:]}")
+    return process
 
 
-def call(*arguments):
-    process = subprocess.run(arguments, capture_output=True, text=True, timeout=TIMEOUT_S)
-    return None if process.returncode == 0 else f"exit {process.returncode}: {process.stderr.strip()[-2000:]}"
+def judge(run, record, process):
+    """Raises Failed unless the run ended as asked, with a mesh that is as sound as that lets it be."""
+    reason, verdicts = record["stop_reason"], record["verdicts"]
+    said = f": {process.stderr.strip()[-2000:]}"
+    if reason != "complete" and reason not in run.limits:
+        raise Failed(f"ended early by the {reason}, which nobody asked for{said}")
+    if record["cells"] and not ALWAYS <= set(verdicts):
+        raise Failed(f"was verified for {sorted(verdicts)} only{said}")
+    due = verdicts if reason == "complete" else ALWAYS & set(verdicts)
+    failed = sorted(claim for claim in due if verdicts[claim] != "pass")
+    if failed:
+        raise Failed(f"ended as {reason}, and {', '.join(failed)} do not pass{said}")
+    is_whole = reason == "complete" and record["cells"] > 0
+    unmet = {name: misses for name, misses in record["guarantees"].items() if misses} if reason == "complete" else {}
+    if unmet or (process.returncode == 0) != is_whole:
+        raise Failed(f"ended as {reason} with exit code {process.returncode} and misses {unmet}{said}")
 
 
-def fault_of(seed, is_virtual, images):
-    """What is wrong with the run; None when it ends, verifies and equals its replay."""
-    arguments = draw(seed, is_virtual, images)
-    with tempfile.TemporaryDirectory() as folder:
-        mesh, log = os.path.join(folder, "out.vtu"), os.path.join(folder, "run.log")
-        try:
-            leaves = ["--schedule", os.path.join(folder, "leaves.jsonl")] if "--algorithm" in arguments else []
-            fault = call(PROGRAM, "mesh", *arguments, "-o", mesh, "--log", log, "--verify", *leaves) \
-                or call(PROGRAM, "replay", arguments[0], log) \
-                or (leaves and call(VERIFIER, mesh, *leaves))
-        except subprocess.TimeoutExpired:
-            fault = f"did not end within {TIMEOUT_S} s"
-    return fault and f"seed {seed}: podm mesh {' '.join(arguments)}\n{fault}"
+def carry_out(run, folder):
+    """How the run ended; raises Failed."""
+    image, mesh, log, record, schedule = (os.path.join(folder, name) for name in (
+        run.image_name, run.mesh_name, "run.log", "run.jsonl", "leaves.jsonl"))
+    run.image.write(image)
+    leaves = ["--schedule", schedule] if run.has_schedule else []
+    process = call(PROGRAM, "mesh", image, *run.selection, *run.options, "-o", mesh, "--log", log, "--record", record,
+                   "--verify", "--quiet", *leaves, accepted=(0, 1))
+    told = json.loads(pathlib.Path(record).read_text())
+    judge(run, told, process)
+    call(PROGRAM, "replay", image, *run.selection, log)
+    if told["cells"] and os.path.exists(schedule):
+        call(VERIFIER, mesh, "--claims", "conformity", *leaves)
+    written = {os.path.basename(path) for path in (image, mesh, log, record, schedule)} | {"out_facets.vtu"}
+    if left := set(os.listdir(folder)) - written:
+        raise Failed(f"left behind {sorted(left)}")
+    return "no cell" if not told["cells"] else told["stop_reason"]
+
+
+def kinds_of(run):
+    """What the summary counts."""
+    given = {option for option in run.options + run.selection if option.startswith("--")}
+    kinds = {"algorithm": [run.algorithm], "executor": [run.executor], "image": [run.image.family],
+             "damage": sorted(set(run.image.damages)) or ["none"],
+             "voxel type": [random_images.TYPES[run.image.datatype].__name__]}
+    rare = {"--target-elements", "--radius-of", "--delta", "--leaf-size", "--drop", "--labels", "--merge", "--pin",
+            "--topology", "--max-elements", "--max-seconds"}
+    return kinds | {"option": sorted(given & rare)}
+
+
+class Stress:
+    """Runs on all processors at once until a budget is spent, counted and told."""
+
+    def __init__(self, phantoms, seeds, seconds, keep):
+        self.phantoms, self.seeds, self.keep = phantoms, seeds, keep
+        self.start = time.monotonic()
+        self.deadline = self.start + seconds if seconds else float("inf")
+        self.lock = threading.Lock()
+        self.runs, self.failed_seeds, self.last_seed = 0, [], None
+        self.slowest = (0.0, None)  # seconds, seed
+        self.counts = collections.defaultdict(collections.Counter)
+
+    def next_seed(self):
+        with self.lock:
+            return next(self.seeds, None) if time.monotonic() < self.deadline else None
+
+    def work(self):
+        while (seed := self.next_seed()) is not None:
+            start, fault, ended = time.monotonic(), None, "failed"
+            run = random_runs.draw(seed, self.phantoms)
+            with tempfile.TemporaryDirectory(dir=IN_MEMORY, prefix="podm-stress-") as folder:
+                try:
+                    ended = carry_out(run, folder)
+                except Failed as error:
+                    fault = str(error)
+            with self.lock:
+                self.slowest = max(self.slowest, (round(time.monotonic() - start, 1), seed))
+                self.count(run, ended, fault)
+
+    def count(self, run, ended, fault):
+        self.runs += 1
+        self.last_seed = run.seed if self.last_seed is None else max(run.seed, self.last_seed)
+        for kind, names in (kinds_of(run) | {"ended": [ended]}).items():
+            self.counts[kind].update(names)
+        if fault:
+            self.failed_seeds.append(run.seed)
+            self.tell(run, fault)
+        if sys.stderr.isatty() or self.runs % 500 == 0:
+            end = "" if sys.stderr.isatty() else "\n"
+            print(f"\r{self.runs} runs in {self.seconds():.0f} s, {len(self.failed_seeds)} failed ", end=end,
+                  file=sys.stderr, flush=True)
+
+    def tell(self, run, fault):
+        print(f"\nseed {run.seed}, {run.image.family} ({', '.join(run.image.damages) or 'sound'}): podm mesh "
+              f"{run.image_name} {shlex.join(run.selection + run.options)}\n{fault}\n"
+              f"again: make stress SEED={run.seed}", file=sys.stderr)
+        if self.keep:
+            with open(self.keep, "a") as file:
+                file.write(f"{run.seed}  # {run.algorithm} on {run.executor}, {run.image.family}\n")
+
+    def seconds(self):
+        return time.monotonic() - self.start
+
+    def __call__(self):
+        with concurrent.futures.ThreadPoolExecutor() as pool:
+            workers = [pool.submit(self.work) for _ in os.sched_getaffinity(0)]
+            try:
+                concurrent.futures.wait(workers)
+            except KeyboardInterrupt:
+                self.deadline = 0
+        for worker in workers:
+            worker.result()
+
+    def summary(self):
+        lines = [f"{self.runs} runs in {self.seconds():.0f} s ({60 * self.runs / self.seconds():.0f} a minute), "
+                 f"{len(self.failed_seeds)} failed; the slowest, seed {self.slowest[1]}, took {self.slowest[0]} s"]
+        for kind, counter in self.counts.items():
+            lines.append(f"  {kind:10} " + ", ".join(f"{name} {n}" for name, n in counter.most_common()))
+        return "\n".join(lines)
+
+    def record(self):
+        version = subprocess.run([PROGRAM, "--version"], capture_output=True, text=True, check=True).stdout.splitlines()
+        return {"schema": "podm-stress/1", "program": version, "processors": len(os.sched_getaffinity(0)),
+                "seconds": round(self.seconds(), 1), "runs": self.runs, "last_seed": self.last_seed,
+                "failed_seeds": sorted(self.failed_seeds),
+                "slowest": dict(zip(("seconds", "seed"), self.slowest)),
+                "counts": {kind: dict(counter.most_common()) for kind, counter in self.counts.items()}}
+
+
+def seeds_in(path):
+    """The first word of each line that is no comment."""
+    lines = (line.split("#")[0].split() for line in pathlib.Path(path).read_text().splitlines())
+    return [int(words[0]) for words in lines if words]
+
+
+def repeat(seed, phantoms):
+    """One run, whose files stay; its exit code."""
+    run = random_runs.draw(seed, phantoms)
+    folder = tempfile.mkdtemp(prefix=f"podm-stress-{seed}-")
+    print(f"{run.image.family} of {run.image.voxels.shape} voxels ({', '.join(run.image.damages) or 'sound'}) in "
+          f"{folder}\npodm mesh {run.image_name} {shlex.join(run.selection + run.options)}", file=sys.stderr)
+    try:
+        print(carry_out(run, folder), file=sys.stderr)
+        shutil.rmtree(folder)
+        return 0
+    except Failed as error:
+        print(error, file=sys.stderr)
+        return 1
+
+
+def parse_arguments():
+    parser = argparse.ArgumentParser(description=__doc__.split("\n", maxsplit=1)[0])
+    budget = parser.add_mutually_exclusive_group()
+    budget.add_argument("--seconds", type=float, help="begin no run after this time [600, unless another is given]")
+    budget.add_argument("--runs", type=int, help="as many runs")
+    budget.add_argument("--seeds", metavar="FILE", help="the runs of the seeds in FILE")
+    budget.add_argument("--seed", type=int, help="this run alone; its files stay if it fails")
+    parser.add_argument("--first", type=int, metavar="SEED", help="seed of the first run; others follow [any]")
+    parser.add_argument("--keep", metavar="FILE", help="append the seeds that fail to FILE")
+    parser.add_argument("--record", metavar="FILE", help="write the counts as JSON")
+    return parser.parse_args()
 
 
 def main():
-    parser = argparse.ArgumentParser(description=__doc__.split("\n")[0])
-    parser.add_argument("--virtual", type=int, default=2000, help="runs in virtual time [%(default)s]")
-    parser.add_argument("--threads", type=int, default=200, help="runs on threads [%(default)s]")
-    parser.add_argument("--first", type=int, default=1, help="seed of the first run of each kind [%(default)s]")
-    options = parser.parse_args()
-    with tempfile.TemporaryDirectory() as folder, \
-            concurrent.futures.ThreadPoolExecutor(len(os.sched_getaffinity(0))) as pool:
-        images = write_images(pathlib.Path(folder))
-        runs = [(seed, is_virtual) for is_virtual, count in ((True, options.virtual), (False, options.threads))
-                for seed in range(options.first, options.first + count)]
-        faults, ended = [], 0
-        for fault in pool.map(lambda run: fault_of(*run, images), runs):
-            ended += 1
-            if fault:
-                faults.append(fault)
-                print(fault, file=sys.stderr)
-            if sys.stderr.isatty():
-                print(f"\r{ended} of {len(runs)} runs, {len(faults)} failed ", end="", file=sys.stderr)
-    print(f"{options.virtual} virtual runs and {options.threads} runs on threads: {len(faults)} failed",
-          file=sys.stderr)
-    return 1 if faults else 0
+    options = parse_arguments()
+    with tempfile.TemporaryDirectory() as folder:
+        phantoms = random_images.Phantoms(PROGRAM, folder)
+    if options.seed is not None:
+        return repeat(options.seed, phantoms)
+    first = options.first if options.first is not None else int.from_bytes(os.urandom(4), "little")
+    seeds = itertools.count(first) if options.runs is None else range(first, first + options.runs)
+    if options.seeds:
+        seeds = seeds_in(options.seeds)
+    else:
+        print(f"seeds from {first} on", file=sys.stderr)
+    is_endless = options.runs is None and not options.seeds
+    stress = Stress(phantoms, iter(seeds), (options.seconds or 600) if is_endless else None, options.keep)
+    stress()
+    print(f"\r{stress.summary()}", file=sys.stderr)
+    if options.record:
+        record = stress.record() if options.seeds else {"first_seed": first} | stress.record()
+        pathlib.Path(options.record).write_text(json.dumps(record, indent=1) + "\n")
+    return 1 if stress.failed_seeds else 0
 
 
 if __name__ == "__main__":

@@ -76,6 +76,7 @@ class Leaves(PodmTestCase):
                                 (["--algorithm", "pdr", "--initial-ratio", "0.5"], "ratio"),
                                 (["--algorithm", "pdr", "--initial-threads", "9"], "initial"),
                                 (["--algorithm", "pdr", "--leaf-size", "-1"], "--leaf-size"),
+                                (["--algorithm", "pdr", "--leaf-size", "0.5"], "leaf size of 0.5 mm makes"),
                                 (["--schedule", self.schedule], "leaves.jsonl"),
                                 (["--algorithm", "tree"], "pdr-podm")):
             with self.subTest(arguments=arguments):

@@ -1,33 +1,18 @@
 // Schedules of runs: a file either is one that keeps what Schedule promises, or is refused with an InputError
 // that begins with its path.
-#include <unistd.h>
-
 #include <bit>
 #include <cmath>
-#include <cstdlib>
-#include <fstream>
-#include <string>
 
 #include "errors.h"
+#include "fuzz_scratch.h"
 #include "schedule.h"
 
 namespace podm::verify {
 namespace {
 
-const std::string& file_path() {
-  static const std::string path = [] {
-    std::string pattern = "/tmp/fuzz_read_schedule-XXXXXX";
-    if (mkdtemp(pattern.data()) == nullptr) std::abort();
-    return pattern + "/a.jsonl";
-  }();
-  return path;
-}
+using fuzz::check;
 
-void check(bool holds) {
-  if (!holds) std::abort();
-}
-
-void check(const Schedule& schedule) {
+void check_schedule(const Schedule& schedule) {
   for (const double x : schedule.mesh_to_grid) check(std::isfinite(x));
   for (const Leaf& leaf : schedule.leaves) {
     check(std::has_single_bit(static_cast<std::uint64_t>(leaf.side)));
@@ -43,12 +28,13 @@ void check(const Schedule& schedule) {
 }  // namespace podm::verify
 
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
-  using namespace podm::verify;
-  std::ofstream(file_path(), std::ios::binary) << std::string(reinterpret_cast<const char*>(data), size);
+  using namespace podm;
+  static const fuzz::ScratchFolder folder;
+  const std::string path = folder.write("a.jsonl", fuzz::text_of(data, size));
   try {
-    check(read_schedule(file_path()));
-  } catch (const InputError& error) {
-    check(std::string(error.what()).starts_with(file_path()));
+    verify::check_schedule(verify::read_schedule(path));
+  } catch (const verify::InputError& error) {
+    verify::check(std::string_view(error.what()).starts_with(path));
   }
   return 0;
 }

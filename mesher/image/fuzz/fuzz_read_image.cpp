@@ -1,48 +1,39 @@
 // Any bytes under any format's name either are an image or are refused with an InputError that names the
 // file.
-#include <unistd.h>
-
 #include <array>
-#include <cstdint>
-#include <cstdlib>
-#include <fstream>
-#include <string>
 
+#include "fuzz_scratch.h"
 #include "podm/errors.h"
 #include "podm/image_io.h"
 
+namespace podm {
 namespace {
 
-// Held until the process ends; the file in it is written anew for each input.
-std::string temporary_folder() {
-  std::string name = "/tmp/fuzz_read_image-XXXXXX";
-  if (mkdtemp(name.data()) == nullptr) std::abort();
-  return name;
-}
+using fuzz::check;
 
-void check(const podm::LabelImage& image) {
-  if (image.voxels.size() != image.num_voxels() || image.labels.size() < 2) std::abort();
-  for (const podm::LabelIndex voxel : image.voxels)
-    if (voxel >= image.labels.size()) std::abort();
-  for (const double spacing : image.spacing)
-    if (!(spacing > 0)) std::abort();
+void check_image(const LabelImage& image) {
+  check(image.voxels.size() == image.num_voxels() && image.labels.size() >= 2);
+  for (const LabelIndex voxel : image.voxels) check(voxel < image.labels.size());
+  for (const double spacing : image.spacing) check(spacing > 0);
 }
 
 }  // namespace
+}  // namespace podm
 
-// The first byte chooses the name, the others are the file.
+// The first byte chooses the name, the others are the file. It is alone in a folder of its own: headers name
+// files beside them.
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
-  static const std::string folder = temporary_folder();
-  constexpr std::array<const char*, 8> kNames{"/a.nii", "/a.nii.gz", "/a.nrrd", "/a.mha",
-                                              "/a.inr", "/a.inr.gz", "/a.nhdr", "/a.mhd"};
+  using namespace podm;
+  constexpr std::array<const char*, 8> kNames{"a.nii", "a.nii.gz", "a.nrrd", "a.mha",
+                                              "a.inr", "a.inr.gz", "a.nhdr", "a.mhd"};
+  static const std::array<fuzz::ScratchFolder, kNames.size()> folders{};
   if (size == 0) return 0;
-  const std::string path = folder + kNames[data[0] % kNames.size()];
-  std::ofstream(path, std::ios::binary)
-      .write(reinterpret_cast<const char*>(data + 1), static_cast<std::streamsize>(size - 1));
+  const std::size_t format = data[0] % kNames.size();
+  const std::string path = folders[format].write(kNames[format], fuzz::text_of(data + 1, size - 1));
   try {
-    check(podm::read_image(path));
-  } catch (const podm::InputError& error) {
-    if (!std::string(error.what()).starts_with(path + ": ")) std::abort();
+    check_image(read_image(path, {}, 1));
+  } catch (const InputError& error) {
+    check(std::string_view(error.what()).starts_with(path + ": "));
   }
   return 0;
 }

@@ -1,6 +1,7 @@
 // Bad input: each fault is refused with a message "FILE: fault" that says what it is.
 #include <gtest/gtest.h>
 
+#include <chrono>
 #include <cmath>
 #include <functional>
 #include <limits>
@@ -36,6 +37,14 @@ std::string nifti_of(short datatype, std::vector<T> voxels) {
         h.bitpix = 8 * sizeof(T);
       },
       bytes_of_values(voxels));
+}
+
+// Ones, the last of 24 voxels alone is `value`.
+template <class T>
+std::vector<T> with_last(T value) {
+  std::vector<T> voxels(24, 1);
+  voxels.back() = value;
+  return voxels;
 }
 
 std::string cut(const std::string& bytes, std::size_t less) { return bytes.substr(0, bytes.size() - less); }
@@ -152,27 +161,35 @@ std::vector<BadFile> bad_nifti_files() {
        [] {
          return changed_nifti([](auto& h) {
            h.srow_x[1] = 0.5F;
-           h.dim[1] = h.dim[2] = h.dim[3] = 32767;
+           h.dim[1] = h.dim[2] = h.dim[3] = 1290;
          });
        },
        "truncated"},
       {"HugeDimensions", "a.nii",
-       [] { return changed_nifti([](auto& h) { h.dim[1] = h.dim[2] = h.dim[3] = 32767; }); }, "truncated"},
+       [] { return changed_nifti([](auto& h) { h.dim[1] = h.dim[2] = h.dim[3] = 1290; }); }, "truncated"},
       {"HugeZippedDimensions", "a.nii.gz",
-       [] { return deflated(changed_nifti([](auto& h) { h.dim[1] = h.dim[2] = h.dim[3] = 32767; })); },
+       [] { return deflated(changed_nifti([](auto& h) { h.dim[1] = h.dim[2] = h.dim[3] = 1290; })); },
        "truncated"},
+      {"TooManyVoxels", "a.nii",
+       [] {
+         return changed_nifti([](auto& h) {
+           h.dim[1] = 2048;
+           h.dim[2] = h.dim[3] = 1024;  // 2^31
+         });
+       },
+       "too large (2048 x 1024 x 1024 voxels, the most are 2147483647 in all)"},
       {"VoxelsPastTheEnd", "a.nii", [] { return changed_nifti([](auto& h) { h.vox_offset = 360; }); },
        "truncated"},
       {"NoForeground", "a.nii", [] { return nifti_file(nifti_header(), std::string(24, '\0')); },
        "foreground"},
-      {"Negative", "a.nii",
-       [] { return nifti_of<std::int16_t>(DT_INT16, std::vector<std::int16_t>(24, -3)); }, "label"},
+      {"Negative", "a.nii", [] { return nifti_of<std::int16_t>(DT_INT16, with_last<std::int16_t>(-3)); },
+       "voxel (1, 2, 3) is -3, no label"},
       {"Fraction", "a.nii", [] { return nifti_of<float>(DT_FLOAT32, std::vector<float>(24, 1.5F)); },
-       "label"},
-      {"NotANumber", "a.nii",
-       [] { return nifti_of<float>(DT_FLOAT32, std::vector<float>(24, std::nanf(""))); }, "label"},
-      {"PastTheLargestValue", "a.nii",
-       [] { return nifti_of<double>(DT_FLOAT64, std::vector<double>(24, 4294967296.0)); }, "label"},
+       "voxel (0, 0, 0) is 1.5"},
+      {"NotANumber", "a.nii", [] { return nifti_of<float>(DT_FLOAT32, with_last(std::nanf(""))); },
+       "voxel (1, 2, 3) is nan, no label"},
+      {"PastTheLargestValue", "a.nii", [] { return nifti_of<double>(DT_FLOAT64, with_last(4294967296.0)); },
+       "voxel (1, 2, 3) is 4294967296"},
       {"TooManyLabels", "a.nii",
        [] {
          std::vector<std::uint32_t> voxels(41 * 41 * 41);
@@ -197,12 +214,12 @@ std::vector<BadFile> bad_other_files() {
       {"NrrdTruncatedGzip", "a.nrrd", [] { return kNrrdGzip + cut(deflated(kVoxels), 10); }, "truncated"},
       {"NrrdShortGzip", "a.nrrd", [] { return kNrrdGzip + deflated(cut(kVoxels, 1)); }, "truncated"},
       {"NrrdHuge", "a.nrrd", [] { return replaced(kNrrdRaw, "2 3 4", "2000000 2000000 2000000") + kVoxels; },
-       ""},
-      {"NrrdTooMany", "a.nrrd", [] { return replaced(kNrrdRaw, "2 3 4", "20000 20000 200") + kVoxels; },
+       "too large"},
+      {"NrrdTooMany", "a.nrrd", [] { return replaced(kNrrdRaw, "2 3 4", "20000 20000 5") + kVoxels; },
        "truncated"},
       {"NrrdTooManyBeside", "a.nhdr",
        [] {
-         return nrrd_header(replaced(kNrrdFields, "2 3 4", "20000 20000 20") +
+         return nrrd_header(replaced(kNrrdFields, "2 3 4", "20000 20000 5") +
                             "encoding: raw\ndata file: a.nhdr\n");
        },
        "truncated"},
@@ -230,16 +247,16 @@ std::vector<BadFile> bad_other_files() {
        "damaged"},
       {"MhaLongZlib", "a.mha", [] { return compressed_mha(deflated(kVoxels + "x", 15)); }, "more data"},
       {"MhaHugeZlib", "a.mha",
-       [] { return replaced(compressed_mha(deflated(kVoxels, 15)), "2 3 4", "2000 2000 2000"); },
+       [] { return replaced(compressed_mha(deflated(kVoxels, 15)), "2 3 4", "1200 1200 1200"); },
        "truncated"},
       {"MhaUnknownLocal", "a.mha",
        [] { return mha_header(kMhaFields) + "ElementDataFile = LOCaL\n" + kVoxels; }, "LOCaL"},
       {"MhaNoSize", "a.mha", [] { return replaced(kMha, "DimSize = 2 3 4\n", "") + kVoxels; }, "dimsize"},
       {"MhaShortZlib", "a.mha", [] { return compressed_mha(deflated(cut(kVoxels, 1), 15)); }, "truncated"},
-      {"MhaHuge", "a.mha", [] { return replaced(kMha, "2 3 4", "2000 2000 2000") + kVoxels; }, "truncated"},
+      {"MhaHuge", "a.mha", [] { return replaced(kMha, "2 3 4", "1200 1200 1200") + kVoxels; }, "truncated"},
       {"MhaTooManyBeside", "a.mhd",
        [] {
-         return replaced(mha_header(kMhaFields), "2 3 4", "20000 20000 20") + "ElementDataFile = a.mhd\n";
+         return replaced(mha_header(kMhaFields), "2 3 4", "20000 20000 5") + "ElementDataFile = a.mhd\n";
        },
        "truncated"},
       {"MhaVoxelsMissing", "a.mhd", [] { return mha_header(kMhaFields) + "ElementDataFile = missing.raw\n"; },
@@ -259,7 +276,10 @@ std::vector<BadFile> bad_other_files() {
       {"InrTruncated", "a.inr", [] { return kInr + cut(kVoxels, 1); }, "truncated"},
       {"InrTruncatedGzip", "a.inr.gz", [] { return cut(deflated(kInr + noise(24)), 12); }, "truncated"},
       {"InrHuge", "a.inr",
-       [] { return inr_header("", "XDIM=2000000\nYDIM=2000000\nZDIM=2000000\nVDIM=1\n") + kVoxels; }, ""},
+       [] { return inr_header("", "XDIM=2000000\nYDIM=2000000\nZDIM=2000000\nVDIM=1\n") + kVoxels; },
+       "too large"},
+      {"InrOfTheMostVoxels", "a.inr",
+       [] { return inr_header("", "XDIM=2147483647\nYDIM=1\nZDIM=1\nVDIM=1\n") + kVoxels; }, "truncated"},
       {"InrNegativeSize", "a.inr",
        [] { return inr_header("", "XDIM=-2\nYDIM=3\nZDIM=4\nVDIM=1\n") + kVoxels; }, "no voxels"},
       {"InrVector", "a.inr",
@@ -288,6 +308,20 @@ TEST(ReadImageRefused, MissingFileAndFolder) {
        {in_folder + "missing.nii.gz", in_folder + "missing.inr", in_folder + "missing.mha"})
     EXPECT_THROW(read_image(path), InputError) << path;
   EXPECT_THROW(read_image("/"), InputError);
+}
+
+// Values that never compare equal would fill a set that looks through all of them for each.
+TEST(ReadImageRefused, AnImageOfNothingButNansAtOnce) {
+  const TemporaryFolder folder;
+  const auto nans = std::vector<float>(std::size_t{64} * 64 * 64, std::nanf(""));
+  nifti_1_header header = nifti_header();
+  header.dim[1] = header.dim[2] = header.dim[3] = 64;
+  header.datatype = DT_FLOAT32;
+  header.bitpix = 32;
+  const std::string path = folder.write("nan.nii", nifti_file(header, bytes_of_values(nans)));
+  const auto start = std::chrono::steady_clock::now();
+  EXPECT_THROW(read_image(path), InputError);
+  EXPECT_LT(std::chrono::steady_clock::now() - start, std::chrono::seconds(4));  // it took 20
 }
 
 TEST(ReadImageRefused, PhantomsThatAreNone) {

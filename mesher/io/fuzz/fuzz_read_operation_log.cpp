@@ -1,31 +1,15 @@
 // Linearization logs: a file either is one whose operations are in sequence, or is refused with an InputError
 // that begins with its path.
-#include <unistd.h>
-
-#include <cstdlib>
-#include <fstream>
-#include <string>
-
+#include "fuzz_scratch.h"
 #include "podm/errors.h"
 #include "podm/operation_log.h"
 
 namespace podm {
 namespace {
 
-const std::string& file_path() {
-  static const std::string path = [] {
-    std::string pattern = "/tmp/fuzz_read_operation_log-XXXXXX";
-    if (mkdtemp(pattern.data()) == nullptr) std::abort();
-    return pattern + "/a.log";
-  }();
-  return path;
-}
+using fuzz::check;
 
-void check(bool holds) {
-  if (!holds) std::abort();
-}
-
-void check(const OperationLog& log) {
+void check_log(const OperationLog& log) {
   std::size_t num_removed = 0;
   for (std::size_t i = 0; i < log.all.operations.size(); ++i) {
     num_removed += log.all.operations[i].num_removed;
@@ -39,11 +23,12 @@ void check(const OperationLog& log) {
 
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
   using namespace podm;
-  std::ofstream(file_path(), std::ios::binary) << std::string(reinterpret_cast<const char*>(data), size);
+  static const fuzz::ScratchFolder folder;
+  const std::string path = folder.write("a.log", fuzz::text_of(data, size));
   try {
-    check(read_operation_log(file_path()));
+    check_log(read_operation_log(path));
   } catch (const InputError& error) {
-    check(std::string(error.what()).starts_with(file_path()));
+    check(std::string_view(error.what()).starts_with(path));
   }
   return 0;
 }

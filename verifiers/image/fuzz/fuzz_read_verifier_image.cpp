@@ -1,49 +1,42 @@
 // Any bytes under any format's name either are an image or are refused with an InputError that names the
 // file.
-#include <unistd.h>
-
 #include <array>
-#include <cstdint>
-#include <cstdlib>
-#include <fstream>
-#include <string>
 
 #include "errors.h"
+#include "fuzz_scratch.h"
 #include "image/image.h"
 
+namespace podm::verify {
 namespace {
 
-// Held until the process ends; the file in it is written anew for each input.
-std::string temporary_folder() {
-  std::string name = "/tmp/fuzz_read_verifier_image-XXXXXX";
-  if (mkdtemp(name.data()) == nullptr) std::abort();
-  return name;
-}
+using fuzz::check;
 
-void check(const podm::verify::Image& image) {
+void check_image(const Image& image) {
   std::size_t voxels = 1;
   for (std::size_t axis = 0; axis < 3; ++axis) {
-    if (image.size[axis] < 1 || !(image.spacing[axis] > 0)) std::abort();
+    check(image.size[axis] >= 1 && image.spacing[axis] > 0);
     voxels *= static_cast<std::size_t>(image.size[axis]);
   }
-  if (image.voxels.size() != voxels) std::abort();
+  check(image.voxels.size() == voxels);
 }
 
 }  // namespace
+}  // namespace podm::verify
 
-// The first byte chooses the name, the others are the file.
+// The first byte chooses the name, the others are the file. It is alone in a folder of its own: headers name
+// files beside them.
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
-  static const std::string folder = temporary_folder();
-  constexpr std::array<const char*, 8> kNames{"/a.nii", "/a.nii.gz", "/a.nrrd", "/a.mha",
-                                              "/a.inr", "/a.inr.gz", "/a.nhdr", "/a.mhd"};
+  using namespace podm;
+  constexpr std::array<const char*, 8> kNames{"a.nii", "a.nii.gz", "a.nrrd", "a.mha",
+                                              "a.inr", "a.inr.gz", "a.nhdr", "a.mhd"};
+  static const std::array<fuzz::ScratchFolder, kNames.size()> folders{};
   if (size == 0) return 0;
-  const std::string path = folder + kNames[data[0] % kNames.size()];
-  std::ofstream(path, std::ios::binary)
-      .write(reinterpret_cast<const char*>(data + 1), static_cast<std::streamsize>(size - 1));
+  const std::size_t format = data[0] % kNames.size();
+  const std::string path = folders[format].write(kNames[format], fuzz::text_of(data + 1, size - 1));
   try {
-    check(podm::verify::read_image(path));
-  } catch (const podm::verify::InputError& error) {
-    if (!std::string(error.what()).starts_with(path + ": ")) std::abort();
+    verify::check_image(verify::read_image(path));
+  } catch (const verify::InputError& error) {
+    verify::check(std::string_view(error.what()).starts_with(path + ": "));
   }
   return 0;
 }

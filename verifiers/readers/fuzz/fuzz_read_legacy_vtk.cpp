@@ -2,8 +2,7 @@
 #include "readers/fuzz/checked_read.h"
 
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
-  const std::string_view bytes = podm::verify::text_of(data, size);
-  podm::verify::write_fuzz_file("a.vtk", bytes);
-  podm::verify::read_fuzz_file("a.vtk", size);
+  static const podm::fuzz::ScratchFolder folder;
+  podm::verify::read_checked(folder.write("a.vtk", podm::fuzz::text_of(data, size)), size);
   return 0;
 }

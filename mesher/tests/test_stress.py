@@ -1,0 +1,117 @@
+"""What `make stress` draws, and what it takes for a failure. The runs themselves are podm.stress_runs."""
+
+import collections
+import pathlib
+import tempfile
+import types
+import unittest
+
+import numpy
+
+import random_images
+import random_runs
+import stress
+from podm_process import PROGRAM, PodmTestCase, run_podm
+
+SEEDS = range(1, 401)
+
+
+class Draws(unittest.TestCase):
+    @classmethod
+    def setUpClass(cls):
+        with tempfile.TemporaryDirectory() as folder:
+            cls.phantoms = random_images.Phantoms(PROGRAM, folder)
+        cls.runs = [random_runs.draw(seed, cls.phantoms) for seed in SEEDS]
+
+    def test_a_run_follows_from_its_seed(self):
+        for run in self.runs[:20]:
+            again = random_runs.draw(run.seed, self.phantoms)
+            self.assertEqual((run.selection, run.options), (again.selection, again.options))
+            numpy.testing.assert_array_equal(run.image.voxels, again.image.voxels)
+            numpy.testing.assert_array_equal(run.image.affine, again.image.affine)
+
+    def test_every_kind_is_drawn(self):
+        counts = collections.Counter(name for run in self.runs for names in stress.kinds_of(run).values()
+                                     for name in names)
+        for kinds in ([family.__name__ for family in random_images.FAMILIES],
+                      [damage.__name__ for damage in random_images.DAMAGES],
+                      [kind.__name__ for kind in random_images.TYPES.values()],
+                      ["podm", "pdr", "pdr-podm", "auto", "virtual", "threads"],
+                      ["--max-elements", "--max-seconds", "--target-elements", "--radius-of", "--merge", "--topology"]):
+            for kind in kinds:
+                self.assertGreater(counts[kind], 0, kind)
+        self.assertGreater(counts["threads"], len(self.runs) / 10)
+
+    def test_the_runs_of_make_test_are_of_every_kind(self):
+        """Drawn otherwise, they would be others."""
+        def kinds(runs):
+            return {(kind, name) for run in runs for kind, names in stress.kinds_of(run).items() for name in names}
+        kept = stress.seeds_in(pathlib.Path(__file__).with_name("stress_seeds.txt"))
+        self.assertLessEqual(kinds(self.runs), kinds([random_runs.draw(seed, self.phantoms) for seed in kept]))
+
+    def test_images_are_label_images_of_spacings_up_to_10_to_1(self):
+        for run in self.runs:
+            image = run.image
+            self.assertTrue(image.voxels.any())
+            self.assertLessEqual(image.spacing.max() / image.spacing.min(), 10.0001)
+            stored = image.voxels.astype(random_images.TYPES[image.datatype])
+            numpy.testing.assert_array_equal(stored.astype(float), image.voxels.astype(float))
+
+    def test_seeds_that_failed_are_read_with_their_comments(self):
+        with tempfile.TemporaryDirectory() as folder:
+            path = pathlib.Path(folder) / "seeds.txt"
+            path.write_text("# a comment\n\n12\n7  # pdr on threads\n")
+            self.assertEqual(stress.seeds_in(path), [12, 7])
+
+
+class Images(PodmTestCase):
+    def test_the_program_reads_what_was_drawn(self):
+        phantoms = types.SimpleNamespace(draw=lambda rng: numpy.ones((3, 3, 3), int))
+        for seed in range(30):
+            image = random_images.draw(numpy.random.default_rng(seed), phantoms)
+            path = self.folder / "image.nii"
+            image.write(str(path))
+            process = run_podm("info", path)
+            self.assert_exit(process, 0)
+            for label in image.labels():
+                self.assertIn(str(label), process.stdout)
+
+
+def record(**changes):
+    sound = {"stop_reason": "complete", "cells": 10, "guarantees": {"radius": 0},
+             "verdicts": dict.fromkeys(["size", *stress.ALWAYS], "pass")}
+    return sound | changes
+
+
+class Judge(unittest.TestCase):
+    def judge(self, exit_code, limits=(), **changes):
+        stress.judge(types.SimpleNamespace(limits=set(limits)), record(**changes),
+                     types.SimpleNamespace(returncode=exit_code, stderr=""))
+
+    def assert_fault(self, exit_code, limits=(), **changes):
+        with self.assertRaises(stress.Failed):
+            self.judge(exit_code, limits, **changes)
+
+    def test_whole_runs(self):
+        self.judge(0)
+        self.assert_fault(1)
+        self.assert_fault(1, guarantees={"radius": 1})
+        self.assert_fault(0, verdicts=record()["verdicts"] | {"size": "fail"})
+        self.assert_fault(0, verdicts={})
+
+    def test_runs_that_meet_a_limit(self):
+        self.judge(1, ["time limit"], stop_reason="time limit", guarantees={"radius": 3},
+                   verdicts=record()["verdicts"] | {"size": "fail"})
+        self.assert_fault(0, ["time limit"], stop_reason="time limit")
+        self.assert_fault(1, ["time limit"], stop_reason="memory limit")
+        self.assert_fault(1, ["time limit"], stop_reason="time limit",
+                          verdicts=record()["verdicts"] | {"delaunay": "fail"})
+
+    def test_meshes_without_a_cell(self):
+        self.judge(1, cells=0, verdicts={})
+        self.assert_fault(0, cells=0, verdicts={})
+        self.assert_fault(1, cells=0, verdicts={}, guarantees={"missing_labels": 1})
+
+
+if __name__ == "__main__":
+    unittest.main()
