@@ -6,6 +6,9 @@ add_library(podm_flags INTERFACE)
 target_compile_options(podm_flags INTERFACE -march=${PODM_MARCH} -ffp-contract=off -fno-math-errno -Wall -Wextra
                                             -Wshadow -Werror)
 target_compile_definitions(podm_flags INTERFACE CGAL_LICENSE_ERROR=1)  # no GPL part of CGAL slips in
+if(PODM_INTERLEAVING)
+  add_compile_definitions(PODM_INTERLEAVING)
+endif()
 if(PODM_SANITIZE)
   add_compile_options(-fsanitize=${PODM_SANITIZE} -fno-omit-frame-pointer -g)
   add_link_options(-fsanitize=${PODM_SANITIZE})

@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "delaunay/id_arena.h"
+#include "delaunay/step.h"
 #include "geometry/circumsphere.h"
 #include "geometry/point.h"
 #include "geometry/tetrahedron.h"
@@ -44,13 +45,18 @@ static_assert(sizeof(Vertex) == 32);
 /// of a change. Acquire, and release in place(): who sees a coordinate of the new point sees that the cells
 /// of the old one have died.
 inline Point glimpse_point(const Vertex& v) {
-  return {load(v.point.x, std::memory_order_acquire), load(v.point.y, std::memory_order_acquire),
-          load(v.point.z, std::memory_order_acquire)};
+  const auto glimpse = [](const double& coordinate) {
+    step();
+    return load(coordinate, std::memory_order_acquire);
+  };
+  return {glimpse(v.point.x), glimpse(v.point.y), glimpse(v.point.z)};
 }
 /// Makes an unused vertex one at `p`.
 inline void place(Vertex& v, const Point& p, VertexKind kind) {
   store(v.point.x, p.x, std::memory_order_release);
+  step();
   store(v.point.y, p.y, std::memory_order_release);
+  step();
   store(v.point.z, p.z, std::memory_order_release);
   v.kind = kind;
 }
@@ -88,29 +94,34 @@ class Mesh {
   /// `num_nodes` is how many NUMA nodes they are on.
   Mesh(const Box& box, std::size_t cell_capacity, int num_nodes = 1);
 
-  Cell& cell(CellId c) { return cells_[c]; }
-  const Cell& cell(CellId c) const { return cells_[c]; }
+  Cell& cell(CellId c) { return note_read(c), cells_[c]; }
+  const Cell& cell(CellId c) const { return note_read(c), cells_[c]; }
   const CellState& state(CellId c) const { return states_[c]; }
-  LabelIndex& label(CellId c) { return states_[c].label; }
+  LabelIndex& label(CellId c) { return step(), states_[c].label; }
   LabelIndex label(CellId c) const { return states_[c].label; }
-  Vertex& vertex(VertexId v) { return vertices_[v]; }
-  const Vertex& vertex(VertexId v) const { return vertices_[v]; }
-  const Point& point(VertexId v) const { return vertices_[v].point; }
+  Vertex& vertex(VertexId v) { return step(), vertices_[v]; }
+  const Vertex& vertex(VertexId v) const { return step(), vertices_[v]; }
+  const Point& point(VertexId v) const { return step(), vertices_[v].point; }
 
   /// Changes whenever the id is reused, so that a stale list entry is seen. Relaxed: without locks it is a
   /// guess.
   std::uint16_t stamp(CellId c) const {
+    step();
     return load(states_[c].stamp_and_mark, std::memory_order_relaxed) & kStampBits;
   }
   /// Two vertices as someone without locks sees them. Acquire, and release in renew(): who sees a vertex of
   /// the new cell sees the new stamp too.
   std::array<VertexId, 2> glimpse_two_vertices(CellId c) const {
     const auto& v = cells_[c].vertices;
-    return {load(v[3], std::memory_order_acquire), load(v[0], std::memory_order_acquire)};
+    step();
+    const VertexId last = load(v[3], std::memory_order_acquire);
+    step();
+    return {last, load(v[0], std::memory_order_acquire)};
   }
   /// Scratch of the operation that holds the locks: the cell is in its region.
-  bool is_marked(CellId c) const { return (states_[c].stamp_and_mark & kMark) != 0; }
+  bool is_marked(CellId c) const { return step(), (states_[c].stamp_and_mark & kMark) != 0; }
   void mark(CellId c, bool is_marked) {
+    step();
     const auto stamp = static_cast<std::uint16_t>(states_[c].stamp_and_mark & kStampBits);
     store(states_[c].stamp_and_mark, static_cast<std::uint16_t>(is_marked ? stamp | kMark : stamp),
           std::memory_order_relaxed);
@@ -119,13 +130,19 @@ class Mesh {
   /// set.
   void renew(CellId c, const std::array<VertexId, 4>& vertices) {
     CellState& state = states_[c];
+    note_replaced(c);
+    step();
     store(state.stamp_and_mark, static_cast<std::uint16_t>((state.stamp_and_mark + 1) & kStampBits),
           std::memory_order_relaxed);
     state.label = kUnknownLabel;
-    for (unsigned i = 0; i < 4; ++i) store(cells_[c].vertices[i], vertices[i], std::memory_order_release);
+    for (unsigned i = 0; i < 4; ++i) {
+      step();
+      store(cells_[c].vertices[i], vertices[i], std::memory_order_release);
+    }
   }
   /// Tells the facet `of` that `mirror` lies on its other side. Nothing is beyond the box.
   void set_mirror(FacetId of, FacetId mirror) {
+    step();
     if (of != kNoFacet) cells_[cell_of(of)].mirrors[static_cast<unsigned>(index_in_cell(of))] = mirror;
   }
 

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <limits>
+#include <span>
 
 namespace podm {
 
@@ -11,7 +12,8 @@ template <class Locks>
 Outcome Operation<Locks>::reserve(CellId c, std::uint32_t stamp) {
   Outcome outcome = Outcome::kCommitted;
   if constexpr (Locks::kIsShared) {
-    for (const VertexId v : mesh_.glimpse_two_vertices(c)) {
+    const std::array<VertexId, 2> two = mesh_.glimpse_two_vertices(c);
+    for (const VertexId v : std::span(two).first(locks_to_read())) {
       if (outcome != Outcome::kCommitted) break;
       outcome = v == kNoVertex ? Outcome::kStaleCell : lock(v);
     }

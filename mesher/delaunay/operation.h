@@ -39,7 +39,10 @@ class Operation {
   /// Locks two vertices of the cell c of that stamp, so that it and its neighbours may be read. kStaleCell:
   /// it has died. kLockConflict: conflicting_worker() tells with whom. Unless committed nothing is held.
   Outcome reserve(CellId c, std::uint32_t stamp);
-  void release() { locks_.unlock_all(); }
+  void release() {
+    forget_reads();
+    locks_.unlock_all();
+  }
   Locks& locks() { return locks_; }
   WorkerId conflicting_worker() const { return locks_.conflicting_worker(); }
 

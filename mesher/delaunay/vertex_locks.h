@@ -47,10 +47,12 @@ class VertexLocks {
   /// kCommitted: the vertex is held, maybe from before. kLockConflict: conflicting_worker() holds it.
   Outcome try_lock(Vertex& v) {
     const std::atomic_ref<std::uint32_t> lock(v.lock);
+    step();
     // Relaxed: only we write our own id, so seeing it needs nobody else's writes.
     std::uint32_t holder = lock.load(std::memory_order_relaxed);
     if (holder == mine_) return Outcome::kCommitted;
     if (held_.size() == held_.capacity()) held_.reserve(2 * held_.size() + 64);  // may throw, so first
+    step();
     // Acquire: sees what the last holder wrote. Relaxed on failure: nothing but the id is used.
     if (holder == 0 &&
         lock.compare_exchange_strong(holder, mine_, std::memory_order_acquire, std::memory_order_relaxed)) {
@@ -62,7 +64,10 @@ class VertexLocks {
   }
   void unlock_all() {
     // Release: the next holder sees what we wrote.
-    for (Vertex* v : held_) std::atomic_ref<std::uint32_t>(v->lock).store(0, std::memory_order_release);
+    for (Vertex* v : held_) {
+      step();
+      std::atomic_ref<std::uint32_t>(v->lock).store(0, std::memory_order_release);
+    }
     held_.clear();
   }
   WorkerId conflicting_worker() const { return conflicting_worker_; }

@@ -56,21 +56,38 @@ StopReason VirtualExecutor<Locks>::run(Workers workers, const std::vector<CellSo
     if (!step(*workers[event.worker], event.worker)) return StopReason::kComplete;
     if (num_events_ % Watch::kAttemptsBetweenChecks == 0) {
       if (const auto reason = reason_to_stop(workers)) {
-        for (const auto& worker : workers) worker->release();
+        stop(workers);
         return *reason;
       }
     }
   }
   throw InternalError("virtual time stands still: every worker waits");
 } catch (const std::bad_alloc&) {
+  stop(workers);
   watch_.end(StopReason::kMemoryLimit);
   return StopReason::kMemoryLimit;
+}
+
+// A run ends between operations: those that have begun end as well.
+template <class Locks>
+void VirtualExecutor<Locks>::stop(Workers workers) {
+  for (WorkerId self = 0; self < workers.size(); ++self) {
+    try {
+      if (!desks_[self].call.has_ended()) desks_[self].call.finish();
+    } catch (const std::bad_alloc&) {  // it has rolled back
+    }
+    workers[self]->release();
+  }
 }
 
 // False: the last worker with cells has run out of them, and there are no more.
 template <class Locks>
 bool VirtualExecutor<Locks>::step(Worker<Locks>& worker, WorkerId self) {
   Desk& desk = desks_[self];
+  if (!desk.call.has_ended()) {
+    go_on(self);
+    return true;
+  }
   if (desk.in_progress && !end_attempt(worker, self)) return true;
   worker.give(coordination_of(self).take_gift(within_group(self)));
   if (worker.has_work()) {
@@ -99,13 +116,26 @@ bool VirtualExecutor<Locks>::refill_idle_groups() {
 
 template <class Locks>
 void VirtualExecutor<Locks>::begin_attempt(Worker<Locks>& worker, WorkerId self) {
-  const Work before = work_of(worker);
-  desks_[self].since_s = now_s_;
-  desks_[self].in_progress = worker.attempt();
-  if (desks_[self].in_progress == Outcome::kLockConflict) worker.release();
+  Desk& desk = desks_[self];
+  desk.since_s = now_s_;
+  desk.call.begin([this, &desk, &worker] {
+    const Work before = work_of(worker);
+    desk.in_progress = worker.attempt();
+    if (AttemptCall::kIsInParts || desk.in_progress == Outcome::kLockConflict) worker.release();
+    desk.cost_s = AttemptCall::kIsInParts ? 0 : seconds(cost_, before, work_of(worker));
+  });
+  go_on(self);
+}
+
+template <class Locks>
+void VirtualExecutor<Locks>::go_on(WorkerId self) {
+  if (const auto stop_s = desks_[self].call.go_on(random_)) {
+    schedule(self, *stop_s);
+    return;
+  }
   // Seeded perturbation: attempts of equal work do not end together.
   const double stretch = std::uniform_real_distribution(0.5, 1.5)(random_);
-  schedule(self, stretch * seconds(cost_, before, work_of(worker)));
+  schedule(self, stretch * desks_[self].cost_s);
 }
 
 // False: the worker does not go on at once.

@@ -4,6 +4,9 @@
 // fail for ever, as they may under Contention::kAggressive, does not show. The same seed gives the same run
 // to the bit. For tests of interleavings, and for studies of machines that nobody has at hand; times are
 // simulated, not measured.
+//
+// In a build with PODM_INTERLEAVING an attempt takes its virtual time in parts and holds its locks meanwhile:
+// it stops at steps (delaunay/step.h), between which others go on.
 #pragma once
 
 #include <memory>
@@ -13,6 +16,7 @@
 #include <span>
 #include <vector>
 
+#include "refine/attempt_call.h"
 #include "refine/coordination.h"
 #include "refine/executor.h"
 
@@ -36,7 +40,9 @@ class VirtualExecutor {
 
  private:
   struct Desk {
+    AttemptCall call;
     std::optional<Outcome> in_progress;  // of the attempt that its next event ends
+    double cost_s = 0;                   // of it
     double since_s = 0;                  // it waits or begs, or its attempt began
     bool begs = false;
     int conflicts = 0, successes = 0;  // in a row
@@ -61,6 +67,8 @@ class VirtualExecutor {
   bool step(Worker<Locks>& worker, WorkerId self);
   bool end_attempt(Worker<Locks>& worker, WorkerId self);
   void begin_attempt(Worker<Locks>& worker, WorkerId self);
+  void go_on(WorkerId self);
+  void stop(Workers workers);
   bool refill_idle_groups();
   std::optional<StopReason> reason_to_stop(Workers workers);
 

@@ -2,10 +2,10 @@
 #pragma once
 
 #include <algorithm>
-#include <array>
 #include <optional>
 #include <vector>
 
+#include "cells_by_points.h"
 #include "delaunay/operation.h"
 
 namespace podm::test {
@@ -40,22 +40,7 @@ class Triangulator {
     operation.plan_removal(v, cell_around(v));
     operation.commit_removals();
   }
-  /// Every cell as four sorted points: equal for equal triangulations, whatever the ids.
-  std::vector<std::array<std::array<double, 3>, 4>> cells() const {
-    std::vector<std::array<std::array<double, 3>, 4>> all;
-    for (CellId c = 0; c < mesh.cell_bound(); ++c) {
-      if (!mesh.cell(c).is_alive()) continue;
-      std::array<std::array<double, 3>, 4> points;
-      for (unsigned i = 0; i < 4; ++i) {
-        const Point& p = mesh.point(mesh.cell(c).vertices[i]);
-        points[i] = {p.x, p.y, p.z};
-      }
-      std::sort(points.begin(), points.end());
-      all.push_back(points);
-    }
-    std::sort(all.begin(), all.end());
-    return all;
-  }
+  auto cells() const { return cells_by_points(mesh); }
 
   Mesh mesh;
   Pool pool;

@@ -1,0 +1,65 @@
+#!/bin/sh
+# Usage: ci/race.sh [FOLDER]
+# Builds podm in FOLDER/build-race (FOLDER: here) with the thread sanitizer and with threads that yield in the middle
+# of operations (mesher/delaunay/step.h). Then four threads mesh phantoms for RACE_SECONDS (120), by podm, pdr and
+# pdr-podm in turn: the first finding ends it with exit code 1, and so does a mesh that podm-verify rejects or that
+# differs from the replay of its log. In the same program each planted fault of the lock protocol, one lock instead
+# of two and none, must be found within as many seconds; else it would not see a broken protocol, and exits with 1.
+set -eu
+cd "$(dirname "$0")/.."
+build=${1:-.}/build-race
+seconds=${RACE_SECONDS:-120}
+finding=66
+export TSAN_OPTIONS="halt_on_error=1:exitcode=$finding"
+
+make build  # what verifies and replays needs no sanitizer
+cmake --preset race -B "$build" -G Ninja
+cmake --build "$build" --target podm
+cp build/bin/podm-verify "$build/bin/"  # where podm looks for it
+
+seconds_since() { echo $(($(date +%s) - $1)); }
+
+# The n-th of the runs that are taken in turn; more arguments of `podm mesh` may follow.
+mesh() {
+  run=$1
+  shift
+  case $((run % 3)) in
+    0) algorithm="podm" ;;
+    1) algorithm="pdr" ;;
+    2) algorithm="pdr-podm --nodes 2" ;;
+  esac
+  case $((run / 3 % 3)) in
+    0) image=phantom:spheres@24 radius=7 ;;
+    1) image=phantom:torus@24 radius=6 ;;
+    2) image=phantom:abdomen@24 radius=22 ;;
+  esac
+  case $((run / 9 % 4)) in
+    0) contention=local ;;
+    1) contention=aggressive ;;
+    2) contention=global ;;
+    3) contention=random ;;
+  esac
+  # shellcheck disable=SC2086  # a list of words
+  "$build/bin/podm" mesh "$image" --radius "$radius" --algorithm $algorithm --threads 4 --oversubscribe \
+    --contention $contention --seed "$run" --quiet --log "$build/run.log" -o "$build/run.vtu" "$@"
+}
+
+start=$(date +%s)
+count=0
+while [ "$(seconds_since "$start")" -lt "$seconds" ]; do
+  mesh "$count" --verify || { echo "run $count failed: exit $?"; exit 1; }
+  build/bin/podm replay "$image" "$build/run.log" 2> "$build/replay.txt" || { cat "$build/replay.txt"; exit 1; }
+  count=$((count + 1))
+done
+echo "== $count runs without a finding"
+
+for fault in one_lock no_lock; do
+  export PODM_PLANTED_FAULT=$fault
+  start=$(date +%s)
+  count=0
+  until mesh "$count" > "$build/$fault.txt" 2>&1; [ $? = $finding ]; do
+    count=$((count + 1))
+    [ "$(seconds_since "$start")" -lt "$seconds" ] || { echo "$fault: not found in $count runs"; exit 1; }
+  done
+  echo "== $fault: found in run $((count + 1)), after $(seconds_since "$start") s"
+done

@@ -1,0 +1,75 @@
+#include "delaunay/step.h"
+
+#include <atomic>
+#include <cstdint>
+#include <cstdlib>
+#include <random>
+#include <string>
+#include <thread>
+#include <unordered_map>
+#include <unordered_set>
+
+#include "podm/errors.h"
+#include "runtime/fibre.h"
+
+namespace podm {
+
+namespace {
+
+// An operation has some hundred steps: about one thread in two yields in its middle.
+constexpr std::uint64_t kStepsToYield = 256;
+
+// Cells that attempts rely on. Those of threads are not known.
+using Reads = std::unordered_map<const Fibre*, std::unordered_set<std::uint32_t>>;
+thread_local Reads reads;
+
+unsigned named_in_environment() {
+  const char* fault = std::getenv("PODM_PLANTED_FAULT");
+  if (fault == nullptr) return 2;
+  if (fault == std::string("one_lock")) return 1;
+  if (fault == std::string("no_lock")) return 0;
+  throw InputError("PODM_PLANTED_FAULT: no such fault: '" + std::string(fault) +
+                   "'; one_lock and no_lock there are");
+}
+
+unsigned& planted() {
+  static unsigned locks = named_in_environment();
+  return locks;
+}
+
+// Threads draw differently. Relaxed: what orders threads would hide their races from the thread sanitizer.
+std::uint32_t next_seed() {
+  static std::atomic<std::uint32_t> seed = 1;
+  return seed.fetch_add(1, std::memory_order_relaxed);
+}
+
+}  // namespace
+
+void step() {
+  if (Fibre* const fibre = Fibre::current()) return fibre->step();
+  thread_local std::minstd_rand random(next_seed());
+  if (random() % kStepsToYield == 0) std::this_thread::yield();
+}
+
+void note_read(std::uint32_t cell) {
+  step();
+  if (const Fibre* const self = Fibre::current()) reads[self].insert(cell);
+}
+
+void forget_reads() {
+  if (const Fibre* const self = Fibre::current()) reads.erase(self);
+}
+
+void note_replaced(std::uint32_t cell) {
+  const Fibre* const self = Fibre::current();
+  for (const auto& [other, cells] : reads) {
+    if (other == self || !cells.contains(cell)) continue;
+    reads.clear();  // of a run that ends here
+    throw InternalError("cell " + std::to_string(cell) + " is replaced while another worker reads it");
+  }
+}
+
+unsigned locks_to_read() { return planted(); }
+void plant_locks_to_read(unsigned locks) { planted() = locks; }
+
+}  // namespace podm

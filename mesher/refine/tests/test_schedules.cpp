@@ -1,0 +1,237 @@
+// Seeded schedules of workers that go on in the middle of each other's operations (delaunay/step.h): all end
+// in a right mesh, but not with a fault planted in the lock protocol. $PODM_SCHEDULES: how many of each.
+#include <gtest/gtest.h>
+#include <sys/resource.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+#include <cmath>
+#include <csignal>
+#include <cstdio>
+#include <cstdlib>
+#include <filesystem>
+#include <memory>
+#include <random>
+
+#include "../../delaunay/tests/cells_by_points.h"
+#include "cost_model.h"
+#include "delaunay/step.h"
+#include "images.h"
+#include "podm.h"
+#include "refine/invariants.h"
+#include "refine/virtual_box.h"
+#include "refine/virtual_executor.h"
+#include "replay.h"
+
+namespace podm::test {
+namespace {
+
+constexpr unsigned kMostSeconds = 20;  // of a schedule; most take some hundredths
+
+constexpr int kSound = 100, kMostToFind = 10000;
+
+bool counts_all() { return std::getenv("PODM_SCHEDULES") != nullptr; }
+int num_schedules(int otherwise) {
+  return counts_all() ? std::stoi(std::getenv("PODM_SCHEDULES")) : otherwise;
+}
+
+struct Scene {
+  Scene(LabelImage of, double radius)
+      : image(std::move(of)), radius_mm(radius), delta_mm(default_delta_mm(image, radius)) {}
+  double spacing_mm() const { return std::min(delta_mm, radius_mm / std::sqrt(2 + std::sqrt(3.0))); }
+
+  LabelImage image;
+  double radius_mm, delta_mm;
+  Isosurface isosurface{image, 1};
+  SizeField sizes{std::vector<double>(image.labels.size(), radius_mm)};
+};
+
+// Some hundred operations each.
+const std::vector<std::unique_ptr<Scene>>& scenes() {
+  static const auto all = [] {
+    std::vector<std::unique_ptr<Scene>> made;
+    const auto add = [&](const LabelImage& image, double radius_mm) {
+      made.push_back(std::make_unique<Scene>(image, radius_mm));
+    };
+    add(ball(10, 4), 2);
+    add(make_image({4, 4, 4}, {1, 1, 1}, 2, [](int i, int j, int k) { return 1 + (i + j + k) % 2; }), 2);
+    add(make_image({6, 6, 6}, {1, 1, 1}, 3,
+                   [](int i, int j, int k) { return k < 2   ? 0
+                                                    : i < 3 ? 1
+                                                            : 2 + j / 3; }),
+        1.5);
+    return made;
+  }();
+  return all;
+}
+
+// PODM whose workers have the cells of a coarse mesh dealt out to them, so that they meet from the start.
+Refinement crowded_podm(const Problem& problem, const Crew& crew, Watch& watch) {
+  const Box clamp = clamp_box(problem.object, problem.delta_mm);
+  Refinement result;
+  result.mesh = std::make_unique<Mesh>(virtual_box(clamp), problem.cell_capacity);
+  Mesh& mesh = *result.mesh;
+  std::vector<std::unique_ptr<Pool>> pools;
+  const auto refine = [&](double ratio, int num_workers) {
+    const Parameters parameters = parameters_for(problem, ratio, clamp);
+    std::vector<std::unique_ptr<Worker<VertexLocks>>> workers;
+    for (WorkerId id = 0; id < static_cast<WorkerId>(num_workers); ++id) {
+      pools.push_back(std::make_unique<Pool>(mesh));
+      workers.push_back(std::make_unique<Worker<VertexLocks>>(mesh, problem.isosurface, parameters, id,
+                                                              *pools.back(), crew.log));
+    }
+    for (CellId c = 0; c < mesh.cell_bound(); ++c)
+      if (mesh.cell(c).is_alive()) workers[c % workers.size()]->give(c);
+    CoordinationOptions options = crew.coordination;
+    options.num_workers = num_workers;
+    result.stop_reason = VirtualExecutor<VertexLocks>(watch, options, crew.cost).run(workers);
+    for (const auto& worker : workers) worker->flush_log();
+  };
+  refine(2, 1);
+  if (result.stop_reason == StopReason::kComplete) refine(1, crew.coordination.num_workers);
+  return result;
+}
+
+class Schedules : public testing::Test {
+ protected:
+  Schedules() {
+    std::filesystem::create_directories(folder_);
+    scenes();
+  }
+  ~Schedules() override {
+    std::filesystem::remove_all(folder_);
+    plant_locks_to_read(2);
+  }
+
+  static Refinement refine(const Scene& scene, std::uint64_t seed, Watch& watch, OperationLogWriter* log,
+                           std::size_t capacity = 1 << 18) {
+    std::mt19937_64 random(seed);
+    const auto draw = [&](int low, int high) { return std::uniform_int_distribution(low, high)(random); };
+    const auto algorithm = static_cast<Algorithm>(draw(1, 3));
+    LeafOptions leaves{.num_nodes = draw(1, 4), .initial_ratio = 1.0 * draw(1, 3)};
+    const int num_workers = leaves.num_nodes * (algorithm == Algorithm::kPdr ? 1 : draw(1, 4));
+    leaves.initial_workers = draw(1, num_workers);
+    const auto contention = static_cast<Contention>(draw(1, 3));
+    const Crew crew{
+        .executor = Executor::kVirtual, .coordination = {num_workers, contention, {}, random()}, .log = log};
+    const Problem problem{scene.isosurface, foreground_bounds(scene.image), scene.delta_mm, scene.sizes,
+                          capacity};
+    if (algorithm == Algorithm::kPodm) return crowded_podm(problem, crew, watch);
+    return algorithm == Algorithm::kPdr ? pdr(problem, crew, leaves, watch)
+                                        : pdr_podm(problem, crew, leaves, watch);
+  }
+  static const Scene& scene_of(int seed) {
+    return *scenes()[static_cast<std::size_t>(seed) % scenes().size()];
+  }
+  static Watch patient() {
+    return {{}, {}, [](std::uint64_t) {}};
+  }
+
+  // What is wrong with the mesh that a schedule makes; nothing if it is right.
+  std::string fault_of(int seed) const try {
+    const Scene& scene = scene_of(seed);
+    OperationLogWriter log(log_path_);
+    Watch watch = patient();
+    const Refinement refinement = refine(scene, static_cast<std::uint64_t>(seed), watch, &log);
+    if (refinement.stop_reason != StopReason::kComplete) return "the run is not complete";
+    const Mesh& mesh = *refinement.mesh;
+    std::string fault;
+    if (!is_valid(mesh, &fault) || !holds_invariants(mesh, scene.spacing_mm(), 1e-6, &fault)) return fault;
+    if (!remembers_right_labels(mesh, scene.isosurface)) return "the label of another cell is remembered";
+    const auto& [low, high] = mesh.box();
+    log.finish({{low.x, low.y, low.z, high.x, high.y, high.z}, "", "RAS", ""});
+    if (cells_by_points(*replay(read_operation_log(log_path_))) != cells_by_points(mesh))
+      return "the replay makes another mesh";
+    return "";
+  } catch (const std::exception& error) {
+    return error.what();
+  }
+
+  // Whether the planted fault shows in a schedule. It is a process of its own: a broken triangulation may
+  // crash it, or never let it end, which is not counted.
+  bool is_found_in(int seed) const {
+    const pid_t child = fork();
+    if (child == 0) {
+      const rlimit no_core{0, 0};
+      setrlimit(RLIMIT_CORE, &no_core);
+      alarm(kMostSeconds);
+      _exit(fault_of(seed).empty() ? 0 : 1);
+    }
+    int status = 0;
+    if (waitpid(child, &status, 0) != child) throw std::runtime_error("no process for a schedule");
+    return status != 0 && !(WIFSIGNALED(status) && WTERMSIG(status) == SIGALRM);
+  }
+
+  void expect_found() const {
+    int num_run = 0, num_found = 0;
+    for (; num_run < num_schedules(kMostToFind); ++num_run) {
+      if (num_found > 0 && !counts_all()) break;
+      num_found += is_found_in(num_run);
+    }
+    std::printf("found in %d of %d schedules\n", num_found, num_run);
+    EXPECT_GT(num_found, 0);
+  }
+
+ private:
+  static bool remembers_right_labels(const Mesh& mesh, const Isosurface& isosurface) {
+    for (CellId c = 0; c < mesh.cell_bound(); ++c) {
+      if (!mesh.cell(c).is_alive() || mesh.label(c) == kUnknownLabel) continue;
+      if (mesh.label(c) != isosurface.label_at(mesh.cell(c).sphere.center)) return false;
+    }
+    return true;
+  }
+
+  // In memory where there is such a folder: a log is written through to the disk, which may take seconds.
+  std::filesystem::path folder_ =
+      std::filesystem::path(std::filesystem::exists("/dev/shm") ? "/dev/shm" : testing::TempDir()) /
+      ("podm_schedules_" + std::to_string(getpid()));
+  std::string log_path_ = folder_ / "run.log";
+};
+
+TEST_F(Schedules, AllMakeTheMeshOfASerialRun) {
+  for (int seed = 0; seed < num_schedules(kSound); ++seed) EXPECT_EQ(fault_of(seed), "") << "seed " << seed;
+}
+
+TEST_F(Schedules, FindThatOneLockIsTooFew) {
+  plant_locks_to_read(1);
+  expect_found();
+}
+
+TEST_F(Schedules, FindThatNoLockIsTooFew) {
+  plant_locks_to_read(0);
+  expect_found();
+}
+
+TEST_F(Schedules, RepeatForTheSameSeed) {
+  for (int seed = 0; seed < 6; ++seed) {
+    std::vector<std::array<VertexId, 4>> cells[2];
+    for (auto& of_run : cells) {
+      Watch watch = patient();
+      const Refinement refinement = refine(scene_of(seed), static_cast<std::uint64_t>(seed), watch, nullptr);
+      for (CellId c = 0; c < refinement.mesh->cell_bound(); ++c)
+        of_run.push_back(refinement.mesh->cell(c).vertices);
+    }
+    EXPECT_EQ(cells[0], cells[1]) << "seed " << seed;
+  }
+}
+
+TEST_F(Schedules, EndBetweenOperationsWhenALimitStrikes) {
+  int num_ended = 0;
+  std::string fault;
+  for (int seed = 0; seed < 60; ++seed) {
+    Watch limited({.max_cells = 200 + 20 * static_cast<std::uint64_t>(seed)}, {}, [](std::uint64_t) {});
+    const Refinement of_cells = refine(scene_of(seed), static_cast<std::uint64_t>(seed), limited, nullptr);
+    EXPECT_TRUE(is_valid(*of_cells.mesh, &fault)) << "seed " << seed << ": " << fault;
+    Watch watch = patient();
+    const std::size_t capacity = 4096 + 200 * static_cast<std::size_t>(seed);
+    const Refinement full =
+        refine(scene_of(seed), static_cast<std::uint64_t>(seed), watch, nullptr, capacity);
+    EXPECT_TRUE(is_valid(*full.mesh, &fault)) << "seed " << seed << ": " << fault;
+    num_ended += of_cells.stop_reason == StopReason::kElementLimit;
+    num_ended += full.stop_reason == StopReason::kMemoryLimit;
+  }
+  EXPECT_GT(num_ended, 10);
+}
+
+}  // namespace
+}  // namespace podm::test
