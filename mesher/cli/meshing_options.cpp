@@ -30,18 +30,18 @@ void refuse_coarse_sampling(const MeshCommand& command, const LabelImage& image)
 void refuse_what_cannot_fit(const std::string& image_path, const LabelImage& image,
                             const MeshingOptions& options, std::uint64_t limit_bytes) {
   const Estimate expected = estimate(image, options);
+  if (options.max_elements > 0 && static_cast<double>(options.max_elements) < expected.cells) return;
+  if (expected.memory_bytes > static_cast<double>(limit_bytes))
+    throw InputError(fmt::format(
+        "{}: these options ask for about {:.2g} cells and {:.3g} GiB of memory, the limit is {:.3g} GiB; "
+        "use a larger radius or delta, or --max-memory-gib",
+        image_path, expected.cells, expected.memory_bytes / kBytesPerGib,
+        static_cast<double>(limit_bytes) / kBytesPerGib));
   if (expected.cells > static_cast<double>(kMostStoredCells))
     throw InputError(fmt::format(
         "{}: these options ask for about {:.2g} cells, and no more than 2^30 can be numbered; use a "
         "larger radius or delta",
         image_path, expected.cells));
-  if (options.max_elements > 0 && static_cast<double>(options.max_elements) < expected.cells) return;
-  if (expected.memory_bytes <= static_cast<double>(limit_bytes)) return;
-  throw InputError(fmt::format(
-      "{}: these options ask for about {:.2g} cells and {:.3g} GiB of memory, the limit is {:.3g} GiB; "
-      "use a larger radius or delta, or --max-memory-gib",
-      image_path, expected.cells, expected.memory_bytes / kBytesPerGib,
-      static_cast<double>(limit_bytes) / kBytesPerGib));
 }
 
 std::uint64_t memory_limit_bytes(const MeshCommand& command) {
