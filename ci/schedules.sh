@@ -1,0 +1,9 @@
+#!/bin/sh
+# Usage: ci/schedules.sh [NUMBER]
+# Runs NUMBER (10000) seeded schedules that interleave workers inside of operations (schedule_tests), and as many with
+# each planted fault of the lock protocol, which it counts. Exits with 1 when a mesh is wrong or a fault never shows.
+set -eu
+cd "$(dirname "$0")/.."
+cmake -S . -B build -G Ninja -DPODM_BUILD_TESTS=ON
+cmake --build build --target schedule_tests
+PODM_SCHEDULES=${1:-10000} build/bin/schedule_tests
