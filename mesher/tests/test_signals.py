@@ -20,7 +20,7 @@ import tempfile
 import time
 import unittest
 
-from podm_process import PROGRAM, TIMEOUT_S, PodmTestCase, run_podm, start_podm
+from podm_process import PROGRAM, PodmTestCase, run_podm, start_podm
 
 VERIFIER = os.path.join(os.path.dirname(PROGRAM), "podm-verify")
 MOMENTS = int(os.environ.get("PODM_SIGNAL_MOMENTS", "4"))
@@ -42,7 +42,10 @@ def end_of(process, first, *others, pause_s=0):
         time.sleep(pause_s)
         sent = time.monotonic()
         process.send_signal(number)
-    _, stderr = process.communicate(timeout=TIMEOUT_S)
+    try:
+        _, stderr = process.communicate(timeout=60)
+    finally:
+        process.kill()  # nothing, where it has ended
     return End(process.returncode, stderr, time.monotonic() - sent)
 
 
@@ -55,9 +58,9 @@ def start_refining(*arguments, **popen_options):
 
 
 def mesh_command(image, folder, algorithm):
-    """Every output there is; about a second."""
+    """Every output there is; less than a second."""
     leaves = [] if algorithm == "podm" else ["--schedule", folder / "leaves.jsonl"]
-    return ["mesh", image, "--radius", 9, "--oversubscribe", *ALGORITHMS[algorithm], *leaves, "-o",
+    return ["mesh", image, "--radius", 14, "--oversubscribe", *ALGORITHMS[algorithm], *leaves, "-o",
             folder / "out.vtu", "--surface", folder / "s.stl", "--log", folder / "run.log", "--record",
             folder / "runs.jsonl"]
 
@@ -197,8 +200,8 @@ class Refinement(PodmTestCase):
         """One leaf holds the whole object, so that all nodes but one wait until that one is through."""
         with tempfile.TemporaryDirectory() as elsewhere:
             runs = pathlib.Path(elsewhere) / "runs.jsonl"
-            process = start_refining(*self.mesh_command("--algorithm", "pdr", "--threads", 4, "--leaf-size", 1000,
-                                                        "--initial-ratio", 8, "--record", runs))
+            process = start_refining(*self.mesh_command("--algorithm", "pdr", "--threads", 16, "--leaf-size", 1000,
+                                                        "--initial-ratio", 64, "--record", runs))
             time.sleep(1)
             end = end_of(process, signal.SIGINT)
             self.assert_stopped(end)
