@@ -45,7 +45,7 @@ merge() {
   mkdir -p "$seeds" "$learnt"
   find "$seeds" -type f | grep -E '/[0-9a-f]{40}$' | xargs -r mv -t "$learnt"
   $build/bin/"$target" -merge=1 -use_counters=0 -print_funcs=0 -max_len=$longest -timeout=30 "$seeds" "$learnt" \
-    > $build/log/"$target" 2>&1 || { tail -n 30 $build/log/"$target"; exit 1; }
+    > $build/log/merge 2>&1 || { tail -n 30 $build/log/merge; exit 1; }
 }
 
 fuzz() {
