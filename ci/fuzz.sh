@@ -12,13 +12,15 @@ cd "$(dirname "$0")/.."
 is_merge=""
 [ "${1-}" != --merge ] || { is_merge=1; shift; }
 
-build=build-fuzz
+build="build-fuzz"
 longest=4096  # bytes of an input
 sources=$(git ls-files -- '*/fuzz_*.cpp')
 targets=$(for source in $sources; do basename "$source" .cpp; done)
 for asked; do
+  # shellcheck disable=SC2086  # a list of words, here and below
   echo "$targets" | grep -qx "$asked" || { echo "ci/fuzz.sh: no target '$asked':" $targets >&2; exit 2; }
 done
+# shellcheck disable=SC2086
 [ $# -gt 0 ] || set -- $targets
 
 cmake -S . -B $build -G Ninja -DCMAKE_C_COMPILER=clang -DCMAKE_CXX_COMPILER=clang++ \
@@ -31,8 +33,8 @@ TMPDIR=$(mktemp -d "$([ -w /dev/shm ] && echo /dev/shm || echo "${TMPDIR:-/tmp}"
 trap 'rm -rf "$TMPDIR"' EXIT
 trap 'exit 130' INT TERM
 export TMPDIR
-export ASAN_OPTIONS=malloc_context_size=6:quarantine_size_mb=16:${ASAN_OPTIONS-}
-export UBSAN_OPTIONS=halt_on_error=1:print_stacktrace=1:${UBSAN_OPTIONS-}
+export ASAN_OPTIONS=malloc_context_size=6:quarantine_size_mb=16:"${ASAN_OPTIONS-}"
+export UBSAN_OPTIONS=halt_on_error=1:print_stacktrace=1:"${UBSAN_OPTIONS-}"
 
 corpus_of() { echo "$(dirname "$(echo "$sources" | grep "/$1\.cpp$")")/corpus/$1"; }
 files_in() { find "$1" -type f | wc -l; }
@@ -45,7 +47,7 @@ merge() {
   mkdir -p "$seeds" "$learnt"
   find "$seeds" -type f | grep -E '/[0-9a-f]{40}$' | xargs -r mv -t "$learnt"
   $build/bin/"$target" -merge=1 -use_counters=0 -print_funcs=0 -max_len=$longest -timeout=30 "$seeds" "$learnt" \
-    > $build/log/"$target" 2>&1 || { tail -n 30 $build/log/"$target"; exit 1; }
+    > $build/log/merge 2>&1 || { tail -n 30 $build/log/merge; exit 1; }
 }
 
 fuzz() {
