@@ -44,21 +44,37 @@ std::string trimmed(const std::string& text) {
   return begin == std::string::npos ? "" : text.substr(begin, end + 1 - begin);
 }
 
-// Lines "key SEPARATOR value" until `is_last(key)`, the key of an empty line being empty, or the end.
-template <class IsLast>
-TextHeader read_text_header(const std::string& path, char separator, IsLast is_last) {
+// Lines "key SEPARATOR value" up to the one of key `last`, the key of an empty line being empty, or the end.
+// `check(line, number)`, from 1, comes before.
+template <class Check>
+TextHeader read_text_header(const std::string& path, char separator, const std::string& last, Check check) {
   file_bytes(path);
   std::ifstream file(path, std::ios::binary);
   TextHeader header;
+  int number = 0;
   for (std::string line; std::getline(file, line);) {
     header.bytes += line.size() + 1;
     if (header.bytes > kLongestHeader) refuse(path, "the header has no end");
+    check(line, ++number);
     const std::size_t at = line.find(separator);
-    const std::string key = lower(trimmed(line.substr(0, at)));
-    if (at != std::string::npos && key[0] != '#') header.fields[key] = trimmed(line.substr(at + 1));
-    if (is_last(key)) break;
+    const std::string key = trimmed(line.substr(0, at));
+    if (at != std::string::npos && key[0] != '#') header.fields[lower(key)] = trimmed(line.substr(at + 1));
+    if (key == last) break;
   }
   return header;
+}
+
+// ITK copies names and some values into 255 bytes, whatever their length, and takes the value of a name
+// without
+// '=' from the next line, beyond the last one too.
+void expect_meta_line(const std::string& path, const std::string& line, int number) {
+  constexpr std::size_t kLongestLine = 254;
+  const std::string place = "wrong magic or header (line " + std::to_string(number);
+  if (line.size() > kLongestLine)
+    refuse(path, place + " is longer than " + std::to_string(kLongestLine) + " bytes)");
+  const std::size_t at = line.find_first_of("=:");
+  if (!trimmed(line).empty() && (at == std::string::npos || line[at] != '='))
+    refuse(path, place + " is not of the form 'name = value')");
 }
 
 // Of a file named in the header of `path`.
@@ -154,7 +170,7 @@ VoxelData find_nrrd_voxels(const std::string& path) {
   std::ifstream(path, std::ios::binary).read(magic.data(), magic.size());
   file_bytes(path);
   if (std::string(magic.data(), magic.size()) != "NRRD") refuse(path, "not a NRRD file (wrong magic)");
-  const TextHeader header = read_text_header(path, ':', [](const std::string& key) { return key.empty(); });
+  const TextHeader header = read_text_header(path, ':', "", [](const std::string&, int) {});
   for (const char* key : {"line skip", "lineskip", "byte skip", "byteskip"})
     if (const std::string skip = header.field(key); !skip.empty() && skip != "0")
       refuse(path, std::string("'") + key + "' is not supported");
@@ -169,7 +185,8 @@ VoxelData find_nrrd_voxels(const std::string& path) {
 
 VoxelData find_meta_voxels(const std::string& path) {
   const TextHeader header =
-      read_text_header(path, '=', [](const std::string& key) { return key == "elementdatafile"; });
+      read_text_header(path, '=', "ElementDataFile",
+                       [&](const std::string& line, int number) { expect_meta_line(path, line, number); });
   const std::string dimensions = header.field("ndims"), file = header.field("elementdatafile");
   if (dimensions.empty() || file.empty()) refuse(path, "not a MetaImage file (wrong magic)");
   if (dimensions != "3") refuse(path, "a 3-D image is needed (NDims = " + dimensions + ")");

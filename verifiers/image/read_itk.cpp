@@ -24,7 +24,7 @@ std::string trimmed(const std::string& text) {
   return begin == std::string::npos ? "" : text.substr(begin, end + 1 - begin);
 }
 
-// Lines "key SEPARATOR value" up to and with the line of key `last`.
+// Lines "key SEPARATOR value" up to and with the line of key `last`, written so.
 class TextHeader {
  public:
   TextHeader(const std::string& path, char separator, const std::string& last) {
@@ -34,9 +34,11 @@ class TextHeader {
     for (std::string line, key = "-"; key != last && std::getline(file, line);) {
       bytes_ += line.size() + 1;
       if (bytes_ > kLongest) refuse(path, "the header has no end");
+      lines_.push_back(line);
       const std::size_t at = line.find(separator);
-      key = lower(trimmed(line.substr(0, at)));
-      if (at != std::string::npos && !key.starts_with('#')) fields_[key] = trimmed(line.substr(at + 1));
+      key = trimmed(line.substr(0, at));
+      if (at != std::string::npos && !key.starts_with('#'))
+        fields_[lower(key)] = trimmed(line.substr(at + 1));
     }
   }
   std::string operator[](const std::string& key) const {
@@ -44,8 +46,10 @@ class TextHeader {
     return found == fields_.end() ? "" : found->second;
   }
   std::uint64_t bytes() const { return bytes_; }
+  const std::vector<std::string>& lines() const { return lines_; }
 
  private:
+  std::vector<std::string> lines_;
   std::map<std::string, std::string> fields_;  // keys in lower case
   std::uint64_t bytes_ = 0;
 };
@@ -89,8 +93,20 @@ Voxels nrrd_voxels(const std::string& path) {
   return {{path, beside(path, file), 0, compression}, is_big_endian};
 }
 
+// What ITK reads without harm: it has 255 bytes for a name or a comment, and goes on to the next '=', on
+// whatever line, when a name has none.
+void expect_meta_lines(const std::string& path, const std::vector<std::string>& lines) {
+  for (std::size_t i = 0; i < lines.size(); ++i) {
+    const bool is_field = lines[i].find('=') < lines[i].find(':');
+    if (lines[i].size() < 255 && (is_field || trimmed(lines[i]).empty())) continue;
+    refuse(path, "not a MetaImage header (wrong magic, or a line " + std::to_string(i + 1) +
+                     " that is no 'name = value' of less than 255 bytes)");
+  }
+}
+
 Voxels meta_voxels(const std::string& path) {
-  const TextHeader header(path, '=', "elementdatafile");
+  const TextHeader header(path, '=', "ElementDataFile");
+  expect_meta_lines(path, header.lines());
   const std::string file = header["elementdatafile"];
   if (header["ndims"].empty() || file.empty()) refuse(path, "not a MetaImage file (wrong magic)");
   if (header["ndims"] != "3") refuse(path, "a 3-D image is needed (NDims = " + header["ndims"] + ")");

@@ -154,8 +154,10 @@ TEST_F(ReadImage, MetaImage) {
   const std::string zipped = deflated(kVoxels, 15);
   const std::string compressed =
       "CompressedData = True\nCompressedDataSize = " + std::to_string(zipped.size()) + "\n";
-  for (const std::string& file : {mha_header(kMhaFields + kMhaLocal) + kVoxels,
-                                  mha_header(compressed + kMhaFields + kMhaLocal) + zipped}) {
+  const std::string longest = "Comment = " + std::string(244, 'c') + "\n" + std::string(250, 'n') + " = 1\n";
+  for (const std::string& file :
+       {mha_header(kMhaFields + kMhaLocal) + kVoxels, mha_header(longest + kMhaFields + kMhaLocal) + kVoxels,
+        mha_header(compressed + kMhaFields + kMhaLocal) + zipped}) {
     const LabelImage image = read_image(folder_.write("a.mha", file));
     expect_two_voxels(image);
     expect_affine(image, kRasFromLps);
