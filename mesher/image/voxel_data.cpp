@@ -64,6 +64,19 @@ TextHeader read_text_header(const std::string& path, char separator, const std::
   return header;
 }
 
+// ITK tells of a line that it cannot parse, and of the path, in messages for which it has a thousand bytes,
+// whatever their length. It parses any line of the form 'name:=value'.
+constexpr std::size_t kLongestInMessage = 500;
+
+void expect_nrrd_line(const std::string& path, const std::string& line, int number) {
+  const std::size_t colon = line.find(':');
+  const bool has_name = colon != std::string::npos && line.compare(colon, 2, ":=") == 0;
+  const bool is_parsed = line.starts_with('#') || (number > 1 && has_name);
+  if (line.size() > kLongestInMessage && !is_parsed)
+    refuse(path, "line " + std::to_string(number) + " of the NRRD header is longer than " +
+                     std::to_string(kLongestInMessage) + " bytes");
+}
+
 // ITK copies names and some values into 255 bytes, whatever their length, and takes the value of a name
 // without
 // '=' from the next line, beyond the last one too.
@@ -166,11 +179,14 @@ bool can_hold(std::uint64_t compressed_bytes, std::uint64_t needed) {
 }  // namespace
 
 VoxelData find_nrrd_voxels(const std::string& path) {
+  if (path.size() > kLongestInMessage)
+    refuse(path, "the path of a NRRD file is longer than " + std::to_string(kLongestInMessage) + " bytes");
   std::array<char, 4> magic{};
   std::ifstream(path, std::ios::binary).read(magic.data(), magic.size());
   file_bytes(path);
   if (std::string(magic.data(), magic.size()) != "NRRD") refuse(path, "not a NRRD file (wrong magic)");
-  const TextHeader header = read_text_header(path, ':', "", [](const std::string&, int) {});
+  const TextHeader header = read_text_header(
+      path, ':', "", [&](const std::string& line, int number) { expect_nrrd_line(path, line, number); });
   for (const char* key : {"line skip", "lineskip", "byte skip", "byteskip"})
     if (const std::string skip = header.field(key); !skip.empty() && skip != "0")
       refuse(path, std::string("'") + key + "' is not supported");

@@ -75,12 +75,27 @@ bool is_true(const std::string& flag) {
   return !flag.empty() && std::string("tT1").find(flag[0]) != std::string::npos;
 }
 
+// What ITK reads without harm: it quotes the path and a line that it does not understand in messages of a
+// thousand bytes. Comments and 'name:=value' it understands.
+void expect_nrrd_lines(const std::string& path, const std::vector<std::string>& lines) {
+  constexpr std::size_t kMostQuoted = 500;
+  if (path.size() > kMostQuoted) refuse(path, "a NRRD file needs a path of at most 500 bytes");
+  for (std::size_t i = 0; i < lines.size(); ++i) {
+    const std::size_t name = lines[i].find(':');
+    const bool is_free =
+        lines[i][0] == '#' || lines[i].compare(name < lines[i].size() ? name : 0, 2, ":=") == 0;
+    if (lines[i].size() > kMostQuoted && (i == 0 || !is_free))
+      refuse(path, "the NRRD header has a line of more than 500 bytes, line " + std::to_string(i + 1));
+  }
+}
+
 Voxels nrrd_voxels(const std::string& path) {
   std::array<char, 4> magic{};
   std::ifstream(path, std::ios::binary).read(magic.data(), magic.size());
   file_bytes(path, path);
   if (std::string(magic.data(), magic.size()) != "NRRD") refuse(path, "not a NRRD file (wrong magic)");
   const TextHeader header(path, ':', "");
+  expect_nrrd_lines(path, header.lines());
   for (const char* key : {"line skip", "lineskip", "byte skip", "byteskip"})
     if (!header[key].empty() && header[key] != "0")
       refuse(path, std::string("'") + key + "' is not supported");

@@ -133,7 +133,8 @@ TEST_F(ReadImage, BigEndianNifti) {
 }
 
 TEST_F(ReadImage, Nrrd) {
-  const std::string raw = nrrd_header(kNrrdFields + "encoding: raw\n") + kVoxels;
+  const std::string names = "name:=" + std::string(5000, 'v') + "\n#" + std::string(5000, 'c') + "\n";
+  const std::string raw = nrrd_header(names + kNrrdFields + "encoding: raw\n") + kVoxels;
   const std::string zipped = nrrd_header(kNrrdFields + "encoding: gzip\n") + deflated(kVoxels);
   for (const std::string& file : {raw, zipped}) {
     const LabelImage image = read_image(folder_.write("a.nrrd", file));

@@ -229,6 +229,15 @@ std::vector<BadFile> bad_other_files() {
        [] { return nrrd_header("type: uchar\ndimension: 2\nsizes: 4 6\nencoding: raw\n") + kVoxels; }, "3-D"},
       {"NrrdNanSpacing", "a.nrrd", [] { return replaced(kNrrdRaw, "(0,2,0)", "(0,nan,0)") + kVoxels; }, ""},
       {"MhaWrongMagic", "a.mha", [] { return std::string(1000, 'x'); }, "magic"},
+      {"NrrdLongLine", "a.nrrd",
+       [] {
+         return nrrd_header(kNrrdFields + "content: " + std::string(500, 'c') + "\nencoding: raw\n") +
+                kVoxels;
+       },
+       "line 9 of the NRRD header is longer"},
+      {"NrrdLongMagic", "a.nrrd",
+       [] { return "NRRD0004" + std::string(500, ' ') + ":=" + kNrrdRaw + kVoxels; },
+       "line 1 of the NRRD header is longer"},
       {"MhaLongName", "a.mha", [] { return std::string(255, 'n') + " = 1\n" + kMha + kVoxels; }, "line 1 "},
       {"MhaLongComment", "a.mha",
        [] {
@@ -321,6 +330,14 @@ TEST(ReadImageRefused, MissingFileAndFolder) {
        {in_folder + "missing.nii.gz", in_folder + "missing.inr", in_folder + "missing.mha"})
     EXPECT_THROW(read_image(path), InputError) << path;
   EXPECT_THROW(read_image("/"), InputError);
+}
+
+// ITK quotes the path in a message of limited length.
+TEST(ReadImageRefused, NrrdUnderALongPath) {
+  const TemporaryFolder folder;
+  const std::string name = std::string(200, 'd'), inner = name + "/" + name + "/" + name + "/";
+  std::filesystem::create_directories(folder.write(inner, ""));
+  EXPECT_THROW(read_image(folder.write(inner + "a.nrrd", "NRRD0004\nno field\n\n")), InputError);
 }
 
 // Values that never compare equal would fill a set that looks through all of them for each.

@@ -87,7 +87,8 @@ TEST(ReadVerifierImage, Inr) {
 
 TEST(ReadVerifierImage, Nrrd) {
   const Folder folder;
-  expect_small_image(folder.write("a.nrrd", kNrrdHeader + "encoding: raw\n\n" + kVoxels), kFromLps);
+  const std::string names = "name:=" + std::string(5000, 'v') + "\n#" + std::string(5000, 'c') + "\n";
+  expect_small_image(folder.write("a.nrrd", kNrrdHeader + names + "encoding: raw\n\n" + kVoxels), kFromLps);
   expect_small_image(folder.write("b.nrrd", kNrrdHeader + "encoding: gzip\n\n" + deflated(kVoxels)),
                      kFromLps);
   folder.write("c.raw", kVoxels);
