@@ -57,8 +57,9 @@ fuzz() {
   start=$(date +%s)
   if [ -n "${FUZZ_RUNS-}" ]; then set -- -runs="$FUZZ_RUNS" -max_total_time="${FUZZ_SECONDS:-0}"
   else set -- -max_total_time="${FUZZ_SECONDS:-15}"; fi
-  $build/bin/"$target" "$learnt" "$seeds" "$@" -seed="${FUZZ_SEED:-1}" -max_len=$longest -timeout=30 -rss_limit_mb=4096 \
-    -artifact_prefix=$build/findings/"$target"- -print_final_stats=1 -verbosity=0 -print_funcs=0 > "$log" 2>&1 ||
+  $build/bin/"$target" "$learnt" "$seeds" "$@" -seed="${FUZZ_SEED:-1}" -max_len=$longest -timeout=30 \
+    -rss_limit_mb=4096 -artifact_prefix=$build/findings/"$target"- -print_final_stats=1 -verbosity=0 -print_funcs=0 \
+    > "$log" 2>&1 ||
     { tail -n 60 "$log"; echo "ci/fuzz.sh: $target found something, see $log and $build/findings/" >&2; exit 1; }
   printf '%s %s %s\n' "$target" "$(told number_of_executed_units "$log")" $(($(date +%s) - start)) >> $build/log/table
 }

@@ -143,7 +143,8 @@ class Rows(unittest.TestCase):
                                ("pages", {"refine": pages}, {"refine": pages | {"cells": {}}}), ("pages", {}, 0)):
             self.assertTrue(VALIDATOR.is_valid(self.made[0] | {key: good}), key)
             self.assertFalse(VALIDATOR.is_valid(self.made[0] | {key: bad}), key)
-        counters = {"zero": 0, "without source": {"value": 1}, "reason": "none", "share": {"value": 1, "source": "s", "running_share": 1}}
+        counters = {"zero": 0, "without source": {"value": 1}, "reason": "none",
+                    "share": {"value": 1, "source": "s", "running_share": 1}}
         for name, counter in counters.items():
             row = copy.deepcopy(self.made[0])
             row["process"]["counters"][name] = counter
@@ -170,13 +171,14 @@ class Rows(unittest.TestCase):
     def test_podm_follows_the_crossover_that_is_stored(self):
         with tempfile.TemporaryDirectory() as folder:
             path = pathlib.Path(folder, "exp.toml")
-            path.write_text("stores_crossover = true" + EXPERIMENT + 'algorithm = ["podm", "pdr-podm"]\nradius_mm = 12\n' +
-                            CLAIM)
+            path.write_text("stores_crossover = true" + EXPERIMENT +
+                            'algorithm = ["podm", "pdr-podm"]\nradius_mm = 12\n' + CLAIM)
             subprocess.run([os.environ["PODM_BENCH"], "run", path, "--results", folder, "--podm", os.environ["PODM"],
                             "--verifier", "none"], check=True, capture_output=True, timeout=200)
             stored = path.with_name("crossover.json")
-            subprocess.run([os.environ["PODM"], "mesh", "phantom:torus@24", "--algorithm", "auto", "-o", path.with_suffix(".vtu"),
-                            "--record", path.with_suffix(".record")], check=True, capture_output=True, timeout=200,
+            subprocess.run([os.environ["PODM"], "mesh", "phantom:torus@24", "--algorithm", "auto",
+                            "-o", path.with_suffix(".vtu"), "--record", path.with_suffix(".record")],
+                           check=True, capture_output=True, timeout=200,
                            env=os.environ | {"PODM_CROSSOVER": str(stored)})
             followed = json.loads(path.with_suffix(".record").read_text())
             self.assertEqual(followed["auto"]["measured"], json.loads(stored.read_text())["threads"])

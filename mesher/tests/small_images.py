@@ -48,8 +48,8 @@ def write_metaimage(path, voxels, size=12, spacing="1 1 1", compressed_size=None
     if compressed_size is not None:
         voxels = zlib.compress(voxels)
         compression = f"CompressedData = True\nCompressedDataSize = {compressed_size}\n"
-    header = (f"ObjectType = Image\nNDims = 3\n{compression}DimSize = {size} {size} {size}\nElementSpacing = {spacing}\n"
-              "ElementType = MET_UCHAR\nElementByteOrderMSB = False\nBinaryData = True\n"
+    header = (f"ObjectType = Image\nNDims = 3\n{compression}DimSize = {size} {size} {size}\n"
+              f"ElementSpacing = {spacing}\nElementType = MET_UCHAR\nElementByteOrderMSB = False\nBinaryData = True\n"
               "ElementDataFile = LOCAL\n")
     path.write_bytes(header.encode() + voxels)
     return path

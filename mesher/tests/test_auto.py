@@ -24,8 +24,8 @@ class Auto(PodmTestCase):
     def mesh(self, *arguments, stored=""):
         """The record of a run in whose environment `stored` is the file."""
         runs = self.folder / "runs.jsonl"
-        process = run_podm("mesh", IMAGE, "--radius", 20, "--oversubscribe", "-o", self.out, "--record", runs, *arguments,
-                           env=os.environ | {"PODM_CROSSOVER": str(stored)})
+        process = run_podm("mesh", IMAGE, "--radius", 20, "--oversubscribe", "-o", self.out, "--record", runs,
+                           *arguments, env=os.environ | {"PODM_CROSSOVER": str(stored)})
         self.assert_exit(process, 0)
         return json.loads(runs.read_text().splitlines()[-1])
 
@@ -62,7 +62,8 @@ class Auto(PodmTestCase):
     def test_what_podm_bench_did_not_store_is_refused(self):
         for content, word in (("", "JSON"), ("[1]", "JSON"), ({"schema": "x"}, "schema"),
                               (STORED | {"threads": 0}, "threads"), (STORED | {"threads": "4"}, "threads"),
-                              (STORED | {"threads": 1e9}, "threads"), (STORED | {"measured_up_to": None}, "measured_up_to"),
+                              (STORED | {"threads": 1e9}, "threads"),
+                              (STORED | {"measured_up_to": None}, "measured_up_to"),
                               (STORED | {"machine": 7}, "machine"), (STORED | {"machine": {}}, "machine")):
             with self.subTest(content=content):
                 self.store(content)

@@ -35,13 +35,14 @@ class Replay(PodmTestCase):
                 self.assertEqual(process.stderr.count(record["mesh_sha256"]), 2)
 
     def test_a_run_cut_short_equals_its_replay(self):
-        process = run_podm("mesh", IMAGE, "--radius", "4", "--threads", 3, "--oversubscribe", "--max-elements", 3000, "-o", self.out,
-                           "--log", self.log)
+        process = run_podm("mesh", IMAGE, "--radius", "4", "--threads", 3, "--oversubscribe", "--max-elements", 3000,
+                           "-o", self.out, "--log", self.log)
         self.assert_exit(process, 1)
         self.assert_exit(run_podm("replay", IMAGE, self.log), 0)
 
     def test_a_search_for_the_radius_logs_its_last_run_only(self):
-        process = run_podm("mesh", IMAGE, "--target-elements", 20000, "--threads", 2, "--oversubscribe", "-o", self.out, "--log", self.log)
+        process = run_podm("mesh", IMAGE, "--target-elements", 20000, "--threads", 2, "--oversubscribe",
+                           "-o", self.out, "--log", self.log)
         self.assert_exit(process, 0)
         self.assert_exit(run_podm("replay", IMAGE, self.log), 0)
 

@@ -58,7 +58,8 @@ class Load(unittest.TestCase):
         self.assertEqual(sorted(load([self.file.parent]).frame["cores"]), [1, 2])
 
     def test_of_rows_of_one_turn_the_last_counts(self):
-        again = [synthetic.row(trial="1M", repeat=repeat, cells=cells, key=cells) for repeat, cells in ((1, 1), (2, 2), (1, 3))]
+        again = [synthetic.row(trial="1M", repeat=repeat, cells=cells, key=cells)
+                 for repeat, cells in ((1, 1), (2, 2), (1, 3))]
         elsewhere = synthetic.row(trial="1M", cells=4, experiment="another")
         self.assertEqual(list(self.load(*again, elsewhere).frame["cells"]), [2, 3, 4])
 
