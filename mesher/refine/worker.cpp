@@ -4,8 +4,9 @@ namespace podm {
 
 namespace {
 
-// Invariants keep vertices s apart. Only an oracle that errs about the nearest point can bring them closer;
-// far below s the insertion is refused, so that the process ends whatever the image.
+// Invariants keep vertices s apart, to a thousandth at a time (rules.h). Only an oracle that errs about the
+// nearest point can bring them much closer; far below s the insertion is refused, so that the process ends
+// whatever the image.
 constexpr double kSpacingFloor = 0.1;
 constexpr std::size_t kOperationsToFlush = 4096;
 // A clock costs 2 % when every attempt reads it; one in so many stands for the others.

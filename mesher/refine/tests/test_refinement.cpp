@@ -95,8 +95,8 @@ TEST_P(Refined, LeavesNoCellThatBreaksARule) {
 
 TEST_P(Refined, NoFreeVertexStaysNearTheIsosurfaceVertices) {
   const Mesh& mesh = *refinement_.mesh;
-  // I2 in its global form: R6 and the rules together keep free vertices k s from every isosurface vertex.
-  const double required = std::sqrt(2 + std::sqrt(3.0)) * spacing() * (1 - 1e-6);
+  // I2 in its global form: R6 and the rules together keep free vertices from every isosurface vertex.
+  const double required = kRadiusEdgeBound * least_sample_distance(mesh, spacing()) * (1 - 1e-6);
   for (VertexId v = 0; v < mesh.vertex_bound(); ++v) {
     if (mesh.vertex(v).kind != VertexKind::kIsosurface) continue;
     for (VertexId w = 0; w < mesh.vertex_bound(); ++w) {
