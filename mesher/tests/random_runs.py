@@ -25,7 +25,8 @@ class Run:
     algorithm: str
     executor: str
     selection: list  # options that `podm replay` needs, too
-    options: list    # all others, but for outputs
+    sizes: list      # options of sizes and limits
+    options: list    # all but the selection and outputs
     limits: set      # reasons for which it may end early
 
     @property
@@ -151,8 +152,8 @@ def draw(seed, phantoms):
     executor = "threads" if chance(rng, SHARE_ON_THREADS) else "virtual"
     selection, labels = drawn_selection(rng, image.labels())
     sizes = Sizes(rng, image)
-    options, limits = size_options(rng, sizes, labels)
-    options += ["--algorithm", algorithm, *worker_options(rng, algorithm, MOST_THREADS[executor])]
+    asked, limits = size_options(rng, sizes, labels)
+    options = [*asked, "--algorithm", algorithm, *worker_options(rng, algorithm, MOST_THREADS[executor])]
     if algorithm != "podm":
         options += leaf_options(rng, sizes)
     options += executor_options(rng, executor)
@@ -160,4 +161,5 @@ def draw(seed, phantoms):
     options += ["--oversubscribe", "--seed", seed % (1 << 32), *drawn_space(rng, image)]
     return Run(seed, image, pick(rng, ["image.nii", "image.nii", "image.nii.gz"]),
                pick(rng, ["out.vtu", "out.vtu", "out.mesh", "out.msh"]), algorithm, executor,
-               [str(option) for option in selection], [str(option) for option in options], limits)
+               [str(option) for option in selection], [str(option) for option in asked],
+               [str(option) for option in options], limits)

@@ -18,6 +18,7 @@ import sys
 import tempfile
 import threading
 import time
+import traceback
 
 import random_images
 import random_runs
@@ -25,6 +26,8 @@ from podm_process import PROGRAM
 
 VERIFIER = os.path.join(os.path.dirname(PROGRAM), "podm-verify")
 TIMEOUT_S = 300
+# How many cells a serial run may have where one of many workers has none: a speck is sampled or missed by chance.
+MOST_BY_CHANCE = 50
 # What holds of a mesh whenever its run ends.
 ALWAYS = {"structure", "delaunay", "conformity", "surface", "labels"}
 IN_MEMORY = "/dev/shm" if os.access("/dev/shm", os.W_OK) else None
@@ -64,6 +67,16 @@ def judge(run, record, process):
         raise Failed(f"ended as {reason} with exit code {process.returncode} and misses {unmet}{said}")
 
 
+def judge_empty(run, image, folder):
+    """Raises Failed if one thread has a mesh."""
+    record = os.path.join(folder, "serial.jsonl")
+    call(PROGRAM, "mesh", image, *run.selection, *run.sizes, "--quiet", "-o", os.path.join(folder, "serial.vtu"),
+         "--record", record, accepted=(0, 1))
+    cells = json.loads(pathlib.Path(record).read_text())["cells"]
+    if cells > MOST_BY_CHANCE:
+        raise Failed(f"made no cell; one thread makes {cells}")
+
+
 def carry_out(run, folder):
     """How the run ended; raises Failed."""
     image, mesh, log, record, schedule = (os.path.join(folder, name) for name in (
@@ -80,7 +93,19 @@ def carry_out(run, folder):
     written = {os.path.basename(path) for path in (image, mesh, log, record, schedule)} | {"out_facets.vtu"}
     if left := set(os.listdir(folder)) - written:
         raise Failed(f"left behind {sorted(left)}")
+    if not told["cells"] and told["stop_reason"] == "complete":
+        judge_empty(run, image, folder)
     return "no cell" if not told["cells"] else told["stop_reason"]
+
+
+def fault_of(run, folder):
+    """What is wrong with the run, or None, and how it ended. Whatever is raised is a fault: its seed must be told."""
+    try:
+        return None, carry_out(run, folder)
+    except Failed as error:
+        return str(error), "failed"
+    except Exception:  # a record that is no record, a full disk, a mistake of these tests
+        return traceback.format_exc(), "failed"
 
 
 def kinds_of(run):
@@ -112,13 +137,10 @@ class Stress:
 
     def work(self):
         while (seed := self.next_seed()) is not None:
-            start, fault, ended = time.monotonic(), None, "failed"
+            start = time.monotonic()
             run = random_runs.draw(seed, self.phantoms)
             with tempfile.TemporaryDirectory(dir=IN_MEMORY, prefix="podm-stress-") as folder:
-                try:
-                    ended = carry_out(run, folder)
-                except Failed as error:
-                    fault = str(error)
+                fault, ended = fault_of(run, folder)
             with self.lock:
                 self.slowest = max(self.slowest, (round(time.monotonic() - start, 1), seed))
                 self.count(run, ended, fault)
@@ -185,13 +207,11 @@ def repeat(seed, phantoms):
     folder = tempfile.mkdtemp(prefix=f"podm-stress-{seed}-")
     print(f"{run.image.family} of {run.image.voxels.shape} voxels ({', '.join(run.image.damages) or 'sound'}) in "
           f"{folder}\npodm mesh {run.image_name} {shlex.join(run.selection + run.options)}", file=sys.stderr)
-    try:
-        print(carry_out(run, folder), file=sys.stderr)
+    fault, ended = fault_of(run, folder)
+    print(fault or ended, file=sys.stderr)
+    if fault is None:
         shutil.rmtree(folder)
-        return 0
-    except Failed as error:
-        print(error, file=sys.stderr)
-        return 1
+    return 1 if fault else 0
 
 
 def parse_arguments():

@@ -1,10 +1,12 @@
 """What `make stress` draws, and what it takes for a failure. The runs themselves are podm.stress_runs."""
 
 import collections
+import json
 import pathlib
 import tempfile
 import types
 import unittest
+import unittest.mock
 
 import numpy
 
@@ -111,6 +113,45 @@ class Judge(unittest.TestCase):
         self.judge(1, cells=0, verdicts={})
         self.assert_fault(0, cells=0, verdicts={})
         self.assert_fault(1, cells=0, verdicts={}, guarantees={"missing_labels": 1})
+
+
+class Faults(PodmTestCase):
+    """Of programs that break what podm promises: a script in its place."""
+
+    def setUp(self):
+        super().setUp()
+        voxels = numpy.zeros((16, 16, 16), int)
+        voxels[2:14, 2:14, 2:14] = 1
+        image = random_images.RandomImage("cube", [], voxels, 2, numpy.eye(4), numpy.ones(3))
+        self.run_drawn = random_runs.Run(7, image, "image.nii", "out.vtu", "podm", "virtual", [],
+                                         ["--radius", "3"], ["--radius", "3", "--threads", "2", "--oversubscribe"],
+                                         set())
+
+    def fault_of(self, script):
+        program = self.folder / "podm"
+        program.write_text(f"#!/bin/sh\n{script}\n")
+        program.chmod(0o755)
+        with unittest.mock.patch.object(stress, "PROGRAM", str(program)), \
+                tempfile.TemporaryDirectory(dir=self.folder) as folder:
+            return stress.fault_of(self.run_drawn, folder)
+
+    def test_a_sound_run_has_none(self):
+        self.assertEqual(self.fault_of(f'exec {PROGRAM} "$@"'), (None, "complete"))
+
+    def test_a_run_without_a_record_is_one(self):
+        fault, ended = self.fault_of("exit 1")
+        self.assertIn("run.jsonl", fault)
+        self.assertEqual(ended, "failed")
+
+    def test_a_mesh_that_only_one_thread_makes_is_one(self):
+        empty = json.dumps({"stop_reason": "complete", "cells": 0, "guarantees": {}, "verdicts": {}})
+        fault, _ = self.fault_of(
+            f"""case "$*" in
+            *run.jsonl*) while [ "$1" != --record ]; do shift; done; echo '{empty}' > "$2"; exit 1;;
+            replay*) exit 0;;
+            esac
+            exec {PROGRAM} "$@\"""")
+        self.assertIn("one thread makes", fault)
 
 
 if __name__ == "__main__":
