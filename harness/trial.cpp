@@ -68,13 +68,21 @@ ProcessRequest request_of(const Trial& trial, const std::vector<std::string>& co
           .memory_limit_bytes = trial.memory_limit_bytes()};
 }
 
+// More than any mesher was seen to take for its mesh and files, by the number of cells that is asked for.
+std::size_t bytes_to_warm(const Trial& trial) {
+  constexpr std::size_t kOfProgram = std::size_t{1} << 27, kOfCell = 400;
+  const auto cells = trial.options.value(kTargetElements, kWarmBytes / kOfCell);
+  return std::min(kWarmBytes, kOfProgram + kOfCell * cells);
+}
+
 // Not more than half of what is free: it is to be touched, not to be had. Simulated times need none.
 void warm_memory_of(const Trial& trial) {
   if (basis_of(trial.options, Json::object()) == to_string(Basis::kSimulated)) return;
   const auto free_bytes = static_cast<std::size_t>(std::max(0L, sysconf(_SC_AVPHYS_PAGES))) *
                           static_cast<std::size_t>(sysconf(_SC_PAGESIZE));
   const auto copies = static_cast<std::size_t>(std::max(1, num_copies(trial)));
-  warm_memory(std::max(kWarmBytes, std::min(copies * kWarmBytes, free_bytes / 2)));
+  const std::size_t bytes = bytes_to_warm(trial);
+  warm_memory(std::max(bytes, std::min(copies * bytes, free_bytes / 2)));
 }
 
 // A mesh that does not prove itself is unmet.
