@@ -20,21 +20,21 @@ void AtomicFile::flush() {
   buffered_ = 0;
 }
 
-void AtomicFile::close() {
+void AtomicFile::finish() {
   flush();
-  file_.close();
+  file_.finish();
   buffer_.reset();
 }
 
 void AtomicFile::publish() {
-  close();
+  finish();
   TemporaryFile::publish(std::array{&file_});
 }
 
 void publish_together(std::deque<AtomicFile>& files) {
   std::vector<TemporaryFile*> temporaries;
   for (AtomicFile& file : files) {
-    file.close();
+    file.finish();
     temporaries.push_back(&file.file_);
   }
   TemporaryFile::publish(temporaries);

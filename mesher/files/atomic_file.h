@@ -32,8 +32,8 @@ class AtomicFile {
   }
 
   /// Brings the bytes to the disk, still under the temporary's name. Nothing may be written afterwards.
-  void close();
-  /// Closes and gives the file its name.
+  void finish();
+  /// Finishes and gives the file its name.
   void publish();
 
  private:

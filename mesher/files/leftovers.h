@@ -1,14 +1,17 @@
-// What this process has made and must not leave behind: temporary files and folders. Whoever ends it because
-// of a signal removes them first.
+// What this process has made and must not leave behind: temporary files and folders, programs that it
+// started. Whoever ends it because of a signal removes them first.
 #pragma once
+
+#include <sys/types.h>
 
 #include <mutex>
 #include <string>
 
 namespace podm {
 
-/// The paths, held: as long as one lives no other thread holds them, so that the process does not end by
-/// remove_leftovers_for_good(). For a few system calls at a time, which are then done all or not at all.
+/// The leftovers, held: as long as one lives no other thread holds them, so that the process does not end by
+/// remove_leftovers_for_good(). For a few system calls at a time that do not wait for others; these are then
+/// done all or not at all.
 class HeldLeftovers {
  public:
   HeldLeftovers();
@@ -18,12 +21,21 @@ class HeldLeftovers {
   void drop(const std::string& path);
   bool has(const std::string& path) const;
 
+  /// A child process, added and dropped while held since before it is started and until it is waited for.
+  void add_child(pid_t child);
+  void drop_child(pid_t child);
+
  private:
   std::unique_lock<std::mutex> lock_;
 };
 
-/// Removes all of them, folders with what is in them, and holds them ever after: for the thread that ends the
-/// process next. Another that makes, renames or removes such a file waits meanwhile.
+/// Kills the children, removes the paths, folders with what is in them, and holds all ever after: for the
+/// thread that ends the process next. Another that makes, renames or removes such a file waits meanwhile.
+/// Gives up within a second where another thread holds them that the system does not let go on, as a dead
+/// disk does.
 void remove_leftovers_for_good() noexcept;
+
+/// Whatever is there under that name; links are not followed.
+void remove_file_or_folder(const std::string& path) noexcept;
 
 }  // namespace podm

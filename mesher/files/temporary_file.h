@@ -6,6 +6,8 @@
 #include <span>
 #include <string>
 
+#include "files/temporary_name.h"
+
 namespace podm {
 
 /// Throws InputError: "cannot write PATH: " and what the system says.
@@ -13,30 +15,44 @@ namespace podm {
 
 class TemporaryFile {
  public:
-  /// Beside `path`, named after it, the process and a number. Removes what processes that are gone have left
-  /// of `path`. Every member fails by fail_to_write().
+  /// Beside `path`. Every member fails by fail_to_write().
   explicit TemporaryFile(const std::string& path);
   /// Removes the file unless it is published.
   ~TemporaryFile();
   TemporaryFile(const TemporaryFile&) = delete;
   TemporaryFile& operator=(const TemporaryFile&) = delete;
 
-  int descriptor() const { return descriptor_; }
+  int descriptor() const { return temporary_.descriptor; }
   void write(const char* bytes, std::size_t size);
   /// Brings the bytes to the disk. Nothing may be written afterwards.
-  void close();
+  void finish();
 
-  /// Closes the files and gives them their names: none before all are on the disk, and a signal that ends the
-  /// program comes before the first or after the last.
+  /// Finishes the files and gives them their names: none before all are on the disk, and a signal that ends
+  /// the program comes before the first or after the last.
   static void publish(std::span<TemporaryFile* const> files);
 
  private:
   void sync_folder() const;
 
-  std::string path_;       // as the caller wrote it, for messages
-  std::string target_;     // path_ with symbolic links followed: a link is kept, its target replaced
-  std::string temporary_;  // empty once published
-  int descriptor_ = -1;
+  std::string path_;     // as the caller wrote it, for messages
+  std::string target_;   // path_ with symbolic links followed: a link is kept, its target replaced
+  Temporary temporary_;  // without a path once published
+  bool is_finished_ = false;
+};
+
+/// A folder beside a file that goes away with all it holds, and whenever a temporary file of it would.
+class TemporaryFolder {
+ public:
+  /// Beside `path`. Fails by fail_to_write().
+  explicit TemporaryFolder(const std::string& path);
+  ~TemporaryFolder();
+  TemporaryFolder(const TemporaryFolder&) = delete;
+  TemporaryFolder& operator=(const TemporaryFolder&) = delete;
+
+  std::string operator/(const char* name) const { return temporary_.path + "/" + name; }
+
+ private:
+  Temporary temporary_;
 };
 
 }  // namespace podm

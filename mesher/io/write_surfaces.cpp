@@ -115,7 +115,7 @@ void write_surfaces(const TetMesh& mesh, const std::string& path) {
     if (facets_of_label[label].empty()) continue;
     files.emplace_back(surface_path(path, mesh.labels[label]));
     format.write(mesh, facets_of_label[label], mesh.labels[label], subset, files.back());
-    files.back().close();  // one open file at a time, however many labels
+    files.back().finish();
   }
   publish_together(files);
 }

@@ -2,6 +2,7 @@
 #include "files/leftovers.h"
 
 #include <gtest/gtest.h>
+#include <signal.h>
 #include <sys/wait.h>
 #include <unistd.h>
 
@@ -32,10 +33,10 @@ void in_a_child(const Action& action) {
 TEST(Leftovers, FilesAndFoldersGoButNotWhatIsPublished) {
   const ScratchFolder folder;
   in_a_child([&] {
-    AtomicFile published(folder / "published"), closed(folder / "closed"), open(folder / "open");
-    for (AtomicFile* file : {&published, &closed, &open}) file->write("text");
+    AtomicFile published(folder / "published"), finished(folder / "finished"), open(folder / "open");
+    for (AtomicFile* file : {&published, &finished, &open}) file->write("text");
     published.publish();
-    closed.close();
+    finished.finish();
     std::filesystem::create_directories(folder / "scratch/inner");
     std::ofstream(folder / "scratch/inner/file") << "text";
     std::ofstream(folder / "dropped") << "text";
@@ -65,6 +66,39 @@ TEST(Leftovers, NoFileIsMadeNorNamedAfterwards) {
     _exit(0);
   });
   EXPECT_EQ(folder.files(), Names{});
+}
+
+TEST(Leftovers, ChildrenAreKilledButNotThoseThatWereWaitedFor) {
+  in_a_child([&] {
+    const auto start = [] {
+      HeldLeftovers leftovers;
+      const pid_t child = fork();
+      if (child == 0)
+        for (;;) pause();
+      leftovers.add_child(child);
+      return child;
+    };
+    const pid_t kept = start(), dropped = start();
+    HeldLeftovers().drop_child(dropped);
+    remove_leftovers_for_good();
+    int status = 0;
+    const bool is_killed = waitpid(kept, &status, 0) == kept && WIFSIGNALED(status);
+    const bool lives = waitpid(dropped, &status, WNOHANG) == 0;
+    kill(dropped, SIGKILL);
+    _exit(is_killed && lives ? 0 : 1);
+  });
+}
+
+TEST(Leftovers, WhoeverHoldsThemForEverIsNotWaitedFor) {
+  in_a_child([] {
+    alarm(10);
+    const HeldLeftovers held;
+    std::thread([] {
+      const auto start = std::chrono::steady_clock::now();
+      remove_leftovers_for_good();
+      _exit(std::chrono::steady_clock::now() - start < std::chrono::seconds(1) ? 0 : 1);
+    }).join();
+  });
 }
 
 TEST(Leftovers, WhoeverHoldsThemIsWaitedFor) {

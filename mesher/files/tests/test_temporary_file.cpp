@@ -4,6 +4,7 @@
 #include <fcntl.h>
 #include <gtest/gtest.h>
 #include <sys/file.h>
+#include <sys/resource.h>
 #include <sys/stat.h>
 #include <sys/syscall.h>
 #include <sys/wait.h>
@@ -23,13 +24,23 @@ namespace {
 
 using Names = std::set<std::string>;
 
-// Asked of every file that is brought to the disk; an error number ends the attempt.
+// Asked of every file that is brought to the disk, and before one is locked; an error number ends the
+// attempt.
 std::function<int(const struct stat&)> on_sync;
+std::function<int()> on_lock;
 
 }  // namespace
 }  // namespace podm
 
-// Takes the place of the system's in this program.
+// These take the place of the system's in this program.
+extern "C" int flock(int descriptor, int operation) noexcept {
+  if (podm::on_lock) {
+    errno = podm::on_lock();
+    if (errno != 0) return -1;
+  }
+  return static_cast<int>(::syscall(SYS_flock, descriptor, operation));
+}
+
 extern "C" int fsync(int descriptor) {
   struct stat status;
   if (podm::on_sync && ::fstat(descriptor, &status) == 0) {
@@ -44,7 +55,10 @@ namespace {
 
 class TemporaryFiles : public testing::Test {
  protected:
-  ~TemporaryFiles() override { on_sync = nullptr; }
+  ~TemporaryFiles() override {
+    on_sync = nullptr;
+    on_lock = nullptr;
+  }
 
   void make(const std::string& name) const { std::ofstream(folder_ / name) << "older"; }
   void write(const std::string& name) const { AtomicFile(folder_ / name).publish(); }
@@ -74,12 +88,74 @@ TEST_F(TemporaryFiles, WhatProcessesThatAreGoneLeftOfTheSameFileGoes) {
                of_process("a", process) + "x",
                "a.tmp-1-0",
                "a.tmp0-0",
-               "a.tmp-0",
-               of_process("a", ::getppid())};
+               "a.tmp-0"};
   for (const std::string& name : others) make(name);
   write("a");
   others.insert("a");
   EXPECT_EQ(folder_.files(), others);
+}
+
+// Locks decide, for its number may be that of another process by now.
+TEST_F(TemporaryFiles, WhatNobodyHasLockedGoesAlthoughAProcessOfThatNumberLives) {
+  make(of_process("a", ::getppid()));
+  make(of_process("a", 1));
+  write("a");
+  EXPECT_EQ(folder_.files(), Names{"a"});
+}
+
+TEST_F(TemporaryFiles, WithoutLocksWhatProcessesLeftThatAreGoneGoes) {
+  on_lock = [] { return ENOLCK; };
+  make(of_process("a", gone()));
+  make(of_process("a", ::getppid()));
+  write("a");
+  EXPECT_EQ(folder_.files(), (Names{"a", of_process("a", ::getppid())}));
+}
+
+TEST_F(TemporaryFiles, AFolderThatWasLeftGoesWithAllItHolds) {
+  const std::string left = of_process("a", 1);
+  std::filesystem::create_directory(folder_ / left);
+  make(left + "/image.nii.gz");
+  const TemporaryFolder ours(folder_ / "a");
+  make(std::filesystem::path(ours / "image.nii.gz").lexically_relative(folder_ / "").string());
+  write("a");
+  EXPECT_EQ(folder_.files().size(), 2u) << "a, and the folder that is in use";
+  EXPECT_TRUE(std::filesystem::exists(ours / "image.nii.gz"));
+}
+
+TEST_F(TemporaryFiles, AFolderGoesAtTheEnd) {
+  { std::ofstream(TemporaryFolder(folder_ / "a") / "file") << "text"; }
+  {
+    const TemporaryFolder folder(folder_ / "a");
+    std::ofstream(folder / "file") << "text";
+    EXPECT_EQ(folder_.files().size(), 1u);
+  }
+  EXPECT_EQ(folder_.files(), Names{});
+}
+
+// Another process that found it before it was locked has removed it.
+TEST_F(TemporaryFiles, OneThatWasTakenForAbandonedIsMadeAnew) {
+  int removed = 0;
+  on_lock = [&] {
+    for (const std::string& name : folder_.files())
+      if (removed == 0) removed += ::unlink((folder_ / name).c_str()) == 0 ? 1 : 0;
+    return 0;
+  };
+  write("a");
+  EXPECT_EQ(removed, 1);
+  EXPECT_EQ(folder_.files(), Names{"a"});
+}
+
+TEST_F(TemporaryFiles, OneThatAnotherProcessIsAboutToRemoveIsMadeAnew) {
+  int other = -1;
+  on_lock = [&] {
+    if (other >= 0) return 0;
+    other = ::open((folder_ / *folder_.files().begin()).c_str(), O_WRONLY);
+    return static_cast<int>(::syscall(SYS_flock, other, LOCK_EX));
+  };
+  write("a");
+  EXPECT_EQ(folder_.files().size(), 2u) << "a, and what the other has not removed yet";
+  EXPECT_TRUE(folder_.files().contains("a"));
+  ::close(other);
 }
 
 // In a container the numbers are used again at once.
@@ -103,11 +179,26 @@ TEST_F(TemporaryFiles, WhatAnotherMachineWritesIsLocked) {
   ::close(descriptor);
 }
 
-TEST_F(TemporaryFiles, IsLocked) {
-  const TemporaryFile file(folder_ / "a");
+TEST_F(TemporaryFiles, IsLockedUntilItHasItsName) {
+  TemporaryFile file(folder_ / "a");
+  file.finish();
   const int descriptor = ::open((folder_ / *folder_.files().begin()).c_str(), O_WRONLY);
   EXPECT_NE(::flock(descriptor, LOCK_EX | LOCK_NB), 0);
   ::close(descriptor);
+}
+
+// As surfaces are: one a label.
+TEST_F(TemporaryFiles, ThereMayBeMoreThanDescriptors) {
+  rlimit before;
+  ASSERT_EQ(::getrlimit(RLIMIT_NOFILE, &before), 0);
+  const rlimit few{40, before.rlim_max};
+  ASSERT_EQ(::setrlimit(RLIMIT_NOFILE, &few), 0);
+  std::deque<AtomicFile> files;
+  for (int i = 0; i < 100; ++i) files.emplace_back(folder_ / std::to_string(i)).finish();
+  publish_together(files);
+  EXPECT_EQ(folder_.files().size(), 100u);
+  EXPECT_TRUE(folder_.files().contains("99"));
+  ASSERT_EQ(::setrlimit(RLIMIT_NOFILE, &before), 0);
 }
 
 TEST_F(TemporaryFiles, TheFolderIsBroughtToTheDiskAfterItsNewNames) {

@@ -69,7 +69,7 @@ TEST(AtomicFile, LeavesNothingWhenGivenUp) {
   {
     AtomicFile file(folder / "a.bin");
     file.write("abc");
-    file.close();
+    file.finish();
   }
   EXPECT_EQ(folder.files(), Names{});
 }
