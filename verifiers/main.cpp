@@ -6,6 +6,7 @@
 #include <CLI/CLI.hpp>
 #include <chrono>
 #include <cmath>
+#include <csignal>
 #include <cstdio>
 #include <exception>
 #include <filesystem>
@@ -242,6 +243,9 @@ int complain(const std::string& fault, int exit_code) {
 
 int main(int argc, char** argv) {
   using namespace podm::verify;
+  // A file-size limit and a closed pipe then fail the write, which is reported and cleaned up after.
+  std::signal(SIGXFSZ, SIG_IGN);
+  std::signal(SIGPIPE, SIG_IGN);
   try {
     return main_or_throw(argc, argv);
   } catch (const InputError& error) {

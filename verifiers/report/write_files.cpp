@@ -1,14 +1,12 @@
 #include <fmt/format.h>
-#include <unistd.h>
 
 #include <cerrno>
 #include <cstdio>
-#include <cstring>
 #include <filesystem>
 #include <fstream>
 
-#include "errors.h"
 #include "report/reports.h"
+#include "report/whole_file.h"
 
 namespace podm::verify {
 
@@ -42,31 +40,20 @@ std::string head_of(const std::vector<VtuArray>& arrays, std::size_t begin, std:
   return text;
 }
 
-[[noreturn]] void refuse(const std::string& path) {
-  throw InputError(fmt::format("{}: cannot be written: {}", path, std::strerror(errno)));
-}
-
 }  // namespace
 
 void write_text(const std::string& path, const std::string& text) {
   if (path == "-") {
     const bool is_written = std::fwrite(text.data(), 1, text.size(), stdout) == text.size();
-    if (std::fflush(stdout) != 0 || !is_written) refuse("standard output");
+    if (std::fflush(stdout) != 0 || !is_written) refuse_to_write("standard output", errno);
     return;
   }
-  const bool is_file_or_none = !std::filesystem::exists(path) || std::filesystem::is_regular_file(path);
-  const std::string written = is_file_or_none ? fmt::format("{}.{}.part", path, getpid()) : path;
-  std::ofstream file(written, std::ios::binary);
+  if (!std::filesystem::exists(path) || std::filesystem::is_regular_file(path))
+    return write_whole_file(path, text);
+  std::ofstream file(path, std::ios::binary);
   file << text;
   file.close();
-  if (!is_file_or_none) {
-    if (!file) refuse(path);
-  } else if (!file || std::rename(written.c_str(), path.c_str()) != 0) {
-    const int fault = errno;
-    std::remove(written.c_str());
-    errno = fault;
-    refuse(path);
-  }
+  if (!file) refuse_to_write(path, errno);
 }
 
 void write_bad_cells(const std::string& path, const Mesh& mesh, const std::vector<ClaimResult>& results) {

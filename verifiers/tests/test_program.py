@@ -4,6 +4,7 @@ import json
 import math
 import os
 import pathlib
+import resource
 import subprocess
 import tempfile
 import unittest
@@ -48,9 +49,9 @@ class ProgramTest(unittest.TestCase):
         self.report = self.folder / "report.json"
         kuhn_cubes(3, 2, 2).write(self.mesh)
 
-    def verify(self, *arguments, mesh=None):
+    def verify(self, *arguments, mesh=None, **options):
         return subprocess.run([VERIFIER, mesh or self.mesh, *map(str, arguments)], capture_output=True, text=True,
-                              errors="surrogateescape", timeout=60, check=False)
+                              errors="surrogateescape", timeout=60, check=False, **options)
 
     def assert_exit(self, process, code):
         self.assertEqual(process.returncode, code, process.stdout + process.stderr)
@@ -214,6 +215,26 @@ class ProgramTest(unittest.TestCase):
                                          text=True, timeout=60, check=False)
             self.assertEqual(process.returncode, 2)
             self.assertIn("No space left on device", process.stderr)
+
+    def test_a_report_past_a_limit_of_the_file_size_keeps_the_older_one(self):
+        for name, arguments in (("report.json", ["--json"]), ("bad.vtu", ["--extract-bad"])):
+            report = self.folder / name
+            report.write_text("older")
+            process = self.verify("--claims", "size", "--radius", 0.01, *arguments, report,
+                                  preexec_fn=lambda: resource.setrlimit(resource.RLIMIT_FSIZE, (1024, 1024)))
+            self.assert_exit(process, 2)
+            self.assertIn(f"{report}: cannot be written: File too large", process.stderr)
+            self.assertEqual(report.read_text(), "older")
+        self.assertEqual({path.name for path in self.folder.iterdir()}, {"mesh.mesh", "report.json", "bad.vtu"})
+
+    def test_a_reader_that_is_gone_is_an_error(self):
+        read_end, write_end = os.pipe()
+        os.close(read_end)
+        with open(write_end, "wb") as pipe:
+            process = subprocess.run([VERIFIER, self.mesh, "--quiet", "--json", "-"], stdout=pipe, check=False,
+                                     stderr=subprocess.PIPE, text=True, timeout=60)
+        self.assertEqual(process.returncode, 2)
+        self.assertIn("standard output: cannot be written: Broken pipe", process.stderr)
 
     def test_json_on_standard_output_is_alone_there(self):
         process = self.verify("--json", "-")
