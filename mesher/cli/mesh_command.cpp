@@ -5,7 +5,7 @@
 #include <cstdio>
 #include <optional>
 
-#include "cli/append_line.h"
+#include "cli/appended_file.h"
 #include "cli/commands.h"
 #include "cli/json_text.h"
 #include "cli/labelled_image.h"
@@ -37,11 +37,11 @@ double timed(const Action& action) {
 void check_outputs(const MeshCommand& command) {
   check_mesh_path(command.mesh_path);
   if (!command.surface_path.empty()) check_surface_path(command.surface_path);
-  if (!command.record_path.empty()) check_appendable(command.record_path);
   const Algorithm algorithm = command.meshing.algorithm;
   if (!command.schedule_path.empty() && algorithm == Algorithm::kPodm)
     throw InputError(command.schedule_path + ": podm has no leaves; use --algorithm pdr or pdr-podm");
   if (!command.schedule_path.empty()) const AtomicFile trial(command.schedule_path);
+  if (command.verify) check_verifier();
 }
 
 // Once refinement has begun there is a mesh to keep.
@@ -75,6 +75,8 @@ void write_outputs(const MeshCommand& command, const TetMesh& mesh) {
 int run(const MeshCommand& command) {
   SignalThread signals;
   check_outputs(command);
+  std::optional<AppendedFile> records;
+  if (!command.record_path.empty()) records.emplace(command.record_path);
   Crossover crossover = choose_crossover(command);
   LabelImage image;
   const double read_s =
@@ -104,7 +106,7 @@ int run(const MeshCommand& command) {
   if (!command.schedule_path.empty()) write_schedule(run, command.schedule_path);
   run.peak_rss_bytes = peak_resident_bytes();
   if (command.verify && !run.result.mesh.cells.empty()) run.verdicts = verify_mesh(run, signals);
-  if (!command.record_path.empty()) append_line(command.record_path, json_line(record(run)));
+  if (records) records->append(json_line(record(run)));
   if (!command.quiet) fmt::print(stderr, "{}", summary(run));
   if (command.stats) fmt::print(stderr, "{}", statistics(run));
   for (const std::string& warning : warnings) fmt::print(stderr, "warning: {}\n", warning);

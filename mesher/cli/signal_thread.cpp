@@ -3,6 +3,7 @@
 #include <poll.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <array>
 #include <string>
 
@@ -11,25 +12,31 @@
 namespace podm::cli {
 namespace {
 
-struct AwaitedSignal {
+struct StoppingSignal {
   int number;
   const char* name;
-  bool may_stop;  // else it ends the program whenever it comes
 };
 
-// All that end a program and that people and batch systems send. SIGXCPU comes every second.
-constexpr std::array<AwaitedSignal, 7> kAwaited{{{SIGINT, "SIGINT", true},
-                                                 {SIGTERM, "SIGTERM", true},
-                                                 {SIGHUP, "SIGHUP", true},
-                                                 {SIGQUIT, "SIGQUIT", false},
-                                                 {SIGXCPU, "SIGXCPU", false},
-                                                 {SIGUSR1, "SIGUSR1", false},
-                                                 {SIGUSR2, "SIGUSR2", false}}};
+constexpr std::array<StoppingSignal, 3> kStopping{
+    {{SIGINT, "SIGINT"}, {SIGTERM, "SIGTERM"}, {SIGHUP, "SIGHUP"}}};
 
-const AwaitedSignal& awaited(int number) {
-  std::size_t i = 0;
-  while (kAwaited[i].number != number) ++i;
-  return kAwaited[i];
+// Null: the signal ends the program whenever it comes.
+const StoppingSignal* stopping(int number) {
+  for (const StoppingSignal& signal : kStopping)
+    if (signal.number == number) return &signal;
+  return nullptr;
+}
+
+// Those that end no program by default, tell of a crash, or come to nobody.
+constexpr std::array kLeftAlone{SIGCHLD, SIGCONT, SIGTSTP, SIGTTIN, SIGTTOU, SIGURG,  SIGWINCH, SIGABRT,
+                                SIGBUS,  SIGFPE,  SIGILL,  SIGSEGV, SIGSYS,  SIGTRAP, SIGKILL,  SIGSTOP};
+
+// Signals that would end the program: neither ignored, nor blocked, nor handled by what was loaded before it.
+bool is_awaited(int number, const sigset_t& blocked) {
+  struct sigaction action;
+  return std::find(kLeftAlone.begin(), kLeftAlone.end(), number) == kLeftAlone.end() &&
+         sigaction(number, nullptr, &action) == 0 && action.sa_handler == SIG_DFL &&
+         sigismember(&blocked, number) == 0;
 }
 
 [[noreturn]] void end_by(int number) {
@@ -43,7 +50,7 @@ const AwaitedSignal& awaited(int number) {
 }
 
 // Not by way of stdio, whose lock a thread may hold that waits for the reader of a full pipe; nor does this.
-void tell(const AwaitedSignal& signal) {
+void tell(const StoppingSignal& signal) {
   const std::string text = std::string(isatty(STDERR_FILENO) != 0 ? "\n" : "") + "podm: " + signal.name +
                            ": the run ends early, with what there is; another signal ends it at once\n";
   pollfd errors{STDERR_FILENO, POLLOUT, 0};
@@ -56,12 +63,10 @@ void tell(const AwaitedSignal& signal) {
 SignalThread::SignalThread() {
   pthread_sigmask(SIG_SETMASK, nullptr, &mask_before_);
   sigemptyset(&awaited_);
-  for (const AwaitedSignal& signal : kAwaited) {
-    struct sigaction action;
-    sigaction(signal.number, nullptr, &action);
-    if (action.sa_handler == SIG_IGN || sigismember(&mask_before_, signal.number) == 1) continue;
-    sigaddset(&awaited_, signal.number);
-    any_awaited_ = signal.number;
+  for (int number = 1; number <= SIGRTMAX; ++number) {
+    if (!is_awaited(number, mask_before_)) continue;
+    sigaddset(&awaited_, number);
+    any_awaited_ = number;
   }
   if (any_awaited_ == 0) return;
   pthread_sigmask(SIG_BLOCK, &awaited_, nullptr);
@@ -86,11 +91,11 @@ void SignalThread::receive() {
     int number = 0;
     if (sigwait(&awaited_, &number) != 0) continue;
     if (is_done_) return;
-    const AwaitedSignal& signal = awaited(number);
+    const StoppingSignal* signal = stopping(number);
     First stops = First::kStops;
-    if (!signal.may_stop || !first_.compare_exchange_strong(stops, First::kHasStopped)) end_by(number);
+    if (signal == nullptr || !first_.compare_exchange_strong(stops, First::kHasStopped)) end_by(number);
     source_.request_stop();
-    if (!is_quiet_) tell(signal);
+    if (!is_quiet_) tell(*signal);
   }
 }
 

@@ -12,8 +12,8 @@ namespace podm::cli {
 
 /// At most one, made before any other thread: these inherit that the signals are blocked. A signal ends the
 /// program as it would without, but first removes the leftovers (files/leftovers.h). After heed_first() the
-/// first SIGINT, SIGTERM or SIGHUP only requests a stop, and the next one ends. Signals that were ignored or
-/// blocked stay so.
+/// first SIGINT, SIGTERM or SIGHUP only requests a stop, and the next one ends. Signals that were ignored,
+/// blocked or handled stay so, and crashes are left alone.
 class SignalThread {
  public:
   SignalThread();

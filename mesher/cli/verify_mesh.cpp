@@ -7,13 +7,14 @@
 #include <sys/wait.h>
 #include <unistd.h>
 
-#include <cstdio>
-#include <cstdlib>
+#include <array>
+#include <cerrno>
 #include <filesystem>
-#include <fstream>
 #include <nlohmann/json.hpp>
+#include <optional>
 
 #include "files/leftovers.h"
+#include "files/temporary_file.h"
 #include "podm/errors.h"
 #include "podm/image_io.h"
 
@@ -24,26 +25,13 @@ namespace {
 
 namespace fs = std::filesystem;
 
-// A new folder, gone with all it holds at the end.
-class ScratchFolder {
- public:
-  ScratchFolder() : path_(fs::temp_directory_path() / "podm-XXXXXX") {
-    HeldLeftovers leftovers;
-    if (mkdtemp(path_.data()) == nullptr) throw InputError(fmt::format("cannot make a folder {}", path_));
-    leftovers.add(path_);
-  }
-  ~ScratchFolder() {
-    std::error_code error;
-    fs::remove_all(path_, error);
-    HeldLeftovers().drop(path_);
-  }
-  ScratchFolder(const ScratchFolder&) = delete;
-  ScratchFolder& operator=(const ScratchFolder&) = delete;
-  std::string operator/(const char* name) const { return path_ + "/" + name; }
+std::string verifier_path() {
+  return (fs::read_symlink("/proc/self/exe").parent_path() / "podm-verify").string();
+}
 
- private:
-  std::string path_;
-};
+[[noreturn]] void fail_to_run(const std::string& program) {
+  throw InputError(fmt::format("--verify: {} cannot be run", program));
+}
 
 using Ranges = std::vector<std::pair<std::uint32_t, std::uint32_t>>;
 
@@ -54,14 +42,15 @@ std::string text_of(const Ranges& ranges) {
   return fmt::format("{}", fmt::join(parts, ","));
 }
 
-// The image and what was meshed of it. A phantom is written with its labels selected.
-std::vector<std::string> image_options(const MeshRun& run, const ScratchFolder& scratch) {
+// The image and what was meshed of it. A phantom is written to `scratch` with its labels selected.
+std::vector<std::string> image_options(const MeshRun& run, std::optional<TemporaryFolder>& scratch) {
   const ImageArguments& image = run.command.image;
   const LabelSelection& selection = image.selection;
   const std::string background = fmt::format("{}", selection.background);
   if (image.path.starts_with("phantom:")) {
-    write_nifti(run.image, scratch / "image.nii.gz");
-    return {"--image", scratch / "image.nii.gz", "--background", background};
+    const std::string path = scratch.emplace(run.command.mesh_path) / "image.nii.gz";
+    write_nifti(run.image, path);
+    return {"--image", path, "--background", background};
   }
   std::vector<std::string> options{"--image", image.path, "--background", background};
   if (!selection.keep.empty()) options.insert(options.end(), {"--labels", text_of(selection.keep)});
@@ -71,20 +60,18 @@ std::vector<std::string> image_options(const MeshRun& run, const ScratchFolder& 
   return options;
 }
 
-std::vector<std::string> verifier_command(const MeshRun& run, const ScratchFolder& scratch,
-                                          const std::string& report) {
-  std::vector<std::string> command{
-      (fs::read_symlink("/proc/self/exe").parent_path() / "podm-verify").string(), run.command.mesh_path,
-      "--json", report, "--claims"};
+std::vector<std::string> verifier_command(const MeshRun& run, std::optional<TemporaryFolder>& scratch) {
+  std::vector<std::string> command{verifier_path(), run.command.mesh_path, "--json", "-"};
+  if (run.command.quiet) command.push_back("--quiet");
   std::string claims = "structure,radius_edge,boundary_angles,delaunay,conformity,surface,labels";
   const double radius_mm = run.result.report.radius_mm;
   const auto& radius_of = run.options.radius_of_mm;
   if (radius_mm > 0 || !radius_of.empty()) claims += ",size";
   if (run.command.verify_fidelity) {
     claims += ",fidelity";
-    command.insert(command.end() - 1, {"--delta", fmt::format("{}", run.result.report.delta_mm)});
+    command.insert(command.end(), {"--delta", fmt::format("{}", run.result.report.delta_mm)});
   }
-  command.push_back(claims);
+  command.insert(command.end(), {"--claims", claims});
   const auto image = image_options(run, scratch);
   command.insert(command.end(), image.begin(), image.end());
   if (radius_mm > 0) command.insert(command.end(), {"--radius", fmt::format("{}", radius_mm)});
@@ -96,53 +83,81 @@ std::vector<std::string> verifier_command(const MeshRun& run, const ScratchFolde
   return command;
 }
 
-// As the program was started: standard output goes to standard error, or nowhere; no signal is blocked by
-// this one.
-pid_t start(const std::vector<std::string>& command, bool quiet, const SignalThread& signals) {
-  std::vector<char*> arguments;
-  for (const std::string& argument : command) arguments.push_back(const_cast<char*>(argument.c_str()));
-  arguments.push_back(nullptr);
-  posix_spawnattr_t attributes;
-  posix_spawnattr_init(&attributes);
-  posix_spawnattr_setsigmask(&attributes, &signals.mask_before());
-  posix_spawnattr_setflags(&attributes, POSIX_SPAWN_SETSIGMASK);
-  posix_spawn_file_actions_t actions;
-  posix_spawn_file_actions_init(&actions);
-  if (quiet) {
-    posix_spawn_file_actions_addopen(&actions, STDOUT_FILENO, "/dev/null", O_WRONLY, 0);
-  } else {
-    posix_spawn_file_actions_adddup2(&actions, STDERR_FILENO, STDOUT_FILENO);
+// A program whose standard output is read. It is among the leftovers until it is waited for.
+class Child {
+ public:
+  // As this program was started: no signal is blocked by this one.
+  Child(const std::vector<std::string>& command, const SignalThread& signals) {
+    std::array<int, 2> ends;
+    if (::pipe2(ends.data(), O_CLOEXEC) != 0) throw InputError("--verify: no pipe can be made");
+    output_ = ends[0];
+    const int error = start(command, ends[1], signals);
+    ::close(ends[1]);
+    if (error == 0) return;
+    ::close(output_);
+    fail_to_run(command[0]);
   }
-  pid_t child = 0;
-  const int error = posix_spawn(&child, arguments[0], &actions, &attributes, arguments.data(), environ);
-  posix_spawn_file_actions_destroy(&actions);
-  posix_spawnattr_destroy(&attributes);
-  if (error != 0) throw InputError(fmt::format("--verify: {} cannot be run", command[0]));
-  return child;
-}
+  Child(const Child&) = delete;
+  Child& operator=(const Child&) = delete;
 
-// To its end, or to that which a signal asks for.
-void wait_for(pid_t child, const SignalThread& signals) {
-  {
-    const std::stop_callback end_it(signals.token(), [child] { kill(child, SIGKILL); });
+  // Until no other process has its number.
+  ~Child() {
+    ::close(output_);
     siginfo_t ended;
-    while (waitid(P_PID, static_cast<id_t>(child), &ended, WEXITED | WNOWAIT) < 0 && errno == EINTR) {
+    while (waitid(P_PID, static_cast<id_t>(process_), &ended, WEXITED | WNOWAIT) < 0 && errno == EINTR) {
     }
-  }  // until then no other process has its number
-  while (waitpid(child, nullptr, 0) < 0 && errno == EINTR) {
+    HeldLeftovers leftovers;
+    waitpid(process_, nullptr, 0);
+    leftovers.drop_child(process_);
   }
-}
+
+  // To its end, or to that which a signal asks for.
+  std::string read(const SignalThread& signals) {
+    const std::stop_callback end_it(signals.token(), [this] { kill(process_, SIGKILL); });
+    std::string text;
+    std::array<char, 4096> part;
+    for (;;) {
+      const ssize_t count = ::read(output_, part.data(), part.size());
+      if (count == 0 || (count < 0 && errno != EINTR)) return text;
+      if (count > 0) text.append(part.data(), static_cast<std::size_t>(count));
+    }
+  }
+
+ private:
+  int start(const std::vector<std::string>& command, int output, const SignalThread& signals) {
+    std::vector<char*> arguments;
+    for (const std::string& argument : command) arguments.push_back(const_cast<char*>(argument.c_str()));
+    arguments.push_back(nullptr);
+    posix_spawnattr_t attributes;
+    posix_spawnattr_init(&attributes);
+    posix_spawnattr_setsigmask(&attributes, &signals.mask_before());
+    posix_spawnattr_setflags(&attributes, POSIX_SPAWN_SETSIGMASK);
+    posix_spawn_file_actions_t actions;
+    posix_spawn_file_actions_init(&actions);
+    posix_spawn_file_actions_adddup2(&actions, output, STDOUT_FILENO);
+    HeldLeftovers leftovers;
+    const int error = posix_spawn(&process_, arguments[0], &actions, &attributes, arguments.data(), environ);
+    if (error == 0) leftovers.add_child(process_);
+    posix_spawn_file_actions_destroy(&actions);
+    posix_spawnattr_destroy(&attributes);
+    return error;
+  }
+
+  pid_t process_ = 0;
+  int output_ = -1;
+};
 
 }  // namespace
 
+void check_verifier() {
+  if (::access(verifier_path().c_str(), X_OK) != 0) fail_to_run(verifier_path());
+}
+
 std::map<std::string, std::string> verify_mesh(const MeshRun& run, const SignalThread& signals) {
   if (signals.token().stop_requested()) return {};
-  const ScratchFolder scratch;
-  const std::string report_path = scratch / "report.json";
-  const auto command = verifier_command(run, scratch, report_path);
-  wait_for(start(command, run.command.quiet, signals), signals);
-  std::ifstream file(report_path);
-  const auto report = nlohmann::ordered_json::parse(file, nullptr, false);
+  std::optional<TemporaryFolder> scratch;
+  const auto command = verifier_command(run, scratch);
+  const auto report = nlohmann::ordered_json::parse(Child(command, signals).read(signals), nullptr, false);
   if (!report.is_object() && signals.token().stop_requested()) return {};
   if (!report.is_object()) throw InputError(fmt::format("--verify: {} gave no report", command[0]));
   std::map<std::string, std::string> verdicts;

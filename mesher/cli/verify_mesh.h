@@ -9,11 +9,14 @@
 
 namespace podm::cli {
 
+/// Throws InputError where there is no podm-verify that can be run.
+void check_verifier();
+
 /// Runs the podm-verify beside this program on the mesh that `run` wrote: all claims but fidelity, which is
 /// promised only for cells about as small as voxels. The image goes with it as it is in its file, with the
-/// options that selected its labels; a phantom as a file written for the purpose. The report for people goes
-/// to standard error unless the run is quiet. Returns the verdicts by claim; throws InputError where the
-/// verifier is not there or tells nothing, but none and no verdicts where a signal has ended it.
+/// options that selected its labels; a phantom as a file beside the mesh, written for the purpose. The report
+/// for people goes to standard error unless the run is quiet. Returns the verdicts by claim, none where a
+/// signal has ended it or came before; throws InputError where the verifier is not there or tells nothing.
 std::map<std::string, std::string> verify_mesh(const MeshRun& run, const SignalThread& signals);
 
 }  // namespace podm::cli

@@ -10,7 +10,6 @@ import json
 import os
 import pathlib
 import random
-import re
 import resource
 import signal
 import struct
@@ -20,41 +19,18 @@ import tempfile
 import time
 import unittest
 
+from ending_podm import ENDLESS, LONGEST_S, end_of, start_refining
 from podm_process import PROGRAM, PodmTestCase, run_podm, start_podm
 
 VERIFIER = os.path.join(os.path.dirname(PROGRAM), "podm-verify")
 MOMENTS = int(os.environ.get("PODM_SIGNAL_MOMENTS", "4"))
-LONGEST_S = 1
 IMAGE = "phantom:abdomen@80"
-ENDLESS = ["mesh", "phantom:abdomen@48", "--radius", 1, "--max-memory-gib", 1000, "--oversubscribe"]
 ALGORITHMS = {"podm": ["--threads", 2],
               "pdr": ["--algorithm", "pdr", "--threads", 2],
               "pdr-podm": ["--algorithm", "pdr-podm", "--nodes", 1, "--cores-per-node", 2]}
-
-End = collections.namedtuple("End", "code stderr seconds")
-
-
-def end_of(process, first, *others, pause_s=0):
-    """How the process ends after these signals, and how long after the last."""
-    sent = time.monotonic()
-    process.send_signal(first)
-    for number in others:
-        time.sleep(pause_s)
-        sent = time.monotonic()
-        process.send_signal(number)
-    try:
-        _, stderr = process.communicate(timeout=60)
-    finally:
-        process.kill()  # nothing, where it has ended
-    return End(process.returncode, stderr, time.monotonic() - sent)
-
-
-def start_refining(*arguments, **popen_options):
-    process = start_podm(*arguments, **popen_options)
-    for line in process.stderr:
-        if re.match("refine", line):
-            return process
-    raise AssertionError(f"no refinement: exit {process.wait()}")
+# But those of crashes, all that end a program by default and are not told of.
+ENDING = (signal.SIGQUIT, signal.SIGUSR1, signal.SIGUSR2, signal.SIGXCPU, signal.SIGALRM, signal.SIGVTALRM,
+          signal.SIGPROF, signal.SIGPWR, signal.SIGIO, signal.SIGSTKFLT, signal.SIGRTMIN, signal.SIGRTMAX)
 
 
 def mesh_command(image, folder, algorithm):
@@ -188,13 +164,22 @@ class Refinement(PodmTestCase):
         self.assertNotIn("SIGHUP", end.stderr)
         self.assert_stopped(end)
 
-    def test_signals_of_batch_systems_and_a_quit_end_at_once_without_leftovers(self):
+    def test_signals_of_batch_systems_timers_and_a_quit_end_at_once_without_leftovers(self):
         def no_core():
             resource.setrlimit(resource.RLIMIT_CORE, (0, 0))
             signal.signal(signal.SIGQUIT, signal.SIG_DFL)
-        for number in signal.SIGQUIT, signal.SIGUSR1, signal.SIGUSR2, signal.SIGXCPU:
-            end = end_of(start_refining(*self.mesh_command(), preexec_fn=no_core), number)
-            self.assert_ended_by(number, end)
+        for number in ENDING:
+            with self.subTest(signal=number):
+                end = end_of(start_refining(*self.mesh_command(), preexec_fn=no_core), number)
+                self.assert_ended_by(number, end)
+
+    def test_signals_that_end_nothing_end_nothing(self):
+        process = start_refining(*self.mesh_command())
+        for number in signal.SIGCHLD, signal.SIGWINCH, signal.SIGURG, signal.SIGTSTP, signal.SIGCONT, signal.SIGPIPE:
+            process.send_signal(number)
+        time.sleep(0.3)
+        self.assertIsNone(process.poll())
+        self.assert_stopped(end_of(process, signal.SIGTERM))
 
     def test_a_node_that_never_has_a_leaf_keeps_nobody_waiting(self):
         """One leaf holds the whole object, so that all nodes but one wait until that one is through."""
@@ -220,73 +205,6 @@ class Refinement(PodmTestCase):
         finally:
             os.close(read_end)
             os.close(write_end)
-
-
-class Killed(PodmTestCase):
-    """kill -9 leaves temporaries; the next run of the same name removes them, but none of a process that lives."""
-
-    def mesh(self):
-        return run_podm("mesh", "phantom:spheres@24", "-o", self.folder / "out.vtu", "--log", self.folder / "run.log")
-
-    def names(self):
-        return {path.name for path in self.folder.iterdir()}
-
-    def test_the_next_run_removes_what_is_left(self):
-        process = start_refining(*ENDLESS, "-o", self.folder / "out.vtu", "--log", self.folder / "run.log")
-        end_of(process, signal.SIGKILL)
-        self.assertRegex(" ".join(self.names()), rf"^run.log.tmp{process.pid}-\d+$")
-        others = {"other.vtu.tmp4194305-0", "run.log.tmp", f"run.log.tmp{process.pid}"}
-        for name in others:
-            (self.folder / name).touch()
-        self.assert_exit(self.mesh(), 0)
-        self.assertEqual(self.names() - others, {"out.vtu", "out_facets.vtu", "run.log"})
-        self.assertLessEqual(others, self.names())
-
-    def test_a_run_that_lives_keeps_its_own(self):
-        process = start_refining(*ENDLESS, "-o", self.folder / "out.vtu", "--log", self.folder / "run.log")
-        try:
-            before = self.names()
-            self.assertRegex(" ".join(before), rf"^run.log.tmp{process.pid}-\d+$")
-            self.assert_exit(self.mesh(), 0)
-            self.assertEqual(self.names(), before | {"out.vtu", "out_facets.vtu", "run.log"})
-        finally:
-            self.assertEqual(end_of(process, signal.SIGINT).code, 1)
-
-
-def child_that_runs(process, program):
-    """The number of a process; None where there is none."""
-    for entry in pathlib.Path("/proc").glob("[0-9]*"):
-        try:
-            parent = int((entry / "stat").read_text().rpartition(")")[2].split()[1])
-            if parent == process.pid and os.path.basename(os.readlink(entry / "exe")) == program:
-                return entry.name
-        except OSError:  # it has ended
-            pass
-    return None
-
-
-class Verification(PodmTestCase):
-    def test_a_signal_ends_the_verifier_too(self):
-        scratch, out = self.folder / "scratch", self.folder / "out"
-        scratch.mkdir()
-        out.mkdir()
-        process = start_podm("mesh", "phantom:abdomen@48", "--radius", 8, "-o", out / "out.vtu", "--verify",
-                             env={**os.environ, "TMPDIR": str(scratch)})
-        child = None
-        while child is None:
-            time.sleep(0.005)
-            self.assertIsNone(process.poll())
-            child = child_that_runs(process, "podm-verify")
-        blocked = re.search(r"SigBlk:\s*(\w+)", pathlib.Path(f"/proc/{child}/status").read_text())[1]
-        self.assertEqual(int(blocked, 16), 0)
-        end = end_of(process, signal.SIGTERM)
-        self.assertEqual(end.code, 1, end.stderr)
-        self.assertLessEqual(end.seconds, LONGEST_S)
-        self.assertIn("podm-verify: ended early", end.stderr)
-        self.assertFalse(os.path.exists(f"/proc/{child}"))
-        self.assertEqual(list(scratch.iterdir()), [])
-        self.assertEqual({path.name for path in out.iterdir()}, {"out.vtu", "out_facets.vtu"})
-        self.assert_exit(run_podm(out / "out.vtu", "--claims", "structure,delaunay", program=VERIFIER), 0)
 
 
 class OtherCommands(PodmTestCase):
