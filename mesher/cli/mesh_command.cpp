@@ -76,12 +76,14 @@ int run(const MeshCommand& command) {
   SignalThread signals;
   check_outputs(command);
   Crossover crossover = choose_crossover(command);
+  const std::uint64_t limit_bytes = memory_limit_bytes(command);
   LabelImage image;
-  const double read_s =
-      timed([&] { image = read_labelled_image(command.image, command.meshing.loop_threads()); });
+  const double read_s = timed([&] {
+    image = read_labelled_image(command.image, command.meshing.loop_threads(), bytes_for_image(limit_bytes));
+  });
   MeshRun run{.command = command,
               .image = image,
-              .options = meshing_options(command, image),
+              .options = meshing_options(command, image, limit_bytes),
               .crossover = std::move(crossover),
               .result = {},
               .mesh_sha256 = {},
