@@ -58,10 +58,17 @@ std::string limit_in_group(const std::string& controller, const std::string& uni
   return fmt::format("{}", fmt::join(lines, " "));
 }
 
+// The least of all groups around, in bytes.
+std::string memory_limit() {
+  if (control_group_of("memory").folders.empty()) return "unavailable: no control group of memory";
+  const std::uint64_t bytes = memory_limit_of_control_groups();
+  return bytes == kNoLimit ? "max" : fmt::format("{}", bytes);
+}
+
 Json cgroup_limits() {
   return {{"cpu_max", limit_in_group("cpu", "/cpu.max", {"/cpu.cfs_quota_us", "/cpu.cfs_period_us"})},
           {"cpuset", limit_in_group("cpuset", "/cpuset.cpus.effective", {"/cpuset.effective_cpus"})},
-          {"memory_max", limit_in_group("memory", "/memory.max", {"/memory.limit_in_bytes"})}};
+          {"memory_max", memory_limit()}};
 }
 
 std::string trimmed(std::string text) {

@@ -6,6 +6,7 @@
 #include <limits>
 #include <numeric>
 
+#include "memory_model.h"
 #include "runtime/parallel_for.h"
 
 namespace podm {
@@ -13,8 +14,6 @@ namespace podm {
 namespace {
 
 constexpr double kMaxDeltaVoxels = 2;
-constexpr double kBytesPerCell = 110;
-constexpr double kBytesPerVoxel = 6;
 
 std::uint64_t count_foreground(const LabelIndex* row, int size) {
   std::uint32_t count = 0;
@@ -170,7 +169,8 @@ Estimate estimate(const LabelImage& image, const MeshingOptions& options) {
     if (resolved.delta_mm <= 0) resolved.delta_mm = default_delta_mm(image, smallest_radius_mm(options));
     cells = CostModel(image, options.loop_threads()).cells(resolved);
   }
-  return {cells, cells * kBytesPerCell + static_cast<double>(image.num_voxels()) * kBytesPerVoxel};
+  return {cells, cells * kPeakBytesPerMeshCell + static_cast<double>(image.num_voxels()) *
+                                                     (kImageBytesPerVoxel + kTransformBytesPerVoxel)};
 }
 
 Box foreground_bounds(const LabelImage& image, int threads) {

@@ -2,10 +2,8 @@
 #include "podm/mesh_image.h"
 
 #include <malloc.h>
-#include <unistd.h>
 
 #include <algorithm>
-#include <bit>
 #include <cmath>
 #include <limits>
 #include <set>
@@ -14,6 +12,7 @@
 #include "extract_mesh.h"
 #include "image_owners.h"
 #include "measure_quality.h"
+#include "memory_model.h"
 #include "page_sampler.h"
 #include "placement_of_crew.h"
 #include "podm.h"
@@ -31,13 +30,6 @@ double seconds_since(Clock::time_point start) {
 }
 
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
-// Of the store: a cell, a quarter of a vertex at most, an entry of a list that may just have doubled, and
-// what extraction takes more.
-constexpr std::uint64_t kBytesPerCell = sizeof(Cell) + sizeof(CellState) + sizeof(Vertex) / 4 + 28;
-// Scratch of operations, and of those on threads a stack and an allocator's arena.
-constexpr std::uint64_t kBytesPerWorker = 5 << 15, kBytesPerThread = 1 << 20;
-constexpr std::uint64_t kLeastCells = 1 << 12;
-static_assert(4 * kMostStoredCells - 1 < kNoFacet);
 
 bool is_positive_or_zero(double x) { return std::isfinite(x) && x >= 0; }
 
@@ -85,22 +77,6 @@ SizeField size_field(const LabelImage& image, const MeshingOptions& options, dou
     if (own != options.radius_of_mm.end()) radius[i] = own->second;
   }
   return SizeField(std::move(radius));
-}
-
-std::size_t cell_capacity(const MeshingOptions& options, int num_workers) {
-  const std::uint64_t machine = static_cast<std::uint64_t>(sysconf(_SC_PHYS_PAGES)) *
-                                static_cast<std::uint64_t>(sysconf(_SC_PAGE_SIZE));
-  const std::uint64_t bytes = options.max_memory_bytes > 0 ? options.max_memory_bytes : machine;
-  const auto workers = static_cast<std::uint64_t>(num_workers);
-  const std::uint64_t of_workers =
-      workers * (options.executor == Executor::kVirtual ? kBytesPerWorker : kBytesPerThread);
-  const auto fits = [&](std::uint64_t cells) {
-    return of_workers + PoorElementList::stale_bytes(cells, workers) + cells * kBytesPerCell <= bytes;
-  };
-  std::uint64_t cells = kLeastCells;
-  for (std::uint64_t step = std::bit_floor(kMostStoredCells); step > 0; step /= 2)
-    if (cells + step <= kMostStoredCells && fits(cells + step)) cells += step;
-  return cells;
 }
 
 // One call of mesh_image: what its phases share.
@@ -179,8 +155,9 @@ class Run {
     });
     if (options_.log != nullptr) options_.log->restart();
     announce("refine", 0, 0);
+    const std::uint64_t bytes = memory_of_run(options_);
     return run({isosurface, object_, report.delta_mm, size_field(image_, options_, radius_mm),
-                cell_capacity(options_, num_workers())},
+                cell_capacity(bytes, static_cast<std::uint64_t>(num_workers()), options_.executor), bytes},
                watch);
   }
 

@@ -7,6 +7,7 @@
 #include <memory>
 #include <vector>
 
+#include "memory_model.h"
 #include "octree/leaf_region.h"
 #include "podm.h"
 #include "podm/errors.h"
@@ -72,16 +73,24 @@ Octree make_octree(const Problem& problem, const Radii& radii, const Box& box, d
   return Octree(box.low, box.high, finest_mm, largest_side, is_needed);
 }
 
-// Leaves of a size that was asked for fill the whole box: they must not take more memory than the mesh.
-void check_leaf_size(double asked_mm, const Box& box) {
-  constexpr double kMostLeaves = 1 << 21;
+// Leaves of a size that was asked for fill the whole box: they must leave most memory to the mesh. Returns
+// what they take at most.
+std::uint64_t checked_bytes_of_leaves(double asked_mm, const Box& box, std::uint64_t memory_bytes) {
+  constexpr double kMostLeaves = 1 << 21, kBytesPerGib = 1 << 30;
+  constexpr double kMostBytesPerLeaf = kBytesPerCube + kBytesPerLeaf;
   const auto along = [&](double length_mm) { return std::max(1.0, std::ceil(length_mm / asked_mm)); };
   const Vector extent = box.high - box.low;
   const double leaves = along(extent.x) * along(extent.y) * along(extent.z);
-  if (leaves <= kMostLeaves) return;
-  throw InputError(
-      fmt::format("a leaf size of {:g} mm makes {:.2g} leaves, the most are {}; {:.3g} mm makes fewer",
-                  asked_mm, leaves, kMostLeaves, 1.1 * asked_mm * std::cbrt(leaves / kMostLeaves)));
+  const double most_bytes = kMostMemoryOfLeaves * static_cast<double>(memory_bytes);
+  const double most = std::min(kMostLeaves, most_bytes / kMostBytesPerLeaf);
+  if (leaves <= most) return static_cast<std::uint64_t>(leaves * kMostBytesPerLeaf);
+  const std::string told = fmt::format("a leaf size of {:g} mm makes {:.2g} leaves", asked_mm, leaves);
+  const double enough_mm = 1.1 * asked_mm * std::cbrt(leaves / most);
+  if (leaves > kMostLeaves)
+    throw InputError(fmt::format("{}, the most are {}; {:.3g} mm makes fewer", told, kMostLeaves, enough_mm));
+  throw InputError(fmt::format(
+      "{}, which take {:.3g} GiB; of the memory limit leaves may have {:.3g} GiB; {:.3g} mm makes fewer",
+      told, leaves * kMostBytesPerLeaf / kBytesPerGib, most_bytes / kBytesPerGib, enough_mm));
 }
 
 // Sides by the labels' bounds, longer where a leaf has to feed several workers, so that each has as much as
@@ -127,7 +136,9 @@ Refinement refine_by_leaves(const Problem& problem, const Crew& crew, const Leaf
   const double initial_radius_mm = ratio * radii.least;
   const double shell_mm = kShellOverRadius * initial_radius_mm;
   const Box clamp = grown(problem.object, std::max(2 * ratio * problem.delta_mm, shell_mm));
-  if (options.leaf_size_mm > 0) check_leaf_size(options.leaf_size_mm, clamp);
+  const std::uint64_t bytes_of_leaves =
+      options.leaf_size_mm > 0 ? checked_bytes_of_leaves(options.leaf_size_mm, clamp, problem.memory_bytes)
+                               : 0;  // few
 
   Parameters initial = parameters_for(problem, ratio, clamp);
   initial.shell_mm = shell_mm;
@@ -135,6 +146,7 @@ Refinement refine_by_leaves(const Problem& problem, const Crew& crew, const Leaf
   const Parameters final = parameters_for(problem, 1, clamp);
 
   Refiner refiner(problem, clamp, crew, watch);
+  refiner.withhold(bytes_of_leaves);
   refiner.refine_anywhere("initial", initial, refiner.all_cells(), options.initial_workers);
   if (refiner.is_over()) {
     refiner.timed("refine", [] {});  // every run has this phase
@@ -144,6 +156,7 @@ Refinement refine_by_leaves(const Problem& problem, const Crew& crew, const Leaf
   refiner.timed("octree", [&] {
     octree = fit_octree(problem, radii, clamp, options, refiner.num_workers() / options.num_nodes);
   });
+  refiner.withhold(octree->num_cubes() * kBytesPerCube + octree->num_leaves() * kBytesPerLeaf);
   const Refiner::Entries left =
       refiner.refine_leaves<Locks>("refine", final, *octree, options.num_nodes, options.with_schedule);
   refiner.refine_anywhere("closing", final, left, refiner.num_workers());

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <boost/thread/scoped_thread.hpp>
 
+#include "memory_model.h"
 #include "refine/thread_executor.h"
 #include "refine/virtual_box.h"
 #include "refine/virtual_executor.h"
@@ -14,9 +15,6 @@ namespace {
 
 // The phase in which store, pools, workers and threads are made ready.
 constexpr const char* kAllocate = "allocate";
-
-// Octree, queue and list of a leaf.
-constexpr std::size_t kBytesPerLeaf = 192;
 
 // The groups of the first workers alone.
 WorkerGroups first_of(WorkerGroups groups, int num_workers) {
@@ -175,7 +173,6 @@ template <class Locks, class RunNodes>
 Refiner::Entries Refiner::run_leaves(const Parameters& parameters, const Octree& octree, int num_nodes,
                                      bool with_schedule, std::function<double()> clock,
                                      const RunNodes& run_nodes) {
-  result_.mesh->withhold(octree.num_leaves() * kBytesPerLeaf);
   auto workers = make_workers<Locks>(parameters, num_workers());
   LeafRefinement leaves(mesh(), octree, static_cast<unsigned>(num_nodes), all_cells(), std::move(clock),
                         watch_.over());
@@ -240,8 +237,17 @@ template Refiner::Entries Refiner::refine_leaves<LeafLocks<VertexLocks>>(const s
                                                                          const Parameters&, const Octree&,
                                                                          int, bool);
 
+void Refiner::withhold(std::uint64_t bytes) {
+  const std::uint64_t cells = (bytes + kBytesPerStoredCell - 1) / kBytesPerStoredCell;
+  if (!result_.mesh->withhold(cells)) watch_.end(StopReason::kMemoryLimit);
+}
+
+// Memory may be left where there are no more numbers for cells.
 Refinement Refiner::finish() {
   result_.stop_reason = watch_.reason();
+  if (result_.stop_reason == StopReason::kMemoryLimit && mesh().is_used_up() &&
+      problem_.cell_capacity >= problem_.most_numbered_cells)
+    result_.stop_reason = StopReason::kNumberLimit;
   result_.counters = sum_of(result_.workers);
   return std::move(result_);
 }

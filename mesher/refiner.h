@@ -1,6 +1,7 @@
 // What the algorithms are made of: a store, the workers' pools, and phases that refine it one after another.
 #pragma once
 
+#include <limits>
 #include <map>
 #include <memory>
 #include <vector>
@@ -23,6 +24,9 @@ struct Problem {
   double delta_mm = 0;
   SizeField sizes;
   std::size_t cell_capacity = 0;  // the most cells the store may hold
+  // What store, workers and leaves may take together. The capacity takes workers into account, not leaves.
+  std::uint64_t memory_bytes = std::numeric_limits<std::uint64_t>::max();
+  std::size_t most_numbered_cells = kMostStoredCells;  // a capacity as large is none of memory
 };
 
 /// Who refines.
@@ -68,6 +72,10 @@ class Refiner {
   template <class Locks>
   Entries refine_leaves(const std::string& phase, const Parameters& parameters, const Octree& octree,
                         int num_nodes, bool with_schedule);
+
+  /// Keeps so much memory free of the store, instead of what was withheld before. Where the store has it
+  /// already the run is over.
+  void withhold(std::uint64_t bytes);
 
   /// Charges the phase with the action's seconds, but for those that were charged to others meanwhile.
   template <class Action>

@@ -16,6 +16,8 @@ std::string to_string(StopReason reason) {
       return "time limit";
     case StopReason::kMemoryLimit:
       return "memory limit";
+    case StopReason::kNumberLimit:
+      return "limit of 2^30 cells in the store";
   }
   throw InternalError("unknown stop reason");
 }

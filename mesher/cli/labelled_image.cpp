@@ -16,10 +16,10 @@ bool is_called(const Label& label, const std::string& name_or_value) {
 
 }  // namespace
 
-LabelImage read_labelled_image(const ImageArguments& arguments, int threads) {
+LabelImage read_labelled_image(const ImageArguments& arguments, int threads, std::uint64_t most_bytes) {
   std::map<std::uint32_t, std::string> names;  // before the image: a fault shows at once
   if (!arguments.label_names_path.empty()) names = read_label_names(arguments.label_names_path);
-  LabelImage image = read_image(arguments.path, arguments.selection, threads);
+  LabelImage image = read_image(arguments.path, arguments.selection, threads, most_bytes);
   for (Label& label : image.labels) {
     const auto named = names.find(label.value);
     if (label.name.empty() && named != names.end()) label.name = named->second;

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstdint>
+#include <limits>
 #include <map>
 #include <string>
 #include <utility>
@@ -12,8 +13,10 @@
 
 namespace podm::cli {
 
-/// Reads the image and gives names from the table to labels that have none yet. `threads`: 0 for all cores.
-LabelImage read_labelled_image(const ImageArguments& arguments, int threads = 0);
+/// Reads the image and gives names from the table to labels that have none yet. `threads` and
+/// `most_bytes` are those of read_image().
+LabelImage read_labelled_image(const ImageArguments& arguments, int threads = 0,
+                               std::uint64_t most_bytes = std::numeric_limits<std::uint64_t>::max());
 
 /// Lengths by label value. A name stands for every label that bears it. Throws InputError, naming
 /// `image_path`, where a label is absent.

@@ -78,12 +78,14 @@ int run(const MeshCommand& command) {
   std::optional<AppendedFile> records;
   if (!command.record_path.empty()) records.emplace(command.record_path);
   Crossover crossover = choose_crossover(command);
+  const std::uint64_t limit_bytes = memory_limit_bytes(command);
   LabelImage image;
-  const double read_s =
-      timed([&] { image = read_labelled_image(command.image, command.meshing.loop_threads()); });
+  const double read_s = timed([&] {
+    image = read_labelled_image(command.image, command.meshing.loop_threads(), bytes_for_image(limit_bytes));
+  });
   MeshRun run{.command = command,
               .image = image,
-              .options = meshing_options(command, image),
+              .options = meshing_options(command, image, limit_bytes),
               .crossover = std::move(crossover),
               .result = {},
               .mesh_sha256 = {},

@@ -3,9 +3,11 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <limits>
 
 #include "cli/labelled_image.h"
 #include "cli/process_memory.h"
+#include "memory_model.h"
 #include "podm/errors.h"
 
 namespace podm::cli {
@@ -13,8 +15,6 @@ namespace {
 
 constexpr double kShareOfAvailableMemory = 0.8;
 constexpr double kBytesPerGib = 1024.0 * 1024 * 1024;
-constexpr std::uint64_t kTransformBytesPerVoxel = 4;
-constexpr std::uint64_t kBytesOfOutput = 6 << 20;  // buffers, record, code not yet touched
 constexpr std::uint64_t kLeastBytesForMesh = 1 << 20;
 
 void refuse_coarse_sampling(const MeshCommand& command, const LabelImage& image) {
@@ -26,27 +26,25 @@ void refuse_coarse_sampling(const MeshCommand& command, const LabelImage& image)
                                  command.meshing.delta_mm, longest_mm));
 }
 
-// An element limit below the estimate bounds the run instead.
+// An element limit below the estimate bounds memory instead, and what has to be numbered.
 void refuse_what_cannot_fit(const std::string& image_path, const LabelImage& image,
                             const MeshingOptions& options, std::uint64_t limit_bytes) {
   const Estimate expected = estimate(image, options);
-  if (options.max_elements > 0 && static_cast<double>(options.max_elements) < expected.cells) return;
-  if (expected.memory_bytes > static_cast<double>(limit_bytes))
+  const double most_cells = options.max_elements > 0 ? static_cast<double>(options.max_elements)
+                                                     : std::numeric_limits<double>::infinity();
+  if (expected.memory_bytes > static_cast<double>(limit_bytes) && most_cells >= expected.cells)
     throw InputError(fmt::format(
         "{}: these options ask for about {:.2g} cells and {:.3g} GiB of memory, the limit is {:.3g} GiB; "
         "use a larger radius or delta, or --max-memory-gib",
         image_path, expected.cells, expected.memory_bytes / kBytesPerGib,
         static_cast<double>(limit_bytes) / kBytesPerGib));
-  if (expected.cells > static_cast<double>(kMostStoredCells))
+  const double stored_cells = std::min(most_cells, kStoredCellsPerMeshCell * expected.cells);
+  if (stored_cells > static_cast<double>(kMostStoredCells))
     throw InputError(fmt::format(
-        "{}: these options ask for about {:.2g} cells, and no more than 2^30 can be numbered; use a "
-        "larger radius or delta",
-        image_path, expected.cells));
-}
-
-std::uint64_t memory_limit_bytes(const MeshCommand& command) {
-  if (command.max_memory_bytes > 0) return command.max_memory_bytes;
-  return static_cast<std::uint64_t>(kShareOfAvailableMemory * static_cast<double>(available_memory_bytes()));
+        "{}: these options ask for about {:.2g} cells while the mesh is made, those of the background among "
+        "them, and no more than 2^30 can be numbered; use a larger radius or delta, or a smaller "
+        "--max-elements",
+        image_path, stored_cells));
 }
 
 // What program, image and transform leave of the limit.
@@ -63,11 +61,20 @@ std::uint64_t bytes_for_mesh(std::uint64_t limit_bytes, const std::string& image
 
 }  // namespace
 
-MeshingOptions meshing_options(const MeshCommand& command, const LabelImage& image) {
+std::uint64_t memory_limit_bytes(const MeshCommand& command) {
+  if (command.max_memory_bytes > 0) return command.max_memory_bytes;
+  return static_cast<std::uint64_t>(kShareOfAvailableMemory * static_cast<double>(available_memory_bytes()));
+}
+
+std::uint64_t bytes_for_image(std::uint64_t limit_bytes) {
+  return limit_bytes - std::min(limit_bytes, resident_bytes() + kBytesOfOutput);
+}
+
+MeshingOptions meshing_options(const MeshCommand& command, const LabelImage& image,
+                               std::uint64_t limit_bytes) {
   MeshingOptions options = command.meshing;
   options.radius_of_mm = lengths_by_value(command.radius_of_mm, image, command.image.path);
   refuse_coarse_sampling(command, image);
-  const std::uint64_t limit_bytes = memory_limit_bytes(command);
   refuse_what_cannot_fit(command.image.path, image, options, limit_bytes);
   options.max_memory_bytes = bytes_for_mesh(limit_bytes, command.image.path, image);
   return options;

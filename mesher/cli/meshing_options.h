@@ -1,14 +1,22 @@
 // From what was asked on the command line to what the library is told, given the image and the machine.
 #pragma once
 
+#include <cstdint>
+
 #include "cli/options.h"
 #include "podm/label_image.h"
 #include "podm/mesh_image.h"
 
 namespace podm::cli {
 
+/// What the process may take: as asked for, else a share of what is available now, before the image is read.
+std::uint64_t memory_limit_bytes(const MeshCommand& command);
+/// What of it the image may take while it is read.
+std::uint64_t bytes_for_image(std::uint64_t limit_bytes);
+
 /// Throws InputError, naming the image and the fault, where a label is absent, delta exceeds the image, or
 /// the run is expected to need more memory than allowed.
-MeshingOptions meshing_options(const MeshCommand& command, const LabelImage& image);
+MeshingOptions meshing_options(const MeshCommand& command, const LabelImage& image,
+                               std::uint64_t limit_bytes);
 
 }  // namespace podm::cli

@@ -19,7 +19,10 @@ class IdArena {
  public:
   /// Ids below `capacity`. 2^run_bits ids make a run, of which blocks are taken; none is larger.
   IdArena(std::size_t capacity, int num_nodes, unsigned run_bits)
-      : capacity_(capacity), run_bits_(run_bits), nodes_(static_cast<std::size_t>(num_nodes)) {
+      : num_ids_(capacity),
+        capacity_(capacity),
+        run_bits_(run_bits),
+        nodes_(static_cast<std::size_t>(num_nodes)) {
     if (num_nodes > 1) node_of_run_.resize((capacity >> run_bits) + 1);
   }
 
@@ -40,11 +43,15 @@ class IdArena {
     own.next += count;
     return own.next - count;
   }
-  /// So many ids less may be taken from now on, if there are as many left.
-  void withhold(std::size_t count) {
+  /// So many ids less may be taken than there are, whatever was withheld before; false: more are taken
+  /// already.
+  bool withhold(std::size_t count) {
     const std::scoped_lock lock(mutex_);
-    capacity_ = std::max<std::size_t>(bound(), capacity_ - std::min(capacity_, count));
+    capacity_ = num_ids_ - std::min(num_ids_, count);
+    return bound() <= capacity_;
   }
+  /// Whether somebody asked for more ids than there were.
+  bool is_used_up() const { return is_used_up_.load(std::memory_order_relaxed); }
   /// Ids of any node that nobody uses; takes them out of `ids` one by one. Throws std::bad_alloc.
   void give_back(std::vector<std::uint32_t>& ids) {
     const std::scoped_lock lock(mutex_);
@@ -75,20 +82,24 @@ class IdArena {
   void start_run(std::uint32_t count, NodeIndex node) {
     const std::uint32_t first = bound();
     const std::uint32_t size = node_of_run_.empty() ? count : 1u << run_bits_;
-    if (first + static_cast<std::size_t>(size) > capacity_) throw std::bad_alloc();
+    if (first + static_cast<std::size_t>(size) > capacity_) {
+      is_used_up_.store(true, std::memory_order_relaxed);
+      throw std::bad_alloc();
+    }
     if (!node_of_run_.empty()) node_of_run_[first >> run_bits_] = node;
     bound_.store(first + size, std::memory_order_relaxed);
     nodes_[node].next = first;
     nodes_[node].end = first + size;
   }
 
-  std::size_t capacity_;
+  std::size_t num_ids_, capacity_;  // those that are withheld lie between
   unsigned run_bits_;
   std::mutex mutex_;
   std::vector<OfNode> nodes_;
   std::vector<NodeIndex> node_of_run_;  // empty on one node
   // Relaxed: an id is handed on under locks, or with a list entry under a mutex.
   std::atomic<std::uint32_t> bound_ = 0;
+  std::atomic<bool> is_used_up_ = false;
 };
 
 }  // namespace podm

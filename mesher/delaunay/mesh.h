@@ -169,8 +169,11 @@ class Mesh {
   void release_cells(CellId begin, CellId end) { cells_.release(begin, end); }
   void release_vertices(VertexId begin, VertexId end) { vertices_.release(begin, end); }
 
-  /// The store is to take so many bytes less than it might have: others need them.
-  void withhold(std::size_t bytes) { cell_ids_.withhold(bytes / (sizeof(Cell) + sizeof(CellState))); }
+  /// The store is to have so many cells less than its capacity, whatever was withheld before: others need the
+  /// memory. False: it has more already, and gets none any more.
+  bool withhold(std::size_t cells) { return cell_ids_.withhold(cells); }
+  /// Whether a cell or a vertex was wanted beyond the capacity.
+  bool is_used_up() const { return cell_ids_.is_used_up() || vertex_ids_.is_used_up(); }
 
   /// Which ids there are, and whose; pools take them.
   IdArena& cell_ids() { return cell_ids_; }

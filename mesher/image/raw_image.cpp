@@ -2,6 +2,8 @@
 
 #include <algorithm>
 #include <cmath>
+#include <iomanip>
+#include <sstream>
 
 #include "podm/errors.h"
 #include "podm/label_image.h"
@@ -100,6 +102,20 @@ std::size_t checked_num_voxels(const std::string& path, const std::vector<int>& 
     voxels *= n;
   }
   return voxels;
+}
+
+std::size_t checked_num_bytes(const RawImage& raw, std::uint64_t most_bytes) {
+  const std::size_t voxels = checked_num_voxels(raw.path, raw.size), needed = voxels * bytes_of(raw.type);
+  const std::uint64_t while_read = needed + voxels * sizeof(LabelIndex);
+  if (while_read <= most_bytes) return needed;
+  const auto gib = [](std::uint64_t bytes) {
+    std::ostringstream text;
+    text << std::setprecision(3) << static_cast<double>(bytes) / (1 << 30) << " GiB";
+    return text.str();
+  };
+  refuse(raw.path, "its voxels take " + gib(while_read) +
+                       " while they are read, and there is no room for more than " + gib(most_bytes) +
+                       " below the memory limit");
 }
 
 std::array<double, 3> checked_spacing(const std::string& path, std::array<double, 12>& voxel_to_ras) {

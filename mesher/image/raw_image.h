@@ -3,6 +3,7 @@
 
 #include <array>
 #include <cstddef>
+#include <cstdint>
 #include <string>
 #include <vector>
 
@@ -30,6 +31,10 @@ void swap_bytes(std::vector<unsigned char>& bytes, std::size_t width);
 /// The number of voxels. Throws InputError unless the image has three axes (further ones of length 1), none
 /// empty, and at most kMaxVoxels.
 std::size_t checked_num_voxels(const std::string& path, const std::vector<int>& size);
+
+/// Bytes of all voxels, checked as above before memory is asked for. Throws InputError where these and their
+/// labels take more than `most_bytes` while they are read.
+std::size_t checked_num_bytes(const RawImage& raw, std::uint64_t most_bytes);
 
 /// The voxel spacing, mm. Axes that are orthogonal but for the rounding of the file's header are made exactly
 /// so, in place. Throws InputError on a singular or non-finite affine.

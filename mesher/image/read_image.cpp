@@ -20,16 +20,16 @@ bool has_ending(const std::string& path, std::initializer_list<const char*> endi
                      [&](const char* ending) { return path.ends_with(ending); });
 }
 
-RawImage read_raw(const std::string& path) {
-  if (has_ending(path, {".inr", ".inr.gz"})) return read_inr(path);
-  if (has_ending(path, {".nii", ".nii.gz"})) return read_nifti(path);
-  if (has_ending(path, {".nrrd", ".nhdr", ".mha", ".mhd"})) return read_with_itk(path);
+RawImage read_raw(const std::string& path, std::uint64_t most_bytes) {
+  if (has_ending(path, {".inr", ".inr.gz"})) return read_inr(path, most_bytes);
+  if (has_ending(path, {".nii", ".nii.gz"})) return read_nifti(path, most_bytes);
+  if (has_ending(path, {".nrrd", ".nhdr", ".mha", ".mhd"})) return read_with_itk(path, most_bytes);
   refuse(path, "unknown image format (known: .nii .nii.gz .nrrd .nhdr .mha .mhd .inr .inr.gz, phantom:NAME)");
 }
 
 // Labels by value: the background is not known yet.
-LabelImage read_file(const std::string& path, std::size_t threads) {
-  RawImage raw = read_raw(path);
+LabelImage read_file(const std::string& path, std::size_t threads, std::uint64_t most_bytes) {
+  RawImage raw = read_raw(path, most_bytes);
   LabelImage image;
   image.size = {raw.size[0], raw.size[1], raw.size[2]};
   image.spacing = checked_spacing(path, raw.voxel_to_ras);
@@ -52,9 +52,11 @@ LabelImage read_phantom(const std::string& spec, int threads) {
 
 }  // namespace
 
-LabelImage read_image(const std::string& path, const LabelSelection& selection, int threads) {
+LabelImage read_image(const std::string& path, const LabelSelection& selection, int threads,
+                      std::uint64_t most_bytes) {
   const std::size_t used = num_threads(threads);
-  LabelImage image = path.starts_with("phantom:") ? read_phantom(path, threads) : read_file(path, used);
+  LabelImage image =
+      path.starts_with("phantom:") ? read_phantom(path, threads) : read_file(path, used, most_bytes);
   select_labels(image, selection, path, used);
   return image;
 }

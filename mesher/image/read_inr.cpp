@@ -76,7 +76,7 @@ bool is_big_endian(const std::string& path, const Header& header) {
 
 }  // namespace
 
-RawImage read_inr(const std::string& path) {
+RawImage read_inr(const std::string& path, std::uint64_t most_bytes) {
   static_assert(std::endian::native == std::endian::little);
   InputFile file(path);
   const Header header = read_header(file, path);
@@ -86,7 +86,7 @@ RawImage read_inr(const std::string& path) {
               number(path, header, "ZDIM", 0)};
   if (number(path, header, "VDIM", 1) != 1) refuse(path, "one value a voxel is needed (VDIM is not 1)");
   raw.type = voxel_type(path, header);
-  const std::size_t needed = checked_num_voxels(path, raw.size) * bytes_of(raw.type);
+  const std::size_t needed = checked_num_bytes(raw, most_bytes);
   file.expect_room_for(needed);
   raw.bytes.resize(needed);
   file.read(raw.bytes.data(), needed);

@@ -98,7 +98,7 @@ void read_compressed_voxels(const VoxelData& data, RawImage& raw, std::size_t ne
 
 }  // namespace
 
-RawImage read_with_itk(const std::string& path) {
+RawImage read_with_itk(const std::string& path, std::uint64_t most_bytes) {
   const VoxelData data = is_nrrd(path) ? find_nrrd_voxels(path) : find_meta_voxels(path);
   const itk::ImageIOBase::Pointer io = reader_for(path);
   constexpr itk::SizeValueType kLongestAxis = std::numeric_limits<int>::max();
@@ -114,7 +114,7 @@ RawImage read_with_itk(const std::string& path) {
           static_cast<int>(std::min<itk::SizeValueType>(io->GetDimensions(axis), kLongestAxis)));
     }
     raw.type = voxel_type(path, *io);
-    const std::size_t needed = checked_num_voxels(path, raw.size) * bytes_of(raw.type);
+    const std::size_t needed = checked_num_bytes(raw, most_bytes);
     if (data.is_compressed && !is_nrrd(path)) {
       read_compressed_voxels(data, raw, needed);
     } else {

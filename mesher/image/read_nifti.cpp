@@ -105,7 +105,7 @@ std::uint64_t voxel_offset(const nifti_1_header& header, const std::string& path
 
 }  // namespace
 
-RawImage read_nifti(const std::string& path) {
+RawImage read_nifti(const std::string& path, std::uint64_t most_bytes) {
   InputFile file(path);
   const auto [header, is_swapped] = read_header(file, path);
   RawImage raw;
@@ -119,7 +119,7 @@ RawImage read_nifti(const std::string& path) {
     for (std::size_t column = 0; column < 4; ++column)
       raw.voxel_to_ras[4 * row + column] = unit_mm(header) * static_cast<double>(a.m[row][column]);
 
-  const std::size_t needed = checked_num_voxels(path, raw.size) * bytes_of(raw.type);
+  const std::size_t needed = checked_num_bytes(raw, most_bytes);
   file.expect_room_for(needed);
   file.skip(voxel_offset(header, path) - sizeof header);
   raw.bytes.resize(needed);

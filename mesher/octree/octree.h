@@ -40,6 +40,8 @@ class Octree {
          const IsNeeded& is_needed);
 
   LeafId num_leaves() const { return static_cast<LeafId>(cube_of_leaf_.size()); }
+  /// Leaves and gaps.
+  std::size_t num_cubes() const { return cubes_.size(); }
   const GridCube& cube(LeafId leaf) const { return cubes_[cube_of_leaf_[leaf]]; }
 
   /// The grid coordinates of p, (p - origin()) / finest_side_mm() but for rounding.

@@ -3,15 +3,12 @@
 #include <algorithm>
 #include <filesystem>
 #include <fstream>
-#include <limits>
 #include <optional>
 #include <sstream>
 
 namespace podm {
 
 namespace {
-
-constexpr std::uint64_t kNoLimit = std::numeric_limits<std::uint64_t>::max();
 
 struct Mount {
   std::string root, point, type, options;
@@ -46,14 +43,24 @@ std::optional<Mount> parse_mount(const std::string& line) {
   return Mount{unescaped(root), unescaped(point), type, options};
 }
 
+bool is_in_tree(const std::string& group, const std::string& tree) {
+  return tree == "/" || group == tree || group.starts_with(tree + "/");
+}
+
+// Of those that show the group, the one that shows most of the groups around it. Another's group may be
+// mounted as well; that counts only where no mount shows ours, as in containers that are told other paths.
 std::optional<Mount> find_mount(const std::string& root, const std::string& type,
-                                const std::string& controller) {
+                                const std::string& controller, const std::string& group) {
   std::ifstream file(root + "/proc/self/mountinfo");
-  for (std::string line; std::getline(file, line);)
-    if (const auto mount = parse_mount(line);
-        mount && mount->type == type && (controller.empty() || lists(mount->options, controller)))
-      return mount;
-  return {};
+  std::optional<Mount> best;
+  for (std::string line; std::getline(file, line);) {
+    const auto mount = parse_mount(line);
+    if (!mount || mount->type != type || !(controller.empty() || lists(mount->options, controller))) continue;
+    const bool shows_it = is_in_tree(group, mount->root),
+               best_shows_it = best && is_in_tree(group, best->root);
+    if (!best || (shows_it && (!best_shows_it || mount->root.size() < best->root.size()))) best = mount;
+  }
+  return best;
 }
 
 // Of the hierarchy that has the controller, or of version 2 for an empty name: the line
@@ -73,7 +80,7 @@ std::optional<std::string> group_path(const std::string& root, const std::string
 // From the group up to what is mounted. A container may see less of the path than it is told.
 std::vector<std::string> folders_of(const std::string& root, const Mount& mount, const std::string& group) {
   std::string inside = group;
-  if (mount.root != "/") inside = group.starts_with(mount.root) ? group.substr(mount.root.size()) : "";
+  if (mount.root != "/") inside = is_in_tree(group, mount.root) ? group.substr(mount.root.size()) : "";
   std::vector<std::string> folders;
   for (std::filesystem::path path(inside); path.has_relative_path(); path = path.parent_path())
     if (const std::string folder = root + mount.point + path.string(); std::filesystem::exists(folder))
@@ -99,33 +106,54 @@ std::uint64_t read_value(const std::string& path, const std::string& key) {
   return 0;
 }
 
+// Version 1 writes a number near 2^63 for none. Above memory.high the kernel takes memory back and holds the
+// process up, which is the end of meshing as well.
+std::uint64_t memory_limit_of(const std::string& folder, bool is_unified) {
+  constexpr std::uint64_t kNone = std::uint64_t{1} << 62;
+  std::uint64_t least = kNoLimit;
+  const std::vector<const char*> unified{"/memory.max", "/memory.high"}, legacy{"/memory.limit_in_bytes"};
+  for (const char* file : is_unified ? unified : legacy)
+    if (const auto most = read_number(folder + file); most && *most < kNone) least = std::min(least, *most);
+  return least;
+}
+
 std::uint64_t memory_left_in(const std::string& folder, bool is_unified) {
-  const auto most = read_number(folder + (is_unified ? "/memory.max" : "/memory.limit_in_bytes"));
+  const std::uint64_t most = memory_limit_of(folder, is_unified);
   const auto used = read_number(folder + (is_unified ? "/memory.current" : "/memory.usage_in_bytes"));
-  if (!most || !used) return kNoLimit;
+  if (most == kNoLimit || !used) return kNoLimit;
   const std::uint64_t droppable =
       read_value(folder + "/memory.stat", is_unified ? "inactive_file" : "total_inactive_file");
   const std::uint64_t needed = *used - std::min(*used, droppable);
-  return *most - std::min(*most, needed);
+  return most - std::min(most, needed);
+}
+
+template <class BytesIn>
+std::uint64_t least_of_groups(const std::string& root, const BytesIn& bytes_in) {
+  const ControlGroup groups = control_group_of("memory", root);
+  std::uint64_t least = kNoLimit;
+  for (const std::string& folder : groups.folders)
+    least = std::min(least, bytes_in(folder, groups.is_unified));
+  return least;
 }
 
 }  // namespace
 
 ControlGroup control_group_of(const std::string& controller, const std::string& root) {
   if (const auto group = group_path(root, controller))
-    if (const auto mount = find_mount(root, "cgroup", controller))
+    if (const auto mount = find_mount(root, "cgroup", controller, *group))
       return {folders_of(root, *mount, *group), false};
   if (const auto group = group_path(root, ""))
-    if (const auto mount = find_mount(root, "cgroup2", "")) return {folders_of(root, *mount, *group), true};
+    if (const auto mount = find_mount(root, "cgroup2", "", *group))
+      return {folders_of(root, *mount, *group), true};
   return {};
 }
 
+std::uint64_t memory_limit_of_control_groups(const std::string& root) {
+  return least_of_groups(root, memory_limit_of);
+}
+
 std::uint64_t memory_left_in_control_groups(const std::string& root) {
-  const ControlGroup groups = control_group_of("memory", root);
-  std::uint64_t left = kNoLimit;
-  for (const std::string& folder : groups.folders)
-    left = std::min(left, memory_left_in(folder, groups.is_unified));
-  return left;
+  return least_of_groups(root, memory_left_in);
 }
 
 }  // namespace podm

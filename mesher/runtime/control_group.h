@@ -3,6 +3,7 @@
 #pragma once
 
 #include <cstdint>
+#include <limits>
 #include <string>
 #include <vector>
 
@@ -18,8 +19,14 @@ struct ControlGroup {
 /// Of "memory", "cpu" or "cpuset". `root` stands before /proc and /sys, for trees recorded elsewhere.
 ControlGroup control_group_of(const std::string& controller, const std::string& root = "");
 
+/// More bytes than any limit.
+inline constexpr std::uint64_t kNoLimit = std::numeric_limits<std::uint64_t>::max();
+
+/// The least of the groups' limits; kNoLimit where none has one. Of version 2 memory.high is a limit as well
+/// as memory.max.
+std::uint64_t memory_limit_of_control_groups(const std::string& root = "");
 /// Bytes that the groups still grant, the least of them; pages of files that can be dropped are not counted
-/// as used. The largest number where none has a limit.
+/// as used. kNoLimit where none has a limit.
 std::uint64_t memory_left_in_control_groups(const std::string& root = "");
 
 }  // namespace podm

@@ -43,9 +43,16 @@ class InAControlGroup(PodmTestCase):
             raise unittest.SkipTest("no control group") from error
 
     def test_the_limit_of_the_group_around_ends_the_run_before_the_kernel_does(self):
-        image = small_images.write_nifti(self.folder / "ball.nii", small_images.ball_voxels(40), (40, 40, 40))
+        self.check(small_images.ball_voxels(40), 40, "--verify")
+
+    # Its voxels and the transform take 56 MB of the 84 MB that are granted.
+    def test_an_image_is_counted_once(self):
+        self.check(bytes([1]) * 210 ** 3, 210)
+
+    def check(self, voxels, size, *options):
+        image = small_images.write_nifti(self.folder / "image.nii", voxels, (size,) * 3)
         procs = self.groups[-1] / "cgroup.procs"
-        process = run_podm("mesh", image, *TOO_FEW, "-o", self.folder / "out.vtu", "--verify", "--quiet",
+        process = run_podm("mesh", image, *TOO_FEW, "-o", self.folder / "out.vtu", "--quiet", *options,
                            preexec_fn=lambda: procs.write_text(str(os.getpid())))
         self.assert_exit(process, 1)
         self.assertIn("memory limit", process.stderr)

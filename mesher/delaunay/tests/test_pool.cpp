@@ -49,6 +49,21 @@ TEST(FreeIds, GoHome) {
   EXPECT_LE(arena.bound(), 2u << 12);
 }
 
+TEST(IdArena, WithholdsWhatItIsToldLast) {
+  IdArena arena(100, 1, 12);
+  arena.take(10, 0);
+  EXPECT_TRUE(arena.withhold(80));
+  arena.take(10, 0);
+  EXPECT_FALSE(arena.is_used_up());
+  EXPECT_THROW(arena.take(1, 0), std::bad_alloc);
+  EXPECT_TRUE(arena.is_used_up());
+  EXPECT_TRUE(arena.withhold(70)) << "ten are given back";
+  arena.take(10, 0);
+  EXPECT_FALSE(arena.withhold(71)) << "thirty are taken";
+  EXPECT_THROW(arena.take(1, 0), std::bad_alloc);
+  EXPECT_FALSE(arena.withhold(1000));
+}
+
 TEST(Pool, ReusesTheDyingCellsOfItsNode) {
   const Box box{{0, 0, 0}, {1, 1, 1}};
   Mesh mesh(box, 1 << 20, 2);

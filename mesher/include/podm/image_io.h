@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstdint>
+#include <limits>
 #include <map>
 #include <string>
 #include <vector>
@@ -33,7 +34,9 @@ std::map<std::uint32_t, std::string> read_label_names(const std::string& path);
 
 /// Reads NIfTI, NRRD, MetaImage, INR (each .gz where usual), or "phantom:NAME[@SIZE]".
 /// Throws InputError naming the file and the fault. Labels are sorted by value. `threads`: 0 for all cores.
-LabelImage read_image(const std::string& path, const LabelSelection& selection = {}, int threads = 0);
+/// `most_bytes`: what a file's voxels and their labels may take together while they are read.
+LabelImage read_image(const std::string& path, const LabelSelection& selection = {}, int threads = 0,
+                      std::uint64_t most_bytes = std::numeric_limits<std::uint64_t>::max());
 
 /// The analytic phantoms: "abdomen", "spheres", "torus"; `size` voxels along the longest axis.
 LabelImage make_phantom(const std::string& name, int size, int threads = 0);

@@ -104,7 +104,8 @@ struct Estimate {
   double memory_bytes = 0;  ///< peak of the whole process
 };
 
-enum class StopReason { kComplete, kCancelled, kElementLimit, kTimeLimit, kMemoryLimit };
+/// kNumberLimit: kMostStoredCells were made, though memory was left.
+enum class StopReason { kComplete, kCancelled, kElementLimit, kTimeLimit, kMemoryLimit, kNumberLimit };
 std::string to_string(StopReason reason);
 
 struct Progress {

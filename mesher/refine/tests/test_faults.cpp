@@ -10,6 +10,7 @@
 #include "failing_threads.h"
 #include "images.h"
 #include "podm.h"
+#include "podm/errors.h"
 #include "podm/operation_log.h"
 
 namespace podm::test {
@@ -29,9 +30,11 @@ const std::vector<Setup> kSetups{
 
 class Faults : public testing::TestWithParam<Setup> {
  protected:
-  Refinement refine(Watch& watch, std::size_t cell_capacity = 1 << 20) {
+  Refinement refine(Watch& watch, std::size_t cell_capacity = 1 << 20, std::size_t most_numbered = 1 << 30,
+                    std::uint64_t memory_bytes = 1 << 30) {
     const auto [algorithm, executor, num_workers] = GetParam();
-    const Problem problem{isosurface_, foreground_bounds(image_), 1.2, sizes_, cell_capacity};
+    const Problem problem{isosurface_,  foreground_bounds(image_), 1.2, sizes_, cell_capacity, memory_bytes,
+                          most_numbered};
     const Crew crew{executor, {num_workers, Contention::kLocal, {}, 3}};
     if (algorithm == Algorithm::kPodm) return podm(problem, crew, watch);
     const LeafOptions leaves{.num_nodes = algorithm == Algorithm::kPdr ? num_workers : 2,
@@ -54,9 +57,12 @@ class Faults : public testing::TestWithParam<Setup> {
   SizeField sizes_{std::vector<double>(2, 1.6)};
 };
 
+// Each of the first, which are all of a run of podm on one thread; of the thousands of leaf by leaf some, at
+// distances that grow.
 TEST_P(Faults, AllocationsThatFailLeaveAValidMesh) {
+  constexpr std::int64_t kOneByOne = 150;
   int num_ended = 0, num_complete = 0;
-  for (std::int64_t left = 0; num_complete < 3; left += 1 + left / 8) {
+  for (std::int64_t left = 0; num_complete < 3; left += left < kOneByOne ? 1 : 1 + left / 8) {
     Watch watch = patient();
     allocations_left = left;
     try {
@@ -83,6 +89,26 @@ TEST_P(Faults, StoresThatFillUpLeaveAValidMesh) {
     expect_valid(refinement);
   }
   EXPECT_GT(num_ended, 5);
+}
+
+TEST_P(Faults, StoresWithoutNumbersAreToldFromThoseWithoutMemory) {
+  constexpr std::size_t kCapacity = 1500;
+  Watch of_numbers = patient(), of_memory = patient();
+  EXPECT_EQ(refine(of_numbers, kCapacity, kCapacity).stop_reason, StopReason::kNumberLimit);
+  EXPECT_EQ(refine(of_memory, kCapacity, kCapacity + 1).stop_reason, StopReason::kMemoryLimit);
+}
+
+TEST_P(Faults, LeavesThatWouldTakeMostOfTheMemoryAreRefused) {
+  Watch watch = patient();
+  const auto refine_in = [&](std::uint64_t bytes) {
+    return refine(watch, 1 << 20, 1 << 30, bytes).stop_reason;
+  };
+  if (GetParam().algorithm == Algorithm::kPodm) {
+    EXPECT_EQ(refine_in(1 << 16), StopReason::kComplete) << "it has none";
+  } else {
+    EXPECT_THROW(refine_in(1 << 16), InputError);
+  }
+  EXPECT_EQ(refine_in(1 << 24), StopReason::kComplete);
 }
 
 TEST_P(Faults, StopRequestsAndLimitsLeaveAValidMesh) {

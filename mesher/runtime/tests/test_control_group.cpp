@@ -4,7 +4,6 @@
 #include <cstdlib>
 #include <filesystem>
 #include <fstream>
-#include <limits>
 
 #include "runtime/control_group.h"
 
@@ -12,8 +11,6 @@ namespace podm::test {
 namespace {
 
 namespace fs = std::filesystem;
-
-constexpr std::uint64_t kNoLimit = std::numeric_limits<std::uint64_t>::max();
 
 class Tree : public testing::Test {
  protected:
@@ -73,6 +70,41 @@ TEST_F(Tree, ContainersSeeTheirGroupAsTheRoot) {
   EXPECT_EQ(left(), 2000u) << "outside of the namespace";
 }
 
+// A container's group, say, that is mounted for those who watch it.
+TEST_F(Tree, MountsOfOtherGroupsAreNotOurs) {
+  const std::string own = "30 24 0:26 / /sys/fs/cgroup rw - cgroup2 cgroup2 rw";
+  const std::string others =
+      "29 24 0:26 /other /mnt/other rw - cgroup2 cgroup2 rw\n"
+      "28 24 0:26 /batch/jo /mnt/jo rw - cgroup2 cgroup2 rw\n"
+      "27 24 0:26 /batch/job /mnt/job rw - cgroup2 cgroup2 rw";
+  write("/proc/self/cgroup", "0::/batch/job");
+  for (const char* folder : {"/mnt/other", "/mnt/jo"}) unified_group(folder, "max", 0);
+  unified_group("/sys/fs/cgroup/batch", "4000", 1000);
+  unified_group("/sys/fs/cgroup/batch/job", "9000", 1000);
+  unified_group("/mnt/job", "9000", 1000);
+  for (const std::string& mounts : {others + "\n" + own, own + "\n" + others}) {
+    write("/proc/self/mountinfo", mounts);
+    EXPECT_EQ(left(), 3000u) << "of the group around ours, which one mount alone shows\n" << mounts;
+  }
+  write("/proc/self/mountinfo", others);
+  EXPECT_EQ(left(), 8000u) << "of ours, all there is to see";
+}
+
+TEST_F(Tree, WhatTheKernelHoldsUpAboveIsALimit) {
+  write("/proc/self/mountinfo", kUnifiedMount);
+  write("/proc/self/cgroup", "0::/outer/inner");
+  const std::string outer = "/sys/fs/cgroup/outer", inner = outer + "/inner";
+  unified_group(outer, "5000", 1000);
+  unified_group(inner, "max", 1000);
+  EXPECT_EQ(left(), 4000u);
+  EXPECT_EQ(memory_limit_of_control_groups(root_), 5000u);
+  write(inner + "/memory.high", "3500");
+  EXPECT_EQ(left(), 2500u);
+  EXPECT_EQ(memory_limit_of_control_groups(root_), 3500u);
+  write(inner + "/memory.high", "max");
+  EXPECT_EQ(left(), 4000u);
+}
+
 TEST_F(Tree, Version1HasAHierarchyAController) {
   write("/proc/self/mountinfo",
         "33 31 0:30 / /sys/fs/cgroup/cpu,cpuacct rw - cgroup cgroup rw,cpu,cpuacct\n"
@@ -86,6 +118,9 @@ TEST_F(Tree, Version1HasAHierarchyAController) {
   write(job + "/memory.usage_in_bytes", "3000");
   write(job + "/memory.stat", "inactive_file 1\ntotal_inactive_file 1000");
   EXPECT_EQ(left(), 5000u);
+  EXPECT_EQ(memory_limit_of_control_groups(root_), 7000u);
+  write(job + "/memory.limit_in_bytes", "9223372036854771712");
+  EXPECT_EQ(memory_limit_of_control_groups(root_), kNoLimit);
   EXPECT_FALSE(control_group_of("memory", root_).is_unified);
   EXPECT_EQ(control_group_of("cpu", root_).folders.back(), root_ + "/sys/fs/cgroup/cpu,cpuacct");
 }

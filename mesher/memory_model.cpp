@@ -1,0 +1,39 @@
+#include "memory_model.h"
+
+#include <unistd.h>
+
+#include <bit>
+
+#include "refine/poor_element_list.h"
+
+namespace podm {
+
+namespace {
+
+// Scratch of operations; of those on threads also a stack, and what an allocator's arena holds back.
+constexpr std::uint64_t kBytesPerWorker = 5 << 15, kBytesPerThread = kBytesPerWorker + (1 << 16);
+constexpr std::uint64_t kLeastCells = 1 << 12;
+static_assert(4 * kMostStoredCells - 1 < kNoFacet);
+
+}  // namespace
+
+std::uint64_t memory_of_run(const MeshingOptions& options) {
+  if (options.max_memory_bytes > 0) return options.max_memory_bytes;
+  return static_cast<std::uint64_t>(sysconf(_SC_PHYS_PAGES)) *
+         static_cast<std::uint64_t>(sysconf(_SC_PAGE_SIZE));
+}
+
+std::uint64_t cell_capacity(std::uint64_t bytes, std::uint64_t num_workers, Executor executor) {
+  const std::uint64_t of_workers =
+      num_workers * (executor == Executor::kVirtual ? kBytesPerWorker : kBytesPerThread);
+  const auto fits = [&](std::uint64_t cells) {
+    return of_workers + PoorElementList::stale_bytes(cells, num_workers) + cells * kBytesPerStoredCell <=
+           bytes;
+  };
+  std::uint64_t cells = kLeastCells;
+  for (std::uint64_t step = std::bit_floor(kMostStoredCells); step > 0; step /= 2)
+    if (cells + step <= kMostStoredCells && fits(cells + step)) cells += step;
+  return cells;
+}
+
+}  // namespace podm

@@ -1,0 +1,42 @@
+// What a run takes of memory, bytes: the one place where such sizes stand. Limits rest on the most that each
+// part takes, estimates on what whole runs were measured to take.
+#pragma once
+
+#include <cstdint>
+
+#include "delaunay/mesh.h"
+#include "podm/mesh_image.h"
+
+namespace podm {
+
+// ---- Estimates of a mesh that is not made yet ----
+
+/// Peak of the process for each cell of the mesh that comes out, as measured, cells of the background and all
+/// else included.
+inline constexpr double kPeakBytesPerMeshCell = 110;
+/// Cells of the store, the background's among them, for each of the mesh. Measured: 1.7 of 36 thousand cells,
+/// 1.39 of 0.25, 1.27 of 0.8, 1.13 of 5.1 million. Less than all these, so that what can be numbered is not
+/// refused.
+inline constexpr double kStoredCellsPerMeshCell = 1.1;
+
+// ---- Limits ----
+
+inline constexpr std::uint64_t kImageBytesPerVoxel = sizeof(LabelIndex), kTransformBytesPerVoxel = 4;
+/// Buffers of files, the record, code not yet touched.
+inline constexpr std::uint64_t kBytesOfOutput = 6 << 20;
+/// Of a cell of the store when it is full: itself, a quarter of a vertex at most, an entry of a list that may
+/// just have doubled, and what extraction takes more.
+inline constexpr std::uint64_t kBytesPerStoredCell =
+    sizeof(Cell) + sizeof(CellState) + sizeof(Vertex) / 4 + 28;
+/// Of a cube of the octree, leaf or gap, and what a leaf takes more: its place in the queue, its list of
+/// cells with some entries. While the octree is built each cube takes less than both together.
+inline constexpr std::uint64_t kBytesPerCube = 32, kBytesPerLeaf = 160;
+/// Leaves of a size that was asked for may take so much of the memory of a run; the mesh has the rest.
+inline constexpr double kMostMemoryOfLeaves = 0.5;
+
+/// What a run may take beside image and transform: as asked for, else all the machine has.
+std::uint64_t memory_of_run(const MeshingOptions& options);
+/// The most cells for which a store, its workers and their lists stay within so many bytes.
+std::uint64_t cell_capacity(std::uint64_t bytes, std::uint64_t num_workers, Executor executor);
+
+}  // namespace podm
