@@ -17,8 +17,8 @@ using Line = std::vector<std::string>;
 using Rows = std::vector<const Json*>;
 
 constexpr double kBytesPerMib = 1024.0 * 1024;
-// Phases outside the time of eq. (1): finding a radius, drawing a phantom, writing the mesh.
-constexpr const char* kNotMeshing[] = {"calibrate", "draw", "write"};
+// Phases outside the time of eq. (1): finding a radius, drawing a phantom, measuring the mesh, writing it.
+constexpr const char* kNotMeshing[] = {"calibrate", "draw", "measure", "write"};
 
 // What became of the repeats: the first fault where there is one.
 std::string verdict(const Rows& repeats) {

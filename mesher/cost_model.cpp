@@ -107,12 +107,16 @@ double default_delta_mm(const LabelImage& image, double radius_mm) {
   return radius_mm > 0 ? std::min(kMaxDeltaVoxels * voxel, radius_mm / 2) : voxel;
 }
 
-CostModel::CostModel(const LabelImage& image, int threads) : image_(image), threads_(threads) {
+std::vector<std::uint64_t> count_voxels(const LabelImage& image, int threads) {
   const VoxelCounts none{std::vector<std::uint64_t>(image.labels.size())};
-  const VoxelCounts voxels = sum_over_rows(image, threads, none, [&](VoxelCounts& counts, int j, int k) {
+  const auto add_row = [&](VoxelCounts& counts, int j, int k) {
     counts.add_row(&image.voxels[image.index(0, j, k)], image.size[0]);
-  });
-  for (const std::uint64_t n : voxels.of_label)
+  };
+  return sum_over_rows(image, threads, none, add_row).of_label;
+}
+
+CostModel::CostModel(const LabelImage& image, int threads) : image_(image), threads_(threads) {
+  for (const std::uint64_t n : count_voxels(image, threads))
     volume_of_label_mm3_.push_back(static_cast<double>(n) * image.spacing[0] * image.spacing[1] *
                                    image.spacing[2]);
   volume_of_label_mm3_[kBackground] = 0;

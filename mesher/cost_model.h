@@ -11,6 +11,9 @@
 
 namespace podm {
 
+/// Voxels by label, the background too.
+std::vector<std::uint64_t> count_voxels(const LabelImage& image, int threads);
+
 /// Bounds of the foreground, mm: centres of the labelled voxels and one voxel more on every side.
 Box foreground_bounds(const LabelImage& image, int threads = 1);
 

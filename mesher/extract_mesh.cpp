@@ -249,12 +249,18 @@ TetMesh extract_mesh(Mesh& mesh, const Isosurface& isosurface, const LabelImage&
   return out;
 }
 
-void convert_to_voxel_space(TetMesh& mesh, const LabelImage& image) {
+void convert_to_voxel_space(TetMesh& mesh, const LabelImage& image, int threads) {
+  const auto for_each = [&](auto& items, const auto& change) {
+    parallel_for_ranges(items.size(), kChunk, num_threads(threads),
+                        [&](std::size_t begin, std::size_t end, std::size_t) {
+                          for (std::size_t i = begin; i < end; ++i) change(items[i]);
+                        });
+  };
   const Affine ras_to_voxel = inverse(image.voxel_to_ras);
-  for (auto& v : mesh.vertices) v = map(ras_to_voxel, v);
+  for_each(mesh.vertices, [&](auto& vertex) { vertex = map(ras_to_voxel, vertex); });
   if (determinant(image.voxel_to_ras) < 0) {
-    for (auto& cell : mesh.cells) std::swap(cell[2], cell[3]);
-    for (auto& facet : mesh.facets) std::swap(facet[1], facet[2]);
+    for_each(mesh.cells, [](auto& cell) { std::swap(cell[2], cell[3]); });
+    for_each(mesh.facets, [](auto& facet) { std::swap(facet[1], facet[2]); });
   }
   mesh.space = Space::kVoxel;
 }

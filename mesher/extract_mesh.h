@@ -21,6 +21,6 @@ TetMesh extract_mesh(Mesh& mesh, const Isosurface& isosurface, const LabelImage&
                      int threads, std::uint64_t& facets_off_isosurface);
 
 /// Replaces RAS coordinates by continuous voxel indices.
-void convert_to_voxel_space(TetMesh& mesh, const LabelImage& image);
+void convert_to_voxel_space(TetMesh& mesh, const LabelImage& image, int threads);
 
 }  // namespace podm

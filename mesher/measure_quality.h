@@ -6,8 +6,9 @@
 
 namespace podm {
 
-/// Fills quality, guarantees (but facet_vertices), cells and volumes by label. `mesh` is in mm.
-void measure_quality(const TetMesh& mesh, const LabelImage& image, const SizeField& sizes,
+/// Fills quality, guarantees (but facet_vertices), cells and volumes by label. `mesh` is in mm. `threads`: 0
+/// for all cores; the report is the same for any number, to the bit.
+void measure_quality(const TetMesh& mesh, const LabelImage& image, const SizeField& sizes, int threads,
                      MeshingReport& report);
 
 }  // namespace podm

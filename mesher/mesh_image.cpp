@@ -122,6 +122,8 @@ class Run {
     report.num_leaves = refinement.num_leaves;
     report.schedule = std::move(refinement.schedule);
     extract(isosurface, refinement, result);
+    measure(result);
+    if (options_.space == Space::kVoxel) convert(result);
     return result;
   }
 
@@ -247,13 +249,27 @@ class Run {
     const Clock::time_point start = Clock::now();
     malloc_trim(0);  // what workers had is for the mesh now
     MeshingReport& report = result.report;
-    const bool is_voxel = options_.space == Space::kVoxel;
-    result.mesh = extract_mesh(*refinement.mesh, isosurface, image_, is_voxel ? Space::kRas : options_.space,
-                               options_.loop_threads(), report.guarantees.facet_vertices);
+    const Space space = options_.space == Space::kVoxel ? Space::kRas : options_.space;  // for now
+    result.mesh = extract_mesh(*refinement.mesh, isosurface, image_, space, options_.loop_threads(),
+                               report.guarantees.facet_vertices);
     refinement.mesh.reset();
     report.phases_s["extract"] += seconds_since(start);
-    measure_quality(result.mesh, image_, size_field(image_, options_, report.radius_mm), report);
-    if (is_voxel) convert_to_voxel_space(result.mesh, image_);
+  }
+
+  // In mm.
+  void measure(MeshingResult& result) {
+    announce("measure", 0, 0);
+    const Clock::time_point start = Clock::now();
+    MeshingReport& report = result.report;
+    measure_quality(result.mesh, image_, size_field(image_, options_, report.radius_mm),
+                    options_.loop_threads(), report);
+    report.phases_s["measure"] = seconds_since(start);
+  }
+
+  void convert(MeshingResult& result) {
+    const Clock::time_point start = Clock::now();
+    convert_to_voxel_space(result.mesh, image_, options_.loop_threads());
+    result.report.phases_s["extract"] += seconds_since(start);
   }
 
   static constexpr std::size_t kMostTrialMeshes = 5;
@@ -284,7 +300,7 @@ TetMesh replay_operations(const LabelImage& image, const OperationLog& log, Spac
   const bool is_voxel = space == Space::kVoxel;
   TetMesh mesh =
       extract_mesh(*refined, isosurface, image, is_voxel ? Space::kRas : space, 0, facets_off_isosurface);
-  if (is_voxel) convert_to_voxel_space(mesh, image);
+  if (is_voxel) convert_to_voxel_space(mesh, image, 0);
   return mesh;
 }
 

@@ -18,7 +18,7 @@ Json full_row() {
     "asked": {"threads": 4, "target_elements": 1000},
     "cells": 1200,
     "phases_s": {"read": 1, "transform": 2, "allocate": 0.5, "calibrate": 50, "draw": 70, "initial": 1, "octree": 0.25,
-                 "refine": 4, "closing": 0.75, "extract": 0.5, "write": 100},
+                 "refine": 4, "closing": 0.75, "extract": 0.5, "measure": 60, "write": 100},
     "virtual": {"refine_s": 0.5},
     "overhead_s": {"contention": 0.25, "begging": 7, "rollback": 0.125},
     "outcomes": {"out_of_leaf": 11},
@@ -46,7 +46,7 @@ struct Expected {
 
 TEST(Measures, AreWhatTheTableSays) {
   const Expected expected[] = {
-      {"seconds", 10, "/phases_s"},          // without writing, calibration and drawing
+      {"seconds", 10, "/phases_s"},          // without measuring, writing, calibration and drawing
       {"refining_seconds", 6, "/phases_s"},  // initial, octree, refine, closing
       {"cells_per_second", 120, "/cells"},
       {"cells_per_second_and_core", 30, "/asked/threads"},

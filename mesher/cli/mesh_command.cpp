@@ -103,9 +103,9 @@ int run(const MeshCommand& command) {
     canonicalize(run.result.mesh);
     run.mesh_sha256 = mesh_sha256(run.result.mesh);
     write_outputs(command, run.result.mesh);
+    if (log) finish_log(*log, run);
+    if (!command.schedule_path.empty()) write_schedule(run, command.schedule_path);
   });
-  if (log) finish_log(*log, run);
-  if (!command.schedule_path.empty()) write_schedule(run, command.schedule_path);
   run.peak_rss_bytes = peak_resident_bytes();
   if (command.verify && !run.result.mesh.cells.empty()) run.verdicts = verify_mesh(run, signals);
   if (records) records->append(json_line(record(run)));

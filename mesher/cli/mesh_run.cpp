@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <set>
 
 namespace podm::cli {
 
@@ -14,9 +15,10 @@ std::map<std::string, double> MeshRun::phases_s() const {
 }
 
 double MeshRun::cells_per_second() const {
+  static const std::set<std::string> kNotCounted{"calibrate", "draw", "measure", "write"};
   double seconds = 0;
   for (const auto& [phase, phase_s] : phases_s())
-    if (phase != "draw" && phase != "calibrate" && phase != "write") seconds += phase_s;
+    if (!kNotCounted.contains(phase)) seconds += phase_s;
   return static_cast<double>(result.mesh.cells.size()) / seconds;
 }
 

@@ -71,7 +71,7 @@ std::string time_text(const MeshRun& run) {
   const auto phases = run.phases_s();
   std::string text = "time      ";
   for (const char* phase : {"read", "draw", "transform", "allocate", "initial", "octree", "refine", "closing",
-                            "extract", "write"})
+                            "extract", "measure", "write"})
     if (const auto found = phases.find(phase); found != phases.end())
       text += fmt::format(" {} {:.2f} s", phase, found->second);
   return text +

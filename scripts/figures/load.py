@@ -10,8 +10,9 @@ SCHEMA = 4
 NEEDED_CLAIMS = ("structure", "delaunay", "radius_edge", "boundary_angles")
 SIMULATED_CACHES = "its seconds are those of a simulation of caches"
 LONG_LISTS = ["labels", "facet_pairs", "command", "workers"]
-# Phases in no second of equation 1: writing the mesh, finding the radius for a number of cells, drawing a phantom.
-UNTIMED = ("write", "calibrate", "draw")
+# Phases in no second of equation 1: measuring and writing the mesh, finding the radius for a number of cells, drawing
+# a phantom.
+UNTIMED = ("measure", "write", "calibrate", "draw")
 REFINING = ("octree", "initial", "refine", "closing")
 # What a series varies; any other choice in a trial's name makes another series.
 VARIED = ("algorithm", "threads", "seed", "mesher", "input")

@@ -83,7 +83,7 @@ def fast(outcome):
     return (_answer(said) + bars("cells per second, one core", _bars_of_peers(rows))
             + _aside(f"{first['setting']}: {first['image']}, the same bounds for all, medians of {_runs(rows)} runs. "
                      "Refining: making the mesh alone, for Gmsh and TetGen without the surface, which they are given; "
-                     "equation 1: reading and all, but for writing. " + _own_rates(on_all)))
+                     "equation 1: reading and all, but for measuring and writing. " + _own_rates(on_all)))
 
 
 def _bars_of_peers(rows):

@@ -109,7 +109,7 @@ enum class StopReason { kComplete, kCancelled, kElementLimit, kTimeLimit, kMemor
 std::string to_string(StopReason reason);
 
 struct Progress {
-  std::string phase;        ///< "transform", "refine", "extract"
+  std::string phase;        ///< "transform", "refine", "extract", "measure"
   double fraction = 0;      ///< of the phase, an estimate in [0,1]
   std::uint64_t cells = 0;  ///< so far
   double seconds = 0;       ///< since the start of the run
@@ -226,8 +226,8 @@ struct LeafSchedule {
 
 struct MeshingReport {
   /// Seconds of the mesh that is returned. "transform"; "allocate": store, pools, workers and threads made
-  /// ready; "initial", "octree", "refine", "closing" (of kPodm "refine" alone); "extract". And "calibrate":
-  /// all that finding the radius of a target cost.
+  /// ready; "initial", "octree", "refine", "closing" (of kPodm "refine" alone); "extract"; "measure": quality
+  /// and guarantees. And "calibrate": all that finding the radius of a target cost.
   std::map<std::string, double> phases_s;
   double radius_mm = 0;                    ///< as used; 0 when unbounded
   double delta_mm = 0;                     ///< as used

@@ -131,10 +131,23 @@ TEST(MeshImagePhases, EachAlgorithmTellsItsOwn) {
         return names;
       };
       using Names = std::set<std::string>;
-      EXPECT_EQ(phases(Algorithm::kPodm), (Names{"transform", "allocate", "refine", "extract"}));
-      EXPECT_EQ(phases(Algorithm::kPdrPodm),
-                (Names{"transform", "allocate", "initial", "octree", "refine", "closing", "extract"}));
+      EXPECT_EQ(phases(Algorithm::kPodm), (Names{"transform", "allocate", "refine", "extract", "measure"}));
+      EXPECT_EQ(phases(Algorithm::kPdrPodm), (Names{"transform", "allocate", "initial", "octree", "refine",
+                                                    "closing", "extract", "measure"}));
     }
+  }
+}
+
+TEST(MeshImagePhases, AreToldOfARunThatWasStoppedBeforeItRefined) {
+  std::stop_source stop;
+  stop.request_stop();
+  for (const Algorithm algorithm : {Algorithm::kPodm, Algorithm::kPdr, Algorithm::kPdrPodm}) {
+    MeshingOptions options = radius(2);
+    options.algorithm = algorithm;
+    const MeshingReport report = mesh_image(ball(24, 9), options, {}, stop.get_token()).report;
+    EXPECT_EQ(report.stop_reason, StopReason::kCancelled);
+    for (const char* phase : {"transform", "allocate", "refine", "extract", "measure"})
+      EXPECT_TRUE(report.phases_s.contains(phase)) << phase;
   }
 }
 
