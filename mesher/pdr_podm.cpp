@@ -59,7 +59,7 @@ double radius_in_cube(const Problem& problem, const Radii& radii, const Point& l
 
 // Leaves near the object; the cells elsewhere are few, and left to the closing phase.
 Octree make_octree(const Problem& problem, const Radii& radii, const Box& box, double ratio, double finest_mm,
-                   double coarsest_mm) {
+                   double coarsest_mm, const std::stop_token& over) {
   const auto is_needed = [&](const Point& low, const Point& high) {
     const Point middle = low + 0.5 * (high - low);
     const double reach = 0.5 * distance(low, high) + ratio * radii.most;
@@ -70,7 +70,7 @@ Octree make_octree(const Problem& problem, const Radii& radii, const Box& box, d
     if (coarsest_mm <= finest_mm) return finest_mm;
     return std::min(coarsest_mm, kLeafSizeOverRadius * ratio * radius_in_cube(problem, radii, low, high));
   };
-  return Octree(box.low, box.high, finest_mm, largest_side, is_needed);
+  return Octree(box.low, box.high, finest_mm, largest_side, is_needed, over);
 }
 
 // Leaves of a size that was asked for fill the whole box: they must leave most memory to the mesh. Returns
@@ -97,20 +97,22 @@ std::uint64_t checked_bytes_of_leaves(double asked_mm, const Box& box, std::uint
 // one has of a leaf of its own: 256 simulated cores, 16 a node, were 1.46 times faster, and 16 % instead of
 // 27 % of their operations rolled back. Then shorter until there are leaves enough to keep all nodes at work.
 std::unique_ptr<const Octree> fit_octree(const Problem& problem, const Radii& radii, const Box& box,
-                                         const LeafOptions& options, int workers_per_node) {
+                                         const LeafOptions& options, int workers_per_node,
+                                         const std::stop_token& over) {
   constexpr LeafId kLeavesPerNode = 64;
   constexpr double kStep = 1.26;  // halves the number of leaves
   const double ratio = options.initial_ratio;
   if (const double asked_mm = options.leaf_size_mm; asked_mm > 0)
-    return std::make_unique<Octree>(make_octree(problem, radii, box, ratio, asked_mm, asked_mm));
+    return std::make_unique<Octree>(make_octree(problem, radii, box, ratio, asked_mm, asked_mm, over));
   const double finest_mm = kLeafSizeOverRadius * ratio * radii.least;
   double coarsest_mm = kLeafSizeOverRadius * ratio * radii.most;
   double growth = std::cbrt(workers_per_node);
   for (;;) {
     auto octree = std::make_unique<Octree>(
-        make_octree(problem, radii, box, ratio, growth * finest_mm, growth * coarsest_mm));
+        make_octree(problem, radii, box, ratio, growth * finest_mm, growth * coarsest_mm, over));
     const LeafId wanted = kLeavesPerNode * static_cast<LeafId>(options.num_nodes);
-    if (octree->num_leaves() >= wanted || (growth == 1 && coarsest_mm <= finest_mm)) return octree;
+    const bool is_finest = growth == 1 && coarsest_mm <= finest_mm;
+    if (octree->num_leaves() >= wanted || is_finest || over.stop_requested()) return octree;
     if (growth > 1) {
       growth = std::max(1.0, growth / kStep);
     } else {
@@ -154,7 +156,8 @@ Refinement refine_by_leaves(const Problem& problem, const Crew& crew, const Leaf
   }
   std::unique_ptr<const Octree> octree;
   refiner.timed("octree", [&] {
-    octree = fit_octree(problem, radii, clamp, options, refiner.num_workers() / options.num_nodes);
+    octree =
+        fit_octree(problem, radii, clamp, options, refiner.num_workers() / options.num_nodes, watch.over());
   });
   refiner.withhold(octree->num_cubes() * kBytesPerCube + octree->num_leaves() * kBytesPerLeaf);
   const Refiner::Entries left =

@@ -94,7 +94,7 @@ void Refiner::sample_pages(const std::string& phase) {
 // All workers start at once; those without cells beg until the first has some to share.
 void Refiner::refine_anywhere(const std::string& phase, const Parameters& parameters, const Entries& cells,
                               int num_workers) {
-  if (is_over()) return;
+  if (is_over()) return timed(phase, [] {});  // every run has this phase
   const auto refine = [&](auto& workers, const auto& run, const auto& overhead_of) {
     workers[0]->give(cells);
     run();

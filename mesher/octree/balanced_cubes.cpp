@@ -10,14 +10,16 @@ namespace {
 // A cube of side 2^level is named by its Morton code without the last 3 level bits.
 class Splits {
  public:
-  Splits(const GridPoint& size, const std::function<bool(const GridCube&)>& is_too_large)
+  Splits(const GridPoint& size, const std::function<bool(const GridCube&)>& is_too_large,
+         const std::stop_token& stop)
       : size_(size),
+        stop_(stop),
         root_level_(static_cast<unsigned>(std::bit_width(*std::max_element(size.begin(), size.end()) - 1))),
         split_(root_level_ + 1) {
     std::vector<MortonCode> asked{0};
     for (unsigned level = root_level_; level > 0; --level) {
       for (const MortonCode code : asked)
-        if (is_too_large(cube(code, level))) split_[level].push_back(code);
+        if (!stop_.stop_requested() && is_too_large(cube(code, level))) split_[level].push_back(code);
       asked.clear();
       for_each_child(level, [&](MortonCode child) { asked.push_back(child); });
     }
@@ -25,7 +27,8 @@ class Splits {
   }
 
   std::vector<GridCube> cubes() const {
-    if (split_[root_level_].empty()) return {cube(0, root_level_)};
+    const std::vector<GridCube> whole{cube(0, root_level_)};
+    if (split_[root_level_].empty()) return whole;
     std::vector<std::pair<MortonCode, GridCube>> sorted;
     for (unsigned level = root_level_; level > 0; --level) {
       for_each_child(level, [&](MortonCode child) {
@@ -34,6 +37,7 @@ class Splits {
         sorted.emplace_back(child << 3 * (level - 1), cube(child, level - 1));
       });
     }
+    if (stop_.stop_requested()) return whole;  // some may be missing
     std::sort(sorted.begin(), sorted.end(), [](const auto& a, const auto& b) { return a.first < b.first; });
     std::vector<GridCube> cubes;
     for (const auto& [code, cube] : sorted) cubes.push_back(cube);
@@ -49,25 +53,31 @@ class Splits {
   bool is_inside(const GridCube& cube) const {
     return cube.corner[0] < size_[0] && cube.corner[1] < size_[1] && cube.corner[2] < size_[2];
   }
-  // Of the cubes that are split; those beyond the grid do not count.
+  // Of the cubes that are split; those beyond the grid do not count. Not all after a stop request.
   template <class Visit>
   void for_each_child(unsigned level, const Visit& visit) const {
-    for (const MortonCode code : split_[level])
+    for (const MortonCode code : split_[level]) {
+      if (stop_.stop_requested()) return;
       for (MortonCode child = 8 * code; child < 8 * code + 8; ++child)
         if (is_inside(cube(child, level - 1))) visit(child);
+    }
   }
 
   // A split cube D has parts of half its side, so whatever touches D must not be larger than D: of each
   // neighbour of D's size, the cube around is split. One pass from the finest cubes up makes that true.
   // Enough, because an unsplit cube E that touches a part of D touches D, and if E were larger than D it
-  // would be around a neighbour of D, hence split.
+  // would be around a neighbour of D, hence split. The cubes around D and its neighbours are eight: along
+  // each axis D's own, or that of the neighbour which is not beside D in it.
   void balance() {
     for (unsigned level = 1; level < root_level_; ++level) {
       std::vector<MortonCode>& parents = split_[level + 1];
       for (const MortonCode code : split_[level]) {
+        if (stop_.stop_requested()) return;
         const GridPoint p = morton_point(code);
-        for (unsigned i = 0; i < 27; ++i) {  // an x of -1 wraps round and is found outside
-          const GridPoint q{p[0] + i % 3 - 1, p[1] + i / 3 % 3 - 1, p[2] + i / 9 - 1};
+        for (unsigned i = 0; i < 8; ++i) {  // an x of -1 wraps round and is found outside
+          const auto across = [&](unsigned axis) { return p[axis] + (p[axis] % 2 == 1 ? 1u : ~0u); };
+          const auto along = [&](unsigned axis) { return (i >> axis & 1u) != 0 ? across(axis) : p[axis]; };
+          const GridPoint q{along(0), along(1), along(2)};
           const bool is_in_root = std::max({q[0], q[1], q[2]}) < 1u << (root_level_ - level);
           if (is_in_root && is_inside(cube(morton_code(q), level))) parents.push_back(morton_code(q) >> 3);
         }
@@ -78,6 +88,7 @@ class Splits {
   }
 
   GridPoint size_;
+  const std::stop_token& stop_;
   unsigned root_level_;
   std::vector<std::vector<MortonCode>> split_;  // by level, sorted
 };
@@ -85,8 +96,9 @@ class Splits {
 }  // namespace
 
 std::vector<GridCube> balanced_cubes(const GridPoint& size,
-                                     const std::function<bool(const GridCube&)>& is_too_large) {
-  return Splits(size, is_too_large).cubes();
+                                     const std::function<bool(const GridCube&)>& is_too_large,
+                                     const std::stop_token& stop) {
+  return Splits(size, is_too_large, stop).cubes();
 }
 
 }  // namespace podm

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <functional>
+#include <stop_token>
 #include <vector>
 
 #include "octree/morton.h"
@@ -23,8 +24,10 @@ inline bool touch(const GridCube& a, const GridCube& b) {
 
 /// Cubes in Morton order that tile [0, size), those at its far faces perhaps more. `is_too_large` is asked of
 /// cubes of side 2 and more, of the parts of a cube only if it is too large; the answer may be true of cubes
-/// that turn out smaller. Cubes that touch differ by a factor of two in side at most.
+/// that turn out smaller. Cubes that touch differ by a factor of two in side at most. If a stop is requested
+/// before all is done, one cube.
 std::vector<GridCube> balanced_cubes(const GridPoint& size,
-                                     const std::function<bool(const GridCube&)>& is_too_large);
+                                     const std::function<bool(const GridCube&)>& is_too_large,
+                                     const std::stop_token& stop = {});
 
 }  // namespace podm

@@ -21,16 +21,17 @@ void sort_and_unify(std::vector<std::uint32_t>& ids) {
 }  // namespace
 
 Octree::Octree(const Point& low, const Point& high, double finest_side_mm, const LargestSide& largest_side,
-               const IsNeeded& is_needed)
+               const IsNeeded& is_needed, const std::stop_token& stop)
     : origin_(low), finest_side_mm_(finest_side_mm), inverse_side_(1 / finest_side_mm) {
   set_grid(low, high);
-  cubes_ = balanced_cubes(size_, [&](const GridCube& cube) {
+  const auto is_too_large = [&](const GridCube& cube) {
     return cube.side * finest_side_mm_ > largest_side(to_mm(cube, 0), to_mm(cube, cube.side));
-  });
+  };
+  cubes_ = balanced_cubes(size_, is_too_large, stop);
   is_uniform_ = std::all_of(cubes_.begin(), cubes_.end(),
                             [&](const GridCube& cube) { return cube.side == cubes_.front().side; });
   leaf_of_cube_.assign(cubes_.size(), kNoLeaf);
-  for (CubeId id = 0; id < cubes_.size(); ++id) {
+  for (CubeId id = 0; id < cubes_.size() && !stop.stop_requested(); ++id) {
     if (!is_needed(to_mm(cubes_[id], 0), to_mm(cubes_[id], cubes_[id].side))) continue;
     leaf_of_cube_[id] = num_leaves();
     cube_of_leaf_.push_back(id);

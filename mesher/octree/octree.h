@@ -17,6 +17,7 @@
 
 #include <algorithm>
 #include <functional>
+#include <stop_token>
 #include <vector>
 
 #include "geometry/point.h"
@@ -36,8 +37,9 @@ class Octree {
   /// Tiles the box [low, high] with cubes whose sides are finest_side_mm times a power of two, as large as
   /// `largest_side` and balance allow, never smaller than the finest. A constant makes the tree uniform.
   /// InputError: an empty box, or a side that is not positive or of which the box takes more than 2^20.
+  /// After a stop request it asks no more: leaves are too few, and cubes perhaps too large.
   Octree(const Point& low, const Point& high, double finest_side_mm, const LargestSide& largest_side,
-         const IsNeeded& is_needed);
+         const IsNeeded& is_needed, const std::stop_token& stop = {});
 
   LeafId num_leaves() const { return static_cast<LeafId>(cube_of_leaf_.size()); }
   /// Leaves and gaps.

@@ -16,29 +16,30 @@ RefinementQueue::RefinementQueue(const Octree& octree, unsigned num_nodes, LeafO
       num_poor_of_share_(order == LeafOrder::kHome ? num_nodes : 1),
       ready_(num_poor_of_share_.size()),
       resume_at_(num_nodes) {
-  share_out();
   if (order_ != LeafOrder::kMorton) return;
   for (unsigned node = 0; node < num_nodes; ++node)
     resume_at_[node] = std::uint64_t{octree.num_leaves()} * node / num_nodes;
 }
 
-void RefinementQueue::share_out() {
+void RefinementQueue::share_out(const std::stop_token& stop) {
   const std::lock_guard lock(mutex_);
   std::vector<LeafId> leaves(octree_.num_leaves());
   std::iota(leaves.begin(), leaves.end(), 0);
-  divide(leaves, 0, ready_.size());
+  divide(leaves, 0, ready_.size(), stop);
 }
 
 // Into shares with equal work: recursive bisection. (Berger, Bokhari, IEEE Trans. Comput. C-36, 1987.)
-void RefinementQueue::divide(std::span<LeafId> leaves, std::size_t first_share, std::size_t num_shares) {
+void RefinementQueue::divide(std::span<LeafId> leaves, std::size_t first_share, std::size_t num_shares,
+                             const std::stop_token& stop) {
+  if (stop.stop_requested()) return;
   if (num_shares == 1) {
     for (const LeafId leaf : leaves) move(leaf, first_share);
     return;
   }
   const std::size_t half = num_shares / 2;
   const std::size_t middle = bisect(leaves, static_cast<double>(half) / static_cast<double>(num_shares));
-  divide(leaves.first(middle), first_share, half);
-  divide(leaves.subspan(middle), first_share + half, num_shares - half);
+  divide(leaves.first(middle), first_share, half, stop);
+  divide(leaves.subspan(middle), first_share + half, num_shares - half, stop);
 }
 
 // Sorts the leaves along the longest side of their box; so many have that share of the poor cells, or where
@@ -57,9 +58,13 @@ std::size_t RefinementQueue::bisect(std::span<LeafId> leaves, double share) cons
   unsigned longest = 0;
   for (unsigned axis = 1; axis < 3; ++axis)
     if (high[axis] - low[axis] > high[longest] - low[longest]) longest = axis;
-  std::sort(leaves.begin(), leaves.end(), [&](LeafId a, LeafId b) {
-    return std::pair(octree_.cube(a).corner[longest], a) < std::pair(octree_.cube(b).corner[longest], b);
-  });
+  std::vector<std::uint64_t> by_corner;  // beside the leaf: comparisons look nothing up
+  by_corner.reserve(leaves.size());
+  for (const LeafId leaf : leaves)
+    by_corner.push_back(std::uint64_t{octree_.cube(leaf).corner[longest]} << 32 | leaf);
+  std::sort(by_corner.begin(), by_corner.end());
+  std::transform(by_corner.begin(), by_corner.end(), leaves.begin(),
+                 [](std::uint64_t key) { return static_cast<LeafId>(key); });
   std::size_t count = 0;
   for (double before = 0; count < leaves.size() && before < share * total; ++count)
     before += work(leaves[count]);

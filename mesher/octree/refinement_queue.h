@@ -33,9 +33,10 @@ class RefinementQueue {
   /// For nodes 0 to num_nodes - 1, at least one. The octree must outlive the queue.
   RefinementQueue(const Octree& octree, unsigned num_nodes, LeafOrder order = LeafOrder::kHome);
 
-  /// Gives each node a block of space that has an equal share of the poor cells there are now; until then, of
-  /// the leaves.
-  void share_out();
+  /// Gives each node a block of space that has an equal share of the poor cells there are now, or of the
+  /// leaves where there are none; until then all are the first node's. A stop request leaves the shares
+  /// unequal.
+  void share_out(const std::stop_token& stop = {});
   /// The node whose share has the leaf; 0 where there are no shares.
   std::size_t home_of(LeafId leaf) const;
 
@@ -68,7 +69,8 @@ class RefinementQueue {
   void set_active(const std::vector<LeafId>& zones, bool is_active);
   std::optional<LeafId> take(unsigned node);
   void move(LeafId leaf, std::size_t to);
-  void divide(std::span<LeafId> leaves, std::size_t first_share, std::size_t num_shares);
+  void divide(std::span<LeafId> leaves, std::size_t first_share, std::size_t num_shares,
+              const std::stop_token& stop);
   std::size_t bisect(std::span<LeafId> leaves, double share) const;
   void take_over(unsigned node);
 

@@ -14,9 +14,7 @@ constexpr auto kObservationInterval = std::chrono::milliseconds(200);
 std::optional<StopReason> Watch::reason_to_stop() {
   if (const StopReason reason = reason_; reason != StopReason::kComplete) return reason;
   const std::int64_t cells = num_cells_.load(std::memory_order_relaxed);
-  if (stop_.stop_requested()) {
-    end(StopReason::kCancelled);
-  } else if (limits_.max_cells > 0 && cells > static_cast<std::int64_t>(limits_.max_cells)) {
+  if (limits_.max_cells > 0 && cells > static_cast<std::int64_t>(limits_.max_cells)) {
     end(StopReason::kElementLimit);
   } else if (std::chrono::steady_clock::now() > limits_.deadline) {
     end(StopReason::kTimeLimit);

@@ -27,9 +27,12 @@ class Watch {
  public:
   static constexpr int kAttemptsBetweenChecks = 1 << 8;  // of each worker, well below a millisecond
 
-  /// `observe(cells)` is called a few times a second.
+  /// `observe(cells)` is called a few times a second. Whoever requests the stop ends the run, so that over()
+  /// tells of it even while nobody asks for reasons.
   Watch(const Limits& limits, std::stop_token stop, std::function<void(std::uint64_t)> observe)
-      : limits_(limits), stop_(std::move(stop)), observe_(std::move(observe)) {}
+      : limits_(limits),
+        observe_(std::move(observe)),
+        on_stop_(std::move(stop), [this] { end(StopReason::kCancelled); }) {}
 
   /// The store has so many more cells.
   void add_cells(std::int64_t more) { num_cells_.fetch_add(more, std::memory_order_relaxed); }
@@ -46,12 +49,12 @@ class Watch {
 
  private:
   Limits limits_;
-  std::stop_token stop_;
   std::function<void(std::uint64_t)> observe_;
   std::atomic<std::int64_t> num_cells_ = 0;
   std::atomic<StopReason> reason_ = StopReason::kComplete;  // of the end, once there is one
   std::stop_source over_;
   std::chrono::steady_clock::time_point next_observation_ = std::chrono::steady_clock::now();
+  std::stop_callback<std::function<void()>> on_stop_;  // the last: it may be called before it is made
 };
 
 /// Tells a watch of the cells that a worker adds.

@@ -14,19 +14,23 @@ LeafRefinement::LeafRefinement(const Mesh& mesh, const Octree& octree, unsigned 
       queue_(octree, num_nodes),
       cells_of_leaf_(octree.num_leaves()) {
   add(cells);
-  queue_.share_out();
+  queue_.share_out(over_);
 }
 
 void LeafRefinement::add(const Entries& cells) {
   std::map<LeafId, std::uint64_t> num_new;
   const std::scoped_lock lock(mutex_);
   for (const auto& entry : cells) {
+    if (over_.stop_requested()) return;
     if (mesh_.stamp(entry.cell) != entry.stamp) continue;
     const LeafId leaf = octree_.leaf_at(mesh_.cell(entry.cell).sphere.center);
     (leaf == kNoLeaf ? leftover_ : cells_of_leaf_[leaf]).push_back(entry);
     if (leaf != kNoLeaf) ++num_new[leaf];
   }
-  for (const auto& [leaf, count] : num_new) queue_.push(leaf, count);
+  for (const auto& [leaf, count] : num_new) {
+    if (over_.stop_requested()) return;
+    queue_.push(leaf, count);
+  }
 }
 
 void LeafRefinement::defer(const Entries& cells) {

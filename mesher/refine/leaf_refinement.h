@@ -22,7 +22,7 @@ class LeafRefinement {
  public:
   using Entries = CellSource::Entries;
 
-  /// Of `cells`, to begin with. `clock` gives seconds, for the schedule; `over` ends all waiting.
+  /// Of `cells`, to begin with. `clock` gives seconds, for the schedule; `over` ends waiting and listing.
   LeafRefinement(const Mesh& mesh, const Octree& octree, unsigned num_nodes, const Entries& cells,
                  std::function<double()> clock, std::stop_token over);
 

@@ -21,6 +21,7 @@ import unittest
 
 from ending_podm import ENDLESS, LONGEST_S, end_of, start_refining
 from podm_process import PROGRAM, PodmTestCase, run_podm, start_podm
+from small_images import write_nifti
 
 VERIFIER = os.path.join(os.path.dirname(PROGRAM), "podm-verify")
 MOMENTS = int(os.environ.get("PODM_SIGNAL_MOMENTS", "4"))
@@ -192,6 +193,21 @@ class Refinement(PodmTestCase):
             end = end_of(process, signal.SIGINT)
             self.assert_stopped(end)
             self.assertLessEqual(end.seconds, LONGEST_S + seconds_of_writing(self.read_record(runs)))
+
+    def test_leaves_in_the_making_keep_nobody_waiting(self):
+        """As many leaves as there may be: octree and queue take seconds to be made."""
+        for moment_s in 0.3, 0.8, 1.3, 1.8:
+            with self.subTest(moment_s=moment_s), tempfile.TemporaryDirectory() as elsewhere:
+                image = write_nifti(pathlib.Path(elsewhere) / "full.nii", bytes([1]) * 24 ** 3, (24, 24, 24))
+                runs = pathlib.Path(elsewhere) / "runs.jsonl"
+                process = start_refining("mesh", image, "--radius", 0.35, "--delta", 0.3, "--algorithm", "pdr",
+                                         "--threads", 16, "--initial-ratio", 4, "--leaf-size", 0.24, "--oversubscribe",
+                                         "--max-memory-gib", 4, "-o", self.folder / "out.vtu", "--log",
+                                         self.folder / "run.log", "--record", runs)
+                time.sleep(moment_s)
+                end = end_of(process, signal.SIGINT)
+                self.assert_stopped(end)
+                self.assertLessEqual(end.seconds, LONGEST_S + seconds_of_writing(self.read_record(runs)))
 
     def test_a_full_pipe_keeps_nobody_waiting(self):
         read_end, write_end = os.pipe()

@@ -126,6 +126,31 @@ TEST_P(OctreeOfSeed, RingsAreTheLeavesThatTouchAndThoseBeyondWhoseRegionsMeet) {
   }
 }
 
+TEST_P(OctreeOfSeed, AfterAStopRequestNothingIsAskedAndEveryPointIsSomewhere) {
+  std::size_t asked = 0;
+  const auto make = [&](std::size_t calls_before_stop) {
+    std::stop_source stop;
+    asked = 0;
+    const auto ask = [&] { ++asked == calls_before_stop&& stop.request_stop(); };
+    return Octree(
+        seeded.low, seeded.high, seeded.finest_side_mm(),
+        [&](const Point& low, const Point& high) { return ask(), seeded.largest_side(low, high); },
+        [&](const Point& low, const Point& high) { return ask(), seeded.is_needed(low, high); },
+        stop.get_token());
+  };
+  EXPECT_EQ(cubes_of(make(0)), cubes_of(pruned));
+  const std::size_t calls = asked;
+  for (std::size_t last = 1; last <= calls; last += 1 + last / 4) {
+    const Octree stopped = make(last);
+    EXPECT_EQ(asked, last);
+    EXPECT_LE(stopped.num_leaves(), pruned.num_leaves());
+    for (int i = 0; i < 20; ++i) {
+      const Point p = seeded.point();
+      EXPECT_EQ(stopped.leaf_at(p), owner_of(stopped, stopped.to_grid(p)));
+    }
+  }
+}
+
 TEST_P(OctreeOfSeed, RingsAreSymmetric) {
   std::vector<Ids> first, second;
   for (LeafId leaf = 0; leaf < pruned.num_leaves(); ++leaf) {

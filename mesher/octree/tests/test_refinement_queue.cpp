@@ -13,6 +13,13 @@ namespace {
 constexpr LeafOrder kOrders[] = {LeafOrder::kHome, LeafOrder::kMostWork, LeafOrder::kMorton,
                                  LeafOrder::kColoring};
 
+// So many leaves.
+Octree row_of(double num_leaves) {
+  const auto side = [](const Point&, const Point&) { return 1.0; };
+  const auto always = [](const Point&, const Point&) { return true; };
+  return {{0, 0, 0}, {num_leaves, 1, 1}, 1, side, always};
+}
+
 class Queue : public testing::TestWithParam<std::tuple<LeafOrder, int>> {
  protected:
   LeafOrder order = std::get<0>(GetParam());
@@ -28,6 +35,7 @@ class Queue : public testing::TestWithParam<std::tuple<LeafOrder, int>> {
 TEST_P(Queue, HandsOutEveryPendingLeafAwayFromActiveOnes) {
   constexpr unsigned kNumNodes = 5;
   RefinementQueue queue(octree, kNumNodes, order);
+  queue.share_out();
   std::set<LeafId> pending;
   std::vector<LeafId> active;
   const auto is_free = [&](LeafId leaf) {
@@ -65,6 +73,7 @@ TEST_P(Queue, RepeatsItselfForTheSameCalls) {
   const auto run = [&] {
     std::mt19937_64 random(3);
     RefinementQueue queue(octree, 4, order);
+    queue.share_out();
     for (LeafId leaf = 0; leaf < octree.num_leaves(); ++leaf) queue.push(leaf, 1 + random() % 100);
     std::vector<std::optional<LeafId>> answers;
     std::vector<LeafId> active;
@@ -84,6 +93,7 @@ TEST_P(Queue, RepeatsItselfForTheSameCalls) {
 TEST_P(Queue, ThreadsRefineEveryLeafWithItsRegionToThemselves) {
   constexpr unsigned kNumNodes = 4;
   RefinementQueue queue(octree, kNumNodes, order);
+  queue.share_out();
   std::vector<unsigned> user_of(cubes.size());         // of each cube: node + 1, or 0
   std::vector<unsigned> poor_of(octree.num_leaves());  // poor cells, given by the leaf itself or its ring
   std::atomic<unsigned> num_pushed = octree.num_leaves(), num_refined = 0, num_shared = 0;
@@ -158,12 +168,9 @@ TEST_P(Shares, HaveEqualWorkAndGoToTheirNodes) {
 
 // Node 1 has refined its share when node 0 has begun: it takes over half of what is left.
 TEST(Share, OfWhoHasMostIsHalvedForWhoHasNone) {
-  const Octree octree{{0, 0, 0},
-                      {32, 1, 1},
-                      1,
-                      [](const Point&, const Point&) { return 1.0; },
-                      [](const Point&, const Point&) { return true; }};
+  const Octree octree = row_of(32);
   RefinementQueue queue(octree, 2);
+  queue.share_out();
   for (LeafId leaf = 0; leaf < 16; ++leaf) queue.push(leaf, 10);
   ASSERT_EQ(queue.home_of(15), 0u);
   const std::optional<LeafId> taken = queue.pop(1);
@@ -174,15 +181,30 @@ TEST(Share, OfWhoHasMostIsHalvedForWhoHasNone) {
   EXPECT_EQ(queue.home_of(*taken), 1u);
 }
 
+TEST(Share, OfTheFirstNodeIsAllUntilItIsSharedOutWithoutAStopRequest) {
+  const Octree octree = row_of(32);
+  RefinementQueue queue(octree, 4);
+  const auto shares = [&] {
+    std::vector<int> leaves(4);
+    for (LeafId leaf = 0; leaf < octree.num_leaves(); ++leaf) ++leaves[queue.home_of(leaf)];
+    return leaves;
+  };
+  EXPECT_EQ(shares(), (std::vector{32, 0, 0, 0}));
+  std::stop_source stop;
+  stop.request_stop();
+  queue.share_out(stop.get_token());
+  EXPECT_EQ(shares(), (std::vector{32, 0, 0, 0}));
+  queue.share_out();
+  EXPECT_EQ(shares(), (std::vector{8, 8, 8, 8}));
+}
+
 INSTANTIATE_TEST_SUITE_P(Seeds, Shares, testing::Range(std::uint64_t{0}, std::uint64_t{12}));
 
 class SmallQueue : public testing::Test {
  protected:
-  Octree octree{{0, 0, 0},
-                {8, 1, 1},
-                1,
-                [](const Point&, const Point&) { return 1.0; },
-                [](const Point&, const Point&) { return true; }};
+  SmallQueue() { queue.share_out(); }
+
+  Octree octree = row_of(8);
   RefinementQueue queue{octree, 2};
 };
 

@@ -53,6 +53,7 @@ class Simulation {
         queue_(octree, num_nodes, order),
         poor_of_(octree.num_leaves()),
         last_node_(octree.num_leaves(), num_nodes) {
+    queue_.share_out();
     std::mt19937_64 random(1);
     for (LeafId leaf = 0; leaf < octree.num_leaves(); ++leaf)
       give(leaf, kWork / 2 + static_cast<unsigned>(random() % kWork));

@@ -1,5 +1,5 @@
-// What executors and leaves do with gifts of no cells: a leaf's cells may be taken with those that came to it
-// late.
+// What executors and leaves do with gifts of no cells, as a leaf's cells may be taken with those that came to
+// it late, and when a stop is requested.
 #include <gtest/gtest.h>
 
 #include <set>
@@ -85,14 +85,18 @@ TEST_P(EmptyGifts, AreBeggedAgainInVirtualTime) {
 
 INSTANTIATE_TEST_SUITE_P(Workers, EmptyGifts, testing::Values(1, 3));
 
+Octree one_leaf(const Box& box) {
+  const double side_mm = box.high.x - box.low.x;
+  return {box.low, box.high, side_mm, [=](const Point&, const Point&) { return side_mm; },
+          [](const Point&, const Point&) { return true; }};
+}
+
 // Another node lists a cell of a leaf between the moments when its number and its cells are taken: the cell
 // goes with the others, and the leaf is handed out once more, with none.
 TEST(LeafRefinement, CellsThatComeLateAreTakenOnce) {
   const Box box{{0, 0, 0}, {8, 8, 8}};
   Mesh mesh(box, 1 << 10);
-  const Octree octree(
-      box.low, box.high, 8, [](const Point&, const Point&) { return 8.0; },
-      [](const Point&, const Point&) { return true; });
+  const Octree octree = one_leaf(box);
   const Entries early{{0, mesh.stamp(0)}, {1, mesh.stamp(1)}}, late{{2, mesh.stamp(2)}};
   LeafRefinement leaves(mesh, octree, 2, early, [] { return 0.0; }, {});
   const auto leaf = leaves.take_leaf(0, false);
@@ -107,6 +111,29 @@ TEST(LeafRefinement, CellsThatComeLateAreTakenOnce) {
   leaves.finish({*again, 1, 0, 0, 0, 0, {}});
   EXPECT_EQ(taken, (std::multiset<CellId>{0, 1, 2}));
   EXPECT_FALSE(leaves.take_leaf(0, true)) << "nothing is left to wait for";
+}
+
+// The making of leaves asks for no reasons, and looks at this.
+TEST(Watch, IsOverAsSoonAsAStopIsRequested) {
+  std::stop_source stop;
+  Watch watch({}, stop.get_token(), [](std::uint64_t) {});
+  EXPECT_FALSE(watch.over().stop_requested());
+  EXPECT_EQ(watch.reason(), StopReason::kComplete);
+  stop.request_stop();
+  EXPECT_TRUE(watch.over().stop_requested());
+  EXPECT_EQ(watch.reason(), StopReason::kCancelled);
+}
+
+TEST(LeafRefinement, ListsNothingWhenTheRunIsOver) {
+  const Box box{{0, 0, 0}, {8, 8, 8}};
+  Mesh mesh(box, 1 << 10);
+  const Octree octree = one_leaf(box);
+  std::stop_source over;
+  over.request_stop();
+  LeafRefinement leaves(
+      mesh, octree, 2, {{0, mesh.stamp(0)}}, [] { return 0.0; }, over.get_token());
+  EXPECT_FALSE(leaves.take_leaf(0, true));
+  EXPECT_TRUE(leaves.take_cells(0).empty());
 }
 
 }  // namespace
