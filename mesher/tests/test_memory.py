@@ -59,7 +59,7 @@ class MemoryLimit(PodmTestCase):
     def test_threads_are_charged_with_what_they_take(self):
         image = small_images.write_nifti(self.folder / "ball.nii", small_images.ball_voxels(40), (40, 40, 40))
         arenas = {**os.environ, "GLIBC_TUNABLES": "glibc.malloc.arena_max=1000"}
-        for gib, threads, environment in (0.08, 64, None), (0.08, 64, arenas), (0.12, 224, None):
+        for gib, threads, environment in (0.07, 16, None), (0.08, 64, arenas), (0.2, 224, None):
             for algorithm in "podm", "pdr":
                 with self.subTest(gib=gib, threads=threads, algorithm=algorithm, environment=environment is not None):
                     self.check(image, gib, ["--threads", threads, "--algorithm", algorithm, "--oversubscribe"],
