@@ -78,8 +78,7 @@ void expect_nrrd_line(const std::string& path, const std::string& line, int numb
 }
 
 // ITK copies names and some values into 255 bytes, whatever their length, and takes the value of a name
-// without
-// '=' from the next line, beyond the last one too.
+// without '=' from the next line, beyond the last one too.
 void expect_meta_line(const std::string& path, const std::string& line, int number) {
   constexpr std::size_t kLongestLine = 254;
   const std::string place = "wrong magic or header (line " + std::to_string(number);

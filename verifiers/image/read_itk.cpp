@@ -81,9 +81,9 @@ void expect_nrrd_lines(const std::string& path, const std::vector<std::string>& 
   constexpr std::size_t kMostQuoted = 500;
   if (path.size() > kMostQuoted) refuse(path, "a NRRD file needs a path of at most 500 bytes");
   for (std::size_t i = 0; i < lines.size(); ++i) {
-    const std::size_t name = lines[i].find(':');
-    const bool is_free =
-        lines[i][0] == '#' || lines[i].compare(name < lines[i].size() ? name : 0, 2, ":=") == 0;
+    const std::size_t colon = lines[i].find(':');
+    const bool is_named = colon != std::string::npos && lines[i].compare(colon, 2, ":=") == 0;
+    const bool is_free = lines[i].starts_with('#') || is_named;
     if (lines[i].size() > kMostQuoted && (i == 0 || !is_free))
       refuse(path, "the NRRD header has a line of more than 500 bytes, line " + std::to_string(i + 1));
   }
