@@ -6,6 +6,7 @@
 #include <limits>
 #include <numeric>
 
+#include "image/working_frame.h"
 #include "memory_model.h"
 #include "runtime/parallel_for.h"
 
@@ -187,9 +188,17 @@ Box foreground_bounds(const LabelImage& image, int threads) {
   for (const VoxelBounds& b : bounds) bounds[0].add(b.low, b.high);
   const auto& [low, high] = bounds[0];
   if (high[0] < 0) throw InputError("the image has no foreground");
-  const auto& s = image.spacing;
-  return {{(low[0] - 1) * s[0], (low[1] - 1) * s[1], (low[2] - 1) * s[2]},
-          {(high[0] + 1) * s[0], (high[1] + 1) * s[1], (high[2] + 1) * s[2]}};
+  const Affine a = voxels_to_working(image);
+  const auto bound = [&](std::size_t row, bool is_low) {  // a sum of each axis' own least, or greatest
+    double sum = a[4 * row + 3];
+    for (std::size_t axis = 0; axis < 3; ++axis) {
+      const double entry = a[4 * row + axis];
+      sum += entry * ((entry > 0) == is_low ? low[axis] - 1 : high[axis] + 1);
+    }
+    return sum;
+  };
+  return {{bound(0, true), bound(1, true), bound(2, true)},
+          {bound(0, false), bound(1, false), bound(2, false)}};
 }
 
 }  // namespace podm

@@ -14,7 +14,8 @@ namespace podm {
 /// Voxels by label, the background too.
 std::vector<std::uint64_t> count_voxels(const LabelImage& image, int threads);
 
-/// Bounds of the foreground, mm: centres of the labelled voxels and one voxel more on every side.
+/// Bounds of the foreground in the working frame, mm: centres of the labelled voxels and one voxel more on
+/// every side.
 Box foreground_bounds(const LabelImage& image, int threads = 1);
 
 /// Of all labels; 0: unbounded.

@@ -6,32 +6,13 @@
 #include <utility>
 #include <vector>
 
-#include "geometry/affine.h"
+#include "image/working_frame.h"
 #include "runtime/parallel_for.h"
 #include "runtime/parallel_resize.h"
 
 namespace podm {
 
 namespace {
-
-// From the image frame, mm, to the world.
-class WorldFrame {
- public:
-  WorldFrame(const LabelImage& image, Space space)
-      : a_(image.voxel_to_ras), spacing_(image.spacing), flip_(space == Space::kLps ? -1 : 1) {}
-
-  std::array<double, 3> operator()(const Point& p) const {
-    const auto ras = map(a_, {p.x / spacing_[0], p.y / spacing_[1], p.z / spacing_[2]});
-    return {flip_ * ras[0], flip_ * ras[1], ras[2]};
-  }
-  // Then it turns every cell inside out; swapping two vertices turns it back.
-  bool is_mirrored() const { return determinant(a_) < 0; }
-
- private:
-  Affine a_;
-  std::array<double, 3> spacing_;
-  double flip_;
-};
 
 // Threads share out chunks of ids.
 constexpr std::size_t kChunk = 1 << 13;
@@ -80,8 +61,12 @@ class Shares {
 // Of a mesh whose labels are known. Each thread counts what its chunks add, then knows where to write.
 class Extractor {
  public:
-  Extractor(Mesh& mesh, const WorldFrame& frame, std::size_t threads, TetMesh& out)
-      : mesh_(mesh), frame_(frame), threads_(threads), out_(out), out_ids_(mesh.vertex_bound(), kNoVertex) {}
+  Extractor(Mesh& mesh, const Affine& to_world, std::size_t threads, TetMesh& out)
+      : mesh_(mesh),
+        to_world_(to_world),
+        threads_(threads),
+        out_(out),
+        out_ids_(mesh.vertex_bound(), kNoVertex) {}
 
   std::uint64_t operator()() {
     Shares shares(mesh_.cell_bound());
@@ -177,7 +162,8 @@ class Extractor {
       if (out_ids_[v] != kUsed) continue;
       out_ids_[v] = static_cast<std::uint32_t>(at);
       if (mesh_.vertex(v).kind != VertexKind::kIsosurface) out_ids_[v] |= kOffIsosurface;
-      out_.vertices[at++] = frame_(mesh_.point(v));
+      const Point p = map(to_world_, mesh_.point(v));
+      out_.vertices[at++] = {flip_ * p.x, flip_ * p.y, p.z};
     }
   }
 
@@ -215,10 +201,11 @@ class Extractor {
   }
 
   Mesh& mesh_;
-  const WorldFrame& frame_;
-  const bool is_mirrored_ = frame_.is_mirrored();
+  const Affine to_world_;
+  const bool is_mirrored_ = determinant(to_world_) < 0;  // swapping two vertices of a cell turns it back
   std::size_t threads_;
   TetMesh& out_;
+  const double flip_ = out_.space == Space::kLps ? -1 : 1;
   std::vector<std::uint32_t> out_ids_;  // by id in the store: used or not, then the position in the output
 };
 
@@ -239,13 +226,13 @@ std::uint64_t label_cells(Mesh& mesh, const Isosurface& isosurface, int threads)
   return labelled;
 }
 
-TetMesh extract_mesh(Mesh& mesh, const Isosurface& isosurface, const LabelImage& image, Space space,
-                     int threads, std::uint64_t& facets_off_isosurface) {
+TetMesh extract_mesh(Mesh& mesh, const Isosurface& isosurface, Space space, int threads,
+                     std::uint64_t& facets_off_isosurface) {
   TetMesh out;
-  out.labels = image.labels;
+  out.labels = isosurface.image().labels;
   out.space = space;
   label_cells(mesh, isosurface, threads);
-  facets_off_isosurface = Extractor(mesh, WorldFrame(image, space), num_threads(threads), out)();
+  facets_off_isosurface = Extractor(mesh, working_to_world(isosurface.image()), num_threads(threads), out)();
   return out;
 }
 

@@ -1,5 +1,5 @@
 // From the store to the mesh that leaves the library: cells whose circumcentre lies inside, facets between
-// labels, world coordinates. `threads`: 0 for all cores; the result is the same for any number.
+// labels, in the world. `threads`: 0 for all cores; the result is the same for any number.
 #pragma once
 
 #include <cstdint>
@@ -17,8 +17,8 @@ std::uint64_t label_cells(Mesh& mesh, const Isosurface& isosurface, int threads)
 /// Uses the store up: it gives its memory back as the mesh grows, so that both together take 4 bytes a vertex
 /// and a sixteenth of the mesh more than the store. `space` is kRas or kLps. `facets_off_isosurface` counts
 /// boundary facets with a vertex elsewhere. Vertices and cells keep the order of their ids.
-TetMesh extract_mesh(Mesh& mesh, const Isosurface& isosurface, const LabelImage& image, Space space,
-                     int threads, std::uint64_t& facets_off_isosurface);
+TetMesh extract_mesh(Mesh& mesh, const Isosurface& isosurface, Space space, int threads,
+                     std::uint64_t& facets_off_isosurface);
 
 /// Replaces RAS coordinates by continuous voxel indices.
 void convert_to_voxel_space(TetMesh& mesh, const LabelImage& image, int threads);

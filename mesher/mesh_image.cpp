@@ -250,7 +250,7 @@ class Run {
     malloc_trim(0);  // what workers had is for the mesh now
     MeshingReport& report = result.report;
     const Space space = options_.space == Space::kVoxel ? Space::kRas : options_.space;  // for now
-    result.mesh = extract_mesh(*refinement.mesh, isosurface, image_, space, options_.loop_threads(),
+    result.mesh = extract_mesh(*refinement.mesh, isosurface, space, options_.loop_threads(),
                                report.guarantees.facet_vertices);
     refinement.mesh.reset();
     report.phases_s["extract"] += seconds_since(start);
@@ -298,8 +298,7 @@ TetMesh replay_operations(const LabelImage& image, const OperationLog& log, Spac
   const Isosurface isosurface(image, 0);
   std::uint64_t facets_off_isosurface = 0;
   const bool is_voxel = space == Space::kVoxel;
-  TetMesh mesh =
-      extract_mesh(*refined, isosurface, image, is_voxel ? Space::kRas : space, 0, facets_off_isosurface);
+  TetMesh mesh = extract_mesh(*refined, isosurface, is_voxel ? Space::kRas : space, 0, facets_off_isosurface);
   if (is_voxel) convert_to_voxel_space(mesh, image, 0);
   return mesh;
 }

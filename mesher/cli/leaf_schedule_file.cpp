@@ -2,7 +2,7 @@
 
 #include "cli/json_text.h"
 #include "files/atomic_file.h"
-#include "geometry/affine.h"
+#include "image/working_frame.h"
 
 namespace podm::cli {
 namespace {
@@ -11,15 +11,11 @@ using Json = nlohmann::ordered_json;
 
 // From coordinates of the mesh file to those of the leaves' grid.
 Affine mesh_to_grid(const MeshRun& run, const LeafSchedule& schedule) {
-  Affine to_voxel{1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0};
-  if (run.options.space != Space::kVoxel) {
-    Affine voxel_to_mesh = run.image.voxel_to_ras;
-    for (std::size_t i = 0; i < 8 && run.options.space == Space::kLps; ++i) voxel_to_mesh[i] *= -1;
-    to_voxel = inverse(voxel_to_mesh);
-  }
-  Affine grid = to_voxel;
+  const bool is_voxel = run.options.space == Space::kVoxel;
+  Affine grid = is_voxel ? voxels_to_working(run.image) : inverse(working_to_world(run.image));
+  for (std::size_t i = 0; i < 12 && run.options.space == Space::kLps; ++i)
+    if (i % 4 < 2) grid[i] *= -1;
   for (std::size_t axis = 0; axis < 3; ++axis) {
-    for (std::size_t c = 0; c < 4; ++c) grid[4 * axis + c] *= run.image.spacing[axis];
     grid[4 * axis + 3] -= schedule.origin_mm[axis];
     for (std::size_t c = 0; c < 4; ++c) grid[4 * axis + c] /= schedule.side_mm;
   }

@@ -4,6 +4,8 @@
 #include <array>
 #include <cstddef>
 
+#include "geometry/point.h"
+
 namespace podm {
 
 using Affine = std::array<double, 12>;  // row-major 3x4: a linear part, then what is added
@@ -35,6 +37,10 @@ inline std::array<double, 3> map(const Affine& a, const std::array<double, 3>& x
   for (std::size_t r = 0; r < 3; ++r)
     y[r] = a[4 * r] * x[0] + a[4 * r + 1] * x[1] + a[4 * r + 2] * x[2] + a[4 * r + 3];
   return y;
+}
+inline Point map(const Affine& a, const Point& p) {
+  const auto row = [&](std::size_t r) { return a[r] * p.x + a[r + 1] * p.y + a[r + 2] * p.z + a[r + 3]; };
+  return {row(0), row(4), row(8)};
 }
 
 }  // namespace podm

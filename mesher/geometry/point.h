@@ -1,4 +1,4 @@
-// Points and vectors in the image frame, mm.
+// Points and vectors, mm.
 #pragma once
 
 #include <cmath>

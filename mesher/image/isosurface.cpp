@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <limits>
 
+#include "image/working_frame.h"
+
 namespace podm {
 
 namespace {
@@ -28,6 +30,8 @@ Oracle<Reads>::Oracle(const LabelImage& image, std::shared_ptr<const FeatureTran
       transform_(std::move(transform)),
       grid_(image, reads),
       features_(transform_->words().data(), reads),
+      from_voxels_(voxels_to_working(image)),
+      to_voxels_(inverse(from_voxels_)),
       spacing_{image.spacing[0], image.spacing[1], image.spacing[2]},
       inverse_spacing_{1 / spacing_.x, 1 / spacing_.y, 1 / spacing_.z},
       end_{image.size[0] - 0.5, image.size[1] - 0.5, image.size[2] - 0.5},

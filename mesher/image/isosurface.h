@@ -2,7 +2,7 @@
 //
 // The label at a point is the one with the greatest trilinear weight among the eight voxels around it, ties
 // to the smaller label index; outside the grid everything is background. The isosurface is the set of points
-// where that label changes. All coordinates are mm in the image frame (podm/label_image.h).
+// where that label changes. Points are mm in the working frame.
 //
 // Lemma. An isosurface point s lies within half a voxel, along every axis, of a surface voxel's centre
 // (feature_transform.h). Proof: let c be the corner nearest to s of the block that holds s, s = c + (x,y,z)
@@ -16,6 +16,7 @@
 #include <memory>
 #include <optional>
 
+#include "geometry/affine.h"
 #include "geometry/point.h"
 #include "image/feature_transform.h"
 #include "image/isosurface_block.h"
@@ -81,11 +82,14 @@ class Oracle {
     LabelIndex to;
   };
 
-  Point to_voxels(const Point& p) const {
-    return {p.x * inverse_spacing_.x, p.y * inverse_spacing_.y, p.z * inverse_spacing_.z};
+  Point to_voxels(const Point& p) const { return map(to_voxels_, p); }
+  Point from_voxels(const Point& u) const { return map(from_voxels_, u); }
+  // Of directions, along the image's axes.
+  Vector to_mm(const Vector& d) const { return {d.x * spacing_.x, d.y * spacing_.y, d.z * spacing_.z}; }
+  Vector per_mm(const Vector& gradient) const {
+    return {gradient.x * inverse_spacing_.x, gradient.y * inverse_spacing_.y,
+            gradient.z * inverse_spacing_.z};
   }
-  Vector per_mm(const Vector& gradient) const { return to_voxels(gradient); }
-  Point to_mm(const Point& u) const { return {u.x * spacing_.x, u.y * spacing_.y, u.z * spacing_.z}; }
   double length_mm(const Vector& d) const { return std::sqrt(squared_length(to_mm(d))); }
 
   // All below take points in voxels; bounds and normals are mm.
@@ -121,6 +125,7 @@ class Oracle {
 
   LabelGrid<Reads> grid_;
   Features<Reads> features_;
+  Affine from_voxels_, to_voxels_;             // to the working frame, from it
   Vector spacing_, inverse_spacing_;           // mm a voxel, voxels a mm
   Point end_;                                  // half a voxel beyond the last
   double half_diagonal_mm_;                    // of a voxel

@@ -283,7 +283,7 @@ std::optional<NearPoint> Oracle<Reads>::near_point(const Point& p, double radius
   Sheet sheet(*this, best.surface_voxel);
   descend(sheet, u, best);
   if (!(best.squared_mm <= square(radius))) return std::nullopt;
-  return NearPoint{to_mm(best.u), sheet.center(), best.u == midpoint};
+  return NearPoint{from_voxels(best.u), sheet.center(), best.u == midpoint};
 }
 
 // Midpoints lie on a lattice, and vertices of a lattice make flat cells that rounding can turn inside out:
@@ -298,10 +298,10 @@ Point Oracle<Reads>::settled(const NearPoint& near, const Point& p) const {
     z = z + kAside * irregular;
   }
   Sheet sheet(*this, near.surface_voxel);
-  if (pull(sheet, z, kMaxPulls)) return to_mm(z);
+  if (pull(sheet, z, kMaxPulls)) return from_voxels(z);
   Nearest midpoint{near.surface_voxel};
   try_midpoints_around(u, midpoint);
-  return to_mm(midpoint.u);
+  return from_voxels(midpoint.u);
 }
 
 template <class Reads>

@@ -17,6 +17,7 @@ using Matrix = std::array<std::array<double, 3>, 3>;  // by rows
 // A direction closer to orthonormal than this differs from it by the rounding of the file's header only.
 constexpr double kHeaderRounding = 1e-5;
 constexpr double kSmallestDeterminant = 1e-6;  // of three unit axes
+constexpr double kFurthestVoxels = 0x1p33;     // doubles tell a millionth of a voxel apart there
 
 double determinant(const Matrix& m) {
   return m[0][0] * (m[1][1] * m[2][2] - m[1][2] * m[2][1]) -
@@ -132,6 +133,10 @@ std::array<double, 3> checked_spacing(const std::string& path, std::array<double
   }
   if (!(std::abs(determinant(direction)) > kSmallestDeterminant))
     refuse(path, "the affine is singular (its axes lie in a plane)");
+  const double smallest = *std::min_element(spacing.begin(), spacing.end());
+  for (std::size_t row = 0; row < 3; ++row)
+    if (std::abs(voxel_to_ras[4 * row + 3]) > kFurthestVoxels * smallest)
+      refuse(path, "the image is more than 2^33 voxels away from the origin");
   if (deviation_from_orthonormal(direction) >= kHeaderRounding) return spacing;
   direction = nearest_orthonormal(direction);
   for (std::size_t row = 0; row < 3; ++row)

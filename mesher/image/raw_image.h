@@ -37,7 +37,7 @@ std::size_t checked_num_voxels(const std::string& path, const std::vector<int>& 
 std::size_t checked_num_bytes(const RawImage& raw, std::uint64_t most_bytes);
 
 /// The voxel spacing, mm. Axes that are orthogonal but for the rounding of the file's header are made exactly
-/// so, in place. Throws InputError on a singular or non-finite affine.
+/// so, in place. Throws InputError on an affine that is singular, not finite or too far from the origin.
 std::array<double, 3> checked_spacing(const std::string& path, std::array<double, 12>& voxel_to_ras);
 
 }  // namespace podm

@@ -20,7 +20,7 @@ namespace {
 static_assert(std::endian::native == std::endian::little, "the format is little-endian");
 
 constexpr std::string_view kMagic = "podmlog1";
-constexpr std::string_view kSchema = "podm-log/1";
+constexpr std::string_view kSchema = "podm-log/2";
 constexpr std::uint32_t kMaxBatch = 1u << 24;  // operations or removals; far above what the writer makes
 
 struct BatchSizes {

@@ -22,7 +22,7 @@
 // thousand of R4's is), and R3 beside it a sample up to 0.09 % nearer than s, but only if three lengths are
 // within 0.3 % of their least. The floor of worker.cpp ends any chain of these. Without such, m = s. So the
 // process ends, on non-manifold interfaces too. Rules are tightened by kMargin, so that what they guarantee
-// survives the rounding of world coordinates.
+// survives rounded arithmetic.
 #pragma once
 
 #include <optional>

@@ -113,7 +113,7 @@ class Mesh(PodmTestCase):
 
     def test_fidelity_is_verified_within_what_the_sampling_distance_promises(self):
         """By voxels alone the coarse mesh would fail."""
-        coarse = ["--radius", "20", "--delta", "10"]
+        coarse = ["--radius", "26", "--delta", "13"]
         for options, image in ((coarse, "phantom:torus@64"), (["--radius", "9", "--labels", "1,3", "--space", "LPS"],
                                                              "phantom:spheres@32")):
             self.runs.unlink(missing_ok=True)

@@ -1,7 +1,7 @@
 // Where a cell's circumcentre lies in the image, and by how much that may be wrong.
 //
 // The circumcentre is taken in the image frame: voxel indices times spacing, mm. Without shear that frame is
-// the world's up to a rigid motion, so it is the circumcentre of the world; the mesher works in this frame.
+// the world's up to a rigid motion, so it is the circumcentre of the world; with shear the mesher works here.
 //
 // Error bound. Let v0..v3 be off by at most t per coordinate, a_i = v_i - v0, n_i the cross product of the
 // other two, D = a1 . n1. The centre q + v0 solves a_i . q = |a_i|^2 / 2. With a_i off by d_i, |d_i| <= s =
@@ -30,8 +30,8 @@ struct LocatedPoint {
 
 class CircumcenterLocator {
  public:
-  /// Coordinates count as known to 8 units of rounding of the largest term that the affine adds up: the
-  /// mesher rounds a point five times on its way to the file.
+  /// Coordinates count as known to 8 units of rounding of the largest term that the affine adds up: who
+  /// meshes in voxels rounds a point five times on its way to the file.
   CircumcenterLocator(const Mesh& mesh, const Image& image, const ImageFrame& frame, int threads);
 
   LocatedPoint circumcenter(CellId cell) const;

@@ -15,6 +15,7 @@ LabelImage torus(std::array<int, 3> size) {
   LabelImage image;
   image.size = size;
   image.spacing = {0.6, 0.6, 1.2};
+  image.voxel_to_ras = {0.6, 0, 0, 0, 0, 0.6, 0, 0, 0, 0, 1.2, 0};
   image.voxels.resize(image.num_voxels());
   const std::array<double, 3> extent = {size[0] * 0.6, size[1] * 0.6, size[2] * 1.2};
   const double ring = 0.3 * std::min(extent[0], extent[1]), tube = std::min(0.4 * ring, 0.4 * extent[2]);

@@ -40,6 +40,7 @@ LabelImage empty_image(std::array<int, 3> size, std::array<double, 3> spacing) {
   LabelImage image;
   image.size = size;
   image.spacing = spacing;
+  image.voxel_to_ras = {spacing[0], 0, 0, 0, 0, spacing[1], 0, 0, 0, 0, spacing[2], 0};
   image.voxels.assign(image.num_voxels(), kBackground);
   return image;
 }

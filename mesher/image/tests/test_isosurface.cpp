@@ -5,6 +5,7 @@
 #include <limits>
 
 #include "image/isosurface.h"
+#include "image/working_frame.h"
 #include "isosurface_reference.h"
 
 namespace podm::test {
@@ -46,6 +47,51 @@ TEST(IsosurfaceLabel, EqualsTheDefinition) {
         ASSERT_EQ(isosurface.label_at(p), expected.label);
       }
     }
+  }
+}
+
+// The same questions in another frame have the same answers, there.
+TEST(IsosurfaceFrame, CarriesAnswersAlong) {
+  Random random(5);
+  for (const LabelImage& image : noisy_images()) {
+    const Isosurface expected(image, 1);
+    LabelImage moved = image;
+    const double c = std::cos(0.7), s = std::sin(0.7);
+    const auto [x, y, z] = image.spacing;
+    moved.voxel_to_ras = {0, -c * y, s * z, 31, -x, 0, 0, -5, 0, -s * y, -c * z, 250};
+    const Isosurface isosurface(moved, 1);
+    for (int n = 0; n < 300; ++n) {
+      const Point p = random_point(random, image, n % 10 == 0 ? 30 : 1);
+      const Point q = map(moved.voxel_to_ras, Point{p.x / x, p.y / y, p.z / z});
+      if (reference_label(image, p).lead > 1e-9) {
+        ASSERT_EQ(isosurface.label_at(q), expected.label_at(p));
+      }
+      const double radius = uniform(random, 0, 4), bound = expected.distance_lower_bound(p, 100);
+      if (std::isfinite(bound)) {
+        ASSERT_NEAR(isosurface.distance_lower_bound(q, 100), bound, 1e-9);
+      }
+      const auto near = isosurface.closest_point(q, radius);
+      if (!near) continue;
+      ASSERT_LE(distance(*near, q), radius + shortest_voxel_side(image));
+      const Point u = map(inverse(moved.voxel_to_ras), *near);
+      ASSERT_TRUE(is_on_isosurface(image, {u.x * x, u.y * y, u.z * z}, kOnSurfaceVoxels));
+    }
+  }
+}
+
+TEST(IsosurfaceFrame, IsTheImagesOwnUnderShear) {
+  Random random(5);
+  const LabelImage image = random_image(random, {9, 8, 10}, {1, 1.5, 2}, 3, 0.9);
+  LabelImage sheared = image;
+  sheared.voxel_to_ras = {1, 0.5, 0, 8, 0, std::sqrt(2.0), 0, 3, 0, 0, 2, -7};
+  const Isosurface expected(image, 1), isosurface(sheared, 1);
+  for (int n = 0; n < 300; ++n) {
+    const Point p = random_point(random, image, 1);
+    ASSERT_EQ(isosurface.label_at(p), expected.label_at(p));
+    ASSERT_EQ(isosurface.closest_point(p, 3), expected.closest_point(p, 3));
+    const Point world = map(working_to_world(sheared), p);
+    const Point mapped = map(sheared.voxel_to_ras, Point{p.x, p.y / 1.5, p.z / 2});
+    ASSERT_NEAR(distance(world, mapped), 0, 1e-12);
   }
 }
 

@@ -294,6 +294,8 @@ std::vector<BadFile> bad_other_files() {
        "spacing"},
       {"MhaSingular", "a.mha",
        [] { return replaced(kMha, "1 0 0 0 1 0 0 0 1", "1 0 0 1 0 0 0 0 1") + kVoxels; }, "singular"},
+      {"MhaFarAway", "a.mha",
+       [] { return replaced(kMha, "Offset = 10 20 30", "Offset = 10 -1e10 30") + kVoxels; }, "origin"},
       {"InrWrongMagic", "a.inr", [] { return std::string(1000, 'x'); }, "magic"},
       {"InrTruncated", "a.inr", [] { return kInr + cut(kVoxels, 1); }, "truncated"},
       {"InrTruncatedGzip", "a.inr.gz", [] { return cut(deflated(kInr + noise(24)), 12); }, "truncated"},

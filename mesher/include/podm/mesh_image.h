@@ -208,7 +208,7 @@ struct Calibration {
 
 /// The leaves of an octree and when each was refined.
 struct LeafSchedule {
-  std::array<double, 3> origin_mm{};  ///< of the grid, image frame
+  std::array<double, 3> origin_mm{};  ///< of the grid, working frame
   double side_mm = 0;                 ///< of a grid cell
   struct Leaf {
     std::array<std::uint32_t, 3> corner;  ///< in the grid
@@ -247,7 +247,7 @@ struct MeshingReport {
   std::map<std::uint32_t, std::uint64_t> cells_of_label;  ///< by label value
   std::map<std::uint32_t, double> volume_of_label_mm3;    ///< by label value, of the mesh
   std::uint64_t store_cells = 0;                          ///< cells of the whole virtual box
-  std::array<double, 6> virtual_box{};                    ///< its low and high corner, mm, image frame
+  std::array<double, 6> virtual_box{};                    ///< its low and high corner, mm, working frame
   /// Of Executor::kVirtual: simulated seconds of initial, refine and closing.
   std::map<std::string, double> virtual_phases_s;
   std::vector<std::string> warnings;

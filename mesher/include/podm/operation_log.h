@@ -21,7 +21,7 @@ namespace podm {
 /// An isosurface point or circumcentre inserted, together with the removal of vertices.
 struct LoggedOperation {
   std::uint64_t sequence = 0;     ///< order of the commits of a run; gaps are allowed
-  std::array<double, 3> point{};  ///< mm, image frame
+  std::array<double, 3> point{};  ///< mm, working frame
   std::uint32_t vertex = 0;       ///< id of the inserted vertex; ids of removed vertices are used again
   std::uint32_t worker = 0;
   std::uint32_t kind = 0;  ///< a VertexKind
@@ -36,7 +36,7 @@ struct OperationBatch {
 
 /// What a log tells of its run besides operations.
 struct OperationLogHead {
-  std::array<double, 6> box{};  ///< low and high corner of the virtual box, mm
+  std::array<double, 6> box{};  ///< low and high corner of the virtual box, as above
   std::string image_sha256;     ///< label_image_sha256() of the image as meshed
   std::string space;            ///< of the coordinates hashed: "RAS", "LPS" or "voxel"
   std::string mesh_sha256;      ///< canonical, of the mesh as written

@@ -8,6 +8,7 @@
 #include <string>
 #include <vector>
 
+#include "geometry/affine.h"
 #include "podm/label_image.h"
 
 namespace podm::test {
@@ -85,6 +86,21 @@ inline std::vector<NamedImage> images() {
                            [&](int, int, int) { return static_cast<int>(random() % 5); });
        }},
   };
+}
+
+struct NamedAffine {
+  const char* name;
+  Affine affine;  // voxels of 1 mm
+  friend std::ostream& operator<<(std::ostream& out, const NamedAffine& x) { return out << x.name; }
+};
+
+inline std::vector<NamedAffine> affines() {
+  const double c = std::cos(0.3), s = std::sin(0.3), d = std::cos(1.1), t = std::sin(1.1);
+  return {{"turned_and_mirrored", {0, -1, 0, 5, -1, 0, 0, 6, 0, 0, -1, 7}},
+          {"oblique", {c, -s * d, s * t, -95.8, s, c * d, -c * t, 97.4, 0, t, d, -79.9}},
+          {"oblique_and_mirrored", {-c, -s * d, s * t, 31, -s, c * d, -c * t, 0.1, 0, t, d, 2}},
+          {"sheared", {1, s, 0, -7, 0, c, 0, 11, 0, 0, 1, 3}},
+          {"sheared_and_mirrored", {1, s, 0, -7, 0, c, 0, 11, 0, 0, -1, 3}}};
 }
 
 }  // namespace podm::test

@@ -13,14 +13,11 @@
 namespace podm::test {
 namespace {
 
-// Three labels that meet, in the middle of refinement: cells that no worker has asked the label of. The world
-// mirrors the image.
+// Three labels that meet, in the middle of refinement: cells that no worker has asked the label of. The image
+// is oblique.
 class ExtractMesh : public testing::Test {
  protected:
-  ExtractMesh() {
-    image_.voxel_to_ras = {0, -1, 0, 5, -1, 0, 0, 6, 0, 0, -1, 7};
-    refine();
-  }
+  ExtractMesh() { refine(); }
 
   // On one thread, so always the same.
   void refine() {
@@ -34,16 +31,20 @@ class ExtractMesh : public testing::Test {
     }
   }
 
+  static const LabelImage& turned(LabelImage& image) {
+    image.voxel_to_ras = affines()[2].affine;
+    return image;
+  }
   LabelIndex label_of(CellId c) const { return isosurface_.label_at(mesh_->cell(c).sphere.center); }
   TetMesh extract(int threads) {
-    return extract_mesh(*mesh_, isosurface_, image_, Space::kRas, threads, facets_off_isosurface_);
+    return extract_mesh(*mesh_, isosurface_, Space::kRas, threads, facets_off_isosurface_);
   }
 
   LabelImage image_ = make_image({24, 24, 24}, {1, 1, 1}, 3, [](int i, int j, int k) {
     if (std::hypot(i - 11.5, j - 11.5, k - 11.5) >= 10) return 0;
     return k < 9 ? 1 : i < 12 ? 2 : 3;
   });
-  Isosurface isosurface_{image_, 1};
+  Isosurface isosurface_{turned(image_), 1};
   std::unique_ptr<Mesh> mesh_;
   std::uint64_t facets_off_isosurface_ = 0;
 };
@@ -65,11 +66,14 @@ TEST_F(ExtractMesh, TakesLabelledCellsTheirVerticesAndTheFacetsBetweenLabels) {
       });
     }
   }
+  std::set<std::array<double, 3>> points;
+  for (const VertexId v : vertices) points.insert({mesh_->point(v).x, mesh_->point(v).y, mesh_->point(v).z});
   const TetMesh out = extract(2);
   EXPECT_GT(cells, 20000u);
   EXPECT_EQ(out.cells.size(), cells);
   EXPECT_EQ(out.cell_labels.size(), cells);
   EXPECT_EQ(out.vertices.size(), vertices.size());
+  EXPECT_EQ(std::set(out.vertices.begin(), out.vertices.end()), points) << "moved on the way out";
   EXPECT_EQ(out.facets.size(), facets);
   EXPECT_EQ(out.facet_labels.size(), facets);
   EXPECT_GT(facets_off_isosurface, 0u);

@@ -44,7 +44,7 @@ class NeedleInABall {
   Triangulator triangulator{{{-20, -20, -20}, {40, 40, 40}}};
 
  private:
-  static constexpr Point center_{11.5, 11.5, 11.5};
+  static constexpr Point center_{4.5, 22.5, 14.5};  // of the ball
   LabelImage image_ = ball(24, 11);
   Isosurface isosurface_{image_, 1};
   Parameters parameters_{kSpacing, SizeField({100, 100}), triangulator.mesh.box(), kSpacing};

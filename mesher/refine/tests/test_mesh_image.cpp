@@ -6,6 +6,8 @@
 #include <numbers>
 #include <set>
 
+#include "cost_model.h"
+#include "image/working_frame.h"
 #include "images.h"
 #include "podm/mesh_image.h"
 
@@ -77,9 +79,11 @@ TEST(MeshImageGeometry, BallHasItsVolume) {
   EXPECT_NEAR(total_volume(result.mesh), 4.0 / 3 * std::numbers::pi * 15 * 15 * 15, 150);
 }
 
-TEST(MeshImageGeometry, FramesAgreeAndStayPositive) {
+class MeshImageFrames : public testing::TestWithParam<NamedAffine> {};
+
+TEST_P(MeshImageFrames, AgreeAndStayPositive) {
   LabelImage image = ball(16, 6);
-  image.voxel_to_ras = {0, -1, 0, 5, -1, 0, 0, 6, 0, 0, -1, 7};  // a rotation with a mirror
+  image.voxel_to_ras = GetParam().affine;
   std::map<Space, MeshingResult> results;
   for (const Space space : {Space::kRas, Space::kLps, Space::kVoxel}) {
     MeshingOptions options = radius(2);
@@ -95,13 +99,31 @@ TEST(MeshImageGeometry, FramesAgreeAndStayPositive) {
   const auto& voxel = results[Space::kVoxel].mesh.vertices;
   ASSERT_EQ(ras.size(), voxel.size());
   for (std::size_t v = 0; v < ras.size(); ++v) {
-    EXPECT_DOUBLE_EQ(lps[v][0], -ras[v][0]);
-    EXPECT_DOUBLE_EQ(lps[v][2], ras[v][2]);
-    EXPECT_NEAR(ras[v][0], 5 - voxel[v][1], 1e-12);
-    EXPECT_NEAR(ras[v][1], 6 - voxel[v][0], 1e-12);
-    EXPECT_NEAR(ras[v][2], 7 - voxel[v][2], 1e-12);
+    EXPECT_EQ(lps[v], (std::array<double, 3>{-ras[v][0], -ras[v][1], ras[v][2]}));
+    const auto mapped = map(image.voxel_to_ras, voxel[v]);
+    for (std::size_t axis = 0; axis < 3; ++axis) EXPECT_NEAR(ras[v][axis], mapped[axis], 1e-12);
   }
 }
+
+TEST_P(MeshImageFrames, BoundsHoldTheObject) {
+  LabelImage image = ball(16, 6);
+  image.voxel_to_ras = GetParam().affine;
+  const Box bounds = foreground_bounds(image);
+  const Affine to_working = voxels_to_working(image);
+  for (int k = 0; k < 16; ++k)
+    for (int j = 0; j < 16; ++j)
+      for (int i = 0; i < 16; ++i)
+        if (image.voxels[image.index(i, j, k)] != kBackground) {
+          const Point voxel{static_cast<double>(i), static_cast<double>(j), static_cast<double>(k)};
+          for (const Vector& aside :
+               {Vector{1, 0, 0}, Vector{-1, 1, 0}, Vector{0, -1, 1}, Vector{0, 0, -1}}) {
+            EXPECT_TRUE(is_in(bounds, map(to_working, voxel + 0.999 * aside)));
+          }
+        }
+}
+
+INSTANTIATE_TEST_SUITE_P(Affines, MeshImageFrames, testing::ValuesIn(affines()),
+                         [](const auto& affine) { return std::string(affine.param.name); });
 
 TEST(MeshImageSizes, LabelsHaveTheirOwnRadius) {
   const LabelImage image =

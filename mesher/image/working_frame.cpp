@@ -1,0 +1,39 @@
+#include "image/working_frame.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace podm {
+namespace {
+
+// Images come with more, or with what rounding leaves (checked_spacing in raw_image.h).
+constexpr double kRounding = 1e-12;
+
+// Whether some columns of the affine are not orthogonal.
+bool is_sheared(const LabelImage& image) {
+  const Affine& a = image.voxel_to_ras;
+  double worst = 0;
+  for (std::size_t i = 0; i < 3; ++i) {
+    const std::size_t j = (i + 1) % 3;
+    const double dot = a[i] * a[j] + a[4 + i] * a[4 + j] + a[8 + i] * a[8 + j];
+    worst = std::max(worst, std::fabs(dot) / (image.spacing[i] * image.spacing[j]));
+  }
+  return worst > kRounding;
+}
+
+}  // namespace
+
+Affine voxels_to_working(const LabelImage& image) {
+  const auto& s = image.spacing;
+  return is_sheared(image) ? Affine{s[0], 0, 0, 0, 0, s[1], 0, 0, 0, 0, s[2], 0} : image.voxel_to_ras;
+}
+
+Affine working_to_world(const LabelImage& image) {
+  if (!is_sheared(image)) return {1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0};
+  Affine a = image.voxel_to_ras;
+  for (std::size_t row = 0; row < 3; ++row)
+    for (std::size_t axis = 0; axis < 3; ++axis) a[4 * row + axis] /= image.spacing[axis];
+  return a;
+}
+
+}  // namespace podm
