@@ -240,6 +240,13 @@ class RandomImage:
             area += float(sides.sum()) * float(numpy.prod(self.spacing)) / self.spacing[axis]
         return float((self.voxels != 0).sum() * numpy.prod(self.spacing)), area
 
+    def ball_inside_mm(self, foreground):
+        """Radius of a ball in the foreground: every voxel within a voxel's diagonal of its points is foreground."""
+        padded = numpy.pad(foreground, 1)
+        inside, outside = (numpy.argwhere(padded == is_inside) * self.spacing for is_inside in (True, False))
+        deepest = max(((outside - point) ** 2).sum(axis=1).min() for point in inside)
+        return float(numpy.sqrt(deepest) - numpy.linalg.norm(self.spacing))
+
     def write(self, path):
         """A NIfTI file; compressed where the name says so."""
         values = self.voxels.astype(TYPES[self.datatype]).tobytes(order="F")

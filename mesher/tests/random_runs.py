@@ -25,9 +25,16 @@ class Run:
     algorithm: str
     executor: str
     selection: list  # options that `podm replay` needs, too
-    sizes: list      # options of sizes and limits
     options: list    # all but the selection and outputs
     limits: set      # reasons for which it may end early
+
+    def foreground(self):
+        """Which voxels have a label that is selected."""
+        voxels = self.image.voxels
+        option, value = self.selection or ("", 0)
+        if option == "--labels":
+            return voxels == int(value)
+        return (voxels != 0) & (voxels != int(value)) if option == "--drop" else voxels != 0
 
     @property
     def has_schedule(self):
@@ -161,5 +168,4 @@ def draw(seed, phantoms):
     options += ["--oversubscribe", "--seed", seed % (1 << 32), *drawn_space(rng, image)]
     return Run(seed, image, pick(rng, ["image.nii", "image.nii", "image.nii.gz"]),
                pick(rng, ["out.vtu", "out.vtu", "out.mesh", "out.msh"]), algorithm, executor,
-               [str(option) for option in selection], [str(option) for option in asked],
-               [str(option) for option in options], limits)
+               [str(option) for option in selection], [str(option) for option in options], limits)

@@ -26,8 +26,6 @@ from podm_process import PROGRAM
 
 VERIFIER = os.path.join(os.path.dirname(PROGRAM), "podm-verify")
 TIMEOUT_S = 300
-# How many cells a serial run may have where one of many workers has none: a speck is sampled or missed by chance.
-MOST_BY_CHANCE = 50
 # What holds of a mesh whenever its run ends.
 ALWAYS = {"structure", "delaunay", "conformity", "surface", "labels"}
 IN_MEMORY = "/dev/shm" if os.access("/dev/shm", os.W_OK) else None
@@ -67,14 +65,17 @@ def judge(run, record, process):
         raise Failed(f"ended as {reason} with exit code {process.returncode} and misses {unmet}{said}")
 
 
-def judge_empty(run, image, folder):
-    """Raises Failed if one thread has a mesh."""
-    record = os.path.join(folder, "serial.jsonl")
-    call(PROGRAM, "mesh", image, *run.selection, *run.sizes, "--quiet", "-o", os.path.join(folder, "serial.vtu"),
-         "--record", record, accepted=(0, 1))
-    cells = json.loads(pathlib.Path(record).read_text())["cells"]
-    if cells > MOST_BY_CHANCE:
-        raise Failed(f"made no cell; one thread makes {cells}")
+def judge_empty(run, delta_mm):
+    """Raises Failed if the object is thick enough for a cell whatever workers do.
+
+    Let B be a ball of radius b inside, and c the circumcentre of the cell that holds B's centre. If no cell has a
+    label, c lies outside, so that the way from it into B meets the isosurface b deep in the circumball or deeper: so
+    does the nearest point z. By R1 a vertex lies within delta of z, and none is inside the circumball: b <= delta. The
+    z that is found may be further by a voxel's shortest side (image/isosurface.h).
+    """
+    ball_mm = run.image.ball_inside_mm(run.foreground())
+    if ball_mm > delta_mm + run.image.spacing.min():
+        raise Failed(f"made no cell, but holds a ball of {ball_mm:.3g} mm, and delta is {delta_mm:.3g} mm")
 
 
 def carry_out(run, folder):
@@ -94,7 +95,7 @@ def carry_out(run, folder):
     if left := set(os.listdir(folder)) - written:
         raise Failed(f"left behind {sorted(left)}")
     if not told["cells"] and told["stop_reason"] == "complete":
-        judge_empty(run, image, folder)
+        judge_empty(run, told["used"]["delta_mm"])
     return "no cell" if not told["cells"] else told["stop_reason"]
 
 

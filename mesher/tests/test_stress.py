@@ -124,8 +124,7 @@ class Faults(PodmTestCase):
         voxels[2:14, 2:14, 2:14] = 1
         image = random_images.RandomImage("cube", [], voxels, 2, numpy.eye(4), numpy.ones(3))
         self.run_drawn = random_runs.Run(7, image, "image.nii", "out.vtu", "podm", "virtual", [],
-                                         ["--radius", "3"], ["--radius", "3", "--threads", "2", "--oversubscribe"],
-                                         set())
+                                         ["--radius", "3", "--threads", "2", "--oversubscribe"], set())
 
     def fault_of(self, script):
         program = self.folder / "podm"
@@ -143,15 +142,36 @@ class Faults(PodmTestCase):
         self.assertIn("run.jsonl", fault)
         self.assertEqual(ended, "failed")
 
-    def test_a_mesh_that_only_one_thread_makes_is_one(self):
-        empty = json.dumps({"stop_reason": "complete", "cells": 0, "guarantees": {}, "verdicts": {}})
-        fault, _ = self.fault_of(
+    def fault_of_no_cell(self, delta_mm):
+        empty = json.dumps({"stop_reason": "complete", "cells": 0, "guarantees": {}, "verdicts": {},
+                            "used": {"delta_mm": delta_mm}})
+        return self.fault_of(
             f"""case "$*" in
             *run.jsonl*) while [ "$1" != --record ]; do shift; done; echo '{empty}' > "$2"; exit 1;;
-            replay*) exit 0;;
-            esac
-            exec {PROGRAM} "$@\"""")
-        self.assertIn("one thread makes", fault)
+            esac""")
+
+    def test_no_cell_in_an_object_too_thick_for_that_is_one(self):
+        """The cube holds a ball of 6 mm, of which a voxel's diagonal is not counted on, and 1 mm is the oracle's."""
+        self.assertIn("holds a ball of 4.27 mm", self.fault_of_no_cell(3.2)[0])
+        self.assertEqual(self.fault_of_no_cell(3.3), (None, "no cell"))
+
+
+class Balls(unittest.TestCase):
+    def test_voxels_about_a_ball_inside_are_foreground(self):
+        rng = numpy.random.default_rng(4)
+        for _ in range(20):
+            size, spacing = rng.integers(1, 9, 3), rng.uniform(0.5, 2, 3)
+            foreground = rng.random(size) < 0.97
+            image = random_images.RandomImage("random", [], foreground.astype(int), 2, numpy.eye(4), spacing)
+            reach_mm = image.ball_inside_mm(foreground) + numpy.linalg.norm(spacing) - 1e-9
+            voxels = numpy.argwhere(numpy.ones(size, bool))
+
+            def is_center(center):
+                near = numpy.linalg.norm((voxels - center) * spacing, axis=1) < reach_mm
+                to_border = numpy.minimum(center + 1, size - center) * spacing
+                return to_border.min() > reach_mm and foreground[tuple(voxels[near].T)].all()
+
+            self.assertTrue(any(is_center(center) for center in voxels[foreground.ravel()]))
 
 
 if __name__ == "__main__":
