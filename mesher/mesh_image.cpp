@@ -10,6 +10,7 @@
 
 #include "cost_model.h"
 #include "extract_mesh.h"
+#include "geometry/affine.h"
 #include "image_owners.h"
 #include "measure_quality.h"
 #include "memory_model.h"
@@ -49,6 +50,18 @@ void check_leaves(const MeshingOptions& options) {
     throw InputError("leaf size must be a positive number of mm");
 }
 
+// Readers see to it; others may have left the affine out.
+void check_affine(const LabelImage& image) {
+  const Affine& a = image.voxel_to_ras;
+  for (std::size_t axis = 0; axis < 3; ++axis) {
+    const double norm = std::hypot(a[axis], a[4 + axis], a[8 + axis]);
+    if (!(norm > 0 && std::abs(norm - image.spacing[axis]) <= 1e-6 * norm))
+      throw InputError("the image's spacing is not that of its affine (axis " + std::to_string(axis) + ")");
+  }
+  const double voxel_mm3 = image.spacing[0] * image.spacing[1] * image.spacing[2];
+  if (!(std::abs(determinant(a)) > 1e-6 * voxel_mm3)) throw InputError("the image's affine is singular");
+}
+
 void check(const LabelImage& image, const MeshingOptions& options) {
   if (!is_positive_or_zero(options.radius_mm)) throw InputError("radius must be a positive number of mm");
   if (!is_positive_or_zero(options.delta_mm)) throw InputError("delta must be a positive number of mm");
@@ -68,6 +81,7 @@ void check(const LabelImage& image, const MeshingOptions& options) {
   if (image.labels.size() < 2 || image.voxels.size() != image.num_voxels()) {
     throw InputError("the image has no foreground");
   }
+  check_affine(image);
 }
 
 SizeField size_field(const LabelImage& image, const MeshingOptions& options, double radius_mm) {

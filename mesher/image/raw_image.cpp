@@ -5,6 +5,7 @@
 #include <iomanip>
 #include <sstream>
 
+#include "geometry/affine.h"
 #include "podm/errors.h"
 #include "podm/label_image.h"
 
@@ -17,7 +18,9 @@ using Matrix = std::array<std::array<double, 3>, 3>;  // by rows
 // A direction closer to orthonormal than this differs from it by the rounding of the file's header only.
 constexpr double kHeaderRounding = 1e-5;
 constexpr double kSmallestDeterminant = 1e-6;  // of three unit axes
-constexpr double kFurthestVoxels = 0x1p33;     // doubles tell a millionth of a voxel apart there
+constexpr double kSmallestSpacing = 1e-30,
+                 kLargestSpacing = 1e30;    // fifth powers neither over- nor underflow
+constexpr double kFurthestVoxels = 0x1p33;  // doubles tell a millionth of a voxel apart there
 
 double determinant(const Matrix& m) {
   return m[0][0] * (m[1][1] * m[2][2] - m[1][2] * m[2][1]) -
@@ -128,21 +131,40 @@ std::array<double, 3> checked_spacing(const std::string& path, std::array<double
     spacing[axis] = std::hypot(voxel_to_ras[axis], voxel_to_ras[4 + axis], voxel_to_ras[8 + axis]);
     if (!(spacing[axis] > 0) || !std::isfinite(spacing[axis]))
       refuse(path, "the voxel spacing is not positive (axis " + std::to_string(axis) + ")");
+    if (spacing[axis] < kSmallestSpacing || spacing[axis] > kLargestSpacing)
+      refuse(path, "the voxel spacing is not between 1e-30 and 1e30 mm (axis " + std::to_string(axis) + ")");
     for (std::size_t row = 0; row < 3; ++row)
       direction[row][axis] = voxel_to_ras[4 * row + axis] / spacing[axis];
   }
   if (!(std::abs(determinant(direction)) > kSmallestDeterminant))
     refuse(path, "the affine is singular (its axes lie in a plane)");
-  const double smallest = *std::min_element(spacing.begin(), spacing.end());
-  for (std::size_t row = 0; row < 3; ++row)
-    if (std::abs(voxel_to_ras[4 * row + 3]) > kFurthestVoxels * smallest)
-      refuse(path, "the image is more than 2^33 voxels away from the origin");
   if (deviation_from_orthonormal(direction) >= kHeaderRounding) return spacing;
   direction = nearest_orthonormal(direction);
   for (std::size_t row = 0; row < 3; ++row)
     for (std::size_t axis = 0; axis < 3; ++axis)
       voxel_to_ras[4 * row + axis] = direction[row][axis] * spacing[axis];
   return spacing;
+}
+
+// Going from the world to voxels adds up one term of each coordinate, whose rounding is a part of the
+// largest.
+void check_distance(const std::string& path, const std::vector<int>& size,
+                    const std::array<double, 12>& voxel_to_ras) {
+  std::array<double, 3> furthest{};
+  for (std::size_t row = 0; row < 3; ++row) {
+    furthest[row] = std::abs(voxel_to_ras[4 * row + 3]);
+    for (std::size_t axis = 0; axis < 3; ++axis)
+      furthest[row] += std::abs(voxel_to_ras[4 * row + axis]) * size[axis];
+  }
+  const auto ras_to_voxel = inverse(voxel_to_ras);
+  for (std::size_t axis = 0; axis < 3; ++axis) {
+    double voxels = 0;
+    for (std::size_t row = 0; row < 3; ++row)
+      voxels += std::abs(ras_to_voxel[4 * axis + row]) * furthest[row];
+    if (!(voxels <= kFurthestVoxels))
+      refuse(path, "the image reaches further than 2^33 voxels from the origin (axis " +
+                       std::to_string(axis) + "), where doubles are too coarse");
+  }
 }
 
 }  // namespace podm

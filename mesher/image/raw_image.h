@@ -37,7 +37,12 @@ std::size_t checked_num_voxels(const std::string& path, const std::vector<int>& 
 std::size_t checked_num_bytes(const RawImage& raw, std::uint64_t most_bytes);
 
 /// The voxel spacing, mm. Axes that are orthogonal but for the rounding of the file's header are made exactly
-/// so, in place. Throws InputError on an affine that is singular, not finite or too far from the origin.
+/// so, in place. Throws InputError on an affine that is singular, not finite, or of voxels out of all
+/// proportion.
 std::array<double, 3> checked_spacing(const std::string& path, std::array<double, 12>& voxel_to_ras);
+
+/// Throws InputError where world coordinates cannot tell a millionth of a voxel apart.
+void check_distance(const std::string& path, const std::vector<int>& size,
+                    const std::array<double, 12>& voxel_to_ras);
 
 }  // namespace podm

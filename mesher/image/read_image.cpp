@@ -33,6 +33,7 @@ LabelImage read_file(const std::string& path, std::size_t threads, std::uint64_t
   LabelImage image;
   image.size = {raw.size[0], raw.size[1], raw.size[2]};
   image.spacing = checked_spacing(path, raw.voxel_to_ras);
+  check_distance(path, raw.size, raw.voxel_to_ras);
   image.voxel_to_ras = raw.voxel_to_ras;
   image.warnings = std::move(raw.warnings);
   index_voxels(raw, threads, image);

@@ -21,8 +21,8 @@
 // So the published 1.93, k rounded down, lets R4 insert a vertex up to 0.1 % nearer than k s (one in a
 // thousand of R4's is), and R3 beside it a sample up to 0.09 % nearer than s, but only if three lengths are
 // within 0.3 % of their least. The floor of worker.cpp ends any chain of these. Without such, m = s. So the
-// process ends, on non-manifold interfaces too. Rules are tightened by kMargin, so that what they guarantee
-// survives rounded arithmetic.
+// process ends, on non-manifold interfaces too. Rules are tightened by kMargin, which is more than rounded
+// arithmetic errs, unless the object is a million radii from the origin.
 #pragma once
 
 #include <optional>

@@ -20,6 +20,8 @@ import threading
 import time
 import traceback
 
+import numpy
+
 import random_images
 import random_runs
 from podm_process import PROGRAM
@@ -71,10 +73,10 @@ def judge_empty(run, delta_mm):
     Let B be a ball of radius b inside, and c the circumcentre of the cell that holds B's centre. If no cell has a
     label, c lies outside, so that the way from it into B meets the isosurface b deep in the circumball or deeper: so
     does the nearest point z. By R1 a vertex lies within delta of z, and none is inside the circumball: b <= delta. The
-    z that is found may be further by a voxel's shortest side (image/isosurface.h).
+    z that is found is not always the nearest: it may be further by a part of a voxel (image/isosurface.h).
     """
     ball_mm = run.image.ball_inside_mm(run.foreground())
-    if ball_mm > delta_mm + run.image.spacing.min():
+    if ball_mm > delta_mm + numpy.linalg.norm(run.image.spacing):
         raise Failed(f"made no cell, but holds a ball of {ball_mm:.3g} mm, and delta is {delta_mm:.3g} mm")
 
 

@@ -151,9 +151,9 @@ class Faults(PodmTestCase):
             esac""")
 
     def test_no_cell_in_an_object_too_thick_for_that_is_one(self):
-        """The cube holds a ball of 6 mm, of which a voxel's diagonal is not counted on, and 1 mm is the oracle's."""
-        self.assertIn("holds a ball of 4.27 mm", self.fault_of_no_cell(3.2)[0])
-        self.assertEqual(self.fault_of_no_cell(3.3), (None, "no cell"))
+        """The cube holds a ball of 6 mm, of which two diagonals of a voxel are not counted on."""
+        self.assertIn("holds a ball of 4.27 mm", self.fault_of_no_cell(2.5)[0])
+        self.assertEqual(self.fault_of_no_cell(2.6), (None, "no cell"))
 
 
 class Balls(unittest.TestCase):

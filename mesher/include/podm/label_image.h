@@ -22,8 +22,8 @@ struct Label {
 
 /// Voxels are stored by dense label index, x fastest. Outside the grid everything is background, so that
 /// structures touching the border are closed there. The *working frame*, in which geometry is computed, is
-/// the world, RAS; for an affine that shears it is the image's own: the centre of voxel (i,j,k) lies at
-/// (i*spacing[0], j*spacing[1], k*spacing[2]) mm.
+/// the world, RAS; for an affine that shears, by more than rounding in doubles does, it is the image's own:
+/// the centre of voxel (i,j,k) lies at (i*spacing[0], j*spacing[1], k*spacing[2]) mm.
 struct LabelImage {
   std::array<int, 3> size{};        ///< voxels per axis
   std::array<double, 3> spacing{};  ///< mm, positive: the column norms of `voxel_to_ras`

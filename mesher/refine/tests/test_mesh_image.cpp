@@ -220,5 +220,15 @@ TEST(MeshImageRefusals, BadOptionsAndEmptyImages) {
   EXPECT_THROW(mesh_image(empty, radius(1)), InputError);
 }
 
+TEST(MeshImageRefusals, AffinesThatAreNotOfTheSpacing) {
+  LabelImage image = ball(10, 3);
+  for (const Affine& bad :
+       {Affine{}, Affine{1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 2, 0}, Affine{1, 1, 0, 0, 0, 0, 0, 0, 0, 0, 1, 0},
+        Affine{std::nan(""), 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0}}) {
+    image.voxel_to_ras = bad;
+    EXPECT_THROW(mesh_image(image, radius(1)), InputError);
+  }
+}
+
 }  // namespace
 }  // namespace podm::test
