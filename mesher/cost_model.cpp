@@ -186,14 +186,14 @@ Box foreground_bounds(const LabelImage& image, int threads) {
                    bounds[thread].add_row(image, j, static_cast<int>(k));
                });
   for (const VoxelBounds& b : bounds) bounds[0].add(b.low, b.high);
-  const auto& [low, high] = bounds[0];
-  if (high[0] < 0) throw InputError("the image has no foreground");
+  const VoxelBounds& all = bounds[0];
+  if (all.high[0] < 0) throw InputError("the image has no foreground");
   const Affine a = voxels_to_working(image);
   const auto bound = [&](std::size_t row, bool is_low) {  // a sum of each axis' own least, or greatest
     double sum = a[4 * row + 3];
     for (std::size_t axis = 0; axis < 3; ++axis) {
       const double entry = a[4 * row + axis];
-      sum += entry * ((entry > 0) == is_low ? low[axis] - 1 : high[axis] + 1);
+      sum += entry * ((entry > 0) == is_low ? all.low[axis] - 1 : all.high[axis] + 1);
     }
     return sum;
   };
