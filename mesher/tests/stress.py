@@ -27,7 +27,7 @@ import random_runs
 from podm_process import PROGRAM
 
 VERIFIER = os.path.join(os.path.dirname(PROGRAM), "podm-verify")
-TIMEOUT_S = 300
+TIMEOUT_S = 1200  # aggressive workers try 10^8 times now and then, which takes minutes
 # What holds of a mesh whenever its run ends.
 ALWAYS = {"structure", "delaunay", "conformity", "surface", "labels"}
 IN_MEMORY = "/dev/shm" if os.access("/dev/shm", os.W_OK) else None
