@@ -13,8 +13,9 @@ using Json = nlohmann::ordered_json;
 Affine mesh_to_grid(const MeshRun& run, const LeafSchedule& schedule) {
   const bool is_voxel = run.options.space == Space::kVoxel;
   Affine grid = is_voxel ? voxels_to_working(run.image) : inverse(working_to_world(run.image));
-  for (std::size_t i = 0; i < 12 && run.options.space == Space::kLps; ++i)
-    if (i % 4 < 2) grid[i] *= -1;
+  if (run.options.space == Space::kLps)
+    for (std::size_t row = 0; row < 3; ++row)
+      for (std::size_t axis = 0; axis < 2; ++axis) grid[4 * row + axis] *= -1;
   for (std::size_t axis = 0; axis < 3; ++axis) {
     grid[4 * axis + 3] -= schedule.origin_mm[axis];
     for (std::size_t c = 0; c < 4; ++c) grid[4 * axis + c] /= schedule.side_mm;

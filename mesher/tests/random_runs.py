@@ -74,7 +74,7 @@ class Sizes:
             if self.delta or not 0 < self.radius < 4 * self.voxel_mm:
                 self.delta = 1.1 * self.sampling()
         self.delta = min(self.delta, 0.5 * self.longest_mm)
-        self.largest_mm = max(self.radius, self.sampling())  # radius of a label, or what goes for one
+        self.largest_radius_mm = max(self.radius, self.sampling())  # of a label, or what goes for one
 
     def sampling(self):
         default = min(2 * self.voxel_mm, self.radius / 2) if self.radius else self.voxel_mm
@@ -104,7 +104,7 @@ def size_options(rng, sizes, labels):
     if labels and chance(rng, 0.25):
         for label in rng.choice(labels, min(len(labels), 2), replace=False):
             own = (sizes.radius or 2 * sizes.voxel_mm) * power_of_2(rng, -0.5, 1.5)
-            sizes.largest_mm = max(sizes.largest_mm, own)
+            sizes.largest_radius_mm = max(sizes.largest_radius_mm, own)
             options += ["--radius-of", f"{label}={own:.6g}"]
     if chance(rng, 0.06):
         most = 1 + round(sizes.expected_cells() * power_of_2(rng, -5, 0.5))
@@ -136,7 +136,7 @@ def leaf_options(rng, sizes):
     ratio = pick(rng, [1, 1.5, 2, 4, 7.5])
     options = ["--initial-ratio", ratio] if ratio != 4 or chance(rng, 0.5) else []
     if chance(rng, 0.6):
-        box_mm = sizes.longest_mm + 4 * ratio * sizes.largest_mm
+        box_mm = sizes.longest_mm + 4 * ratio * sizes.largest_radius_mm
         options += ["--leaf-size", f"{max(sizes.longest_mm * power_of_2(rng, -5, 0.5), box_mm / 30):.6g}"]
     return options
 

@@ -9,12 +9,12 @@
 // at a point holds for all points nearer than half their difference (label_function.h); the circumcentre is
 // known up to a bound (check_labels_circumcenter.h). Where weights are as close as that, the label at the
 // circumcentre of the written coordinates is decided by rational arithmetic. A cell with another label than
-// that one is still none the less right if its label wins within the bound: the mesher decided before the
-// affine and the file rounded its coordinates. Such cells are counted ("within_rounding") and not judged.
-// Cost: O(cells) and a pass over the voxels; 24 bytes a vertex, 8 a voxel of the mesh's box.
-// Does not prove: that the label is the image's elsewhere in the cell. Volume and overlap (Dice, by voxel
-// centres within the grid) of each label are reported for that, not judged. Statement 1 is the promise of
-// meshers of the PODM family; a mesh from elsewhere need not keep it.
+// that one is still none the less right if its label wins within the bound: a mesher computes circumcentres
+// in rounded arithmetic, and maybe in other coordinates than the file's. Such cells are counted
+// ("within_rounding") and not judged. Cost: O(cells) and a pass over the voxels; 24 bytes a vertex, 8 a voxel
+// of the mesh's box. Does not prove: that the label is the image's elsewhere in the cell. Volume and overlap
+// (Dice, by voxel centres within the grid) of each label are reported for that, not judged. Statement 1 is
+// the promise of meshers of the PODM family; a mesh from elsewhere need not keep it.
 #include <fmt/format.h>
 
 #include "claims/check_labels_circumcenter.h"
