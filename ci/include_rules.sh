@@ -12,6 +12,7 @@ may_include() {
     mesher/octree) echo mesher/geometry mesher/runtime mesher/include ;;
     mesher/delaunay) echo mesher/octree mesher/geometry mesher/runtime mesher/include ;;
     mesher/refine) echo mesher/delaunay mesher/octree mesher/image mesher/geometry mesher/runtime mesher/include ;;
+    mesher/workers) echo mesher/refine mesher/delaunay mesher/runtime mesher/include ;;
     mesher/io) echo mesher/files mesher/include ;;
     examples/*) echo mesher/include ;;
     mesher | mesher/*) echo "mesher mesher/*" ;;  # the algorithms, the command line, whole-mesher tests

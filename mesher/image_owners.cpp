@@ -3,7 +3,7 @@
 namespace podm {
 
 ImageOwners owners_of_image(const LabelImage& image, const FeatureTransform& transform,
-                            const PlacementOfCrew& placement, std::uint64_t seed, const PageQuery& query) {
+                            const PlacementOfTeam& placement, std::uint64_t seed, const PageQuery& query) {
   const std::span<const LabelIndex> labels(image.voxels);
   if (placement.is_real)
     return {MemoryOwners::ask(labels, placement.machine, query),

@@ -8,6 +8,8 @@
 #include <limits>
 #include <set>
 
+#include "algorithms/placement_of_team.h"
+#include "algorithms/podm.h"
 #include "cost_model.h"
 #include "extract_mesh.h"
 #include "geometry/affine.h"
@@ -15,8 +17,6 @@
 #include "measure_quality.h"
 #include "memory_model.h"
 #include "page_sampler.h"
-#include "placement_of_crew.h"
-#include "podm.h"
 #include "podm/operation_log.h"
 #include "radius_search.h"
 #include "replay.h"
@@ -102,7 +102,7 @@ class Run {
         options_(options),
         progress_(progress),
         stop_(std::move(stop)),
-        placement_(place_crew(options, num_workers())) {
+        placement_(place_team(options, num_workers())) {
     check(image_, options_);
   }
 
@@ -166,7 +166,7 @@ class Run {
       limits.deadline = start_ + std::chrono::duration_cast<Clock::duration>(
                                      std::chrono::duration<double>(options_.max_seconds));
     }
-    Watch watch(limits, stop_, [&](std::uint64_t cells) {
+    StopControl stop_control(limits, stop_, [&](std::uint64_t cells) {
       announce("refine", static_cast<double>(cells) / expected_cells_, cells);
     });
     if (options_.log != nullptr) options_.log->restart();
@@ -174,17 +174,17 @@ class Run {
     const std::uint64_t bytes = memory_of_run(options_);
     return run({isosurface, object_, report.delta_mm, size_field(image_, options_, radius_mm),
                 cell_capacity(bytes, static_cast<std::uint64_t>(num_workers()), options_.executor), bytes},
-               watch);
+               stop_control);
   }
 
-  Refinement run(const Problem& problem, Watch& watch) const {
+  Refinement run(const Problem& problem, StopControl& stop_control) const {
     switch (algorithm()) {
       case Algorithm::kPdr:
-        return pdr(problem, crew(), leaf_options(), watch);
+        return pdr(problem, team(), leaf_options(), stop_control);
       case Algorithm::kPdrPodm:
-        return pdr_podm(problem, crew(), leaf_options(), watch);
+        return pdr_podm(problem, team(), leaf_options(), stop_control);
       default:
-        return podm(problem, crew(), watch);
+        return podm(problem, team(), stop_control);
     }
   }
 
@@ -210,7 +210,7 @@ class Run {
     return num_workers() % nodes == 0 ? nodes : 1;
   }
 
-  Crew crew() const {
+  Team team() const {
     return {options_.executor,
             {num_workers(), options_.contention, placement_.groups, options_.seed},
             options_.virtual_cost,
@@ -292,7 +292,7 @@ class Run {
   const MeshingOptions& options_;
   const ProgressCallback& progress_;
   std::stop_token stop_;
-  const PlacementOfCrew placement_;
+  const PlacementOfTeam placement_;
   std::optional<ImageOwners> owners_;
   std::optional<PageSampler> pages_;
   Box object_{};  // bounds of the foreground

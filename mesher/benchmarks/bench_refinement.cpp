@@ -8,8 +8,8 @@
 #include <limits>
 #include <vector>
 
+#include "algorithms/podm.h"
 #include "cost_model.h"
-#include "podm.h"
 #include "podm/image_io.h"
 #include "podm/mesh_image.h"
 
@@ -42,32 +42,44 @@ double cpu_s() {
   return static_cast<double>(t.tv_sec) + 1e-9 * static_cast<double>(t.tv_nsec);
 }
 
+template <class Locks>
+double refine_s(Construction& construction, const Construction::Workers<Locks>& workers) {
+  RealTime time(construction.stop(), 1, {});
+  Coordination group({}, [](WorkerId) {});
+  workers[0]->give(construction.all_cells());
+  const double start_s = cpu_s();
+  refine(*workers[0], group, time);
+  return cpu_s() - start_s;
+}
+
 // The same worker with and without locks, one run of each an iteration, in turns the first. Compared are the
 // fastest of each, which a busy machine moves least. For instructions: run one iteration under
-// `valgrind --tool=callgrind` and compare ThreadExecutor::run and SerialExecutor::run, inclusive.
+// `valgrind --tool=callgrind` and compare the two refine(), inclusive.
 void BM_cost_of_locks(benchmark::State& state) {
   const LabelImage image = make_phantom("abdomen", 128);
   const Isosurface isosurface(image, 0);
   const double radius_mm = static_cast<double>(state.range(0));
   const SizeField sizes(std::vector<double>(image.labels.size(), radius_mm));
   std::uint64_t cells = 0;
-  const auto refine_s = [&](bool with_locks) {
-    Watch watch({}, {}, [](std::uint64_t) {});
-    Crew crew;
-    crew.locks_alone = with_locks;
-    const double start_s = cpu_s();
-    const Refinement refinement =
-        podm({isosurface, foreground_bounds(image), default_delta_mm(image, radius_mm), sizes, 1 << 24}, crew,
-             watch);
-    const double elapsed_s = cpu_s() - start_s;
-    cells = refinement.mesh->num_cells();
-    return elapsed_s;
+  const auto seconds_of = [&](bool with_locks) {
+    StopControl stop({}, {}, [](std::uint64_t) {});
+    const Team team;
+    const Problem problem{isosurface, foreground_bounds(image), default_delta_mm(image, radius_mm), sizes,
+                          1 << 24};
+    const Box clamp = clamp_box(problem.object, problem.delta_mm);
+    Construction construction(problem, clamp, team, stop);
+    const Parameters parameters = parameters_for(problem, 1, clamp);
+    const double seconds = with_locks
+                               ? refine_s(construction, construction.make_workers<VertexLocks>(parameters, 1))
+                               : refine_s(construction, construction.make_workers<NoLocks>(parameters, 1));
+    cells = construction.mesh().num_cells();
+    return seconds;
   };
   std::array<double, 2> fastest_s{kInfinity, kInfinity};  // without, with
   bool with_locks_first = false;
   for (auto _ : state) {
     for (const bool with_locks : {with_locks_first, !with_locks_first})
-      fastest_s[with_locks] = std::min(fastest_s[with_locks], refine_s(with_locks));
+      fastest_s[with_locks] = std::min(fastest_s[with_locks], seconds_of(with_locks));
     with_locks_first = !with_locks_first;
   }
   state.counters["store_cells"] = static_cast<double>(cells);

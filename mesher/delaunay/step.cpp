@@ -53,7 +53,9 @@ void step() {
 
 void note_read(std::uint32_t cell) {
   step();
-  if (const Fibre* const self = Fibre::current()) reads[self].insert(cell);
+  const Fibre* const self = Fibre::current();
+  if (self != nullptr && self->is_limited())
+    reads[self].insert(cell);  // an attempt, no other use of the store
 }
 
 void forget_reads() {

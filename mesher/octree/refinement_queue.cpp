@@ -7,9 +7,13 @@
 
 namespace podm {
 
-RefinementQueue::RefinementQueue(const Octree& octree, unsigned num_nodes, LeafOrder order)
+RefinementQueue::RefinementQueue(const Octree& octree, unsigned num_nodes, LeafOrder order,
+                                 std::function<void(unsigned)> wake)
     : octree_(octree),
       order_(order),
+      wake_(std::move(wake)),
+      is_waiting_(num_nodes),
+      node_of_active_(octree.num_leaves()),
       num_poor_(octree.num_leaves()),
       num_active_near_(octree.num_leaves()),
       share_of_(octree.num_leaves()),
@@ -98,9 +102,7 @@ void RefinementQueue::push(LeafId leaf, std::uint64_t num_poor) {
   if (num_poor_[leaf] == 0) ++counts_.pending;
   num_poor_[leaf] += num_poor;
   num_poor_of_share_[share_of_[leaf]] += num_poor;
-  if (!is_ready(leaf)) return;
-  ready_of(leaf).insert(key(leaf));
-  changed_.notify_all();
+  if (is_ready(leaf)) ready_of(leaf).insert(key(leaf));
 }
 
 std::size_t RefinementQueue::home_of(LeafId leaf) const {
@@ -113,23 +115,34 @@ std::optional<LeafId> RefinementQueue::pop(unsigned node) {
   return take(node);
 }
 
-std::optional<LeafId> RefinementQueue::wait_and_pop(unsigned node, std::stop_token stop) {
-  std::unique_lock lock(mutex_);
-  std::optional<LeafId> leaf;
-  ++counts_.waiting;
-  changed_.wait(lock, stop, [&] {
-    if (!stop.stop_requested()) leaf = take(node);
-    return leaf || counts_.pending + counts_.active == 0;
-  });
-  --counts_.waiting;
-  return leaf;
+RefinementQueue::Popped RefinementQueue::pop_or_wait(unsigned node, const std::stop_token& stop) {
+  const std::lock_guard lock(mutex_);
+  if (stop.stop_requested()) return {std::nullopt, false};
+  const std::optional<LeafId> leaf = take(node);
+  const bool must_wait = !leaf && counts_.pending + counts_.active > 0;
+  if (must_wait) {
+    is_waiting_[node] = true;
+    ++counts_.waiting;
+  }
+  return {leaf, must_wait};
+}
+
+void RefinementQueue::wake_all(unsigned first) {
+  const auto num_nodes = static_cast<unsigned>(is_waiting_.size());
+  for (unsigned i = 0; i < num_nodes && counts_.waiting > 0; ++i) {
+    const unsigned node = (first + i) % num_nodes;
+    if (!is_waiting_[node]) continue;
+    is_waiting_[node] = false;
+    --counts_.waiting;
+    wake_(node);
+  }
 }
 
 void RefinementQueue::finish(LeafId leaf) {
   const std::vector<LeafId> zones = buffer_zones(leaf);
   const std::lock_guard lock(mutex_);
   set_active(zones, false);
-  changed_.notify_all();
+  wake_all(node_of_active_[leaf] + 1);
 }
 
 RefinementQueue::Counts RefinementQueue::counts() const {
@@ -193,6 +206,7 @@ std::optional<LeafId> RefinementQueue::take(unsigned node) {
   if (order_ == LeafOrder::kMorton || order_ == LeafOrder::kColoring) resume_at = taken;
   const auto leaf = static_cast<LeafId>(taken);
   set_active(buffer_zones(leaf), true);
+  node_of_active_[leaf] = node;
   num_poor_of_share_[share_of_[leaf]] -= std::exchange(num_poor_[leaf], 0);
   --counts_.pending;
   return leaf;

@@ -12,7 +12,7 @@
 // tests/test_refinement_queue_orders.cpp compares them, and tells why home is the default.
 #pragma once
 
-#include <condition_variable>
+#include <functional>
 #include <mutex>
 #include <optional>
 #include <set>
@@ -30,8 +30,11 @@ enum class LeafOrder { kHome, kMostWork, kMorton, kColoring };
 /// held for some ten microseconds a leaf, whose refinement takes milliseconds.
 class RefinementQueue {
  public:
-  /// For nodes 0 to num_nodes - 1, at least one. The octree must outlive the queue.
-  RefinementQueue(const Octree& octree, unsigned num_nodes, LeafOrder order = LeafOrder::kHome);
+  /// For nodes 0 to num_nodes - 1, at least one. The octree must outlive the queue. `wake(node)` ends the
+  /// waiting of a node.
+  RefinementQueue(
+      const Octree& octree, unsigned num_nodes, LeafOrder order = LeafOrder::kHome,
+      std::function<void(unsigned)> wake = [](unsigned) {});
 
   /// Gives each node a block of space that has an equal share of the poor cells there are now, or of the
   /// leaves where there are none; until then all are the first node's. A stop request leaves the shares
@@ -40,27 +43,43 @@ class RefinementQueue {
   /// The node whose share has the leaf; 0 where there are no shares.
   std::size_t home_of(LeafId leaf) const;
 
-  /// The leaf has `num_poor` more poor cells. Leaves that never had any are not handed out.
+  /// The leaf has `num_poor` more poor cells. Leaves that never had any are not handed out. Nodes that wait
+  /// are told at the next finish().
   void push(LeafId leaf, std::uint64_t num_poor);
 
   /// A leaf for the node, now active, with all its poor cells taken; nothing if all that have poor cells are
   /// near active ones. Never waits.
   std::optional<LeafId> pop(unsigned node);
-  /// As pop, but waits for a leaf. Nothing: no leaf is active nor has poor cells, or `stop` was requested.
-  std::optional<LeafId> wait_and_pop(unsigned node, std::stop_token stop);
-  /// The leaf is active no more. Whoever has it must have pushed what it left behind.
+  /// As pop, but waits for a leaf, by wait(), which returns when the node was woken or a stop is requested.
+  /// Nothing: no leaf is active nor has poor cells, or `stop` was requested.
+  template <class Wait>
+  std::optional<LeafId> wait_and_pop(unsigned node, const Wait& wait, const std::stop_token& stop = {}) {
+    for (;;) {
+      const Popped popped = pop_or_wait(node, stop);
+      if (!popped.must_wait) return popped.leaf;
+      wait();
+    }
+  }
+  /// The leaf is active no more. Whoever has it must have pushed what it left behind. Wakes the nodes that
+  /// wait, that after its own first.
   void finish(LeafId leaf);
 
   struct Counts {
     std::size_t pending = 0, ready = 0;  // leaves with poor cells; those of them that may be handed out
     std::size_t active = 0;
-    std::size_t waiting = 0;  // nodes in wait_and_pop
+    std::size_t waiting = 0;  // nodes that are to be woken
   };
   Counts counts() const;
 
  private:
   using Key = std::uint64_t;  // rank in the order, then leaf
 
+  struct Popped {
+    std::optional<LeafId> leaf;
+    bool must_wait;
+  };
+  Popped pop_or_wait(unsigned node, const std::stop_token& stop);
+  void wake_all(unsigned first);
   Key key(LeafId leaf) const;
   std::set<Key>& ready_of(LeafId leaf) { return ready_[share_of_[leaf]]; }
   const std::set<Key>& ready_for(unsigned node) const;
@@ -77,7 +96,9 @@ class RefinementQueue {
   const Octree& octree_;
   const LeafOrder order_;
   mutable std::mutex mutex_;
-  std::condition_variable_any changed_;
+  std::function<void(unsigned)> wake_;
+  std::vector<bool> is_waiting_;          // by node
+  std::vector<unsigned> node_of_active_;  // by leaf
   std::vector<std::uint64_t> num_poor_;
   std::vector<std::uint32_t> num_active_near_;  // active leaves within two rings, the leaf itself included
   std::vector<std::size_t> share_of_;           // by leaf; there is one a node for home, else one

@@ -30,6 +30,7 @@ class Worker {
   Worker(const Worker&) = delete;
   Worker& operator=(const Worker&) = delete;
 
+  WorkerId id() const { return self_; }
   void give(CellId c) { poor_.push(c, mesh_.stamp(c)); }
   void give(const std::vector<PoorElementList::Entry>& entries) {
     for (const auto& entry : entries) poor_.push(entry.cell, entry.stamp);

@@ -2,6 +2,28 @@
 
 #include <utility>
 
+#if defined(__SANITIZE_ADDRESS__)
+#define PODM_TELLS_ADDRESS_SANITIZER
+#elif defined(__has_feature)
+#if __has_feature(address_sanitizer)
+#define PODM_TELLS_ADDRESS_SANITIZER
+#endif
+#endif
+#if defined(__SANITIZE_THREAD__)
+#define PODM_TELLS_THREAD_SANITIZER
+#elif defined(__has_feature)
+#if __has_feature(thread_sanitizer)
+#define PODM_TELLS_THREAD_SANITIZER
+#endif
+#endif
+
+#ifdef PODM_TELLS_ADDRESS_SANITIZER
+#include <sanitizer/common_interface_defs.h>
+#endif
+#ifdef PODM_TELLS_THREAD_SANITIZER
+#include <sanitizer/tsan_interface.h>
+#endif
+
 namespace podm {
 
 namespace {
@@ -10,41 +32,98 @@ constexpr std::size_t kStackBytes = 256 << 10;
 
 thread_local Fibre* running = nullptr;
 
+// Memory that is the fibre's own.
+struct KeptStack {
+  void deallocate(boost::context::stack_context&) {}
+};
+
 }  // namespace
+
+// Sanitizers must be told of every change of stacks. They call a stack that was left a fake one.
+struct Fibre::Stacks {
+#ifdef PODM_TELLS_ADDRESS_SANITIZER
+  void* own_fake = nullptr;
+  void* resumers_fake = nullptr;
+  const void* resumers_bottom = nullptr;
+  std::size_t resumers_bytes = 0;
+  void enter(const void* bottom) { __sanitizer_start_switch_fiber(&resumers_fake, bottom, kStackBytes); }
+  void entered() { __sanitizer_finish_switch_fiber(own_fake, &resumers_bottom, &resumers_bytes); }
+  void leave(bool for_ever) {
+    __sanitizer_start_switch_fiber(for_ever ? nullptr : &own_fake, resumers_bottom, resumers_bytes);
+  }
+  void left() { __sanitizer_finish_switch_fiber(resumers_fake, nullptr, nullptr); }
+#elif defined(PODM_TELLS_THREAD_SANITIZER)
+  void* own = __tsan_create_fiber(0);
+  void* resumers = nullptr;
+  ~Stacks() { __tsan_destroy_fiber(own); }
+  void enter(const void*) {
+    resumers = __tsan_get_current_fiber();
+    __tsan_switch_to_fiber(own, 0);
+  }
+  void entered() {}
+  void leave(bool) { __tsan_switch_to_fiber(resumers, 0); }
+  void left() {}
+#else
+  void enter(const void*) {}
+  void entered() {}
+  void leave(bool) {}
+  void left() {}
+#endif
+};
 
 Fibre* Fibre::current() { return running; }
 
-void Fibre::begin(std::function<void()> call) {
-  if (!stack_) stack_ = std::make_unique_for_overwrite<std::byte[]>(kStackBytes);
-  call_ = std::move(call);
-  getcontext(&own_);
-  own_.uc_stack.ss_sp = stack_.get();
-  own_.uc_stack.ss_size = kStackBytes;
-  own_.uc_link = &resumer_;
-  makecontext(&own_, &Fibre::run, 0);
-  has_ended_ = false;
+Fibre::Fibre(std::function<void()> call)
+    : call_(std::move(call)),
+      stack_(std::make_unique_for_overwrite<std::byte[]>(kStackBytes)),
+      stacks_(std::make_unique<Stacks>()) {
+  boost::context::stack_context context;
+  context.size = kStackBytes;
+  context.sp = stack_.get() + kStackBytes;
+  own_ = boost::context::fiber(std::allocator_arg,
+                               boost::context::preallocated(context.sp, context.size, context), KeptStack{},
+                               [this](boost::context::fiber&& resumer) { return run(std::move(resumer)); });
 }
 
-bool Fibre::resume(std::uint64_t steps) {
-  steps_left_ = steps;
+Fibre::~Fibre() = default;
+
+Fibre::State Fibre::resume() {
   Fibre* const outer = std::exchange(running, this);
-  swapcontext(&resumer_, &own_);
+  stacks_->enter(stack_.get());
+  own_ = std::move(own_).resume();
+  stacks_->left();
   running = outer;
   if (failure_) std::rethrow_exception(std::exchange(failure_, nullptr));
-  return has_ended_;
+  return state_;
 }
 
 // The bottom of the stack: nothing may be thrown past it.
-void Fibre::run() {
-  Fibre& self = *running;
+boost::context::fiber Fibre::run(boost::context::fiber&& resumer) {
+  stacks_->entered();
+  resumer_ = std::move(resumer);
   try {
-    self.call_();
+    call_();
   } catch (...) {
-    self.failure_ = std::current_exception();
+    failure_ = std::current_exception();
   }
-  self.has_ended_ = true;
+  state_ = State::kEnded;
+  stacks_->leave(true);
+  return std::move(resumer_);
 }
 
-void Fibre::stop() { swapcontext(&own_, &resumer_); }
+void Fibre::stop(State state) {
+  state_ = state;
+  stacks_->leave(false);
+  resumer_ = std::move(resumer_).resume();
+  stacks_->entered();
+}
+
+void Fibre::stop_out_of_steps() {
+  if (std::current_exception()) {
+    steps_left_ = 1;
+  } else {
+    stop(State::kOutOfSteps);
+  }
+}
 
 }  // namespace podm

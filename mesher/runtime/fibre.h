@@ -1,48 +1,58 @@
-// A call on a stack of its own that can stop in its middle and go on later, all on one thread. Sanitizers
-// know nothing of such stacks.
+// A call on a stack of its own that can stop in its middle and go on later, all on one thread.
 #pragma once
 
-#include <ucontext.h>
-
+#include <boost/context/fiber.hpp>
 #include <cstddef>
 #include <cstdint>
 #include <exception>
 #include <functional>
+#include <limits>
 #include <memory>
 
 namespace podm {
 
 class Fibre {
  public:
-  Fibre() = default;
+  enum class State { kEnded, kSuspended, kOutOfSteps };
+  static constexpr std::uint64_t kUnlimited = std::numeric_limits<std::uint64_t>::max();
+
+  /// Makes a call ready, which the first resume() begins. It must not be destroyed before the call has ended.
+  explicit Fibre(std::function<void()> call);
+  ~Fibre();
   Fibre(const Fibre&) = delete;
   Fibre& operator=(const Fibre&) = delete;
 
-  /// Makes a call ready, which the first resume() begins. The last one has ended.
-  void begin(std::function<void()> call);
-  /// Lets the call go on until its step() has been called so many times, at least once. True: it has ended.
-  /// Throws what the call throws; that ends it.
-  bool resume(std::uint64_t steps);
-  bool has_ended() const { return has_ended_; }
+  /// Lets the call go on until it suspends, ends, or is out of steps. Throws what the call throws; that ends
+  /// it.
+  State resume();
+  State state() const { return state_; }
 
   /// Whose call makes this one; nullptr: no fibre's.
   static Fibre* current();
-  /// The call itself says that it may stop here. While it handles an exception it does not: exceptions that
-  /// are being handled belong to the thread, and another fibre would get this one's.
+  /// The call stops here. Not while it handles an exception: those that are being handled belong to the
+  /// thread, and another fibre would get this one's.
+  void suspend() { stop(State::kSuspended); }
+  /// So many calls of step() from now, at least one, the call stops there, or where it may next.
+  void allow(std::uint64_t steps) { steps_left_ = steps; }
+  bool is_limited() const { return steps_left_ < kUnlimited / 2; }
   void step() {
-    if (--steps_left_ == 0 && !std::current_exception()) stop();
+    if (--steps_left_ == 0) stop_out_of_steps();
   }
 
  private:
-  static void run();
-  void stop();
+  struct Stacks;  // what sanitizers are told
+
+  boost::context::fiber run(boost::context::fiber&& resumer);
+  void stop(State state);
+  void stop_out_of_steps();
 
   std::function<void()> call_;
-  bool has_ended_ = true;
-  std::uint64_t steps_left_ = 0;
+  State state_ = State::kSuspended;
+  std::uint64_t steps_left_ = kUnlimited;
   std::exception_ptr failure_;
   std::unique_ptr<std::byte[]> stack_;
-  ucontext_t own_{}, resumer_{};
+  std::unique_ptr<Stacks> stacks_;
+  boost::context::fiber own_, resumer_;
 };
 
 }  // namespace podm

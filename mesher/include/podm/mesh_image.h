@@ -38,11 +38,11 @@ enum class Contention { kAggressive, kRandom, kGlobal, kLocal };
 std::string to_string(Contention contention);
 
 /// Whom a worker with cells to spare serves first: the one that has begged longest, or the nearest in the
-/// machine; see refine/begging_list.h.
+/// machine; see workers/begging_list.h.
 enum class Begging { kRandom, kHierarchical };
 std::string to_string(Begging begging);
 
-/// Who runs the workers: threads, or one core that plays them in virtual time (refine/virtual_executor.h).
+/// Who runs the workers: threads, or one core that plays them in virtual time (workers/virtual_time.h).
 enum class Executor { kThreads, kVirtual };
 std::string to_string(Executor executor);
 

@@ -2,6 +2,7 @@
 
 #include <atomic>
 #include <numeric>
+#include <semaphore>
 #include <thread>
 
 #include "octree/refinement_queue.h"
@@ -20,6 +21,25 @@ Octree row_of(double num_leaves) {
   return {{0, 0, 0}, {num_leaves, 1, 1}, 1, side, always};
 }
 
+// Threads that wait for leaves.
+class Waiting {
+ public:
+  explicit Waiting(unsigned num_nodes) : woken_(num_nodes) {}
+  std::function<void(unsigned)> wake() {
+    return [this](unsigned node) { woken_[node].release(); };
+  }
+  void wait(unsigned node, const std::stop_token& stop) {
+    const std::stop_callback on_stop(stop, [&] { woken_[node].release(); });
+    woken_[node].acquire();
+  }
+
+ private:
+  struct Semaphore : std::counting_semaphore<> {
+    Semaphore() : std::counting_semaphore<>(0) {}
+  };
+  std::vector<Semaphore> woken_;
+};
+
 class Queue : public testing::TestWithParam<std::tuple<LeafOrder, int>> {
  protected:
   LeafOrder order = std::get<0>(GetParam());
@@ -34,7 +54,8 @@ class Queue : public testing::TestWithParam<std::tuple<LeafOrder, int>> {
 // Calls at random as one thread for several nodes makes them, checked against what has to hold after each.
 TEST_P(Queue, HandsOutEveryPendingLeafAwayFromActiveOnes) {
   constexpr unsigned kNumNodes = 5;
-  RefinementQueue queue(octree, kNumNodes, order);
+  Waiting waiting(kNumNodes);
+  RefinementQueue queue(octree, kNumNodes, order, waiting.wake());
   queue.share_out();
   std::set<LeafId> pending;
   std::vector<LeafId> active;
@@ -92,7 +113,8 @@ TEST_P(Queue, RepeatsItselfForTheSameCalls) {
 // What a node writes without locks while its leaf is active. Sanitizers see two that do so at once.
 TEST_P(Queue, ThreadsRefineEveryLeafWithItsRegionToThemselves) {
   constexpr unsigned kNumNodes = 4;
-  RefinementQueue queue(octree, kNumNodes, order);
+  Waiting waiting(kNumNodes);
+  RefinementQueue queue(octree, kNumNodes, order, waiting.wake());
   queue.share_out();
   std::vector<unsigned> user_of(cubes.size());         // of each cube: node + 1, or 0
   std::vector<unsigned> poor_of(octree.num_leaves());  // poor cells, given by the leaf itself or its ring
@@ -122,7 +144,8 @@ TEST_P(Queue, ThreadsRefineEveryLeafWithItsRegionToThemselves) {
     for (unsigned node = 0; node < kNumNodes; ++node) {
       nodes.emplace_back([&, node](std::stop_token stop) {
         std::mt19937_64 random(node);
-        while (const std::optional<LeafId> leaf = queue.wait_and_pop(node, stop)) {
+        const auto wait = [&] { waiting.wait(node, stop); };
+        while (const std::optional<LeafId> leaf = queue.wait_and_pop(node, wait, stop)) {
           refine(node, *leaf, random);
           queue.finish(*leaf);
         }
@@ -203,20 +226,25 @@ INSTANTIATE_TEST_SUITE_P(Seeds, Shares, testing::Range(std::uint64_t{0}, std::ui
 class SmallQueue : public testing::Test {
  protected:
   SmallQueue() { queue.share_out(); }
+  std::optional<LeafId> wait_and_pop(unsigned node, const std::stop_token& stop = {}) {
+    return queue.wait_and_pop(
+        node, [&] { waiting.wait(node, stop); }, stop);
+  }
 
   Octree octree = row_of(8);
-  RefinementQueue queue{octree, 2};
+  Waiting waiting{2};
+  RefinementQueue queue{octree, 2, LeafOrder::kHome, waiting.wake()};
 };
 
 TEST_F(SmallQueue, IsFinishedWhenNothingIsPendingNorActive) {
-  EXPECT_EQ(queue.wait_and_pop(0, {}), std::nullopt);
+  EXPECT_EQ(wait_and_pop(0), std::nullopt);
   queue.push(3, 0);
-  EXPECT_EQ(queue.wait_and_pop(0, {}), std::nullopt);
+  EXPECT_EQ(wait_and_pop(0), std::nullopt);
 }
 
 TEST_F(SmallQueue, LeavesNearAnActiveOneWaitForItsEnd) {
   queue.push(3, 5);
-  ASSERT_EQ(queue.wait_and_pop(0, {}), LeafId{3});
+  ASSERT_EQ(wait_and_pop(0), LeafId{3});
   queue.push(3, 1);
   queue.push(5, 1);
   EXPECT_EQ(queue.pop(1), std::nullopt);
@@ -234,7 +262,7 @@ TEST_F(SmallQueue, WaitersGoOnWhenALeafIsFinishedAndEndTogether) {
   std::vector<std::jthread> waiters;
   for (unsigned node = 0; node < 2; ++node) {
     waiters.emplace_back([&, node] {
-      while (const auto leaf = queue.wait_and_pop(node, {})) {
+      while (const auto leaf = wait_and_pop(node)) {
         ++num_taken;
         queue.finish(*leaf);
       }
@@ -252,13 +280,13 @@ TEST_F(SmallQueue, StopWakesWaitersAndHandsOutNothingMore) {
   ASSERT_EQ(queue.pop(0), LeafId{3});
   queue.push(4, 1);
   std::optional<LeafId> answer = 0;
-  std::jthread waiter([&](std::stop_token stop) { answer = queue.wait_and_pop(1, stop); });
+  std::jthread waiter([&](std::stop_token stop) { answer = wait_and_pop(1, stop); });
   while (queue.counts().waiting == 0) std::this_thread::yield();
   waiter.request_stop();
   waiter.join();
   EXPECT_EQ(answer, std::nullopt);
   queue.finish(3);
-  EXPECT_EQ(queue.wait_and_pop(1, waiter.get_stop_token()), std::nullopt);
+  EXPECT_EQ(wait_and_pop(1, waiter.get_stop_token()), std::nullopt);
   EXPECT_EQ(queue.counts().pending, 1u);
 }
 

@@ -7,11 +7,11 @@
 #include <numeric>
 
 #include "../../runtime/tests/machines.h"
+#include "algorithms/podm.h"
 #include "cost_model.h"
 #include "image_owners.h"
 #include "images.h"
 #include "page_sampler.h"
-#include "podm.h"
 #include "refine/virtual_box.h"
 
 namespace podm::test {
@@ -38,20 +38,20 @@ struct RunOn {
     owners.emplace(owners_of_image(image, isosurface.transform(), placement, 1, query));
     const PageSampler pages(machine, *owners, query);
     const auto num_workers = static_cast<int>(placement.places.size());
-    const Crew crew{.executor = executor,
+    const Team team{.executor = executor,
                     .coordination = {num_workers, Contention::kLocal, {}, 1},
                     .machine = &machine,
                     .places = placement.places,
                     .owners = with_owners ? &*owners : nullptr,
                     .pages = query ? &pages : nullptr};
     const Problem problem{isosurface, foreground_bounds(image), 1, SizeField({2, 2}), 1 << 22};
-    Watch watch({}, {}, [](std::uint64_t) {});
-    if (algorithm == Algorithm::kPodm) return podm(problem, crew, watch);
-    return pdr_podm(problem, crew, {.num_nodes = 2, .initial_workers = num_workers}, watch);
+    StopControl stop({}, {}, [](std::uint64_t) {});
+    if (algorithm == Algorithm::kPodm) return podm(problem, team, stop);
+    return pdr_podm(problem, team, {.num_nodes = 2, .initial_workers = num_workers}, stop);
   }
 
   const Topology& machine;
-  PlacementOfCrew placement;
+  PlacementOfTeam placement;
   LabelImage image = ball(24, 9);
   Isosurface isosurface{image, 1};
   std::optional<ImageOwners> owners;

@@ -5,9 +5,9 @@
 
 #include <set>
 
+#include "algorithms/podm.h"
 #include "cost_model.h"
 #include "images.h"
-#include "podm.h"
 #include "podm/mesh_io.h"
 
 namespace podm::test {
@@ -21,10 +21,10 @@ class ExtractMesh : public testing::Test {
 
   // On one thread, so always the same.
   void refine() {
-    Watch watch({.max_cells = 30000}, {}, [](std::uint64_t) {});
+    StopControl stop({.max_cells = 30000}, {}, [](std::uint64_t) {});
     mesh_ =
         podm({isosurface_, foreground_bounds(image_), 0.5, SizeField(std::vector<double>(4, 0.6)), 1 << 20},
-             Crew{}, watch)
+             Team{}, stop)
             .mesh;
     for (CellId c = 0; c < mesh_->cell_bound(); c += 3) {
       if (mesh_->cell(c).is_alive()) mesh_->label(c) = kUnknownLabel;

@@ -5,11 +5,11 @@
 
 #include <new>
 
+#include "algorithms/podm.h"
 #include "cost_model.h"
 #include "failing_allocator.h"
 #include "failing_threads.h"
 #include "images.h"
-#include "podm.h"
 #include "podm/errors.h"
 #include "podm/operation_log.h"
 
@@ -30,21 +30,21 @@ const std::vector<Setup> kSetups{
 
 class Faults : public testing::TestWithParam<Setup> {
  protected:
-  Refinement refine(Watch& watch, std::size_t cell_capacity = 1 << 20, std::size_t most_numbered = 1 << 30,
-                    std::uint64_t memory_bytes = 1 << 30) {
+  Refinement refine(StopControl& stop, std::size_t cell_capacity = 1 << 20,
+                    std::size_t most_numbered = 1 << 30, std::uint64_t memory_bytes = 1 << 30) {
     const auto [algorithm, executor, num_workers] = GetParam();
     const Problem problem{isosurface_,  foreground_bounds(image_), 1.2, sizes_, cell_capacity, memory_bytes,
                           most_numbered};
-    const Crew crew{executor, {num_workers, Contention::kLocal, {}, 3}};
-    if (algorithm == Algorithm::kPodm) return podm(problem, crew, watch);
+    const Team team{executor, {num_workers, Contention::kLocal, {}, 3}};
+    if (algorithm == Algorithm::kPodm) return podm(problem, team, stop);
     const LeafOptions leaves{.num_nodes = algorithm == Algorithm::kPdr ? num_workers : 2,
                              .initial_ratio = 2,
                              .initial_workers = num_workers,
                              .leaf_size_mm = 4};
-    return algorithm == Algorithm::kPdr ? pdr(problem, crew, leaves, watch)
-                                        : pdr_podm(problem, crew, leaves, watch);
+    return algorithm == Algorithm::kPdr ? pdr(problem, team, leaves, stop)
+                                        : pdr_podm(problem, team, leaves, stop);
   }
-  static Watch patient() {
+  static StopControl patient() {
     return {{}, {}, [](std::uint64_t) {}};
   }
   static void expect_valid(const Refinement& refinement) {
@@ -63,10 +63,10 @@ TEST_P(Faults, AllocationsThatFailLeaveAValidMesh) {
   constexpr std::int64_t kOneByOne = 150;
   int num_ended = 0, num_complete = 0;
   for (std::int64_t left = 0; num_complete < 3; left += left < kOneByOne ? 1 : 1 + left / 8) {
-    Watch watch = patient();
+    StopControl stop = patient();
     allocations_left = left;
     try {
-      const Refinement refinement = refine(watch);
+      const Refinement refinement = refine(stop);
       const bool has_failed = allocations_left.exchange(-1) < 0;
       EXPECT_EQ(refinement.stop_reason, has_failed ? StopReason::kMemoryLimit : StopReason::kComplete)
           << left;
@@ -83,8 +83,8 @@ TEST_P(Faults, AllocationsThatFailLeaveAValidMesh) {
 TEST_P(Faults, StoresThatFillUpLeaveAValidMesh) {
   int num_ended = 0;
   for (std::size_t capacity = 1100; capacity < 60000; capacity += 1 + capacity / 5) {
-    Watch watch = patient();
-    const Refinement refinement = refine(watch, capacity);
+    StopControl stop = patient();
+    const Refinement refinement = refine(stop, capacity);
     num_ended += refinement.stop_reason == StopReason::kMemoryLimit;
     expect_valid(refinement);
   }
@@ -93,15 +93,15 @@ TEST_P(Faults, StoresThatFillUpLeaveAValidMesh) {
 
 TEST_P(Faults, StoresWithoutNumbersAreToldFromThoseWithoutMemory) {
   constexpr std::size_t kCapacity = 1500;
-  Watch of_numbers = patient(), of_memory = patient();
+  StopControl of_numbers = patient(), of_memory = patient();
   EXPECT_EQ(refine(of_numbers, kCapacity, kCapacity).stop_reason, StopReason::kNumberLimit);
   EXPECT_EQ(refine(of_memory, kCapacity, kCapacity + 1).stop_reason, StopReason::kMemoryLimit);
 }
 
 TEST_P(Faults, LeavesThatWouldTakeMostOfTheMemoryAreRefused) {
-  Watch watch = patient();
+  StopControl stop = patient();
   const auto refine_in = [&](std::uint64_t bytes) {
-    return refine(watch, 1 << 20, 1 << 30, bytes).stop_reason;
+    return refine(stop, 1 << 20, 1 << 30, bytes).stop_reason;
   };
   if (GetParam().algorithm == Algorithm::kPodm) {
     EXPECT_EQ(refine_in(1 << 16), StopReason::kComplete) << "it has none";
@@ -112,21 +112,21 @@ TEST_P(Faults, LeavesThatWouldTakeMostOfTheMemoryAreRefused) {
 }
 
 TEST_P(Faults, StopRequestsAndLimitsLeaveAValidMesh) {
-  Watch whole = patient();
+  StopControl whole = patient();
   const std::uint64_t all_cells = refine(whole).mesh->num_cells();
   for (std::uint64_t cells = 1; cells < all_cells; cells += 1 + cells / 2) {
-    Watch limited({.max_cells = cells}, {}, [](std::uint64_t) {});
+    StopControl limited({.max_cells = cells}, {}, [](std::uint64_t) {});
     const Refinement refinement = refine(limited);
     EXPECT_EQ(refinement.stop_reason, StopReason::kElementLimit) << cells << " of " << all_cells;
     expect_valid(refinement);
   }
   std::stop_source source;
   source.request_stop();
-  Watch stopped({}, source.get_token(), [](std::uint64_t) {});
+  StopControl stopped({}, source.get_token(), [](std::uint64_t) {});
   const Refinement refinement = refine(stopped);
   EXPECT_EQ(refinement.stop_reason, StopReason::kCancelled);
   expect_valid(refinement);
-  Watch late({.deadline = std::chrono::steady_clock::now()}, {}, [](std::uint64_t) {});
+  StopControl late({.deadline = std::chrono::steady_clock::now()}, {}, [](std::uint64_t) {});
   EXPECT_EQ(refine(late).stop_reason, StopReason::kTimeLimit);
 }
 
@@ -137,19 +137,19 @@ TEST(Threads, ThatCannotBeStartedEndTheRun) {
   const std::string path = testing::TempDir() + "/threads-" + std::to_string(getpid()) + ".log";
   const auto operations_of = [&](int threads_that_start) {
     OperationLogWriter log(path);
-    Crew crew{Executor::kThreads, {4, Contention::kLocal, {}, 3}};
-    crew.log = &log;
-    Watch watch({}, {}, [](std::uint64_t) {});
+    Team team{Executor::kThreads, {4, Contention::kLocal, {}, 3}};
+    team.log = &log;
+    StopControl stop({}, {}, [](std::uint64_t) {});
     const LeafOptions leaves{.num_nodes = 4, .initial_ratio = 4, .initial_workers = 1, .leaf_size_mm = 4};
     const Problem problem{isosurface, foreground_bounds(image), 0.7, SizeField(std::vector<double>(2, 0.7)),
                           1 << 22};
     threads_left = threads_that_start;
     try {
-      pdr(problem, crew, leaves, watch);
+      pdr(problem, team, leaves, stop);
       EXPECT_LT(threads_that_start, 0) << "a thread that could not be started went unnoticed";
     } catch (const std::exception&) {
       EXPECT_GE(threads_that_start, 0);
-      EXPECT_EQ(watch.reason(), StopReason::kCancelled);
+      EXPECT_EQ(stop.reason(), StopReason::kCancelled);
     }
     threads_left = -1;
     return log.next_sequence();

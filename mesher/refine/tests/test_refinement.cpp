@@ -5,9 +5,9 @@
 #include <algorithm>
 #include <sstream>
 
+#include "algorithms/podm.h"
 #include "cost_model.h"
 #include "images.h"
-#include "podm.h"
 #include "refine/invariants.h"
 #include "refine/virtual_box.h"
 
@@ -23,12 +23,12 @@ struct Method {
   Contention contention = Contention::kLocal;
   Executor executor = Executor::kThreads;
 
-  Refinement operator()(const Problem& problem, Watch& watch) const {
-    const Crew crew{executor, {num_workers, contention, {}, 1}};
+  Refinement operator()(const Problem& problem, StopControl& stop) const {
+    const Team team{executor, {num_workers, contention, {}, 1}};
     const LeafOptions leaves{.num_nodes = num_nodes, .initial_workers = num_workers};
-    if (algorithm == Algorithm::kPdr) return pdr(problem, crew, leaves, watch);
-    if (algorithm == Algorithm::kPdrPodm) return pdr_podm(problem, crew, leaves, watch);
-    return podm(problem, crew, watch);
+    if (algorithm == Algorithm::kPdr) return pdr(problem, team, leaves, stop);
+    if (algorithm == Algorithm::kPdrPodm) return pdr_podm(problem, team, leaves, stop);
+    return podm(problem, team, stop);
   }
 };
 
@@ -51,9 +51,9 @@ class Refined : public testing::TestWithParam<std::tuple<NamedImage, Method>> {
         isosurface_(image_, 1),
         delta_(default_delta_mm(image_, kRadius)),
         sizes_(std::vector<double>(image_.labels.size(), kRadius)) {
-    Watch watch({}, {}, [](std::uint64_t) {});
+    StopControl stop({}, {}, [](std::uint64_t) {});
     const Problem problem{isosurface_, foreground_bounds(image_), delta_, sizes_, 1 << 22};
-    refinement_ = std::get<Method>(GetParam())(problem, watch);
+    refinement_ = std::get<Method>(GetParam())(problem, stop);
   }
   double spacing() const { return std::min(delta_, kRadius / std::sqrt(2 + std::sqrt(3.0))); }
 

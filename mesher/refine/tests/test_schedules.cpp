@@ -17,14 +17,14 @@
 #include <random>
 
 #include "../../delaunay/tests/cells_by_points.h"
+#include "algorithms/podm.h"
 #include "cost_model.h"
 #include "delaunay/step.h"
 #include "images.h"
-#include "podm.h"
 #include "refine/invariants.h"
 #include "refine/virtual_box.h"
-#include "refine/virtual_executor.h"
 #include "replay.h"
+#include "workers/virtual_time.h"
 
 namespace podm::test {
 namespace {
@@ -79,30 +79,21 @@ const std::vector<std::unique_ptr<Scene>>& scenes() {
 }
 
 // PODM whose workers have the cells of a coarse mesh dealt out to them, so that they meet from the start.
-Refinement crowded_podm(const Problem& problem, const Crew& crew, Watch& watch) {
+Refinement crowded_podm(const Problem& problem, const Team& team, StopControl& stop) {
   const Box clamp = clamp_box(problem.object, problem.delta_mm);
-  Refinement result;
-  result.mesh = std::make_unique<Mesh>(virtual_box(clamp), problem.cell_capacity);
-  Mesh& mesh = *result.mesh;
-  std::vector<std::unique_ptr<Pool>> pools;
-  const auto refine = [&](double ratio, int num_workers) {
-    const Parameters parameters = parameters_for(problem, ratio, clamp);
-    std::vector<std::unique_ptr<Worker<VertexLocks>>> workers;
-    for (WorkerId id = 0; id < static_cast<WorkerId>(num_workers); ++id) {
-      pools.push_back(std::make_unique<Pool>(mesh));
-      workers.push_back(std::make_unique<Worker<VertexLocks>>(mesh, problem.isosurface, parameters, id,
-                                                              *pools.back(), crew.log));
-    }
-    for (CellId c = 0; c < mesh.cell_bound(); ++c)
-      if (mesh.cell(c).is_alive()) workers[c % workers.size()]->give(c);
-    CoordinationOptions options = crew.coordination;
-    options.num_workers = num_workers;
-    result.stop_reason = VirtualExecutor<VertexLocks>(watch, options, crew.cost).run(workers);
-    for (const auto& worker : workers) worker->flush_log();
-  };
-  refine(2, 1);
-  if (result.stop_reason == StopReason::kComplete) refine(1, crew.coordination.num_workers);
-  return result;
+  Construction construction(problem, clamp, team, stop);
+  refine_anywhere(construction, "initial", parameters_for(problem, 2, clamp), construction.all_cells(), 1);
+  const auto num_workers = static_cast<std::size_t>(construction.num_workers());
+  const Parameters parameters = parameters_for(problem, 1, clamp);
+  auto workers = construction.make_workers<VertexLocks>(parameters, construction.num_workers());
+  for (const auto& entry : construction.all_cells()) workers[entry.cell % num_workers]->give(entry.cell);
+  VirtualTime time(stop, num_workers, team.cost, team.coordination.seed);
+  Coordination group(team.coordination, [&](WorkerId worker) { time.resume(worker); });
+  time.run([&](WorkerId self) {
+    if (refine(*workers[self], group, time) && self == 0) group.dismiss();
+  });
+  construction.account(workers, time);
+  return construction.finish();
 }
 
 class Schedules : public testing::Test {
@@ -116,7 +107,7 @@ class Schedules : public testing::Test {
     plant_locks_to_read(2);
   }
 
-  static Refinement refine(const Scene& scene, std::uint64_t seed, Watch& watch, OperationLogWriter* log,
+  static Refinement refine(const Scene& scene, std::uint64_t seed, StopControl& stop, OperationLogWriter* log,
                            std::size_t capacity = 1 << 18) {
     std::mt19937_64 random(seed);
     const auto draw = [&](int low, int high) { return std::uniform_int_distribution(low, high)(random); };
@@ -125,18 +116,18 @@ class Schedules : public testing::Test {
     const int num_workers = leaves.num_nodes * (algorithm == Algorithm::kPdr ? 1 : draw(1, 4));
     leaves.initial_workers = draw(1, num_workers);
     const auto contention = static_cast<Contention>(draw(1, 3));
-    const Crew crew{
+    const Team team{
         .executor = Executor::kVirtual, .coordination = {num_workers, contention, {}, random()}, .log = log};
     const Problem problem{scene.isosurface, foreground_bounds(scene.image), scene.delta_mm, scene.sizes,
                           capacity};
-    if (algorithm == Algorithm::kPodm) return crowded_podm(problem, crew, watch);
-    return algorithm == Algorithm::kPdr ? pdr(problem, crew, leaves, watch)
-                                        : pdr_podm(problem, crew, leaves, watch);
+    if (algorithm == Algorithm::kPodm) return crowded_podm(problem, team, stop);
+    return algorithm == Algorithm::kPdr ? pdr(problem, team, leaves, stop)
+                                        : pdr_podm(problem, team, leaves, stop);
   }
   static const Scene& scene_of(int seed) {
     return *scenes()[static_cast<std::size_t>(seed) % scenes().size()];
   }
-  static Watch patient() {
+  static StopControl patient() {
     return {{}, {}, [](std::uint64_t) {}};
   }
 
@@ -144,8 +135,8 @@ class Schedules : public testing::Test {
   std::string fault_of(int seed) const try {
     const Scene& scene = scene_of(seed);
     OperationLogWriter log(log_path_);
-    Watch watch = patient();
-    const Refinement refinement = refine(scene, static_cast<std::uint64_t>(seed), watch, &log);
+    StopControl stop = patient();
+    const Refinement refinement = refine(scene, static_cast<std::uint64_t>(seed), stop, &log);
     if (refinement.stop_reason != StopReason::kComplete) return "the run is not complete";
     const Mesh& mesh = *refinement.mesh;
     std::string fault;
@@ -219,8 +210,8 @@ TEST_F(Schedules, RepeatForTheSameSeed) {
   for (int seed = 0; seed < 6; ++seed) {
     std::vector<std::array<VertexId, 4>> cells[2];
     for (auto& of_run : cells) {
-      Watch watch = patient();
-      const Refinement refinement = refine(scene_of(seed), static_cast<std::uint64_t>(seed), watch, nullptr);
+      StopControl stop = patient();
+      const Refinement refinement = refine(scene_of(seed), static_cast<std::uint64_t>(seed), stop, nullptr);
       for (CellId c = 0; c < refinement.mesh->cell_bound(); ++c)
         of_run.push_back(refinement.mesh->cell(c).vertices);
     }
@@ -232,13 +223,12 @@ TEST_F(Schedules, EndBetweenOperationsWhenALimitStrikes) {
   int num_ended = 0;
   std::string fault;
   for (int seed = 0; seed < 60; ++seed) {
-    Watch limited({.max_cells = 200 + 20 * static_cast<std::uint64_t>(seed)}, {}, [](std::uint64_t) {});
+    StopControl limited({.max_cells = 200 + 20 * static_cast<std::uint64_t>(seed)}, {}, [](std::uint64_t) {});
     const Refinement of_cells = refine(scene_of(seed), static_cast<std::uint64_t>(seed), limited, nullptr);
     EXPECT_TRUE(is_valid(*of_cells.mesh, &fault)) << "seed " << seed << ": " << fault;
-    Watch watch = patient();
+    StopControl stop = patient();
     const std::size_t capacity = 4096 + 200 * static_cast<std::size_t>(seed);
-    const Refinement full =
-        refine(scene_of(seed), static_cast<std::uint64_t>(seed), watch, nullptr, capacity);
+    const Refinement full = refine(scene_of(seed), static_cast<std::uint64_t>(seed), stop, nullptr, capacity);
     EXPECT_TRUE(is_valid(*full.mesh, &fault)) << "seed " << seed << ": " << fault;
     num_ended += of_cells.stop_reason == StopReason::kElementLimit;
     num_ended += full.stop_reason == StopReason::kMemoryLimit;

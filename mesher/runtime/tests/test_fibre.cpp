@@ -8,68 +8,86 @@
 namespace podm::test {
 namespace {
 
+using State = Fibre::State;
+
 void step() { Fibre::current()->step(); }
 
-TEST(Fibre, StopsAtSteps) {
-  Fibre fibre;
-  EXPECT_TRUE(fibre.has_ended());
+TEST(Fibre, GoesOnWhereItSuspended) {
   int passed = 0;
-  fibre.begin([&] {
+  Fibre fibre([&] {
+    for (; passed < 3; ++passed) Fibre::current()->suspend();
+  });
+  for (int i = 0; i < 3; ++i) {
+    EXPECT_EQ(fibre.resume(), State::kSuspended);
+    EXPECT_EQ(passed, i);
+  }
+  EXPECT_EQ(Fibre::current(), nullptr);
+  EXPECT_EQ(fibre.resume(), State::kEnded);
+  EXPECT_EQ(passed, 3);
+}
+
+TEST(Fibre, StopsWhenItIsOutOfSteps) {
+  int passed = 0;
+  Fibre fibre([&] {
     for (; passed < 5; ++passed) step();
   });
-  EXPECT_FALSE(fibre.resume(1));
+  fibre.allow(1);
+  EXPECT_EQ(fibre.resume(), State::kOutOfSteps);
   EXPECT_EQ(passed, 0);
-  EXPECT_FALSE(fibre.resume(3));
+  fibre.allow(3);
+  EXPECT_EQ(fibre.resume(), State::kOutOfSteps);
   EXPECT_EQ(passed, 3);
-  EXPECT_FALSE(fibre.has_ended());
-  EXPECT_TRUE(fibre.resume(3));
+  EXPECT_TRUE(fibre.is_limited() || passed == 3);
+  fibre.allow(Fibre::kUnlimited);
+  EXPECT_FALSE(fibre.is_limited());
+  EXPECT_EQ(fibre.resume(), State::kEnded);
   EXPECT_EQ(passed, 5);
-  EXPECT_EQ(Fibre::current(), nullptr);
 }
 
 TEST(Fibre, KeepsItsCallApartFromOthers) {
-  Fibre first, second;
   std::string order;
   const auto call = [&order](char name) {
     return [&order, name] {
-      const Fibre* self = Fibre::current();
+      Fibre* const self = Fibre::current();
       for (int i = 0; i < 3; ++i) {
         order += name;
-        step();
+        self->suspend();
         EXPECT_EQ(Fibre::current(), self);
       }
     };
   };
-  first.begin(call('a'));
-  second.begin(call('b'));
-  while (!first.resume(1)) second.resume(1);
+  Fibre first(call('a')), second(call('b'));
+  while (first.resume() != State::kEnded) second.resume();
+  while (second.state() != State::kEnded) second.resume();
   EXPECT_EQ(order, "ababab");
 }
 
-TEST(Fibre, ThrowsWhereItIsResumedAndMayBeginAgain) {
-  Fibre fibre;
-  fibre.begin([] {
-    step();
+TEST(Fibre, ThrowsWhereItIsResumed) {
+  Fibre fibre([] {
+    Fibre::current()->suspend();
     throw std::runtime_error("thrown");
   });
-  EXPECT_FALSE(fibre.resume(1));
-  EXPECT_THROW(fibre.resume(1), std::runtime_error);
-  EXPECT_TRUE(fibre.has_ended());
-  fibre.begin([] {});
-  EXPECT_TRUE(fibre.resume(1));
+  EXPECT_EQ(fibre.resume(), State::kSuspended);
+  EXPECT_THROW(fibre.resume(), std::runtime_error);
+  EXPECT_EQ(fibre.state(), State::kEnded);
 }
 
-TEST(Fibre, DoesNotStopWhileItHandlesAnException) {
-  Fibre fibre;
-  fibre.begin([] {
+TEST(Fibre, StopsAtNoStepWhileItHandlesAnException) {
+  bool has_handled = false;
+  Fibre fibre([&] {
     try {
       throw std::runtime_error("thrown");
     } catch (const std::runtime_error&) {
       step();
-      throw;
+      has_handled = true;
     }
+    step();
   });
-  EXPECT_THROW(fibre.resume(1), std::runtime_error);
+  fibre.allow(1);
+  EXPECT_EQ(fibre.resume(), State::kOutOfSteps);
+  EXPECT_TRUE(has_handled);
+  fibre.allow(Fibre::kUnlimited);
+  EXPECT_EQ(fibre.resume(), State::kEnded);
 }
 
 }  // namespace

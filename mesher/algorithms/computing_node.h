@@ -1,0 +1,50 @@
+// A computing node of PDR.PODM: a group of workers that are confined to one leaf after the other.
+#pragma once
+
+#include <optional>
+#include <span>
+
+#include "algorithms/leaf_cells.h"
+#include "octree/leaf_region.h"
+#include "podm/mesh_image.h"
+#include "refine/worker.h"
+#include "workers/coordination.h"
+
+namespace podm {
+
+template <class Locks>
+class ComputingNode {
+ public:
+  using Workers = std::span<const std::unique_ptr<Worker<Locks>>>;
+
+  ComputingNode(unsigned number, Workers workers, const CoordinationOptions& options,
+                std::function<void(WorkerId)> resume)
+      : number_(number), workers_(workers), group_(options, std::move(resume), workers.front()->id()) {}
+
+  unsigned number() const { return number_; }
+  Worker<Locks>& master() const { return *workers_.front(); }
+  Coordination& group() { return group_; }
+
+  /// From now on the workers keep to the leaf. None works meanwhile, here and below.
+  void begin(const Octree& octree, LeafId leaf, double now_s);
+  /// The leaf ends: new cells of others go to them, cells that need vertices outside its region are deferred.
+  LeafSchedule::Activation end(LeafCells& cells, RefinementQueue& queue, const std::stop_token& stop,
+                               double now_s);
+  /// That has begun and not ended.
+  bool has_leaf() const { return region_.has_value(); }
+  LeafId leaf() const { return region_->leaf(); }
+
+ private:
+  std::uint64_t num_committed() const;
+
+  unsigned number_;
+  Workers workers_;
+  Coordination group_;
+  std::optional<LeafRegion> region_;
+  LeafSchedule::Activation activation_{};
+};
+
+extern template class ComputingNode<LeafLocks<NoLocks>>;
+extern template class ComputingNode<LeafLocks<VertexLocks>>;
+
+}  // namespace podm

@@ -1,0 +1,144 @@
+// A mesh under construction: its store, the pools of those who refine it, and what each phase took.
+#pragma once
+
+#include <chrono>
+#include <limits>
+#include <map>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "page_sampler.h"
+#include "podm/operation_log.h"
+#include "refine/rules.h"
+#include "refine/worker.h"
+#include "runtime/placement.h"
+#include "workers/coordination.h"
+#include "workers/real_time.h"
+#include "workers/virtual_time.h"
+
+namespace podm {
+
+struct Problem {
+  const Isosurface& isosurface;
+  Box object;  // bounds of the foreground
+  double delta_mm = 0;
+  SizeField sizes;
+  std::size_t cell_capacity = 0;  // the most cells the store may hold
+  // What store, workers and leaves may take together. The capacity takes workers into account, not leaves.
+  std::uint64_t memory_bytes = std::numeric_limits<std::uint64_t>::max();
+  std::size_t most_numbered_cells = kMostStoredCells;  // a capacity as large is none of memory
+};
+
+/// Who refines.
+struct Team {
+  Executor executor = Executor::kThreads;
+  CoordinationOptions coordination;
+  VirtualCost cost = VirtualCost::kMeasured;
+  OperationLogWriter* log = nullptr;
+  const Topology* machine = nullptr;    // whose nodes the places name; none: all are on one
+  std::vector<Place> places = {};       // of the workers; none: anywhere
+  const ImageOwners* owners = nullptr;  // of the machine's nodes, image and transform; none: not counted
+  const PageSampler* pages = nullptr;   // asked at the end of each phase, if any
+};
+
+struct Refinement {
+  std::unique_ptr<Mesh> mesh;
+  StopReason stop_reason = StopReason::kComplete;
+  Counters counters;  // of all workers
+  std::vector<WorkerReport> workers;
+  std::map<std::string, double> phases_s;          // allocate, initial, octree, refine, closing
+  std::map<std::string, double> virtual_phases_s;  // of Executor::kVirtual; some of these phases
+  std::uint64_t num_leaves = 0;
+  std::optional<LeafSchedule> schedule;
+  PageSamples pages;
+};
+
+/// The phase in which store, pools, workers and threads are made ready.
+inline constexpr const char* kAllocate = "allocate";
+
+class Construction {
+ public:
+  using Entries = Coordination::Entries;
+  template <class Locks>
+  using Workers = std::vector<std::unique_ptr<Worker<Locks>>>;
+
+  /// The store begins as the six cells of a box around `clamp_box`.
+  Construction(const Problem& problem, const Box& clamp_box, const Team& team, StopControl& stop);
+
+  const Mesh& mesh() const { return *result_.mesh; }
+  const Problem& problem() const { return problem_; }
+  const Team& team() const { return team_; }
+  StopControl& stop() { return stop_; }
+  int num_workers() const { return team_.coordination.num_workers; }
+  /// Every cell of the store.
+  Entries all_cells() const;
+
+  /// Keeps so much memory free of the store, instead of what was withheld before. Where the store has it
+  /// already the run is over.
+  void withhold(std::uint64_t bytes);
+  /// The first so many of the team, with their pools. They keep a reference to the parameters.
+  template <class Locks>
+  Workers<Locks> make_workers(const Parameters& parameters, int num_workers);
+
+  /// Charges the phase with the action's seconds, but for those that were charged to others meanwhile.
+  template <class Action>
+  void timed(const std::string& phase, Action&& action) {
+    const auto start = std::chrono::steady_clock::now();
+    const double charged_before_s = charged_s_;
+    action();
+    const std::chrono::duration<double> elapsed = std::chrono::steady_clock::now() - start;
+    charge(phase, elapsed.count() - (charged_s_ - charged_before_s));
+  }
+  /// Calls action(time) with the first so many of the team in their time, and takes down what it took of
+  /// them.
+  template <class Action>
+  void in_time(const std::string& phase, int num_workers, Action&& action) {
+    const auto count = static_cast<std::size_t>(num_workers);
+    if (team_.executor == Executor::kVirtual) {
+      VirtualTime time(stop_, count, team_.cost, team_.coordination.seed);
+      action(time);
+      result_.virtual_phases_s[phase] += time.now_s();
+    } else {
+      RealTime time(stop_, count, places_of_first(count));
+      action(time);
+      charge(kAllocate, time.start_s());
+      for (WorkerId id = 0; id < count; ++id) result_.workers[id].bound_to = time.processor(id).bound_to;
+    }
+  }
+  /// What workers did in a phase that has ended.
+  template <class Locks, class Time>
+  void account(const Workers<Locks>& workers, const Time& time) {
+    for (WorkerId id = 0; id < workers.size(); ++id) {
+      workers[id]->flush_log();
+      add_counters(*workers[id], time.overhead(*workers[id]));
+    }
+  }
+  /// At the end of a phase; in none of its seconds.
+  void sample_pages(const std::string& phase);
+  void take_down_leaves(std::uint64_t num_leaves, std::optional<LeafSchedule> schedule) {
+    result_.num_leaves = num_leaves;
+    result_.schedule = std::move(schedule);
+  }
+  Refinement finish();
+
+ private:
+  Place place_of(WorkerId worker) const { return team_.places.empty() ? Place{} : team_.places[worker]; }
+  std::vector<Place> places_of_first(std::size_t count) const;
+  template <class Locks>
+  void add_counters(const Worker<Locks>& worker, const Overhead& overhead);
+  void charge(const std::string& phase, double seconds) {
+    result_.phases_s[phase] += seconds;
+    charged_s_ += seconds;
+  }
+
+  const Problem& problem_;
+  const Team& team_;
+  StopControl& stop_;
+  std::vector<std::unique_ptr<Pool>> pools_;  // of the workers, from phase to phase
+  std::vector<SampledAccesses> accesses_;     // by worker, of the last phase
+  Refinement result_;
+  double charged_s_ = 0;  // to all phases
+};
+
+}  // namespace podm

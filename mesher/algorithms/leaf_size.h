@@ -1,0 +1,31 @@
+// How large leaves are, and which there are.
+#pragma once
+
+#include <memory>
+#include <stop_token>
+
+#include "algorithms/podm.h"
+#include "octree/octree.h"
+
+namespace podm {
+
+/// Circumradius bounds of the labels, mm; twice delta where only the surface drives.
+struct Radii {
+  std::vector<double> of_label;
+  double least, most;
+};
+Radii radii_of(const Problem& problem);
+
+/// What leaves of the size that was asked for take at most, bytes. 0: no size was asked for, and they are
+/// few. Throws InputError where they take more than their share of the memory: leaves of such a size fill the
+/// whole box.
+std::uint64_t checked_bytes_of_leaves(const Problem& problem, const LeafOptions& options, const Box& box);
+
+/// Leaves near the object; the cells elsewhere are few, and left to the closing phase. Their sides are by the
+/// labels' bounds, longer where a leaf has to feed several workers, then shorter until there are leaves
+/// enough to keep all nodes at work. A stop request leaves them unfit.
+std::unique_ptr<const Octree> make_octree(const Problem& problem, const Radii& radii, const Box& box,
+                                          const LeafOptions& options, int workers_per_node,
+                                          const std::stop_token& stop);
+
+}  // namespace podm

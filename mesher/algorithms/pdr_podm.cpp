@@ -1,0 +1,174 @@
+// PDR.PODM: parallel Delaunay refinement leaf by leaf, by a PODM mesh generator on each computing node.
+// (Feng, Tsolakis, Chernikov, Chrisochoides, IMR 2015, section 3; numbers behind lines are those of its
+// Fig. 3.) With one worker a node it is PDR. (Chernikov, Chrisochoides, ICS 2004; SISC 28 (2006).)
+//
+// A coarse mesh is made first, with PODM. Then an octree divides space into leaves, and a queue hands those
+// out that have poor cells, to nodes that refine them at the same time.
+//
+//   Nodes lock nothing against each other: an operation keeps to the region of its leaf, and active leaves'
+//   regions have no point in common (octree/octree.h). What would lock a vertex outside waits for the end,
+//   when all workers refine what is left anywhere, with PODM. That ends the run with the same guarantees as
+//   PODM's, whatever leaves there were (octree/leaf_region.h).
+#include <deque>
+#include <mutex>
+
+#include "algorithms/computing_node.h"
+#include "algorithms/leaf_size.h"
+#include "algorithms/podm.h"
+#include "memory_model.h"
+#include "refine/virtual_box.h"
+
+namespace podm {
+
+namespace {
+
+// What the computing nodes share while they refine leaf after leaf.
+template <class Locks, class Time>
+struct Leaves {
+  const Octree& octree;
+  LeafCells& cells;
+  RefinementQueue& queue;
+  Time& time;
+  std::stop_token over;
+  std::mutex mutex = {};  // guards the schedule
+  std::vector<LeafSchedule::Activation> schedule = {};
+
+  // 9 to 28, by a node's master; its other workers call refine() alone, and beg between leaves.
+  void refine_one_by_one(ComputingNode<Locks>& node) {
+    Worker<Locks>& master = node.master();
+    const auto wait = [&] { time.block(master.id(), &Overhead::begging_s); };
+    while (const auto leaf = queue.wait_and_pop(node.number(), wait, over)) {  // 9, 10: with B1 and B2
+      node.begin(octree, *leaf, time.now_s());
+      master.give(cells.take(*leaf));                   // 11
+      if (!refine(master, node.group(), time)) return;  // 12 to 24, on all workers of the node
+      end_leaf(node);                                   // 21, 25 to 27
+    }
+    if (!time.is_over()) node.group().dismiss();
+  }
+
+  // New cells go to the leaves that have them, and so does this leaf, if they are its own, back to the queue.
+  void end_leaf(ComputingNode<Locks>& node) {
+    const LeafId leaf = node.leaf();
+    LeafSchedule::Activation activation = node.end(cells, queue, over, time.now_s());
+    {
+      const std::scoped_lock lock(mutex);
+      schedule.push_back(std::move(activation));
+    }
+    queue.finish(leaf);
+  }
+};
+
+std::optional<LeafSchedule> described(const Octree& octree,
+                                      std::vector<LeafSchedule::Activation> activations) {
+  const Point& origin = octree.origin();
+  LeafSchedule schedule{{origin.x, origin.y, origin.z}, octree.finest_side_mm(), {}, std::move(activations)};
+  for (LeafId leaf = 0; leaf < octree.num_leaves(); ++leaf)
+    schedule.leaves.push_back({octree.cube(leaf).corner, octree.cube(leaf).side});
+  return schedule;
+}
+
+// A computing node is one group of workers.
+CoordinationOptions coordination_of_node(const Team& team, int num_nodes) {
+  CoordinationOptions options = team.coordination;
+  options.num_workers /= num_nodes;
+  options.groups.clear();
+  return options;
+}
+
+template <class Locks, class Time>
+Construction::Entries refine_leaves_with(Construction& construction, const Parameters& parameters,
+                                         const Octree& octree, const LeafOptions& options, Time& time) {
+  const int num_workers = construction.num_workers();
+  const std::stop_token over = construction.stop().over();
+  auto workers = construction.make_workers<Locks>(parameters, num_workers);
+  if (options.with_schedule)
+    for (const auto& worker : workers) worker->locks().watch_leaves();
+  const auto num_nodes = static_cast<unsigned>(options.num_nodes);
+  const std::size_t per_node = workers.size() / num_nodes;
+  const auto resume = [&](WorkerId worker) { time.resume(worker); };
+
+  LeafCells cells(construction.mesh(), octree);
+  RefinementQueue queue(octree, num_nodes, LeafOrder::kHome,
+                        [&](unsigned node) { resume(static_cast<WorkerId>(node * per_node)); });
+  cells.add(construction.all_cells(), queue, over);  // 5, 6
+  queue.share_out(over);
+
+  std::deque<ComputingNode<Locks>> nodes;  // 8
+  for (unsigned node = 0; node < num_nodes; ++node)
+    nodes.emplace_back(node, std::span(workers).subspan(node * per_node, per_node),
+                       coordination_of_node(construction.team(), options.num_nodes), resume);
+  Leaves<Locks, Time> leaves{octree, cells, queue, time, over};
+  time.run([&](WorkerId self) {  // 7
+    ComputingNode<Locks>& node = nodes[self / per_node];
+    if (self % per_node == 0) {
+      leaves.refine_one_by_one(node);
+    } else {
+      refine(*workers[self], node.group(), time);
+    }
+  });
+  for (auto& node : nodes)
+    if (node.has_leaf()) leaves.end_leaf(node);  // the run ended early
+  construction.account(workers, time);
+  construction.take_down_leaves(octree.num_leaves(), options.with_schedule
+                                                         ? described(octree, std::move(leaves.schedule))
+                                                         : std::nullopt);
+  return cells.take_leftover();
+}
+
+template <class Locks>
+Construction::Entries refine_leaves(Construction& construction, const Parameters& parameters,
+                                    const Octree& octree, const LeafOptions& options) {
+  Construction::Entries left;
+  construction.timed("refine", [&] {
+    if (construction.stop().is_over()) return;
+    construction.in_time("refine", construction.num_workers(), [&](auto& time) {
+      left = refine_leaves_with<Locks>(construction, parameters, octree, options, time);
+    });
+  });
+  construction.sample_pages("refine");
+  return left;
+}
+
+// Large balls outside reach over the shell to the object only if they are empty of its vertices.
+constexpr double kShellOverRadius = 2;
+
+template <class Locks>
+Refinement refine_by_leaves(const Problem& problem, const Team& team, const LeafOptions& options,
+                            StopControl& stop) {
+  const double ratio = options.initial_ratio;
+  const Radii radii = radii_of(problem);
+  const double initial_radius_mm = ratio * radii.least;
+  const double shell_mm = kShellOverRadius * initial_radius_mm;
+  const Box clamp = grown(problem.object, std::max(2 * ratio * problem.delta_mm, shell_mm));
+  const std::uint64_t bytes_of_leaves = checked_bytes_of_leaves(problem, options, clamp);
+
+  Parameters initial = parameters_for(problem, ratio, clamp);
+  initial.shell_mm = shell_mm;
+  initial.shell_radius_mm = initial_radius_mm;
+  const Parameters final = parameters_for(problem, 1, clamp);
+
+  Construction construction(problem, clamp, team, stop);  // 1
+  construction.withhold(bytes_of_leaves);
+  refine_anywhere(construction, "initial", initial, construction.all_cells(), options.initial_workers);  // 4
+  std::unique_ptr<const Octree> octree;
+  construction.timed("octree", [&] {  // 2, 3: of a size that may depend on nothing but the bounds
+    octree = make_octree(problem, radii, clamp, options, construction.num_workers() / options.num_nodes,
+                         stop.over());
+  });
+  construction.withhold(octree->num_cubes() * kBytesPerCube + octree->num_leaves() * kBytesPerLeaf);
+  const auto left = refine_leaves<Locks>(construction, final, *octree, options);  // 5 to 29
+  refine_anywhere(construction, "closing", final, left, construction.num_workers());
+  return construction.finish();  // 30
+}
+
+}  // namespace
+
+Refinement pdr(const Problem& problem, const Team& team, const LeafOptions& options, StopControl& stop) {
+  return refine_by_leaves<LeafLocks<NoLocks>>(problem, team, options, stop);
+}
+
+Refinement pdr_podm(const Problem& problem, const Team& team, const LeafOptions& options, StopControl& stop) {
+  return refine_by_leaves<LeafLocks<VertexLocks>>(problem, team, options, stop);
+}
+
+}  // namespace podm

@@ -1,0 +1,51 @@
+#include "algorithms/placement_of_team.h"
+
+#include <algorithm>
+#include <set>
+
+namespace podm {
+
+namespace {
+
+// The groups of one level, unless they tell nothing: all in one, or each alone.
+void add_level(const std::vector<Place>& places, int Place::*member, WorkerGroups& groups) {
+  std::vector<int> level;
+  for (const Place& place : places) level.push_back(place.*member);
+  const std::size_t num_groups = std::set<int>(level.begin(), level.end()).size();
+  if (num_groups > 1 && num_groups < places.size()) groups.push_back(std::move(level));
+}
+
+// Sockets in nodes or nodes in sockets: the level of more groups is the inner one.
+WorkerGroups groups_of(const std::vector<Place>& places) {
+  WorkerGroups groups;
+  add_level(places, &Place::socket, groups);
+  add_level(places, &Place::node, groups);
+  const auto num_groups = [](const std::vector<int>& level) {
+    return std::set<int>(level.begin(), level.end()).size();
+  };
+  std::stable_sort(groups.begin(), groups.end(),
+                   [&](const auto& a, const auto& b) { return num_groups(a) > num_groups(b); });
+  return groups;
+}
+
+}  // namespace
+
+PlacementOfTeam place_team(const MeshingOptions& options, int num_workers) try {
+  const bool is_described = !options.topology_path.empty();
+  PlacementOfTeam placement{
+      is_described ? Topology::from_file(options.topology_path) : Topology::of_this_machine(), {}, {}, {}};
+  const bool is_real = placement.is_real = options.executor == Executor::kThreads && !is_described;
+  placement.places = place_workers(placement.machine, PinPlan::parse(options.pin), num_workers,
+                                   options.oversubscribe || !is_real);
+  if (!is_real) {
+    for (Place& place : placement.places) place.processor.reset();
+  }
+  if (options.begging == Begging::kHierarchical) placement.groups = groups_of(placement.places);
+  return placement;
+} catch (const TopologyError& error) {
+  throw InputError(error.what());
+} catch (const PlacementError& error) {
+  throw InputError(error.what());
+}
+
+}  // namespace podm

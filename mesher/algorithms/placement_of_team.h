@@ -1,0 +1,24 @@
+// Where in which machine the workers of a run stand.
+#pragma once
+
+#include <vector>
+
+#include "podm/mesh_image.h"
+#include "runtime/placement.h"
+#include "runtime/topology.h"
+#include "workers/begging_list.h"
+
+namespace podm {
+
+struct PlacementOfTeam {
+  Topology machine;  // this one, or the one described
+  std::vector<Place> places;
+  WorkerGroups groups;  // of the begging list
+  bool is_real = true;  // threads of this machine, neither virtual workers nor those of a described one
+};
+
+/// A place for each of `num_workers`. Workers of a described machine, and virtual ones, are bound to nothing.
+/// Throws InputError on a plan, machine or number that cannot be had.
+PlacementOfTeam place_team(const MeshingOptions& options, int num_workers);
+
+}  // namespace podm

@@ -1,0 +1,107 @@
+// PODM, Parallel Optimistic Delaunay Meshing. (Foteinos, Chrisochoides, JPDC 74 (2014) 2123-2140.)
+//
+// Every worker has a list of cells that may be poor. It takes one, and by the first rule that the cell breaks
+// plans an insertion, with removals where R6 asks for them. It locks each vertex of each cell that it is
+// about to replace, and never waits for one: an operation that meets another's vertex is rolled back, with
+// nothing written, and its cell goes back on the list. New cells go on the list of their maker.
+//
+//   Between any two operations the cells are the Delaunay triangulation of the vertices
+//   (delaunay/vertex_locks.h). Between any two operations vertices keep the distances I1 to I3
+//   (refine/rules.h), so that insertions end. Every cell that may break a rule is on a list, in a gift, or in
+//   an operation. So when all workers beg, none does. Who waits, waits for one who runs
+//   (workers/contention_manager.h): the last to run never waits.
+#include "algorithms/podm.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "refine/virtual_box.h"
+
+namespace podm {
+
+template <class Locks, class Time>
+bool refine(Worker<Locks>& worker, Coordination& group, Time& time) {
+  const WorkerId self = worker.id();
+  while (!time.is_over()) {
+    if (worker.has_work()) {
+      const Outcome outcome = time.attempt(worker);  // take a cell, lock, plan, commit or roll back, unlock
+      const auto [answer, pause_s] = group.after(outcome, self, worker);
+      if (answer == ContentionManager::Answer::kWait) time.block(self, &Overhead::contention_s);
+      if (answer == ContentionManager::Answer::kPause) time.pause(self, pause_s);
+    } else {
+      if (!group.beg(self)) return true;
+      time.block(self, &Overhead::begging_s);
+      worker.give(group.take_gift(self));
+    }
+  }
+  return false;
+}
+
+namespace {
+
+// The groups of the first workers alone.
+CoordinationOptions coordination_of_first(const Team& team, int num_workers) {
+  CoordinationOptions options = team.coordination;
+  options.num_workers = num_workers;
+  for (std::vector<int>& level : options.groups)
+    level.resize(std::min(level.size(), static_cast<std::size_t>(num_workers)));
+  return options;
+}
+
+// All workers start at once; those without cells beg until the first has some to share.
+template <class Locks, class Time>
+void refine_with(Construction& construction, const Parameters& parameters, const Construction::Entries& cells,
+                 int num_workers, Time& time) {
+  auto workers = construction.make_workers<Locks>(parameters, num_workers);
+  Coordination group(coordination_of_first(construction.team(), num_workers),
+                     [&](WorkerId worker) { time.resume(worker); });
+  workers[0]->give(cells);
+  time.run([&](WorkerId self) {
+    const bool is_done = refine(*workers[self], group, time);
+    if (is_done && self == 0) group.dismiss();
+  });
+  construction.account(workers, time);
+}
+
+}  // namespace
+
+void refine_anywhere(Construction& construction, const std::string& phase, const Parameters& parameters,
+                     const Construction::Entries& cells, int num_workers) {
+  construction.timed(phase, [&] {
+    if (construction.stop().is_over()) return;
+    construction.in_time(phase, num_workers, [&](auto& time) {
+      if (num_workers > 1 || construction.team().executor == Executor::kVirtual) {
+        refine_with<VertexLocks>(construction, parameters, cells, num_workers, time);
+      } else {
+        refine_with<NoLocks>(construction, parameters, cells, num_workers, time);
+      }
+    });
+  });
+  construction.sample_pages(phase);
+}
+
+Parameters parameters_for(const Problem& problem, double ratio, const Box& clamp) {
+  const double k = std::sqrt(2 + std::sqrt(3.0));
+  const SizeField sizes = problem.sizes.scaled(ratio);
+  const double delta_mm = ratio * problem.delta_mm;
+  const double spacing_mm = std::min(delta_mm, std::sqrt(sizes.smallest_squared_radius()) / k);
+  return {delta_mm, sizes, clamp, spacing_mm};
+}
+
+Refinement podm(const Problem& problem, const Team& team, StopControl& stop) {
+  const Box clamp = clamp_box(problem.object, problem.delta_mm);
+  Construction construction(problem, clamp, team, stop);
+  refine_anywhere(construction, "refine", parameters_for(problem, 1, clamp), construction.all_cells(),
+                  construction.num_workers());
+  return construction.finish();
+}
+
+template bool refine(Worker<NoLocks>&, Coordination&, RealTime&);
+template bool refine(Worker<VertexLocks>&, Coordination&, RealTime&);
+template bool refine(Worker<VertexLocks>&, Coordination&, VirtualTime&);
+template bool refine(Worker<LeafLocks<NoLocks>>&, Coordination&, RealTime&);
+template bool refine(Worker<LeafLocks<NoLocks>>&, Coordination&, VirtualTime&);
+template bool refine(Worker<LeafLocks<VertexLocks>>&, Coordination&, RealTime&);
+template bool refine(Worker<LeafLocks<VertexLocks>>&, Coordination&, VirtualTime&);
+
+}  // namespace podm

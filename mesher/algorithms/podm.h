@@ -1,0 +1,38 @@
+// The algorithms. Each brings an image from the six cells of a box to a mesh that obeys R1..R6.
+#pragma once
+
+#include "algorithms/construction.h"
+
+namespace podm {
+
+/// Parallel Optimistic Delaunay Meshing: all workers anywhere at once. On one worker it is sequential,
+/// without locks.
+Refinement podm(const Problem& problem, const Team& team, StopControl& stop);
+
+struct LeafOptions {
+  int num_nodes = 1;         // computing nodes; they divide the workers evenly
+  double initial_ratio = 4;  // bounds of the initial mesh over those of the final one
+  int initial_workers = 1;   // of the initial mesh
+  double leaf_size_mm = 0;   // 0: from the initial mesh's bound
+  bool with_schedule = false;
+};
+
+/// Parallel Delaunay refinement leaf by leaf, one worker a leaf, without locks.
+Refinement pdr(const Problem& problem, const Team& team, const LeafOptions& options, StopControl& stop);
+/// The same with several workers a leaf, which lock vertices against each other.
+Refinement pdr_podm(const Problem& problem, const Team& team, const LeafOptions& options, StopControl& stop);
+
+/// PODM's loop, for one worker of a group. True: all cells that the group had are refined, as its master is
+/// told, or the worker was dismissed. False: the run is over.
+template <class Locks, class Time>
+bool refine(Worker<Locks>& worker, Coordination& group, Time& time);
+
+/// PODM as a phase: the first `num_workers` of the team refine these cells, with locks unless there is only
+/// one.
+void refine_anywhere(Construction& construction, const std::string& phase, const Parameters& parameters,
+                     const Construction::Entries& cells, int num_workers);
+
+/// Rules for the problem, with all bounds times `ratio`.
+Parameters parameters_for(const Problem& problem, double ratio, const Box& clamp_box);
+
+}  // namespace podm

@@ -1,0 +1,64 @@
+#include "workers/real_time.h"
+
+#include <boost/thread/scoped_thread.hpp>
+#include <new>
+#include <thread>
+
+namespace podm {
+
+RealTime::RealTime(StopControl& stop, std::size_t num_workers, std::vector<Place> places)
+    : stop_(stop), places_(std::move(places)), seats_(num_workers), on_over_(stop.over(), [this] {
+        for (Seat& seat : seats_) seat.resumed.release();
+      }) {}
+
+void RealTime::run(const std::function<void(WorkerId)>& work) {
+  const auto start = Clock::now();
+  {
+    std::vector<boost::scoped_thread<>> threads;
+    try {
+      threads.reserve(seats_.size());
+      for (WorkerId self = 1; self < seats_.size(); ++self)
+        threads.emplace_back([&, self] { work_on_thread(work, self); });
+    } catch (...) {  // a thread was not to be had: those that run already end now
+      fail();
+    }
+    start_s_ = seconds_since(start);
+    work_on_thread(work, 0);
+  }
+  if (failure_) std::rethrow_exception(failure_);
+}
+
+void RealTime::work_on_thread(const std::function<void(WorkerId)>& work, WorkerId self) try {
+  const ScopedBinding binding(places_.empty() ? std::nullopt : places_[self].processor);
+  seats_[self].processor = processor_of_this_thread();
+  work(self);
+} catch (const std::bad_alloc&) {
+  stop_.end(StopReason::kMemoryLimit);
+} catch (...) {
+  fail();
+}
+
+// While an exception is handled: it ends the run.
+void RealTime::fail() {
+  {
+    const std::scoped_lock lock(mutex_);
+    if (!failure_) failure_ = std::current_exception();
+  }
+  stop_.end(StopReason::kCancelled);
+}
+
+void RealTime::block(WorkerId self, double Overhead::*cause) {
+  const auto start = Clock::now();
+  if (!is_over()) seats_[self].resumed.acquire();
+  seats_[self].overhead.*cause += seconds_since(start);
+  stop_.check_limits();  // which takes the time of thousands of attempts
+}
+
+void RealTime::pause(WorkerId self, double seconds) {
+  const auto start = Clock::now();
+  std::this_thread::sleep_for(std::chrono::duration<double>(seconds));
+  seats_[self].overhead.contention_s += seconds_since(start);
+  stop_.check_limits();
+}
+
+}  // namespace podm

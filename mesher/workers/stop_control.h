@@ -1,0 +1,71 @@
+// When a run ends: for limits, or because somebody asks for it. Workers look here between operations.
+#pragma once
+
+#include <atomic>
+#include <chrono>
+#include <cstdint>
+#include <functional>
+#include <optional>
+#include <stop_token>
+
+#include "podm/mesh_image.h"
+
+namespace podm {
+
+/// Ends of a run that are not completion, but for memory, whose lack shows itself. 0: none.
+struct Limits {
+  std::uint64_t max_cells = 0;  // of the store
+  std::chrono::steady_clock::time_point deadline = std::chrono::steady_clock::time_point::max();
+};
+
+/// Shared by all workers of a run, and by its phases. Any thread may call, but for observe().
+class StopControl {
+ public:
+  static constexpr int kAttemptsBetweenChecks = 1 << 8;  // of each worker, well below a millisecond
+
+  /// `observe(cells)` is called a few times a second. Whoever requests the stop ends the run, so that over()
+  /// tells of it even while nobody asks for reasons.
+  StopControl(const Limits& limits, std::stop_token stop, std::function<void(std::uint64_t)> observe)
+      : limits_(limits),
+        observe_(std::move(observe)),
+        on_stop_(std::move(stop), [this] { end(StopReason::kCancelled); }) {}
+
+  /// The store has so many more cells.
+  void add_cells(std::int64_t more) { num_cells_.fetch_add(more, std::memory_order_relaxed); }
+  /// Ends the run if a limit is passed.
+  void check_limits();
+  /// Ends the run. The first reason counts.
+  void end(StopReason reason);
+  /// kComplete as long as nothing has ended it.
+  StopReason reason() const { return reason_; }
+  /// Relaxed: a worker that has not heard of the end yet does one more operation.
+  bool is_over() const { return reason_.load(std::memory_order_relaxed) != StopReason::kComplete; }
+  /// Requested when the run has to end.
+  std::stop_token over() const { return over_.get_token(); }
+  /// Only the thread that the run was called from calls.
+  void observe();
+
+ private:
+  Limits limits_;
+  std::function<void(std::uint64_t)> observe_;
+  std::atomic<std::int64_t> num_cells_ = 0;
+  std::atomic<StopReason> reason_ = StopReason::kComplete;  // of the end, once there is one
+  std::stop_source over_;
+  std::chrono::steady_clock::time_point next_observation_ = std::chrono::steady_clock::now();
+  std::stop_callback<std::function<void()>> on_stop_;  // the last: it may be called before it is made
+};
+
+/// Tells of the cells that a worker adds.
+class CellMeter {
+ public:
+  template <class Worker>
+  void report(const Worker& worker, StopControl& stop) {
+    stop.add_cells(worker.net_cells() - reported_);
+    reported_ = worker.net_cells();
+  }
+
+ private:
+  std::int64_t reported_ = 0;
+};
+
+}  // namespace podm

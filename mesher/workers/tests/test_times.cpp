@@ -1,0 +1,115 @@
+// Real and virtual time: who works, blocks and is resumed, and how runs end.
+#include <gtest/gtest.h>
+
+#include <array>
+#include <atomic>
+#include <new>
+#include <stdexcept>
+
+#include "podm/errors.h"
+#include "workers/real_time.h"
+#include "workers/virtual_time.h"
+
+namespace podm::test {
+namespace {
+
+constexpr std::size_t kNumWorkers = 3;
+
+struct OnThreads {
+  static RealTime make(StopControl& stop) { return {stop, kNumWorkers, {}}; }
+};
+struct InVirtualTime {
+  static VirtualTime make(StopControl& stop) { return {stop, kNumWorkers, VirtualCost::kUnit, 1}; }
+};
+
+template <class Kind>
+class Times : public testing::Test {
+ protected:
+  StopControl stop_{{}, {}, [](std::uint64_t) {}};
+};
+using Kinds = testing::Types<OnThreads, InVirtualTime>;
+TYPED_TEST_SUITE(Times, Kinds);
+
+TYPED_TEST(Times, LetEveryWorkerWorkOnce) {
+  auto time = TypeParam::make(this->stop_);
+  std::array<std::atomic<int>, kNumWorkers> calls{};
+  time.run([&](WorkerId self) { ++calls[self]; });
+  for (const auto& of_worker : calls) EXPECT_EQ(of_worker, 1);
+}
+
+// Worker 0 is resumed before it blocks, or while it does; the others when it has been.
+TYPED_TEST(Times, ResumeWhoBlocks) {
+  auto time = TypeParam::make(this->stop_);
+  std::atomic<int> num_resumed = 0;
+  time.run([&](WorkerId self) {
+    if (self + 1 < kNumWorkers) time.block(self, &Overhead::begging_s);
+    ++num_resumed;
+    if (self > 0) time.resume(self - 1);
+  });
+  EXPECT_EQ(num_resumed, static_cast<int>(kNumWorkers));
+}
+
+TYPED_TEST(Times, EndTheBlockingWhenTheRunIsOver) {
+  auto time = TypeParam::make(this->stop_);
+  std::atomic<int> num_over = 0;
+  time.run([&](WorkerId self) {
+    if (self == 0) {
+      this->stop_.end(StopReason::kTimeLimit);
+    } else {
+      time.block(self, &Overhead::contention_s);
+    }
+    num_over += time.is_over();
+  });
+  EXPECT_EQ(num_over, static_cast<int>(kNumWorkers));
+  EXPECT_EQ(this->stop_.reason(), StopReason::kTimeLimit);
+}
+
+TYPED_TEST(Times, ThrowAgainWhatAWorkerThrows) {
+  auto time = TypeParam::make(this->stop_);
+  EXPECT_THROW(time.run([&](WorkerId self) {
+    if (self == 1) throw std::runtime_error("thrown");
+    time.block(self, &Overhead::begging_s);
+  }),
+               std::runtime_error);
+  EXPECT_TRUE(this->stop_.is_over());
+}
+
+TYPED_TEST(Times, TakeALackOfMemoryForALimit) {
+  auto time = TypeParam::make(this->stop_);
+  time.run([&](WorkerId self) {
+    if (self == 1) throw std::bad_alloc();
+    time.block(self, &Overhead::begging_s);
+  });
+  EXPECT_EQ(this->stop_.reason(), StopReason::kMemoryLimit);
+}
+
+TYPED_TEST(Times, ChargePausesAndBlocks) {
+  auto time = TypeParam::make(this->stop_);
+  constexpr double kPause = 0.002;
+  const double start_s = time.now_s();
+  time.run([&](WorkerId self) {
+    if (self == 0) time.pause(self, kPause);
+  });
+  EXPECT_GE(time.now_s() - start_s, kPause);
+}
+
+TEST(VirtualTime, ThatStandsStillIsAnError) {
+  StopControl stop({}, {}, [](std::uint64_t) {});
+  VirtualTime time(stop, kNumWorkers, VirtualCost::kUnit, 1);
+  EXPECT_THROW(time.run([&](WorkerId self) { time.block(self, &Overhead::begging_s); }), InternalError);
+}
+
+// The making of leaves asks for no reasons, and looks at this.
+TEST(StopControl, IsOverAsSoonAsAStopIsRequested) {
+  std::stop_source source;
+  StopControl stop({}, source.get_token(), [](std::uint64_t) {});
+  EXPECT_FALSE(stop.over().stop_requested());
+  EXPECT_EQ(stop.reason(), StopReason::kComplete);
+  source.request_stop();
+  EXPECT_TRUE(stop.over().stop_requested());
+  EXPECT_TRUE(stop.is_over());
+  EXPECT_EQ(stop.reason(), StopReason::kCancelled);
+}
+
+}  // namespace
+}  // namespace podm::test
