@@ -54,7 +54,7 @@ class Replay {
       vertex_of_.erase(found);
     }
     CellId& start = last_cell_[logged.worker];
-    check(operation_.plan_insertion(p, walk(start, p)) == Outcome::kCommitted,
+    check(operation_.plan_insertion(p, walk(start, p)) == StepResult::kDone,
           "its point conflicts with no cell");
     operation_.for_each_region_vertex([&](VertexId v, CellId seed) {
       if (std::find(doomed_.begin(), doomed_.end(), v) != doomed_.end() && !operation_.removes(v))
@@ -64,7 +64,7 @@ class Replay {
     const auto is_kind = [&](VertexKind kind) { return logged.kind == static_cast<std::uint32_t>(kind); };
     check(is_kind(VertexKind::kIsosurface) || is_kind(VertexKind::kCircumcenter), "its vertex is of no kind");
     const auto kind = static_cast<VertexKind>(logged.kind);
-    check(operation_.commit_insertion(p, kind, kTouching) == Outcome::kCommitted,
+    check(operation_.commit_insertion(p, kind, kTouching) == StepResult::kDone,
           "its point is a vertex already");
     check(vertex_of_.emplace(logged.vertex, operation_.inserted()).second, "its vertex is there already");
     start = operation_.created().front();

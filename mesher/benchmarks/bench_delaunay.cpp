@@ -25,8 +25,8 @@ class UniformRefinement {
       const Circumsphere& sphere = mesh.cell(c).sphere;
       if (sphere.squared_radius <= squared_radius_) continue;
       const Point p = moved_off_the_hull(sphere.center);
-      if (operation.plan_insertion(p, c) != Outcome::kCommitted ||
-          operation.commit_insertion(p, VertexKind::kCircumcenter, min_distance_) != Outcome::kCommitted) {
+      if (operation.plan_insertion(p, c) != StepResult::kDone ||
+          operation.commit_insertion(p, VertexKind::kCircumcenter, min_distance_) != StepResult::kDone) {
         operation.rollback();
         continue;
       }

@@ -25,9 +25,9 @@ class LeafLocks {
   void watch_leaves() { is_watching_ = true; }
   std::vector<LeafId>& touched_leaves() { return touched_leaves_; }
 
-  Outcome try_lock(Vertex& v) {
+  StepResult try_lock(Vertex& v) {
     const Point p = glimpse_point(v);
-    if (!region_->contains(p)) return Outcome::kOutOfLeaf;
+    if (!region_->contains(p)) return StepResult::kOutOfLeaf;
     if (is_watching_) remember(region_->octree().leaf_at(p));
     return inner_.try_lock(v);
   }

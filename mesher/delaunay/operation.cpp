@@ -9,37 +9,37 @@ namespace podm {
 // The stamp is compared under the locks: who replaced the cell after our glimpse held both vertices before
 // us, and a glimpse of the new cell shows the new stamp as well.
 template <class Locks>
-Outcome Operation<Locks>::reserve(CellId c, std::uint32_t stamp) {
-  Outcome outcome = Outcome::kCommitted;
+StepResult Operation<Locks>::reserve(CellId c, std::uint32_t stamp) {
+  StepResult result = StepResult::kDone;
   if constexpr (Locks::kIsShared) {
     const std::array<VertexId, 2> two = mesh_.glimpse_two_vertices(c);
     for (const VertexId v : std::span(two).first(locks_to_read())) {
-      if (outcome != Outcome::kCommitted) break;
-      outcome = v == kNoVertex ? Outcome::kStaleCell : lock(v);
+      if (result != StepResult::kDone) break;
+      result = v == kNoVertex ? StepResult::kStaleCell : lock(v);
     }
   }
-  if (mesh_.stamp(c) != stamp) outcome = Outcome::kStaleCell;
-  if (outcome != Outcome::kCommitted) locks_.unlock_all();
-  return outcome;
+  if (mesh_.stamp(c) != stamp) result = StepResult::kStaleCell;
+  if (result != StepResult::kDone) locks_.unlock_all();
+  return result;
 }
 
 template <class Locks>
-Outcome Operation<Locks>::lock(VertexId v) {
+StepResult Operation<Locks>::lock(VertexId v) {
   count_vertex(AccessKind::kMeshRead, v);
   return locks_.try_lock(mesh_.vertex(v));
 }
 
 template <class Locks>
-Outcome Operation<Locks>::lock_cell(CellId c) {
+StepResult Operation<Locks>::lock_cell(CellId c) {
   for (const VertexId v : mesh_.cell(c).vertices) {
-    if (const Outcome outcome = lock(v); outcome != Outcome::kCommitted) return outcome;
+    if (const StepResult locked = lock(v); locked != StepResult::kDone) return locked;
   }
-  return Outcome::kCommitted;
+  return StepResult::kDone;
 }
 
 // Locks the cell that `facet` belongs to; the facet's own vertices are held.
 template <class Locks>
-Outcome Operation<Locks>::lock_beyond(FacetId facet) {
+StepResult Operation<Locks>::lock_beyond(FacetId facet) {
   const auto& vertices = mesh_.cell(cell_of(facet)).vertices;
   return lock(vertices[static_cast<unsigned>(index_in_cell(facet))]);
 }
@@ -65,10 +65,10 @@ inline bool Operation<Locks>::is_in_conflict(CellId c, const Point& p) {
 }
 
 template <class Locks>
-Outcome Operation<Locks>::plan_insertion(const Point& p, CellId start) {
+StepResult Operation<Locks>::plan_insertion(const Point& p, CellId start) {
   is_cavity_ = true;
-  if (!is_in_conflict(start, p)) return Outcome::kRejected;
-  if (const Outcome locked = lock_cell(start); locked != Outcome::kCommitted) return locked;
+  if (!is_in_conflict(start, p)) return StepResult::kNotInConflict;
+  if (const StepResult locked = lock_cell(start); locked != StepResult::kDone) return locked;
   add_to_region(start);
   for (std::size_t i = 0; i < region_.cells.size(); ++i) {
     const CellId c = region_.cells[i];
@@ -81,23 +81,23 @@ Outcome Operation<Locks>::plan_insertion(const Point& p, CellId start) {
       const CellId neighbor = cell_of(mirrors[k]);
       if (mesh_.is_marked(neighbor)) continue;
       if (is_in_conflict(neighbor, p)) {
-        if (const Outcome locked = lock_beyond(mirrors[k]); locked != Outcome::kCommitted) return locked;
+        if (const StepResult locked = lock_beyond(mirrors[k]); locked != StepResult::kDone) return locked;
         add_to_region(neighbor);
       } else {
         region_.boundary.push_back(4 * c + k);
       }
     }
   }
-  return Outcome::kCommitted;
+  return StepResult::kDone;
 }
 
 template <class Locks>
-Outcome Operation<Locks>::plan_removal(VertexId v, CellId seed) {
+StepResult Operation<Locks>::plan_removal(VertexId v, CellId seed) {
   is_cavity_ = false;
   region_.removed.push_back(v);
   // Cells around v that the region already has are passed through, so the walk keeps its own list.
   ball_.assign(1, seed);
-  if (const Outcome locked = lock_cell(seed); locked != Outcome::kCommitted) return locked;
+  if (const StepResult locked = lock_cell(seed); locked != StepResult::kDone) return locked;
   if (!mesh_.is_marked(seed)) add_to_region(seed);
   for (std::size_t i = 0; i < ball_.size(); ++i) {
     const Cell& cell = mesh_.cell(ball_[i]);
@@ -105,12 +105,12 @@ Outcome Operation<Locks>::plan_removal(VertexId v, CellId seed) {
       if (cell.vertices[k] == v || cell.mirrors[k] == kNoFacet) continue;
       const CellId neighbor = cell_of(cell.mirrors[k]);
       if (std::find(ball_.begin(), ball_.end(), neighbor) != ball_.end()) continue;
-      if (const Outcome locked = lock_beyond(cell.mirrors[k]); locked != Outcome::kCommitted) return locked;
+      if (const StepResult locked = lock_beyond(cell.mirrors[k]); locked != StepResult::kDone) return locked;
       if (!mesh_.is_marked(neighbor)) add_to_region(neighbor);
       ball_.push_back(neighbor);
     }
   }
-  return Outcome::kCommitted;
+  return StepResult::kDone;
 }
 
 template <class Locks>
@@ -146,13 +146,13 @@ void Operation<Locks>::reserve_memory(std::size_t num_created) {
 }
 
 template <class Locks>
-Outcome Operation<Locks>::commit_insertion(const Point& p, VertexKind kind, double min_distance) {
+StepResult Operation<Locks>::commit_insertion(const Point& p, VertexKind kind, double min_distance) {
   const bool is_star = is_cavity_ && star_.prepare(mesh_, region_, p);
   const double nearest = is_star ? star_.squared_distance() : squared_distance_to_region(p);
-  if (nearest < min_distance * min_distance) return Outcome::kRejected;
+  if (nearest < min_distance * min_distance) return StepResult::kTooNear;
   if (!is_star) {
     if (!is_cavity_) collect_boundary();
-    if (!hole_.plan(mesh_, region_, &p)) return Outcome::kRejected;
+    if (!hole_.plan(mesh_, region_, &p)) return StepResult::kTooNear;
   }
   reserve_memory(is_star ? star_.num_cells() : hole_.num_cells());
   count_gluing();
@@ -166,19 +166,19 @@ Outcome Operation<Locks>::commit_insertion(const Point& p, VertexKind kind, doub
   }
   count_vertex(AccessKind::kMeshWrite, inserted_);
   finish(num_destroyed);
-  return Outcome::kCommitted;
+  return StepResult::kDone;
 }
 
 template <class Locks>
-Outcome Operation<Locks>::commit_removals() {
+StepResult Operation<Locks>::commit_removals() {
   collect_boundary();
-  if (!hole_.plan(mesh_, region_, nullptr)) return Outcome::kRejected;
+  if (!hole_.plan(mesh_, region_, nullptr)) return StepResult::kTooNear;
   reserve_memory(hole_.num_cells());
   count_gluing();
   const std::size_t num_destroyed = region_.cells.size();
   hole_.fill(mesh_, pool_, region_, kNoVertex);
   finish(num_destroyed);
-  return Outcome::kCommitted;
+  return StepResult::kDone;
 }
 
 // Before the filling: the cells beyond the boundary, each as often as a facet of it is glued.

@@ -37,8 +37,8 @@ class Operation {
       : mesh_(mesh), pool_(pool), locks_(self), tally_(tally) {}
 
   /// Locks two vertices of the cell c of that stamp, so that it and its neighbours may be read. kStaleCell:
-  /// it has died. kLockConflict: conflicting_worker() tells with whom. Unless committed nothing is held.
-  Outcome reserve(CellId c, std::uint32_t stamp);
+  /// it has died. kLockConflict: conflicting_worker() tells with whom. Unless done nothing is held.
+  StepResult reserve(CellId c, std::uint32_t stamp);
   void release() {
     forget_reads();
     locks_.unlock_all();
@@ -46,12 +46,11 @@ class Operation {
   Locks& locks() { return locks_; }
   WorkerId conflicting_worker() const { return locks_.conflicting_worker(); }
 
-  /// Digs the cavity of p from `start`, a cell in conflict with p, reserved or beside it. Unless committed
-  /// (kRejected: `start` is not in conflict; kLockConflict) the caller must roll back. The plan may be
-  /// extended by plan_removal.
-  Outcome plan_insertion(const Point& p, CellId start);
+  /// Digs the cavity of p from `start`, a cell in conflict with p, reserved or beside it. Unless done the caller
+  /// must roll back. kNotInConflict: `start` is not. The plan may be extended by plan_removal.
+  StepResult plan_insertion(const Point& p, CellId start);
   /// Adds the ball of v, a vertex of the cell `seed`, to the region.
-  Outcome plan_removal(VertexId v, CellId seed);
+  StepResult plan_removal(VertexId v, CellId seed);
   /// Calls visit(VertexId, CellId) for the vertices of every cell of the region, some more than once. `visit`
   /// may extend the plan; the cells so added are visited too.
   template <class Visit>
@@ -65,11 +64,11 @@ class Operation {
   std::size_t num_planned_removals() const { return region_.removed.size(); }
 
   /// Carries the plan out; created() then lists the new cells.
-  /// kRejected: a vertex that stays lies nearer to p than `min_distance` (mm), or the region has more
+  /// kTooNear: a vertex that stays lies nearer to p than `min_distance` (mm), or the region has more
   /// vertices than HoleFiller numbers; nothing was written, roll back.
-  Outcome commit_insertion(const Point& p, VertexKind kind, double min_distance);
-  /// kRejected: the region has more vertices than HoleFiller numbers.
-  Outcome commit_removals();
+  StepResult commit_insertion(const Point& p, VertexKind kind, double min_distance);
+  /// kTooNear: the region has more vertices than HoleFiller numbers.
+  StepResult commit_removals();
   /// Gives the plan up; nothing was written. Locks are kept until release().
   void rollback();
 
@@ -81,9 +80,9 @@ class Operation {
   const OperationCounters& counters() const { return counters_; }
 
  private:
-  Outcome lock_cell(CellId c);
-  Outcome lock_beyond(FacetId facet);
-  Outcome lock(VertexId v);
+  StepResult lock_cell(CellId c);
+  StepResult lock_beyond(FacetId facet);
+  StepResult lock(VertexId v);
   void count(AccessKind kind, CellId c) {
     if (counts()) [[unlikely]]
       tally_->add(kind, mesh_.node_of_cell(c), &mesh_.cell(c));

@@ -21,7 +21,7 @@
 #include <vector>
 
 #include "delaunay/mesh.h"
-#include "delaunay/outcome.h"
+#include "delaunay/step_result.h"
 
 namespace podm {
 
@@ -33,7 +33,7 @@ class NoLocks {
  public:
   static constexpr bool kIsShared = false;
   explicit NoLocks(WorkerId) {}
-  static constexpr Outcome try_lock(Vertex&) { return Outcome::kCommitted; }
+  static constexpr StepResult try_lock(Vertex&) { return StepResult::kDone; }
   static constexpr void unlock_all() {}
   static constexpr WorkerId conflicting_worker() { return kNoWorker; }
 };
@@ -44,23 +44,23 @@ class VertexLocks {
   static constexpr bool kIsShared = true;
   explicit VertexLocks(WorkerId self) : mine_(self + 1) {}
 
-  /// kCommitted: the vertex is held, maybe from before. kLockConflict: conflicting_worker() holds it.
-  Outcome try_lock(Vertex& v) {
+  /// kDone: the vertex is held, maybe from before. kLockConflict: conflicting_worker() holds it.
+  StepResult try_lock(Vertex& v) {
     const std::atomic_ref<std::uint32_t> lock(v.lock);
     step();
     // Relaxed: only we write our own id, so seeing it needs nobody else's writes.
     std::uint32_t holder = lock.load(std::memory_order_relaxed);
-    if (holder == mine_) return Outcome::kCommitted;
+    if (holder == mine_) return StepResult::kDone;
     if (held_.size() == held_.capacity()) held_.reserve(2 * held_.size() + 64);  // may throw, so first
     step();
     // Acquire: sees what the last holder wrote. Relaxed on failure: nothing but the id is used.
     if (holder == 0 &&
         lock.compare_exchange_strong(holder, mine_, std::memory_order_acquire, std::memory_order_relaxed)) {
       held_.push_back(&v);
-      return Outcome::kCommitted;
+      return StepResult::kDone;
     }
     conflicting_worker_ = holder - 1;
-    return Outcome::kLockConflict;
+    return StepResult::kLockConflict;
   }
   void unlock_all() {
     // Release: the next holder sees what we wrote.

@@ -1,5 +1,7 @@
 #include "refine/worker.h"
 
+#include "podm/errors.h"
+
 namespace podm {
 
 namespace {
@@ -17,6 +19,24 @@ template <class Locks>
 std::optional<AccessTally> tally_for(const Mesh& mesh) {
   if (!Locks::kIsShared || mesh.num_nodes() == 1) return std::nullopt;
   return AccessTally(mesh.num_nodes());
+}
+
+// Of an attempt that ends at a step which is not done.
+Outcome outcome_of(StepResult result) {
+  switch (result) {
+    case StepResult::kLockConflict:
+      return Outcome::kLockConflict;
+    case StepResult::kOutOfLeaf:
+      return Outcome::kOutOfLeaf;
+    case StepResult::kStaleCell:
+      return Outcome::kStaleCell;
+    case StepResult::kNotInConflict:
+    case StepResult::kTooNear:
+      return Outcome::kRejected;
+    case StepResult::kDone:
+      break;
+  }
+  throw InternalError("a step that is done ends no attempt");
 }
 
 std::optional<CountedReads> reads_for(std::optional<AccessTally>& tally, const ImageOwners* owners) {
@@ -57,19 +77,7 @@ Outcome Worker<Locks>::attempt_next() {
   if constexpr (!Locks::kIsShared)
     rules_.prefetch(poor_.upcoming(2));  // reads the cell, which takes its locks
   const PoorElementList::Entry entry = poor_.pop();
-  if (mesh_.stamp(entry.cell) != entry.stamp) {
-    ++counters_.stale_cells;
-    return Outcome::kStaleCell;
-  }
-  Outcome outcome = operation_.reserve(entry.cell, entry.stamp);
-  if (outcome == Outcome::kCommitted) {
-    ++counters_.classified_cells;
-    const bool is_timed = Locks::kIsShared && counters_.classified_cells % kAttemptsForOneTimed == 0;
-    const auto start = is_timed ? std::chrono::steady_clock::now() : std::chrono::steady_clock::time_point();
-    outcome = apply_first_rule(entry.cell);
-    if (is_timed && outcome == Outcome::kLockConflict)
-      counters_.rollback += kAttemptsForOneTimed * (std::chrono::steady_clock::now() - start);
-  }
+  const Outcome outcome = try_entry(entry);
   if (outcome == Outcome::kLockConflict) {
     ++counters_.lock_conflicts;
     poor_.push(entry.cell, entry.stamp);
@@ -79,6 +87,20 @@ Outcome Worker<Locks>::attempt_next() {
     ++counters_.out_of_leaf;
     deferred_.push_back(entry);
   }
+  return outcome;
+}
+
+template <class Locks>
+Outcome Worker<Locks>::try_entry(const PoorElementList::Entry& entry) {
+  if (mesh_.stamp(entry.cell) != entry.stamp) return Outcome::kStaleCell;
+  if (const StepResult reserved = operation_.reserve(entry.cell, entry.stamp); reserved != StepResult::kDone)
+    return outcome_of(reserved);
+  ++counters_.classified_cells;
+  const bool is_timed = Locks::kIsShared && counters_.classified_cells % kAttemptsForOneTimed == 0;
+  const auto start = is_timed ? std::chrono::steady_clock::now() : std::chrono::steady_clock::time_point();
+  const Outcome outcome = apply_first_rule(entry.cell);
+  if (is_timed && outcome == Outcome::kLockConflict)
+    counters_.rollback += kAttemptsForOneTimed * (std::chrono::steady_clock::now() - start);
   return outcome;
 }
 
@@ -94,41 +116,49 @@ Outcome Worker<Locks>::apply_first_rule(CellId c) {
     const std::uint16_t stamp = mesh_.stamp(c);
     const Outcome sampled = insert_on_isosurface(center->point, center->start, Rule::kR3);
     if (sampled == Outcome::kCommitted && mesh_.stamp(c) == stamp) give(c);
-    return sampled == Outcome::kRejected ? Outcome::kCommitted : sampled;
+    return sampled;
   }
   if (const auto rule = rules_.volume_rule(t)) return insert_circumcenter(t.center, c, *rule);
-  return Outcome::kCommitted;
+  return Outcome::kSound;
 }
 
 // The point and its R6 removals are one operation. kRejected: the point is covered already, or the ball only
 // touches the isosurface there.
 template <class Locks>
 Outcome Worker<Locks>::insert_on_isosurface(const Point& z, CellId start, Rule rule) {
-  Outcome planned = operation_.plan_insertion(z, start);
-  if (planned == Outcome::kCommitted && rule == Rule::kR1) {
-    bool is_covered = false;
-    operation_.for_each_region_vertex(
-        [&](VertexId v, CellId) { is_covered = is_covered || rules_.is_covered(z, v); });
-    if (is_covered) planned = Outcome::kRejected;
-  }
-  if (planned == Outcome::kCommitted) {
-    operation_.for_each_region_vertex([&](VertexId v, CellId seed) {
-      if (planned == Outcome::kCommitted && rules_.is_doomed(v, z) && !operation_.removes(v))
-        planned = operation_.plan_removal(v, seed);
-    });
-  }
-  if (planned == Outcome::kCommitted) return commit(z, VertexKind::kIsosurface, rule);
+  StepResult planned = operation_.plan_insertion(z, start);
+  if (planned == StepResult::kDone && rule == Rule::kR1 && is_covered(z)) planned = StepResult::kTooNear;
+  if (planned == StepResult::kDone) planned = plan_r6_removals(z);
+  if (planned == StepResult::kDone) return commit(z, VertexKind::kIsosurface, rule);
   operation_.rollback();
+  return outcome_of(planned);
+}
+
+template <class Locks>
+bool Worker<Locks>::is_covered(const Point& z) const {
+  bool is_covered = false;
+  operation_.for_each_region_vertex(
+      [&](VertexId v, CellId) { is_covered = is_covered || rules_.is_covered(z, v); });
+  return is_covered;
+}
+
+template <class Locks>
+StepResult Worker<Locks>::plan_r6_removals(const Point& z) {
+  StepResult planned = StepResult::kDone;
+  operation_.for_each_region_vertex([&](VertexId v, CellId seed) {
+    if (planned == StepResult::kDone && rules_.is_doomed(v, z) && !operation_.removes(v))
+      planned = operation_.plan_removal(v, seed);
+  });
   return planned;
 }
 
 template <class Locks>
 Outcome Worker<Locks>::insert_circumcenter(const Point& p, CellId start, Rule rule) {
-  const Outcome planned = operation_.plan_insertion(p, start);
-  if (planned == Outcome::kCommitted) return commit(p, VertexKind::kCircumcenter, rule);
-  if (planned == Outcome::kRejected) return give_up();
+  const StepResult planned = operation_.plan_insertion(p, start);
+  if (planned == StepResult::kDone) return commit(p, VertexKind::kCircumcenter, rule);
+  if (planned == StepResult::kNotInConflict) return give_up();
   operation_.rollback();
-  return planned;
+  return outcome_of(planned);
 }
 
 template <class Locks>
@@ -142,7 +172,7 @@ template <class Locks>
 Outcome Worker<Locks>::commit(const Point& p, VertexKind kind, Rule rule) {
   if (log_ != nullptr)
     unlogged_.removed.reserve(unlogged_.removed.size() + operation_.num_planned_removals());
-  if (operation_.commit_insertion(p, kind, min_distance_) != Outcome::kCommitted) return give_up();
+  if (operation_.commit_insertion(p, kind, min_distance_) != StepResult::kDone) return give_up();
   if (log_ != nullptr) log(p, kind);
   counters_.removals += operation_.removed().size();
   ++counters_.insertions_by_rule[static_cast<std::size_t>(rule)];

@@ -8,6 +8,7 @@
 
 #include "delaunay/operation.h"
 #include "podm/operation_log.h"
+#include "refine/outcome.h"
 #include "refine/poor_element_list.h"
 #include "refine/rules.h"
 
@@ -41,12 +42,7 @@ class Worker {
   std::vector<PoorElementList::Entry> share(std::size_t max) { return poor_.take_oldest(max, mesh_); }
 
   /// Takes one entry of the poor element list and applies the first rule that its cell breaks.
-  ///   kCommitted     a vertex was inserted, or the cell breaks no rule
-  ///   kStaleCell     the cell has died
-  ///   kLockConflict  nothing was changed and the entry is back on the list; see conflicting_worker()
-  ///   kRejected      the insertion would have broken the spacing floor
-  ///   kOutOfLeaf     nothing was changed; the cell is among the deferred
-  /// Locks are held until release(), which must come before the next attempt. What is thrown (std::bad_alloc)
+  /// After a conflict conflicting_worker() tells with whom. Locks are held until release(), which must come before the next attempt. What is thrown (std::bad_alloc)
   /// leaves a valid triangulation and no lock, but may lose entries of the list.
   Outcome attempt();
   void release() { operation_.release(); }
@@ -74,8 +70,11 @@ class Worker {
 
  private:
   Outcome attempt_next();
+  Outcome try_entry(const PoorElementList::Entry& entry);
   Outcome apply_first_rule(CellId c);
   Outcome insert_on_isosurface(const Point& z, CellId start, Rule rule);
+  bool is_covered(const Point& z) const;
+  StepResult plan_r6_removals(const Point& z);
   Outcome insert_circumcenter(const Point& p, CellId start, Rule rule);
   Outcome commit(const Point& p, VertexKind kind, Rule rule);
   Outcome give_up();

@@ -10,7 +10,7 @@
 #include <utility>
 #include <vector>
 
-#include "delaunay/outcome.h"
+#include "refine/outcome.h"
 #include "refine/poor_element_list.h"
 #include "workers/activity.h"
 #include "workers/begging_list.h"
@@ -44,7 +44,7 @@ class Coordination {
   Answer after(Outcome outcome, WorkerId self, Worker& worker) {
     const WorkerId number = self - first_id_;
     if (outcome == Outcome::kLockConflict) return conflict(number, worker.conflicting_worker() - first_id_);
-    if (outcome != Outcome::kCommitted) return {};
+    if (outcome != Outcome::kCommitted && outcome != Outcome::kSound) return {};
     if (is_due_to_wake(number)) wake_one(number);
     if (may_share(number, worker.num_listed())) share(number, worker);
     return {};

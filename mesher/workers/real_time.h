@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "delaunay/vertex_locks.h"
+#include "refine/outcome.h"
 #include "runtime/placement.h"
 #include "workers/overhead.h"
 #include "workers/stop_control.h"

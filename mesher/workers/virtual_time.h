@@ -16,6 +16,7 @@
 #include <vector>
 
 #include "delaunay/vertex_locks.h"
+#include "refine/outcome.h"
 #include "runtime/fibre.h"
 #include "workers/overhead.h"
 #include "workers/stop_control.h"

@@ -52,7 +52,7 @@ TEST_P(Triangulation, CombinedOperationEqualsItsParts) {
     removed.push_back(combined.mesh.point(v));
     combined.operation.plan_removal(v, seed);
   });
-  ASSERT_EQ(combined.operation.commit_insertion(last, VertexKind::kIsosurface, 0), Outcome::kCommitted);
+  ASSERT_EQ(combined.operation.commit_insertion(last, VertexKind::kIsosurface, 0), StepResult::kDone);
   for (const Point& p : points) {
     if (std::find(removed.begin(), removed.end(), p) == removed.end()) expected.insert(p);
   }
@@ -69,7 +69,7 @@ TEST(TriangulationEdge, CoincidentPointIsRejectedAndNothingChanges) {
   for (const Point& p : random_points(2, 50, 9)) t.insert(p);
   const auto before = t.cells();
   const Point p = t.mesh.point(20);
-  EXPECT_EQ(t.operation.plan_insertion(p, t.cell_around(20)), Outcome::kRejected);
+  EXPECT_EQ(t.operation.plan_insertion(p, t.cell_around(20)), StepResult::kNotInConflict);
   t.operation.rollback();
   EXPECT_EQ(t.cells(), before);
   EXPECT_TRUE(is_valid(t.mesh));
@@ -80,8 +80,8 @@ TEST(TriangulationEdge, PointTooNearIsRejectedAndNothingChanges) {
   for (const Point& p : random_points(2, 50, 9)) t.insert(p);
   const auto before = t.cells();
   const Point p = t.mesh.point(20) + Point{1e-6, 0, 0};
-  ASSERT_EQ(t.operation.plan_insertion(p, t.conflicting_cell(p)), Outcome::kCommitted);
-  EXPECT_EQ(t.operation.commit_insertion(p, VertexKind::kIsosurface, 1e-5), Outcome::kRejected);
+  ASSERT_EQ(t.operation.plan_insertion(p, t.conflicting_cell(p)), StepResult::kDone);
+  EXPECT_EQ(t.operation.commit_insertion(p, VertexKind::kIsosurface, 1e-5), StepResult::kTooNear);
   t.operation.rollback();
   EXPECT_EQ(t.cells(), before);
   EXPECT_TRUE(is_valid(t.mesh));

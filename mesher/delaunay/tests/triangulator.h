@@ -23,7 +23,7 @@ class Triangulator {
   }
   std::optional<VertexId> insert(const Point& p, VertexKind kind = VertexKind::kCircumcenter) {
     operation.plan_insertion(p, conflicting_cell(p));
-    if (operation.commit_insertion(p, kind, 1e-100) != Outcome::kCommitted) {
+    if (operation.commit_insertion(p, kind, 1e-100) != StepResult::kDone) {
       operation.rollback();
       return std::nullopt;
     }
