@@ -9,7 +9,7 @@
 #include <string>
 
 #include "commands.h"
-#include "gate_command.h"
+#include "gate/gate_command.h"
 
 namespace podm::bench {
 namespace {

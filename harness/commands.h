@@ -6,8 +6,8 @@
 #include <string>
 #include <vector>
 
-#include "experiment.h"
-#include "verification.h"
+#include "experiments/experiment.h"
+#include "trials/verification.h"
 
 namespace podm::bench {
 

@@ -7,7 +7,7 @@
 #include <fstream>
 #include <string>
 
-#include "preparation.h"
+#include "trials/preparation.h"
 
 namespace podm::bench {
 

@@ -5,8 +5,8 @@
 #include <string>
 #include <vector>
 
-#include "claim.h"
-#include "record.h"
+#include "experiments/claim.h"
+#include "rows/record.h"
 
 namespace podm::bench {
 

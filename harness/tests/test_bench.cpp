@@ -5,9 +5,9 @@
 #include <thread>
 
 #include "bench_test.h"
-#include "results_file.h"
-#include "schedule.h"
-#include "sha256.h"
+#include "experiments/schedule.h"
+#include "rows/results_file.h"
+#include "trials/sha256.h"
 
 namespace podm::bench {
 namespace {

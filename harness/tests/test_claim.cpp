@@ -1,5 +1,5 @@
 // The form of claims, and what is refused.
-#include "claim.h"
+#include "experiments/claim.h"
 
 #include <gtest/gtest.h>
 

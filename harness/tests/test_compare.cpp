@@ -1,10 +1,10 @@
 // What `podm-bench compare` matches, finds and calls worse.
-#include "compare.h"
+#include "gate/compare.h"
 
 #include <gtest/gtest.h>
 
 #include "fake_mesher.h"
-#include "process.h"
+#include "trials/process.h"
 
 namespace podm::bench {
 namespace {

@@ -7,9 +7,9 @@
 #include <regex>
 #include <set>
 
-#include "counter_tool.h"
 #include "fake_mesher.h"
-#include "trial.h"
+#include "trials/counter_tool.h"
+#include "trials/trial.h"
 
 namespace podm::bench {
 namespace {

@@ -6,8 +6,8 @@
 
 #include <cerrno>
 
-#include "counters.h"
 #include "fake_mesher.h"
+#include "trials/counters.h"
 
 namespace podm::bench {
 namespace {

@@ -1,11 +1,11 @@
 // What is stored of who outran whom, and what may not decide it.
-#include "crossover.h"
+#include "experiments/crossover.h"
 
 #include <gtest/gtest.h>
 
 #include "fake_mesher.h"
-#include "process.h"
-#include "results_file.h"
+#include "rows/results_file.h"
+#include "trials/process.h"
 
 namespace podm::bench {
 namespace {

@@ -2,9 +2,9 @@
 
 #include <set>
 
-#include "experiment.h"
+#include "experiments/experiment.h"
 #include "fake_mesher.h"
-#include "machine.h"
+#include "machine/machine.h"
 
 namespace podm::bench {
 namespace {

@@ -7,10 +7,10 @@
 #include <cmath>
 #include <functional>
 
-#include "experiment.h"
-#include "judge.h"
+#include "experiments/experiment.h"
+#include "experiments/judge.h"
+#include "experiments/mesher_options.h"
 #include "made_up_rows.h"
-#include "mesher_options.h"
 
 namespace podm::bench {
 namespace {

@@ -1,5 +1,5 @@
 // How often the gate errs, on a simulated machine; what its tiers block; its file of budgets.
-#include "gate.h"
+#include "gate/gate.h"
 
 #include <gtest/gtest.h>
 
@@ -9,8 +9,8 @@
 #include <random>
 
 #include "fake_mesher.h"
-#include "gate_budget.h"
-#include "gate_slowdown.h"
+#include "gate/gate_budget.h"
+#include "gate/gate_slowdown.h"
 
 namespace podm::bench {
 namespace {

@@ -1,5 +1,5 @@
 // Rows that must turn each kind of claim either way, and rows that decide nothing.
-#include "judge.h"
+#include "experiments/judge.h"
 
 #include <gtest/gtest.h>
 

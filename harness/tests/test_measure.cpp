@@ -1,10 +1,10 @@
 // The numbers that claims speak of, each read from a row that spells them out.
-#include "measure.h"
+#include "rows/measure.h"
 
 #include <gtest/gtest.h>
 
 #include "made_up_rows.h"
-#include "series.h"
+#include "rows/series.h"
 
 namespace podm::bench {
 namespace {

@@ -3,8 +3,8 @@
 
 #include <stdexcept>
 
-#include "memory_levels.h"
-#include "pointer_chase.h"
+#include "machine/memory_levels.h"
+#include "machine/pointer_chase.h"
 
 namespace podm::bench {
 namespace {

@@ -4,8 +4,8 @@
 #include <filesystem>
 
 #include "fake_mesher.h"
-#include "record.h"
-#include "trial.h"
+#include "rows/record.h"
+#include "trials/trial.h"
 
 namespace podm::bench {
 namespace {

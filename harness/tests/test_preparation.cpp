@@ -4,8 +4,8 @@
 #include <sstream>
 
 #include "fake_mesher.h"
-#include "machine.h"
-#include "preparation.h"
+#include "machine/machine.h"
+#include "trials/preparation.h"
 
 namespace podm::bench {
 namespace {

@@ -9,7 +9,7 @@
 #include <thread>
 
 #include "fake_mesher.h"
-#include "process.h"
+#include "trials/process.h"
 
 namespace podm::bench {
 namespace {

@@ -3,12 +3,12 @@
 
 #include <sstream>
 
-#include "environment.h"
 #include "fake_mesher.h"
-#include "machine.h"
-#include "record.h"
-#include "sha256.h"
-#include "table.h"
+#include "machine/environment.h"
+#include "machine/machine.h"
+#include "rows/record.h"
+#include "rows/table.h"
+#include "trials/sha256.h"
 
 namespace podm::bench {
 namespace {

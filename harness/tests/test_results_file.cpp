@@ -2,8 +2,8 @@
 #include <gtest/gtest.h>
 
 #include "fake_mesher.h"
-#include "process.h"
-#include "results_file.h"
+#include "rows/results_file.h"
+#include "trials/process.h"
 
 namespace podm::bench {
 namespace {

@@ -1,5 +1,5 @@
 // Which rows may be judged at all.
-#include "row_filter.h"
+#include "rows/row_filter.h"
 
 #include <gtest/gtest.h>
 

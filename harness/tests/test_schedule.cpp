@@ -4,11 +4,11 @@
 #include <algorithm>
 #include <set>
 
-#include "expectation.h"
+#include "experiments/expectation.h"
+#include "experiments/progress.h"
+#include "experiments/schedule.h"
 #include "fake_mesher.h"
-#include "progress.h"
-#include "schedule.h"
-#include "trial_key.h"
+#include "trials/trial_key.h"
 
 namespace podm::bench {
 namespace {

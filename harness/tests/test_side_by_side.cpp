@@ -1,10 +1,10 @@
 // Several processes of one trial at the same time.
 #include <gtest/gtest.h>
 
+#include "experiments/mesher_options.h"
 #include "fake_mesher.h"
-#include "machine.h"
-#include "mesher_options.h"
-#include "trial.h"
+#include "machine/machine.h"
+#include "trials/trial.h"
 
 namespace podm::bench {
 namespace {

@@ -1,5 +1,5 @@
 // Medians and bootstrap intervals by their properties, and against values found by counting.
-#include "statistics.h"
+#include "rows/statistics.h"
 
 #include <gtest/gtest.h>
 

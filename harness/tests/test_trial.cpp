@@ -2,8 +2,8 @@
 #include <gtest/gtest.h>
 
 #include "fake_mesher.h"
-#include "machine.h"
-#include "trial.h"
+#include "machine/machine.h"
+#include "trials/trial.h"
 
 namespace podm::bench {
 namespace {

@@ -1,11 +1,11 @@
 // podm-bench verdicts, and what run prints of claims.
-#include "verdicts.h"
+#include "experiments/verdicts.h"
 
 #include <gtest/gtest.h>
 
 #include "bench_test.h"
 #include "made_up_rows.h"
-#include "record.h"
+#include "rows/record.h"
 
 namespace podm::bench {
 namespace {

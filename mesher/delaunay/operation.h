@@ -46,8 +46,8 @@ class Operation {
   Locks& locks() { return locks_; }
   WorkerId conflicting_worker() const { return locks_.conflicting_worker(); }
 
-  /// Digs the cavity of p from `start`, a cell in conflict with p, reserved or beside it. Unless done the caller
-  /// must roll back. kNotInConflict: `start` is not. The plan may be extended by plan_removal.
+  /// Digs the cavity of p from `start`, a cell in conflict with p, reserved or beside it. Unless done the
+  /// caller must roll back. kNotInConflict: `start` is not. The plan may be extended by plan_removal.
   StepResult plan_insertion(const Point& p, CellId start);
   /// Adds the ball of v, a vertex of the cell `seed`, to the region.
   StepResult plan_removal(VertexId v, CellId seed);

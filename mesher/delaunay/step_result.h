@@ -8,7 +8,7 @@ enum class StepResult {
   kLockConflict,   ///< another worker holds a vertex
   kOutOfLeaf,      ///< a vertex lies outside the region of the leaf being refined
   kStaleCell,      ///< of a reservation: the cell has died
-  kNotInConflict,  ///< of a plan: the point lies in the ball of another cell than where its cavity was to begin
+  kNotInConflict,  ///< of a plan: the point lies outside the ball of the cell where its cavity was to begin
   kTooNear,        ///< of a commit: to a vertex, or the region has too many vertices
 };
 

@@ -8,7 +8,7 @@ enum class Outcome {
   kSound,         ///< the cell breaks no rule
   kStaleCell,     ///< the cell has died
   kLockConflict,  ///< nothing was changed, and the cell is back on the list
-  kRejected,      ///< nothing was changed: the vertex would have come too near to another, or have covered nothing new
+  kRejected,      ///< nothing was changed: a vertex is too near to the point, or covers it
   kOutOfLeaf,     ///< nothing was changed, and the cell is among the deferred
 };
 

@@ -42,8 +42,9 @@ class Worker {
   std::vector<PoorElementList::Entry> share(std::size_t max) { return poor_.take_oldest(max, mesh_); }
 
   /// Takes one entry of the poor element list and applies the first rule that its cell breaks.
-  /// After a conflict conflicting_worker() tells with whom. Locks are held until release(), which must come before the next attempt. What is thrown (std::bad_alloc)
-  /// leaves a valid triangulation and no lock, but may lose entries of the list.
+  /// After a conflict conflicting_worker() tells with whom. Locks are held until release(), which must come
+  /// before the next attempt. What is thrown (std::bad_alloc) leaves a valid triangulation and no lock, but
+  /// may lose entries of the list.
   Outcome attempt();
   void release() { operation_.release(); }
   WorkerId conflicting_worker() const { return operation_.conflicting_worker(); }

@@ -1,0 +1,229 @@
+#include "experiments/experiment.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <charconv>
+#include <cmath>
+#include <filesystem>
+#include <map>
+#include <set>
+
+#include "experiments/mesher_options.h"
+#include "experiments/toml_section.h"
+
+namespace podm::bench {
+namespace {
+
+namespace fs = std::filesystem;
+
+constexpr double kDefaultTimeoutS = 600;
+constexpr std::int64_t kMaxRepeats = 10'000;
+constexpr std::array<const char*, 3> kTierNames = {"kick-tires", "default", "full"};
+
+struct Input {
+  std::string image;
+  bool if_exists = false;
+};
+using Inputs = std::map<std::string, Input>;
+
+// Relative to the folder of the experiment, so that it runs from anywhere.
+std::string resolve_image(const std::string& image, const fs::path& folder) {
+  return is_phantom(image) ? image : (folder / image).lexically_normal().string();
+}
+
+Inputs read_inputs(Section& file, const fs::path& folder) {
+  Inputs inputs;
+  if (!file.has("inputs")) return inputs;  // then no trial may name one
+  for (auto& [name, section] : file.tables("inputs")) {
+    inputs[name] = {resolve_image(section.text("image"), folder), section.flag("if_exists")};
+    section.done();
+  }
+  return inputs;
+}
+
+Tier read_tier(Section& section, Tier otherwise) {
+  const std::string text = section.text("tier", to_string(otherwise));
+  try {
+    return parse_tier(text);
+  } catch (const InputError& error) {
+    section.fail(section.place("tier"), error.what());
+  }
+}
+
+// What the head of the file and each trial may set; the trial's own wins.
+void read_conduct(Section& section, Trial& trial) {
+  trial.timeout_s = section.positive("timeout_s", trial.timeout_s);
+  trial.memory_limit_gib = section.positive("memory_limit_gib", trial.memory_limit_gib);
+  trial.repeats = static_cast<int>(section.count("repeats", trial.repeats, 1, kMaxRepeats));
+  trial.warmups = static_cast<int>(section.count("warmup", trial.warmups, 0, kMaxRepeats));
+  trial.tier = read_tier(section, trial.tier);
+}
+
+// Names of trials become parts of file names.
+std::string read_name(Section& section) {
+  const std::string name = section.text("name");
+  if (name.front() == '.' || in_name(name) != name)
+    section.fail(section.place("name"), "a trial's name may have letters, digits and . _ - only");
+  return name;
+}
+
+// One empty name where the trial needs no input.
+std::vector<std::string> read_input_names(Section& section, const Inputs& inputs) {
+  if (section.has(kMeasure)) {
+    if (section.has("input")) section.fail(section.place("input"), "input is an option of meshers");
+    return {""};
+  }
+  std::vector<std::string> names;
+  for (const toml::node* node : section.values("input")) {
+    names.push_back(section.text_of(*node, "input"));
+    if (!inputs.contains(names.back()))
+      section.fail(node->source(), fmt::format("there is no [inputs.{}]", names.back()));
+  }
+  if (names.empty()) section.text("input");  // refuses that there is none
+  return names;
+}
+
+// What the trials of one [[trials]] mesh, and what they call it: "" where the name needs no part for it.
+struct NamedInput {
+  std::string suffix;
+  Input input;
+};
+
+// Those of the file, or the images in their place.
+std::vector<NamedInput> inputs_of_trials(Section& section, const Inputs& inputs,
+                                         const std::vector<std::string>& images) {
+  std::vector<NamedInput> named;
+  const auto add = [&named](bool in_suffix, const std::string& name, Input input) {
+    named.push_back({in_suffix ? ",input=" + in_name(name) : "", std::move(input)});
+  };
+  const std::vector<std::string> names = read_input_names(section, inputs);
+  for (const std::string& name : names) {
+    if (name.empty()) return {NamedInput{}};
+    if (images.empty()) add(section.is_array("input"), name, inputs.at(name));
+  }
+  for (const std::string& image : images) add(images.size() > 1, image, {image, false});
+  return named;
+}
+
+// The voxels of a thread stay the same. An image that a person gives in place of a phantom stays as it is.
+void grow(const Section& section, bool is_given, Trial& trial) {
+  if (!trial.options.value(kImageGrows, false)) return;
+  const auto image = grown(trial.image, trial.options["threads"].get<double>());
+  if (image) trial.image = *image;
+  if (!image && !is_given)
+    section.fail(
+        section.place(kImageGrows),
+        fmt::format("{} needs a phantom and its size, phantom:NAME@SIZE, not {}", kImageGrows, trial.image));
+}
+
+// The matrix of one [[trials]].
+std::vector<Trial> read_trials(Section& section, const Inputs& inputs, const Trial& head,
+                               const std::string& folder, const std::vector<std::string>& images) {
+  Trial common = head;
+  common.name = read_name(section);
+  read_conduct(section, common);
+  const std::vector<NamedInput> named_inputs = inputs_of_trials(section, inputs, images);
+  const std::vector<Variant> variants = read_matrix(section, folder);
+  section.done();
+  std::vector<Trial> trials;
+  for (const auto& [suffix, input] : named_inputs)
+    for (const Variant& variant : variants) {
+      Trial trial = common;
+      trial.name += suffix + variant.suffix;
+      trial.image = input.image;
+      trial.if_exists = input.if_exists;
+      trial.options = variant.options;
+      if (!images.empty()) trial.options.erase(kFidelity);  // asked where voxels are as large as cells
+      grow(section, !images.empty(), trial);
+      trials.push_back(std::move(trial));
+    }
+  return trials;
+}
+
+std::vector<Claim> read_claims(Section& file, const std::vector<Trial>& trials) {
+  std::vector<ClaimedTrial> claimed;
+  for (const Trial& trial : trials) claimed.push_back({stem_of(trial.name), complete_options(trial.options)});
+  std::vector<Claim> claims;
+  std::set<std::string> names;
+  for (Section& section : file.table_array("claims")) {
+    claims.push_back(read_claim(section, claimed));
+    if (!names.insert(claims.back().name).second)
+      section.fail(section.place("name"), fmt::format("a second claim '{}'", claims.back().name));
+  }
+  return claims;
+}
+
+}  // namespace
+
+std::string to_string(Tier tier) { return kTierNames[static_cast<std::size_t>(tier)]; }
+
+Tier parse_tier(const std::string& text) {
+  const auto* const found = std::find(kTierNames.begin(), kTierNames.end(), text);
+  if (found == kTierNames.end())
+    throw InputError(fmt::format("there is no tier '{}', but {}", text, fmt::join(kTierNames, ", ")));
+  return static_cast<Tier>(found - kTierNames.begin());
+}
+
+std::size_t Experiment::num_turns() const {
+  std::size_t turns = 0;
+  for (const Trial& trial : trials) turns += static_cast<std::size_t>(trial.repeats + trial.warmups);
+  return turns;
+}
+
+Experiment read_experiment(const std::string& path, const std::vector<std::string>& images) {
+  const toml::table table = parse_toml(path);
+  Section file(path, table, "an experiment");
+  const std::string folder = fs::path(path).parent_path().string();
+  Experiment experiment;
+  experiment.name = fs::path(path).stem().string();
+  experiment.title = file.text("title");
+  experiment.claim = file.text("claim");
+  experiment.paper = file.text("paper", "");
+  experiment.expected_minutes = file.positive("expected_minutes", 0);
+  experiment.stores_crossover = file.flag("stores_crossover");
+  Trial head;
+  head.timeout_s = kDefaultTimeoutS;
+  read_conduct(file, head);
+  experiment.tier = head.tier;
+  const Inputs inputs = read_inputs(file, folder);
+  std::set<std::string> names;
+  for (Section& section : file.table_array("trials"))
+    for (Trial& trial : read_trials(section, inputs, head, folder, images)) {
+      if (!names.insert(trial.name).second)
+        section.fail(section.place("name"), fmt::format("a second trial '{}'", trial.name));
+      experiment.trials.push_back(std::move(trial));
+    }
+  experiment.claims = read_claims(file, experiment.trials);
+  file.done();
+  return experiment;
+}
+
+std::vector<std::string> experiment_files(const std::string& folder) {
+  std::error_code error;
+  std::vector<std::string> paths;
+  for (const auto& entry : fs::directory_iterator(folder, error))
+    if (entry.path().extension() == ".toml") paths.push_back(entry.path().string());
+  if (error) throw InputError(fmt::format("cannot read {}: {}", folder, error.message()));
+  std::sort(paths.begin(), paths.end());
+  return paths;
+}
+
+bool is_phantom(const std::string& image) { return image.starts_with("phantom:"); }
+
+std::optional<std::string> grown(const std::string& image, double factor) {
+  const std::size_t at = image.find('@');
+  int size = 0;
+  if (!is_phantom(image) || at == std::string::npos) return {};
+  const char* const end = image.data() + image.size();
+  if (std::from_chars(image.data() + at + 1, end, size).ptr != end) return {};
+  return fmt::format("{}@{}", image.substr(0, at), std::lround(size * std::cbrt(factor)));
+}
+
+bool image_exists(const Trial& trial) {
+  std::error_code error;
+  return is_phantom(trial.image) || fs::exists(trial.image, error);
+}
+
+}  // namespace podm::bench

@@ -1,0 +1,257 @@
+#include "experiments/experiment_run.h"
+
+#include <fmt/format.h>
+
+#include <chrono>
+#include <cstdio>
+#include <filesystem>
+#include <map>
+#include <utility>
+
+#include "experiments/crossover.h"
+#include "experiments/progress.h"
+#include "experiments/verdicts.h"
+#include "machine/environment.h"
+#include "rows/record.h"
+#include "rows/results_file.h"
+#include "rows/table.h"
+#include "trials/scratch_folder.h"
+#include "trials/sha256.h"
+#include "trials/stopwatch.h"
+
+namespace podm::bench {
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+// Stores the machine's topology in the folder of results once; what rows tell of the machine.
+Json describe(const Machine& machine, const std::string& results_folder) {
+  Json described = machine.summary;
+  if (machine.topology_xml.empty()) {
+    described["topology_sha256"] = "unavailable: hwloc finds no topology";
+    return described;
+  }
+  const std::string hash = sha256_of(machine.topology_xml);
+  const std::string path = fmt::format("{}/topology-{}.xml", results_folder, hash);
+  if (!std::filesystem::exists(path)) write_file(path, machine.topology_xml);
+  described["topology_sha256"] = hash;
+  return described;
+}
+
+// Seconds of this program's own between two rows.
+class HarnessClock {
+ public:
+  double lap_without(double others_s) {
+    const auto now = std::chrono::steady_clock::now();
+    const double lap_s = std::chrono::duration<double>(now - std::exchange(last_, now)).count();
+    return lap_s - others_s;
+  }
+
+ private:
+  std::chrono::steady_clock::time_point last_ = std::chrono::steady_clock::now();
+};
+
+std::string label_of(const Trial& trial, const Turn& turn) {
+  if (turn.is_warmup) return fmt::format("{}, warm-up {} of {}", trial.name, turn.repeat, trial.warmups);
+  return trial.repeats == 1 ? trial.name
+                            : fmt::format("{}, repeat {} of {}", trial.name, turn.repeat, trial.repeats);
+}
+
+std::string one_line(const std::string& label, const TrialResult& result) {
+  if (!result.record.is_object())
+    return fmt::format("{}: {}: {}", label, to_string(result.status), result.reason);
+  if (result.record.contains(kMemoryLevels))
+    return fmt::format("{}: {} in {:.2f} s", label, memory_levels({&result.record}), result.process.wall_s);
+  return fmt::format("{}: {}, {} cells in {:.2f} s, {:.2f} s in all", label, to_string(result.status),
+                     result.record["cells"].get<std::uint64_t>(), meshing_seconds(result.record),
+                     result.process.wall_s);
+}
+
+// The turns of one experiment, one after the other.
+class ExperimentRun {
+ public:
+  ExperimentRun(Session& session, const Experiment& experiment, Plan plan)
+      : session_(session),
+        experiment_(experiment),
+        plan_(std::move(plan)),
+        path_(rows_path(session.command.results_folder, experiment)),
+        file_(path_),
+        rows_(plan_.trials.size()) {}
+
+  // Whether every turn has a row of status ok, or may be skipped. What another mesher promises and does not
+  // keep is a result, no failure.
+  bool run() {
+    announce();
+    Progress progress(expected_s());
+    HarnessClock clock;
+    for (const PlannedTurn& planned : plan_.turns) {
+      if (session_.is_interrupted()) break;
+      rows_[planned.turn.trial].push_back(planned.row ? *planned.row : run_turn(planned, progress, clock));
+    }
+    fmt::print("{}Recorded in {}\n", format_table(rows_), path_);
+    if (!session_.is_interrupted()) print_verdicts();
+    if (experiment_.stores_crossover && !session_.is_interrupted()) store_crossover();
+    return !session_.is_interrupted() && summarize();
+  }
+
+ private:
+  std::vector<std::optional<double>> expected_s() const {
+    std::vector<std::optional<double>> expected;
+    for (const PlannedTurn& planned : plan_.turns)
+      if (!planned.row) expected.push_back(plan_.expected[planned.turn.trial].seconds);
+    return expected;
+  }
+
+  void announce() const {
+    fmt::print(stderr, "{}: {} of {} trials, {} runs\n", experiment_.title, plan_.trials.size(),
+               experiment_.trials.size(), plan_.turns.size());
+    if (const std::size_t num_present = plan_.num_present(); num_present > 0)
+      fmt::print(stderr, "{} of them skipped: already in {} (--again runs them anew)\n", num_present, path_);
+  }
+
+  Json run_turn(const PlannedTurn& planned, Progress& progress, HarnessClock& clock) {
+    const Trial& trial = plan_.trials[planned.turn.trial];
+    const std::string label = label_of(trial, planned.turn);
+    progress.start_turn(label);
+    TrialResult result = prepare(trial, progress);
+    Json environment = session_.environment;
+    environment.update(environment_now());
+    const std::string key = session_.keys.of(trial, planned.turn, result.preparation);
+    if (const auto known = plan_.finished.find(key); known != plan_.finished.end()) {
+      progress.finish_turn(label + ": already measured");
+      return known->second;
+    }
+    if (result.status == Status::kOk) result = run_in_scratch_folder(trial, planned.turn, result, progress);
+    RowContext context{experiment_.name, key, session_.command.order_seed, 0, session_.programs, environment};
+    context.harness_s =
+        clock.lap_without(result.preparation_s + result.process.wall_s + result.verification_s);
+    const Json row = make_row(context, trial, planned.turn, result);
+    if (result.status != Status::kSkipped) file_.append(row);
+    progress.finish_turn(one_line(label, result));
+    return row;
+  }
+
+  // Of status kOk when the trial can start.
+  TrialResult prepare(const Trial& trial, Progress& progress) {
+    const Stopwatch watch;
+    TrialResult result;
+    result.preparation.image = trial.image;
+    result.reason = session_.runner.why_skipped(trial);
+    result.status = result.reason.empty() ? Status::kOk : Status::kSkipped;
+    if (result.status == Status::kSkipped) return result;
+    try {
+      result.preparation = find_or_make(trial, progress);
+    } catch (const PreparationError& error) {
+      result.status = session_.is_interrupted() ? Status::kInterrupted : Status::kFailed;
+      result.reason = error.what();
+      result.command = error.command;
+      result.process = error.process;
+      result.stderr_tail = error.stderr_tail;
+    }
+    result.preparation_s = watch.seconds() - result.process.wall_s;
+    return result;
+  }
+
+  Preparation find_or_make(const Trial& trial, Progress& progress) {
+    if (const auto found = session_.preparer.find(trial)) return *found;
+    const ScratchFolder scratch(session_.command.results_folder);
+    return session_.preparer.make(
+        trial, scratch.path(), [&](const std::string& step) { progress.tell(step); }, stop_query(progress));
+  }
+
+  StopQuery stop_query(Progress& progress) const {
+    return [this, &progress] {
+      progress.tick();
+      return session_.is_interrupted();
+    };
+  }
+
+  // The mesh is gone before the row is written: it then costs the disk no time and the row finds room.
+  TrialResult run_in_scratch_folder(const Trial& trial, const Turn& turn, const TrialResult& prepared,
+                                    Progress& progress) {
+    progress.tell("");
+    const ScratchFolder scratch(session_.command.results_folder);
+    TrialResult result =
+        session_.runner.run(trial, prepared.preparation, scratch.path(), stop_query(progress));
+    result.preparation_s += prepared.preparation_s;
+    if (session_.command.keep) keep(scratch, trial, turn);
+    return result;
+  }
+
+  void keep(const ScratchFolder& scratch, const Trial& trial, const Turn& turn) const {
+    const std::string path = fmt::format("{}/{}.{}.{}{}", session_.command.results_folder, experiment_.name,
+                                         trial.name, turn.is_warmup ? "warmup" : "repeat", turn.repeat);
+    scratch.keep(path);
+    fmt::print(stderr, "kept: {}\n", path);
+  }
+
+  // By the turns asked for, as for the crossover below.
+  void print_verdicts() const {
+    std::vector<Json> rows;
+    for (const auto& of_trial : rows_) rows.insert(rows.end(), of_trial.begin(), of_trial.end());
+    fmt::print("\n{}", format_verdicts({judge(experiment_, rows)}));
+  }
+
+  // Of the turns asked for: their keys make them this machine's and this mesher's.
+  void store_crossover() const {
+    const Json crossover = crossover_of(rows_);
+    if (crossover.is_null()) {
+      fmt::print("No crossover stored: podm and pdr-podm did not both run on this machine's own cores\n");
+      return;
+    }
+    const std::string path = fmt::format("{}/crossover.json", session_.command.results_folder);
+    write_file(path, crossover.dump(2) + "\n");
+    fmt::print(
+        "{}; stored in {}. To have podm mesh --algorithm auto follow it:\n  export PODM_CROSSOVER={}\n",
+        tell_crossover(crossover), path, std::filesystem::absolute(path).lexically_normal().string());
+  }
+
+  static bool is_good(const Json& row) {
+    const std::string status = text_in(row, "status");
+    const bool is_of_peer = !at(row, "/programs/peer").is_null();
+    return status == to_string(Status::kOk) || status == to_string(Status::kSkipped) ||
+           (is_of_peer && status == to_string(Status::kUnmet));
+  }
+
+  bool summarize() const {
+    std::map<std::string, int> num_by_status;
+    bool are_all_good = true;
+    for (const auto& rows : rows_)
+      for (const Json& row : rows) {
+        ++num_by_status[text_in(row, "status")];
+        are_all_good = are_all_good && is_good(row);
+      }
+    std::vector<std::string> counts;
+    for (const auto& [status, number] : num_by_status) counts.push_back(fmt::format("{} {}", number, status));
+    fmt::print(stderr, "{}: {}\n", experiment_.name, fmt::join(counts, ", "));
+    return are_all_good;
+  }
+
+  Session& session_;
+  const Experiment& experiment_;
+  Plan plan_;
+  std::string path_;
+  RecordFile file_;
+  std::vector<std::vector<Json>> rows_;  // of each trial's turns so far, those of earlier runs included
+};
+
+}  // namespace
+
+Session::Session(const RunCommand& given, const std::string& mesher_sha256, const Machine& machine,
+                 StopQuery query)
+    : command(given),
+      is_interrupted(std::move(query)),
+      preparer(given.programs.podm, mesher_sha256, given.results_folder),
+      keys(mesher_sha256, machine.summary, Peers(given.programs.peers, given.programs.podm)),
+      runner(given.programs) {
+  const ScratchFolder scratch(command.results_folder);
+  programs = describe_programs(command.programs, scratch.path());
+  environment = describe(machine, command.results_folder);
+  environment.update(environment_of_run(scratch.path()));
+}
+
+bool run_experiment(Session& session, const Experiment& experiment, Plan plan) {
+  return ExperimentRun(session, experiment, std::move(plan)).run();
+}
+
+}  // namespace podm::bench

@@ -1,0 +1,34 @@
+// The turns of an experiment that are not measured yet, one after the other, and what is told at its end.
+#pragma once
+
+#include <nlohmann/json.hpp>
+#include <string>
+
+#include "commands.h"
+#include "experiments/plan.h"
+#include "machine/machine.h"
+#include "trials/counters.h"
+#include "trials/preparation.h"
+#include "trials/trial.h"
+#include "trials/trial_key.h"
+
+namespace podm::bench {
+
+/// What all trials of a command have in common.
+struct Session {
+  Session(const RunCommand& given, const std::string& mesher_sha256, const Machine& machine,
+          StopQuery is_interrupted);
+
+  const RunCommand& command;
+  StopQuery is_interrupted;  ///< by Ctrl-C or a request to end
+  nlohmann::ordered_json programs, environment;
+  Preparer preparer;
+  TrialKeys keys;
+  TrialRunner runner;
+  CountersKeptReady counters;
+};
+
+/// Whether every turn of the plan has a row of status ok, or may be skipped.
+bool run_experiment(Session& session, const Experiment& experiment, Plan plan);
+
+}  // namespace podm::bench

@@ -1,0 +1,159 @@
+#include "experiments/toml_section.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <filesystem>
+#include <limits>
+
+namespace podm::bench {
+
+toml::table parse_toml(const std::string& path) {
+  if (!std::filesystem::is_regular_file(path)) throw InputError(path + ": no such file");
+  try {
+    return toml::parse_file(path);
+  } catch (const toml::parse_error& error) {
+    const toml::source_position& place = error.source().begin;
+    throw InputError(fmt::format("{}:{}:{}: {}", path, place.line, place.column, error.description()));
+  }
+}
+
+void Section::fail(const toml::source_region& place, const std::string& fault) const {
+  throw InputError(fmt::format("{}:{}:{}: {}", path_, place.begin.line, place.begin.column, fault));
+}
+
+std::string Section::text_of(const toml::node& node, std::string_view key) const {
+  const auto value = node.value_exact<std::string>();
+  if (!value || value->empty()) fail(node.source(), fmt::format("{} must be a non-empty string", key));
+  return *value;
+}
+
+double Section::number_of(const toml::node& node, std::string_view key) const {
+  const auto value = node.is_number() ? node.value<double>() : std::nullopt;
+  if (!value || !std::isfinite(*value)) fail(node.source(), fmt::format("{} must be a number", key));
+  return *value;
+}
+
+double Section::positive_of(const toml::node& node, std::string_view key) const {
+  const auto value = node.is_number() ? node.value<double>() : std::nullopt;
+  if (!value || !(*value > 0) || !(*value < std::numeric_limits<double>::infinity()))
+    fail(node.source(), fmt::format("{} must be a positive number", key));
+  return *value;
+}
+
+std::int64_t Section::count_of(const toml::node& node, std::string_view key, std::int64_t least,
+                               std::int64_t most) const {
+  const auto value = node.value_exact<std::int64_t>();
+  if (!value || *value < least || *value > most)
+    fail(node.source(), fmt::format("{} must be an integer from {} to {}", key, least, most));
+  return *value;
+}
+
+std::string Section::text(std::string_view key) { return text_of(required(key), key); }
+
+std::string Section::text(std::string_view key, const std::string& otherwise) {
+  const toml::node* node = find(key);
+  return node == nullptr ? otherwise : text_of(*node, key);
+}
+
+bool Section::flag(std::string_view key) {
+  const toml::node* node = find(key);
+  return node != nullptr && flag_of(*node, key);
+}
+
+bool Section::flag_of(const toml::node& node, std::string_view key) const {
+  const auto value = node.value_exact<bool>();
+  if (!value) fail(node.source(), fmt::format("{} must be true or false", key));
+  return *value;
+}
+
+double Section::positive(std::string_view key, double otherwise) {
+  const toml::node* node = find(key);
+  return node == nullptr ? otherwise : positive_of(*node, key);
+}
+
+std::optional<double> Section::number(std::string_view key) {
+  const toml::node* node = find(key);
+  return node == nullptr ? std::nullopt : std::optional(number_of(*node, key));
+}
+
+std::int64_t Section::count(std::string_view key, std::int64_t otherwise, std::int64_t least,
+                            std::int64_t most) {
+  const toml::node* node = find(key);
+  return node == nullptr ? otherwise : count_of(*node, key, least, most);
+}
+
+std::vector<const toml::node*> Section::values(std::string_view key) {
+  const toml::node* node = find(key);
+  if (node == nullptr) return {};
+  if (!node->is_array()) return {node};
+  std::vector<const toml::node*> members;
+  for (const toml::node& member : *node->as_array()) members.push_back(&member);
+  if (members.empty()) fail(node->source(), fmt::format("{} must not be empty", key));
+  return members;
+}
+
+Section Section::table(std::string_view key) {
+  const toml::node& node = required(key);
+  if (!node.is_table()) fail(node.source(), fmt::format("{} must be a table", key));
+  return {path_, *node.as_table(), std::string(key)};
+}
+
+std::vector<std::string> Section::keys() {
+  std::vector<const toml::key*> keys;
+  for (const auto& [key, node] : *table_) keys.push_back(&key);
+  std::sort(keys.begin(), keys.end(), [](const toml::key* a, const toml::key* b) {
+    return std::pair(a->source().begin.line, a->source().begin.column) <
+           std::pair(b->source().begin.line, b->source().begin.column);
+  });
+  std::vector<std::string> names;
+  for (const toml::key* key : keys) names.emplace_back(key->str());
+  asked_.insert(names.begin(), names.end());
+  return names;
+}
+
+std::vector<std::pair<std::string, Section>> Section::tables(std::string_view key) {
+  const toml::node& node = required(key);
+  if (!node.is_table()) fail(node.source(), fmt::format("write each of {0} as a table, [{0}.NAME]", key));
+  std::vector<std::pair<std::string, Section>> sections;
+  for (const auto& [name, table] : *node.as_table())
+    sections.emplace_back(name.str(), member(key, name.str(), table));
+  return sections;
+}
+
+std::vector<Section> Section::table_array(std::string_view key) {
+  const toml::node& node = required(key);
+  if (!node.is_array_of_tables())
+    fail(node.source(), fmt::format("write each of {0} as a table, [[{0}]]", key));
+  std::vector<Section> sections;
+  for (const toml::node& table : *node.as_array())
+    sections.emplace_back(path_, *table.as_table(), fmt::format("[[{}]]", key));
+  return sections;
+}
+
+void Section::done() const {
+  for (const auto& [key, node] : *table_)
+    if (!asked_.contains(key.str()))
+      fail(key.source(),
+           fmt::format("{} has no key '{}'; it has {}", name_, key.str(), fmt::join(asked_, ", ")));
+}
+
+Section Section::member(std::string_view key, std::string_view name, const toml::node& node) const {
+  const std::string title = fmt::format("[{}.{}]", key, name);
+  if (!node.is_table()) fail(node.source(), fmt::format("{} must be a table", title));
+  return {path_, *node.as_table(), title};
+}
+
+const toml::node* Section::find(std::string_view key) {
+  asked_.emplace(key);
+  return table_->get(key);
+}
+
+const toml::node& Section::required(std::string_view key) {
+  const toml::node* node = find(key);
+  if (node == nullptr) fail(table_->source(), fmt::format("{} needs the key '{}'", name_, key));
+  return *node;
+}
+
+}  // namespace podm::bench

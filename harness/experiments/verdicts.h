@@ -1,0 +1,27 @@
+// The claims of experiments and what their rows say of them, for people and for programs.
+#pragma once
+
+#include <nlohmann/json.hpp>
+#include <string>
+#include <vector>
+
+#include "experiments/experiment.h"
+#include "experiments/judge.h"
+
+namespace podm::bench {
+
+struct ExperimentVerdicts {
+  const Experiment* experiment = nullptr;
+  std::vector<Judgement> judgements;  ///< of each of its claims
+};
+
+/// `rows` are all there are of the experiment; those that may be judged are chosen here.
+ExperimentVerdicts judge(const Experiment& experiment, const std::vector<nlohmann::ordered_json>& rows);
+
+/// A table, then what is known of the claims that do not hold, then their numbers.
+std::string format_verdicts(const std::vector<ExperimentVerdicts>& all);
+
+/// As results/README.md says.
+nlohmann::ordered_json verdicts_as_json(const std::vector<ExperimentVerdicts>& all);
+
+}  // namespace podm::bench

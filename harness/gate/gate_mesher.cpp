@@ -1,0 +1,89 @@
+#include "gate/gate_mesher.h"
+
+#include <fmt/format.h>
+
+#include <cerrno>
+#include <cstdlib>
+#include <cstring>
+#include <filesystem>
+#include <fstream>
+
+#include "trials/warm_memory.h"
+
+namespace podm::bench {
+namespace {
+
+namespace fs = std::filesystem;
+
+constexpr double kTimeoutS = 600;
+constexpr std::size_t kTailBytes = 2000;
+constexpr std::size_t kWarmBytesOfGate = std::size_t{1} << 28;  // more than a trial of the gate takes
+
+}  // namespace
+
+GateMesher::GateMesher(StopQuery stop_requested)
+    : folder_(fs::temp_directory_path() / "podm-gate-XXXXXX"), stop_requested_(std::move(stop_requested)) {
+  if (mkdtemp(folder_.data()) == nullptr)
+    throw InputError(fmt::format("cannot make a folder {}: {}", folder_, std::strerror(errno)));
+}
+
+GateMesher::~GateMesher() {
+  std::error_code error;
+  fs::remove_all(folder_, error);
+}
+
+std::vector<std::string> GateMesher::command(const std::string& podm, const GateTrial& trial,
+                                             int threads) const {
+  return {podm,
+          "mesh",
+          trial.image,
+          "--radius",
+          fmt::format("{}", trial.radius_mm),
+          "--threads",
+          std::to_string(threads),
+          "--output",
+          folder_ + "/mesh.vtu",
+          "--record",
+          folder_ + "/record.jsonl",
+          "--quiet"};
+}
+
+ProcessOutcome GateMesher::run(const std::vector<std::string>& arguments) const {
+  const ProcessOutcome outcome = run_process({.arguments = arguments,
+                                              .stdout_path = {},
+                                              .stderr_path = folder_ + "/stderr.txt",
+                                              .timeout_s = kTimeoutS},
+                                             stop_requested_);
+  using End = ProcessOutcome::End;
+  if (outcome.end == End::kNotStarted || outcome.end == End::kInterrupted)
+    throw InputError(fmt::format("{}: {}", arguments.front(), outcome.describe()));
+  return outcome;
+}
+
+MesherRun GateMesher::mesh(const std::string& podm, const GateTrial& trial, int threads, bool verify) const {
+  warm_memory(kWarmBytesOfGate);
+  std::error_code error;
+  fs::remove(folder_ + "/record.jsonl", error);
+  auto arguments = command(podm, trial, threads);
+  if (verify) arguments.push_back("--verify");
+  MesherRun run{.process = this->run(arguments), .record = {}};
+  std::ifstream file(folder_ + "/record.jsonl");
+  if (file) run.record = nlohmann::ordered_json::parse(file, nullptr, false);
+  if (!run.record.is_object()) run.record = nullptr;
+  return run;
+}
+
+std::uint64_t GateMesher::count_instructions(const std::string& podm, const GateTrial& trial) const {
+  std::vector<std::string> arguments{"valgrind", "--tool=callgrind", "--callgrind-out-file=/dev/null"};
+  for (const std::string& argument : command(podm, trial, 1)) arguments.push_back(argument);
+  const ProcessOutcome outcome = run(arguments);
+  const std::string said = read_tail(folder_ + "/stderr.txt", kTailBytes);
+  const std::string key = "Collected : ";
+  const auto found = said.rfind(key);
+  if (!outcome.succeeded() || found == std::string::npos)
+    throw InputError(fmt::format("callgrind counts no instructions of {} on {}: {}\n{}", podm, trial.image,
+                                 outcome.describe(), said));
+  return std::stoull(said.substr(found + key.size()));
+}
+
+}  // namespace podm::bench

@@ -1,0 +1,49 @@
+// The mesher as the gate runs it: one process, what it took and what it recorded.
+#pragma once
+
+#include <nlohmann/json.hpp>
+#include <string>
+#include <vector>
+
+#include "experiments/experiment.h"
+#include "trials/process.h"
+
+namespace podm::bench {
+
+struct GateTrial {
+  std::string name;
+  std::string image;  ///< as `podm mesh` takes it
+  double radius_mm = 0;
+};
+
+struct MesherRun {
+  ProcessOutcome process;
+  nlohmann::ordered_json record;  ///< as the mesher wrote it; null when it did not
+
+  double cpu_s() const { return process.user_s + process.system_s; }
+};
+
+/// Runs programs in a folder of its own, gone at the end. All throw InputError on a failure to start a
+/// program and when the user asks to stop.
+class GateMesher {
+ public:
+  explicit GateMesher(StopQuery stop_requested);
+  ~GateMesher();
+  GateMesher(const GateMesher&) = delete;
+  GateMesher& operator=(const GateMesher&) = delete;
+
+  /// A mesh; `verify` has it proved after, with the verdicts in the record.
+  MesherRun mesh(const std::string& podm, const GateTrial& trial, int threads, bool verify) const;
+
+  /// Instructions of one thread's mesh, counted by callgrind.
+  std::uint64_t count_instructions(const std::string& podm, const GateTrial& trial) const;
+
+ private:
+  std::vector<std::string> command(const std::string& podm, const GateTrial& trial, int threads) const;
+  ProcessOutcome run(const std::vector<std::string>& arguments) const;
+
+  std::string folder_;
+  StopQuery stop_requested_;
+};
+
+}  // namespace podm::bench

@@ -1,0 +1,80 @@
+#include "machine/machine.h"
+
+#include <fmt/format.h>
+#include <sched.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <fstream>
+#include <sstream>
+
+#include "machine/hwloc_topology.h"
+
+namespace podm::bench {
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+// hwloc writes one element a line; who owns the machine is nobody's business.
+std::string without_host_name(const std::string& xml) {
+  std::istringstream lines(xml);
+  std::string text;
+  for (std::string line; std::getline(lines, line);)
+    if (line.find("name=\"HostName\"") == std::string::npos) text += line + "\n";
+  return text;
+}
+
+std::string xml_of(hwloc_topology_t topology) {
+  char* buffer = nullptr;
+  int size = 0;
+  if (hwloc_topology_export_xmlbuffer(topology, &buffer, &size, 0) != 0) return {};
+  const std::string xml(buffer, static_cast<std::size_t>(std::max(0, size - 1)));  // it ends with a null
+  hwloc_free_xmlbuffer(topology, buffer);
+  return without_host_name(xml);
+}
+
+}  // namespace
+
+Machine this_machine() {
+  Machine machine;
+  machine.summary = {{"cpu", value_of("/proc/cpuinfo", "model name")}};
+  const Topology topology = load_topology();
+  const auto count = [&](hwloc_obj_type_t type) -> Json {
+    if (!topology) return "unavailable: hwloc finds no topology";
+    return hwloc_get_nbobjs_by_type(topology.get(), type);
+  };
+  machine.summary["packages"] = count(HWLOC_OBJ_PACKAGE);
+  machine.summary["numa_nodes"] = count(HWLOC_OBJ_NUMANODE);
+  machine.summary["cores"] = count(HWLOC_OBJ_CORE);
+  machine.summary["processors"] = count(HWLOC_OBJ_PU);
+  machine.summary["usable_processors"] = usable_processors();
+  if (topology) machine.topology_xml = xml_of(topology.get());
+  return machine;
+}
+
+std::vector<int> usable_processor_ids() {
+  cpu_set_t allowed;
+  CPU_ZERO(&allowed);
+  std::vector<int> ids;
+  if (sched_getaffinity(0, sizeof(allowed), &allowed) != 0) return ids;  // more than 1024 processors
+  for (int id = 0; id < CPU_SETSIZE; ++id)
+    if (CPU_ISSET(id, &allowed)) ids.push_back(id);
+  return ids;
+}
+
+int usable_processors() {
+  const std::size_t allowed = usable_processor_ids().size();
+  return std::max(1,
+                  allowed > 0 ? static_cast<int>(allowed) : static_cast<int>(sysconf(_SC_NPROCESSORS_ONLN)));
+}
+
+std::string value_of(const std::string& path, const std::string& key) {
+  std::ifstream file(path);
+  for (std::string line; std::getline(file, line);)
+    if (line.starts_with(key))
+      if (const auto begin = line.find_first_not_of(" \t", line.find(':') + 1); begin != std::string::npos)
+        return line.substr(begin);
+  return fmt::format("unavailable: {} does not tell '{}'", path, key);
+}
+
+}  // namespace podm::bench

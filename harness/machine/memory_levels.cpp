@@ -1,0 +1,164 @@
+#include "machine/memory_levels.h"
+
+#include <fmt/format.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <cmath>
+#include <filesystem>
+#include <limits>
+#include <stdexcept>
+#include <vector>
+
+#include "machine/hwloc_topology.h"
+#include "machine/machine.h"
+#include "machine/pointer_chase.h"
+#include "rows/statistics.h"
+#include "trials/process.h"
+
+namespace podm::bench {
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+constexpr std::size_t kSmallestSet = std::size_t{4} << 10, kLeastMemorySet = std::size_t{256} << 20;
+constexpr std::size_t kMemoryOverCache = 4;  // a quarter of such a set may hit
+constexpr int kRepeats = 7;
+constexpr std::size_t kLoads = 250'000;  // a repeat takes some 30 ms from memory
+constexpr std::uint64_t kSeed = 1;
+constexpr double kBenchTimeoutS = 60;
+constexpr std::size_t kMaxBenchBytes = 4000;
+
+struct Cache {
+  int level;
+  std::size_t bytes;
+};
+
+// The data caches above a processor, the nearest first.
+std::vector<Cache> caches_of(hwloc_obj_t processor) {
+  std::vector<Cache> caches;
+  for (hwloc_obj_t object = processor; object != nullptr; object = object->parent)
+    if (hwloc_obj_type_is_dcache(object->type) && object->attr->cache.size > 0)
+      caches.push_back({static_cast<int>(object->attr->cache.depth), object->attr->cache.size});
+  return caches;
+}
+
+// Of one working set in the memory of a node. Throws std::runtime_error where it cannot be bound to it.
+Json latency(hwloc_topology_t topology, std::size_t bytes, hwloc_obj_t node) {
+  const auto bind = [&](void* memory, std::size_t size) {
+    constexpr int kFlags = HWLOC_MEMBIND_BYNODESET | HWLOC_MEMBIND_STRICT;
+    if (hwloc_get_nbobjs_by_type(topology, HWLOC_OBJ_NUMANODE) > 1 &&
+        hwloc_set_area_membind(topology, memory, size, node->nodeset, HWLOC_MEMBIND_BIND, kFlags) != 0)
+      throw std::runtime_error(fmt::format("memory cannot be bound to node {}", node->os_index));
+  };
+  PointerChase chase(bytes, kSeed, bind);
+  chase.walk(chase.num_lines());
+  std::vector<double> seconds, cycles;
+  for (int repeat = 0; repeat < kRepeats; ++repeat) {
+    const double clock = cycles_per_second();
+    seconds.push_back(chase.seconds_per_load(kLoads));
+    cycles.push_back(seconds.back() * clock);
+  }
+  return {{"working_set_bytes", bytes},
+          {"node", node->os_index},
+          {"ns", 1e9 * median(seconds)},
+          {"cycles", median(cycles)},
+          {"huge_page_share", chase.huge_page_share()}};
+}
+
+// Clock cycles a cache line when likwid-bench streams through the working set with the prefetchers' help.
+Json likwid_bench(std::size_t bytes) {
+  if (!is_installed("likwid-bench")) return "unavailable: likwid-bench is not installed";
+  const std::string path =
+      fmt::format("{}/podm-bench-{}", std::filesystem::temp_directory_path().string(), getpid());
+  const ProcessOutcome outcome =
+      run_process({.arguments = {"likwid-bench", "-t", "clload", "-w", fmt::format("N:{}B:1", bytes)},
+                   .stdout_path = path,
+                   .stderr_path = {},
+                   .timeout_s = kBenchTimeoutS});
+  const std::string cycles = value_of(path, "Cycles per cacheline");
+  std::filesystem::remove(path);
+  if (!outcome.succeeded() || cycles.starts_with("unavailable"))
+    return "unavailable: likwid-bench: " + outcome.describe();
+  return std::stod(cycles);
+}
+
+// The measurement at the level, or what is known of it and why there is none.
+Json level_of(hwloc_topology_t topology, Json level, std::size_t bytes, hwloc_obj_t node) {
+  try {
+    level.update(latency(topology, bytes, node));
+  } catch (const std::exception& error) {
+    level["ns"] = level["cycles"] = fmt::format("unavailable: {}", error.what());
+  }
+  return level;
+}
+
+Json levels(hwloc_topology_t topology, const std::vector<Cache>& caches, hwloc_obj_t own_node,
+            std::size_t memory_set) {
+  Json measured = Json::array();
+  std::size_t last_bytes = kSmallestSet;
+  for (const Cache& cache : caches) {
+    // Between the cache before it and its own size, of which others may hold a part.
+    const auto bytes = static_cast<std::size_t>(
+        std::sqrt(static_cast<double>(last_bytes) * static_cast<double>(cache.bytes)));
+    last_bytes = cache.bytes;
+    const Json level = {{"level", cache.level},
+                        {"module", fmt::format("L{} cache", cache.level)},
+                        {"size_bytes", cache.bytes}};
+    measured.push_back(level_of(topology, level, bytes, own_node));
+    measured.back()["likwid_bench_cycles_per_line"] = likwid_bench(bytes);
+  }
+  const int memory_level = caches.empty() ? 1 : caches.back().level + 1;
+  for (hwloc_obj_t node = nullptr; (node = hwloc_get_next_obj_by_type(topology, HWLOC_OBJ_NUMANODE, node));) {
+    const bool is_own = node == own_node;
+    const Json level = {
+        {"level", memory_level + !is_own},
+        {"module", fmt::format("memory of {} node {}", is_own ? "the own" : "another", node->os_index)},
+        {"size_bytes", node->attr->numanode.local_memory}};
+    measured.push_back(level_of(topology, level, memory_set, node));
+    if (is_own) measured.back()["likwid_bench_cycles_per_line"] = likwid_bench(memory_set);
+  }
+  return measured;
+}
+
+// Of memory; no limit where the kernel does not tell.
+std::size_t available_bytes() {
+  const std::string kibibytes = value_of("/proc/meminfo", "MemAvailable");
+  return kibibytes.starts_with("unavailable") ? std::numeric_limits<std::size_t>::max()
+                                              : 1024 * std::stoull(kibibytes);
+}
+
+hwloc_obj_t node_of(hwloc_topology_t topology, hwloc_obj_t processor) {
+  for (hwloc_obj_t node = nullptr; (node = hwloc_get_next_obj_by_type(topology, HWLOC_OBJ_NUMANODE, node));)
+    if (hwloc_bitmap_isset(node->cpuset, processor->os_index)) return node;
+  throw std::runtime_error("the processor belongs to no NUMA node");
+}
+
+}  // namespace
+
+Json measure_memory_levels() {
+  const Topology owner = load_topology();
+  hwloc_topology_t topology = owner.get();
+  // The last processor: the first one serves most interrupts.
+  hwloc_obj_t processor =
+      topology == nullptr ? nullptr
+                          : hwloc_get_obj_by_type(
+                                topology, HWLOC_OBJ_PU,
+                                static_cast<unsigned>(hwloc_get_nbobjs_by_type(topology, HWLOC_OBJ_PU) - 1));
+  if (processor == nullptr) throw std::runtime_error("hwloc finds no topology");
+  const bool is_pinned = hwloc_set_cpubind(topology, processor->cpuset, HWLOC_CPUBIND_THREAD) == 0;
+  hwloc_obj_t own_node = node_of(topology, processor);
+  const std::vector<Cache> caches = caches_of(processor);
+  const std::size_t last_bytes = caches.empty() ? 0 : caches.back().bytes;
+  const std::size_t memory_set =
+      std::min(std::max(kLeastMemorySet, kMemoryOverCache * last_bytes), available_bytes() / 2);
+  Json sets = Json::array();
+  for (std::size_t bytes = kSmallestSet; bytes < memory_set; bytes *= 2)
+    sets.push_back(latency(topology, bytes, own_node));
+  return {{"processor", processor->os_index},
+          {"pinned", is_pinned},
+          {"memory_levels", levels(topology, caches, own_node, memory_set)},
+          {"latency", sets}};
+}
+
+}  // namespace podm::bench

@@ -1,0 +1,82 @@
+#include "peers/peer.h"
+
+#include <fmt/format.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <filesystem>
+
+#include "experiments/mesher_options.h"
+#include "rows/record.h"
+#include "trials/process.h"
+#include "trials/sha256.h"
+
+namespace podm::bench {
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+constexpr double kVersionTimeoutS = 30;
+constexpr std::size_t kMaxVersionBytes = 500;
+constexpr int kMesherSchemaOfPeers = 1;  // as podm's records
+
+std::string first_line(const std::string& text) { return text.substr(0, text.find('\n')); }
+
+Peer ask_for_version(const std::string& program, const std::string& podm) {
+  const std::string answer_path =
+      fmt::format("{}/podm-bench-{}", std::filesystem::temp_directory_path().string(), getpid());
+  const ProcessOutcome outcome = run_process({.arguments = {program, "--version", "--podm", podm},
+                                              .stdout_path = answer_path,
+                                              .stderr_path = {},
+                                              .timeout_s = kVersionTimeoutS});
+  const std::string answer = first_line(read_tail(answer_path, kMaxVersionBytes));
+  std::filesystem::remove(answer_path);
+  if (outcome.succeeded()) return {program, answer, {}};
+  return {program, {}, answer.empty() ? program + " --version: " + outcome.describe() : answer};
+}
+
+}  // namespace
+
+std::string Peer::sha256() const {
+  const auto folder = std::filesystem::path(program).parent_path().parent_path();
+  std::vector<std::string> hashes;
+  for (const auto& entry : std::filesystem::directory_iterator(folder))
+    if (entry.path().extension() == ".py") hashes.push_back(sha256_of_file(entry.path().string()));
+  std::sort(hashes.begin(), hashes.end());
+  return sha256_of(fmt::format("{} {} {}", sha256_of_file(program), version, fmt::join(hashes, " ")));
+}
+
+bool is_of_peer(const Trial& trial) { return trial.options.value(kMesher, kPodm) != kPodm; }
+
+const Peer& Peers::of(const Trial& trial) {
+  const std::string name = trial.options[kMesher];
+  if (const auto known = peers_.find(name); known != peers_.end()) return known->second;
+  const std::string program = std::filesystem::absolute(fmt::format("{}/{}/run", folder_, name)).string();
+  if (folder_.empty() || access(program.c_str(), X_OK) != 0)
+    throw InputError(fmt::format("{}: there is no mesher '{}': no program {}", trial.name, name, program));
+  return peers_[name] = ask_for_version(program, podm_);
+}
+
+std::vector<std::string> peer_command(const Trial& trial, const Preparation& preparation, const Peer& peer,
+                                      const std::string& podm, const std::string& folder) {
+  std::vector<std::string> command{peer.program,      "--podm",   podm,  "--image",
+                                   preparation.image, "--output", folder};
+  const std::vector<std::string> options = mesher_arguments(resolved_options(trial, preparation));
+  command.insert(command.end(), options.begin(), options.end());
+  return command;
+}
+
+Json complete_record(const Trial& trial, const Preparation& preparation, Json record) {
+  if (!record.is_object()) return record;
+  record["schema"] = kMesherSchemaOfPeers;
+  record["algorithm"] = trial.options[kMesher];
+  record["guarantees"] = Json::object();  // it promises claims of the verifier instead
+  record["stop_reason"] = "complete";
+  record["used"]["radius_mm"] = resolved_options(trial, preparation).value("radius_mm", 0.0);
+  const auto seconds = number_in(record.value("phases_s", Json::object()), "refine");
+  const auto cells = number_in(record, "cells");
+  if (seconds && *seconds > 0 && cells) record["refine_cells_per_second"] = *cells / *seconds;
+  return record;
+}
+
+}  // namespace podm::bench

@@ -1,0 +1,135 @@
+#include "rows/row_filter.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <map>
+
+#include "experiments/mesher_options.h"
+#include "rows/record.h"
+
+namespace podm::bench {
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+constexpr const char *kExecutor = "executor", *kThreads = "threads";
+
+std::string text_of(const Json& value) {
+  return value.is_string()         ? value.get<std::string>()
+         : value.is_number_float() ? fmt::format("{}", value.get<double>())
+                                   : value.dump();
+}
+
+// Who made the row: this program, podm or a peer.
+std::string maker_of(const Json& row) {
+  const Json asked = at(row, "/asked");
+  return asked.contains(kMeasure) ? kMeasure : asked.value(kMesher, kPodm);
+}
+
+// What rows of one series share: the machine and, where a mesh is made, the mesher's bytes.
+std::string origin_of(const Json& row) {
+  const std::string maker = maker_of(row);
+  const Json program = maker == kPodm ? at(row, "/programs/podm/sha256") : at(row, "/programs/peer/sha256");
+  return machine_of(row).dump() + program.dump();
+}
+
+// What a later row replaces. A trial that could not be prepared, or whose options or radius changed since,
+// has another key.
+Json turn_of(const Json& row) {
+  return {text_in(row, "trial"), row.value("repeat", 1), at(row, "/input/name")};
+}
+
+}  // namespace
+
+Json complete_options(Json asked) {
+  if (!asked.is_object()) asked = Json::object();
+  if (!asked.contains(kMesher)) asked[kMesher] = kPodm;
+  if (!asked.contains(kExecutor)) asked[kExecutor] = kThreads;
+  return asked;
+}
+
+Json options_of(const Json& row) {
+  Json options = complete_options(at(row, "/asked"));
+  const Json name = at(row, "/input/name");
+  options[kInput] = name.is_string() ? name : at(row, "/input/path");
+  return options;
+}
+
+Json option(const Json& options, const std::string& key) { return options.value(key, Json(kNoOption)); }
+
+bool matches(const Json& options, const Condition& condition) {
+  const Json found = option(options, condition.key);
+  if (!condition.values.empty())
+    return std::find(condition.values.begin(), condition.values.end(), found) != condition.values.end();
+  if (!found.is_number()) return false;
+  const double number = found;
+  return number >= condition.at_least.value_or(number) && number <= condition.at_most.value_or(number);
+}
+
+bool matches(const Json& options, const Filter& filter) {
+  return std::all_of(filter.begin(), filter.end(),
+                     [&](const Condition& condition) { return matches(options, condition); });
+}
+
+bool names(const Filter& filter, const std::string& key) {
+  return std::any_of(filter.begin(), filter.end(),
+                     [&](const Condition& condition) { return condition.key == key; });
+}
+
+std::string describe(const std::string& key, const Json& value) {
+  return fmt::format("{}={}", key, text_of(value));
+}
+
+std::string describe(const Filter& filter) {
+  std::vector<std::string> parts;
+  for (const Condition& condition : filter) {
+    std::vector<std::string> values;
+    for (const Json& value : condition.values) values.push_back(text_of(value));
+    std::string part = fmt::format("{}={}", condition.key, fmt::join(values, " or "));
+    if (condition.at_least) part = fmt::format("{}>={}", condition.key, *condition.at_least);
+    if (condition.at_most)
+      part += fmt::format("{}<={}", condition.at_least ? " and " : condition.key, *condition.at_most);
+    parts.push_back(std::move(part));
+  }
+  return fmt::format("{}", fmt::join(parts, ", "));
+}
+
+std::string missing_value(const Filter& filter, const RowPointers& rows) {
+  for (const Condition& condition : filter)
+    for (const Json& value : condition.values) {
+      const auto has = [&](const Json* row) { return option(options_of(*row), condition.key) == value; };
+      if (std::none_of(rows.begin(), rows.end(), has)) return describe(condition.key, value);
+    }
+  return "";
+}
+
+bool is_simulated(const Json& row) { return text_in(row, "basis") == to_string(Basis::kSimulated); }
+
+bool is_of(const Json& row, Basis basis) {
+  return basis == Basis::kAny || is_simulated(row) == (basis == Basis::kSimulated);
+}
+
+std::string stem_of(const std::string& trial) { return trial.substr(0, trial.find(',')); }
+
+std::vector<Json> rows_to_judge(const std::vector<Json>& rows) {
+  std::vector<Json> chosen;
+  if (rows.empty()) return chosen;
+  const Json newest_machine = machine_of(rows.back());
+  std::map<std::string, std::string> newest_origins;  // by maker
+  for (const Json& row : rows)
+    if (machine_of(row) == newest_machine) newest_origins[maker_of(row)] = origin_of(row);
+  std::map<Json, std::size_t> places;
+  for (const Json& row : rows) {
+    if (row.value("warmup", false) || text_in(row, "status") == to_string(Status::kInterrupted)) continue;
+    if (origin_of(row) != newest_origins[maker_of(row)]) continue;
+    const auto [place, is_new] = places.emplace(turn_of(row), chosen.size());
+    if (is_new)
+      chosen.push_back(row);
+    else
+      chosen[place->second] = row;
+  }
+  return chosen;
+}
+
+}  // namespace podm::bench

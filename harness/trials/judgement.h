@@ -1,0 +1,16 @@
+// What came of a process by how it ended and by the record that it left.
+#pragma once
+
+#include <string>
+
+#include "trials/trial.h"
+
+namespace podm::bench {
+
+/// Sets status, reason and record of a mesh that the process of `result` was to make.
+void judge(const Trial& trial, const std::string& record_path, TrialResult& result);
+
+/// The same of a measurement of the machine.
+void judge_measurement(const std::string& record_path, TrialResult& result);
+
+}  // namespace podm::bench

@@ -1,0 +1,147 @@
+#include <fmt/format.h>
+#include <sched.h>
+
+#include <cmath>
+#include <cstdlib>
+#include <cstring>
+#include <fstream>
+#include <map>
+#include <optional>
+#include <sstream>
+
+#include "machine/machine.h"
+#include "trials/counter_tool.h"
+#include "trials/process.h"
+
+namespace podm::bench {
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+constexpr const char* kProgram = "likwid-perfctr";
+constexpr const char* kOutput = "/likwid.csv";
+constexpr double kLikwidTimeoutS = 30;
+constexpr std::size_t kMaxLikwidBytes = 500;
+
+// "0,1,4": what this process may run on.
+std::string usable_processor_list() {
+  cpu_set_t allowed;
+  CPU_ZERO(&allowed);
+  sched_getaffinity(0, sizeof(allowed), &allowed);
+  std::string list;
+  for (int processor = 0; processor < CPU_SETSIZE; ++processor)
+    if (CPU_ISSET(processor, &allowed)) list += fmt::format("{}{}", list.empty() ? "" : ",", processor);
+  return list;
+}
+
+std::vector<std::string> command_of(const std::string& events, const std::string& output) {
+  return {kProgram, "-f", "-c", usable_processor_list(), "-g", events, "-o", output};
+}
+
+// likwid's short name of this processor, a folder of groups; empty when likwid knows none.
+std::string architecture(const std::string& scratch_folder) {
+  const std::string path = scratch_folder + "/likwid_info.txt";
+  run_process(
+      {.arguments = {kProgram, "-i"}, .stdout_path = path, .stderr_path = {}, .timeout_s = kLikwidTimeoutS});
+  const std::string name = value_of(path, "CPU short");
+  return name.starts_with("unavailable") || name == "nil" ? "" : name;
+}
+
+// What likwid-perfctr says when it refuses to count `events`, or a group of its own, in one line; empty: it
+// counts.
+std::string refusal_of(const std::string& events, const std::string& scratch_folder) {
+  const std::string path = scratch_folder + "/likwid_refusal.txt";
+  std::vector<std::string> command = command_of(events, scratch_folder + "/likwid_probe.csv");
+  command.push_back("true");
+  const ProcessOutcome outcome = run_process(
+      {.arguments = command, .stdout_path = {}, .stderr_path = path, .timeout_s = kLikwidTimeoutS});
+  if (outcome.succeeded()) return {};
+  std::istringstream said(read_tail(path, kMaxLikwidBytes));
+  std::string words;
+  for (std::string line; std::getline(said, line);) words += (words.empty() ? "" : "; ") + line;
+  return fmt::format("{}: {}", kProgram, words.empty() ? outcome.describe() : words);
+}
+
+// Why there are no counts on a processor of which likwid has no events. It may say more than its name does.
+std::string refusal_of_processor(const std::string& group, const std::string& scratch_folder) {
+  const std::string refusal = refusal_of(group, scratch_folder);
+  return refusal.empty() ? fmt::format("{} does not know this processor", kProgram) : refusal;
+}
+
+std::vector<std::string> cells_of(const std::string& line) {
+  std::vector<std::string> cells;
+  std::istringstream text(line);
+  for (std::string cell; std::getline(text, cell, ',');) cells.push_back(cell);
+  return cells;
+}
+
+std::optional<double> number_of(const std::string& cell) {
+  char* end = nullptr;
+  const double number = std::strtod(cell.c_str(), &end);
+  if (end == cell.c_str() || !std::isfinite(number)) return {};
+  return number;
+}
+
+}  // namespace
+
+std::string events_of_group(const std::string& path) {
+  std::ifstream file(path);
+  std::string events, line;
+  while (std::getline(file, line) && line != "EVENTSET") continue;
+  while (std::getline(file, line) && !line.empty()) {
+    std::istringstream words(line);
+    std::string counter, event;
+    if (words >> counter >> event)
+      events += fmt::format("{}{}:{}", events.empty() ? "" : ",", event, counter);
+  }
+  return events;
+}
+
+Likwid::Likwid(const std::string& group, const std::string& groups_folder, const std::string& scratch_folder)
+    : group_(group) {
+  if (!is_installed(kProgram)) {
+    absence_ = fmt::format("{} is not installed", kProgram);
+    return;
+  }
+  const std::string processor = architecture(scratch_folder);
+  const std::string path = fmt::format("{}/{}/{}.txt", groups_folder, processor, group);
+  events_ = events_of_group(path);
+  absence_ = processor.empty() ? refusal_of_processor(group, scratch_folder)
+             : events_.empty() ? fmt::format("there are no events in {}", path)
+                               : refusal_of(events_, scratch_folder);
+}
+
+std::vector<std::string> Likwid::wrap(const std::vector<std::string>& command,
+                                      const std::string& folder) const {
+  std::vector<std::string> wrapped = command_of(events_, folder + kOutput);
+  wrapped.insert(wrapped.end(), command.begin(), command.end());
+  return wrapped;
+}
+
+// Lines EVENT,COUNTER,COUNT of each processor,... A count that is no number was not taken.
+Json Likwid::read(const std::string& folder) const {
+  std::ifstream file(folder + kOutput);
+  const std::string events = "," + events_ + ",";
+  std::map<std::string, double> sums;
+  for (std::string line; std::getline(file, line);) {
+    const std::vector<std::string> cells = cells_of(line);
+    if (cells.size() < 3 || events.find(fmt::format(",{}:{},", cells[0], cells[1])) == std::string::npos)
+      continue;
+    for (std::size_t i = 2; i < cells.size(); ++i)
+      if (const auto count = number_of(cells[i])) sums[cells[0]] += *count;
+  }
+  Json counts = Json::object();
+  for (const auto& [event, sum] : sums)
+    counts[event] = {{"value", sum}, {"source", fmt::format("{}, group {}", kProgram, group_)}};
+  if (counts.empty()) counts[kLikwid + group_] = "unavailable: likwid-perfctr wrote no counts";
+  return counts;
+}
+
+std::unique_ptr<CounterTool> counter_tool(const std::string& choice, const std::string& groups_folder,
+                                          const std::string& scratch_folder) {
+  if (choice == kCachegrind) return std::make_unique<Cachegrind>();
+  if (!choice.starts_with(kLikwid)) return {};
+  return std::make_unique<Likwid>(choice.substr(std::strlen(kLikwid)), groups_folder, scratch_folder);
+}
+
+}  // namespace podm::bench

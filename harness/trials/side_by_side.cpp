@@ -1,0 +1,71 @@
+#include "trials/side_by_side.h"
+
+#include <fmt/format.h>
+
+#include "experiments/mesher_options.h"
+#include "machine/machine.h"
+#include "rows/record.h"
+#include "trials/judgement.h"
+
+namespace podm::bench {
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+// What the row tells of a copy.
+Json entry_of(int processor, const Json& record) {
+  Json entry = {{"processor", processor}};
+  for (const char* key : {"cells", "phases_s", "refine_cells_per_second", "cells_per_second"})
+    entry[key] = record.value(key, Json());
+  return entry;
+}
+
+std::string fault_of(const TrialResult& copy, const TrialResult& first) {
+  if (copy.status != Status::kOk) return copy.reason;
+  return text_in(copy.record, "mesh_sha256") == text_in(first.record, "mesh_sha256") ? "" : "another mesh";
+}
+
+// The first fault is the trial's.
+void blame(const TrialResult& copy, int number, TrialResult& result) {
+  const std::string fault = fault_of(copy, result);
+  if (fault.empty() || result.status != Status::kOk) return;
+  result.status = copy.status == Status::kOk ? Status::kUnmet : copy.status;
+  result.reason = fmt::format("copy {}: {}", number, fault);
+}
+
+}  // namespace
+
+int num_copies(const Trial& trial) { return trial.options.value(kCopies, 0); }
+
+std::string folder_of_copy(const std::string& scratch_folder, int copy) {
+  return copy == 0 ? scratch_folder : fmt::format("{}/copy{}", scratch_folder, copy + 1);
+}
+
+void run_side_by_side(const Trial& trial, std::vector<ProcessRequest> requests,
+                      const std::string& scratch_folder, const StopQuery& stop_requested,
+                      TrialResult& result) {
+  const std::vector<int> processors = usable_processor_ids();
+  for (std::size_t i = 0; i < requests.size(); ++i) requests[i].processor = processors.at(i);
+  const std::vector<ProcessOutcome> outcomes = run_processes(requests, stop_requested);
+  Json entries = Json::array();
+  for (int i = 0; i < static_cast<int>(outcomes.size()); ++i) {
+    const auto at = static_cast<std::size_t>(i);
+    TrialResult copy;
+    copy.preparation = result.preparation;
+    copy.process = outcomes[at];
+    judge(trial, folder_of_copy(scratch_folder, i) + kRecordName, copy);
+    if (copy.record.is_object()) entries.push_back(entry_of(processors[at], copy.record));
+    if (i > 0) {
+      blame(copy, i + 1, result);
+      continue;
+    }
+    result.status = copy.status;
+    result.reason = copy.reason;
+    result.process = copy.process;
+    result.record = copy.record;
+  }
+  if (entries.size() == outcomes.size()) result.side_by_side = entries;
+  result.counters[kPerfEvent] = "unavailable: the kernel counts processes side by side together";
+}
+
+}  // namespace podm::bench

@@ -1,0 +1,234 @@
+#include "trials/trial.h"
+
+#include <fmt/format.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <filesystem>
+#include <fstream>
+
+#include "experiments/mesher_options.h"
+#include "machine/machine.h"
+#include "rows/measure.h"
+#include "rows/record.h"
+#include "trials/counters.h"
+#include "trials/judgement.h"
+#include "trials/side_by_side.h"
+#include "trials/stopwatch.h"
+#include "trials/warm_memory.h"
+
+namespace podm::bench {
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+constexpr std::size_t kTailBytes = 2000;
+constexpr double kInfoTimeoutS = 120;
+constexpr const char* kMeshName = "/mesh.vtu";
+constexpr const char* kMessagesName = "/stderr.txt";
+
+std::vector<std::string> mesh_command(const Trial& trial, const Preparation& preparation,
+                                      const std::string& podm, const std::string& folder) {
+  std::vector<std::string> command{podm, "mesh", preparation.image};
+  const auto add = [&command](const std::vector<std::string>& more) {
+    command.insert(command.end(), more.begin(), more.end());
+  };
+  add(mesher_arguments(resolved_options(trial, preparation)));
+  if (trial.options.value(kSchedule, false)) add({"--schedule", folder + kScheduleName});
+  if (trial.options.value(kReplay, false)) add({"--log", folder + kLogName});
+  add({"-o", folder + kMeshName, "--record", folder + kRecordName, "--quiet"});
+  return command;
+}
+
+// A peer writes what format it likes and names the file.
+std::string mesh_path(const Json& record, const std::string& folder) {
+  if (!record.is_object() || !record.contains("mesh")) return folder + kMeshName;
+  return fmt::format("{}/{}", folder, text_in(record, "mesh"));
+}
+
+// The record names the image by path and hash; how many voxels it has is for memory per cell.
+Json read_image_size(const std::string& image_path, const std::string& podm, const std::string& folder) {
+  const std::string path = folder + "/info.json";
+  const ProcessOutcome info = run_process({.arguments = {podm, "info", image_path, "--json"},
+                                           .stdout_path = path,
+                                           .stderr_path = {},
+                                           .timeout_s = kInfoTimeoutS});
+  if (!info.succeeded()) return nullptr;  // meshing tells why
+  std::ifstream file(path);
+  const Json image = Json::parse(file, nullptr, false);
+  return image.is_object() ? image.value("size", Json()) : Json();
+}
+
+ProcessRequest request_of(const Trial& trial, const std::vector<std::string>& command,
+                          const std::string& folder) {
+  return {.arguments = command,
+          .stdout_path = {},
+          .stderr_path = folder + kMessagesName,
+          .timeout_s = trial.timeout_s,
+          .memory_limit_bytes = trial.memory_limit_bytes()};
+}
+
+// More than any mesher was seen to take for its mesh and files, by the number of cells that is asked for.
+std::size_t bytes_to_warm(const Trial& trial) {
+  constexpr std::size_t kOfProgram = std::size_t{1} << 27, kOfCell = 400;
+  const auto cells = trial.options.value(kTargetElements, kWarmBytes / kOfCell);
+  return std::min(kWarmBytes, kOfProgram + kOfCell * cells);
+}
+
+// Not more than half of what is free: it is to be touched, not to be had. Simulated times need none.
+void warm_memory_of(const Trial& trial) {
+  if (basis_of(trial.options, Json::object()) == to_string(Basis::kSimulated)) return;
+  const auto free_bytes = static_cast<std::size_t>(std::max(0L, sysconf(_SC_AVPHYS_PAGES))) *
+                          static_cast<std::size_t>(sysconf(_SC_PAGESIZE));
+  const auto copies = static_cast<std::size_t>(std::max(1, num_copies(trial)));
+  const std::size_t bytes = bytes_to_warm(trial);
+  warm_memory(std::max(bytes, std::min(copies * bytes, free_bytes / 2)));
+}
+
+// A mesh that does not prove itself is unmet.
+void add_fault(const std::string& fault, bool is_interrupted, TrialResult& result) {
+  if (fault.empty()) return;
+  result.status = is_interrupted ? Status::kInterrupted : Status::kUnmet;
+  result.reason += (result.reason.empty() ? "" : "; ") + fault;
+}
+
+}  // namespace
+
+struct TrialRunner::Run {
+  const Trial& trial;
+  const Preparation& preparation;
+  const std::string& folder;  ///< for its files
+  const StopQuery& stop_requested;
+};
+
+std::string to_string(Status status) {
+  switch (status) {
+    case Status::kOk:
+      return "ok";
+    case Status::kUnmet:
+      return "unmet";
+    case Status::kFailed:
+      return "failed";
+    case Status::kTimedOut:
+      return "timed_out";
+    case Status::kInterrupted:
+      return "interrupted";
+    case Status::kSkipped:
+      break;
+  }
+  return "skipped";
+}
+
+const Json& TrialRunner::image_size(const std::string& image, const std::string& scratch_folder) {
+  const auto [entry, is_new] = image_sizes_.try_emplace(image);
+  if (is_new) entry->second = read_image_size(image, programs_.podm, scratch_folder);
+  return entry->second;
+}
+
+std::string TrialRunner::why_skipped(const Trial& trial) {
+  if (trial.if_exists && !image_exists(trial)) return trial.image + " is not there";
+  if (trial.options.value(kImageGrows, false) && !grown(trial.image, 1)) return trial.image + " cannot grow";
+  const int copies = num_copies(trial);
+  const auto processors = static_cast<int>(usable_processor_ids().size());
+  if (copies > processors)
+    return fmt::format("{} copies need as many processors, and there are {}", copies, processors);
+  return is_of_peer(trial) ? peers_.of(trial).absence : "";
+}
+
+std::vector<std::string> TrialRunner::command_of(const Run& run, const std::string& folder,
+                                                 TrialResult& result) {
+  if (!is_of_peer(run.trial)) return mesh_command(run.trial, run.preparation, programs_.podm, folder);
+  const Peer& peer = peers_.of(run.trial);
+  result.peer = {{"name", run.trial.options[kMesher]}, {"sha256", peer.sha256()}, {"version", peer.version}};
+  return peer_command(run.trial, run.preparation, peer, programs_.podm, folder);
+}
+
+const CounterTool* TrialRunner::counter_tool_of(const Run& run) {
+  const std::string choice = run.trial.options.value(kCounters, kPerfEvent);
+  const auto [entry, is_new] = counter_tools_.try_emplace(choice);
+  if (is_new) entry->second = counter_tool(choice, programs_.likwid_groups, run.folder);
+  return entry->second.get();
+}
+
+void TrialRunner::run_program(const Run& run, TrialResult& result) {
+  const CounterTool* tool = counter_tool_of(run);
+  const std::string absence = tool == nullptr ? "" : tool->absence();
+  const bool is_used = tool != nullptr && absence.empty();
+  if (is_used) result.command = tool->wrap(result.command, run.folder);
+  // likwid-perfctr needs the processor's counters for itself.
+  const PerfCounters kernel(is_used ? CounterKinds::kSoftware : CounterKinds::kSoftwareAndHardware);
+  result.process = run_process(request_of(run.trial, result.command, run.folder), run.stop_requested);
+  if (!is_used || !tool->is_simulation()) result.counters = kernel.read(result.process);
+  if (is_used) result.counters.update(tool->read(run.folder));
+  if (!absence.empty())
+    result.counters[run.trial.options[kCounters].get<std::string>()] = "unavailable: " + absence;
+}
+
+void TrialRunner::run_copies(const Run& run, TrialResult& result) {
+  std::vector<ProcessRequest> requests;
+  for (int copy = 0; copy < num_copies(run.trial); ++copy) {
+    const std::string folder = folder_of_copy(run.folder, copy);
+    std::filesystem::create_directories(folder);
+    requests.push_back(request_of(run.trial, command_of(run, folder, result), folder));
+  }
+  run_side_by_side(run.trial, std::move(requests), run.folder, run.stop_requested, result);
+}
+
+void TrialRunner::measure(const Run& run, TrialResult& result) {
+  result.command = {programs_.bench, "latency", "--record", run.folder + kRecordName};
+  run_program(run, result);
+  judge_measurement(run.folder + kRecordName, result);
+}
+
+void TrialRunner::make_mesh(const Run& run, TrialResult& result) {
+  const Stopwatch watch;
+  result.image_size = image_size(run.preparation.image, run.folder);
+  result.command = command_of(run, run.folder, result);
+  warm_memory_of(run.trial);
+  result.preparation_s = watch.seconds();
+  if (num_copies(run.trial) > 0) {
+    run_copies(run, result);
+  } else {
+    run_program(run, result);
+    judge(run.trial, run.folder + kRecordName, result);
+  }
+  std::error_code error;
+  const auto mesh_bytes = std::filesystem::file_size(mesh_path(result.record, run.folder), error);
+  if (!error) result.mesh_bytes = mesh_bytes;
+  if (result.record.is_object()) prove(run, result);
+}
+
+void TrialRunner::prove(const Run& run, TrialResult& result) {
+  const Stopwatch watch;
+  if (!programs_.verifier.empty()) {
+    const Verification verification =
+        verify_mesh(run.trial, run.preparation.image, result.record, mesh_path(result.record, run.folder),
+                    programs_.verifier, run.folder, run.stop_requested);
+    result.record["verdicts"] = verification.verdicts;
+    add_fault(verification.fault, verification.is_interrupted, result);
+  }
+  if (run.trial.options.value(kReplay, false) && result.status != Status::kInterrupted) {
+    const Replay replay = replay_mesh(run.preparation.image, programs_.podm, run.folder, run.stop_requested);
+    result.replay = replay.answer;
+    add_fault(replay.is_equal() ? "" : "replay " + replay.answer, replay.is_interrupted, result);
+  }
+  result.verification_s = watch.seconds();
+}
+
+TrialResult TrialRunner::run(const Trial& trial, const Preparation& preparation,
+                             const std::string& scratch_folder, const StopQuery& stop_requested) {
+  TrialResult result;
+  result.preparation = preparation;
+  const Run run{trial, preparation, scratch_folder, stop_requested};
+  if (makes_mesh(trial))
+    make_mesh(run, result);
+  else
+    measure(run, result);
+  if (result.status != Status::kOk)
+    result.stderr_tail = read_tail(scratch_folder + kMessagesName, kTailBytes);
+  if (result.status == Status::kSkipped)
+    result.reason = result.stderr_tail.substr(0, result.stderr_tail.find('\n'));
+  return result;
+}
+
+}  // namespace podm::bench

@@ -1,0 +1,29 @@
+// What makes two runs of the mesher the same measurement, so that a run may be resumed.
+#pragma once
+
+#include <string>
+
+#include "experiments/schedule.h"
+#include "peers/peer.h"
+#include "trials/preparation.h"
+
+namespace podm::bench {
+
+/// Names a turn by all that can change its outcome: the mesher's bytes, the input's bytes, the options with
+/// the radius that was found, the machine and the number of the repeat. Not by paths, limits or the verifier.
+class TrialKeys {
+ public:
+  TrialKeys(std::string mesher_sha256, const nlohmann::ordered_json& machine_summary, Peers peers = {})
+      : mesher_sha256_(std::move(mesher_sha256)), machine_(machine_summary), peers_(std::move(peers)) {}
+
+  /// 64 hexadecimal digits. Throws InputError when a topology cannot be read or a peer is unknown.
+  std::string of(const Trial& trial, const Turn& turn, const Preparation& preparation);
+
+ private:
+  std::string mesher_sha256_;
+  nlohmann::ordered_json machine_;
+  Peers peers_;
+  FileHashes hashes_;
+};
+
+}  // namespace podm::bench
