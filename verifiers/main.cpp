@@ -95,7 +95,7 @@ void declare_selection(CLI::App& app, Command& command) {
 void declare_claims(CLI::App& app, Command& command) {
   Options& options = command.options;
   std::vector<std::string> names;
-  for (const ClaimName& claim : all_claims()) names.emplace_back(claim.name);
+  for (const Claim& claim : all_claims()) names.emplace_back(claim.name);
   app.option_defaults()->group("Claims and their bounds");
   app.add_option("--claims", command.claims,
                  fmt::format("check these alone [default: all whose inputs and bounds are given], of\n{}",

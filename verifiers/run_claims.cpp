@@ -47,20 +47,9 @@ ClaimResult not_run(const std::string& claim, const std::string& reason) {
   return result;
 }
 
-ClaimResult run_claim(const std::string& claim, const Inputs& inputs, const Adjacency& adjacency,
-                      const Options& options) {
-  const Mesh& mesh = inputs.mesh;
-  const Image* image = inputs.image ? &*inputs.image : nullptr;
-  if (claim == "radius_edge") return check_radius_edge(mesh, options);
-  if (claim == "boundary_angles") return check_boundary_angles(mesh, adjacency, options);
-  if (claim == "size") return check_size(mesh, options);
-  if (claim == "delaunay") return check_delaunay(mesh, adjacency, options);
-  if (claim == "conformity")
-    return check_conformity(mesh, adjacency, inputs.schedule ? &*inputs.schedule : nullptr, options);
-  if (claim == "surface") return check_surface(mesh, adjacency, image, options);
-  if (image == nullptr) return not_run(claim, "no image given (--image)");
-  if (claim == "labels") return check_labels(mesh, *image, options);
-  return check_fidelity(mesh, adjacency, *image, options);
+template <class T>
+const T* pointer(const std::optional<T>& value) {
+  return value ? &*value : nullptr;
 }
 
 // Levenshtein's distance: insertions, deletions and replacements from one to the other.
@@ -79,7 +68,7 @@ std::size_t edit_distance(const std::string& a, const std::string& b) {
 
 std::string nearest_claim(const std::string& name) {
   return std::min_element(all_claims().begin(), all_claims().end(),
-                          [&](const ClaimName& a, const ClaimName& b) {
+                          [&](const Claim& a, const Claim& b) {
                             return edit_distance(name, a.name) < edit_distance(name, b.name);
                           })
       ->name;
@@ -87,17 +76,28 @@ std::string nearest_claim(const std::string& name) {
 
 }  // namespace
 
-const std::vector<ClaimName>& all_claims() {
-  static const std::vector<ClaimName> kAll{
-      {"structure", Needs::kNothing}, {"radius_edge", Needs::kNothing}, {"boundary_angles", Needs::kNothing},
-      {"size", Needs::kBound},        {"delaunay", Needs::kNothing},    {"conformity", Needs::kNothing},
-      {"surface", Needs::kNothing},   {"labels", Needs::kImage},        {"fidelity", Needs::kImage}};
+const std::vector<Claim>& all_claims() {
+  using I = const Inputs&;
+  using A = const Adjacency&;
+  using O = const Options&;
+  static const std::vector<Claim> kAll{
+      {"structure", Needs::kNothing, [](I i, A a, O o) { return check_structure(i.mesh, a, o); }},
+      {"radius_edge", Needs::kNothing, [](I i, A, O o) { return check_radius_edge(i.mesh, o); }},
+      {"boundary_angles", Needs::kNothing, [](I i, A a, O o) { return check_boundary_angles(i.mesh, a, o); }},
+      {"size", Needs::kBound, [](I i, A, O o) { return check_size(i.mesh, o); }},
+      {"delaunay", Needs::kNothing, [](I i, A a, O o) { return check_delaunay(i.mesh, a, o); }},
+      {"conformity", Needs::kNothing,
+       [](I i, A a, O o) { return check_conformity(i.mesh, a, pointer(i.schedule), o); }},
+      {"surface", Needs::kNothing,
+       [](I i, A a, O o) { return check_surface(i.mesh, a, pointer(i.image), o); }},
+      {"labels", Needs::kImage, [](I i, A, O o) { return check_labels(i.mesh, *i.image, o); }},
+      {"fidelity", Needs::kImage, [](I i, A a, O o) { return check_fidelity(i.mesh, a, *i.image, o); }}};
   return kAll;
 }
 
 std::vector<std::string> chosen_claims(const Options& options) {
   std::vector<std::string> chosen;
-  for (const ClaimName& claim : all_claims()) {
+  for (const Claim& claim : all_claims()) {
     const bool is_named =
         std::find(options.claims.begin(), options.claims.end(), claim.name) != options.claims.end();
     if (is_named || (options.claims.empty() && is_given(claim.needs, options))) chosen.push_back(claim.name);
@@ -105,7 +105,7 @@ std::vector<std::string> chosen_claims(const Options& options) {
   for (const std::string& name : options.claims) {
     if (std::find(chosen.begin(), chosen.end(), name) != chosen.end()) continue;
     std::string known;
-    for (const ClaimName& claim : all_claims()) known += std::string(known.empty() ? "" : ", ") + claim.name;
+    for (const Claim& claim : all_claims()) known += std::string(known.empty() ? "" : ", ") + claim.name;
     throw InputError(fmt::format("--claims: no claim '{}', nearest is '{}'; there are {}", name,
                                  nearest_claim(name), known));
   }
@@ -123,20 +123,22 @@ Inputs read_inputs(const Options& options) {
 }
 
 std::vector<ClaimResult> run_claims(const Inputs& inputs, const Options& options,
-                                    const std::vector<std::string>& claims,
+                                    const std::vector<std::string>& names,
                                     const std::function<void(const std::string&)>& announce) {
   const bool is_sound = has_sound_references(inputs.mesh);
   const Adjacency adjacency = is_sound ? find_adjacency(inputs.mesh, options.threads) : Adjacency{};
   std::vector<ClaimResult> results;
-  for (const std::string& claim : claims) {
-    announce(claim);
+  for (const std::string& name : names) {
+    announce(name);
     const auto start = std::chrono::steady_clock::now();
-    if (claim == "structure") {
-      results.push_back(check_structure(inputs.mesh, adjacency, options));
-    } else if (is_sound) {
-      results.push_back(run_claim(claim, inputs, adjacency, options));
+    const auto claim = std::find_if(all_claims().begin(), all_claims().end(),
+                                    [&](const Claim& known) { return known.name == name; });
+    if (!is_sound && name != "structure") {
+      results.push_back(not_run(name, "the mesh is empty or has vertex ids or coordinates that are none"));
+    } else if (claim->needs == Needs::kImage && !inputs.image) {
+      results.push_back(not_run(name, "no image given (--image)"));
     } else {
-      results.push_back(not_run(claim, "the mesh is empty or has vertex ids or coordinates that are none"));
+      results.push_back(claim->check(inputs, adjacency, options));
     }
     results.back().seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
   }

@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "claim.h"
+#include "geometry/adjacency.h"
 #include "image/image.h"
 #include "options.h"
 #include "schedule.h"
@@ -15,13 +16,6 @@ namespace podm::verify {
 
 /// What a claim needs beside the mesh.
 enum class Needs { kNothing, kImage, kBound };
-
-struct ClaimName {
-  const char* name;
-  Needs needs;
-};
-/// In the order in which they run.
-const std::vector<ClaimName>& all_claims();
 
 /// The claims asked for by name, or without names all whose inputs were given. Throws InputError for an
 /// unknown one.
@@ -32,13 +26,22 @@ struct Inputs {
   std::optional<Image> image;
   std::optional<Schedule> schedule;
 };
+
+struct Claim {
+  std::string name;
+  Needs needs;
+  ClaimResult (*check)(const Inputs&, const Adjacency&, const Options&);
+};
+/// In the order in which they run.
+const std::vector<Claim>& all_claims();
+
 /// Reads the files that `options` name. Throws InputError.
 Inputs read_inputs(const Options& options);
 
-/// One result a claim of `claims`; a claim that cannot be decided is not_run with the reason. `announce` is
+/// One result a name; a claim that cannot be decided is not_run with the reason. `announce` is
 /// told of each claim that begins.
 std::vector<ClaimResult> run_claims(const Inputs& inputs, const Options& options,
-                                    const std::vector<std::string>& claims,
+                                    const std::vector<std::string>& names,
                                     const std::function<void(const std::string&)>& announce);
 
 }  // namespace podm::verify

@@ -1,31 +1,30 @@
-// Claim: fidelity. The mesh's label interface and the image's lie close to each other. With b the bound:
-//
-//   1. 95 % of the mesh's interface, by area, lies within b voxels of the image's,
-//   2. all of it within sqrt(3) b, the diagonal of a voxel,
-//   3. 95 % of the image's interface, by area, lies within b voxels of the mesh's.
-// The mesh's interface are the facets between cells of different labels and those with one cell alone; the
-// image's is where its label function changes (image/label_function.h), not the staircase of its voxels.
-//
-// The bound is a voxel (Options::fidelity_bound_voxels), since the image does not tell where between the
-// centres of two voxels a label ends: it refutes no surface nearer than that. A mesh that samples its
-// surfaces more coarsely does not promise so much. To one of the PODM family that was made with the sampling
-// distance delta (Options::delta_mm), what is within 2 delta is as near as what is within sqrt(3) b, and what
-// is within 2 delta / sqrt(3) as what is within b. Then 2. is proved: the Voronoi edge of an interface facet
-// crosses the isosurface in the circumball of a cell of the facet; rule R2 left no such ball a radius of 2
-// delta, and R3 has the facet's vertices on the isosurface; no point of a triangle is further from all of its
-// vertices than its circumradius.
-//
-// Foundation: both are sampled. The mesh's by points less than half a voxel apart, vertices and edges among
-// them: between samples a facet is at most 0.3 voxels further off than they are. The image's by the middles
-// of the faces between voxels of different labels, exact points of it, each weighted by its face's area.
-// Distances are lengths in mm in the world, so anisotropic spacing and shear count as they should; "in
-// voxels" the same displacements are measured in voxel indices. To a facet the distance is exact but for
-// rounding; to the image's interface it is that of a point found on it, never too small
-// (check_fidelity_isosurface.h). Cost: O((samples + facets) log); about 5 us a sample, 60 bytes a facet and
-// 50 a voxel face. Reported: mean, 95 % and maximum both ways, for all together and per label (between the
-// boundary of the label's cells and that of its voxels), and of the mesh's interface vertices alone. Does not
-// prove: that each structure of the image is there (its maximum distance is reported, not judged: what is
-// thinner than the sampling of the mesh may be lost), nor topology (surface reports it).
+// Claim fidelity.
+//   Statements  with b the bound: 95 % of the mesh's label interface, by area, lies within b voxels of the
+//               image's; all of it lies within sqrt(3) b, the diagonal of a voxel; 95 % of the image's
+//               interface, by area, lies within b voxels of the mesh's. The mesh's interface are the facets
+//               between cells of different labels and those with one cell alone; the image's is where its
+//               label function changes (image/label_function.h), not the staircase of its voxels.
+//               b is 1 (Options::fidelity_bound_voxels), for the image does not tell where between the
+//               centres of two voxels a label ends. A mesh of the PODM family that was made with the
+//               sampling distance delta (Options::delta_mm) promises less where that is coarser: what is
+//               within 2 delta counts as within sqrt(3) b, and what is within 2 delta / sqrt(3) as within b.
+//               The second statement is proved for such a mesh: the Voronoi edge of an interface facet
+//               crosses the isosurface in the circumball of a cell of the facet, rule R2 left no such ball a
+//               radius of 2 delta, R3 has the facet's vertices on the isosurface, and no point of a triangle
+//               is further from all of its vertices than its circumradius.
+//   Rests on    samples of both. The mesh's are points less than half a voxel apart, vertices and edges among
+//               them: between samples a facet is at most 0.3 voxels further off than they are. The image's
+//               are the middles of the faces between voxels of different labels, exact points of it, each
+//               weighted by its face's area. Distances are lengths in mm in the world, so that anisotropic
+//               spacing and shear count as they should; "in voxels" the same displacements are measured in
+//               voxel indices. The distance to a facet is exact but for rounding; that to the image's
+//               interface is the distance of a point found on it, never too small
+//               (check_fidelity_isosurface.h).
+//   Cost        (samples + facets) log n; about 5 us a sample, 60 bytes a facet and 50 a voxel face.
+//   Not proved  that each structure of the image is there: what is thinner than the sampling of the mesh may
+//               be lost. Nor topology, which the claim surface reports. Mean, 95 % and maximum are reported
+//               both ways, for all together and per label (between the boundary of the label's cells and that
+//               of its voxels), and for the mesh's interface vertices alone.
 #include <fmt/format.h>
 
 #include <map>

@@ -1,20 +1,21 @@
-// Claim: labels. The labels of the mesh are those of the image.
-//
-//   1. Each cell's label is the image's label at its circumcentre: of the eight voxels around that point the
-//      label with the greatest trilinear weight, ties to the smaller, background (0) outside the grid.
-//   2. Each label of the mesh is one of the image's.
-//   3. Each label that has more than 1000 voxels in the image has a cell.
-//
-// Foundation: weights are continuous and change by at most 1 a voxel along each axis, so two weights' order
-// at a point holds for all points nearer than half their difference (label_function.h); the circumcentre is
-// known up to a bound (check_labels_circumcenter.h). Where weights are as close as that, the label at the
-// circumcentre of the written coordinates is decided by rational arithmetic. A cell with another label than
-// that one is still none the less right if its label wins within the bound: a mesher computes circumcentres
-// in rounded arithmetic, and maybe in other coordinates than the file's. Such cells are counted
-// ("within_rounding") and not judged. Cost: O(cells) and a pass over the voxels; 24 bytes a vertex, 8 a voxel
-// of the mesh's box. Does not prove: that the label is the image's elsewhere in the cell. Volume and overlap
-// (Dice, by voxel centres within the grid) of each label are reported for that, not judged. Statement 1 is
-// the promise of meshers of the PODM family; a mesh from elsewhere need not keep it.
+// Claim labels.
+//   Statements  each cell's label is the image's label at its circumcentre: of the eight voxels around that
+//               point the label with the greatest trilinear weight, ties to the smaller, background (0)
+//               outside the grid. Each label of the mesh is one of the image's. Each label that has more than
+//               1000 voxels in the image has a cell.
+//   Rests on    weights that are continuous and change by at most 1 a voxel along each axis, so that two
+//               weights' order at a point holds for all points nearer than half their difference
+//               (label_function.h). The circumcentre is known up to a bound (check_labels_circumcenter.h).
+//               Where weights are as close as that, rational arithmetic decides the label at the circumcentre
+//               of the written coordinates. A cell with another label than that one is none the less right if
+//               its label wins within the bound: a mesher computes a circumcentre in rounded arithmetic, and
+//               maybe in other coordinates than the file's. Such cells are counted ("within_rounding") and
+//               not judged.
+//   Cost        linear in the cells, and a pass over the voxels; 24 bytes a vertex, 8 a voxel of the mesh's
+//               box.
+//   Not proved  that the label is the image's elsewhere in the cell. Volume and overlap (Dice, by voxel
+//               centres within the grid) of each label are reported for that, not judged. The first statement
+//               is the promise of meshers of the PODM family; a mesh from elsewhere need not keep it.
 #include <fmt/format.h>
 
 #include "claims/check_labels_circumcenter.h"

@@ -1,21 +1,21 @@
-// Claim: surface. The boundary of each label's cells, and of all cells together, is a closed and oriented
-// surface.
-//
-//   1. Each edge of the boundary is passed as often in one direction as in the other by the boundary's
-//      facets, turned outwards from their cells.
-//   2. Where the file lists facets with the labels on their two sides, these are the facets between different
-//      labels, each once, with the labels of the cells there and all turned alike.
-// A label's boundary are the facets between one of its cells and a cell of another label, or none. Cells of
-// label 0 count as outside. A mesh without labels counts as one label.
-//
-// Foundation: all combinatorial, on vertex ids; no coordinates, hence no rounding.
-// Cost: O(cells), about 40 bytes a cell.
-// Reported and not judged, since no mesher of multi-label images promises it: non-manifold edges (passed four
-// times or more) and vertices (more than one fan of facets), those where three or more labels meet (the
-// background counted) apart; components (of cells, across facets) and the Euler number (of the label's closed
-// cell complex) beside the image's for 6-connected labels (26 for the rest) and for 26-connected ones (6 for
-// the rest). Listed facets without labels are compared too, and what differs is a warning.
-// Does not prove: that the surface does not pass through itself (structure's "no overlap" does).
+// Claim surface.
+//   Statements  each edge of the boundary of a label's cells, and of all cells together, is passed as often
+//   in
+//               one direction as in the other by the boundary's facets, turned outwards from their cells: it
+//               is a closed and oriented surface. Where the file lists facets with the labels on their two
+//               sides, these are the facets between different labels, each once, with the labels of the cells
+//               there and all turned alike. A label's boundary are the facets between one of its cells and a
+//               cell of another label, or none. Cells of label 0 count as outside. A mesh without labels
+//               counts as one label.
+//   Rests on    vertex ids alone: it is all combinatorial, without coordinates, hence without rounding.
+//   Cost        linear in the cells, about 40 bytes a cell.
+//   Not proved  that the surface does not pass through itself (structure's "no overlap" does), nor, since no
+//               mesher of multi-label images promises it, that it is a manifold of the right topology.
+//               Reported are non-manifold edges (passed four times or more) and vertices (more than one fan
+//               of facets), those where three or more labels meet (the background counted) apart; components
+//               (of cells, across facets) and the Euler number (of the label's closed cell complex) beside
+//               the image's for 6-connected labels (26 for the rest) and for 26-connected ones (6 for the
+//               rest). Listed facets without labels are compared too, and what differs is a warning.
 #include <fmt/format.h>
 
 #include <algorithm>

@@ -19,7 +19,7 @@ std::string witness_text(const Witness& witness) {
 std::string left_out(const Options& options, const std::vector<ClaimResult>& results) {
   if (!options.claims.empty()) return "";
   std::vector<std::string> names;
-  for (const ClaimName& claim : all_claims()) {
+  for (const Claim& claim : all_claims()) {
     const auto is_run = [&](const ClaimResult& result) { return result.claim == claim.name; };
     if (std::none_of(results.begin(), results.end(), is_run))
       names.push_back(std::string(claim.name) +
