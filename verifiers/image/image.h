@@ -20,8 +20,7 @@ struct Image {
   std::vector<std::string> warnings = {};  ///< what is odd about the file
 };
 
-/// NIfTI, NRRD, MetaImage (ITK, libnifti for oblique NIfTI), INRIMAGE, ".gz" of NIfTI and INR. Throws
-/// InputError.
+/// NIfTI, NRRD, MetaImage, INRIMAGE, ".gz" of NIfTI and INR. Throws InputError.
 Image read_image(const std::string& path);
 
 }  // namespace podm::verify

@@ -1,8 +1,10 @@
-// NIfTI-1 by libnifti's header functions. ITK's reader is not used: it refuses shear or takes the qform
-// instead in silence, aborts on an affine that is not finite, and fills missing voxels with zeros.
-#include <nifti/nifti1_io.h>
-
+// NIfTI-1, read field by field as its header file nifti1.h lays it out: 348 bytes, then voxels. No library is
+// used: the mesher's would pass its mistakes on, and ITK's reader refuses shear or takes the qform instead in
+// silence, aborts on an affine that is not finite, and fills missing voxels with zeros.
 #include <algorithm>
+#include <array>
+#include <bit>
+#include <cmath>
 #include <cstring>
 #include <map>
 
@@ -13,29 +15,70 @@ namespace podm::verify {
 
 namespace {
 
-nifti_1_header read_header(const std::string& path, ByteSource& source, bool& is_swapped) {
-  nifti_1_header header{};
-  constexpr int kNifti2Bytes = 540;
-  source.read(&header, sizeof header);
-  int bytes = header.sizeof_hdr;
-  is_swapped = bytes != sizeof header && bytes != kNifti2Bytes;
-  if (is_swapped) nifti_swap_4bytes(1, &bytes);
-  if (bytes == kNifti2Bytes) refuse(path, "NIfTI-2 is not supported (NIfTI-1 is)");
-  if (bytes != sizeof header || std::memcmp(header.magic, "n+1", 4) != 0)
-    refuse(path, "not a NIfTI-1 file (wrong magic)");
-  if (is_swapped) swap_nifti_header(&header, 1);
-  if (header.dim[0] < 1 || header.dim[0] > 7)
-    refuse(path, "not a NIfTI-1 file (" + std::to_string(header.dim[0]) + " dimensions)");
-  return header;
+constexpr std::int32_t kHeaderBytes = 348, kNifti2HeaderBytes = 540;
+
+// Where fields begin. What is not named here says nothing about voxels or their place.
+enum Field : std::size_t {
+  kSizeOfHeader = 0,
+  kDim = 40,
+  kDatatype = 70,
+  kPixdim = 76,
+  kVoxOffset = 108,
+  kSclSlope = 112,
+  kSclInter = 116,
+  kXyztUnits = 123,
+  kQformCode = 252,
+  kSformCode = 254,
+  kQuaternB = 256,
+  kQoffsetX = 268,
+  kSrowX = 280,
+  kMagic = 344
+};
+
+class Header {
+ public:
+  Header(const std::string& path, ByteSource& source) {
+    source.read(bytes_.data(), bytes_.size());
+    std::int32_t size = at<std::int32_t>(kSizeOfHeader);
+    is_swapped_ = size != kHeaderBytes && size != kNifti2HeaderBytes;
+    size = at<std::int32_t>(kSizeOfHeader);
+    if (size == kNifti2HeaderBytes) refuse(path, "NIfTI-2 is not supported (NIfTI-1 is)");
+    if (size != kHeaderBytes || std::memcmp(bytes_.data() + kMagic, "n+1", 4) != 0)
+      refuse(path, "not a NIfTI-1 file (wrong magic)");
+  }
+  bool is_swapped() const { return is_swapped_; }
+
+  // The n-th number of a field.
+  template <class Number>
+  Number at(Field field, std::size_t n = 0) const {
+    std::array<unsigned char, sizeof(Number)> bytes;
+    std::memcpy(bytes.data(), bytes_.data() + field + n * sizeof(Number), sizeof(Number));
+    if (is_swapped_) std::reverse(bytes.begin(), bytes.end());
+    return std::bit_cast<Number>(bytes);
+  }
+
+ private:
+  std::array<unsigned char, kHeaderBytes> bytes_{};
+  bool is_swapped_ = false;
+};
+
+std::vector<std::int64_t> size_of(const std::string& path, const Header& header) {
+  const int num_axes = header.at<std::int16_t>(kDim);
+  if (num_axes < 1 || num_axes > 7)
+    refuse(path, "not a NIfTI-1 file (" + std::to_string(num_axes) + " dimensions)");
+  std::vector<std::int64_t> size;
+  for (int axis = 1; axis <= num_axes; ++axis)
+    size.push_back(header.at<std::int16_t>(kDim, static_cast<std::size_t>(axis)));
+  return size;
 }
 
-VoxelType voxel_type(const std::string& path, int datatype) {
-  static const std::map<int, VoxelType> kTypes{
-      {DT_UINT8, VoxelType::kUint8},    {DT_INT8, VoxelType::kInt8},     {DT_UINT16, VoxelType::kUint16},
-      {DT_INT16, VoxelType::kInt16},    {DT_UINT32, VoxelType::kUint32}, {DT_INT32, VoxelType::kInt32},
-      {DT_UINT64, VoxelType::kUint64},  {DT_INT64, VoxelType::kInt64},   {DT_FLOAT32, VoxelType::kFloat},
-      {DT_FLOAT64, VoxelType::kDouble},
-  };
+VoxelType voxel_type(const std::string& path, const Header& header) {
+  static const std::map<int, VoxelType> kTypes{{2, VoxelType::kUint8},    {4, VoxelType::kInt16},
+                                               {8, VoxelType::kInt32},    {16, VoxelType::kFloat},
+                                               {64, VoxelType::kDouble},  {256, VoxelType::kInt8},
+                                               {512, VoxelType::kUint16}, {768, VoxelType::kUint32},
+                                               {1024, VoxelType::kInt64}, {1280, VoxelType::kUint64}};
+  const int datatype = header.at<std::int16_t>(kDatatype);
   const auto known = kTypes.find(datatype);
   if (known == kTypes.end())
     refuse(path, "one plain number a voxel is needed (NIfTI datatype " + std::to_string(datatype) + ")");
@@ -43,48 +86,87 @@ VoxelType voxel_type(const std::string& path, int datatype) {
 }
 
 // A header that names no unit means mm.
-double unit_mm(const nifti_1_header& header) {
-  const int unit = XYZT_TO_SPACE(header.xyzt_units);
-  return unit == NIFTI_UNITS_METER ? 1000 : unit == NIFTI_UNITS_MICRON ? 0.001 : 1;
+double unit_mm(const Header& header) {
+  constexpr int kSpatialBits = 7, kMetre = 1, kMicrometre = 3;
+  const int unit = header.at<std::uint8_t>(kXyztUnits) & kSpatialBits;
+  return unit == kMetre ? 1000 : unit == kMicrometre ? 0.001 : 1;
+}
+
+using Affine = std::array<double, 12>;
+
+// Method 2 of nifti1.h: a rotation by the unit quaternion (a, b, c, d), a >= 0, with the third axis turned
+// over where pixdim[0] is negative. A sum b^2 + c^2 + d^2 of 1 but for rounding is half a turn.
+Affine qform(const Header& header) {
+  constexpr double kHalfTurn = 1e-7;
+  double b = header.at<float>(kQuaternB, 0), c = header.at<float>(kQuaternB, 1),
+         d = header.at<float>(kQuaternB, 2);
+  const double squared_a = 1 - (b * b + c * c + d * d);
+  double a = 0;
+  if (squared_a < kHalfTurn) {
+    const double inverse_norm = 1 / std::sqrt(b * b + c * c + d * d);
+    b *= inverse_norm;
+    c *= inverse_norm;
+    d *= inverse_norm;
+  } else {
+    a = std::sqrt(squared_a);
+  }
+  const std::array<double, 9> rotation{
+      a * a + b * b - c * c - d * d, 2 * (b * c - a * d),           2 * (b * d + a * c),
+      2 * (b * c + a * d),           a * a + c * c - b * b - d * d, 2 * (c * d - a * b),
+      2 * (b * d - a * c),           2 * (c * d + a * b),           a * a + d * d - b * b - c * c};
+  Affine affine{};
+  for (std::size_t row = 0; row < 3; ++row) {
+    for (std::size_t axis = 0; axis < 3; ++axis) {
+      const bool is_turned_over = axis == 2 && header.at<float>(kPixdim) < 0;
+      const double voxel =
+          static_cast<double>(header.at<float>(kPixdim, axis + 1)) * (is_turned_over ? -1 : 1);
+      // In single precision, as all of a header is: what others write as sform when they have read this.
+      affine[4 * row + axis] = static_cast<float>(rotation[3 * row + axis] * voxel);
+    }
+    affine[4 * row + 3] = header.at<float>(kQoffsetX, row);
+  }
+  return affine;
 }
 
 // The sform if there is one, else the qform, else the voxel sizes alone.
-mat44 affine(const std::string& path, const nifti_1_header& h) {
-  mat44 a{};
-  if (h.sform_code > 0) {
-    std::memcpy(a.m[0], h.srow_x, sizeof h.srow_x);
-    std::memcpy(a.m[1], h.srow_y, sizeof h.srow_y);
-    std::memcpy(a.m[2], h.srow_z, sizeof h.srow_z);
-    return a;
+Affine voxel_to_world(const std::string& path, const Header& header) {
+  Affine affine{};
+  if (header.at<std::int16_t>(kSformCode) > 0) {
+    for (std::size_t i = 0; i < affine.size(); ++i) affine[i] = header.at<float>(kSrowX, i);
+    return affine;
   }
-  for (int axis = 1; axis <= 3; ++axis)
-    if (!(h.pixdim[axis] > 0)) refuse(path, "the voxel spacing is not positive");
-  if (h.qform_code > 0)
-    return nifti_quatern_to_mat44(h.quatern_b, h.quatern_c, h.quatern_d, h.qoffset_x, h.qoffset_y,
-                                  h.qoffset_z, h.pixdim[1], h.pixdim[2], h.pixdim[3],
-                                  h.pixdim[0] < 0 ? -1.0F : 1.0F);
-  for (int axis = 0; axis < 3; ++axis) a.m[axis][axis] = h.pixdim[axis + 1];
-  return a;
+  for (std::size_t axis = 0; axis < 3; ++axis) {
+    const double voxel = header.at<float>(kPixdim, axis + 1);
+    if (!(voxel > 0)) refuse(path, "the voxel spacing is not positive");
+    affine[5 * axis] = voxel;
+  }
+  return header.at<std::int16_t>(kQformCode) > 0 ? qform(header) : affine;
+}
+
+// Of the voxels, from the end of the header. An offset before that end stands for it.
+std::uint64_t gap_after(const std::string& path, const Header& header) {
+  constexpr float kSmallest = 352, kLargest = 1 << 24;  // the latter exact in a float
+  const float offset = header.at<float>(kVoxOffset);
+  if (!(offset <= kLargest)) refuse(path, "the NIfTI header is damaged (vox_offset)");
+  return static_cast<std::uint64_t>(std::max(offset, kSmallest)) - kHeaderBytes;
 }
 
 }  // namespace
 
 RawImage read_nifti(const std::string& path) {
   ByteSource source(path, path, 0, Compression::kIfGzipped);
+  const Header header(path, source);
   RawImage raw;
-  const nifti_1_header header = read_header(path, source, raw.is_swapped);
-  raw.size.assign(header.dim + 1, header.dim + 1 + header.dim[0]);
-  raw.type = voxel_type(path, header.datatype);
-  if (header.scl_slope != 0 && (header.scl_slope != 1 || header.scl_inter != 0))
+  raw.is_swapped = header.is_swapped();
+  const std::vector<std::int64_t> size = size_of(path, header);
+  raw.size.assign(size.begin(), size.end());
+  raw.type = voxel_type(path, header);
+  const float slope = header.at<float>(kSclSlope), inter = header.at<float>(kSclInter);
+  if (slope != 0 && (slope != 1 || inter != 0))
     refuse(path, "a label image is needed (the header scales the voxels: scl_slope, scl_inter)");
-  const mat44 a = affine(path, header);
-  for (std::size_t row = 0; row < 3; ++row)
-    for (std::size_t column = 0; column < 4; ++column)
-      raw.voxel_to_ras[4 * row + column] = unit_mm(header) * static_cast<double>(a.m[row][column]);
-  // An offset before the end of the header stands for that end.
-  constexpr float kSmallestOffset = 352, kLargestOffset = 1 << 24;  // the latter exact in a float
-  if (!(header.vox_offset <= kLargestOffset)) refuse(path, "the NIfTI header is damaged (vox_offset)");
-  source.skip(static_cast<std::uint64_t>(std::max(header.vox_offset, kSmallestOffset)) - sizeof header);
+  raw.voxel_to_ras = voxel_to_world(path, header);
+  for (double& entry : raw.voxel_to_ras) entry *= unit_mm(header);
+  source.skip(gap_after(path, header));
   read_voxels(path, raw, source);
   return raw;
 }

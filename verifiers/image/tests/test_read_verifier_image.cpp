@@ -1,10 +1,13 @@
 // Every format gives the same small image, its affine honoured; real ones as other readers measured them
 // (PODM_TEST_IMAGES names their folder).
 #include <gtest/gtest.h>
+#include <nifti/nifti1_io.h>
 
+#include <array>
 #include <cmath>
 #include <cstdlib>
 #include <map>
+#include <random>
 
 #include "image/image.h"
 #include "image/image_frame.h"
@@ -51,6 +54,43 @@ TEST(ReadVerifierImage, NiftiQformHalfATurnAboutZ) {
     h.qoffset_x = 4;
   });
   expect_small_image(folder.write("a.nii", file), {-1, 0, 0, 4, 0, -2, 0, 0, 0, 0, 3, 0});
+}
+
+// In whatever byte order; libnifti does not read here, but knows what a quaternion means.
+TEST(ReadVerifierImage, NiftiQformIsTheRotationThatLibniftiMakesOfIt) {
+  const Folder folder;
+  std::mt19937 random(5);
+  std::normal_distribution<float> normal;
+  for (int i = 0; i < 100; ++i) {
+    std::array<float, 4> q{normal(random), normal(random), normal(random), normal(random)};
+    if (i % 4 == 0) q[0] = 0;  // half a turn
+    const float norm = std::sqrt(q[0] * q[0] + q[1] * q[1] + q[2] * q[2] + q[3] * q[3]);
+    const float sign = q[0] < 0 ? -1.0F : 1.0F, turn = i % 2 == 0 ? 1.0F : -1.0F;
+    nifti_1_header header{};
+    const auto change = [&](auto& h) {
+      h.sform_code = 0;
+      h.qform_code = NIFTI_XFORM_SCANNER_ANAT;
+      h.pixdim[0] = turn;
+      h.quatern_b = sign * q[1] / norm;
+      h.quatern_c = sign * q[2] / norm;
+      h.quatern_d = sign * q[3] / norm;
+      h.qoffset_x = -40;
+      h.qoffset_z = 7;
+      header = h;
+    };
+    std::string file = nifti_file(kVoxels, change);
+    const mat44 expected = nifti_quatern_to_mat44(
+        header.quatern_b, header.quatern_c, header.quatern_d, header.qoffset_x, header.qoffset_y,
+        header.qoffset_z, header.pixdim[1], header.pixdim[2], header.pixdim[3], header.pixdim[0]);
+    if (i % 3 == 0) {
+      swap_nifti_header(&header, 1);
+      std::memcpy(file.data(), &header, sizeof header);
+    }
+    const Image image = read_image(folder.write("a.nii", file));
+    for (std::size_t row = 0; row < 3; ++row)
+      for (std::size_t column = 0; column < 4; ++column)
+        EXPECT_NEAR(image.voxel_to_ras[4 * row + column], static_cast<double>(expected.m[row][column]), 2e-6);
+  }
 }
 
 TEST(ReadVerifierImage, ShearIsHonouredAndUnitsAre) {
