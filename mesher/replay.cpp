@@ -46,21 +46,22 @@ class Replay {
     const auto inside = [](double low, double x, double high) { return low < x && x < high; };
     check(inside(box(0), p.x, box(3)) && inside(box(1), p.y, box(4)) && inside(box(2), p.z, box(5)),
           "its point is outside the box");
-    doomed_.clear();
+    to_remove_.clear();
     for (std::uint32_t i = 0; i < logged.num_removed; ++i) {
       const auto found = vertex_of_.find(removed[i]);
       check(found != vertex_of_.end(), "removes a vertex that is not there");
-      doomed_.push_back(found->second);
+      to_remove_.push_back(found->second);
       vertex_of_.erase(found);
     }
     CellId& start = last_cell_[logged.worker];
     check(operation_.plan_insertion(p, walk(start, p)) == StepResult::kDone,
           "its point conflicts with no cell");
     operation_.for_each_region_vertex([&](VertexId v, CellId seed) {
-      if (std::find(doomed_.begin(), doomed_.end(), v) != doomed_.end() && !operation_.removes(v))
+      if (std::find(to_remove_.begin(), to_remove_.end(), v) != to_remove_.end() && !operation_.removes(v))
         operation_.plan_removal(v, seed);
     });
-    check(operation_.num_planned_removals() == doomed_.size(), "removes a vertex that is not near its point");
+    check(operation_.num_planned_removals() == to_remove_.size(),
+          "removes a vertex that is not near its point");
     const auto is_kind = [&](VertexKind kind) { return logged.kind == static_cast<std::uint32_t>(kind); };
     check(is_kind(VertexKind::kIsosurface) || is_kind(VertexKind::kCircumcenter), "its vertex is of no kind");
     const auto kind = static_cast<VertexKind>(logged.kind);
@@ -110,7 +111,7 @@ class Replay {
   Operation<NoLocks> operation_;
   std::unordered_map<std::uint32_t, VertexId> vertex_of_;  // by the id in the log
   std::unordered_map<std::uint32_t, CellId> last_cell_;    // by worker
-  std::vector<VertexId> doomed_;                           // removed by the operation at hand
+  std::vector<VertexId> to_remove_;                        // removed by the operation at hand
 };
 
 }  // namespace

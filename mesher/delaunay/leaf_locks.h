@@ -26,7 +26,7 @@ class LeafLocks {
   std::vector<LeafId>& touched_leaves() { return touched_leaves_; }
 
   StepResult try_lock(Vertex& v) {
-    const Point p = glimpse_point(v);
+    const Point p = peek_point(v);
     if (!region_->contains(p)) return StepResult::kOutOfLeaf;
     if (is_watching_) remember(region_->octree().leaf_at(p));
     return inner_.try_lock(v);

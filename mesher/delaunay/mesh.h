@@ -44,12 +44,12 @@ static_assert(sizeof(Vertex) == 32);
 /// The point as someone sees it who may not have locked the vertex: of a stale cell it may be in the middle
 /// of a change. Acquire, and release in place(): who sees a coordinate of the new point sees that the cells
 /// of the old one have died.
-inline Point glimpse_point(const Vertex& v) {
-  const auto glimpse = [](const double& coordinate) {
+inline Point peek_point(const Vertex& v) {
+  const auto peek = [](const double& coordinate) {
     step();
     return load(coordinate, std::memory_order_acquire);
   };
-  return {glimpse(v.point.x), glimpse(v.point.y), glimpse(v.point.z)};
+  return {peek(v.point.x), peek(v.point.y), peek(v.point.z)};
 }
 /// Makes an unused vertex one at `p`.
 inline void place(Vertex& v, const Point& p, VertexKind kind) {
@@ -111,7 +111,7 @@ class Mesh {
   }
   /// Two vertices as someone without locks sees them. Acquire, and release in renew(): who sees a vertex of
   /// the new cell sees the new stamp too.
-  std::array<VertexId, 2> glimpse_two_vertices(CellId c) const {
+  std::array<VertexId, 2> peek_two_vertices(CellId c) const {
     const auto& v = cells_[c].vertices;
     step();
     const VertexId last = load(v[3], std::memory_order_acquire);

@@ -6,13 +6,13 @@
 
 namespace podm {
 
-// The stamp is compared under the locks: who replaced the cell after our glimpse held both vertices before
-// us, and a glimpse of the new cell shows the new stamp as well.
+// The stamp is compared under the locks: who replaced the cell after our peek held both vertices before
+// us, and a peek of the new cell shows the new stamp as well.
 template <class Locks>
 StepResult Operation<Locks>::reserve(CellId c, std::uint32_t stamp) {
   StepResult result = StepResult::kDone;
   if constexpr (Locks::kIsShared) {
-    const std::array<VertexId, 2> two = mesh_.glimpse_two_vertices(c);
+    const std::array<VertexId, 2> two = mesh_.peek_two_vertices(c);
     for (const VertexId v : std::span(two).first(locks_to_read())) {
       if (result != StepResult::kDone) break;
       result = v == kNoVertex ? StepResult::kStaleCell : lock(v);

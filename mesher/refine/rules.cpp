@@ -149,7 +149,7 @@ bool Rules::is_large_in_shell(const Examination& t) const {
          distance_lower_bound(t.center, parameters_.shell_mm) < parameters_.shell_mm;
 }
 
-bool Rules::is_doomed(VertexId v, const Point& z) const {
+bool Rules::r6_removes(VertexId v, const Point& z) const {
   return mesh_.vertex(v).kind == VertexKind::kCircumcenter &&
          squared_distance(mesh_.point(v), z) < squared_two_delta_;
 }

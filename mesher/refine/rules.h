@@ -84,7 +84,7 @@ class Rules {
   /// R4 and R5 insert the circumcentre.
   std::optional<Rule> volume_rule(const Examination& t) const;
   /// R6.
-  bool is_doomed(VertexId v, const Point& z) const;
+  bool r6_removes(VertexId v, const Point& z) const;
 
   /// Label at the circumcentre, remembered in the store so that all cells around see the same.
   LabelIndex label_of(CellId c) const;

@@ -146,7 +146,7 @@ template <class Locks>
 StepResult Worker<Locks>::plan_r6_removals(const Point& z) {
   StepResult planned = StepResult::kDone;
   operation_.for_each_region_vertex([&](VertexId v, CellId seed) {
-    if (planned == StepResult::kDone && rules_.is_doomed(v, z) && !operation_.removes(v))
+    if (planned == StepResult::kDone && rules_.r6_removes(v, z) && !operation_.removes(v))
       planned = operation_.plan_removal(v, seed);
   });
   return planned;
