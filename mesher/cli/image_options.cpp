@@ -33,11 +33,12 @@ void add_image_options(CLI::App& app, ImageArguments& image) {
            [&image](const std::string& text, const std::string&) {
              image.selection.merges.push_back(parse_merge(text));
            });
-  add_one(app, "--background", "VALUE", "label value of the background [default: 0]",
-          [&image](const std::string& text, const std::string& name) {
-            image.selection.background = static_cast<std::uint32_t>(
-                parse_integer(text, name, 0, std::numeric_limits<std::uint32_t>::max()));
-          });
+  add_one(app, "--background", "VALUE", "label value of the background",
+          {[&image](const std::string& text, const std::string& name) {
+             image.selection.background = static_cast<std::uint32_t>(
+                 parse_integer(text, name, 0, std::numeric_limits<std::uint32_t>::max()));
+           },
+           std::to_string(image.selection.background)});
   add_one(app, "--label-names", "FILE",
           "names of labels: an ITK-SNAP table or lines \"value name\" [default: none]",
           into(image.label_names_path));
@@ -62,10 +63,11 @@ void add_phantom_command(CLI::App& program, PhantomCommand& command) {
   CLI::App& app = add_command(program, "phantom", "write an analytic phantom as a label image");
   require(add_one(app, "NAME", "", fmt::format("one of {}", fmt::join(phantom_names(), ", ")),
                   into(command.name)));
-  add_one(app, "--size", "N", fmt::format("voxels along the longest axis [default: {}]", command.size),
-          [&command](const std::string& text, const std::string& name) {
-            command.size = static_cast<int>(parse_integer(text, name, 1, kMaxPhantomSize));
-          });
+  add_one(app, "--size", "N", "voxels along the longest axis",
+          {[&command](const std::string& text, const std::string& name) {
+             command.size = static_cast<int>(parse_integer(text, name, 1, kMaxPhantomSize));
+           },
+           std::to_string(command.size)});
   require(add_one(app, "-o,--output", "FILE", "NIfTI file: .nii or .nii.gz [required]",
                   into(command.output_path)));
 }

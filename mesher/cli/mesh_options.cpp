@@ -37,9 +37,7 @@ void add_limit_options(CLI::App& app, MeshCommand& command) {
   add_one(app, "--max-elements", "N", "stop at this many cells [default: none]",
           into_count(meshing.max_elements));
   add_one(app, "--max-seconds", "S", "stop meshing after this many seconds [default: none]",
-          [&meshing](const std::string& text, const std::string& name) {
-            meshing.max_seconds = parse_positive(text, name, "number of seconds");
-          });
+          into_positive(meshing.max_seconds, "number of seconds"));
   add_one(app, "--max-memory-gib", "GIB", "memory of the process, GiB [default: 80 % of what is available]",
           [&command](const std::string& text, const std::string& name) {
             const double bytes = parse_positive(text, name, "number of GiB") * kBytesPerGib;
@@ -50,20 +48,12 @@ void add_limit_options(CLI::App& app, MeshCommand& command) {
 
 void add_algorithm_options(CLI::App& app, MeshCommand& command) {
   MeshingOptions& meshing = command.meshing;
-  const auto into_threads = [](int& target) {
-    return [&target](const std::string& text, const std::string& name) {
-      target = static_cast<int>(parse_integer(text, name, 1, kMaxThreads));
-    };
-  };
   begin_group(app, "Algorithm");
   add_one(app, "--algorithm", "NAME",
           "podm: threads anywhere, with locks; pdr-podm: leaf by leaf of an octree,\n"
           "by nodes of several threads; pdr: leaf by leaf, a thread each, no locks;\n"
-          "auto: podm on few threads, pdr-podm on many [default: podm]",
-          [&meshing](const std::string& text, const std::string& name) {
-            meshing.algorithm = parse_choice(
-                text, name, {Algorithm::kAuto, Algorithm::kPodm, Algorithm::kPdr, Algorithm::kPdrPodm});
-          });
+          "auto: podm on few threads, pdr-podm on many",
+          into_choice(meshing.algorithm));
   add_one(app, "--crossover", "N|FILE",
           fmt::format("threads from which on auto is pdr-podm, or the file in which podm-bench stored\n"
                       "what it measured here [default: the file named by {}, else {}]",
@@ -73,11 +63,8 @@ void add_algorithm_options(CLI::App& app, MeshCommand& command) {
           into_threads(meshing.nodes));
   add_one(app, "--cores-per-node", "N", "threads of each computing node [default: threads over nodes]",
           into_threads(meshing.cores_per_node));
-  add_one(app, "--initial-ratio", "X",
-          "bounds of the initial mesh of pdr and pdr-podm over the final ones [default: 4]",
-          [&meshing](const std::string& text, const std::string& name) {
-            meshing.initial_ratio = parse_positive(text, name, "number");
-          });
+  add_one(app, "--initial-ratio", "X", "bounds of the initial mesh of pdr and pdr-podm over the final ones",
+          into_positive(meshing.initial_ratio, "number"));
   add_one(app, "--initial-threads", "N", "threads of the initial mesh [default: all]",
           into_threads(meshing.initial_threads));
   add_one(app, "--leaf-size", "MM", "side of the octree's leaves, mm [default: from the initial bound]",
@@ -91,26 +78,17 @@ void add_run_options(CLI::App& app, MeshCommand& command) {
   add_one(app, "--threads", "N",
           "threads of all phases; 1 makes the same mesh every time\n"
           "[default: one for refinement, all cores for the feature transform]",
-          [&meshing](const std::string& text, const std::string& name) {
-            meshing.threads = static_cast<int>(parse_integer(text, name, 1, kMaxThreads));
-          });
-  add_one(
-      app, "--contention", "MANAGER",
-      "what a thread does that meets another's lock:\naggressive, random, global or local [default: local]",
-      [&meshing](const std::string& text, const std::string& name) {
-        meshing.contention = parse_choice(
-            text, name,
-            {Contention::kAggressive, Contention::kRandom, Contention::kGlobal, Contention::kLocal});
-      });
+          into_threads(meshing.threads));
+  add_one(app, "--contention", "MANAGER",
+          "what a thread does that meets another's lock:\n" + names_of_choices<Contention>(),
+          into_choice(meshing.contention));
   add_one(app, "--begging", "LIST",
           "whom a thread with cells to spare serves first: random (the first to beg)\n"
-          "or hierarchical (the nearest in the machine) [default: hierarchical]",
-          [&meshing](const std::string& text, const std::string& name) {
-            meshing.begging = parse_choice(text, name, {Begging::kRandom, Begging::kHierarchical});
-          });
+          "or hierarchical (the nearest in the machine)",
+          into_choice(meshing.begging));
   add_one(app, "--pin", "PLAN",
           "bind threads to processors: compact, scatter, none,\n"
-          "or processors such as 0,2,4-7 [default: none]",
+          "or processors such as 0,2,4-7",
           into(meshing.pin));
   add_flag(app, "--oversubscribe", meshing.oversubscribe,
            "allow more threads than processors [default: refused]");
@@ -119,19 +97,15 @@ void add_run_options(CLI::App& app, MeshCommand& command) {
           into(meshing.topology_path));
   add_one(app, "--executor", "EXECUTOR",
           "threads, or virtual: one core plays any number of threads in virtual time,\n"
-          "the same for the same seed; times are simulated [default: threads]",
-          [&meshing](const std::string& text, const std::string& name) {
-            meshing.executor = parse_choice(text, name, {Executor::kThreads, Executor::kVirtual});
-          });
-  add_one(app, "--virtual-cost", "COST",
-          "virtual time of an attempt: unit (1 us) or measured (by its work)\n[default: measured]",
-          [&meshing](const std::string& text, const std::string& name) {
-            meshing.virtual_cost = parse_choice(text, name, {VirtualCost::kUnit, VirtualCost::kMeasured});
-          });
-  add_one(app, "--seed", "N", "of pauses after conflicts and of virtual time [default: 1]",
-          [&meshing](const std::string& text, const std::string& name) {
-            meshing.seed = parse_integer(text, name, 0, std::numeric_limits<std::uint32_t>::max());
-          });
+          "the same for the same seed; times are simulated",
+          into_choice(meshing.executor));
+  add_one(app, "--virtual-cost", "COST", "virtual time of an attempt: unit (1 us) or measured (by its work)",
+          into_choice(meshing.virtual_cost));
+  add_one(app, "--seed", "N", "of pauses after conflicts and of virtual time",
+          {[&meshing](const std::string& text, const std::string& name) {
+             meshing.seed = parse_integer(text, name, 0, std::numeric_limits<std::uint32_t>::max());
+           },
+           std::to_string(meshing.seed)});
   add_one(app, "--log", "FILE", "write every operation in its order, for podm replay [default: none]",
           into(command.log_path));
 }
@@ -148,11 +122,8 @@ void add_mesh_command(CLI::App& program, MeshCommand& command) {
                   into(command.mesh_path)));
   add_one(app, "--surface", "FILE", "also the closed surface of each label: .stl or .ply [default: none]",
           into(command.surface_path));
-  add_one(app, "--space", "SPACE",
-          "frame of the coordinates: RAS or LPS (mm), or voxel (indices) [default: RAS]",
-          [&command](const std::string& text, const std::string& name) {
-            command.meshing.space = parse_choice(text, name, {Space::kRas, Space::kLps, Space::kVoxel});
-          });
+  add_one(app, "--space", "SPACE", "frame of the coordinates: RAS or LPS (mm), or voxel (indices)",
+          into_choice(command.meshing.space));
   add_one(app, "--record", "FILE", "append one JSON line that describes the run [default: none]",
           into(command.record_path));
   add_algorithm_options(app, command);

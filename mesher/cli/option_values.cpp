@@ -6,6 +6,7 @@
 #include <cmath>
 #include <limits>
 
+#include "cli/options.h"
 #include "podm/errors.h"
 
 namespace podm::cli {
@@ -44,23 +45,35 @@ std::pair<std::string, double> parse_label_length(const std::string& text, const
   return {label, parse_positive(text.substr(equals + 1), option + " " + label, "length in mm")};
 }
 
-Take into(std::string& file_name) {
-  return [&file_name](const std::string& text, const std::string& name) {
-    if (text.empty()) throw InputError(name + ": the name of a file is empty");
-    file_name = text;
-  };
+Target into(std::string& text) {
+  return {[&text](const std::string& told, const std::string& name) {
+            if (told.empty()) throw InputError(name + ": is empty");
+            text = told;
+          },
+          text};
 }
 
-Take into_length(double& length_mm) {
-  return [&length_mm](const std::string& text, const std::string& name) {
-    length_mm = parse_positive(text, name, "length in mm");
-  };
+Target into_length(double& length_mm) { return into_positive(length_mm, "length in mm"); }
+
+Target into_count(std::uint64_t& count) {
+  return {[&count](const std::string& text, const std::string& name) {
+            count = parse_integer(text, name, 1, std::numeric_limits<std::uint32_t>::max());
+          },
+          count > 0 ? std::to_string(count) : ""};
 }
 
-Take into_count(std::uint64_t& count) {
-  return [&count](const std::string& text, const std::string& name) {
-    count = parse_integer(text, name, 1, std::numeric_limits<std::uint32_t>::max());
-  };
+Target into_positive(double& value, const std::string& quantity) {
+  return {[&value, quantity](const std::string& text, const std::string& name) {
+            value = parse_positive(text, name, quantity);
+          },
+          value > 0 ? fmt::format("{:g}", value) : ""};
+}
+
+Target into_threads(int& threads) {
+  return {[&threads](const std::string& text, const std::string& name) {
+            threads = static_cast<int>(parse_integer(text, name, 1, kMaxThreads));
+          },
+          threads > 0 ? std::to_string(threads) : ""};
 }
 
 }  // namespace podm::cli

@@ -1,15 +1,14 @@
 // What the text of an option means. Every function throws InputError naming the option and the fault.
 #pragma once
 
+#include <concepts>
 #include <cstdint>
 #include <functional>
-#include <initializer_list>
 #include <string>
 #include <utility>
 
+#include "podm/choices.h"
 #include "podm/errors.h"
-#include "podm/mesh_image.h"
-#include "podm/tet_mesh.h"
 
 namespace podm::cli {
 
@@ -20,16 +19,22 @@ double parse_positive(const std::string& text, const std::string& option, const 
 std::uint64_t parse_integer(const std::string& text, const std::string& option, std::uint64_t low,
                             std::uint64_t high);
 
-/// The choice whose to_string() is `text`.
-template <class Choice>
-Choice parse_choice(const std::string& text, const std::string& option,
-                    std::initializer_list<Choice> choices) {
+/// "aggressive, random, global or local".
+template <Named Choice>
+std::string names_of_choices() {
+  const auto& all = Names<Choice>::kAll;
   std::string names;
-  for (const Choice choice : choices) {
-    if (text == to_string(choice)) return choice;
-    names += (names.empty() ? "" : choice == *(choices.end() - 1) ? " or " : ", ") + to_string(choice);
-  }
-  throw InputError(option + ": '" + text + "' is not one of " + names);
+  for (std::size_t i = 0; i < all.size(); ++i)
+    names += (i == 0 ? "" : i + 1 < all.size() ? ", " : " or ") + std::string(all[i].second);
+  return names;
+}
+
+/// The choice of that name.
+template <Named Choice>
+Choice parse_choice(const std::string& text, const std::string& option) {
+  for (const auto& [value, name] : Names<Choice>::kAll)
+    if (text == name) return value;
+  throw InputError(option + ": '" + text + "' is not one of " + names_of_choices<Choice>());
 }
 
 /// "liver=2" or "7=0.5": a label, by name or value, and a length in mm.
@@ -38,8 +43,27 @@ std::pair<std::string, double> parse_label_length(const std::string& text, const
 /// Stores the text given to the option of this name, or refuses it with an InputError.
 using Take = std::function<void(const std::string& text, const std::string& name)>;
 
-Take into(std::string& file_name);
-Take into_length(double& length_mm);
-Take into_count(std::uint64_t& count);
+/// Where an option's value goes, and the value that is there untold, as help shows it. Empty: 0 or no text,
+/// which stand for what help says in words.
+struct Target {
+  template <std::convertible_to<Take> T>
+  Target(T of, std::string value_untold = "") : take(std::move(of)), untold(std::move(value_untold)) {}
+  Take take;
+  std::string untold;
+};
+
+Target into(std::string& text);
+Target into_length(double& length_mm);
+Target into_count(std::uint64_t& count);
+/// `quantity`: as for parse_positive.
+Target into_positive(double& value, const std::string& quantity);
+Target into_threads(int& threads);
+template <Named Choice>
+Target into_choice(Choice& choice) {
+  return {[&choice](const std::string& text, const std::string& name) {
+            choice = parse_choice<Choice>(text, name);
+          },
+          to_string(choice)};
+}
 
 }  // namespace podm::cli

@@ -45,8 +45,9 @@ CLI::App& add_command(CLI::App& program, const std::string& name, const std::str
 void begin_group(CLI::App& app, const std::string& title) { app.option_defaults()->group(title); }
 
 CLI::Option* add_one(CLI::App& app, const std::string& names, const std::string& type,
-                     const std::string& description, const Take& take) {
-  return add_value(app, names, type, description, take)
+                     const std::string& description, const Target& target) {
+  const std::string untold = target.untold.empty() ? "" : " [default: " + target.untold + "]";
+  return add_value(app, names, type, description + untold, target.take)
       ->expected(1)
       ->multi_option_policy(CLI::MultiOptionPolicy::Throw);
 }

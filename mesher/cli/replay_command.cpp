@@ -27,8 +27,7 @@ int run(const ReplayCommand& command) {
   if (log.head.image_sha256 != label_image_sha256(image))
     throw InputError(fmt::format("{}: made from another image than {} with these label options",
                                  command.log_path, command.image.path));
-  const Space space =
-      parse_choice(log.head.space, command.log_path, {Space::kRas, Space::kLps, Space::kVoxel});
+  const Space space = parse_choice<Space>(log.head.space, command.log_path);
   TetMesh mesh = replay_log(command.log_path, image, log, space);
   canonicalize(mesh);
   const std::string sha256 = mesh_sha256(mesh);

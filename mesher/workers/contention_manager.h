@@ -14,7 +14,7 @@
 #include <string>
 #include <vector>
 
-#include "podm/mesh_image.h"
+#include "podm/choices.h"
 #include "workers/activity.h"
 
 namespace podm {

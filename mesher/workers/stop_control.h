@@ -8,7 +8,7 @@
 #include <optional>
 #include <stop_token>
 
-#include "podm/mesh_image.h"
+#include "podm/choices.h"
 
 namespace podm {
 

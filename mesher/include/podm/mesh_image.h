@@ -10,6 +10,7 @@
 #include <string>
 #include <vector>
 
+#include "podm/choices.h"
 #include "podm/errors.h"
 #include "podm/label_image.h"
 #include "podm/tet_mesh.h"
@@ -23,33 +24,9 @@ inline constexpr double kRadiusEdgeBound = 1.93;
 /// Every planar angle of every boundary facet exceeds this, in degrees.
 inline constexpr double kFacetAngleBound = 30.0;
 
-/// How the work is divided among threads. kPodm: anywhere, with locks. kPdrPodm: an initial mesh by PODM,
-/// then leaf by leaf of an octree, each by a computing node of several threads. kPdr: leaf by leaf, one
-/// thread each, without locks. kAuto: kPodm on few threads, kPdrPodm on many.
-enum class Algorithm { kAuto, kPodm, kPdr, kPdrPodm };
-std::string to_string(Algorithm algorithm);
-
 /// Threads from which on kAuto is kPdrPodm, unless told: the crossover of the published runs lies between 128
 /// and 160 cores (Feng et al., IMR 2015, Table 1). An experiment measures it for the machine at hand.
 inline constexpr int kDefaultCrossover = 144;
-
-/// What a worker does that finds a vertex locked by another; see refine/contention_manager.h.
-enum class Contention { kAggressive, kRandom, kGlobal, kLocal };
-std::string to_string(Contention contention);
-
-/// Whom a worker with cells to spare serves first: the one that has begged longest, or the nearest in the
-/// machine; see workers/begging_list.h.
-enum class Begging { kRandom, kHierarchical };
-std::string to_string(Begging begging);
-
-/// Who runs the workers: threads, or one core that plays them in virtual time (workers/virtual_time.h).
-enum class Executor { kThreads, kVirtual };
-std::string to_string(Executor executor);
-
-/// What an attempt lasts in virtual time: 1 us, or by its work, in the proportions of a measured run. Both
-/// are varied at random by half.
-enum class VirtualCost { kUnit, kMeasured };
-std::string to_string(VirtualCost cost);
 
 class OperationLogWriter;
 struct OperationLog;
@@ -103,10 +80,6 @@ struct Estimate {
   double cells = 0;
   double memory_bytes = 0;  ///< peak of the whole process
 };
-
-/// kNumberLimit: kMostStoredCells were made, though memory was left.
-enum class StopReason { kComplete, kCancelled, kElementLimit, kTimeLimit, kMemoryLimit, kNumberLimit };
-std::string to_string(StopReason reason);
 
 struct Progress {
   std::string phase;        ///< "transform", "refine", "extract", "measure"

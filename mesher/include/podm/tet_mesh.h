@@ -6,15 +6,10 @@
 #include <string>
 #include <vector>
 
+#include "podm/choices.h"
 #include "podm/label_image.h"
 
 namespace podm {
-
-/// The frame of vertex coordinates, all in mm but `voxel` (continuous voxel indices).
-enum class Space { kRas, kLps, kVoxel };
-
-/// "RAS", "LPS" or "voxel".
-std::string to_string(Space space);
 
 /// Every cell is positively oriented: with vertices (a,b,c,d), dot(cross(b-a, c-a), d-a) > 0.
 struct TetMesh {
