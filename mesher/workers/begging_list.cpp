@@ -1,58 +1,101 @@
 #include "workers/begging_list.h"
 
 #include <algorithm>
+#include <limits>
+#include <set>
 
 namespace podm {
 
+namespace {
+
+// A group has as many members as the level below has groups within it; the smallest has workers.
+int num_members(const WorkerGroups& groups, std::size_t level, int group) {
+  std::set<int> members;
+  for (std::size_t worker = 0; worker < groups[level].size(); ++worker)
+    if (groups[level][worker] == group)
+      members.insert(level == 0 ? static_cast<int>(worker) : groups[level - 1][worker]);
+  return static_cast<int>(members.size());
+}
+
+}  // namespace
+
 BeggingList::BeggingList(int num_workers, WorkerGroups groups) : groups_(std::move(groups)) {
   groups_.emplace_back(static_cast<std::size_t>(num_workers), 0);
-  for (const std::vector<int>& level : groups_) {
-    levels_.push_back(std::make_unique<Group[]>(
-        1 + static_cast<std::size_t>(*std::max_element(level.begin(), level.end()))));
-    for (const int group : level) ++levels_.back()[static_cast<std::size_t>(group)].size;
+  for (std::size_t level = 0; level < groups_.size(); ++level) {
+    num_groups_.push_back(1 + *std::max_element(groups_[level].begin(), groups_[level].end()));
+    const auto count = static_cast<std::size_t>(num_groups_.back());
+    levels_.push_back(std::make_unique<Group[]>(count));
+    for (std::size_t group = 0; group < count; ++group)
+      levels_[level][group].num_members = num_members(groups_, level, static_cast<int>(group));
   }
 }
 
-void BeggingList::add(WorkerId worker) {
-  beggars_.push_back(worker);
-  for (std::size_t level = 0; level < levels_.size(); ++level) ++group_of(level, worker).num_begging;
-  count_visible();
+// Whoever would fill a list is the last of its group to beg.
+bool BeggingList::add(WorkerId worker) {
+  for (std::size_t level = 0;; ++level) {
+    Group& group = group_of(level, worker);
+    const int most_beggars = is_machine(level) ? std::numeric_limits<int>::max() : group.num_members - 1;
+    const Added added = add_to(group, worker, most_beggars);
+    if (added != Added::kFull) return added == Added::kListed;
+  }
 }
 
-void BeggingList::remove(WorkerId worker) {
-  beggars_.erase(std::find(beggars_.begin(), beggars_.end(), worker));
-  for (std::size_t level = 0; level < levels_.size(); ++level) --group_of(level, worker).num_begging;
-  count_visible();
+BeggingList::Added BeggingList::add_to(Group& group, WorkerId worker, int most_beggars) {
+  const std::scoped_lock lock(group.mutex);
+  if (group.is_closed) return Added::kClosed;
+  if (static_cast<int>(group.beggars.size()) >= most_beggars) return Added::kFull;
+  group.beggars.push_back(worker);
+  count(group);
+  return Added::kListed;
 }
 
-std::size_t BeggingList::reach_of(WorkerId beggar) const {
-  std::size_t level = 0;
-  while (level + 1 < levels_.size() && group_of(level, beggar).num_begging == group_of(level, beggar).size)
-    ++level;
-  return level;
-}
-
-// Relaxed: only a hint, first_for() looks again.
-void BeggingList::count_visible() {
-  for (std::size_t level = 0; level < levels_.size(); ++level)
-    for (const int group : groups_[level])
-      levels_[level][static_cast<std::size_t>(group)].num_visible.store(0, std::memory_order_relaxed);
-  for (const WorkerId beggar : beggars_)
-    for (std::size_t level = 0; level <= reach_of(beggar); ++level)
-      group_of(level, beggar).num_visible.fetch_add(1, std::memory_order_relaxed);
+WorkerId BeggingList::take_first_for(WorkerId giver) {
+  for (std::size_t level = 0; level < levels_.size(); ++level) {
+    Group& group = group_of(level, giver);
+    const std::scoped_lock lock(group.mutex);
+    if (group.beggars.empty()) continue;
+    const WorkerId first = group.beggars.front();
+    group.beggars.pop_front();
+    count(group);
+    return first;
+  }
+  return kNoWorker;
 }
 
 bool BeggingList::may_serve(WorkerId giver) const {
   for (std::size_t level = 0; level < levels_.size(); ++level)
-    if (group_of(level, giver).num_visible.load(std::memory_order_relaxed) > 0) return true;
+    if (group_of(level, giver).num_beggars.load(std::memory_order_relaxed) > 0) return true;
   return false;
 }
 
-WorkerId BeggingList::first_for(WorkerId giver) const {
+void BeggingList::remove(WorkerId worker) {
+  for (std::size_t level = 0; level < levels_.size(); ++level) {
+    Group& group = group_of(level, worker);
+    const std::scoped_lock lock(group.mutex);
+    std::erase(group.beggars, worker);
+    count(group);
+  }
+}
+
+// From the smallest groups upwards, as add() goes: who finds a list full meets the next before it is closed,
+// and is returned, or after.
+std::vector<WorkerId> BeggingList::close() {
+  std::vector<WorkerId> beggars;
   for (std::size_t level = 0; level < levels_.size(); ++level)
-    for (const WorkerId beggar : beggars_)
-      if (groups_[level][beggar] == groups_[level][giver] && level <= reach_of(beggar)) return beggar;
-  return kNoWorker;
+    for (std::size_t i = 0; i < static_cast<std::size_t>(num_groups_[level]); ++i) {
+      Group& group = levels_[level][i];
+      const std::scoped_lock lock(group.mutex);
+      beggars.insert(beggars.end(), group.beggars.begin(), group.beggars.end());
+      group.beggars.clear();
+      group.is_closed = true;
+      count(group);
+    }
+  return beggars;
+}
+
+// The count is only a hint to those who do not hold the lock.
+void BeggingList::count(Group& group) {
+  group.num_beggars.store(static_cast<int>(group.beggars.size()), std::memory_order_relaxed);
 }
 
 }  // namespace podm

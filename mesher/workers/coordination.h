@@ -1,10 +1,17 @@
 // How the workers of one group get along: who runs, who waits after a conflict, who begs and is given cells.
 // What a worker does after an attempt is decided here alone; time, real or virtual, does the blocking.
 //
-// One mutex guards it all. It is taken on conflicts, when cells run out or are given, and after every 10
-// successes while somebody waits: not by operations that succeed alone.
+// Workers meet at locks of single workers and of begging lists, and count those who beg: an operation that
+// succeeds alone touches none of them. Where each use of a lock is charged 0.5 us, one after the other, the
+// refinement of 0.5 million cells by 256 virtual workers takes 1.05 times as long; with one lock for all it
+// took 2.4 times as long.
+//
+// A worker begs when it is on a list, and is counted then; whoever takes it off the list counts it down
+// before the gift. So when all are counted, none runs, none has a gift, and none waits, for whoever waits,
+// waits for one that runs (workers/contention_manager.h): no cells are left.
 #pragma once
 
+#include <atomic>
 #include <functional>
 #include <mutex>
 #include <utility>
@@ -12,7 +19,6 @@
 
 #include "refine/outcome.h"
 #include "refine/poor_element_list.h"
-#include "workers/activity.h"
 #include "workers/begging_list.h"
 #include "workers/contention_manager.h"
 
@@ -62,16 +68,19 @@ class Coordination {
   static constexpr std::size_t kEnoughToShare = 64, kMostToShare = 1024;
   static constexpr WorkerId kMaster = 0;
 
-  // Of one worker, which alone counts, in a cache line of its own.
-  struct alignas(64) Streak {
-    int conflicts = 0, successes = 0;  // in a row
+  // What belongs to one worker, in cache lines of its own.
+  struct alignas(128) Member {
+    int conflicts = 0, successes = 0;  // in a row; it alone counts
+    std::mutex mutex;                  // guards the gift
+    Entries gift;
   };
 
   // All below number workers from 0 on.
   Answer conflict(WorkerId self, WorkerId holder);
   bool is_due_to_wake(WorkerId self) {
-    streaks_[self].conflicts = 0;
-    return ++streaks_[self].successes % ContentionManager::kSuccessesToWake == 0 && contention_.has_waiting();
+    Member& member = members_[self];
+    member.conflicts = 0;
+    return ++member.successes % ContentionManager::kSuccessesToWake == 0 && contention_.may_wake(self);
   }
   void wake_one(WorkerId self);
   // A hint: somebody begs whom `giver`, which lists so many cells, could serve.
@@ -80,24 +89,23 @@ class Coordination {
   }
   template <class Worker>
   void share(WorkerId giver, Worker& worker) {
-    const std::scoped_lock lock(mutex_);
-    const WorkerId beggar = begging_.first_for(giver);
-    if (beggar == kNoWorker) return;
     Entries cells = worker.share(kMostToShare);
     if (cells.empty()) return;
-    gifts_[beggar] = std::move(cells);
-    end_begging(beggar);
+    const WorkerId beggar = begging_.take_first_for(giver);
+    if (beggar == kNoWorker) {  // another was quicker
+      worker.give(cells);
+    } else {
+      give(beggar, std::move(cells));
+    }
   }
+  void give(WorkerId beggar, Entries cells);
   void end_begging(WorkerId beggar);
-  void resume(WorkerId worker);
+  void resume(WorkerId worker) { resume_(first_id_ + worker); }
 
-  std::mutex mutex_;
-  Activity activity_;
   ContentionManager contention_;
   BeggingList begging_;
-  std::vector<Entries> gifts_;
-  bool is_dismissed_ = false;
-  std::vector<Streak> streaks_;
+  std::vector<Member> members_;
+  std::atomic<int> num_begging_ = 0;
   std::function<void(WorkerId)> resume_;
   WorkerId first_id_;
 };

@@ -1,0 +1,133 @@
+// Workers of all kinds of coordination, who use up cells that are numbers: every cell is used once, and the
+// master learns that none is left, whoever met, waited for or begged from whom.
+#include <gtest/gtest.h>
+
+#include <atomic>
+#include <random>
+
+#include "workers/coordination.h"
+#include "workers/real_time.h"
+#include "workers/virtual_time.h"
+
+namespace podm::test {
+namespace {
+
+constexpr int kNumWorkers = 12;
+// Two nodes of two sockets of three workers.
+const WorkerGroups kNested{{0, 0, 0, 1, 1, 1, 2, 2, 2, 3, 3, 3}, {0, 0, 0, 0, 0, 0, 1, 1, 1, 1, 1, 1}};
+
+// One that meets others at random, and whose cells make more while there are any to be made.
+class Player {
+ public:
+  Player(WorkerId self, std::atomic<int>& num_left_to_make, std::atomic<int>& num_used)
+      : self_(self), num_left_to_make_(num_left_to_make), num_used_(num_used), random_(self) {}
+
+  WorkerId id() const { return self_; }
+  bool has_work() const { return !cells_.empty(); }
+  std::size_t num_listed() const { return cells_.size(); }
+  void give(const Coordination::Entries& cells) { cells_.insert(cells_.end(), cells.begin(), cells.end()); }
+  Coordination::Entries share(std::size_t most) {
+    Coordination::Entries given;
+    while (given.size() < most && given.size() < cells_.size()) {
+      given.push_back(cells_.back());
+      cells_.pop_back();
+    }
+    return given;
+  }
+  Outcome attempt() {
+    if (random_() % 4 == 0) {
+      holder_ = static_cast<WorkerId>((self_ + 1 + random_() % (kNumWorkers - 1)) % kNumWorkers);
+      return Outcome::kLockConflict;
+    }
+    cells_.pop_back();
+    ++num_used_;
+    for (int made = 0; made < 3 && num_left_to_make_.fetch_sub(1) > 0; ++made) cells_.push_back({});
+    return Outcome::kCommitted;
+  }
+  void release() {}
+  WorkerId conflicting_worker() const { return holder_; }
+  // What virtual time charges.
+  struct Counts {
+    std::uint64_t classified_cells = 1, conflict_tests = 0, cells_created = 0;
+  };
+  Counts counters() const { return {}; }
+  Counts operation_counters() const { return {}; }
+  std::int64_t net_cells() const { return 0; }
+
+ private:
+  WorkerId self_, holder_ = 0;
+  std::atomic<int>&num_left_to_make_, &num_used_;
+  std::mt19937 random_;
+  Coordination::Entries cells_;
+};
+
+class Coordinated : public testing::TestWithParam<std::tuple<Contention, bool>> {
+ protected:
+  // As PODM's loop does, round after round of the master, as for one leaf after the other.
+  template <class Time>
+  void play(Time& time) {
+    constexpr int kRounds = 50, kCells = 3000;
+    const auto [contention, is_nested] = GetParam();
+    std::atomic<int> num_left_to_make = 0, num_used = 0;
+    std::vector<Player> players;
+    for (WorkerId self = 0; self < kNumWorkers; ++self)
+      players.emplace_back(self, num_left_to_make, num_used);
+    Coordination group({kNumWorkers, contention, is_nested ? kNested : WorkerGroups{}, 5},
+                       [&](WorkerId worker) { time.resume(worker); });
+    time.run([&](WorkerId self) {
+      if (self != 0) {
+        work(players[self], group, time);
+        return;
+      }
+      for (int round = 1; round <= kRounds; ++round) {
+        num_left_to_make = kCells - 1;
+        players[0].give({{}});
+        work(players[0], group, time);
+        EXPECT_EQ(num_used, round * kCells);
+      }
+      group.dismiss();
+    });
+    EXPECT_FALSE(stop_.is_over());
+  }
+
+  StopControl stop_{{}, {}, [](std::uint64_t) {}};
+
+ private:
+  template <class Time>
+  void work(Player& player, Coordination& group, Time& time) {
+    const WorkerId self = player.id();
+    for (;;) {
+      if (player.has_work()) {
+        const Outcome outcome = time.attempt(player);
+        const auto [answer, pause_s] = group.after(outcome, self, player);
+        if (answer == ContentionManager::Answer::kWait) time.block(self, &Overhead::contention_s);
+        if (answer == ContentionManager::Answer::kPause) time.pause(self, pause_s);
+      } else {
+        if (!group.beg(self)) return;
+        time.block(self, &Overhead::begging_s);
+        player.give(group.take_gift(self));
+      }
+    }
+  }
+};
+
+TEST_P(Coordinated, UsesUpAllCellsOnThreads) {
+  RealTime time(stop_, kNumWorkers, {});
+  play(time);
+}
+
+TEST_P(Coordinated, UsesUpAllCellsInVirtualTime) {
+  VirtualTime time(stop_, kNumWorkers, VirtualCost::kUnit, 3);
+  play(time);
+}
+
+INSTANTIATE_TEST_SUITE_P(Managers, Coordinated,
+                         testing::Combine(testing::Values(Contention::kAggressive, Contention::kRandom,
+                                                          Contention::kGlobal, Contention::kLocal),
+                                          testing::Bool()),
+                         [](const auto& of) {
+                           return to_string(std::get<0>(of.param)) + (std::get<1>(of.param) ? "Nested" : "");
+                         });
+
+}  // namespace
+}  // namespace podm::test
