@@ -6,6 +6,8 @@
 #include <limits>
 #include <numeric>
 
+#include "algorithms/team_size.h"
+#include "default_sizes.h"
 #include "image/working_frame.h"
 #include "memory_model.h"
 #include "runtime/parallel_for.h"
@@ -13,8 +15,6 @@
 namespace podm {
 
 namespace {
-
-constexpr double kMaxDeltaVoxels = 2;
 
 std::uint64_t count_foreground(const LabelIndex* row, int size) {
   std::uint32_t count = 0;
@@ -103,11 +103,6 @@ struct alignas(64) VoxelBounds {
 
 }  // namespace
 
-double default_delta_mm(const LabelImage& image, double radius_mm) {
-  const double voxel = std::cbrt(image.spacing[0] * image.spacing[1] * image.spacing[2]);
-  return radius_mm > 0 ? std::min(kMaxDeltaVoxels * voxel, radius_mm / 2) : voxel;
-}
-
 std::vector<std::uint64_t> count_voxels(const LabelImage& image, int threads) {
   const VoxelCounts none{std::vector<std::uint64_t>(image.labels.size())};
   const auto add_row = [&](VoxelCounts& counts, int j, int k) {
@@ -148,12 +143,12 @@ double CostModel::area_mm2(double distance_mm) const {
   return area_mm2;
 }
 
-double CostModel::cells(const MeshingOptions& options) const {
-  const double area = area_mm2(kSeenOverDelta * options.delta_mm);
-  double cells = kSurfaceCells * area / (options.delta_mm * options.delta_mm);
+double CostModel::cells(const SizeOptions& sizes) const {
+  const double area = area_mm2(kSeenOverDelta * sizes.delta_mm);
+  double cells = kSurfaceCells * area / (sizes.delta_mm * sizes.delta_mm);
   for (std::size_t i = 1; i < image_.labels.size(); ++i) {
-    const auto own = options.radius_of_mm.find(image_.labels[i].value);
-    const double radius = own != options.radius_of_mm.end() ? own->second : options.radius_mm;
+    const auto own = sizes.radius_of_mm.find(image_.labels[i].value);
+    const double radius = own != sizes.radius_of_mm.end() ? own->second : sizes.radius_mm;
     if (radius <= 0 || volume_of_label_mm3_[i] == 0) continue;
     const double core = std::max(0.0, 1 - kGradedOverRadius * radius * area / (3 * volume_mm3_));
     cells += kVolumeCells * volume_of_label_mm3_[i] * core * core * core / (radius * radius * radius);
@@ -161,18 +156,12 @@ double CostModel::cells(const MeshingOptions& options) const {
   return cells;
 }
 
-double smallest_radius_mm(const MeshingOptions& options) {
-  double smallest = options.radius_mm > 0 ? options.radius_mm : std::numeric_limits<double>::infinity();
-  for (const auto& [value, radius] : options.radius_of_mm) smallest = std::min(smallest, radius);
-  return std::isinf(smallest) ? 0 : smallest;
-}
-
 Estimate estimate(const LabelImage& image, const MeshingOptions& options) {
-  double cells = static_cast<double>(options.target_elements);
-  if (options.target_elements == 0) {
-    MeshingOptions resolved = options;
-    if (resolved.delta_mm <= 0) resolved.delta_mm = default_delta_mm(image, smallest_radius_mm(options));
-    cells = CostModel(image, options.loop_threads()).cells(resolved);
+  double cells = static_cast<double>(options.sizes.target_elements);
+  if (options.sizes.target_elements == 0) {
+    SizeOptions sizes = options.sizes;
+    sizes.delta_mm = delta_mm_for(image, sizes);
+    cells = CostModel(image, loop_threads(options.team)).cells(sizes);
   }
   return {cells, cells * kPeakBytesPerMeshCell + static_cast<double>(image.num_voxels()) *
                                                      (kImageBytesPerVoxel + kTransformBytesPerVoxel)};

@@ -18,9 +18,6 @@ std::vector<std::uint64_t> count_voxels(const LabelImage& image, int threads);
 /// every side.
 Box foreground_bounds(const LabelImage& image, int threads = 1);
 
-/// Of all labels; 0: unbounded.
-double smallest_radius_mm(const MeshingOptions& options);
-
 /// Cells that the labels' volumes and interfaces ask for:
 ///   kVolumeCells V / r_t^3 in the core of each label, kSurfaceCells A / delta^2 along the interfaces,
 /// where A counts an interface for each label at it, since cells stand on both sides of one between two
@@ -35,8 +32,8 @@ class CostModel {
   /// The image must outlive the model, which looks at its interfaces as they are asked for.
   CostModel(const LabelImage& image, int threads);
 
-  /// With the radii and the delta of `options`, which is not 0.
-  double cells(const MeshingOptions& options) const;
+  /// The cells that these radii and this delta, which is not 0, make.
+  double cells(const SizeOptions& sizes) const;
 
  private:
   static constexpr double kVolumeCells = 4.82, kSurfaceCells = 1.57;

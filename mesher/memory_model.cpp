@@ -25,8 +25,8 @@ std::uint64_t bytes_of_threads(std::uint64_t threads) {
 
 }  // namespace
 
-std::uint64_t memory_of_run(const MeshingOptions& options) {
-  if (options.max_memory_bytes > 0) return options.max_memory_bytes;
+std::uint64_t memory_of_run(const Limits& limits) {
+  if (limits.max_memory_bytes > 0) return limits.max_memory_bytes;
   return static_cast<std::uint64_t>(sysconf(_SC_PHYS_PAGES)) *
          static_cast<std::uint64_t>(sysconf(_SC_PAGE_SIZE));
 }

@@ -35,7 +35,7 @@ inline constexpr std::uint64_t kBytesPerCube = 32, kBytesPerLeaf = 160;
 inline constexpr double kMostMemoryOfLeaves = 0.5;
 
 /// What a run may take beside image and transform: as asked for, else all the machine has.
-std::uint64_t memory_of_run(const MeshingOptions& options);
+std::uint64_t memory_of_run(const Limits& limits);
 /// The most cells for which a store, its workers and their lists stay within so many bytes.
 std::uint64_t cell_capacity(std::uint64_t bytes, std::uint64_t num_workers, Executor executor);
 

@@ -6,18 +6,18 @@
 
 namespace podm {
 
-RadiusSearch::RadiusSearch(const LabelImage& image, const MeshingOptions& options)
-    : model_(image, options.loop_threads()),
-      options_(options),
+RadiusSearch::RadiusSearch(const LabelImage& image, const SizeOptions& asked, int threads)
+    : model_(image, threads),
+      asked_(asked),
       largest_mm_(std::hypot(image.size[0] * image.spacing[0], image.size[1] * image.spacing[1],
                              image.size[2] * image.spacing[2])),
-      radius_mm_(radius_for(static_cast<double>(options.target_elements))) {}
+      radius_mm_(radius_for(static_cast<double>(asked.target_elements))) {}
 
-MeshingOptions RadiusSearch::at(double radius_mm) const {
-  MeshingOptions options = options_;
-  options.radius_mm = radius_mm;
-  if (options.delta_mm <= 0) options.delta_mm = radius_mm / 2;
-  return options;
+SizeOptions RadiusSearch::at(double radius_mm) const {
+  SizeOptions sizes = asked_;
+  sizes.radius_mm = radius_mm;
+  if (sizes.delta_mm <= 0) sizes.delta_mm = radius_mm / 2;
+  return sizes;
 }
 
 // Cells become fewer as the radius grows.
@@ -33,7 +33,7 @@ double RadiusSearch::radius_for(double cells) const {
 // The first mesh tells by what factor the model errs, more of them how cells follow the radius: not by a
 // power where a sheet comes or goes with it, but between one that has too many and one that has too few.
 bool RadiusSearch::learn(double cells) {
-  const double target = static_cast<double>(options_.target_elements);
+  const double target = static_cast<double>(asked_.target_elements);
   const Sample mesh{radius_mm_, cells};
   std::optional<Sample>& near = cells > target ? too_many_ : too_few_;
   const std::optional<Sample> before = std::exchange(near, mesh);

@@ -14,7 +14,7 @@ int main(int argc, char** argv) {
   try {
     const podm::LabelImage image = podm::read_image(argv[1]);
     podm::MeshingOptions options;
-    options.radius_mm = std::atof(argv[2]);
+    options.sizes.radius_mm = std::atof(argv[2]);
     podm::MeshingResult result = podm::mesh_image(image, options);
     podm::canonicalize(result.mesh);
     podm::write_mesh(result.mesh, argv[3]);

@@ -8,7 +8,13 @@ template <class Locks>
 void ComputingNode<Locks>::begin(const Octree& octree, LeafId leaf, double now_s) {
   region_.emplace(octree, leaf);
   for (const auto& worker : workers_) worker->locks().confine(*region_);
-  activation_ = {leaf, number_, now_s, now_s, num_committed(), 0, {}};
+  activation_ = {.leaf = leaf,
+                 .node = number_,
+                 .begin_s = now_s,
+                 .end_s = now_s,
+                 .operations = num_committed(),
+                 .deferred = 0,
+                 .touched_leaves = {}};
 }
 
 template <class Locks>

@@ -15,8 +15,12 @@ Construction::Construction(const Problem& problem, const Box& clamp_box, const T
       const Place place = place_of(worker);
       pools_.push_back(std::make_unique<Pool>(*result_.mesh, static_cast<NodeIndex>(place.node),
                                               static_cast<std::size_t>(num_workers())));
-      result_.workers.push_back({place.node, place.socket, place.processor, {}, {}});
-      accesses_.push_back({place.node, {}});
+      result_.workers.push_back({.node = place.node,
+                                 .socket = place.socket,
+                                 .processor = place.processor,
+                                 .bound_to = {},
+                                 .counters = {}});
+      accesses_.push_back({.node = place.node, .addresses = {}});
     }
   });
 }

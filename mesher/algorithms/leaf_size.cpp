@@ -68,7 +68,7 @@ Octree octree_of_sides(const Problem& problem, const Radii& radii, const Box& bo
 }  // namespace
 
 std::uint64_t checked_bytes_of_leaves(const Problem& problem, const LeafOptions& options, const Box& box) {
-  const double asked_mm = options.leaf_size_mm;
+  const double asked_mm = options.size_mm;
   if (asked_mm == 0) return 0;
   constexpr double kMostLeaves = 1 << 21, kBytesPerGib = 1 << 30;
   constexpr double kMostBytesPerLeaf = kBytesPerCube + kBytesPerLeaf;
@@ -91,20 +91,20 @@ std::uint64_t checked_bytes_of_leaves(const Problem& problem, const LeafOptions&
 // 256 simulated cores, 16 a node, were 1.46 times faster, and 16 % instead of 27 % of their operations rolled
 // back.
 std::unique_ptr<const Octree> make_octree(const Problem& problem, const Radii& radii, const Box& box,
-                                          const LeafOptions& options, int workers_per_node,
+                                          const LeafOptions& options, const Team& team,
                                           const std::stop_token& stop) {
   constexpr LeafId kLeavesPerNode = 64;
   constexpr double kStep = 1.26;  // halves the number of leaves
   const double ratio = options.initial_ratio;
-  if (const double asked_mm = options.leaf_size_mm; asked_mm > 0)
+  if (const double asked_mm = options.size_mm; asked_mm > 0)
     return std::make_unique<Octree>(octree_of_sides(problem, radii, box, ratio, asked_mm, asked_mm, stop));
   const double finest_mm = kLeafSizeOverRadius * ratio * radii.least;
   double coarsest_mm = kLeafSizeOverRadius * ratio * radii.most;
-  double growth = std::cbrt(workers_per_node);
+  double growth = std::cbrt(team.coordination.num_workers / team.num_nodes);
   for (;;) {
     auto octree = std::make_unique<Octree>(
         octree_of_sides(problem, radii, box, ratio, growth * finest_mm, growth * coarsest_mm, stop));
-    const LeafId wanted = kLeavesPerNode * static_cast<LeafId>(options.num_nodes);
+    const LeafId wanted = kLeavesPerNode * static_cast<LeafId>(team.num_nodes);
     const bool is_finest = growth == 1 && coarsest_mm <= finest_mm;
     if (octree->num_leaves() >= wanted || is_finest || stop.stop_requested()) return octree;
     if (growth > 1) {

@@ -25,7 +25,7 @@ std::uint64_t checked_bytes_of_leaves(const Problem& problem, const LeafOptions&
 /// labels' bounds, longer where a leaf has to feed several workers, then shorter until there are leaves
 /// enough to keep all nodes at work. A stop request leaves them unfit.
 std::unique_ptr<const Octree> make_octree(const Problem& problem, const Radii& radii, const Box& box,
-                                          const LeafOptions& options, int workers_per_node,
+                                          const LeafOptions& options, const Team& team,
                                           const std::stop_token& stop);
 
 }  // namespace podm

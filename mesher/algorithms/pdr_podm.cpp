@@ -61,16 +61,19 @@ struct Leaves {
 std::optional<LeafSchedule> described(const Octree& octree,
                                       std::vector<LeafSchedule::Activation> activations) {
   const Point& origin = octree.origin();
-  LeafSchedule schedule{{origin.x, origin.y, origin.z}, octree.finest_side_mm(), {}, std::move(activations)};
+  LeafSchedule schedule{.origin_mm = {origin.x, origin.y, origin.z},
+                        .side_mm = octree.finest_side_mm(),
+                        .leaves = {},
+                        .activations = std::move(activations)};
   for (LeafId leaf = 0; leaf < octree.num_leaves(); ++leaf)
-    schedule.leaves.push_back({octree.cube(leaf).corner, octree.cube(leaf).side});
+    schedule.leaves.push_back({.corner = octree.cube(leaf).corner, .side = octree.cube(leaf).side});
   return schedule;
 }
 
 // A computing node is one group of workers.
-CoordinationOptions coordination_of_node(const Team& team, int num_nodes) {
+CoordinationOptions coordination_of_node(const Team& team) {
   CoordinationOptions options = team.coordination;
-  options.num_workers /= num_nodes;
+  options.num_workers /= team.num_nodes;
   options.groups.clear();
   return options;
 }
@@ -83,7 +86,7 @@ Construction::Entries refine_leaves_with(Construction& construction, const Param
   auto workers = construction.make_workers<Locks>(parameters, num_workers);
   if (options.with_schedule)
     for (const auto& worker : workers) worker->locks().watch_leaves();
-  const auto num_nodes = static_cast<unsigned>(options.num_nodes);
+  const auto num_nodes = static_cast<unsigned>(construction.team().num_nodes);
   const std::size_t per_node = workers.size() / num_nodes;
   const auto resume = [&](WorkerId worker) { time.resume(worker); };
 
@@ -96,8 +99,8 @@ Construction::Entries refine_leaves_with(Construction& construction, const Param
   std::deque<ComputingNode<Locks>> nodes;  // 8
   for (unsigned node = 0; node < num_nodes; ++node)
     nodes.emplace_back(node, std::span(workers).subspan(node * per_node, per_node),
-                       coordination_of_node(construction.team(), options.num_nodes), resume);
-  Leaves<Locks, Time> leaves{octree, cells, queue, time, over};
+                       coordination_of_node(construction.team()), resume);
+  Leaves<Locks, Time> leaves{.octree = octree, .cells = cells, .queue = queue, .time = time, .over = over};
   time.run([&](WorkerId self) {  // 7
     ComputingNode<Locks>& node = nodes[self / per_node];
     if (self % per_node == 0) {
@@ -149,11 +152,10 @@ Refinement refine_by_leaves(const Problem& problem, const Team& team, const Leaf
 
   Construction construction(problem, clamp, team, stop);  // 1
   construction.withhold(bytes_of_leaves);
-  refine_anywhere(construction, "initial", initial, construction.all_cells(), options.initial_workers);  // 4
+  refine_anywhere(construction, "initial", initial, construction.all_cells(), team.initial_workers);  // 4
   std::unique_ptr<const Octree> octree;
   construction.timed("octree", [&] {  // 2, 3: of a size that may depend on nothing but the bounds
-    octree = make_octree(problem, radii, clamp, options, construction.num_workers() / options.num_nodes,
-                         stop.over());
+    octree = make_octree(problem, radii, clamp, options, team, stop.over());
   });
   construction.withhold(octree->num_cubes() * kBytesPerCube + octree->num_leaves() * kBytesPerLeaf);
   const auto left = refine_leaves<Locks>(construction, final, *octree, options);  // 5 to 29

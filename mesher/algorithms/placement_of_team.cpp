@@ -3,6 +3,9 @@
 #include <algorithm>
 #include <set>
 
+#include "algorithms/team_size.h"
+#include "podm/errors.h"
+
 namespace podm {
 
 namespace {
@@ -30,14 +33,16 @@ WorkerGroups groups_of(const std::vector<Place>& places) {
 
 }  // namespace
 
-PlacementOfTeam place_team(const MeshingOptions& options, int num_workers) try {
-  const bool is_described = !options.topology_path.empty();
+PlacementOfTeam place_team(const TeamOptions& options) try {
+  const std::string& described = options.topology_path;
   PlacementOfTeam placement{
-      is_described ? Topology::from_file(options.topology_path) : Topology::of_this_machine(), {}, {}, {}};
-  const bool is_real = placement.is_real = options.executor == Executor::kThreads && !is_described;
-  placement.places = place_workers(placement.machine, PinPlan::parse(options.pin), num_workers,
-                                   options.oversubscribe || !is_real);
-  if (!is_real) {
+      .machine = described.empty() ? Topology::of_this_machine() : Topology::from_file(described),
+      .places = {},
+      .groups = {},
+      .is_real = is_of_this_machine(options)};
+  placement.places = place_workers(placement.machine, PinPlan::parse(options.pin), num_workers(options),
+                                   options.oversubscribe || !placement.is_real);
+  if (!placement.is_real) {
     for (Place& place : placement.places) place.processor.reset();
   }
   if (options.begging == Begging::kHierarchical) placement.groups = groups_of(placement.places);

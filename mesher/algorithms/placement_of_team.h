@@ -3,7 +3,7 @@
 
 #include <vector>
 
-#include "podm/mesh_image.h"
+#include "podm/meshing_options.h"
 #include "runtime/placement.h"
 #include "runtime/topology.h"
 #include "workers/begging_list.h"
@@ -17,8 +17,8 @@ struct PlacementOfTeam {
   bool is_real = true;  // threads of this machine, neither virtual workers nor those of a described one
 };
 
-/// A place for each of `num_workers`. Workers of a described machine, and virtual ones, are bound to nothing.
+/// A place for each worker. Those of a described machine, and virtual ones, are bound to nothing.
 /// Throws InputError on a plan, machine or number that cannot be had.
-PlacementOfTeam place_team(const MeshingOptions& options, int num_workers);
+PlacementOfTeam place_team(const TeamOptions& options);
 
 }  // namespace podm

@@ -85,7 +85,7 @@ Parameters parameters_for(const Problem& problem, double ratio, const Box& clamp
   const SizeField sizes = problem.sizes.scaled(ratio);
   const double delta_mm = ratio * problem.delta_mm;
   const double spacing_mm = std::min(delta_mm, std::sqrt(sizes.smallest_squared_radius()) / k);
-  return {delta_mm, sizes, clamp, spacing_mm};
+  return {.delta_mm = delta_mm, .sizes = sizes, .clamp_box = clamp, .spacing_mm = spacing_mm};
 }
 
 Refinement podm(const Problem& problem, const Team& team, StopControl& stop) {

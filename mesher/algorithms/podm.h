@@ -9,14 +9,6 @@ namespace podm {
 /// without locks.
 Refinement podm(const Problem& problem, const Team& team, StopControl& stop);
 
-struct LeafOptions {
-  int num_nodes = 1;         // computing nodes; they divide the workers evenly
-  double initial_ratio = 4;  // bounds of the initial mesh over those of the final one
-  int initial_workers = 1;   // of the initial mesh
-  double leaf_size_mm = 0;   // 0: from the initial mesh's bound
-  bool with_schedule = false;
-};
-
 /// Parallel Delaunay refinement leaf by leaf, one worker a leaf, without locks.
 Refinement pdr(const Problem& problem, const Team& team, const LeafOptions& options, StopControl& stop);
 /// The same with several workers a leaf, which lock vertices against each other.

@@ -18,8 +18,7 @@ namespace {
 
 void BM_mesh_phantom(benchmark::State& state) {
   const LabelImage image = make_phantom("abdomen", 128);
-  MeshingOptions options;
-  options.radius_mm = static_cast<double>(state.range(0));
+  const MeshingOptions options{.sizes = {.radius_mm = static_cast<double>(state.range(0))}};
   std::int64_t cells = 0;
   double refine_s = 0;
   for (auto _ : state) {
@@ -64,8 +63,11 @@ void BM_cost_of_locks(benchmark::State& state) {
   const auto seconds_of = [&](bool with_locks) {
     StopControl stop({}, {}, [](std::uint64_t) {});
     const Team team;
-    const Problem problem{isosurface, foreground_bounds(image), default_delta_mm(image, radius_mm), sizes,
-                          1 << 24};
+    const Problem problem{.isosurface = isosurface,
+                          .object = foreground_bounds(image),
+                          .delta_mm = default_delta_mm(image, radius_mm),
+                          .sizes = sizes,
+                          .cell_capacity = 1 << 24};
     const Box clamp = clamp_box(problem.object, problem.delta_mm);
     Construction construction(problem, clamp, team, stop);
     const Parameters parameters = parameters_for(problem, 1, clamp);

@@ -6,6 +6,7 @@
 #include <cstdlib>
 #include <fstream>
 
+#include "algorithms/team_size.h"
 #include "cli/option_values.h"
 #include "podm/errors.h"
 
@@ -63,11 +64,6 @@ Crossover read_crossover(const std::string& path) {
   return result;
 }
 
-// Threads of virtual time or of a described machine are none of the machine that was measured.
-bool is_of_this_machine(const MeshingOptions& options) {
-  return options.executor == Executor::kThreads && options.topology_path.empty();
-}
-
 bool is_number(const std::string& text) {
   return std::all_of(text.begin(), text.end(), [](char c) { return ('0' <= c && c <= '9') || c == '-'; });
 }
@@ -76,7 +72,8 @@ Crossover find_crossover(const MeshCommand& command) {
   const std::string& asked = command.crossover;
   const char* const stored = std::getenv(kCrossoverVariable);
   if (asked.empty()) {
-    const bool is_used = command.meshing.algorithm == Algorithm::kAuto && is_of_this_machine(command.meshing);
+    const bool is_used =
+        command.meshing.algorithm == Algorithm::kAuto && is_of_this_machine(command.meshing.team);
     if (!is_used || stored == nullptr || *stored == 0)
       return {.threads = kDefaultCrossover, .source = {{"source", "default"}}, .warning = {}};
     return read_crossover(stored);

@@ -5,6 +5,7 @@
 #include <cstdio>
 #include <optional>
 
+#include "algorithms/team_size.h"
 #include "cli/appended_file.h"
 #include "cli/commands.h"
 #include "cli/json_text.h"
@@ -81,7 +82,8 @@ int run(const MeshCommand& command) {
   const std::uint64_t limit_bytes = memory_limit_bytes(command);
   LabelImage image;
   const double read_s = timed([&] {
-    image = read_labelled_image(command.image, command.meshing.loop_threads(), bytes_for_image(limit_bytes));
+    image =
+        read_labelled_image(command.image, loop_threads(command.meshing.team), bytes_for_image(limit_bytes));
   });
   MeshRun run{.command = command,
               .image = image,
@@ -94,7 +96,7 @@ int run(const MeshCommand& command) {
   std::optional<OperationLogWriter> log;
   if (!command.log_path.empty()) run.options.log = &log.emplace(command.log_path);
   run.options.crossover = run.crossover.threads;
-  run.options.with_schedule = !command.schedule_path.empty();
+  run.options.leaves.with_schedule = !command.schedule_path.empty();
   run.result = mesh_with_display(image, run.options, command.quiet, signals);
   auto& warnings = run.result.report.warnings;
   if (!run.crossover.warning.empty()) warnings.push_back(run.crossover.warning);

@@ -17,17 +17,17 @@ void add_sizing_options(CLI::App& app, MeshCommand& command) {
   begin_group(app, "Size of the cells");
   CLI::Option* radius = add_one(app, "--radius", "MM",
                                 "largest circumradius of a cell, mm [default: unbounded, the surface drives]",
-                                into_length(meshing.radius_mm));
+                                into_length(meshing.sizes.radius_mm));
   add_many(app, "--radius-of", "LABEL=MM",
            "the same for one label, by name or value, e.g. liver=2;\nrepeatable [default: --radius]",
            [&command](const std::string& text, const std::string& name) {
              command.radius_of_mm.push_back(parse_label_length(text, name));
            });
   add_one(app, "--delta", "MM", "sampling distance of the surfaces, mm [default: from voxel size and radius]",
-          into_length(meshing.delta_mm));
+          into_length(meshing.sizes.delta_mm));
   exclude(add_one(app, "--target-elements", "N",
                   "choose the radius for this many cells within 5 % [default: none]",
-                  into_count(meshing.target_elements)),
+                  into_count(meshing.sizes.target_elements)),
           radius);
 }
 
@@ -35,9 +35,9 @@ void add_limit_options(CLI::App& app, MeshCommand& command) {
   MeshingOptions& meshing = command.meshing;
   begin_group(app, "Limits (a run that meets one writes a valid mesh and exits with 1)");
   add_one(app, "--max-elements", "N", "stop at this many cells [default: none]",
-          into_count(meshing.max_elements));
+          into_count(meshing.limits.max_elements));
   add_one(app, "--max-seconds", "S", "stop meshing after this many seconds [default: none]",
-          into_positive(meshing.max_seconds, "number of seconds"));
+          into_positive(meshing.limits.max_seconds, "number of seconds"));
   add_one(app, "--max-memory-gib", "GIB", "memory of the process, GiB [default: 80 % of what is available]",
           [&command](const std::string& text, const std::string& name) {
             const double bytes = parse_positive(text, name, "number of GiB") * kBytesPerGib;
@@ -60,15 +60,15 @@ void add_algorithm_options(CLI::App& app, MeshCommand& command) {
                       kCrossoverVariable, kDefaultCrossover),
           into(command.crossover));
   add_one(app, "--nodes", "N", "computing nodes of pdr-podm [default: NUMA nodes in use]",
-          into_threads(meshing.nodes));
+          into_threads(meshing.team.nodes));
   add_one(app, "--cores-per-node", "N", "threads of each computing node [default: threads over nodes]",
-          into_threads(meshing.cores_per_node));
+          into_threads(meshing.team.cores_per_node));
   add_one(app, "--initial-ratio", "X", "bounds of the initial mesh of pdr and pdr-podm over the final ones",
-          into_positive(meshing.initial_ratio, "number"));
+          into_positive(meshing.leaves.initial_ratio, "number"));
   add_one(app, "--initial-threads", "N", "threads of the initial mesh [default: all]",
-          into_threads(meshing.initial_threads));
+          into_threads(meshing.team.initial_threads));
   add_one(app, "--leaf-size", "MM", "side of the octree's leaves, mm [default: from the initial bound]",
-          into_length(meshing.leaf_size_mm));
+          into_length(meshing.leaves.size_mm));
   add_one(app, "--schedule", "FILE", "write which leaf was refined when, for podm-verify [default: none]",
           into(command.schedule_path));
 }
@@ -78,34 +78,34 @@ void add_run_options(CLI::App& app, MeshCommand& command) {
   add_one(app, "--threads", "N",
           "threads of all phases; 1 makes the same mesh every time\n"
           "[default: one for refinement, all cores for the feature transform]",
-          into_threads(meshing.threads));
+          into_threads(meshing.team.threads));
   add_one(app, "--contention", "MANAGER",
           "what a thread does that meets another's lock:\n" + names_of_choices<Contention>(),
-          into_choice(meshing.contention));
+          into_choice(meshing.team.contention));
   add_one(app, "--begging", "LIST",
           "whom a thread with cells to spare serves first: random (the first to beg)\n"
           "or hierarchical (the nearest in the machine)",
-          into_choice(meshing.begging));
+          into_choice(meshing.team.begging));
   add_one(app, "--pin", "PLAN",
           "bind threads to processors: compact, scatter, none,\n"
           "or processors such as 0,2,4-7",
-          into(meshing.pin));
-  add_flag(app, "--oversubscribe", meshing.oversubscribe,
+          into(meshing.team.pin));
+  add_flag(app, "--oversubscribe", meshing.team.oversubscribe,
            "allow more threads than processors [default: refused]");
   add_one(app, "--topology", "FILE",
           "hwloc XML of a machine that the threads stand for [default: this machine]",
-          into(meshing.topology_path));
+          into(meshing.team.topology_path));
   add_one(app, "--executor", "EXECUTOR",
           "threads, or virtual: one core plays any number of threads in virtual time,\n"
           "the same for the same seed; times are simulated",
-          into_choice(meshing.executor));
+          into_choice(meshing.team.executor));
   add_one(app, "--virtual-cost", "COST", "virtual time of an attempt: unit (1 us) or measured (by its work)",
-          into_choice(meshing.virtual_cost));
+          into_choice(meshing.team.virtual_cost));
   add_one(app, "--seed", "N", "of pauses after conflicts and of virtual time",
           {[&meshing](const std::string& text, const std::string& name) {
-             meshing.seed = parse_integer(text, name, 0, std::numeric_limits<std::uint32_t>::max());
+             meshing.team.seed = parse_integer(text, name, 0, std::numeric_limits<std::uint32_t>::max());
            },
-           std::to_string(meshing.seed)});
+           std::to_string(meshing.team.seed)});
   add_one(app, "--log", "FILE", "write every operation in its order, for podm replay [default: none]",
           into(command.log_path));
 }

@@ -21,17 +21,17 @@ void refuse_coarse_sampling(const MeshCommand& command, const LabelImage& image)
   double longest_mm = 0;
   for (std::size_t axis = 0; axis < 3; ++axis)
     longest_mm = std::max(longest_mm, image.size[axis] * image.spacing[axis]);
-  if (command.meshing.delta_mm > longest_mm)
+  if (command.meshing.sizes.delta_mm > longest_mm)
     throw InputError(fmt::format("{}: --delta {:g} mm is longer than the image, {:g} mm", command.image.path,
-                                 command.meshing.delta_mm, longest_mm));
+                                 command.meshing.sizes.delta_mm, longest_mm));
 }
 
 // An element limit below the estimate bounds memory instead, and what has to be numbered.
 void refuse_what_cannot_fit(const std::string& image_path, const LabelImage& image,
                             const MeshingOptions& options, std::uint64_t limit_bytes) {
   const Estimate expected = estimate(image, options);
-  const double most_cells = options.max_elements > 0 ? static_cast<double>(options.max_elements)
-                                                     : std::numeric_limits<double>::infinity();
+  const double most_cells = options.limits.max_elements > 0 ? static_cast<double>(options.limits.max_elements)
+                                                            : std::numeric_limits<double>::infinity();
   if (expected.memory_bytes > static_cast<double>(limit_bytes) && most_cells >= expected.cells)
     throw InputError(fmt::format(
         "{}: these options ask for about {:.2g} cells and {:.3g} GiB of memory, the limit is {:.3g} GiB; "
@@ -73,10 +73,10 @@ std::uint64_t bytes_for_image(std::uint64_t limit_bytes) {
 MeshingOptions meshing_options(const MeshCommand& command, const LabelImage& image,
                                std::uint64_t limit_bytes) {
   MeshingOptions options = command.meshing;
-  options.radius_of_mm = lengths_by_value(command.radius_of_mm, image, command.image.path);
+  options.sizes.radius_of_mm = lengths_by_value(command.radius_of_mm, image, command.image.path);
   refuse_coarse_sampling(command, image);
   refuse_what_cannot_fit(command.image.path, image, options, limit_bytes);
-  options.max_memory_bytes = bytes_for_mesh(limit_bytes, command.image.path, image);
+  options.limits.max_memory_bytes = bytes_for_mesh(limit_bytes, command.image.path, image);
   return options;
 }
 

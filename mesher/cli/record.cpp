@@ -30,14 +30,15 @@ Json selection_of(const LabelSelection& selection) {
 Json options_of(const MeshRun& run) {
   const MeshingOptions& options = run.options;
   Json radius_of = Json::object();
-  for (const auto& [value, radius_mm] : options.radius_of_mm) radius_of[std::to_string(value)] = radius_mm;
-  return {{"radius_mm", options.radius_mm},
+  for (const auto& [value, radius_mm] : options.sizes.radius_of_mm)
+    radius_of[std::to_string(value)] = radius_mm;
+  return {{"radius_mm", options.sizes.radius_mm},
           {"radius_of_mm", radius_of},
-          {"delta_mm", options.delta_mm},
-          {"target_elements", options.target_elements},
+          {"delta_mm", options.sizes.delta_mm},
+          {"target_elements", options.sizes.target_elements},
           {"space", to_string(options.space)},
-          {"max_elements", options.max_elements},
-          {"max_seconds", options.max_seconds},
+          {"max_elements", options.limits.max_elements},
+          {"max_seconds", options.limits.max_seconds},
           {"max_memory_bytes", run.command.max_memory_bytes},
           {"labels", selection_of(run.command.image.selection)}};
 }
@@ -123,10 +124,10 @@ Json counters_of(const MeshingReport& report) {
 
 // What a virtual executor says of time is simulated: it stands apart from what was measured.
 Json virtual_of(const MeshRun& run) {
-  if (run.options.executor != Executor::kVirtual) return nullptr;
+  if (run.options.team.executor != Executor::kVirtual) return nullptr;
   double refine_s = 0;
   for (const auto& [phase, seconds] : run.result.report.virtual_phases_s) refine_s += seconds;
-  return {{"cost", to_string(run.options.virtual_cost)},
+  return {{"cost", to_string(run.options.team.virtual_cost)},
           {"refine_s", refine_s},
           {"phases_s", run.result.report.virtual_phases_s}};
 }
@@ -147,9 +148,9 @@ Json leaves_of(const MeshRun& run) {
   if (run.result.report.algorithm == Algorithm::kPodm) return nullptr;
   return {{"number", run.result.report.num_leaves},
           {"nodes", run.result.report.computing_nodes},
-          {"initial_ratio", run.options.initial_ratio},
-          {"initial_threads", run.options.initial_threads},
-          {"leaf_size_mm", run.options.leaf_size_mm}};
+          {"initial_ratio", run.options.leaves.initial_ratio},
+          {"initial_threads", run.options.team.initial_threads},
+          {"leaf_size_mm", run.options.leaves.size_mm}};
 }
 
 Json quality_of(const Quality& quality) {
@@ -205,17 +206,17 @@ Json record(const MeshRun& run) {
        {{"path", path}, {"sha256", input_sha256(path, run.image)}, {"affine", affine_rows(run.image)}}},
       {"options", options_of(run)},
       {"used", {{"radius_mm", report.radius_mm}, {"delta_mm", report.delta_mm}}},
-      {"seed", run.options.seed},
+      {"seed", run.options.team.seed},
       {"threads",
-       {{"asked", run.options.threads},
+       {{"asked", run.options.team.threads},
         {"used", report.workers.size()},
-        {"pin", run.options.pin},
+        {"pin", run.options.team.pin},
         {"placement", placement_of(report)},
-        {"contention", to_string(run.options.contention)},
-        {"begging", to_string(run.options.begging)}}},
+        {"contention", to_string(run.options.team.contention)},
+        {"begging", to_string(run.options.team.begging)}}},
       {"auto", run.options.algorithm == Algorithm::kAuto ? run.crossover.source : Json()},
       {"leaves", leaves_of(run)},
-      {"executor", to_string(run.options.executor)},
+      {"executor", to_string(run.options.team.executor)},
       {"virtual", virtual_of(run)},
       {"phases_s", run.phases_s()},
       {"calibration", calibration_of(report)},

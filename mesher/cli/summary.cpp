@@ -124,7 +124,7 @@ std::string statistics_line(const std::string& name, const std::string& place, c
 
 std::string statistics(const MeshRun& run) {
   const MeshingReport& report = run.result.report;
-  const bool is_virtual = run.options.executor == Executor::kVirtual;
+  const bool is_virtual = run.options.team.executor == Executor::kVirtual;
   std::string text = fmt::format(
       "{:>6} {:>11} {:>11} {:>11} {:>9} {:>9} {:>9} {:>28}{}\n"
       "{:>6} {:>11} {:>11} {:>11} {:>9} {:>9} {:>9} {:>9} {:>8} {:>8}{}\n",

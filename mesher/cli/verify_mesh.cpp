@@ -65,7 +65,7 @@ std::vector<std::string> verifier_command(const MeshRun& run, std::optional<Temp
   if (run.command.quiet) command.push_back("--quiet");
   std::string claims = "structure,radius_edge,boundary_angles,delaunay,conformity,surface,labels";
   const double radius_mm = run.result.report.radius_mm;
-  const auto& radius_of = run.options.radius_of_mm;
+  const auto& radius_of = run.options.sizes.radius_of_mm;
   if (radius_mm > 0 || !radius_of.empty()) claims += ",size";
   if (run.command.verify_fidelity) {
     claims += ",fidelity";

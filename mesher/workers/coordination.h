@@ -28,7 +28,7 @@ namespace podm {
 struct CoordinationOptions {
   int num_workers = 1;
   Contention contention = Contention::kLocal;
-  WorkerGroups groups;  // of the begging list
+  WorkerGroups groups = {};  // of the begging list
   std::uint64_t seed = 1;
 };
 

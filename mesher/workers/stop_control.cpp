@@ -12,9 +12,9 @@ constexpr auto kObservationInterval = std::chrono::milliseconds(200);
 
 void StopControl::check_limits() {
   const std::int64_t cells = num_cells_.load(std::memory_order_relaxed);
-  if (limits_.max_cells > 0 && cells > static_cast<std::int64_t>(limits_.max_cells)) {
+  if (max_cells_ > 0 && cells > static_cast<std::int64_t>(max_cells_)) {
     end(StopReason::kElementLimit);
-  } else if (std::chrono::steady_clock::now() > limits_.deadline) {
+  } else if (Clock::now() > deadline_) {
     end(StopReason::kTimeLimit);
   }
 }
@@ -26,7 +26,7 @@ void StopControl::end(StopReason reason) {
 }
 
 void StopControl::observe() {
-  const auto now = std::chrono::steady_clock::now();
+  const auto now = Clock::now();
   if (now < next_observation_) return;
   observe_(static_cast<std::uint64_t>(std::max<std::int64_t>(num_cells_, 0)));
   next_observation_ = now + kObservationInterval;

@@ -9,24 +9,25 @@
 #include <stop_token>
 
 #include "podm/choices.h"
+#include "podm/limits.h"
 
 namespace podm {
-
-/// Ends of a run that are not completion, but for memory, whose lack shows itself. 0: none.
-struct Limits {
-  std::uint64_t max_cells = 0;  // of the store
-  std::chrono::steady_clock::time_point deadline = std::chrono::steady_clock::time_point::max();
-};
 
 /// Shared by all workers of a run, and by its phases. Any thread may call, but for observe().
 class StopControl {
  public:
+  using Clock = std::chrono::steady_clock;
   static constexpr int kAttemptsBetweenChecks = 1 << 8;  // of each worker, well below a millisecond
 
+  /// Cells are those of the store, and seconds count from `start`; lack of memory shows itself.
   /// `observe(cells)` is called a few times a second. Whoever requests the stop ends the run, so that over()
   /// tells of it even while nobody asks for reasons.
-  StopControl(const Limits& limits, std::stop_token stop, std::function<void(std::uint64_t)> observe)
-      : limits_(limits),
+  StopControl(const Limits& limits, std::stop_token stop, std::function<void(std::uint64_t)> observe,
+              Clock::time_point start = Clock::now())
+      : max_cells_(limits.max_elements),
+        deadline_(limits.max_seconds > 0 ? start + std::chrono::duration_cast<Clock::duration>(
+                                                       std::chrono::duration<double>(limits.max_seconds))
+                                         : Clock::time_point::max()),
         observe_(std::move(observe)),
         on_stop_(std::move(stop), [this] { end(StopReason::kCancelled); }) {}
 
@@ -46,12 +47,13 @@ class StopControl {
   void observe();
 
  private:
-  Limits limits_;
+  std::uint64_t max_cells_;  // 0: any number
+  Clock::time_point deadline_;
   std::function<void(std::uint64_t)> observe_;
   std::atomic<std::int64_t> num_cells_ = 0;
   std::atomic<StopReason> reason_ = StopReason::kComplete;  // of the end, once there is one
   std::stop_source over_;
-  std::chrono::steady_clock::time_point next_observation_ = std::chrono::steady_clock::now();
+  Clock::time_point next_observation_ = Clock::now();
   std::stop_callback<std::function<void()>> on_stop_;  // the last: it may be called before it is made
 };
 

@@ -39,10 +39,13 @@ class Group : public testing::TestWithParam<int> {
   LabelImage image_ = ball(16, 6);
   Isosurface isosurface_{image_, 1};
   Box clamp_ = clamp_box(foreground_bounds(image_), 1.2);
-  Problem problem_{isosurface_, foreground_bounds(image_), 1.2, SizeField(std::vector<double>(2, 1.6)),
-                   1 << 20};
+  Problem problem_{.isosurface = isosurface_,
+                   .object = foreground_bounds(image_),
+                   .delta_mm = 1.2,
+                   .sizes = SizeField(std::vector<double>(2, 1.6)),
+                   .cell_capacity = 1 << 20};
   Parameters parameters_ = parameters_for(problem_, 1, clamp_);
-  Team team_{.coordination = {GetParam(), Contention::kLocal, {}, 3}};
+  Team team_{.coordination = {.num_workers = GetParam(), .seed = 3}};
   StopControl stop_{{}, {}, [](std::uint64_t) {}};
 };
 

@@ -28,7 +28,11 @@ std::uint64_t sum(const std::vector<std::uint64_t>& counts) {
 // One worker a core, node after node, of a run of this image on that machine.
 struct RunOn {
   RunOn(const Topology& of_run, int num_workers)
-      : machine(of_run), placement{of_run, place_workers(of_run, {}, num_workers, true), {}, false} {
+      : machine(of_run),
+        placement{.machine = of_run,
+                  .places = place_workers(of_run, {}, num_workers, true),
+                  .groups = {},
+                  .is_real = false} {
     for (Place& place : placement.places) place.processor.reset();
   }
 
@@ -39,15 +43,21 @@ struct RunOn {
     const PageSampler pages(machine, *owners, query);
     const auto num_workers = static_cast<int>(placement.places.size());
     const Team team{.executor = executor,
-                    .coordination = {num_workers, Contention::kLocal, {}, 1},
+                    .coordination = {.num_workers = num_workers},
+                    .num_nodes = 2,
+                    .initial_workers = num_workers,
                     .machine = &machine,
                     .places = placement.places,
                     .owners = with_owners ? &*owners : nullptr,
                     .pages = query ? &pages : nullptr};
-    const Problem problem{isosurface, foreground_bounds(image), 1, SizeField({2, 2}), 1 << 22};
+    const Problem problem{.isosurface = isosurface,
+                          .object = foreground_bounds(image),
+                          .delta_mm = 1,
+                          .sizes = SizeField({2, 2}),
+                          .cell_capacity = 1 << 22};
     StopControl stop({}, {}, [](std::uint64_t) {});
     if (algorithm == Algorithm::kPodm) return podm(problem, team, stop);
-    return pdr_podm(problem, team, {.num_nodes = 2, .initial_workers = num_workers}, stop);
+    return pdr_podm(problem, team, {}, stop);
   }
 
   const Topology& machine;

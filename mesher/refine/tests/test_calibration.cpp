@@ -15,10 +15,7 @@ namespace podm::test {
 namespace {
 
 MeshingOptions target(std::uint64_t cells) {
-  MeshingOptions options;
-  options.target_elements = cells;
-  options.threads = 1;
-  return options;
+  return {.sizes = {.target_elements = cells}, .team = {.threads = 1}};
 }
 
 // Sides, with a label, of label changes between voxels `lag` apart along any axis, over the lag: areas in
@@ -46,9 +43,7 @@ double sides_by_voxel(const LabelImage& image, int lag) {
 
 // Unbounded radii leave the interfaces' share.
 double surface_cells(const LabelImage& image, double delta_mm, int threads = 1) {
-  MeshingOptions options;
-  options.delta_mm = delta_mm;
-  return CostModel(image, threads).cells(options);
+  return CostModel(image, threads).cells({.delta_mm = delta_mm});
 }
 
 TEST(CostModel, CountsTheSidesOfInterfacesSeenFromADistance) {
@@ -76,11 +71,9 @@ TEST(CostModel, FollowsVolumeAndRadiiOfLabels) {
   const LabelImage image =
       make_image({60, 60, 60}, {1, 1, 1}, 2, [](int i, int, int) { return i < 30 ? 1 : 2; });
   const auto cells = [&](double radius, double radius_of_20) {
-    MeshingOptions options;
-    options.radius_mm = radius;
-    options.delta_mm = 0.5;
-    if (radius_of_20 > 0) options.radius_of_mm[20] = radius_of_20;
-    return CostModel(image, 1).cells(options) - surface_cells(image, 0.5);
+    SizeOptions sizes{.radius_mm = radius, .delta_mm = 0.5};
+    if (radius_of_20 > 0) sizes.radius_of_mm[20] = radius_of_20;
+    return CostModel(image, 1).cells(sizes) - surface_cells(image, 0.5);
   };
   EXPECT_GT(cells(1, 0), 7 * cells(2, 0)) << "volume counts by the third power";
   EXPECT_NEAR(cells(1, 2), (cells(1, 0) + cells(2, 0)) / 2, 1e-6) << "each label by its own radius";
@@ -92,7 +85,7 @@ TEST(RadiusSearch, ComesWithinATwentiethInThreeMeshesWhateverTheModelErrs) {
   const LabelImage image = ball(40, 15);
   for (const double exponent : {-2.0, -2.5, -3.0}) {
     for (const double error : {0.3, 0.8, 1.0, 1.4, 4.0}) {
-      RadiusSearch search(image, target(50000));
+      RadiusSearch search(image, target(50000).sizes, 1);
       const double first = search.radius_mm();
       const auto cells_at = [&](double radius) { return 50000 * error * std::pow(radius / first, exponent); };
       for (int mesh = 0; mesh < 2; ++mesh) search.learn(cells_at(search.radius_mm()));
@@ -104,7 +97,7 @@ TEST(RadiusSearch, ComesWithinATwentiethInThreeMeshesWhateverTheModelErrs) {
 // Sheets that vanish where the radius passes their thickness.
 TEST(RadiusSearch, FindsATargetOnASteepSlope) {
   const LabelImage image = ball(40, 15);
-  RadiusSearch search(image, target(50000));
+  RadiusSearch search(image, target(50000).sizes, 1);
   const double first = search.radius_mm();
   const auto cells_at = [&](double radius) {
     return 50000 * 1.2 * std::pow(radius / first, radius / first > 1.01 ? -12 : -2) *
@@ -118,11 +111,11 @@ TEST(RadiusSearch, FindsATargetOnASteepSlope) {
 
 TEST(RadiusSearch, DeltaFollowsTheRadiusUnlessGiven) {
   const LabelImage image = ball(40, 15);
-  const RadiusSearch free(image, target(50000));
-  EXPECT_EQ(free.delta_mm(), free.radius_mm() / 2);
-  MeshingOptions options = target(50000);
-  options.delta_mm = 0.7;
-  EXPECT_EQ(RadiusSearch(image, options).delta_mm(), 0.7);
+  const RadiusSearch free(image, target(50000).sizes, 1);
+  EXPECT_EQ(free.sizes().delta_mm, free.radius_mm() / 2);
+  SizeOptions sizes = target(50000).sizes;
+  sizes.delta_mm = 0.7;
+  EXPECT_EQ(RadiusSearch(image, sizes, 1).sizes().delta_mm, 0.7);
 }
 
 double sum_but_calibration(const MeshingReport& report) {
@@ -145,10 +138,8 @@ TEST_P(Calibrated, MeetsTheTargetWithTheMeshOfTheRadiusThatItNames) {
   EXPECT_EQ(calibration.target_elements, GetParam());
   EXPECT_EQ(calibration.radius_mm, found.report.radius_mm);
   EXPECT_TRUE(found.report.warnings.empty());
-  MeshingOptions again;
-  again.threads = 1;
-  again.radius_mm = calibration.radius_mm;
-  again.delta_mm = found.report.delta_mm;
+  const MeshingOptions again{.sizes = {.radius_mm = calibration.radius_mm, .delta_mm = found.report.delta_mm},
+                             .team = {.threads = 1}};
   const MeshingResult made = mesh_image(image, again);
   EXPECT_EQ(made.mesh.cells, found.mesh.cells);
   EXPECT_EQ(made.mesh.vertices, found.mesh.vertices);
@@ -185,16 +176,16 @@ TEST(Calibration, PhasesAreThoseOfTheLastMeshAlone) {
 
 TEST(Calibration, VirtualSecondsAreThoseOfTheLastMeshAlone) {
   MeshingOptions options = target(120000);
-  options.threads = 8;
-  options.executor = Executor::kVirtual;
+  options.team.threads = 8;
+  options.team.executor = Executor::kVirtual;
   for (const Algorithm algorithm : {Algorithm::kPodm, Algorithm::kPdr}) {
     options.algorithm = algorithm;
     const MeshingReport found = mesh_image(noise(), options).report;
     ASSERT_FALSE(found.calibration->meshes.empty()) << "nothing to tell apart";
     MeshingOptions again = options;
-    again.target_elements = 0;
-    again.radius_mm = found.radius_mm;
-    again.delta_mm = found.delta_mm;
+    again.sizes.target_elements = 0;
+    again.sizes.radius_mm = found.radius_mm;
+    again.sizes.delta_mm = found.delta_mm;
     const MeshingReport made = mesh_image(noise(), again).report;
     EXPECT_EQ(found.virtual_phases_s, made.virtual_phases_s);
     EXPECT_EQ(made.virtual_phases_s.contains("initial"), algorithm == Algorithm::kPdr);
@@ -210,7 +201,7 @@ TEST(Calibration, IsTheSameEachTimeOnOneThread) {
 
 TEST(Calibration, WarnsWhereATargetCannotBeMet) {
   MeshingOptions options = target(300);
-  options.delta_mm = 0.8;  // the surface alone takes more
+  options.sizes.delta_mm = 0.8;  // the surface alone takes more
   const MeshingResult result = mesh_image(ball(24, 9), options);
   EXPECT_EQ(result.report.warnings.size(), 1u);
   EXPECT_TRUE(result.report.guarantees.all_met());
@@ -221,9 +212,9 @@ TEST(Calibration, WarnsWhereATargetCannotBeMet) {
 
 TEST(Calibration, LimitsHold) {
   MeshingOptions elements = target(200000), time = target(20000000), memory = target(200000);
-  elements.max_elements = 10000;
-  time.max_seconds = 0.2;
-  memory.max_memory_bytes = 1 << 20;
+  elements.limits.max_elements = 10000;
+  time.limits.max_seconds = 0.2;
+  memory.limits.max_memory_bytes = 1 << 20;
   EXPECT_EQ(mesh_image(ball(40, 15), elements).report.stop_reason, StopReason::kElementLimit);
   EXPECT_EQ(mesh_image(ball(40, 15), time).report.stop_reason, StopReason::kTimeLimit);
   EXPECT_EQ(mesh_image(ball(40, 15), memory).report.stop_reason, StopReason::kMemoryLimit);

@@ -21,11 +21,13 @@ class ExtractMesh : public testing::Test {
 
   // On one thread, so always the same.
   void refine() {
-    StopControl stop({.max_cells = 30000}, {}, [](std::uint64_t) {});
-    mesh_ =
-        podm({isosurface_, foreground_bounds(image_), 0.5, SizeField(std::vector<double>(4, 0.6)), 1 << 20},
-             Team{}, stop)
-            .mesh;
+    StopControl stop({.max_elements = 30000}, {}, [](std::uint64_t) {});
+    const Problem problem{.isosurface = isosurface_,
+                          .object = foreground_bounds(image_),
+                          .delta_mm = 0.5,
+                          .sizes = SizeField(std::vector<double>(4, 0.6)),
+                          .cell_capacity = 1 << 20};
+    mesh_ = podm(problem, Team{}, stop).mesh;
     for (CellId c = 0; c < mesh_->cell_bound(); c += 3) {
       if (mesh_->cell(c).is_alive()) mesh_->label(c) = kUnknownLabel;
     }

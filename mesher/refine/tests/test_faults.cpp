@@ -33,14 +33,19 @@ class Faults : public testing::TestWithParam<Setup> {
   Refinement refine(StopControl& stop, std::size_t cell_capacity = 1 << 20,
                     std::size_t most_numbered = 1 << 30, std::uint64_t memory_bytes = 1 << 30) {
     const auto [algorithm, executor, num_workers] = GetParam();
-    const Problem problem{isosurface_,  foreground_bounds(image_), 1.2, sizes_, cell_capacity, memory_bytes,
-                          most_numbered};
-    const Team team{executor, {num_workers, Contention::kLocal, {}, 3}};
+    const Problem problem{.isosurface = isosurface_,
+                          .object = foreground_bounds(image_),
+                          .delta_mm = 1.2,
+                          .sizes = sizes_,
+                          .cell_capacity = cell_capacity,
+                          .memory_bytes = memory_bytes,
+                          .most_numbered_cells = most_numbered};
+    const Team team{.executor = executor,
+                    .coordination = {.num_workers = num_workers, .seed = 3},
+                    .num_nodes = algorithm == Algorithm::kPdr ? num_workers : 2,
+                    .initial_workers = num_workers};
     if (algorithm == Algorithm::kPodm) return podm(problem, team, stop);
-    const LeafOptions leaves{.num_nodes = algorithm == Algorithm::kPdr ? num_workers : 2,
-                             .initial_ratio = 2,
-                             .initial_workers = num_workers,
-                             .leaf_size_mm = 4};
+    const LeafOptions leaves{.initial_ratio = 2, .size_mm = 4};
     return algorithm == Algorithm::kPdr ? pdr(problem, team, leaves, stop)
                                         : pdr_podm(problem, team, leaves, stop);
   }
@@ -115,7 +120,7 @@ TEST_P(Faults, StopRequestsAndLimitsLeaveAValidMesh) {
   StopControl whole = patient();
   const std::uint64_t all_cells = refine(whole).mesh->num_cells();
   for (std::uint64_t cells = 1; cells < all_cells; cells += 1 + cells / 2) {
-    StopControl limited({.max_cells = cells}, {}, [](std::uint64_t) {});
+    StopControl limited({.max_elements = cells}, {}, [](std::uint64_t) {});
     const Refinement refinement = refine(limited);
     EXPECT_EQ(refinement.stop_reason, StopReason::kElementLimit) << cells << " of " << all_cells;
     expect_valid(refinement);
@@ -126,7 +131,7 @@ TEST_P(Faults, StopRequestsAndLimitsLeaveAValidMesh) {
   const Refinement refinement = refine(stopped);
   EXPECT_EQ(refinement.stop_reason, StopReason::kCancelled);
   expect_valid(refinement);
-  StopControl late({.deadline = std::chrono::steady_clock::now()}, {}, [](std::uint64_t) {});
+  StopControl late({.max_seconds = 1e-9}, {}, [](std::uint64_t) {});
   EXPECT_EQ(refine(late).stop_reason, StopReason::kTimeLimit);
 }
 
@@ -137,15 +142,16 @@ TEST(Threads, ThatCannotBeStartedEndTheRun) {
   const std::string path = testing::TempDir() + "/threads-" + std::to_string(getpid()) + ".log";
   const auto operations_of = [&](int threads_that_start) {
     OperationLogWriter log(path);
-    Team team{Executor::kThreads, {4, Contention::kLocal, {}, 3}};
-    team.log = &log;
+    const Team team{.coordination = {.num_workers = 4, .seed = 3}, .num_nodes = 4, .log = &log};
     StopControl stop({}, {}, [](std::uint64_t) {});
-    const LeafOptions leaves{.num_nodes = 4, .initial_ratio = 4, .initial_workers = 1, .leaf_size_mm = 4};
-    const Problem problem{isosurface, foreground_bounds(image), 0.7, SizeField(std::vector<double>(2, 0.7)),
-                          1 << 22};
+    const Problem problem{.isosurface = isosurface,
+                          .object = foreground_bounds(image),
+                          .delta_mm = 0.7,
+                          .sizes = SizeField(std::vector<double>(2, 0.7)),
+                          .cell_capacity = 1 << 22};
     threads_left = threads_that_start;
     try {
-      pdr(problem, team, leaves, stop);
+      pdr(problem, team, {.size_mm = 4}, stop);
       EXPECT_LT(threads_that_start, 0) << "a thread that could not be started went unnoticed";
     } catch (const std::exception&) {
       EXPECT_GE(threads_that_start, 0);

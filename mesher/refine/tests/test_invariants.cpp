@@ -47,7 +47,10 @@ class NeedleInABall {
   static constexpr Point center_{4.5, 22.5, 14.5};  // of the ball
   LabelImage image_ = ball(24, 11);
   Isosurface isosurface_{image_, 1};
-  Parameters parameters_{kSpacing, SizeField({100, 100}), triangulator.mesh.box(), kSpacing};
+  Parameters parameters_{.delta_mm = kSpacing,
+                         .sizes = SizeField({100, 100}),
+                         .clamp_box = triangulator.mesh.box(),
+                         .spacing_mm = kSpacing};
 };
 
 // Between the published bound and sqrt(2 + sqrt(3)), too.

@@ -33,12 +33,7 @@ double total_volume(const TetMesh& mesh) {
   return sum;
 }
 
-MeshingOptions radius(double mm) {
-  MeshingOptions options;
-  options.radius_mm = mm;
-  options.threads = 1;
-  return options;
-}
+MeshingOptions radius(double mm) { return {.sizes = {.radius_mm = mm}, .team = {.threads = 1}}; }
 
 class MeshImage : public testing::TestWithParam<NamedImage> {};
 
@@ -129,8 +124,8 @@ TEST(MeshImageSizes, LabelsHaveTheirOwnRadius) {
   const LabelImage image =
       make_image({20, 20, 20}, {1, 1, 1}, 2, [](int i, int, int) { return i < 10 ? 1 : 2; });
   MeshingOptions options = radius(4);
-  options.delta_mm = 1.2;
-  options.radius_of_mm[20] = 0.8;
+  options.sizes.delta_mm = 1.2;
+  options.sizes.radius_of_mm[20] = 0.8;
   const MeshingResult result = mesh_image(image, options);
   EXPECT_TRUE(result.report.guarantees.all_met());
   EXPECT_GT(result.report.cells_of_label.at(20), 3 * result.report.cells_of_label.at(10));
@@ -140,9 +135,9 @@ TEST(MeshImagePhases, EachAlgorithmTellsItsOwn) {
   for (const int threads : {1, 3}) {
     for (const Executor executor : {Executor::kThreads, Executor::kVirtual}) {
       MeshingOptions options = radius(2);
-      options.threads = threads;
-      options.oversubscribe = true;
-      options.executor = executor;
+      options.team.threads = threads;
+      options.team.oversubscribe = true;
+      options.team.executor = executor;
       const auto phases = [&](Algorithm algorithm) {
         options.algorithm = algorithm;
         std::set<std::string> names;
@@ -183,9 +178,9 @@ TEST(MeshImageRuns, AreRepeatable) {
 TEST(MeshImageRuns, LimitsAndCancellationLeaveAMeshThatSaysSo) {
   const LabelImage image = ball(40, 15);
   MeshingOptions elements = radius(0.3), time = radius(0.3), memory = radius(0.3);
-  elements.max_elements = 20000;
-  time.max_seconds = 0.2;
-  memory.max_memory_bytes = 1 << 20;
+  elements.limits.max_elements = 20000;
+  time.limits.max_seconds = 0.2;
+  memory.limits.max_memory_bytes = 1 << 20;
   EXPECT_EQ(mesh_image(image, elements).report.stop_reason, StopReason::kElementLimit);
   EXPECT_EQ(mesh_image(image, time).report.stop_reason, StopReason::kTimeLimit);
   EXPECT_EQ(mesh_image(image, memory).report.stop_reason, StopReason::kMemoryLimit);
@@ -204,17 +199,17 @@ TEST(MeshImageRefusals, BadOptionsAndEmptyImages) {
        {-1.0, std::numeric_limits<double>::quiet_NaN(), std::numeric_limits<double>::infinity()}) {
     EXPECT_THROW(mesh_image(image, radius(bad)), InputError);
     MeshingOptions delta = radius(1);
-    delta.delta_mm = bad;
+    delta.sizes.delta_mm = bad;
     EXPECT_THROW(mesh_image(image, delta), InputError);
     MeshingOptions label = radius(1);
-    label.radius_of_mm[10] = bad;
+    label.sizes.radius_of_mm[10] = bad;
     EXPECT_THROW(mesh_image(image, label), InputError);
   }
   MeshingOptions absent = radius(1);
-  absent.radius_of_mm[77] = 1;
+  absent.sizes.radius_of_mm[77] = 1;
   EXPECT_THROW(mesh_image(image, absent), InputError);
   MeshingOptions both = radius(1);
-  both.target_elements = 1000;
+  both.sizes.target_elements = 1000;
   EXPECT_THROW(mesh_image(image, both), InputError);
   const LabelImage empty = make_image({4, 4, 4}, {1, 1, 1}, 1, [](int, int, int) { return 0; });
   EXPECT_THROW(mesh_image(empty, radius(1)), InputError);

@@ -24,10 +24,12 @@ struct Method {
   Executor executor = Executor::kThreads;
 
   Refinement operator()(const Problem& problem, StopControl& stop) const {
-    const Team team{executor, {num_workers, contention, {}, 1}};
-    const LeafOptions leaves{.num_nodes = num_nodes, .initial_workers = num_workers};
-    if (algorithm == Algorithm::kPdr) return pdr(problem, team, leaves, stop);
-    if (algorithm == Algorithm::kPdrPodm) return pdr_podm(problem, team, leaves, stop);
+    const Team team{.executor = executor,
+                    .coordination = {.num_workers = num_workers, .contention = contention},
+                    .num_nodes = num_nodes,
+                    .initial_workers = num_workers};
+    if (algorithm == Algorithm::kPdr) return pdr(problem, team, {}, stop);
+    if (algorithm == Algorithm::kPdrPodm) return pdr_podm(problem, team, {}, stop);
     return podm(problem, team, stop);
   }
 };
@@ -52,7 +54,11 @@ class Refined : public testing::TestWithParam<std::tuple<NamedImage, Method>> {
         delta_(default_delta_mm(image_, kRadius)),
         sizes_(std::vector<double>(image_.labels.size(), kRadius)) {
     StopControl stop({}, {}, [](std::uint64_t) {});
-    const Problem problem{isosurface_, foreground_bounds(image_), delta_, sizes_, 1 << 22};
+    const Problem problem{.isosurface = isosurface_,
+                          .object = foreground_bounds(image_),
+                          .delta_mm = delta_,
+                          .sizes = sizes_,
+                          .cell_capacity = 1 << 22};
     refinement_ = std::get<Method>(GetParam())(problem, stop);
   }
   double spacing() const { return std::min(delta_, kRadius / std::sqrt(2 + std::sqrt(3.0))); }
@@ -77,7 +83,10 @@ TEST_P(Refined, KeepsTheInvariants) {
 
 TEST_P(Refined, LeavesNoCellThatBreaksARule) {
   Mesh& mesh = *refinement_.mesh;
-  const Parameters parameters{delta_, sizes_, clamp_box(foreground_bounds(image_), delta_), spacing()};
+  const Parameters parameters{.delta_mm = delta_,
+                              .sizes = sizes_,
+                              .clamp_box = clamp_box(foreground_bounds(image_), delta_),
+                              .spacing_mm = spacing()};
   const Rules rules(mesh, isosurface_, parameters);
   for (CellId c = 0; c < mesh.cell_bound(); ++c) {
     if (!mesh.cell(c).is_alive()) continue;

@@ -112,14 +112,21 @@ class Schedules : public testing::Test {
     std::mt19937_64 random(seed);
     const auto draw = [&](int low, int high) { return std::uniform_int_distribution(low, high)(random); };
     const auto algorithm = static_cast<Algorithm>(draw(1, 3));
-    LeafOptions leaves{.num_nodes = draw(1, 4), .initial_ratio = 1.0 * draw(1, 3)};
-    const int num_workers = leaves.num_nodes * (algorithm == Algorithm::kPdr ? 1 : draw(1, 4));
-    leaves.initial_workers = draw(1, num_workers);
+    const int num_nodes = draw(1, 4);
+    const LeafOptions leaves{.initial_ratio = 1.0 * draw(1, 3)};
+    const int num_workers = num_nodes * (algorithm == Algorithm::kPdr ? 1 : draw(1, 4));
+    const int initial_workers = draw(1, num_workers);
     const auto contention = static_cast<Contention>(draw(1, 3));
-    const Team team{
-        .executor = Executor::kVirtual, .coordination = {num_workers, contention, {}, random()}, .log = log};
-    const Problem problem{scene.isosurface, foreground_bounds(scene.image), scene.delta_mm, scene.sizes,
-                          capacity};
+    const Team team{.executor = Executor::kVirtual,
+                    .coordination = {.num_workers = num_workers, .contention = contention, .seed = random()},
+                    .num_nodes = num_nodes,
+                    .initial_workers = initial_workers,
+                    .log = log};
+    const Problem problem{.isosurface = scene.isosurface,
+                          .object = foreground_bounds(scene.image),
+                          .delta_mm = scene.delta_mm,
+                          .sizes = scene.sizes,
+                          .cell_capacity = capacity};
     if (algorithm == Algorithm::kPodm) return crowded_podm(problem, team, stop);
     return algorithm == Algorithm::kPdr ? pdr(problem, team, leaves, stop)
                                         : pdr_podm(problem, team, leaves, stop);
@@ -223,7 +230,8 @@ TEST_F(Schedules, EndBetweenOperationsWhenALimitStrikes) {
   int num_ended = 0;
   std::string fault;
   for (int seed = 0; seed < 60; ++seed) {
-    StopControl limited({.max_cells = 200 + 20 * static_cast<std::uint64_t>(seed)}, {}, [](std::uint64_t) {});
+    StopControl limited({.max_elements = 200 + 20 * static_cast<std::uint64_t>(seed)}, {},
+                        [](std::uint64_t) {});
     const Refinement of_cells = refine(scene_of(seed), static_cast<std::uint64_t>(seed), limited, nullptr);
     EXPECT_TRUE(is_valid(*of_cells.mesh, &fault)) << "seed " << seed << ": " << fault;
     StopControl stop = patient();

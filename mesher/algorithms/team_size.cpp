@@ -1,0 +1,61 @@
+#include "algorithms/team_size.h"
+
+#include <algorithm>
+#include <set>
+
+#include "podm/errors.h"
+
+namespace podm {
+
+namespace {
+
+int num_computing_nodes(const TeamOptions& options, Algorithm algorithm, const std::vector<Place>& places) {
+  const int workers = num_workers(options);
+  if (algorithm == Algorithm::kPodm) return 1;
+  if (algorithm == Algorithm::kPdr) return workers;
+  if (options.nodes > 0) return options.nodes;
+  if (options.cores_per_node > 0) return workers / options.cores_per_node;
+  std::set<int> used;
+  for (const Place& place : places) used.insert(place.node);
+  const int nodes = static_cast<int>(used.size());
+  return workers % nodes == 0 ? nodes : 1;
+}
+
+}  // namespace
+
+bool is_of_this_machine(const TeamOptions& options) {
+  return options.executor == Executor::kThreads && options.topology_path.empty();
+}
+
+int loop_threads(const TeamOptions& options) {
+  return options.executor == Executor::kVirtual ? 0 : options.threads;
+}
+
+void check_team_size(const TeamOptions& options, Algorithm algorithm) {
+  const int nodes = options.nodes, cores = options.cores_per_node, threads = options.threads;
+  if (nodes > 0 && cores > 0 && threads > 0 && nodes * cores != threads)
+    throw InputError("threads must be nodes times cores per node, or left out");
+  if ((nodes > 0 && threads % nodes != 0) || (cores > 0 && threads % cores != 0))
+    throw InputError("nodes must divide the threads evenly");
+  if (algorithm == Algorithm::kPdr && cores > 1)
+    throw InputError("pdr has one core per node; pdr-podm has more");
+  if (options.initial_threads > num_workers(options))
+    throw InputError("the initial mesh cannot have more threads than the whole run");
+}
+
+int num_workers(const TeamOptions& options) {
+  if (options.threads > 0) return options.threads;
+  return std::max(1, options.nodes) * std::max(1, options.cores_per_node);
+}
+
+TeamSize team_size(const MeshingOptions& options, const std::vector<Place>& places) {
+  const int workers = num_workers(options.team);
+  const Algorithm by_crossover = workers < options.crossover ? Algorithm::kPodm : Algorithm::kPdrPodm;
+  const Algorithm algorithm = options.algorithm == Algorithm::kAuto ? by_crossover : options.algorithm;
+  return {.algorithm = algorithm,
+          .num_workers = workers,
+          .num_nodes = num_computing_nodes(options.team, algorithm, places),
+          .initial_workers = options.team.initial_threads > 0 ? options.team.initial_threads : workers};
+}
+
+}  // namespace podm

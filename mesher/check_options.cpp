@@ -1,0 +1,58 @@
+#include "check_options.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "algorithms/team_size.h"
+#include "geometry/affine.h"
+
+namespace podm {
+
+namespace {
+
+bool is_positive_or_zero(double x) { return std::isfinite(x) && x >= 0; }
+
+void check_sizes(const LabelImage& image, const SizeOptions& sizes) {
+  if (!is_positive_or_zero(sizes.radius_mm)) throw InputError("radius must be a positive number of mm");
+  if (!is_positive_or_zero(sizes.delta_mm)) throw InputError("delta must be a positive number of mm");
+  for (const auto& [value, radius] : sizes.radius_of_mm) {
+    const auto has_value = [v = value](const Label& label) { return label.value == v; };
+    if (std::none_of(image.labels.begin() + 1, image.labels.end(), has_value))
+      throw InputError("radius of label " + std::to_string(value) + ": the image has no such label");
+    if (!(std::isfinite(radius) && radius > 0))
+      throw InputError("radius of label " + std::to_string(value) + " must be a positive number of mm");
+  }
+  if (sizes.target_elements > 0 && sizes.radius_mm > 0)
+    throw InputError("a target number of elements excludes a radius");
+}
+
+void check_leaves(const LeafOptions& leaves) {
+  if (!(std::isfinite(leaves.initial_ratio) && leaves.initial_ratio >= 1))
+    throw InputError("the initial ratio must be 1 or more");
+  if (!is_positive_or_zero(leaves.size_mm)) throw InputError("leaf size must be a positive number of mm");
+}
+
+// Readers see to it; others may have left the affine out.
+void check_affine(const LabelImage& image) {
+  const Affine& a = image.voxel_to_ras;
+  for (std::size_t axis = 0; axis < 3; ++axis) {
+    const double norm = std::hypot(a[axis], a[4 + axis], a[8 + axis]);
+    if (!(norm > 0 && std::abs(norm - image.spacing[axis]) <= 1e-6 * norm))
+      throw InputError("the image's spacing is not that of its affine (axis " + std::to_string(axis) + ")");
+  }
+  const double voxel_mm3 = image.spacing[0] * image.spacing[1] * image.spacing[2];
+  if (!(std::abs(determinant(a)) > 1e-6 * voxel_mm3)) throw InputError("the image's affine is singular");
+}
+
+}  // namespace
+
+void check_options(const LabelImage& image, const MeshingOptions& options) {
+  if (image.labels.size() < 2 || image.voxels.size() != image.num_voxels())
+    throw InputError("the image has no foreground");
+  check_affine(image);
+  check_sizes(image, options.sizes);
+  check_team_size(options.team, options.algorithm);
+  check_leaves(options.leaves);
+}
+
+}  // namespace podm

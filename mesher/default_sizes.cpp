@@ -1,0 +1,40 @@
+#include "default_sizes.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+namespace podm {
+
+namespace {
+
+constexpr double kMaxDeltaVoxels = 2;
+constexpr double kInfinity = std::numeric_limits<double>::infinity();
+
+}  // namespace
+
+double default_delta_mm(const LabelImage& image, double radius_mm) {
+  const double voxel = std::cbrt(image.spacing[0] * image.spacing[1] * image.spacing[2]);
+  return radius_mm > 0 ? std::min(kMaxDeltaVoxels * voxel, radius_mm / 2) : voxel;
+}
+
+double smallest_radius_mm(const SizeOptions& sizes) {
+  double smallest = sizes.radius_mm > 0 ? sizes.radius_mm : kInfinity;
+  for (const auto& [value, radius] : sizes.radius_of_mm) smallest = std::min(smallest, radius);
+  return std::isinf(smallest) ? 0 : smallest;
+}
+
+double delta_mm_for(const LabelImage& image, const SizeOptions& sizes) {
+  return sizes.delta_mm > 0 ? sizes.delta_mm : default_delta_mm(image, smallest_radius_mm(sizes));
+}
+
+SizeField size_field(const LabelImage& image, const SizeOptions& sizes) {
+  std::vector<double> radius(image.labels.size(), sizes.radius_mm > 0 ? sizes.radius_mm : kInfinity);
+  for (std::size_t i = 1; i < image.labels.size(); ++i) {
+    const auto own = sizes.radius_of_mm.find(image.labels[i].value);
+    if (own != sizes.radius_of_mm.end()) radius[i] = own->second;
+  }
+  return SizeField(std::move(radius));
+}
+
+}  // namespace podm

@@ -1,0 +1,72 @@
+// What a run is asked for. A new option is a member here, with its default, and a line in
+// cli/add_mesh_options.cpp, whose help reads the default.
+#pragma once
+
+#include <cstdint>
+#include <map>
+#include <string>
+
+#include "podm/choices.h"
+#include "podm/limits.h"
+
+namespace podm {
+
+/// kAuto is kPdrPodm from this number of threads on, unless told otherwise: the crossover of the published
+/// runs lies between 128 and 160 cores (Feng et al., IMR 2015, Table 1). An experiment measures it for the
+/// machine at hand.
+inline constexpr int kDefaultCrossover = 144;
+
+class OperationLogWriter;
+
+/// How large cells are.
+struct SizeOptions {
+  /// Largest circumradius r_t of a cell, mm. 0: unbounded, the surface alone drives.
+  double radius_mm = 0;
+  /// r_t of single labels by label *value*, mm; these override `radius_mm`.
+  std::map<std::uint32_t, double> radius_of_mm = {};
+  /// Surface sampling distance, mm. 0: default_delta_mm().
+  double delta_mm = 0;
+  /// When positive: radius_mm, which must be 0, is chosen so that the mesh has about so many cells.
+  std::uint64_t target_elements = 0;
+  /// How far from the target the number of cells may be, in percent of it.
+  static constexpr double target_tolerance_percent = 5;
+};
+
+/// Who refines. Numbers that are 0 are left to the mesher.
+struct TeamOptions {
+  /// Threads of all phases. With one the same input makes the same mesh to the bit, with more one of the same
+  /// guarantees. Default: nodes times cores per node, where these are given, else one for refinement; all
+  /// cores for the other phases.
+  int threads = 0;
+  int nodes = 0;           ///< computing nodes of kPdrPodm; default: NUMA nodes in use, for kPdr one a thread
+  int cores_per_node = 0;  ///< threads of each computing node; default: threads over nodes
+  int initial_threads = 0;  ///< threads of the initial mesh of kPdr and kPdrPodm; default: all
+  Contention contention = Contention::kLocal;
+  Begging begging = Begging::kHierarchical;
+  std::string pin = "none";        ///< compact, scatter, none, or processors: runtime/placement.h
+  bool oversubscribe = false;      ///< else more threads than processors are refused
+  std::string topology_path = {};  ///< hwloc XML of the machine that the workers stand for; empty: this one
+  Executor executor = Executor::kThreads;
+  VirtualCost virtual_cost = VirtualCost::kMeasured;
+  std::uint64_t seed = 1;  ///< decides pauses of Contention::kRandom, and virtual time
+};
+
+/// How kPdr and kPdrPodm divide space.
+struct LeafOptions {
+  double initial_ratio = 4;  ///< circumradius bound and delta of the initial mesh over those of the final one
+  double size_mm = 0;        ///< side of the octree's leaves; 0: from the initial mesh's bound
+  bool with_schedule = false;  ///< the report tells when which leaf was refined
+};
+
+struct MeshingOptions {
+  SizeOptions sizes = {};
+  Space space = Space::kRas;
+  Algorithm algorithm = Algorithm::kPodm;
+  int crossover = kDefaultCrossover;  ///< threads from which on kAuto is kPdrPodm
+  TeamOptions team = {};
+  LeafOptions leaves = {};
+  Limits limits = {};
+  OperationLogWriter* log = nullptr;  ///< learns of every operation of the last run; not finished
+};
+
+}  // namespace podm

@@ -1,0 +1,158 @@
+// What a run tells of itself and of its mesh.
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <map>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "podm/choices.h"
+
+namespace podm {
+
+/// Radius-edge bound of every output cell: circumradius / shortest edge < kRadiusEdgeBound.
+/// sqrt(2 + sqrt(3)) = 1.93185 in the proof; the published bound 1.93 is kept, see refine/rules.h for what
+/// that costs.
+inline constexpr double kRadiusEdgeBound = 1.93;
+/// Every planar angle of every boundary facet exceeds this, in degrees.
+inline constexpr double kFacetAngleBound = 30.0;
+
+/// Cells and boundary facets that miss a guarantee; all zero when StopReason is kComplete.
+struct Guarantees {
+  std::uint64_t radius_edge = 0;     ///< cells with radius-edge >= kRadiusEdgeBound
+  std::uint64_t facet_angle = 0;     ///< boundary facets with an angle <= kFacetAngleBound
+  std::uint64_t radius = 0;          ///< cells with circumradius > r_t
+  std::uint64_t facet_vertices = 0;  ///< boundary facets with a vertex off the isosurface
+  std::uint64_t orientation = 0;     ///< cells that rounding to output coordinates made flat or turned over
+  std::uint64_t missing_labels = 0;  ///< labels of more than 1000 voxels without a cell
+  bool all_met() const {
+    return radius_edge + facet_angle + radius + facet_vertices + orientation + missing_labels == 0;
+  }
+};
+
+/// Extremes over the output, measured on the output coordinates (before a voxel-space transform).
+struct Quality {
+  double max_radius_edge = 0;
+  double min_facet_angle_deg = 0, max_facet_angle_deg = 0;
+  double min_dihedral_deg = 0, max_dihedral_deg = 0;
+  double max_radius_mm = 0, shortest_edge_mm = 0;
+};
+
+/// Accesses to memory, by the hops from the worker's NUMA node to the one that owns the memory. Empty on one
+/// node.
+struct HopsByKind {
+  std::vector<std::uint64_t> mesh_reads;   ///< cells tested, vertices locked; owned by whose worker made them
+  std::vector<std::uint64_t> mesh_writes;  ///< cells and vertices that filling and gluing wrote; likewise
+  std::vector<std::uint64_t> image_reads;  ///< labels of the image, one or some of a row at a time
+  std::vector<std::uint64_t> transform_reads;  ///< words of the feature transform
+};
+
+/// Operations by outcome and work done, exact counts.
+struct Counters {
+  std::array<std::uint64_t, 5> insertions_by_rule{};  ///< R1..R5
+  std::uint64_t removals = 0;                         ///< vertices removed by R6
+  std::uint64_t rejected = 0;                         ///< operations that broke the spacing floor
+  std::uint64_t stale_cells = 0;                      ///< poor element list entries that had died
+  std::uint64_t classified_cells = 0;
+  std::uint64_t conflict_tests = 0;
+  std::uint64_t exact_decisions = 0;  ///< conflict tests that the cached sphere left undecided
+  std::uint64_t cells_created = 0;
+  std::uint64_t lock_conflicts = 0;  ///< attempts rolled back
+  std::uint64_t out_of_leaf = 0;     ///< attempts that needed vertices outside a leaf's region, deferred
+  std::uint64_t region_cells = 0;    ///< cells that operations collected to replace, carried out or not
+  // Seconds lost, of all workers.
+  double contention_s = 0, begging_s = 0, rollback_s = 0;
+  HopsByKind hops;
+};
+
+/// One worker: where it was, and what it did.
+struct WorkerReport {
+  int node = 0, socket = 0;      ///< of the machine, or of the one described
+  std::optional<int> processor;  ///< asked for, by the system's number; none: bound to none
+  std::optional<int> bound_to;   ///< as the system told when the worker had begun
+  Counters counters;
+};
+
+/// Pages that the system was asked about, at the ends of phases.
+struct PageSamples {
+  /// Against the node that owns the memory: of cells, their states and vertices the node whose worker made
+  /// them, of image and transform the node that had them first.
+  struct OfArray {
+    std::string array;  ///< cells, cell_states, vertices, image, transform
+    std::uint64_t as_claimed = 0, elsewhere = 0;
+    std::uint64_t untouched = 0;  ///< in nobody's memory yet
+  };
+  struct AtPhase {
+    std::string phase;
+    std::vector<OfArray> arrays;
+    /// A sample of the workers' accesses, by the hops to where the page is.
+    std::vector<std::uint64_t> accesses_by_hops;
+  };
+  std::vector<AtPhase> phases;
+  std::string unavailable;  ///< why none were asked
+};
+
+/// How the radius for a target number of cells was found: from the image, and from whole meshes that missed.
+struct Calibration {
+  std::uint64_t target_elements = 0;
+  double radius_mm = 0;  ///< found
+  struct TrialMesh {
+    double radius_mm = 0;
+    std::uint64_t cells = 0;
+    double seconds = 0;
+  };
+  std::vector<TrialMesh>
+      meshes;          ///< made and dropped, in this order; the mesh that is returned is not among them
+  double seconds = 0;  ///< of all this: phases_s["calibrate"]
+};
+
+/// The leaves of an octree and when each was refined.
+struct LeafSchedule {
+  std::array<double, 3> origin_mm{};  ///< of the grid, working frame
+  double side_mm = 0;                 ///< of a grid cell
+  struct Leaf {
+    std::array<std::uint32_t, 3> corner;  ///< in the grid
+    std::uint32_t side;
+  };
+  std::vector<Leaf> leaves;
+  struct Activation {
+    std::uint32_t leaf, node;
+    double begin_s, end_s;  ///< since the first; in virtual time under Executor::kVirtual
+    std::uint64_t operations, deferred;
+    std::vector<std::uint32_t> touched_leaves;  ///< that hold a vertex which was locked
+  };
+  std::vector<Activation> activations;  ///< in the order of their ends
+};
+
+struct MeshingReport {
+  /// Seconds of the mesh that is returned. "transform"; "allocate": store, pools, workers and threads made
+  /// ready; "initial", "octree", "refine", "closing" (of kPodm "refine" alone); "extract"; "measure": quality
+  /// and guarantees. And "calibrate": all that finding the radius of a target cost.
+  std::map<std::string, double> phases_s;
+  double radius_mm = 0;                    ///< as used; 0 when unbounded
+  double delta_mm = 0;                     ///< as used
+  std::optional<Calibration> calibration;  ///< of a target number of cells
+  StopReason stop_reason = StopReason::kComplete;
+  Guarantees guarantees;
+  Quality quality;
+  Counters counters;  ///< of all workers
+  std::vector<WorkerReport> workers;
+  int num_nodes = 1;                       ///< NUMA nodes of the machine
+  Algorithm algorithm = Algorithm::kPodm;  ///< as used
+  int computing_nodes = 1;                 ///< as used
+  std::uint64_t num_leaves = 0;
+  std::optional<LeafSchedule> schedule;
+  PageSamples pages;
+  std::string image_reads_unavailable;  ///< why HopsByKind lacks reads of the image; otherwise empty
+  std::map<std::uint32_t, std::uint64_t> cells_of_label;  ///< by label value
+  std::map<std::uint32_t, double> volume_of_label_mm3;    ///< by label value, of the mesh
+  std::uint64_t store_cells = 0;                          ///< cells of the whole virtual box
+  std::array<double, 6> virtual_box{};                    ///< its low and high corner, mm, working frame
+  /// Of Executor::kVirtual: simulated seconds of initial, refine and closing.
+  std::map<std::string, double> virtual_phases_s;
+  std::vector<std::string> warnings;
+};
+
+}  // namespace podm
