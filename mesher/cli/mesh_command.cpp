@@ -12,7 +12,7 @@
 #include "cli/labelled_image.h"
 #include "cli/leaf_schedule_file.h"
 #include "cli/mesh_run.h"
-#include "cli/meshing_options.h"
+#include "cli/options_for_image.h"
 #include "cli/process_memory.h"
 #include "cli/progress_display.h"
 #include "cli/record.h"
@@ -87,7 +87,7 @@ int run(const MeshCommand& command) {
   });
   MeshRun run{.command = command,
               .image = image,
-              .options = meshing_options(command, image, limit_bytes),
+              .options = options_for_image(command, image, limit_bytes),
               .crossover = std::move(crossover),
               .result = {},
               .mesh_sha256 = {},

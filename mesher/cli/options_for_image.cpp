@@ -1,4 +1,4 @@
-#include "cli/meshing_options.h"
+#include "cli/options_for_image.h"
 
 #include <fmt/format.h>
 
@@ -70,8 +70,8 @@ std::uint64_t bytes_for_image(std::uint64_t limit_bytes) {
   return limit_bytes - std::min(limit_bytes, resident_bytes() + kBytesOfOutput);
 }
 
-MeshingOptions meshing_options(const MeshCommand& command, const LabelImage& image,
-                               std::uint64_t limit_bytes) {
+MeshingOptions options_for_image(const MeshCommand& command, const LabelImage& image,
+                                 std::uint64_t limit_bytes) {
   MeshingOptions options = command.meshing;
   options.sizes.radius_of_mm = lengths_by_value(command.radius_of_mm, image, command.image.path);
   refuse_coarse_sampling(command, image);

@@ -1,4 +1,4 @@
-// From what was asked on the command line to what the library is told, given the image and the machine.
+// The options of the library, from those of the command line, the image and the memory of the machine.
 #pragma once
 
 #include <cstdint>
@@ -16,7 +16,7 @@ std::uint64_t bytes_for_image(std::uint64_t limit_bytes);
 
 /// Throws InputError, naming the image and the fault, where a label is absent, delta exceeds the image, or
 /// the run is expected to need more memory than allowed.
-MeshingOptions meshing_options(const MeshCommand& command, const LabelImage& image,
-                               std::uint64_t limit_bytes);
+MeshingOptions options_for_image(const MeshCommand& command, const LabelImage& image,
+                                 std::uint64_t limit_bytes);
 
 }  // namespace podm::cli
