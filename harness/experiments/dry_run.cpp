@@ -4,7 +4,7 @@
 #include <filesystem>
 
 #include "commands.h"
-#include "experiments/mesher_options.h"
+#include "experiments/option_matrix.h"
 #include "experiments/plan.h"
 #include "experiments/progress.h"
 #include "machine/machine.h"

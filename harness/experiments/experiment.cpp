@@ -10,7 +10,7 @@
 #include <map>
 #include <set>
 
-#include "experiments/mesher_options.h"
+#include "experiments/option_matrix.h"
 #include "experiments/toml_section.h"
 
 namespace podm::bench {

@@ -7,7 +7,7 @@
 #include <filesystem>
 #include <map>
 
-#include "experiments/mesher_options.h"
+#include "experiments/option_matrix.h"
 #include "rows/record.h"
 
 namespace podm::bench {

@@ -6,7 +6,7 @@
 #include <algorithm>
 #include <filesystem>
 
-#include "experiments/mesher_options.h"
+#include "experiments/option_matrix.h"
 #include "rows/record.h"
 #include "trials/process.h"
 #include "trials/sha256.h"

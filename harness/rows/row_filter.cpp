@@ -5,7 +5,7 @@
 #include <algorithm>
 #include <map>
 
-#include "experiments/mesher_options.h"
+#include "experiments/option_matrix.h"
 #include "rows/record.h"
 
 namespace podm::bench {

@@ -6,7 +6,7 @@
 #include <limits>
 #include <map>
 
-#include "experiments/mesher_options.h"
+#include "experiments/option_matrix.h"
 #include "rows/record.h"
 
 namespace podm::bench {

@@ -9,7 +9,7 @@
 
 #include "experiments/experiment.h"
 #include "experiments/judge.h"
-#include "experiments/mesher_options.h"
+#include "experiments/option_matrix.h"
 #include "made_up_rows.h"
 
 namespace podm::bench {

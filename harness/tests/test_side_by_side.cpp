@@ -1,7 +1,7 @@
 // Several processes of one trial at the same time.
 #include <gtest/gtest.h>
 
-#include "experiments/mesher_options.h"
+#include "experiments/option_matrix.h"
 #include "fake_mesher.h"
 #include "machine/machine.h"
 #include "trials/trial.h"

@@ -6,7 +6,7 @@
 #include <chrono>
 #include <fstream>
 
-#include "experiments/mesher_options.h"
+#include "experiments/option_matrix.h"
 #include "machine/machine.h"
 #include "rows/record.h"
 #include "rows/results_file.h"

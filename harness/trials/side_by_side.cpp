@@ -2,7 +2,7 @@
 
 #include <fmt/format.h>
 
-#include "experiments/mesher_options.h"
+#include "experiments/option_matrix.h"
 #include "machine/machine.h"
 #include "rows/record.h"
 #include "trials/judgement.h"

@@ -7,7 +7,7 @@
 #include <filesystem>
 #include <fstream>
 
-#include "experiments/mesher_options.h"
+#include "experiments/option_matrix.h"
 #include "machine/machine.h"
 #include "rows/measure.h"
 #include "rows/record.h"

@@ -5,7 +5,7 @@
 #include <algorithm>
 #include <fstream>
 
-#include "experiments/mesher_options.h"
+#include "experiments/option_matrix.h"
 #include "trials/process.h"
 
 namespace podm::bench {

@@ -1,4 +1,4 @@
-#include "experiments/mesher_options.h"
+#include "experiments/option_matrix.h"
 
 #include <fmt/format.h>
 
