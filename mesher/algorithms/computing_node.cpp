@@ -40,8 +40,7 @@ LeafSchedule::Activation ComputingNode<Locks>::end(LeafCells& cells, RefinementQ
 template <class Locks>
 std::uint64_t ComputingNode<Locks>::num_committed() const {
   std::uint64_t committed = 0;
-  for (const auto& worker : workers_)
-    for (const std::uint64_t insertions : worker->counters().insertions_by_rule) committed += insertions;
+  for (const auto& worker : workers_) committed += worker->counters().num_insertions();
   return committed;
 }
 

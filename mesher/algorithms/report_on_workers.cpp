@@ -4,15 +4,6 @@ namespace podm {
 
 namespace {
 
-// What add() sums besides insertions and accesses.
-constexpr std::uint64_t Counters::*kCounts[] = {&Counters::removals,       &Counters::rejected,
-                                                &Counters::stale_cells,    &Counters::classified_cells,
-                                                &Counters::conflict_tests, &Counters::exact_decisions,
-                                                &Counters::cells_created,  &Counters::lock_conflicts,
-                                                &Counters::out_of_leaf,    &Counters::region_cells};
-constexpr double Counters::*kSeconds[] = {&Counters::contention_s, &Counters::begging_s,
-                                          &Counters::rollback_s};
-
 constexpr std::pair<std::vector<std::uint64_t> HopsByKind::*, AccessKind> kHops[] = {
     {&HopsByKind::mesh_reads, AccessKind::kMeshRead},
     {&HopsByKind::mesh_writes, AccessKind::kMeshWrite},
@@ -46,33 +37,18 @@ HopsByKind hops_of(const std::optional<AccessTally>& accesses, int own_node, con
 template <class Locks>
 Counters counters_of(const Worker<Locks>& worker, const Overhead& overhead, const Place& place,
                      const Topology* machine) {
-  const WorkerCounters& w = worker.counters();
-  const OperationCounters& o = worker.operation_counters();
-  Counters c;
-  c.insertions_by_rule = w.insertions_by_rule;
-  c.removals = w.removals;
-  c.rejected = w.rejected;
-  c.stale_cells = w.stale_cells;
-  c.classified_cells = w.classified_cells;
-  c.conflict_tests = o.conflict_tests;
-  c.exact_decisions = o.exact_decisions;
-  c.cells_created = o.cells_created;
-  c.lock_conflicts = w.lock_conflicts;
-  c.out_of_leaf = w.out_of_leaf;
-  c.region_cells = o.region_cells;
-  c.contention_s = overhead.contention_s;
-  c.begging_s = overhead.begging_s;
-  c.rollback_s = overhead.rollback_s;
-  c.hops = hops_of(worker.accesses(), place.node, machine);
-  return c;
+  Counters counters = worker.counters();
+  counters.overhead = overhead;
+  counters.hops = hops_of(worker.accesses(), place.node, machine);
+  return counters;
 }
 
-void add(const Counters& c, Counters& sum) {
-  for (std::size_t rule = 0; rule < sum.insertions_by_rule.size(); ++rule)
-    sum.insertions_by_rule[rule] += c.insertions_by_rule[rule];
-  for (const auto count : kCounts) sum.*count += c.*count;
-  for (const auto seconds : kSeconds) sum.*seconds += c.*seconds;
-  for (const auto& [member, kind] : kHops) add(c.hops.*member, sum.hops.*member);
+void add(const Counters& terms, Counters& sums) {
+  for (std::size_t rule = 0; rule < sums.insertions_by_rule.size(); ++rule)
+    sums.insertions_by_rule[rule] += terms.insertions_by_rule[rule];
+  for (const Count& count : kCounts) sums.*count.member += terms.*count.member;
+  for (const Cause& cause : kCauses) sums.overhead.*cause.member += terms.overhead.*cause.member;
+  for (const auto& [member, kind] : kHops) add(terms.hops.*member, sums.hops.*member);
 }
 
 Counters sum_of(const std::vector<WorkerReport>& workers) {

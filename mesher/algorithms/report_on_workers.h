@@ -6,7 +6,6 @@
 #include "podm/mesh_image.h"
 #include "refine/worker.h"
 #include "runtime/placement.h"
-#include "workers/overhead.h"
 
 namespace podm {
 
@@ -15,7 +14,7 @@ template <class Locks>
 Counters counters_of(const Worker<Locks>& worker, const Overhead& overhead, const Place& place,
                      const Topology* machine);
 
-void add(const Counters& terms, Counters& sum);
+void add(const Counters& terms, Counters& sums);
 Counters sum_of(const std::vector<WorkerReport>& workers);
 
 }  // namespace podm

@@ -50,12 +50,6 @@ std::vector<std::string> MeshRun::unmet() const {
   return sentences;
 }
 
-std::uint64_t num_committed(const Counters& counters) {
-  std::uint64_t operations = counters.removals;
-  for (const std::uint64_t insertions : counters.insertions_by_rule) operations += insertions;
-  return operations;
-}
-
 std::vector<FacetCount> count_facets(const TetMesh& mesh) {
   std::map<std::array<LabelIndex, 2>, std::uint64_t> by_pair;
   for (const auto& pair : mesh.facet_labels) ++by_pair[pair];

@@ -34,9 +34,6 @@ struct MeshRun {
   std::vector<std::string> unmet() const;
 };
 
-/// Vertices inserted and removed.
-std::uint64_t num_committed(const Counters& counters);
-
 /// Facets between two labels.
 struct FacetCount {
   std::array<LabelIndex, 2> labels;

@@ -89,22 +89,15 @@ Json pages_of(const MeshingReport& report) {
   return phases;
 }
 
-Json workers_of(const MeshingReport& report) {
-  Json workers = Json::array();
-  for (const WorkerReport& worker : report.workers) {
-    const Counters& c = worker.counters;
-    workers.push_back({{"committed", num_committed(c)},
-                       {"stale_cell", c.stale_cells},
-                       {"rejected", c.rejected},
-                       {"lock_conflict", c.lock_conflicts},
-                       {"region_cells", c.region_cells},
-                       {"conflict_tests", c.conflict_tests},
-                       {"contention_s", c.contention_s},
-                       {"begging_s", c.begging_s},
-                       {"rollback_s", c.rollback_s},
-                       {"hops_by_kind", hops_by_kind(c.hops, report)}});
-  }
-  return workers;
+void add_counts(const Counters& counters, Count::Kind kind, Json& counts) {
+  for (const Count& count : kCounts)
+    if (count.kind == kind) counts[count.name] = counters.*count.member;
+}
+
+Json outcomes_of(const Counters& counters) {
+  Json outcomes = {{"committed", counters.num_committed()}};
+  add_counts(counters, Count::kOutcome, outcomes);
+  return outcomes;
 }
 
 Json counters_of(const MeshingReport& report) {
@@ -112,14 +105,30 @@ Json counters_of(const MeshingReport& report) {
   Json insertions = Json::object();
   for (std::size_t rule = 0; rule < counters.insertions_by_rule.size(); ++rule)
     insertions[fmt::format("R{}", rule + 1)] = counters.insertions_by_rule[rule];
-  return {{"insertions", insertions},
-          {"removals", counters.removals},
-          {"classified_cells", counters.classified_cells},
-          {"conflict_tests", counters.conflict_tests},
-          {"exact_decisions", counters.exact_decisions},
-          {"cells_created", counters.cells_created},
-          {"region_cells", counters.region_cells},
-          {"store_cells", report.store_cells}};
+  Json counts = {{"insertions", insertions}};
+  add_counts(counters, Count::kWork, counts);
+  counts["store_cells"] = report.store_cells;
+  return counts;
+}
+
+Json seconds_of(const Overhead& overhead, const std::string& suffix = "") {
+  Json seconds = Json::object();
+  for (const Cause& cause : kCauses) seconds[cause.name + suffix] = overhead.*cause.member;
+  return seconds;
+}
+
+Json workers_of(const MeshingReport& report) {
+  Json workers = Json::array();
+  for (const WorkerReport& worker : report.workers) {
+    const Counters& counters = worker.counters;
+    Json told = {{"committed", counters.num_committed()}};
+    for (const Count& count : kCounts)
+      if (count.by_worker) told[count.name] = counters.*count.member;
+    told.update(seconds_of(counters.overhead, "_s"));
+    told["hops_by_kind"] = hops_by_kind(counters.hops, report);
+    workers.push_back(std::move(told));
+  }
+  return workers;
 }
 
 // What a virtual executor says of time is simulated: it stands apart from what was measured.
@@ -228,16 +237,8 @@ Json record(const MeshRun& run) {
       {"cells_per_second", run.cells_per_second()},
       {"refine_cells_per_second", run.refine_cells_per_second()},
       {"peak_rss_bytes", run.peak_rss_bytes},
-      {"outcomes",
-       {{"committed", num_committed(report.counters)},
-        {"stale_cell", report.counters.stale_cells},
-        {"rejected", report.counters.rejected},
-        {"lock_conflict", report.counters.lock_conflicts},
-        {"out_of_leaf", report.counters.out_of_leaf}}},
-      {"overhead_s",
-       {{"contention", report.counters.contention_s},
-        {"begging", report.counters.begging_s},
-        {"rollback", report.counters.rollback_s}}},
+      {"outcomes", outcomes_of(report.counters)},
+      {"overhead_s", seconds_of(report.counters.overhead)},
       {"hops", hops_of(report)},
       {"hops_by_kind", hops_by_kind(report.counters.hops, report)},
       {"pages", pages_of(report)},

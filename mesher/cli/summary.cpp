@@ -112,12 +112,12 @@ std::string hops_text(const std::vector<std::uint64_t>& accesses) {
 }
 
 std::string statistics_line(const std::string& name, const std::string& place, const Counters& c) {
-  const std::uint64_t committed = num_committed(c);
+  const std::uint64_t committed = c.num_committed();
   const auto visited = static_cast<double>(c.conflict_tests);
   return fmt::format("{:>6} {:>11} {:>11} {:>11} {:>9} {:>9} {:>9.1f} {:>9.3f} {:>8.3f} {:>8.3f} {}\n", name,
                      place, committed, c.stale_cells, c.lock_conflicts, c.rejected,
-                     committed > 0 ? visited / static_cast<double>(committed) : 0, c.contention_s,
-                     c.begging_s, c.rollback_s, hops_text(c.hops.mesh_reads));
+                     committed > 0 ? visited / static_cast<double>(committed) : 0, c.overhead.contention_s,
+                     c.overhead.begging_s, c.overhead.rollback_s, hops_text(c.hops.mesh_reads));
 }
 
 }  // namespace

@@ -204,8 +204,8 @@ void Operation<Locks>::count_filling() {
 template <class Locks>
 void Operation<Locks>::finish(std::size_t num_destroyed) {
   count_filling();
-  counters_.cells_destroyed += num_destroyed;
   counters_.cells_created += region_.created.size();
+  net_cells_ += static_cast<std::int64_t>(region_.created.size()) - static_cast<std::int64_t>(num_destroyed);
   for (const VertexId v : region_.removed) pool_.release_vertex(v);
   removed_.swap(region_.removed);
   region_.clear();

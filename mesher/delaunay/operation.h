@@ -20,13 +20,9 @@
 #include "delaunay/mesh.h"
 #include "delaunay/star.h"
 #include "delaunay/vertex_locks.h"
+#include "podm/counters.h"
 
 namespace podm {
-
-struct OperationCounters {
-  std::uint64_t conflict_tests = 0, exact_decisions = 0, cells_created = 0, cells_destroyed = 0;
-  std::uint64_t region_cells = 0;  // that plans collected, carried out or not
-};
 
 template <class Locks>
 class Operation {
@@ -77,7 +73,11 @@ class Operation {
   /// What the last commit made and took away.
   const std::vector<CellId>& created() const { return region_.created; }
   const std::vector<VertexId>& removed() const { return removed_; }
-  const OperationCounters& counters() const { return counters_; }
+  /// The worker counts here too.
+  Counters& counters() { return counters_; }
+  const Counters& counters() const { return counters_; }
+  /// Cells made less cells taken away, by all commits.
+  std::int64_t net_cells() const { return net_cells_; }
 
  private:
   StepResult lock_cell(CellId c);
@@ -111,7 +111,8 @@ class Operation {
   bool is_cavity_ = false;  // the region is one point's cavity, its boundary collected while digging
   VertexId inserted_ = kNoVertex;
   std::vector<VertexId> removed_;
-  OperationCounters counters_;
+  Counters counters_;
+  std::int64_t net_cells_ = 0;
   AccessTally* tally_;
 };
 

@@ -79,12 +79,12 @@ Outcome Worker<Locks>::attempt_next() {
   const PoorElementList::Entry entry = poor_.pop();
   const Outcome outcome = try_entry(entry);
   if (outcome == Outcome::kLockConflict) {
-    ++counters_.lock_conflicts;
+    ++operation_.counters().lock_conflicts;
     poor_.push(entry.cell, entry.stamp);
   } else if (outcome == Outcome::kStaleCell) {
-    ++counters_.stale_cells;
+    ++operation_.counters().stale_cells;
   } else if (outcome == Outcome::kOutOfLeaf) {
-    ++counters_.out_of_leaf;
+    ++operation_.counters().out_of_leaf;
     deferred_.push_back(entry);
   }
   return outcome;
@@ -95,12 +95,15 @@ Outcome Worker<Locks>::try_entry(const PoorElementList::Entry& entry) {
   if (mesh_.stamp(entry.cell) != entry.stamp) return Outcome::kStaleCell;
   if (const StepResult reserved = operation_.reserve(entry.cell, entry.stamp); reserved != StepResult::kDone)
     return outcome_of(reserved);
-  ++counters_.classified_cells;
-  const bool is_timed = Locks::kIsShared && counters_.classified_cells % kAttemptsForOneTimed == 0;
+  ++operation_.counters().classified_cells;
+  const bool is_timed =
+      Locks::kIsShared && operation_.counters().classified_cells % kAttemptsForOneTimed == 0;
   const auto start = is_timed ? std::chrono::steady_clock::now() : std::chrono::steady_clock::time_point();
   const Outcome outcome = apply_first_rule(entry.cell);
   if (is_timed && outcome == Outcome::kLockConflict)
-    counters_.rollback += kAttemptsForOneTimed * (std::chrono::steady_clock::now() - start);
+    operation_.counters().overhead.rollback_s +=
+        kAttemptsForOneTimed *
+        std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
   return outcome;
 }
 
@@ -164,7 +167,7 @@ Outcome Worker<Locks>::insert_circumcenter(const Point& p, CellId start, Rule ru
 template <class Locks>
 Outcome Worker<Locks>::give_up() {
   operation_.rollback();
-  ++counters_.rejected;
+  ++operation_.counters().rejected;
   return Outcome::kRejected;
 }
 
@@ -174,8 +177,8 @@ Outcome Worker<Locks>::commit(const Point& p, VertexKind kind, Rule rule) {
     unlogged_.removed.reserve(unlogged_.removed.size() + operation_.num_planned_removals());
   if (operation_.commit_insertion(p, kind, min_distance_) != StepResult::kDone) return give_up();
   if (log_ != nullptr) log(p, kind);
-  counters_.removals += operation_.removed().size();
-  ++counters_.insertions_by_rule[static_cast<std::size_t>(rule)];
+  operation_.counters().removals += operation_.removed().size();
+  ++operation_.counters().insertions_by_rule[static_cast<std::size_t>(rule)];
   list_created();
   if (poor_.is_due_for_cleaning()) poor_.drop_stale(mesh_);
   return Outcome::kCommitted;

@@ -14,13 +14,6 @@
 
 namespace podm {
 
-struct WorkerCounters {
-  std::array<std::uint64_t, 5> insertions_by_rule{};
-  std::uint64_t removals = 0, rejected = 0, stale_cells = 0, classified_cells = 0, lock_conflicts = 0,
-                out_of_leaf = 0;
-  std::chrono::steady_clock::duration rollback{};  // in attempts that ended in a lock conflict; estimated
-};
-
 template <class Locks>
 class Worker {
  public:
@@ -59,15 +52,12 @@ class Worker {
   /// Hands the last operations to the log.
   void flush_log();
 
-  const WorkerCounters& counters() const { return counters_; }
-  const OperationCounters& operation_counters() const { return operation_.counters(); }
+  /// What it counts itself, and the seconds of rollback in real time, estimated; hops are in accesses().
+  const Counters& counters() const { return operation_.counters(); }
   /// None where nothing is counted.
   const std::optional<AccessTally>& accesses() const { return accesses_; }
   /// Cells this worker has added to the mesh, net.
-  std::int64_t net_cells() const {
-    return static_cast<std::int64_t>(operation_.counters().cells_created) -
-           static_cast<std::int64_t>(operation_.counters().cells_destroyed);
-  }
+  std::int64_t net_cells() const { return operation_.net_cells(); }
 
  private:
   Outcome attempt_next();
@@ -88,7 +78,6 @@ class Worker {
   Operation<Locks> operation_;
   PoorElementList poor_;
   std::vector<PoorElementList::Entry> foreign_, deferred_;
-  WorkerCounters counters_;
   double min_distance_;
   WorkerId self_;
   OperationLogWriter* log_;

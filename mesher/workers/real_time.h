@@ -9,9 +9,9 @@
 #include <vector>
 
 #include "delaunay/vertex_locks.h"
+#include "podm/counters.h"
 #include "refine/outcome.h"
 #include "runtime/placement.h"
-#include "workers/overhead.h"
 #include "workers/stop_control.h"
 
 namespace podm {
@@ -49,7 +49,7 @@ class RealTime {
   template <class Worker>
   Overhead overhead(const Worker& worker) const {
     Overhead overhead = seats_[worker.id()].overhead;
-    overhead.rollback_s = std::chrono::duration<double>(worker.counters().rollback).count();
+    overhead.rollback_s = worker.counters().overhead.rollback_s;
     return overhead;
   }
 

@@ -16,9 +16,9 @@
 #include <vector>
 
 #include "delaunay/vertex_locks.h"
+#include "podm/counters.h"
 #include "refine/outcome.h"
 #include "runtime/fibre.h"
-#include "workers/overhead.h"
 #include "workers/stop_control.h"
 
 namespace podm {
@@ -73,8 +73,8 @@ class VirtualTime {
   };
   template <class Worker>
   static Work work_of(const Worker& worker) {
-    return {worker.counters().classified_cells, worker.operation_counters().conflict_tests,
-            worker.operation_counters().cells_created};
+    const Counters& counters = worker.counters();
+    return {counters.classified_cells, counters.conflict_tests, counters.cells_created};
   }
 
   struct Seat {

@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "podm/choices.h"
+#include "podm/counters.h"
 
 namespace podm {
 
@@ -38,33 +39,6 @@ struct Quality {
   double min_facet_angle_deg = 0, max_facet_angle_deg = 0;
   double min_dihedral_deg = 0, max_dihedral_deg = 0;
   double max_radius_mm = 0, shortest_edge_mm = 0;
-};
-
-/// Accesses to memory, by the hops from the worker's NUMA node to the one that owns the memory. Empty on one
-/// node.
-struct HopsByKind {
-  std::vector<std::uint64_t> mesh_reads;   ///< cells tested, vertices locked; owned by whose worker made them
-  std::vector<std::uint64_t> mesh_writes;  ///< cells and vertices that filling and gluing wrote; likewise
-  std::vector<std::uint64_t> image_reads;  ///< labels of the image, one or some of a row at a time
-  std::vector<std::uint64_t> transform_reads;  ///< words of the feature transform
-};
-
-/// Operations by outcome and work done, exact counts.
-struct Counters {
-  std::array<std::uint64_t, 5> insertions_by_rule{};  ///< R1..R5
-  std::uint64_t removals = 0;                         ///< vertices removed by R6
-  std::uint64_t rejected = 0;                         ///< operations that broke the spacing floor
-  std::uint64_t stale_cells = 0;                      ///< poor element list entries that had died
-  std::uint64_t classified_cells = 0;
-  std::uint64_t conflict_tests = 0;
-  std::uint64_t exact_decisions = 0;  ///< conflict tests that the cached sphere left undecided
-  std::uint64_t cells_created = 0;
-  std::uint64_t lock_conflicts = 0;  ///< attempts rolled back
-  std::uint64_t out_of_leaf = 0;     ///< attempts that needed vertices outside a leaf's region, deferred
-  std::uint64_t region_cells = 0;    ///< cells that operations collected to replace, carried out or not
-  // Seconds lost, of all workers.
-  double contention_s = 0, begging_s = 0, rollback_s = 0;
-  HopsByKind hops;
 };
 
 /// One worker: where it was, and what it did.

@@ -46,12 +46,8 @@ class Player {
   }
   void release() {}
   WorkerId conflicting_worker() const { return holder_; }
-  // What virtual time charges.
-  struct Counts {
-    std::uint64_t classified_cells = 1, conflict_tests = 0, cells_created = 0;
-  };
-  Counts counters() const { return {}; }
-  Counts operation_counters() const { return {}; }
+  // They stay 0: virtual time charges all attempts alike.
+  const Counters& counters() const { return counters_; }
   std::int64_t net_cells() const { return 0; }
 
  private:
@@ -59,6 +55,7 @@ class Player {
   std::atomic<int>&num_left_to_make_, &num_used_;
   std::mt19937 random_;
   Coordination::Entries cells_;
+  Counters counters_;
 };
 
 class Coordinated : public testing::TestWithParam<std::tuple<Contention, bool>> {
@@ -72,7 +69,10 @@ class Coordinated : public testing::TestWithParam<std::tuple<Contention, bool>> 
     std::vector<Player> players;
     for (WorkerId self = 0; self < kNumWorkers; ++self)
       players.emplace_back(self, num_left_to_make, num_used);
-    Coordination group({kNumWorkers, contention, is_nested ? kNested : WorkerGroups{}, 5},
+    Coordination group({.num_workers = kNumWorkers,
+                        .contention = contention,
+                        .groups = is_nested ? kNested : WorkerGroups{},
+                        .seed = 5},
                        [&](WorkerId worker) { time.resume(worker); });
     time.run([&](WorkerId self) {
       if (self != 0) {
