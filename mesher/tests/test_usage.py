@@ -7,8 +7,8 @@ import unittest
 from podm_process import PROGRAM, PodmTestCase, run_podm
 
 OPTIONS = {
-    "mesh": ["--output", "--radius", "--radius-of", "--delta", "--target-elements", "--labels", "--merge",
-             "--drop", "--background", "--label-names", "--space", "--surface", "--record", "--max-elements",
+    "mesh": ["--output", "--radius", "--radius-of", "--delta", "--target-elements", "--target-tolerance", "--labels",
+             "--merge", "--drop", "--background", "--label-names", "--space", "--surface", "--record", "--max-elements",
              "--max-seconds", "--max-memory-gib", "--threads", "--contention", "--algorithm", "--crossover", "--nodes",
              "--cores-per-node", "--initial-ratio", "--initial-threads", "--leaf-size", "--schedule", "--executor",
              "--virtual-cost", "--seed", "--log", "--begging", "--pin", "--oversubscribe", "--topology", "--stats",

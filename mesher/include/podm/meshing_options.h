@@ -29,7 +29,7 @@ struct SizeOptions {
   /// When positive: radius_mm, which must be 0, is chosen so that the mesh has about so many cells.
   std::uint64_t target_elements = 0;
   /// How far from the target the number of cells may be, in percent of it.
-  static constexpr double target_tolerance_percent = 5;
+  double target_tolerance_percent = 5;
 };
 
 /// Who refines. Numbers that are 0 are left to the mesher.

@@ -210,6 +210,16 @@ TEST(Calibration, WarnsWhereATargetCannotBeMet) {
   EXPECT_LE(result.report.calibration->meshes.size(), 1u) << "no radius changes anything";
 }
 
+TEST(Calibration, EndsWithinTheToleranceThatWasAskedFor) {
+  MeshingOptions options = target(120000);
+  options.sizes.target_tolerance_percent = 100;
+  EXPECT_TRUE(mesh_image(noise(), options).report.calibration->meshes.empty());
+  options.sizes.target_tolerance_percent = 1;
+  const MeshingResult near = mesh_image(noise(), options);
+  EXPECT_NEAR(static_cast<double>(near.mesh.cells.size()), 120000, 1200);
+  EXPECT_TRUE(near.report.warnings.empty());
+}
+
 TEST(Calibration, LimitsHold) {
   MeshingOptions elements = target(200000), time = target(20000000), memory = target(200000);
   elements.limits.max_elements = 10000;
