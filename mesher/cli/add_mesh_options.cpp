@@ -101,7 +101,7 @@ void add_run_options(CLI::App& app, MeshCommand& command) {
           "threads, or virtual: one core plays any number of threads in virtual time,\n"
           "the same for the same seed; times are simulated",
           into_choice(meshing.team.executor));
-  add_one(app, "--virtual-cost", "COST", "virtual time of an attempt: unit (1 us) or measured (by its work)",
+  add_one(app, "--virtual-cost", "COST", "time of an attempt: unit (1 us) or measured (by its work)",
           into_choice(meshing.team.virtual_cost));
   add_one(app, "--seed", "N", "of pauses after conflicts and of virtual time",
           {[&meshing](const std::string& text, const std::string& name) {
