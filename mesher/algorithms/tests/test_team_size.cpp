@@ -1,0 +1,65 @@
+// What is decided of a team that options leave open, and what they ask for in vain.
+#include "algorithms/team_size.h"
+
+#include <gtest/gtest.h>
+
+#include "podm/errors.h"
+
+namespace podm::test {
+namespace {
+
+TeamSize size_of(Algorithm algorithm, const TeamOptions& team, const std::vector<int>& nodes_of_workers) {
+  std::vector<Place> places;
+  for (const int node : nodes_of_workers) places.push_back({.processor = {}, .node = node});
+  EXPECT_EQ(places.size(), static_cast<std::size_t>(num_workers(team)));
+  return team_size({.algorithm = algorithm, .crossover = 4, .team = team}, places);
+}
+
+TEST(TeamSize, OneWorkerRefinesUnlessMoreAreAskedFor) {
+  EXPECT_EQ(num_workers({}), 1);
+  EXPECT_EQ(num_workers({.threads = 6, .nodes = 3}), 6);
+  EXPECT_EQ(num_workers({.nodes = 3}), 3);
+  EXPECT_EQ(num_workers({.cores_per_node = 2}), 2);
+  EXPECT_EQ(num_workers({.nodes = 3, .cores_per_node = 2}), 6);
+}
+
+TEST(TeamSize, OtherPhasesHaveTheThreadsThatWereAskedForUnlessTimeIsVirtual) {
+  EXPECT_EQ(loop_threads({}), 0);
+  EXPECT_EQ(loop_threads({.threads = 3}), 3);
+  EXPECT_EQ(loop_threads({.threads = 3, .executor = Executor::kVirtual}), 0);
+}
+
+TEST(TeamSize, AutoIsPodmBelowTheCrossover) {
+  EXPECT_EQ(size_of(Algorithm::kAuto, {.threads = 3}, {0, 0, 0}).algorithm, Algorithm::kPodm);
+  EXPECT_EQ(size_of(Algorithm::kAuto, {.threads = 4}, {0, 0, 0, 0}).algorithm, Algorithm::kPdrPodm);
+  EXPECT_EQ(size_of(Algorithm::kPdr, {.threads = 4}, {0, 0, 0, 0}).algorithm, Algorithm::kPdr);
+}
+
+TEST(TeamSize, ComputingNodesAreTheNumaNodesInUseWhereTheseDivideTheWorkers) {
+  EXPECT_EQ(size_of(Algorithm::kPdrPodm, {.threads = 4}, {0, 0, 5, 5}).num_nodes, 2);
+  EXPECT_EQ(size_of(Algorithm::kPdrPodm, {.threads = 3}, {0, 0, 5}).num_nodes, 1);
+  EXPECT_EQ(size_of(Algorithm::kPdrPodm, {.threads = 4, .nodes = 4}, {0, 0, 5, 5}).num_nodes, 4);
+  EXPECT_EQ(size_of(Algorithm::kPdrPodm, {.threads = 4, .cores_per_node = 4}, {0, 0, 5, 5}).num_nodes, 1);
+  EXPECT_EQ(size_of(Algorithm::kPdr, {.threads = 3}, {0, 0, 5}).num_nodes, 3);
+  EXPECT_EQ(size_of(Algorithm::kPodm, {.threads = 4}, {0, 0, 5, 5}).num_nodes, 1);
+}
+
+TEST(TeamSize, AllWorkersMakeTheInitialMeshUnlessFewerAreAskedFor) {
+  EXPECT_EQ(size_of(Algorithm::kPdr, {.threads = 3}, {0, 0, 0}).initial_workers, 3);
+  EXPECT_EQ(size_of(Algorithm::kPdr, {.threads = 3, .initial_threads = 2}, {0, 0, 0}).initial_workers, 2);
+}
+
+TEST(TeamSize, ContradictionsAreRefused) {
+  for (const TeamOptions& good :
+       {TeamOptions{}, TeamOptions{.threads = 6, .nodes = 3, .cores_per_node = 2, .initial_threads = 6}})
+    EXPECT_NO_THROW(check_team_size(good, Algorithm::kPdrPodm));
+  for (const TeamOptions& bad :
+       {TeamOptions{.threads = 6, .nodes = 2, .cores_per_node = 2}, TeamOptions{.threads = 6, .nodes = 4},
+        TeamOptions{.threads = 6, .cores_per_node = 4}, TeamOptions{.threads = 6, .initial_threads = 7},
+        TeamOptions{.nodes = 2, .initial_threads = 3}})
+    EXPECT_THROW(check_team_size(bad, Algorithm::kPdrPodm), InputError);
+  EXPECT_THROW(check_team_size({.cores_per_node = 2}, Algorithm::kPdr), InputError);
+}
+
+}  // namespace
+}  // namespace podm::test
