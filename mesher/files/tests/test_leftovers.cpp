@@ -12,7 +12,7 @@
 #include <thread>
 
 #include "files/atomic_file.h"
-#include "io/tests/scratch_folder.h"
+#include "tests/scratch_folder.h"
 
 namespace podm {
 namespace {

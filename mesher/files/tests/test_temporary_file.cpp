@@ -16,8 +16,8 @@
 #include <functional>
 
 #include "files/atomic_file.h"
-#include "io/tests/scratch_folder.h"
 #include "podm/errors.h"
+#include "tests/scratch_folder.h"
 
 namespace podm {
 namespace {

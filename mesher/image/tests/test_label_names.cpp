@@ -3,6 +3,7 @@
 #include "image/tests/image_files.h"
 #include "podm/errors.h"
 #include "podm/image_io.h"
+#include "tests/scratch_folder.h"
 
 namespace podm {
 namespace {
@@ -10,7 +11,7 @@ namespace {
 using Names = std::map<std::uint32_t, std::string>;
 
 TEST(LabelNames, ItkSnapTable) {
-  const TemporaryFolder folder;
+  const ScratchFolder folder;
   EXPECT_EQ(read_label_names(folder.write("labels.txt",
                                           "# IDX -R- -G- -B- -A-- VIS MSH LABEL\r\n"
                                           "    0     0    0    0        0  0  0    \"Clear Label\"\r\n"
@@ -20,13 +21,13 @@ TEST(LabelNames, ItkSnapTable) {
 }
 
 TEST(LabelNames, ValueAndNameLines) {
-  const TemporaryFolder folder;
+  const ScratchFolder folder;
   EXPECT_EQ(read_label_names(folder.write("aal.txt", "1 Precentral_L 2001\n2\tPrecentral_R\n")),
             (Names{{1, "Precentral_L"}, {2, "Precentral_R"}}));
 }
 
 TEST(LabelNames, FaultsNameTheLine) {
-  const TemporaryFolder folder;
+  const ScratchFolder folder;
   for (const char* line : {"Precentral_L 1", "-1 name", "4294967296 name", "1", "2x name", "1 \"\""}) {
     const std::string path = folder.write("labels.txt", std::string("7 fine\n") + line + "\n");
     try {
@@ -39,7 +40,7 @@ TEST(LabelNames, FaultsNameTheLine) {
 }
 
 TEST(LabelNames, AFileWithoutNamesIsRefused) {
-  const TemporaryFolder folder;
+  const ScratchFolder folder;
   EXPECT_THROW(read_label_names(folder.write("labels.txt", "# nothing\n")), InputError);
   EXPECT_THROW(read_label_names(folder.write("labels.txt", "")), InputError);
   EXPECT_THROW(read_label_names("missing.txt"), InputError);

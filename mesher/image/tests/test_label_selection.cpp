@@ -4,6 +4,7 @@
 #include "image/tests/image_files.h"
 #include "podm/errors.h"
 #include "podm/image_io.h"
+#include "tests/scratch_folder.h"
 
 namespace podm {
 namespace {
@@ -42,7 +43,7 @@ class Selection : public testing::Test {
     return "none";
   }
 
-  TemporaryFolder folder_;
+  ScratchFolder folder_;
   std::string path_;
 };
 

@@ -8,13 +8,14 @@
 #include "image/tests/image_files.h"
 #include "podm/errors.h"
 #include "podm/image_io.h"
+#include "tests/scratch_folder.h"
 
 namespace podm {
 namespace {
 
 class ReadImage : public testing::Test {
  protected:
-  TemporaryFolder folder_;
+  ScratchFolder folder_;
 };
 
 const std::string kVoxels = bytes_of_values(two_voxels());

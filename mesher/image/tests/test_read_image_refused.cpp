@@ -9,6 +9,7 @@
 #include "image/tests/image_files.h"
 #include "podm/errors.h"
 #include "podm/image_io.h"
+#include "tests/scratch_folder.h"
 
 namespace podm {
 namespace {
@@ -72,7 +73,7 @@ std::string replaced(std::string text, const std::string& what, const std::strin
 class Refused : public testing::TestWithParam<BadFile> {};
 
 TEST_P(Refused, NamingFileAndFault) {
-  const TemporaryFolder folder;
+  const ScratchFolder folder;
   const BadFile& bad = GetParam();
   const std::string path = folder.write(bad.name, bad.bytes());
   try {
@@ -332,7 +333,7 @@ INSTANTIATE_TEST_SUITE_P(Nifti, Refused, testing::ValuesIn(bad_nifti_files()), f
 INSTANTIATE_TEST_SUITE_P(Other, Refused, testing::ValuesIn(bad_other_files()), fault_name);
 
 TEST(ReadImageRefused, MissingFileAndFolder) {
-  const TemporaryFolder folder;
+  const ScratchFolder folder;
   const std::string in_folder = folder.write("x", "x");
   for (const std::string& path :
        {in_folder + "missing.nii.gz", in_folder + "missing.inr", in_folder + "missing.mha"})
@@ -342,7 +343,7 @@ TEST(ReadImageRefused, MissingFileAndFolder) {
 
 // ITK quotes the path in a message of limited length.
 TEST(ReadImageRefused, NrrdUnderALongPath) {
-  const TemporaryFolder folder;
+  const ScratchFolder folder;
   const std::string name = std::string(200, 'd'), inner = name + "/" + name + "/" + name + "/";
   std::filesystem::create_directories(folder.write(inner, ""));
   EXPECT_THROW(read_image(folder.write(inner + "a.nrrd", "NRRD0004\nno field\n\n")), InputError);
@@ -350,7 +351,7 @@ TEST(ReadImageRefused, NrrdUnderALongPath) {
 
 // Values that never compare equal would fill a set that looks through all of them for each.
 TEST(ReadImageRefused, AnImageOfNothingButNansAtOnce) {
-  const TemporaryFolder folder;
+  const ScratchFolder folder;
   const auto nans = std::vector<float>(std::size_t{64} * 64 * 64, std::nanf(""));
   nifti_1_header header = nifti_header();
   header.dim[1] = header.dim[2] = header.dim[3] = 64;

@@ -1,16 +1,16 @@
 #include <gtest/gtest.h>
-#include <sys/resource.h>
 
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <csignal>
 #include <map>
 #include <random>
 
 #include "image/tests/image_files.h"
 #include "podm/errors.h"
 #include "podm/image_io.h"
+#include "tests/full_disk.h"
+#include "tests/scratch_folder.h"
 
 namespace podm {
 namespace {
@@ -79,45 +79,11 @@ nifti_1_header header_in(const std::string& path) {
   return header;
 }
 
-std::vector<std::string> names_beside(const std::string& path) {
-  std::vector<std::string> names;
-  for (const auto& entry : std::filesystem::directory_iterator(std::filesystem::path(path).parent_path())) {
-    names.push_back(entry.path().filename());
-  }
-  std::sort(names.begin(), names.end());
-  return names;
-}
-
-std::string content_of(const std::string& path) {
-  std::ifstream file(path, std::ios::binary);
-  return {std::istreambuf_iterator<char>(file), {}};
-}
-
-// Files of this process end at `bytes` while this lives, as if the disk were full.
-class FullDisk {
- public:
-  explicit FullDisk(rlim_t bytes) : handler_(std::signal(SIGXFSZ, SIG_IGN)) {
-    getrlimit(RLIMIT_FSIZE, &before_);
-    const rlimit limit{bytes, before_.rlim_max};
-    setrlimit(RLIMIT_FSIZE, &limit);
-  }
-  ~FullDisk() {
-    setrlimit(RLIMIT_FSIZE, &before_);
-    std::signal(SIGXFSZ, handler_);
-  }
-  FullDisk(const FullDisk&) = delete;
-  FullDisk& operator=(const FullDisk&) = delete;
-
- private:
-  rlimit before_{};
-  void (*handler_)(int);
-};
-
 class WriteNifti : public testing::TestWithParam<std::string> {
  protected:
   // A file of this name that holds "older".
   std::string path() const { return folder_.write("image" + GetParam(), "older"); }
-  TemporaryFolder folder_;
+  ScratchFolder folder_;
 };
 INSTANTIATE_TEST_SUITE_P(Extensions, WriteNifti, testing::Values(".nii", ".nii.gz"),
                          [](const auto& extension) {
@@ -152,7 +118,7 @@ TEST_P(WriteNifti, APhantomReadsBack) {
 TEST_P(WriteNifti, NothingButTheFileIsLeft) {
   const std::string file = path();
   write_nifti(image_of({1}), file);
-  EXPECT_EQ(names_beside(file), std::vector<std::string>{"image" + GetParam()});
+  EXPECT_EQ(folder_.files(), std::set<std::string>{"image" + GetParam()});
 }
 
 TEST_P(WriteNifti, AFullDiskIsReportedAndLeavesTheOlderFile) {
@@ -167,22 +133,21 @@ TEST_P(WriteNifti, AFullDiskIsReportedAndLeavesTheOlderFile) {
       EXPECT_NE(std::string(error.what()).find(file), std::string::npos) << error.what();
       EXPECT_NE(std::string(error.what()).find("File too large"), std::string::npos) << error.what();
     }
-    EXPECT_EQ(content_of(file), "older");
-    EXPECT_EQ(names_beside(file).size(), 1u);
+    EXPECT_EQ(folder_.files(), std::set<std::string>{"image" + GetParam()});
+    EXPECT_EQ(folder_.read("image" + GetParam()), "older");
   }
 }
 
 TEST_P(WriteNifti, AMissingFolderAndAFolderInTheWayAreReported) {
-  const std::string folder = std::filesystem::path(path()).parent_path();
-  EXPECT_THROW(write_nifti(image_of({1}), folder + "/none/image" + GetParam()), InputError);
-  const std::string taken = folder + "/taken" + GetParam();
+  EXPECT_THROW(write_nifti(image_of({1}), folder_ / ("none/image" + GetParam())), InputError);
+  const std::string taken = folder_ / ("taken" + GetParam());
   std::filesystem::create_directory(taken);
   EXPECT_THROW(write_nifti(image_of({1}), taken), InputError);
-  EXPECT_EQ(names_beside(taken).size(), 2u);
+  EXPECT_EQ(folder_.files().size(), 1u);
 }
 
 TEST(WriteNiftiHeader, VoxelsTakeTheSmallestTypeThatHoldsThem) {
-  const TemporaryFolder folder;
+  const ScratchFolder folder;
   const std::string file = folder.write("image.nii", "");
   const std::map<std::uint32_t, int> type_of{{255, DT_UINT8},        {256, DT_UINT16},
                                              {65535, DT_UINT16},     {65536, DT_INT32},
@@ -197,7 +162,7 @@ TEST(WriteNiftiHeader, VoxelsTakeTheSmallestTypeThatHoldsThem) {
 }
 
 TEST(WriteNiftiHeader, WithoutItsSformTheQformTellsTheAffine) {
-  const TemporaryFolder folder;
+  const ScratchFolder folder;
   const std::string file = folder.write("image.nii", "");
   for (const Affine& affine : {kAxisAligned, oblique(1), oblique(-1)}) {
     write_nifti(image_of({1}, affine), file);
@@ -205,13 +170,13 @@ TEST(WriteNiftiHeader, WithoutItsSformTheQformTellsTheAffine) {
     EXPECT_GT(header.sform_code, 0);
     header.sform_code = 0;
     const LabelImage read =
-        read_image(folder.write("q.nii", nifti_file(header, content_of(file).substr(352))));
+        read_image(folder.write("q.nii", nifti_file(header, folder.read("image.nii").substr(352))));
     for (std::size_t i = 0; i < 12; ++i) EXPECT_NEAR(read.voxel_to_ras[i], affine[i], 1e-5) << i;
   }
 }
 
 TEST(WriteNiftiHeader, AShearedAffineHasNoQuaternion) {
-  const TemporaryFolder folder;
+  const ScratchFolder folder;
   const std::string file = folder.write("image.nii", "");
   write_nifti(image_of({1}, kSheared), file);
   EXPECT_GT(header_in(file).sform_code, 0);
@@ -219,22 +184,21 @@ TEST(WriteNiftiHeader, AShearedAffineHasNoQuaternion) {
 }
 
 TEST(WriteNiftiPath, OtherExtensionsAreRefused) {
-  const TemporaryFolder folder;
-  const std::string stem = std::filesystem::path(folder.write("kept", "")).parent_path() / "image";
+  const ScratchFolder folder;
   for (const std::string extension : {"", ".gz", ".nrrd", ".nii.bz2", ".NII"}) {
-    EXPECT_THROW(write_nifti(image_of({1}), stem + extension), InputError) << extension;
+    EXPECT_THROW(write_nifti(image_of({1}), folder / ("image" + extension)), InputError) << extension;
   }
-  EXPECT_EQ(names_beside(stem).size(), 1u);
+  EXPECT_TRUE(folder.files().empty());
 }
 
 TEST(WriteNiftiPath, AnAxisBeyondTheFormatIsRefused) {
-  const TemporaryFolder folder;
+  const ScratchFolder folder;
   const std::string file = folder.write("image.nii", "older");
   LabelImage image = image_of({1});
   image.size = {32768, 1, 1};
   image.voxels.assign(32768, 1);
   EXPECT_THROW(write_nifti(image, file), InputError);
-  EXPECT_EQ(content_of(file), "older");
+  EXPECT_EQ(folder.read("image.nii"), "older");
 }
 
 }  // namespace

@@ -7,10 +7,10 @@
 #include <cmath>
 #include <limits>
 
-#include "../../delaunay/tests/triangulator.h"
-#include "images.h"
+#include "delaunay/tests/triangulator.h"
 #include "podm/mesh_image.h"
 #include "refine/rules.h"
+#include "tests/images.h"
 
 namespace podm::test {
 namespace {

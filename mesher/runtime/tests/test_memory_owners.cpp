@@ -5,8 +5,8 @@
 #include <numeric>
 #include <set>
 
-#include "machines.h"
 #include "runtime/memory_owners.h"
+#include "runtime/tests/machines.h"
 
 namespace podm::test {
 namespace {
@@ -80,37 +80,6 @@ TEST(MemoryOwners, AreDealtToAllWorkersAndTheSameForTheSameSeed) {
   const auto on_node_0 = std::count(first.begin(), first.end(), 0);
   EXPECT_NEAR(static_cast<double>(on_node_0) / static_cast<double>(first.size()), 0.5, 0.1)
       << "half of the workers are there";
-}
-
-TEST(AccessTally, CountsByKindAndNodeAndSamplesSome) {
-  AccessTally tally(3);
-  const std::vector<char> memory(10'000);
-  std::size_t added = 0;
-  for (std::size_t i = 0; i < memory.size(); ++i)
-    for (std::size_t kind = 0; kind < kNumAccessKinds; ++kind, ++added)
-      tally.add(static_cast<AccessKind>(kind), static_cast<NodeIndex>(i % 3), &memory[i]);
-  std::uint64_t counted = 0;
-  for (std::size_t kind = 0; kind < kNumAccessKinds; ++kind) {
-    const auto& by_node = tally.by_node(static_cast<AccessKind>(kind));
-    EXPECT_EQ(by_node, (std::vector<std::uint64_t>{3334, 3333, 3333}));
-    counted += std::accumulate(by_node.begin(), by_node.end(), std::uint64_t{0});
-  }
-  EXPECT_EQ(counted, added);
-  EXPECT_GT(tally.samples().size(), added / 2000);
-  EXPECT_LT(tally.samples().size(), added / 500);
-  for (const void* address : tally.samples()) {
-    EXPECT_GE(address, memory.data());
-    EXPECT_LT(address, memory.data() + memory.size());
-  }
-}
-
-TEST(AccessTally, KeepsTheLastSamples) {
-  AccessTally tally(1);
-  const char early = 0, late = 0;
-  for (int i = 0; i < 1'000'000; ++i) tally.add(AccessKind::kMeshRead, 0, &early);
-  const std::size_t most = tally.samples().size();
-  for (int i = 0; i < 1'000'000; ++i) tally.add(AccessKind::kMeshRead, 0, &late);
-  EXPECT_EQ(tally.samples(), std::vector<const void*>(most, &late));
 }
 
 }  // namespace

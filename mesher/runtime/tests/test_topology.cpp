@@ -8,9 +8,9 @@
 #include <fstream>
 #include <set>
 
-#include "io/tests/scratch_folder.h"
 #include "runtime/placement.h"
 #include "runtime/tests/machines.h"
+#include "tests/scratch_folder.h"
 
 namespace podm::test {
 namespace {

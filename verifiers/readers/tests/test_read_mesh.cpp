@@ -4,7 +4,7 @@
 
 #include "readers/read_mesh.h"
 #include "readers/tests/mesh_writers.h"
-#include "readers/tests/test_mesh.h"
+#include "readers/tests/small_mesh.h"
 
 namespace podm::verify {
 namespace {
@@ -30,7 +30,7 @@ class ReadMesh : public testing::Test {
   }
 
   const TestFolder folder_;
-  const Mesh written_ = make_test_mesh();
+  const Mesh written_ = make_small_mesh();
 };
 
 std::vector<VtuOptions> all_vtu_options() {

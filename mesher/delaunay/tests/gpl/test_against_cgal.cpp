@@ -4,8 +4,8 @@
 #include <CGAL/Exact_predicates_inexact_constructions_kernel.h>
 #include <gtest/gtest.h>
 
-#include "../point_sets.h"
-#include "../triangulator.h"
+#include "delaunay/tests/point_sets.h"
+#include "delaunay/tests/triangulator.h"
 
 namespace podm::test {
 namespace {

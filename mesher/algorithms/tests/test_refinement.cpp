@@ -7,9 +7,9 @@
 
 #include "algorithms/podm.h"
 #include "cost_model.h"
-#include "images.h"
 #include "refine/invariants.h"
 #include "refine/virtual_box.h"
+#include "tests/images.h"
 
 namespace podm::test {
 namespace {

@@ -16,14 +16,14 @@
 #include <numeric>
 #include <random>
 
-#include "../../delaunay/tests/cells_by_points.h"
 #include "algorithms/podm.h"
 #include "cost_model.h"
 #include "delaunay/step.h"
-#include "images.h"
+#include "delaunay/tests/cells_by_points.h"
 #include "refine/invariants.h"
 #include "refine/virtual_box.h"
 #include "replay.h"
+#include "tests/images.h"
 #include "workers/virtual_time.h"
 
 namespace podm::test {

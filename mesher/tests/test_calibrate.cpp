@@ -1,121 +1,20 @@
-// Radii for a target number of cells: what they are predicted from, how they are corrected, and that a mesh
-// made on the way counts in nothing but calibration.
+// Runs with a target number of cells: that they meet it, and that a mesh made on the way counts in nothing
+// but calibration.
+#include "calibrate.h"
+
 #include <gtest/gtest.h>
 
 #include <chrono>
 #include <cmath>
-#include <numeric>
 
-#include "cost_model.h"
-#include "images.h"
 #include "podm/mesh_image.h"
-#include "radius_search.h"
+#include "tests/images.h"
 
 namespace podm::test {
 namespace {
 
 MeshingOptions target(std::uint64_t cells) {
   return {.sizes = {.target_elements = cells}, .team = {.threads = 1}};
-}
-
-// Sides, with a label, of label changes between voxels `lag` apart along any axis, over the lag: areas in
-// voxel faces. Voxel by voxel, and outside all is background.
-double sides_by_voxel(const LabelImage& image, int lag) {
-  const auto label = [&](std::array<int, 3> at) -> LabelIndex {
-    for (std::size_t axis = 0; axis < 3; ++axis)
-      if (at[axis] < 0 || at[axis] >= image.size[axis]) return kBackground;
-    return image.voxels[image.index(at[0], at[1], at[2])];
-  };
-  double sides = 0;
-  for (std::size_t axis = 0; axis < 3; ++axis) {
-    const double face = image.spacing[(axis + 1) % 3] * image.spacing[(axis + 2) % 3];
-    for (int k = -lag; k < image.size[2]; ++k)
-      for (int j = -lag; j < image.size[1]; ++j)
-        for (int i = -lag; i < image.size[0]; ++i) {
-          std::array<int, 3> there{i, j, k};
-          there[axis] += lag;
-          const LabelIndex a = label({i, j, k}), b = label(there);
-          if (a != b) sides += face * ((a != kBackground) + (b != kBackground)) / lag;
-        }
-  }
-  return sides;
-}
-
-// Unbounded radii leave the interfaces' share.
-double surface_cells(const LabelImage& image, double delta_mm, int threads = 1) {
-  return CostModel(image, threads).cells({.delta_mm = delta_mm});
-}
-
-TEST(CostModel, CountsTheSidesOfInterfacesSeenFromADistance) {
-  for (const NamedImage& named : images()) {
-    LabelImage image = named.make();
-    image.spacing = {1, 1, 1};  // so that one distance is a whole number of voxels along all axes
-    const double unit = surface_cells(image, 1 / 1.6) / sides_by_voxel(image, 1) / (1.6 * 1.6);
-    for (const int lag : {2, 3, 4, 6, 24}) {
-      const double delta = lag / 1.6;
-      EXPECT_NEAR(surface_cells(image, delta) * delta * delta, unit * sides_by_voxel(image, lag), 1e-9)
-          << named.name << ", " << lag;
-    }
-  }
-}
-
-TEST(CostModel, FindsTheSameOnAnyNumberOfThreads) {
-  for (const NamedImage& named : images()) {
-    const LabelImage image = named.make();
-    for (const double delta : {0.5, 2.2, 30.0})
-      EXPECT_EQ(surface_cells(image, delta), surface_cells(image, delta, 5)) << named.name;
-  }
-}
-
-TEST(CostModel, FollowsVolumeAndRadiiOfLabels) {
-  const LabelImage image =
-      make_image({60, 60, 60}, {1, 1, 1}, 2, [](int i, int, int) { return i < 30 ? 1 : 2; });
-  const auto cells = [&](double radius, double radius_of_20) {
-    SizeOptions sizes{.radius_mm = radius, .delta_mm = 0.5};
-    if (radius_of_20 > 0) sizes.radius_of_mm[20] = radius_of_20;
-    return CostModel(image, 1).cells(sizes) - surface_cells(image, 0.5);
-  };
-  EXPECT_GT(cells(1, 0), 7 * cells(2, 0)) << "volume counts by the third power";
-  EXPECT_NEAR(cells(1, 2), (cells(1, 0) + cells(2, 0)) / 2, 1e-6) << "each label by its own radius";
-  EXPECT_EQ(cells(1000, 0), 0) << "what is thinner than the radius has no core";
-}
-
-// Meshes whose cells follow some power of the radius.
-TEST(RadiusSearch, ComesWithinATwentiethInThreeMeshesWhateverTheModelErrs) {
-  const LabelImage image = ball(40, 15);
-  for (const double exponent : {-2.0, -2.5, -3.0}) {
-    for (const double error : {0.3, 0.8, 1.0, 1.4, 4.0}) {
-      RadiusSearch search(image, target(50000).sizes, 1);
-      const double first = search.radius_mm();
-      const auto cells_at = [&](double radius) { return 50000 * error * std::pow(radius / first, exponent); };
-      for (int mesh = 0; mesh < 2; ++mesh) search.learn(cells_at(search.radius_mm()));
-      EXPECT_NEAR(cells_at(search.radius_mm()) / 50000, 1, 0.05) << exponent << ", " << error;
-    }
-  }
-}
-
-// Sheets that vanish where the radius passes their thickness.
-TEST(RadiusSearch, FindsATargetOnASteepSlope) {
-  const LabelImage image = ball(40, 15);
-  RadiusSearch search(image, target(50000).sizes, 1);
-  const double first = search.radius_mm();
-  const auto cells_at = [&](double radius) {
-    return 50000 * 1.2 * std::pow(radius / first, radius / first > 1.01 ? -12 : -2) *
-           std::pow(1.01, radius / first > 1.01 ? 10 : 0);
-  };
-  int num_meshes = 1;
-  for (; std::abs(cells_at(search.radius_mm()) / 50000 - 1) > 0.045; ++num_meshes)
-    search.learn(cells_at(search.radius_mm()));
-  EXPECT_LE(num_meshes, 4);
-}
-
-TEST(RadiusSearch, DeltaFollowsTheRadiusUnlessGiven) {
-  const LabelImage image = ball(40, 15);
-  const RadiusSearch free(image, target(50000).sizes, 1);
-  EXPECT_EQ(free.sizes().delta_mm, free.radius_mm() / 2);
-  SizeOptions sizes = target(50000).sizes;
-  sizes.delta_mm = 0.7;
-  EXPECT_EQ(RadiusSearch(image, sizes, 1).sizes().delta_mm, 0.7);
 }
 
 double sum_but_calibration(const MeshingReport& report) {

@@ -1,10 +1,13 @@
-// Medit and Gmsh files read back give the mesh that was written.
+// Medit and Gmsh files read back give the mesh that was written; what cannot be written is refused and leaves
+// nothing.
 #include <gtest/gtest.h>
 
 #include "io/tests/kuhn_mesh.h"
 #include "io/tests/mesh_readers.h"
-#include "io/tests/scratch_folder.h"
 #include "podm/mesh_io.h"
+#include "tests/full_disk.h"
+#include "tests/input_error.h"
+#include "tests/scratch_folder.h"
 
 namespace podm {
 namespace {
@@ -115,6 +118,52 @@ TEST(MeshFiles, TheSameMeshGivesTheSameBytes) {
     EXPECT_EQ(read_bytes(folder / ("a" + extension)), read_bytes(folder / ("b" + extension)));
   }
   EXPECT_EQ(read_bytes(folder / "a_facets.vtu"), read_bytes(folder / "b_facets.vtu"));
+}
+
+class NoSpace : public testing::TestWithParam<std::string> {};
+
+TEST_P(NoSpace, KeepsTheOldFilesAndLeavesNoNewOnes) {
+  const ScratchFolder folder;
+  const std::string path = folder / GetParam();
+  const TetMesh mesh = make_test_mesh(8);
+  const bool is_surface = path.ends_with(".stl") || path.ends_with(".ply");
+  const auto write = [&] { is_surface ? write_surfaces(mesh, path) : write_mesh(mesh, path); };
+  write();
+  const std::set<std::string> names = folder.files();
+  for (const std::string& name : names) folder.write(name, "old " + name);
+  for (const rlim_t bytes : {0, 100, 6000}) {  // one file of several may still fit
+    const FullDisk disk(bytes);
+    EXPECT_EQ(input_error_of(write).find("cannot write " + (folder / "")), 0u) << bytes;
+    EXPECT_EQ(folder.files(), names) << bytes;
+    for (const std::string& name : names) EXPECT_EQ(folder.read(name), "old " + name);
+  }
+  write();
+  for (const std::string& name : names) EXPECT_NE(folder.read(name), "old " + name);
+}
+
+INSTANTIATE_TEST_SUITE_P(Formats, NoSpace, testing::Values("m.vtu", "m.mesh", "m.msh", "m.stl", "m.ply"),
+                         [](const auto& instance) { return instance.param.substr(2); });
+
+TEST(CheckPath, AcceptsWhatCanBeWrittenAndLeavesNoTrace) {
+  const ScratchFolder folder;
+  for (const char* name : {"a.vtu", "a.mesh", "a.msh"}) EXPECT_NO_THROW(check_mesh_path(folder / name));
+  for (const char* name : {"a.stl", "a.ply"}) EXPECT_NO_THROW(check_surface_path(folder / name));
+  EXPECT_EQ(folder.files(), std::set<std::string>{});
+}
+
+TEST(CheckPath, RefusesUnknownExtensionsAndUnwritablePlaces) {
+  const ScratchFolder folder;
+  for (const std::string name : {"a", "a.", "a.vtk", "a.stl", ".vtu", "none/a.vtu"}) {
+    const std::string path = folder / name;
+    EXPECT_NE(input_error_of([&] { check_mesh_path(path); }).find(path), std::string::npos) << name;
+    EXPECT_THROW(write_mesh(make_test_mesh(2), path), InputError);
+  }
+  for (const std::string name : {"a", "a.vtu", "a.obj", "none/a.stl"}) {
+    const std::string path = folder / name;
+    EXPECT_NE(input_error_of([&] { check_surface_path(path); }).find(path), std::string::npos) << name;
+    EXPECT_THROW(write_surfaces(make_test_mesh(2), path), InputError);
+  }
+  EXPECT_EQ(folder.files(), std::set<std::string>{});
 }
 
 }  // namespace

@@ -9,9 +9,9 @@
 #include "cost_model.h"
 #include "failing_allocator.h"
 #include "failing_threads.h"
-#include "images.h"
 #include "podm/errors.h"
 #include "podm/operation_log.h"
+#include "tests/images.h"
 
 namespace podm::test {
 namespace {

@@ -7,8 +7,8 @@
 
 #include "algorithms/podm.h"
 #include "cost_model.h"
-#include "images.h"
 #include "podm/mesh_io.h"
+#include "tests/images.h"
 
 namespace podm::test {
 namespace {

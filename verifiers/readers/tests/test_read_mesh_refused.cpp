@@ -5,7 +5,7 @@
 #include "errors.h"
 #include "readers/read_mesh.h"
 #include "readers/tests/mesh_writers.h"
-#include "readers/tests/test_mesh.h"
+#include "readers/tests/small_mesh.h"
 
 namespace podm::verify {
 namespace {
@@ -33,7 +33,7 @@ class RefuseMesh : public testing::Test {
   }
 
   const TestFolder folder_;
-  const Mesh mesh_ = make_test_mesh();
+  const Mesh mesh_ = make_small_mesh();
 };
 
 TEST_F(RefuseMesh, FilesThatCannotBeRead) {

@@ -2,8 +2,8 @@
 #include <benchmark/benchmark.h>
 
 #include "io/tests/kuhn_mesh.h"
-#include "io/tests/scratch_folder.h"
 #include "podm/mesh_io.h"
+#include "tests/scratch_folder.h"
 
 namespace podm {
 namespace {

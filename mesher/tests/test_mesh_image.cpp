@@ -8,8 +8,8 @@
 
 #include "cost_model.h"
 #include "image/working_frame.h"
-#include "images.h"
 #include "podm/mesh_image.h"
+#include "tests/images.h"
 
 namespace podm::test {
 namespace {

@@ -29,7 +29,7 @@ class TestFolder {
 };
 
 /// Three tetrahedra of two labels and two triangles; all coordinates are floats, so that any type holds them.
-Mesh make_test_mesh();
+Mesh make_small_mesh();
 
 void write_bytes(const std::string& path, const std::string& bytes);
 std::string read_bytes(const std::string& path);

@@ -10,7 +10,7 @@
 #include <tuple>
 
 #include "geometry/point.h"
-#include "images.h"
+#include "tests/images.h"
 
 namespace podm::test {
 namespace {

@@ -6,8 +6,8 @@
 
 #include "io/tests/kuhn_mesh.h"
 #include "io/tests/mesh_readers.h"
-#include "io/tests/scratch_folder.h"
 #include "podm/mesh_io.h"
+#include "tests/scratch_folder.h"
 
 namespace podm {
 namespace {

@@ -10,7 +10,7 @@
 #include <set>
 
 #include "readers/read_mesh.h"
-#include "readers/tests/test_mesh.h"
+#include "readers/tests/small_mesh.h"
 
 namespace podm::verify {
 namespace {

@@ -2,10 +2,10 @@
 // with no cells at all: other nodes may have taken a leaf's cells with its last ones.
 #include <gtest/gtest.h>
 
-#include "../../refine/tests/images.h"
 #include "algorithms/podm.h"
 #include "cost_model.h"
 #include "refine/virtual_box.h"
+#include "tests/images.h"
 
 namespace podm::test {
 namespace {

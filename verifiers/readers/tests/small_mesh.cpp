@@ -1,4 +1,4 @@
-#include "readers/tests/test_mesh.h"
+#include "readers/tests/small_mesh.h"
 
 #include <zlib.h>
 
@@ -10,7 +10,7 @@
 
 namespace podm::verify {
 
-Mesh make_test_mesh() {
+Mesh make_small_mesh() {
   Mesh mesh;
   mesh.vertices = {{0.1f, 0, -0.0},     {1, 1e-30f, 0},   {0.25f, 1, 0},
                    {0, 0.3f, 16777216}, {1.5f, 1e20f, 1}, {-1.0f / 3, 2, -2}};

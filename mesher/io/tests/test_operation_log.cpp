@@ -8,7 +8,7 @@
 #include <random>
 
 #include "podm/errors.h"
-#include "scratch_folder.h"
+#include "tests/scratch_folder.h"
 
 namespace podm::test {
 namespace {

@@ -1,0 +1,54 @@
+// Radii for a target number of cells, and how they are corrected.
+#include "radius_search.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "tests/images.h"
+
+namespace podm::test {
+namespace {
+
+const SizeOptions kAsked{.target_elements = 50000};
+
+// Meshes whose cells follow some power of the radius.
+TEST(RadiusSearch, ComesWithinATwentiethInThreeMeshesWhateverTheModelErrs) {
+  const LabelImage image = ball(40, 15);
+  for (const double exponent : {-2.0, -2.5, -3.0}) {
+    for (const double error : {0.3, 0.8, 1.0, 1.4, 4.0}) {
+      RadiusSearch search(image, kAsked, 1);
+      const double first = search.radius_mm();
+      const auto cells_at = [&](double radius) { return 50000 * error * std::pow(radius / first, exponent); };
+      for (int mesh = 0; mesh < 2; ++mesh) search.learn(cells_at(search.radius_mm()));
+      EXPECT_NEAR(cells_at(search.radius_mm()) / 50000, 1, 0.05) << exponent << ", " << error;
+    }
+  }
+}
+
+// Sheets that vanish where the radius passes their thickness.
+TEST(RadiusSearch, FindsATargetOnASteepSlope) {
+  const LabelImage image = ball(40, 15);
+  RadiusSearch search(image, kAsked, 1);
+  const double first = search.radius_mm();
+  const auto cells_at = [&](double radius) {
+    return 50000 * 1.2 * std::pow(radius / first, radius / first > 1.01 ? -12 : -2) *
+           std::pow(1.01, radius / first > 1.01 ? 10 : 0);
+  };
+  int num_meshes = 1;
+  for (; std::abs(cells_at(search.radius_mm()) / 50000 - 1) > 0.045; ++num_meshes)
+    search.learn(cells_at(search.radius_mm()));
+  EXPECT_LE(num_meshes, 4);
+}
+
+TEST(RadiusSearch, DeltaFollowsTheRadiusUnlessGiven) {
+  const LabelImage image = ball(40, 15);
+  const RadiusSearch free(image, kAsked, 1);
+  EXPECT_EQ(free.sizes().delta_mm, free.radius_mm() / 2);
+  SizeOptions sizes = kAsked;
+  sizes.delta_mm = 0.7;
+  EXPECT_EQ(RadiusSearch(image, sizes, 1).sizes().delta_mm, 0.7);
+}
+
+}  // namespace
+}  // namespace podm::test
