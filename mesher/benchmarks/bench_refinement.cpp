@@ -12,6 +12,7 @@
 #include "cost_model.h"
 #include "podm/image_io.h"
 #include "podm/mesh_image.h"
+#include "refine/virtual_box.h"
 
 namespace podm {
 namespace {
