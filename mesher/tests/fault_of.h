@@ -1,18 +1,16 @@
-// What a refused call says.
+// What a call that is refused says.
 #pragma once
 
 #include <string>
 
-#include "podm/errors.h"
-
 namespace podm {
 
-/// The message of the InputError that `call()` throws, or "no error".
-template <class Call>
-std::string input_error_of(const Call& call) {
+/// The message of the `Error` that `call()` throws, or "no error".
+template <class Error, class Call>
+std::string fault_of(const Call& call) {
   try {
     call();
-  } catch (const InputError& error) {
+  } catch (const Error& error) {
     return error.what();
   }
   return "no error";

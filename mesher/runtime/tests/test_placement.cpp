@@ -10,6 +10,7 @@
 
 #include "runtime/placement.h"
 #include "runtime/tests/machines.h"
+#include "tests/fault_of.h"
 
 namespace podm::test {
 namespace {
@@ -18,7 +19,7 @@ using testing::AllOf;
 using testing::ElementsAre;
 using testing::HasSubstr;
 
-// Of every worker's place; `more` workers than processors.
+// Every worker's place; there are `more` workers than processors.
 std::vector<Place> places_on(const Topology& machine, const char* plan, int more = 0) {
   const int num_workers = static_cast<int>(machine.processors().size()) + more;
   return place_workers(machine, PinPlan::parse(plan), num_workers, more > 0);
@@ -36,17 +37,7 @@ std::vector<Processor> processors_of(const Topology& machine, const std::vector<
   return result;
 }
 
-template <class Call>
-std::string fault(const Call& call) {
-  try {
-    call();
-  } catch (const PlacementError& error) {
-    return error.what();
-  }
-  return "accepted";
-}
-
-// By node, socket, core and hardware thread: one and many of each.
+// Machines have one or many nodes, sockets, cores and hardware threads.
 class Order : public testing::TestWithParam<const char*> {
  protected:
   const Topology machine_ = Topology::synthetic(GetParam());
@@ -127,20 +118,20 @@ TEST(PinPlan, NamesTheBadPieceAndWhatIsAllowed) {
       {"8192", "\"8192\""},   {"0-99999999999", "\"0-99999999999\""}};
   for (const auto& [plan, piece] : cases)
     EXPECT_THAT(
-        fault([&] { PinPlan::parse(plan); }),
+        fault_of<PlacementError>([&] { PinPlan::parse(plan); }),
         AllOf(HasSubstr(std::string("\"") + plan + "\": " + piece), HasSubstr("compact, scatter, none")));
 }
 
 TEST(Placement, RefusesMoreWorkersThanProcessors) {
   for (const char* plan : {"compact", "scatter", "none"})
-    EXPECT_THAT(fault([&] { place_workers(one_node(), PinPlan::parse(plan), 9, false); }),
+    EXPECT_THAT(fault_of<PlacementError>([&] { place_workers(one_node(), PinPlan::parse(plan), 9, false); }),
                 AllOf(HasSubstr("9 workers"), HasSubstr("8 processors"), HasSubstr("--oversubscribe")));
-  EXPECT_THAT(fault([] { place_workers(one_node(), PinPlan::parse("1,2"), 3, false); }),
+  EXPECT_THAT(fault_of<PlacementError>([] { place_workers(one_node(), PinPlan::parse("1,2"), 3, false); }),
               AllOf(HasSubstr("3 workers"), HasSubstr("2 processors"), HasSubstr("--oversubscribe")));
 }
 
 TEST(Placement, RefusesListedProcessorsThatAreNotThere) {
-  EXPECT_THAT(fault([] { place_workers(one_node(), PinPlan::parse("0,8"), 1, false); }),
+  EXPECT_THAT(fault_of<PlacementError>([] { place_workers(one_node(), PinPlan::parse("0,8"), 1, false); }),
               AllOf(HasSubstr("processor 8"), HasSubstr("8 that can be used")));
 }
 
@@ -183,7 +174,7 @@ TEST(Pinning, ScopedGivesBackWhatTheThreadHad) {
 
 TEST(Pinning, RefusesProcessorsThatAreNotThere) {
   for (const int os_index : {-1, 8191, 8192})
-    EXPECT_THAT(fault([&] { pin_this_thread(os_index); }),
+    EXPECT_THAT(fault_of<PlacementError>([&] { pin_this_thread(os_index); }),
                 HasSubstr("processor " + std::to_string(os_index)));
 }
 
