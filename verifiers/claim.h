@@ -13,6 +13,10 @@ namespace podm::verify {
 enum class Verdict { kPass, kFail, kNotRun };
 
 std::string to_string(Verdict verdict);  ///< "pass", "fail", "not_run"
+/// The verdict on a claim that was checked: one violation refutes it.
+inline Verdict verdict_on(std::uint64_t num_violations) {
+  return num_violations == 0 ? Verdict::kPass : Verdict::kFail;
+}
 
 /// One place where a claim does not hold, or comes closest to not holding.
 struct Witness {

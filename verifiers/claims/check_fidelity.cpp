@@ -286,7 +286,7 @@ ClaimResult check_fidelity(const Mesh& mesh, const Adjacency& adjacency, const I
   };
   result.reason =
       fmt::format("mesh to image: {}; image to mesh: {}", text_of(to_image.all), text_of(to_mesh.all));
-  result.verdict = result.num_violations == 0 ? Verdict::kPass : Verdict::kFail;
+  result.verdict = verdict_on(result.num_violations);
   return result;
 }
 

@@ -75,7 +75,7 @@ class CellLabels {
   const std::vector<Point>& points() const { return locator_.points(); }
 
  private:
-  // By how much the stated label's weight exceeds every other's.
+  // The stated label's weight exceeds every other's by so much.
   static double lead_of(LabelValue stated, const LabelWeights& weights, std::size_t best) {
     double own = 0, other = 0;
     for (std::size_t i = 0; i < weights.count; ++i) {
@@ -194,7 +194,7 @@ ClaimResult check_labels(const Mesh& mesh, const Image& image, const Options& op
   const auto& witnesses = result.num_violations > 0 ? tally.violations : tally.closest;
   result.worst.insert(result.worst.end(), witnesses.worst_first().begin(), witnesses.worst_first().end());
   result.worst.resize(std::min(result.worst.size(), kMaxWitnesses));
-  result.verdict = result.num_violations == 0 ? Verdict::kPass : Verdict::kFail;
+  result.verdict = verdict_on(result.num_violations);
   return result;
 }
 

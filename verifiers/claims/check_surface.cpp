@@ -195,7 +195,7 @@ ClaimResult check_surface(const Mesh& mesh, const Adjacency& adjacency, const Im
       sum.unbalanced_edges, places.labels.size() - 1, listed_faults, sum.non_manifold_edges,
       sum.non_manifold_edges_on_triple_lines, sum.non_manifold_vertices,
       sum.non_manifold_vertices_on_triple_lines);
-  result.verdict = result.num_violations == 0 ? Verdict::kPass : Verdict::kFail;
+  result.verdict = verdict_on(result.num_violations);
   return result;
 }
 

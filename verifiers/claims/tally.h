@@ -96,7 +96,7 @@ inline Witness cell_witness(const Mesh& mesh, CellId c, std::string statement, d
 inline ClaimResult result_of(const std::string& claim, const Tally& tally) {
   ClaimResult result;
   result.claim = claim;
-  result.verdict = tally.num_violations == 0 ? Verdict::kPass : Verdict::kFail;
+  result.verdict = verdict_on(tally.num_violations);
   result.num_checked = tally.num_checked;
   result.num_exact = tally.num_exact;
   result.num_violations = tally.num_violations;
