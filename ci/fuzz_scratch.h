@@ -23,7 +23,7 @@ inline void check(bool holds) {
   if (!holds) std::abort();
 }
 
-/// In $TMPDIR, for which ci/fuzz.sh takes memory; gone when the process ends.
+/// A folder in $TMPDIR, for which ci/fuzz.sh takes memory. It is gone when the process ends.
 class ScratchFolder {
  public:
   ScratchFolder() : path_(std::filesystem::temp_directory_path() / "podm-fuzz-XXXXXX") {

@@ -30,8 +30,8 @@ std::uint64_t count_sides(const LabelIndex* a, const LabelIndex* b, int size) {
   return count;
 }
 
-// Between voxels `lag` apart along the axis, of all pairs whose first is in the row or whose second is its
-// first in the image. Outside is background.
+// Counts sides between voxels `lag` apart along the axis, for all pairs whose first is in the row or whose
+// second is its first in the image. Outside is background.
 std::uint64_t count_sides(const LabelImage& image, std::size_t axis, int lag, int j, int k) {
   const int size = image.size[0];
   const LabelIndex* const row = &image.voxels[image.index(0, j, k)];
@@ -78,7 +78,7 @@ struct VoxelCounts {
   }
 };
 
-// Of the foreground that one thread has seen.
+// Bounds of the foreground that one thread has seen.
 struct alignas(64) VoxelBounds {
   std::array<int, 3> low, high{-1, -1, -1};
 

@@ -39,7 +39,7 @@ class CostModel {
   static constexpr double kVolumeCells = 4.82, kSurfaceCells = 1.57;
   static constexpr double kGradedOverRadius = 0.555;  // thickness of the layer
   static constexpr double kSeenOverDelta = 1.6;       // distance of the voxels compared
-  // In voxels; between these it is interpolated.
+  // Areas are found at these distances, in voxels, and interpolated between them.
   static constexpr std::array<int, 13> kLags{1, 2, 3, 4, 6, 8, 12, 16, 24, 32, 48, 64, 96};
 
   double area_mm2(double distance_mm) const;

@@ -49,7 +49,7 @@ class Shares {
  public:
   explicit Shares(std::uint32_t num_ids) : shares_(num_chunks(num_ids) + 1) {}
   Share& operator[](std::size_t chunk) { return shares_[chunk]; }
-  /// Of all chunks before the id, where one ends.
+  /// The share of all chunks before the id, where one ends.
   const Share& before(std::uint32_t id) const { return shares_[num_chunks(id)]; }
   void sum_up() { std::exclusive_scan(shares_.begin(), shares_.end(), shares_.begin(), Share{}); }
   const Share& total() const { return shares_.back(); }
@@ -58,7 +58,7 @@ class Shares {
   std::vector<Share> shares_;
 };
 
-// Of a mesh whose labels are known. Each thread counts what its chunks add, then knows where to write.
+// The labels of the mesh are known. Each thread counts what its chunks add, then knows where to write.
 class Extractor {
  public:
   Extractor(Mesh& mesh, const Affine& to_world, std::size_t threads, TetMesh& out)
@@ -88,7 +88,8 @@ class Extractor {
   }
 
  private:
-  // In out_ids_, which a facet reads anyway: looking at the vertices themselves would double the time.
+  // The marks stand in out_ids_, which a facet reads anyway: looking at the vertices themselves would double
+  // the time.
   static constexpr std::uint32_t kUsed = 0, kOffIsosurface = 1u << 31;
 
   std::uint32_t out_id(VertexId v) const { return out_ids_[v] & ~kOffIsosurface; }

@@ -1,4 +1,4 @@
-// From the store to the mesh that leaves the library: cells whose circumcentre lies inside, facets between
+// The store becomes the mesh that leaves the library: cells whose circumcentre lies inside, facets between
 // labels, in the world. `threads`: 0 for all cores; the result is the same for any number.
 #pragma once
 

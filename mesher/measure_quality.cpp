@@ -61,7 +61,7 @@ struct alignas(64) CellTally {
   };
 
   double max_ratio2 = 0, max_radius2 = 0, shortest2 = kInfinity;
-  // Of the angles between facets' normals, which dihedral angles make up to 180 degrees.
+  // The angles are those between facets' normals, which dihedral angles make up to 180 degrees.
   double least_cotangent2 = kInfinity, most_cotangent2 = -kInfinity;
   std::uint64_t bad_orientation = 0, bad_radius_edge = 0, bad_radius = 0;
   std::vector<OfLabel> labels;

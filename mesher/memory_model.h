@@ -24,12 +24,12 @@ inline constexpr double kStoredCellsPerMeshCell = 1.1;
 inline constexpr std::uint64_t kImageBytesPerVoxel = sizeof(LabelIndex), kTransformBytesPerVoxel = 4;
 /// Buffers of files, the record, code not yet touched.
 inline constexpr std::uint64_t kBytesOfOutput = 6 << 20;
-/// Of a cell of the store when it is full: itself, a quarter of a vertex at most, an entry of a list that may
+/// A cell of a store that is full takes itself, a quarter of a vertex at most, an entry of a list that may
 /// just have doubled, and what extraction takes more.
 inline constexpr std::uint64_t kBytesPerStoredCell =
     sizeof(Cell) + sizeof(CellState) + sizeof(Vertex) / 4 + 28;
-/// Of a cube of the octree, leaf or gap, and what a leaf takes more: its place in the queue, its list of
-/// cells with some entries. While the octree is built each cube takes less than both together.
+/// A cube of the octree takes the first, leaf or gap, and a leaf the second more: its place in the queue, its
+/// list of cells with some entries. While the octree is built each cube takes less than both together.
 inline constexpr std::uint64_t kBytesPerCube = 32, kBytesPerLeaf = 160;
 /// Leaves of a size that was asked for may take so much of the memory of a run; the mesh has the rest.
 inline constexpr double kMostMemoryOfLeaves = 0.5;

@@ -32,7 +32,7 @@ struct Claim {
   Needs needs;
   ClaimResult (*check)(const Inputs&, const Adjacency&, const Options&);
 };
-/// In the order in which they run.
+/// All claims, in the order in which they run.
 const std::vector<Claim>& all_claims();
 
 /// Reads the files that `options` name. Throws InputError.

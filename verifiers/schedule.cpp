@@ -58,7 +58,7 @@ Count count(const Json& json, const char* key, const Lines& lines) {
   return json[key].get<Count>();
 }
 
-// As a double it is compared without wrapping, however large.
+// A double is compared without wrapping, however large it is.
 bool is_grid_number(const Json& json) {
   return json.is_number_integer() && std::fabs(json.get<double>()) <= kMostGrid;
 }

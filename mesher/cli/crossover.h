@@ -1,4 +1,4 @@
-// From how many threads on --algorithm auto is pdr-podm, and who says so.
+// The number of threads from which --algorithm auto is pdr-podm, and who says so.
 #pragma once
 
 #include <nlohmann/json.hpp>
@@ -17,7 +17,7 @@ struct Crossover {
   std::string warning;            ///< measured on another processor; empty: none
 };
 
-/// By --crossover, a number or a file; else, when `auto` runs on this machine's own cores, by the file that
+/// --crossover decides, a number or a file; else, when `auto` runs on this machine's own cores, the file that
 /// kCrossoverVariable names; else the default. Throws InputError naming the file and the fault.
 Crossover choose_crossover(const MeshCommand& command);
 

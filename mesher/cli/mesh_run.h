@@ -39,7 +39,7 @@ struct FacetCount {
   std::array<LabelIndex, 2> labels;
   std::uint64_t facets = 0;
 };
-/// By label pair, most facets first.
+/// One count for each pair of labels, most facets first.
 std::vector<FacetCount> count_facets(const TetMesh& mesh);
 
 }  // namespace podm::cli

@@ -27,7 +27,8 @@ std::uint64_t available_memory_bytes() {
 
 std::uint64_t resident_bytes() { return read_kib_as_bytes("/proc/self/status", "VmRSS"); }
 
-// Not getrusage: its maximum survives exec, so that a large parent would be charged to this program.
+// getrusage does not serve: its maximum survives exec, so that a large parent would be charged to this
+// program.
 std::uint64_t peak_resident_bytes() { return read_kib_as_bytes("/proc/self/status", "VmHWM"); }
 
 }  // namespace podm::cli

@@ -26,7 +26,7 @@ Json selection_of(const LabelSelection& selection) {
           {"merge", merges}};
 }
 
-// As asked for; 0 means what it means in MeshingOptions.
+// The options that were asked for; 0 means what it means in MeshingOptions.
 Json options_of(const MeshRun& run) {
   const MeshingOptions& options = run.options;
   Json radius_of = Json::object();
@@ -45,7 +45,7 @@ Json options_of(const MeshRun& run) {
 
 Json or_null(const std::optional<int>& value) { return value ? Json(*value) : Json(nullptr); }
 
-// By worker; processors in the system's numbers, nodes and sockets from 0.
+// The place of each worker; processors have the system's numbers, nodes and sockets are counted from 0.
 Json placement_of(const MeshingReport& report) {
   Json places = Json::array();
   for (const WorkerReport& worker : report.workers)

@@ -49,7 +49,8 @@ bool is_awaited(int number, const sigset_t& blocked) {
   _exit(128 + number);  // the first process of a container outlives its own signals
 }
 
-// Not by way of stdio, whose lock a thread may hold that waits for the reader of a full pipe; nor does this.
+// Stays clear of stdio, whose lock a thread may hold that waits for the reader of a full pipe, and waits for
+// nobody itself.
 void tell(const StoppingSignal& signal) {
   const std::string text = std::string(isatty(STDERR_FILENO) != 0 ? "\n" : "") + "podm: " + signal.name +
                            ": the run ends early, with what there is; another signal ends it at once\n";

@@ -10,10 +10,10 @@
 
 namespace podm::cli {
 
-/// At most one, made before any other thread: these inherit that the signals are blocked. A signal ends the
-/// program as it would without, but first removes the leftovers (files/leftovers.h). After heed_first() the
-/// first SIGINT, SIGTERM or SIGHUP only requests a stop, and the next one ends. Signals that were ignored,
-/// blocked or handled stay so, and crashes are left alone.
+/// There is at most one, made before any other thread: these inherit that the signals are blocked. A signal
+/// ends the program as it would without, but first removes the leftovers (files/leftovers.h). After
+/// heed_first() the first SIGINT, SIGTERM or SIGHUP only requests a stop, and the next one ends. Signals that
+/// were ignored, blocked or handled stay so, and crashes are left alone.
 class SignalThread {
  public:
   SignalThread();
@@ -22,11 +22,11 @@ class SignalThread {
   SignalThread(const SignalThread&) = delete;
   SignalThread& operator=(const SignalThread&) = delete;
 
-  /// From now on there is something worth to be kept. A quiet one does not tell when the signal comes. The
+  /// There is something worth keeping from now on. A quiet thread does not say that the signal has come. The
   /// first call counts.
   void heed_first(bool is_quiet);
   std::stop_token token() const { return source_.get_token(); }
-  /// For programs that this one starts.
+  /// The mask that programs get which this one starts.
   const sigset_t& mask_before() const { return mask_before_; }
 
  private:

@@ -86,7 +86,7 @@ std::vector<std::string> verifier_command(const MeshRun& run, std::optional<Temp
 // A program whose standard output is read. It is among the leftovers until it is waited for.
 class Child {
  public:
-  // As this program was started: no signal is blocked by this one.
+  // The child gets the signal mask that this program was started with.
   Child(const std::vector<std::string>& command, const SignalThread& signals) {
     std::array<int, 2> ends;
     if (::pipe2(ends.data(), O_CLOEXEC) != 0) throw InputError("--verify: no pipe can be made");
@@ -100,7 +100,7 @@ class Child {
   Child(const Child&) = delete;
   Child& operator=(const Child&) = delete;
 
-  // Until no other process has its number.
+  // Waits for the child, and keeps its number from other processes until it is no longer among the leftovers.
   ~Child() {
     ::close(output_);
     siginfo_t ended;
@@ -111,7 +111,7 @@ class Child {
     leftovers.drop_child(process_);
   }
 
-  // To its end, or to that which a signal asks for.
+  // Reads until the child ends, of itself or because a signal asked for it.
   std::string read(const SignalThread& signals) {
     const std::stop_callback end_it(signals.token(), [this] { kill(process_, SIGKILL); });
     std::string text;

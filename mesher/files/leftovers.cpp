@@ -21,13 +21,13 @@ struct Leftovers {
   std::set<pid_t> children;
 };
 
-// Never destroyed: threads may come here while the process ends.
+// They are never destroyed: threads may come here while the process ends.
 Leftovers& leftovers() {
   static Leftovers& only = *new Leftovers;
   return only;
 }
 
-// For ever, unless it takes too long.
+// Nobody lets go of them again. False: another thread held them for too long.
 bool hold_leftovers() {
   for (int pause = 0; pause < kMostPauses; ++pause) {
     if (leftovers().mutex.try_lock()) return true;

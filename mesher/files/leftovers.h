@@ -10,12 +10,12 @@
 namespace podm {
 
 /// The leftovers, held: as long as one lives no other thread holds them, so that the process does not end by
-/// remove_leftovers_for_good(). For a few system calls at a time that do not wait for others; these are then
-/// done all or not at all.
+/// remove_leftovers_for_good(). They are to be held for a few system calls that do not wait for others; these
+/// are then done all or not at all.
 class HeldLeftovers {
  public:
   HeldLeftovers();
-  /// Before the path is made; what is not there yet may be removed too.
+  /// Must come before the path is made; what is not there yet may be removed too.
   void add(const std::string& path);
   /// It is gone, or has become something that stays.
   void drop(const std::string& path);
@@ -29,13 +29,13 @@ class HeldLeftovers {
   std::unique_lock<std::mutex> lock_;
 };
 
-/// Kills the children, removes the paths, folders with what is in them, and holds all ever after: for the
-/// thread that ends the process next. Another that makes, renames or removes such a file waits meanwhile.
+/// Kills the children, removes the paths, folders with what is in them, and holds all ever after: the thread
+/// that calls it ends the process next. Another that makes, renames or removes such a file waits meanwhile.
 /// Gives up within a second where another thread holds them that the system does not let go on, as a dead
 /// disk does.
 void remove_leftovers_for_good() noexcept;
 
-/// Whatever is there under that name; links are not followed.
+/// Removes whatever is there under that name; links are not followed.
 void remove_file_or_folder(const std::string& path) noexcept;
 
 }  // namespace podm

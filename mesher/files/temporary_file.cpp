@@ -28,7 +28,7 @@ std::string resolve_target(const std::string& path) {
   return std::filesystem::canonical(path).string();
 }
 
-// Not mkstemp: it makes files that only the owner may read.
+// mkstemp does not serve: it makes files that only the owner may read.
 int make_file(const char* path) { return ::open(path, O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC, 0666); }
 
 int make_folder(const char* path) {
@@ -96,7 +96,7 @@ void TemporaryFile::publish(std::span<TemporaryFile* const> files) {
     if (folders.insert(folder_of(file->target_)).second) file->sync_folder();
 }
 
-// Else a new name might not outlive a power cut, nor an old one be gone.
+// A new name might not outlive a power cut, nor an old one be gone, without this.
 void TemporaryFile::sync_folder() const {
   const std::string folder = folder_of(target_);
   const int descriptor = ::open(folder.empty() ? "." : folder.c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC);

@@ -15,7 +15,7 @@ namespace podm {
 
 class TemporaryFile {
  public:
-  /// Beside `path`. Every member fails by fail_to_write().
+  /// Makes the file beside `path`. Every member fails by fail_to_write().
   explicit TemporaryFile(const std::string& path);
   /// Removes the file unless it is published.
   ~TemporaryFile();
@@ -43,7 +43,7 @@ class TemporaryFile {
 /// A folder beside a file that goes away with all it holds, and whenever a temporary file of it would.
 class TemporaryFolder {
  public:
-  /// Beside `path`. Fails by fail_to_write().
+  /// Makes the folder beside `path`. Fails by fail_to_write().
   explicit TemporaryFolder(const std::string& path);
   ~TemporaryFolder();
   TemporaryFolder(const TemporaryFolder&) = delete;

@@ -41,7 +41,8 @@ pid_t process_of(std::string_view name) {
   return last.ec == std::errc() && last.ptr == end ? process : 0;
 }
 
-// By target. A folder is looked through once a process: there may be a file a label, and many others.
+// Takes what was found of `target`. A folder is looked through once a process: there may be a file a label,
+// and many others.
 std::vector<OldTemporary> take_old_temporaries(const std::string& target, const HeldLeftovers&) {
   static auto& folders = *new std::set<std::string>;
   static auto& found = *new std::map<std::string, std::vector<OldTemporary>>;

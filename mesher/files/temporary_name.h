@@ -16,7 +16,7 @@ struct Temporary {
 /// of it, or -1 with errno. Removes what processes that are gone have left of `target`.
 Temporary make_temporary(const std::string& target, int (*make)(const char* path));
 
-/// With the slash at its end; empty: the working folder.
+/// The folder that `path` is in, with the slash at its end; empty: the working folder.
 std::string folder_of(const std::string& path);
 
 }  // namespace podm

@@ -16,12 +16,12 @@ inline double cofactor(const Affine& a, std::size_t r, std::size_t c) {
   return a[4 * r1 + c1] * a[4 * r2 + c2] - a[4 * r1 + c2] * a[4 * r2 + c1];
 }
 
-/// Of the linear part: signed volume of a voxel where the map takes voxels to mm.
+/// The determinant of the linear part: the signed volume of a voxel where the map takes voxels to mm.
 inline double determinant(const Affine& a) {
   return a[0] * cofactor(a, 0, 0) + a[1] * cofactor(a, 0, 1) + a[2] * cofactor(a, 0, 2);
 }
 
-/// Of a map whose determinant is not 0.
+/// The determinant of `a` must not be 0.
 inline Affine inverse(const Affine& a) {
   const double det = determinant(a);
   Affine b{};
@@ -32,15 +32,13 @@ inline Affine inverse(const Affine& a) {
   return b;
 }
 
-inline std::array<double, 3> map(const Affine& a, const std::array<double, 3>& x) {
-  std::array<double, 3> y{};
-  for (std::size_t r = 0; r < 3; ++r)
-    y[r] = a[4 * r] * x[0] + a[4 * r + 1] * x[1] + a[4 * r + 2] * x[2] + a[4 * r + 3];
-  return y;
-}
 inline Point map(const Affine& a, const Point& p) {
   const auto row = [&](std::size_t r) { return a[r] * p.x + a[r + 1] * p.y + a[r + 2] * p.z + a[r + 3]; };
   return {row(0), row(4), row(8)};
+}
+inline std::array<double, 3> map(const Affine& a, const std::array<double, 3>& x) {
+  const Point y = map(a, Point{x[0], x[1], x[2]});
+  return {y.x, y.y, y.z};
 }
 
 }  // namespace podm

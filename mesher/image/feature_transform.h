@@ -68,9 +68,9 @@ class Features {
   }
   void prefetch(std::size_t voxel) const { __builtin_prefetch(&words_[voxel]); }
   bool is_surface(std::size_t voxel) const { return (read(voxel) & kSurface) != 0; }
-  /// Of a surface voxel.
+  /// `voxel` must be a surface voxel.
   Neighborhood neighborhood(std::size_t voxel) const { return Neighborhood(read(voxel)); }
-  /// None of others.
+  /// A voxel off the surface has none.
   std::optional<Neighborhood> neighborhood_if_surface(std::size_t voxel) const {
     const std::uint32_t word = read(voxel);
     return (word & kSurface) != 0 ? std::optional(Neighborhood(word)) : std::nullopt;

@@ -37,7 +37,7 @@ Voxel voxel_at(const RawImage& raw, std::size_t i) {
   return voxel;
 }
 
-// There is one.
+// Names the first voxel whose value is no label; there must be one.
 template <class Voxel>
 [[noreturn]] void refuse_first_without_label(const RawImage& raw) {
   std::size_t i = 0;

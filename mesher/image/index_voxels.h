@@ -1,4 +1,4 @@
-// From the numbers that a file stores to label indices.
+// The numbers that a file stores become label indices.
 #pragma once
 
 #include "image/raw_image.h"

@@ -11,10 +11,11 @@ namespace {
 
 double square(double x) { return x * x; }
 
-// Within [low, high]; low if x is not a number.
+// The number of [low, high] that is nearest to x; low if x is not a number.
 double clamped(double x, double low, double high) { return std::max(low, std::min(x, high)); }
 
-// Of a block's sides, that its 26 neighbours reach beyond any of its points in the worst direction.
+// The 26 neighbours of a block reach at most so many of its sides beyond any of its points, in the worst
+// direction.
 constexpr double kMostByBlocks = 1.5;
 
 // The 64 corners of a block and of its 26 neighbours, a bit each: corner (i,j,k) of {0..3}^3 at i + 4 j + 16
@@ -68,8 +69,8 @@ double Oracle<Reads>::bound_from_outside(const Point& u) const {
   return std::sqrt(squared_length(to_mm(u - inside)) + square(bound));
 }
 
-// By the lemma every isosurface point is within half a voxel diagonal of a surface voxel, and no surface
-// voxel is nearer to v than its feature. May be negative.
+// The lemma says that every isosurface point is within half a voxel diagonal of a surface voxel, and no
+// surface voxel is nearer to v than its feature. May be negative.
 template <class Reads>
 double Oracle<Reads>::bound_by_feature(const Point& u, const Voxel& v) const {
   const auto feature = features_.nearest(grid_.index(v));

@@ -62,7 +62,7 @@ class Oracle {
   /// by more than 1 of a voxel's shortest side.
   std::optional<NearPoint> near_point(const Point& p, double radius) const;
   /// The same, less than 1e-6 voxel from the isosurface, for p's near point. May be a little beyond `radius`.
-  Point settled(const NearPoint& near, const Point& p) const;
+  Point polished(const NearPoint& near, const Point& p) const;
   /// Both at once, within the radius.
   std::optional<Point> closest_point(const Point& p, double radius) const;
 
@@ -84,7 +84,7 @@ class Oracle {
 
   Point to_voxels(const Point& p) const { return map(to_voxels_, p); }
   Point from_voxels(const Point& u) const { return map(from_voxels_, u); }
-  // Of directions, along the image's axes.
+  // Both convert directions, which lie along the image's axes.
   Vector to_mm(const Vector& d) const { return {d.x * spacing_.x, d.y * spacing_.y, d.z * spacing_.z}; }
   Vector per_mm(const Vector& gradient) const {
     return {gradient.x * inverse_spacing_.x, gradient.y * inverse_spacing_.y,
@@ -96,7 +96,7 @@ class Oracle {
   bool is_inside(const Point& u) const {
     return u.x > -0.5 && u.x < end_.x && u.y > -0.5 && u.y < end_.y && u.z > -0.5 && u.z < end_.z;
   }
-  /// For u inside.
+  /// `u` must be inside.
   static Voxel nearest_voxel(const Point& u) {
     return {static_cast<int>(u.x + 0.5), static_cast<int>(u.y + 0.5), static_cast<int>(u.z + 0.5)};
   }
@@ -151,7 +151,7 @@ inline LabelIndex Oracle<Reads>::label_at_voxels(const Point& u) const {
   const Voxel v = nearest_voxel(u);
   const std::size_t index = grid_.index(v);
   if (features_.is_surface(index)) return label_on_surface_voxel(u);
-  // By the lemma only a tie at the block's centre could take the label from a voxel off the surface.
+  // The lemma leaves only a tie at the block's centre to take the label from a voxel off the surface.
   constexpr double kNotCenter = 1.5 - 1e-9;
   const Vector offset = u - center(v);
   if (std::fabs(offset.x) + std::fabs(offset.y) + std::fabs(offset.z) > kNotCenter) {

@@ -90,7 +90,7 @@ class Trilinear {
         yz_(v[6] - v[4] - y_),
         xyz_(v[7] - v[6] - v[5] + v[4] - xy_) {}
 
-  /// At f, in voxels from the block's own voxel.
+  /// The value at f, which is given in voxels from the block's own voxel.
   double value(const Point& f) const {
     return value_ + f.x * x_ + f.y * (y_ + f.x * xy_) + f.z * (z_ + f.x * xz_ + f.y * (yz_ + f.x * xyz_));
   }
@@ -98,7 +98,7 @@ class Trilinear {
     return {x_ + f.y * xy_ + f.z * (xz_ + f.y * xyz_), y_ + f.x * xy_ + f.z * (yz_ + f.x * xyz_),
             z_ + f.x * xz_ + f.y * (yz_ + f.x * xyz_)};
   }
-  /// Of value(f + s d) by s.
+  /// The second derivative of value(f + s d) by s, at s = 0.
   double second_derivative(const Point& f, const Vector& d) const {
     return 2 *
            (d.x * d.y * (xy_ + f.z * xyz_) + d.x * d.z * (xz_ + f.y * xyz_) + d.y * d.z * (yz_ + f.x * xyz_));
@@ -192,7 +192,7 @@ class LabelGrid {
     return labels;
   }
 
-  /// Of the 64 corners of b and its 26 neighbours: bit i + 4 j + 16 k tells whether voxel
+  /// A bit for each of the 64 corners of b and its 26 neighbours: bit i + 4 j + 16 k tells whether voxel
   /// (b.i - 1 + i, b.j - 1 + j, b.k - 1 + k) has another label than `label`.
   std::uint64_t corners_of_other_label(const Voxel& b, LabelIndex label) const;
 

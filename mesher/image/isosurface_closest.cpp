@@ -12,10 +12,10 @@ namespace podm {
 
 namespace {
 
-constexpr int kMaxSteps = 8;       // tried, taken or not
-constexpr double kShorter = 0.35;  // of a step that leads no nearer
-constexpr double kSettled = 0.01;  // voxel sides: twice what a step may bring in distance, to be taken
-constexpr double kTowards = 1e-3;  // of the way to u
+constexpr int kMaxSteps = 8;          // tried, taken or not
+constexpr double kShorter = 0.35;     // of a step that leads no nearer
+constexpr double kNegligible = 0.01;  // voxel sides: twice the least gain in distance of a step
+constexpr double kTowards = 1e-3;     // of the way to u
 constexpr int kPullsToStep = 1, kMaxPulls = 8;
 constexpr double kOnIsosurface = 1e-7;  // voxels
 constexpr double kAside = 0.01;         // voxels
@@ -23,7 +23,8 @@ constexpr double kIrregular = 1e4;
 
 constexpr double square(double x) { return x * x; }
 
-// For two labels the isosurface is where the weights of a block's corners, some against all others, balance.
+// Two labels meet where the weights of their corners of the block balance: one function for each choice of
+// corners.
 constexpr auto kBalances = []<std::size_t... mask>(std::index_sequence<mask...>) {
   return std::array{weight_difference(mask, ~mask & kAllCorners)...};
 }
@@ -41,7 +42,8 @@ class Oracle<Reads>::Sheet {
         center_(surface_voxel),
         around_(oracle.features_.neighborhood(oracle.grid_.index(surface_voxel))) {}
 
-  /// Goes to the sheet at u; false if no isosurface is in its block, or none of u's nearest voxel.
+  /// Goes to the sheet at u; false if no isosurface passes through its block, or none around u's nearest
+  /// voxel.
   bool move_to(const Point& u) {
     const Voxel block = block_of(u);
     if (!is_beside_center(block) && !recenter(u)) return false;
@@ -251,18 +253,18 @@ std::optional<Vector> Oracle<Reads>::tangent_step(Sheet& sheet, const Point& u, 
   return part * tangent;
 }
 
-// From a point of the isosurface to the foot of u.
+// Moves best.u along the isosurface to the foot of u, as long as a step brings it noticeably nearer.
 template <class Reads>
 void Oracle<Reads>::descend(Sheet& sheet, const Point& u, Nearest& best) const {
   std::optional<Vector> step = tangent_step(sheet, u, best.u);
   for (int i = 0; step && i < kMaxSteps; ++i) {
-    // What the step may bring in squared distance.
-    const double settled = kSettled * shortest_side_mm_ * std::sqrt(best.squared_mm);
-    if (squared_length(to_mm(*step)) < settled) return;
+    // The least gain in squared distance for which a step is taken.
+    const double negligible = kNegligible * shortest_side_mm_ * std::sqrt(best.squared_mm);
+    if (squared_length(to_mm(*step)) < negligible) return;
     Point z = best.u + *step;
     const bool is_on_isosurface = pull(sheet, z, kPullsToStep);
     const double squared = squared_length(to_mm(z - u));
-    if (is_on_isosurface && squared < best.squared_mm - 0.1 * settled) {
+    if (is_on_isosurface && squared < best.squared_mm - 0.1 * negligible) {
       best.u = z;
       best.squared_mm = squared;
       step = tangent_step(sheet, u, z);
@@ -289,7 +291,7 @@ std::optional<NearPoint> Oracle<Reads>::near_point(const Point& p, double radius
 // Midpoints lie on a lattice, and vertices of a lattice make flat cells that rounding can turn inside out:
 // take a point of the isosurface a little beside it, as irregular as p itself.
 template <class Reads>
-Point Oracle<Reads>::settled(const NearPoint& near, const Point& p) const {
+Point Oracle<Reads>::polished(const NearPoint& near, const Point& p) const {
   const Point u = to_voxels(p);
   Point z = to_voxels(near.point);
   if (near.is_midpoint) {
@@ -308,14 +310,14 @@ template <class Reads>
 std::optional<Point> Oracle<Reads>::closest_point(const Point& p, double radius) const {
   const auto near = near_point(p, radius);
   if (!near) return std::nullopt;
-  const Point z = settled(*near, p);
+  const Point z = polished(*near, p);
   return squared_distance(z, p) <= square(radius) ? std::optional(z) : std::nullopt;
 }
 
 template std::optional<NearPoint> Oracle<NoReads>::near_point(const Point&, double) const;
 template std::optional<NearPoint> Oracle<CountedReads>::near_point(const Point&, double) const;
-template Point Oracle<NoReads>::settled(const NearPoint&, const Point&) const;
-template Point Oracle<CountedReads>::settled(const NearPoint&, const Point&) const;
+template Point Oracle<NoReads>::polished(const NearPoint&, const Point&) const;
+template Point Oracle<CountedReads>::polished(const NearPoint&, const Point&) const;
 template std::optional<Point> Oracle<NoReads>::closest_point(const Point&, double) const;
 template std::optional<Point> Oracle<CountedReads>::closest_point(const Point&, double) const;
 

@@ -31,8 +31,8 @@ double only_zero(const std::array<double, 4>& c, double end) {
   return s;
 }
 
-// By Bernstein coefficients: the cubic lies in their convex hull, and has at most as many zeros in (0,1) as
-// they change sign, of the same parity.
+// `b` are Bernstein coefficients: the cubic lies in their convex hull, and has at most as many zeros in (0,1)
+// as they change sign, of the same parity.
 std::optional<double> first_fall_by_halves(const std::array<double, 4>& b, bool zero_holds, int halvings) {
   const auto is_low = [&](double value) { return zero_holds ? value < 0 : value <= 0; };
   if (is_low(b[0])) return 0;

@@ -69,7 +69,7 @@ struct Paint {
   LabelIndex label;
 };
 
-// From the last paint to the first, each on the voxels that are still background.
+// The last paint covers the others: paints go from it to the first, on the voxels that are still background.
 void fill_row(LabelIndex* row, const std::vector<const Paint*>& paints, const Axis& x, double y, double z) {
   for (auto paint = paints.rbegin(); paint != paints.rend(); ++paint) {
     const Shape& shape = (*paint)->shape;
@@ -107,8 +107,8 @@ void fill(LabelImage& image, const std::vector<Organ>& organs, int threads) {
                [&](std::size_t k, std::size_t) { fill_slice(image, paints, static_cast<int>(k)); });
 }
 
-// Not less, in so few bits that it, and times half a number of voxels too, is exact in the single precision
-// of NIfTI: the phantom and its file are the same image.
+// Rounds up, to so few bits that the spacing, and times half a number of voxels too, is exact in the single
+// precision of NIfTI: the phantom and its file are the same image.
 double in_few_bits(double spacing) {
   constexpr int kBits = 12;
   int exponent = 0;

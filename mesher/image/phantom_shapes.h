@@ -33,9 +33,9 @@ Shape torus(double ring_radius, double tube_radius);
 
 /// How far slab() goes from an ellipse (0) towards a rectangle (1), seen along z.
 inline constexpr double kSlabSquareness = 0.42;
-/// Nearly elliptic seen along z, flat at top and bottom with a rounded rim.
+/// A slab is nearly elliptic seen along z, flat at top and bottom with a rounded rim.
 Shape slab(const Point& centre, const Vector& half_extent);
-/// Of the slab's outline around the origin: the point `angle` radians from -y towards +x.
+/// The point `angle` radians from -y towards +x on the outline that a slab around the origin has.
 Point on_slab_outline(const Vector& half_extent, double angle, double z);
 
 /// A point of a tube's axis and the tube's radius there.
@@ -51,7 +51,7 @@ Shape tube(const std::vector<Point>& path, double radius);
 /// A smooth curve through the knots (Catmull-Rom), as knots at most about 5 mm apart.
 std::vector<Knot> smooth(const std::vector<Knot>& knots);
 std::vector<Knot> smooth(const std::vector<Point>& path, double radius);
-/// Every radius larger by `mm`, which may be negative.
+/// Makes every radius larger by `mm`, which may be negative.
 std::vector<Knot> widened(std::vector<Knot> knots, double mm);
 /// Radii that swell and shrink by `amplitude` once every `period` mm of the way.
 std::vector<Knot> waved(std::vector<Knot> knots, double amplitude, double period);

@@ -1,4 +1,4 @@
-// From a path to a label image: pick the reader, turn voxels into labels, select.
+// A path becomes a label image: a reader is picked, voxels become labels, labels are selected.
 #include <algorithm>
 #include <charconv>
 #include <initializer_list>

@@ -27,7 +27,7 @@ struct TextHeader {
     const auto found = fields.find(key);
     return found == fields.end() ? "" : found->second;
   }
-  // As ITK takes it.
+  // ITK takes a value for true by its first letter.
   bool flag(const std::string& key) const {
     const std::string text = field(key);
     return !text.empty() && std::string("tT1").find(text[0]) != std::string::npos;
@@ -89,7 +89,7 @@ void expect_meta_line(const std::string& path, const std::string& line, int numb
     refuse(path, place + " is not of the form 'name = value')");
 }
 
-// Of a file named in the header of `path`.
+// The path of a file that the header of `path` names.
 std::string beside(const std::string& path, const std::string& name) {
   const std::string data_path = (std::filesystem::path(path).parent_path() / name).string();
   std::error_code error;

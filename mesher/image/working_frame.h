@@ -11,7 +11,7 @@
 
 namespace podm {
 
-/// From voxel indices, mm.
+/// The map from voxel indices to the working frame, mm.
 Affine voxels_to_working(const LabelImage& image);
 /// The identity, which rounds nothing, unless the image is sheared.
 Affine working_to_world(const LabelImage& image);

@@ -57,7 +57,7 @@ class Reader {
     offset_ += size;
   }
 
-  // In steps, so that a count that lies asks for no more memory than the file has bytes.
+  // Reads in steps, so that a count that lies asks for no more memory than the file has bytes.
   template <class T>
   void take_all(std::vector<T>& into, std::uint32_t count, const char* what) {
     constexpr std::uint32_t kStep = 1 << 12;

@@ -73,7 +73,7 @@ std::optional<Point> Rules::r1_sample(const Examination& t) const {
   for (const VertexId v : mesh_.cell(t.cell).vertices) {
     if (is_covered(t.nearest->point, v)) return std::nullopt;
   }
-  return ask([&](const auto& oracle) { return oracle.settled(*t.nearest, t.center); });
+  return ask([&](const auto& oracle) { return oracle.polished(*t.nearest, t.center); });
 }
 
 std::optional<Point> Rules::r2_center(const Examination& t) const {

@@ -47,7 +47,7 @@ bool is_in_tree(const std::string& group, const std::string& tree) {
   return tree == "/" || group == tree || group.starts_with(tree + "/");
 }
 
-// Of those that show the group, the one that shows most of the groups around it. Another's group may be
+// The mount that shows most of the groups around `group`, among those that show it. Another's group may be
 // mounted as well; that counts only where no mount shows ours, as in containers that are told other paths.
 std::optional<Mount> find_mount(const std::string& root, const std::string& type,
                                 const std::string& controller, const std::string& group) {
@@ -63,8 +63,9 @@ std::optional<Mount> find_mount(const std::string& root, const std::string& type
   return best;
 }
 
-// Of the hierarchy that has the controller, or of version 2 for an empty name: the line
-// "4:memory:/some/group".
+// The path of this process's group in the hierarchy that has the controller; without a name in that of
+// version
+// 2. The lines are like "4:memory:/some/group".
 std::optional<std::string> group_path(const std::string& root, const std::string& controller) {
   std::ifstream file(root + "/proc/self/cgroup");
   for (std::string line; std::getline(file, line);) {
@@ -77,7 +78,8 @@ std::optional<std::string> group_path(const std::string& root, const std::string
   return {};
 }
 
-// From the group up to what is mounted. A container may see less of the path than it is told.
+// The folder of the group and those around it, up to what is mounted. A container may see less of the path
+// than it is told.
 std::vector<std::string> folders_of(const std::string& root, const Mount& mount, const std::string& group) {
   std::string inside = group;
   if (mount.root != "/") inside = is_in_tree(group, mount.root) ? group.substr(mount.root.size()) : "";

@@ -14,16 +14,17 @@ namespace podm {
 
 class MemoryOwners {
  public:
-  /// On this machine: the node of each 64 KiB, by its first page. Why not, where pages cannot be asked.
+  /// Asks this machine on which node the first page of each 64 KiB lies; where it does not tell,
+  /// unavailable() says why.
   template <class T>
   static MemoryOwners ask(std::span<const T> array, const Topology& machine, const PageQuery& query) {
     MemoryOwners owners(std::as_bytes(array), sizeof(T), kBytesAskedOnce);
     owners.ask(machine, query);
     return owners;
   }
-  /// On a described machine, whose memory nobody touches: parallel loops give pieces of 2^`piece_bits` bytes
-  /// to whoever is free, so each piece belongs to a worker drawn at random, the same for the same seed.
-  /// `nodes` are the workers'.
+  /// Draws owners for a described machine, whose memory nobody touches: parallel loops give pieces of
+  /// 2^`piece_bits` bytes to whoever is free, so each piece belongs to a worker drawn at random, the same for
+  /// the same seed. `nodes` are the workers'.
   template <class T>
   static MemoryOwners deal(std::span<const T> array, unsigned piece_bits, std::span<const NodeIndex> nodes,
                            std::uint64_t seed) {
@@ -34,7 +35,7 @@ class MemoryOwners {
 
   /// Why no piece's owner is known; otherwise empty.
   const std::string& unavailable() const { return unavailable_; }
-  /// Of an element of the array.
+  /// The node of an element of the array.
   NodeIndex node_of(std::size_t element) const { return node_of_piece_[element >> piece_bits_]; }
   const void* address_of(std::size_t element) const { return array_.data() + element * element_bytes_; }
   std::size_t size() const { return array_.size() / element_bytes_; }

@@ -9,7 +9,7 @@
 
 namespace podm {
 
-/// As many threads as asked for; all cores where that is 0.
+/// The number of threads that was asked for; that of all cores where it is 0.
 inline std::size_t num_threads(int asked) {
   return asked > 0 ? static_cast<std::size_t>(asked) : std::max(1u, std::thread::hardware_concurrency());
 }

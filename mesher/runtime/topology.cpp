@@ -87,7 +87,7 @@ Topology Topology::of_this_machine() {
 Topology Topology::from_file(const std::filesystem::path& path) {
   const std::string xml = read_text(path);
   Handle machine = make_handle();
-  // With its final zero, as hwloc counts.
+  // hwloc counts the final zero.
   if (hwloc_topology_set_xmlbuffer(machine.get(), xml.c_str(), static_cast<int>(xml.size() + 1)) != 0 ||
       hwloc_topology_load(machine.get()) != 0)
     throw TopologyError(path.string() + ": not an hwloc XML description of a machine");

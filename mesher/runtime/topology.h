@@ -40,7 +40,7 @@ class Topology {
   /// for each node and in it a latency to each node, in any unit.
   static Topology synthetic(const std::string& description, const std::vector<std::uint64_t>& latencies = {});
 
-  /// In hwloc's order: neighbours in it are neighbours in the machine.
+  /// They are in hwloc's order: neighbours in it are neighbours in the machine.
   const std::vector<Processor>& processors() const { return processors_; }
   int num_cores() const { return num_cores_; }
   int num_nodes() const { return static_cast<int>(node_os_indices_.size()); }

@@ -19,7 +19,7 @@ class ExtractMesh : public testing::Test {
  protected:
   ExtractMesh() { refine(); }
 
-  // On one thread, so always the same.
+  // One thread always makes the same mesh.
   void refine() {
     StopControl stop({.max_elements = 30000}, {}, [](std::uint64_t) {});
     const Problem problem{.isosurface = isosurface_,

@@ -57,8 +57,8 @@ class FileSizeLimit(PodmTestCase):
             self.assertEqual(record.read_bytes(), before)
 
 
-# In a mount namespace of its own: the working folder becomes a disk of 1 MiB with the older files $NAMES, of which
-# $ROOM bytes are free. Then the command; the exit code and an archive of the disk go to the folder ../told.
+# The working folder becomes, in a mount namespace of its own, a disk of 1 MiB with the older files $NAMES, of which
+# $ROOM bytes are free. Then the command runs; the exit code and an archive of the disk go to the folder ../told.
 ON_A_SMALL_DISK = """
 mount -t tmpfs -o size=1m podm_test . && cd "$PWD" || exit 99
 for name in $NAMES; do printf "%4090s\\n" "older $name" > $name; done  # a page

@@ -7,7 +7,7 @@ SERIES = ["basis", "source", "machine", "build", "image", "algorithm", "cores", 
 SIZE = ["used.radius_mm"]
 PREFIX = "process.counters."
 COLUMNS = ["basis", "source", "algorithm", "cores", "cells", "counter", "per_insertion", "n", "reason"]
-# Of the kernel: they say nothing of caches.
+# The kernel counts these: they say nothing of caches.
 NO_CACHE = {"task_clock_ns", "page_faults", "context_switches", "cpu_migrations"}
 
 

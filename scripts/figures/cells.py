@@ -3,8 +3,8 @@ from . import paper, scaling
 from .reasons import why_missing
 
 RATIO_TOLERANCE = 0.15  # of a ratio to one core
-# Of shares: within this factor of the paper's, of the remote share where no hop is counted, so that half a percent
-# tells; or within one unit of the last digit that the paper prints.
+# A share agrees within this factor of the paper's (where no hop is counted, of the remote share, so that half a percent
+# tells), or within one unit of the last digit that the paper prints.
 SHARE_FACTOR, SHARE_DIGIT = 2.0, 1e-4
 COLUMNS = ("cells", "seconds", "rate", "speedup", "efficiency")
 

@@ -5,7 +5,7 @@ import zlib
 import numpy
 
 MAX_CELLS = 200_000
-# As in scripts/render_mesh.py: the label of the greatest volume is pale.
+# The label of the greatest volume is pale, as scripts/render_mesh.py has it.
 PALE = "#ede3d1"
 PALETTE = ["#cc5c54", "#4582b5", "#f2b854", "#6ba36b", "#9473b3", "#e88c66", "#5cadb0", "#db8fad", "#9e8c59", "#8c9ed1",
            "#b5c769", "#8f575c", "#4d6b78", "#d4c28c", "#b89cc9"]

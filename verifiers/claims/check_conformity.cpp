@@ -35,7 +35,7 @@ std::vector<FacetId> facets_with_one_cell(const Adjacency& adjacency) {
   return facets;
 }
 
-// By where the facets are, whatever their vertices' ids.
+// Facets are the same if they are at the same place, whatever their vertices' ids.
 Tally check_facets(const Mesh& mesh, const std::vector<FacetId>& open_facets) {
   struct Placed {
     std::array<Point, 3> points;
@@ -99,7 +99,7 @@ class LeafBoundaries {
   bool has(VertexId v) const {
     return std::any_of(slots_[v].begin(), slots_[v].end(), [](std::uint32_t s) { return s % 2 == 1; });
   }
-  // Of a facet: whether it touches or crosses a plane.
+  // Whether the facet touches or crosses a plane.
   bool has(const std::array<VertexId, 3>& facet) const {
     return has(facet[0]) || slots_[facet[0]] != slots_[facet[1]] || slots_[facet[0]] != slots_[facet[2]];
   }

@@ -153,8 +153,8 @@ class Sweep {
   const std::vector<Activation>& activations_;
   LeafGrid& grid_;
   std::vector<Active> active_;
-  // By leaf: the active leaves that touch it, at most one unless two are too near. Thus a beginning looks at
-  // its first ring alone, however many small leaves touch a large one there.
+  // Each leaf has the active leaves that touch it, at most one unless two are too near. Thus a beginning
+  // looks at its first ring alone, however many small leaves touch a large one there.
   std::vector<std::vector<std::uint32_t>> active_around_;
   std::vector<std::uint32_t> seen_by_;  // by leaf: the last activation whose two rings held it
   std::uint64_t num_active_ = 0;
@@ -182,8 +182,8 @@ void check_schedule(const Schedule& schedule, const std::function<void(const cha
   const Tally leaves = check_leaves(grid);
   add("overlapping_leaves", leaves);
   add("leaves_touched_outside", check_touched_leaves(schedule, grid));
-  // Of disjoint cubes, each touches a bounded number that are no smaller, so that all first rings together
-  // are linear in the leaves.
+  // Leaves are disjoint cubes, each of which touches a bounded number that are no smaller, so that all first
+  // rings together are linear in the leaves.
   if (leaves.num_violations == 0) add("active_leaves_too_near", Sweep(schedule, grid).check());
 }
 

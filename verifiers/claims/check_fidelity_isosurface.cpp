@@ -107,7 +107,7 @@ IsosurfaceDistance::Answer IsosurfaceDistance::search(const Point& p, const Poin
   Point target;
   if (project(p, p, region, target)) try_segment(p, target, region, best);
   try_segment(p, along(p, known, kLittleBeyond), region, best);  // on `known` itself there is a tie
-  // Of flat voxels the isosurface may pass near without a midpoint near: look along each axis.
+  // The isosurface of flat voxels may pass near without a midpoint near: look along each axis.
   for (const Point& step : steps_) {
     const Point neighbor{p[0] + step[0], p[1] + step[1], p[2] + step[2]};
     if (squared_distance(p, neighbor) < kStepSquared * best.squared) try_segment(p, neighbor, region, best);

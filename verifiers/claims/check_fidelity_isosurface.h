@@ -46,9 +46,10 @@ class IsosurfaceDistance {
     LabelWeights labels;  ///< there
     bool bounds(std::uint32_t label) const;
   };
-  /// To where any label changes. `hint` is kNone before the first call, then as this function left it.
+  /// The distance to where any label changes. `hint` is kNone before the first call, then as this function
+  /// left it.
   Answer nearest(const Point& p, std::uint32_t& hint) const;
-  /// To where `label` begins or ends; none (infinite) if the image lacks it.
+  /// The distance to where `label` begins or ends; none (infinite) if the image lacks it.
   Answer nearest_of_label(const Point& p, std::uint32_t label) const;
 
  private:

@@ -53,7 +53,7 @@ class BoundaryFacets {
   BoxTree tree_;
 };
 
-// As orientation(), at once where x is one of the others, as with neighbours it mostly is.
+// Gives what orientation() gives, at once where x is one of the others, as with neighbours it mostly is.
 int side_of_plane(const TrianglePoints& p, const Point& x, std::uint64_t& num_exact) {
   return x == p[0] || x == p[1] || x == p[2] ? 0 : orientation(p[0], p[1], p[2], x, num_exact);
 }

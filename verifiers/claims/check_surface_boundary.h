@@ -43,13 +43,13 @@ class SidesOfVertex {
   std::vector<std::uint32_t> begin_, sides_;
 };
 
-/// Of the boundary of one label's cells, or of all cells'.
+/// Counts of the boundary of one label's cells, or of all cells.
 struct BoundaryCounts {
   std::uint64_t facets = 0;
   std::uint64_t unbalanced_edges = 0;  ///< not passed as often in one direction as in the other
   // Passed four times or more; on triple lines three or more labels meet, the background counted.
   std::uint64_t non_manifold_edges = 0, non_manifold_edges_on_triple_lines = 0;
-  // On no such edge, but its sides make more than one fan.
+  // Such a vertex is on no such edge, but its sides make more than one fan.
   std::uint64_t non_manifold_vertices = 0, non_manifold_vertices_on_triple_lines = 0;
 
   void add(const BoundaryCounts& other);

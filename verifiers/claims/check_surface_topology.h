@@ -14,7 +14,8 @@ struct MeshTopology {
   std::int64_t euler = 0;        ///< V - E + F - C of the cells and all that bounds them
 };
 
-/// By LabelPlace; kAllLabels: all cells but the background's together. About 28 bytes a cell while it runs.
+/// The topology of each label, by its LabelPlace, and at kAllLabels that of all cells but the background's
+/// together. Takes about 28 bytes a cell while it runs.
 std::vector<MeshTopology> find_mesh_topology(const Mesh& mesh, const Adjacency& adjacency,
                                              const CellLabelPlaces& places, const BoundaryFindings& boundary,
                                              int threads);

@@ -30,7 +30,7 @@ class ByteSource {
   void expect_end();
   /// Throws if the file cannot hold `size` bytes even at deflate's best ratio: ask before allocating them.
   void expect_room_for(std::uint64_t size) const;
-  /// Of the stream, once expect_end() has returned; 0: not compressed.
+  /// The stream's compressed bytes, once expect_end() has returned; 0: it is not compressed.
   std::uint64_t compressed_bytes() const { return stream_ ? stream_->total_in : 0; }
 
  private:

@@ -18,15 +18,15 @@ class ImageFrame {
  public:
   ImageFrame(const Image& image, Space space);
 
-  /// In extended precision: the matrix is rounded once, so each result errs by less than 2^-60 of the sum of
-  /// its terms' magnitudes, and by half an ulp.
+  /// Computes in extended precision: the matrix is rounded once, so each result errs by less than 2^-60 of
+  /// the sum of its terms' magnitudes, and by half an ulp.
   Point to_voxels(const Point& p) const { return apply(mesh_to_voxels_, p); }
   /// RAS, mm.
   Point to_world(const Point& p) const { return apply(mesh_to_world_, p); }
   Point voxels_to_world(const Point& u) const { return apply(voxels_to_world_, u); }
   Point voxels_to_mesh(const Point& u) const;
   Point world_to_voxels(const Point& p) const { return apply(world_to_voxels_, p); }
-  /// Of a vector, without the offset.
+  /// Maps a vector: the offset does not count.
   Point world_to_voxels_vector(const Point& d) const;
   /// Takes a gradient by voxel coordinates to the gradient by mm.
   Point gradient_in_world(const Point& g) const;

@@ -24,7 +24,7 @@ struct Runs {
   std::vector<std::size_t> row_begin;  // row j + k * size[1]; one more at the end
 };
 
-// With `is_merged` every label counts as 1.
+// Every label counts as 1 if `is_merged`.
 Runs find_runs(const Image& image, bool is_merged) {
   Runs result;
   const std::size_t rows = static_cast<std::size_t>(image.size[1]) * static_cast<std::size_t>(image.size[2]);

@@ -7,7 +7,7 @@ namespace podm::verify {
 
 namespace {
 
-// Of corner x + 2y + 4z.
+// The weight at f of corner x + 2y + 4z.
 double corner_weight(std::size_t corner, const Point& f) {
   return ((corner & 1) != 0 ? f[0] : 1 - f[0]) * ((corner & 2) != 0 ? f[1] : 1 - f[1]) *
          ((corner & 4) != 0 ? f[2] : 1 - f[2]);

@@ -1,4 +1,5 @@
-// From a path to label values: pick the format's reader, make voxels label values, settle the affine.
+// A path becomes label values: the format's reader is picked, voxels become label values, the affine is
+// checked.
 #include <algorithm>
 #include <cmath>
 #include <cstring>

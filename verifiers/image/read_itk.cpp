@@ -54,7 +54,7 @@ class TextHeader {
   std::uint64_t bytes_ = 0;
 };
 
-// Of a file named in the header of `path`.
+// The path of a file that the header of `path` names.
 std::string beside(const std::string& path, const std::string& name) {
   const std::string file = (std::filesystem::path(path).parent_path() / name).string();
   std::error_code error;
@@ -70,7 +70,7 @@ struct Voxels {
   std::string announced_bytes = {};  // of a compressed stream, by the header; empty: it does not tell
 };
 
-// As ITK takes it.
+// ITK takes a value for true by its first letter.
 bool is_true(const std::string& flag) {
   return !flag.empty() && std::string("tT1").find(flag[0]) != std::string::npos;
 }

@@ -120,7 +120,8 @@ Affine qform(const Header& header) {
       const bool is_turned_over = axis == 2 && header.at<float>(kPixdim) < 0;
       const double voxel =
           static_cast<double>(header.at<float>(kPixdim, axis + 1)) * (is_turned_over ? -1 : 1);
-      // In single precision, as all of a header is: what others write as sform when they have read this.
+      // All of a header is in single precision, and so is what others write as sform when they have read
+      // this.
       affine[4 * row + axis] = static_cast<float>(rotation[3 * row + axis] * voxel);
     }
     affine[4 * row + 3] = header.at<float>(kQoffsetX, row);
@@ -143,7 +144,7 @@ Affine voxel_to_world(const std::string& path, const Header& header) {
   return header.at<std::int16_t>(kQformCode) > 0 ? qform(header) : affine;
 }
 
-// Of the voxels, from the end of the header. An offset before that end stands for it.
+// Bytes between the header and the voxels. An offset below the least that a file may have counts as that.
 std::uint64_t gap_after(const std::string& path, const Header& header) {
   constexpr float kSmallest = 352, kLargest = 1 << 24;  // the latter exact in a float
   const float offset = header.at<float>(kVoxOffset);

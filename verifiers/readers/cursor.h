@@ -18,12 +18,12 @@ namespace podm::verify {
 class Cursor {
  public:
   explicit Cursor(const MeshFile& file) : Cursor(file, 0, file.bytes().size()) {}
-  /// Over the bytes [begin, end) of the file.
+  /// Goes over the bytes [begin, end) of the file.
   Cursor(const MeshFile& file, std::size_t begin, std::size_t end);
 
-  /// From here on '#' begins a comment that runs to the end of its line.
+  /// Makes '#' begin a comment that runs to the end of its line, from here on.
   void skip_comments(std::function<void(std::string_view)> on_comment);
-  /// From here on messages give bytes, not lines.
+  /// Makes messages give bytes instead of lines, from here on.
   void name_bytes() { names_bytes_ = true; }
 
   bool is_at_end() const { return next_ == end_; }

@@ -24,7 +24,7 @@ std::size_t gmsh_nodes_of(std::int64_t type);
 class GmshNodeTags {
  public:
   void add(std::uint64_t tag) { tags_.emplace_back(tag, static_cast<VertexId>(tags_.size())); }
-  /// To be called once, after the last add(). Throws InputError if a tag is there twice.
+  /// Must be called once, after the last add(). Throws InputError if a tag is there twice.
   void finish(const MeshFile& file);
   /// kNone for a tag that no node has.
   VertexId find(std::uint64_t tag) const;

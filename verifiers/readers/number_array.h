@@ -90,7 +90,7 @@ std::optional<std::int64_t> exact_integer(Number number) {
 class NumberArray {
  public:
   NumberArray() = default;
-  /// Of bytes that outlive it.
+  /// The bytes must outlive it.
   NumberArray(std::string_view bytes, NumberType type, bool is_swapped)
       : bytes_(bytes), type_(type), is_swapped_(is_swapped) {}
   NumberArray(ByteBuffer bytes, NumberType type, bool is_swapped)

@@ -55,7 +55,7 @@ const NamedArray* find_array(const VtkPiece& piece, const std::string& name) {
   return found == piece.cell_data.end() ? nullptr : &*found;
 }
 
-// Of a name in the list, one integer a cell.
+// Labels are an array with a name of the list and one integer a cell.
 bool holds_labels(const NamedArray& array, std::size_t num_cells) {
   if (!label_array_rank(array.name) || array.num_components != 1 || array.values.size() != num_cells)
     return false;

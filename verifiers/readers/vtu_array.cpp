@@ -31,7 +31,7 @@ class ArrayLoader {
   }
 
  private:
-  // Of the type that the file declares, so that 0.1 as Float32 is the same number in text and in binary.
+  // Numbers get the type that the file declares, so that 0.1 as Float32 is the same in text and in binary.
   NumberArray load_ascii() const {
     Cursor cursor(file_, array_.begin, array_.end);
     ByteBuffer bytes;

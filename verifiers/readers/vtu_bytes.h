@@ -12,15 +12,15 @@ namespace podm::verify {
 
 class VtuBytes {
  public:
-  /// Of the bytes [begin, end) of the file. VTK pads base64 where a header or a block ends and goes on behind
-  /// it: padding ends a group of four characters, not the data.
+  /// Takes from the bytes [begin, end) of the file. VTK pads base64 where a header or a block ends and goes
+  /// on behind it: padding ends a group of four characters, not the data.
   VtuBytes(const MeshFile& file, std::size_t begin, std::size_t end, bool is_base64)
       : file_(file), next_(begin), end_(end), is_base64_(is_base64) {}
 
   /// Appends the next `size` bytes to `bytes`, or, where they stand in the file as they are, only points
   /// there.
   std::string_view take(std::uint64_t size, ByteBuffer& bytes);
-  /// At most as many bytes are left.
+  /// An upper bound of the bytes that are left.
   std::uint64_t most_left() const;
   std::size_t position() const { return next_; }
 

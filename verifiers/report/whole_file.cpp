@@ -106,7 +106,7 @@ bool locks(int descriptor, const std::string& path, bool otherwise) {
   return (is_locked || otherwise) && is_regular_file_at(descriptor, path);
 }
 
-// Of "NAME.tmpPROCESS-NUMBER", where `prefix` is "NAME.tmp"; 0: another name.
+// The process that "NAME.tmpPROCESS-NUMBER" names, where `prefix` is "NAME.tmp"; 0 where it is another name.
 int process_of(const std::string& name, const std::string& prefix) {
   if (!name.starts_with(prefix)) return 0;
   const std::size_t dash = name.find('-', prefix.size());
@@ -146,7 +146,7 @@ void write_all(int descriptor, std::string_view text, const std::string& path) {
   }
 }
 
-// To the disk. EINVAL: the file system has nothing to wait for.
+// Waits until what was written is on the disk. EINVAL says that the file system has nothing to wait for.
 void sync(int descriptor, const std::string& path) {
   if (::fsync(descriptor) != 0 && errno != EINVAL) refuse_to_write(path, errno);
 }
@@ -175,7 +175,7 @@ void write_whole_file(const std::string& path, std::string_view text) {
   remove_abandoned(path);
   for (int number = 0; !try_to_write(path, fmt::format("{}.tmp{}-{}", path, ::getpid(), number), text);)
     ++number;
-  // Else the new name might not outlive a power cut.
+  // The new name might not outlive a power cut without this.
   const Descriptor folder(::open(folder_of(path).c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC));
   if (folder >= 0) sync(folder, path);  // one may write there, not read, where there is none
 }

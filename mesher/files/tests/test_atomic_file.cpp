@@ -4,7 +4,8 @@
 #include <sys/stat.h>
 #include <unistd.h>
 
-#include "tests/input_error.h"
+#include "podm/errors.h"
+#include "tests/fault_of.h"
 #include "tests/scratch_folder.h"
 
 namespace podm {
@@ -60,7 +61,7 @@ TEST(AtomicFile, ReplacesWhatALinkPointsTo) {
 TEST(AtomicFile, NamesFileAndFault) {
   const ScratchFolder folder;
   const auto error_of = [](const std::string& path) {
-    return input_error_of([&] { AtomicFile file(path); });
+    return fault_of<InputError>([&] { AtomicFile file(path); });
   };
   const std::string missing = folder / "none/a.vtu", under_file = folder / "file/a.vtu";
   folder.write("file", "");
@@ -89,7 +90,7 @@ TEST(AtomicFile, RefusesAFolderAndAFileWithoutWritePermission) {
   {
     const OrdinaryUser user;
     for (const std::string& refused : {path, new_path}) {
-      EXPECT_EQ(input_error_of([&] { AtomicFile file(refused); }),
+      EXPECT_EQ(fault_of<InputError>([&] { AtomicFile file(refused); }),
                 "cannot write " + refused + ": Permission denied");
     }
   }

@@ -70,7 +70,7 @@ class TemporaryFiles : public testing::Test {
   const ScratchFolder folder_;
 };
 
-// Of a process that is no more.
+// The number of a process that is no more.
 pid_t gone() {
   const pid_t child = fork();
   if (child == 0) _exit(0);
@@ -158,7 +158,7 @@ TEST_F(TemporaryFiles, OneThatAnotherProcessIsAboutToRemoveIsMadeAnew) {
   ::close(other);
 }
 
-// In a container the numbers are used again at once.
+// A container uses the numbers of processes again at once.
 TEST_F(TemporaryFiles, WhatAnEarlierProcessOfTheSameNumberLeftGoes) {
   make("a.tmp" + std::to_string(::getpid()) + "-4000000");
   const AtomicFile ours(folder_ / "b");
@@ -187,7 +187,7 @@ TEST_F(TemporaryFiles, IsLockedUntilItHasItsName) {
   ::close(descriptor);
 }
 
-// As surfaces are: one a label.
+// A mesh has as many surfaces as labels.
 TEST_F(TemporaryFiles, ThereMayBeMoreThanDescriptors) {
   rlimit before;
   ASSERT_EQ(::getrlimit(RLIMIT_NOFILE, &before), 0);

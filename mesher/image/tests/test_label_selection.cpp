@@ -4,6 +4,7 @@
 #include "image/tests/image_files.h"
 #include "podm/errors.h"
 #include "podm/image_io.h"
+#include "tests/fault_of.h"
 #include "tests/scratch_folder.h"
 
 namespace podm {
@@ -35,12 +36,7 @@ class Selection : public testing::Test {
     return result;
   }
   std::string fault(const LabelSelection& selection) const {
-    try {
-      read_image(path_, selection);
-    } catch (const InputError& error) {
-      return error.what();
-    }
-    return "none";
+    return fault_of<InputError>([&] { read_image(path_, selection); });
   }
 
   ScratchFolder folder_;

@@ -8,6 +8,7 @@
 
 #include "podm/errors.h"
 #include "podm/image_io.h"
+#include "tests/fault_of.h"
 
 namespace podm {
 namespace {
@@ -21,12 +22,7 @@ std::map<std::string, double> volumes_mm3(const LabelImage& image) {
 }
 
 std::string refusal(const std::string& name, int size) {
-  try {
-    make_phantom(name, size);
-  } catch (const InputError& error) {
-    return error.what();
-  }
-  return "";
+  return fault_of<InputError>([&] { make_phantom(name, size); });
 }
 
 // Label index at a point of the world, mm.

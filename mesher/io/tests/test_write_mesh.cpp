@@ -4,9 +4,10 @@
 
 #include "io/tests/kuhn_mesh.h"
 #include "io/tests/mesh_readers.h"
+#include "podm/errors.h"
 #include "podm/mesh_io.h"
+#include "tests/fault_of.h"
 #include "tests/full_disk.h"
-#include "tests/input_error.h"
 #include "tests/scratch_folder.h"
 
 namespace podm {
@@ -133,7 +134,7 @@ TEST_P(NoSpace, KeepsTheOldFilesAndLeavesNoNewOnes) {
   for (const std::string& name : names) folder.write(name, "old " + name);
   for (const rlim_t bytes : {0, 100, 6000}) {  // one file of several may still fit
     const FullDisk disk(bytes);
-    EXPECT_EQ(input_error_of(write).find("cannot write " + (folder / "")), 0u) << bytes;
+    EXPECT_EQ(fault_of<InputError>(write).find("cannot write " + (folder / "")), 0u) << bytes;
     EXPECT_EQ(folder.files(), names) << bytes;
     for (const std::string& name : names) EXPECT_EQ(folder.read(name), "old " + name);
   }
@@ -155,12 +156,12 @@ TEST(CheckPath, RefusesUnknownExtensionsAndUnwritablePlaces) {
   const ScratchFolder folder;
   for (const std::string name : {"a", "a.", "a.vtk", "a.stl", ".vtu", "none/a.vtu"}) {
     const std::string path = folder / name;
-    EXPECT_NE(input_error_of([&] { check_mesh_path(path); }).find(path), std::string::npos) << name;
+    EXPECT_NE(fault_of<InputError>([&] { check_mesh_path(path); }).find(path), std::string::npos) << name;
     EXPECT_THROW(write_mesh(make_test_mesh(2), path), InputError);
   }
   for (const std::string name : {"a", "a.vtu", "a.obj", "none/a.stl"}) {
     const std::string path = folder / name;
-    EXPECT_NE(input_error_of([&] { check_surface_path(path); }).find(path), std::string::npos) << name;
+    EXPECT_NE(fault_of<InputError>([&] { check_surface_path(path); }).find(path), std::string::npos) << name;
     EXPECT_THROW(write_surfaces(make_test_mesh(2), path), InputError);
   }
   EXPECT_EQ(folder.files(), std::set<std::string>{});

@@ -10,6 +10,7 @@
 
 #include "runtime/placement.h"
 #include "runtime/tests/machines.h"
+#include "tests/fault_of.h"
 #include "tests/scratch_folder.h"
 
 namespace podm::test {
@@ -58,16 +59,6 @@ void expect_consistent(const Topology& machine) {
 Topology read_back(const std::string& text, const std::string& path) {
   std::ofstream(path) << text;
   return Topology::from_file(path);
-}
-
-template <class Make>
-std::string fault(const Make& make) {
-  try {
-    make();
-  } catch (const TopologyError& error) {
-    return error.what();
-  }
-  return "accepted";
 }
 
 // 16 blades of two eight-core sockets around 128 GB [PDR.PODM, 4.1]. Blades come in linked pairs, and of each
@@ -180,7 +171,7 @@ TEST(Topology, OfThisMachineHeedsTheAffinity) {
 
 TEST(Topology, OfThisMachineIsNeverAnother) {
   setenv("HWLOC_SYNTHETIC", "core:4 pu:1", 1);
-  const std::string message = fault([] { Topology::of_this_machine(); });
+  const std::string message = fault_of<TopologyError>([] { Topology::of_this_machine(); });
   unsetenv("HWLOC_SYNTHETIC");
   EXPECT_THAT(message, HasSubstr("HWLOC_SYNTHETIC"));
 }
@@ -191,21 +182,22 @@ TEST(Topology, RefusesFilesThatDescribeNoMachine) {
   for (const std::string& text :
        {std::string(), std::string("hello"), std::string("<?xml version=\"1.0\"?><a/>"),
         whole.substr(0, whole.size() / 2)})
-    EXPECT_THAT(fault([&] { read_back(text, path); }), StartsWith(path + ": ")) << text;
+    EXPECT_THAT(fault_of<TopologyError>([&] { read_back(text, path); }), StartsWith(path + ": ")) << text;
   for (const std::string type : {"PU", "NUMANode"}) {
     std::string unnumbered = whole;
     unnumbered.replace(unnumbered.find('"' + type + "\" os_index") + type.size() + 3, 2, "no");
-    EXPECT_THAT(fault([&] { read_back(unnumbered, path); }),
+    EXPECT_THAT(fault_of<TopologyError>([&] { read_back(unnumbered, path); }),
                 StartsWith(path + ": " + type + " 0 has no os_index"));
   }
-  EXPECT_THAT(fault([] { Topology::from_file("/no/such/machine.xml"); }), HasSubstr("No such file"));
-  EXPECT_THAT(fault([] { Topology::from_file("/"); }), HasSubstr("holds no text"));
+  EXPECT_THAT(fault_of<TopologyError>([] { Topology::from_file("/no/such/machine.xml"); }),
+              HasSubstr("No such file"));
+  EXPECT_THAT(fault_of<TopologyError>([] { Topology::from_file("/"); }), HasSubstr("holds no text"));
 }
 
 TEST(Topology, RefusesDescriptionsThatMakeNoSense) {
   for (const char* description : {"", "pack:0", "two sockets", "core:2 core"})
-    EXPECT_THAT(fault([&] { Topology::synthetic(description); }), HasSubstr(description));
-  EXPECT_THAT(fault([] {
+    EXPECT_THAT(fault_of<TopologyError>([&] { Topology::synthetic(description); }), HasSubstr(description));
+  EXPECT_THAT(fault_of<TopologyError>([] {
                 Topology::synthetic("numa:2 core:1 pu:1", {10, 20});
               }),
               HasSubstr("2 nodes need 4"));

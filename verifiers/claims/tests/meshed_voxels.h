@@ -103,7 +103,7 @@ inline Mesh moved(Mesh mesh, const Image& image, const Point& by) {
   return mesh;
 }
 
-/// By a map of facets: an adjacency of the tests' own.
+/// An adjacency of the tests' own, which a map of facets gives.
 inline Adjacency mapped_adjacency(const Mesh& mesh) {
   std::map<std::array<VertexId, 3>, std::vector<FacetId>> cells_of;
   for (std::size_t c = 0; c < mesh.cells.size(); ++c)

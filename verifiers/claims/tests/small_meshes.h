@@ -68,7 +68,7 @@ inline int rational_orientation(const Point& a, const Point& b, const Point& c, 
       dot(cross(difference<Rational>(b, a), difference<Rational>(c, a)), difference<Rational>(d, a))));
 }
 
-/// As side_of_sphere(), from the centre and the radius in rationals.
+/// Answers what side_of_sphere() answers, from the centre and the radius in rationals.
 inline int rational_side_of_sphere(const std::array<Point, 4>& cell, const Point& p) {
   const auto a = difference<Rational>(cell[0], cell[3]), b = difference<Rational>(cell[1], cell[3]),
              c = difference<Rational>(cell[2], cell[3]), x = difference<Rational>(p, cell[3]);

@@ -32,7 +32,7 @@ TEST(Fidelity, TheBoxesOwnFacesAreNear) {
       const ClaimResult result = fidelity_of(kuhn_mesh(image, space), image);
       EXPECT_EQ(result.verdict, Verdict::kPass) << result.reason;
       EXPECT_NEAR(number(result, "image_to_mesh", "max_mm"), 0, 1e-9);
-      // At a corner of a box the weight is a product: it is 1/2 where each factor is the cube root of 1/2.
+      // The weight at a corner of a box is a product: it is 1/2 where each factor is the cube root of 1/2.
       const double corner = std::sqrt(3.0) * (std::cbrt(0.5) - 0.5);
       if (affine == kUnitAffine) {
         EXPECT_NEAR(number(result, "mesh_to_image", "max_voxels"), corner, 1e-3);
@@ -137,7 +137,7 @@ TEST(Fidelity, ThreadsDoNotMatter) {
       EXPECT_DOUBLE_EQ(number(one, way, what), number(three, way, what));
 }
 
-// Against brute force: the nearest of the places where the label changes on the lines of a fine grid.
+// Brute force is the nearest of the places where the label changes on the lines of a fine grid.
 TEST(IsosurfaceDistance, IsNeverBelowTheTrueOneAndMostlyNear) {
   constexpr int kFine = 20;
   for (const auto& affine : {kUnitAffine, kAnisotropic}) {

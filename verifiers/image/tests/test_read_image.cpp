@@ -56,7 +56,7 @@ TEST(ReadVerifierImage, NiftiQformHalfATurnAboutZ) {
   expect_small_image(folder.write("a.nii", file), {-1, 0, 0, 4, 0, -2, 0, 0, 0, 0, 3, 0});
 }
 
-// In whatever byte order; libnifti does not read here, but knows what a quaternion means.
+// The byte order does not matter; libnifti does not read here, but knows what a quaternion means.
 TEST(ReadVerifierImage, NiftiQformIsTheRotationThatLibniftiMakesOfIt) {
   const Folder folder;
   std::mt19937 random(5);

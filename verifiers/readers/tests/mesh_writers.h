@@ -23,7 +23,7 @@ class Bytes {
     std::memcpy(bytes, &number, sizeof(Number));
     for (std::size_t i = 0; i < sizeof(Number); ++i) text += bytes[is_swapped_ ? sizeof(Number) - 1 - i : i];
   }
-  /// As the type of this name in VTU files.
+  /// Puts the number as the VTU type of this name.
   void put_as(const std::string& type, double number);
 
   std::string text;
