@@ -147,7 +147,7 @@ class Run {
   std::stop_token stop_;
   TeamOfRun team_;
   const int loop_threads_;
-  SizeOptions sizes_;  // of the last mesh
+  SizeOptions sizes_;  // the last mesh has these
   Box object_{};       // bounds of the foreground
   double expected_cells_ = 1;
   const Clock::time_point start_ = Clock::now();

@@ -23,7 +23,7 @@ class TeamOfRun {
   void locate_memory(const LabelImage& image, const FeatureTransform& transform);
 
   const TeamSize& size() const { return size_; }
-  /// As algorithms take it; it refers to this.
+  /// The team as algorithms take it; it refers to this.
   Team team() const;
   /// Takes down who refined and where pages were.
   void report_to(MeshingReport& report, PageSamples pages) const;

@@ -35,7 +35,7 @@ struct Team {
   Executor executor = Executor::kThreads;
   CoordinationOptions coordination;
   int num_nodes = 1;        // computing nodes of PDR and PDR.PODM, which divide the workers evenly
-  int initial_workers = 1;  // of their initial mesh
+  int initial_workers = 1;  // so many make their initial mesh
   VirtualCost cost = VirtualCost::kMeasured;
   OperationLogWriter* log = nullptr;
   const Topology* machine = nullptr;    // whose nodes the places name; none: all are on one

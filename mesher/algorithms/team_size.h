@@ -27,7 +27,7 @@ struct TeamSize {
   Algorithm algorithm;  // not kAuto
   int num_workers;
   int num_nodes;        // computing nodes, which divide the workers evenly; kPodm has one
-  int initial_workers;  // of the initial mesh
+  int initial_workers;  // so many make the initial mesh
 };
 
 /// `places` are those of the workers: where options name no computing nodes, each NUMA node in use is one, if

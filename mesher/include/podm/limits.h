@@ -9,7 +9,7 @@ namespace podm {
 struct Limits {
   std::uint64_t max_elements = 0;
   double max_seconds = 0;
-  std::uint64_t max_memory_bytes = 0;  ///< beside image and transform
+  std::uint64_t max_memory_bytes = 0;  ///< image and transform come on top
 };
 
 }  // namespace podm

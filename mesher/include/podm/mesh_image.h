@@ -28,7 +28,7 @@ struct Estimate {
 
 struct Progress {
   std::string phase;        ///< "transform", "refine", "extract", "measure"
-  double fraction = 0;      ///< of the phase, an estimate in [0,1]
+  double fraction = 0;      ///< an estimate for the phase, in [0,1]
   std::uint64_t cells = 0;  ///< so far
   double seconds = 0;       ///< since the start of the run
 };

@@ -43,20 +43,20 @@ struct Quality {
 
 /// One worker: where it was, and what it did.
 struct WorkerReport {
-  int node = 0, socket = 0;      ///< of the machine, or of the one described
-  std::optional<int> processor;  ///< asked for, by the system's number; none: bound to none
-  std::optional<int> bound_to;   ///< as the system told when the worker had begun
+  int node = 0, socket = 0;      ///< where it stood in the machine, this or the described one
+  std::optional<int> processor;  ///< the one asked for, by the system's number; none: bound to none
+  std::optional<int> bound_to;   ///< the system told so when the worker had begun
   Counters counters;
 };
 
 /// Pages that the system was asked about, at the ends of phases.
 struct PageSamples {
-  /// Against the node that owns the memory: of cells, their states and vertices the node whose worker made
-  /// them, of image and transform the node that had them first.
+  /// Pages are compared with the node that owns the memory: the one whose worker made the cells, states and
+  /// vertices, and the one that had image and transform first.
   struct OfArray {
     std::string array;  ///< cells, cell_states, vertices, image, transform
     std::uint64_t as_claimed = 0, elsewhere = 0;
-    std::uint64_t untouched = 0;  ///< in nobody's memory yet
+    std::uint64_t untouched = 0;  ///< they are in nobody's memory yet
   };
   struct AtPhase {
     std::string phase;
@@ -79,15 +79,15 @@ struct Calibration {
   };
   std::vector<TrialMesh>
       meshes;          ///< made and dropped, in this order; the mesh that is returned is not among them
-  double seconds = 0;  ///< of all this: phases_s["calibrate"]
+  double seconds = 0;  ///< all this took: phases_s["calibrate"]
 };
 
 /// The leaves of an octree and when each was refined.
 struct LeafSchedule {
-  std::array<double, 3> origin_mm{};  ///< of the grid, working frame
-  double side_mm = 0;                 ///< of a grid cell
+  std::array<double, 3> origin_mm{};  ///< where the grid begins, working frame
+  double side_mm = 0;                 ///< a grid cell's
   struct Leaf {
-    std::array<std::uint32_t, 3> corner;  ///< in the grid
+    std::array<std::uint32_t, 3> corner;  ///< its lowest cell of the grid
     std::uint32_t side;
   };
   std::vector<Leaf> leaves;
@@ -97,7 +97,7 @@ struct LeafSchedule {
     std::uint64_t operations, deferred;
     std::vector<std::uint32_t> touched_leaves;  ///< that hold a vertex which was locked
   };
-  std::vector<Activation> activations;  ///< in the order of their ends
+  std::vector<Activation> activations;  ///< the first to end comes first
 };
 
 struct MeshingReport {
@@ -105,26 +105,26 @@ struct MeshingReport {
   /// ready; "initial", "octree", "refine", "closing" (of kPodm "refine" alone); "extract"; "measure": quality
   /// and guarantees. And "calibrate": all that finding the radius of a target cost.
   std::map<std::string, double> phases_s;
-  double radius_mm = 0;                    ///< as used; 0 when unbounded
-  double delta_mm = 0;                     ///< as used
-  std::optional<Calibration> calibration;  ///< of a target number of cells
+  double radius_mm = 0;                    ///< the one used; 0 when unbounded
+  double delta_mm = 0;                     ///< the one used
+  std::optional<Calibration> calibration;  ///< there is one where a number of cells was the target
   StopReason stop_reason = StopReason::kComplete;
   Guarantees guarantees;
   Quality quality;
-  Counters counters;  ///< of all workers
+  Counters counters;  ///< all workers'
   std::vector<WorkerReport> workers;
   int num_nodes = 1;                       ///< NUMA nodes of the machine
-  Algorithm algorithm = Algorithm::kPodm;  ///< as used
-  int computing_nodes = 1;                 ///< as used
+  Algorithm algorithm = Algorithm::kPodm;  ///< the one used
+  int computing_nodes = 1;                 ///< the number used
   std::uint64_t num_leaves = 0;
   std::optional<LeafSchedule> schedule;
   PageSamples pages;
   std::string image_reads_unavailable;  ///< why HopsByKind lacks reads of the image; otherwise empty
   std::map<std::uint32_t, std::uint64_t> cells_of_label;  ///< by label value
-  std::map<std::uint32_t, double> volume_of_label_mm3;    ///< by label value, of the mesh
+  std::map<std::uint32_t, double> volume_of_label_mm3;    ///< the mesh's, by label value
   std::uint64_t store_cells = 0;                          ///< cells of the whole virtual box
   std::array<double, 6> virtual_box{};                    ///< its low and high corner, mm, working frame
-  /// Of Executor::kVirtual: simulated seconds of initial, refine and closing.
+  /// Executor::kVirtual simulates seconds of initial, refine and closing.
   std::map<std::string, double> virtual_phases_s;
   std::vector<std::string> warnings;
 };
