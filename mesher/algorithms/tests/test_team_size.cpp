@@ -12,7 +12,11 @@ TeamSize size_of(Algorithm algorithm, const TeamOptions& team, const std::vector
   std::vector<Place> places;
   for (const int node : nodes_of_workers) places.push_back({.processor = {}, .node = node});
   EXPECT_EQ(places.size(), static_cast<std::size_t>(num_workers(team)));
-  return team_size({.algorithm = algorithm, .crossover = 4, .team = team}, places);
+  MeshingOptions options;
+  options.algorithm = algorithm;
+  options.crossover = 4;
+  options.team = team;
+  return team_size(options, places);
 }
 
 TEST(TeamSize, OneWorkerRefinesUnlessMoreAreAskedFor) {
