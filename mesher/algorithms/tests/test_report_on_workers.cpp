@@ -1,4 +1,4 @@
-// Accesses by kind and distance, of runs on made-up machines.
+// Every count is summed; accesses by kind and distance, of runs on made-up machines.
 #include "algorithms/report_on_workers.h"
 
 #include <gtest/gtest.h>
@@ -12,6 +12,23 @@ namespace {
 constexpr std::vector<std::uint64_t> HopsByKind::*kKinds[] = {
     &HopsByKind::mesh_reads, &HopsByKind::mesh_writes, &HopsByKind::image_reads,
     &HopsByKind::transform_reads};
+
+TEST(SumOfWorkers, HasEveryCountAndCause) {
+  std::vector<WorkerReport> workers(2);
+  std::uint64_t n = 0;
+  for (WorkerReport& worker : workers) {
+    for (std::uint64_t& insertions : worker.counters.insertions_by_rule) insertions = ++n;
+    for (const Count& count : kCounts) worker.counters.*count.member = ++n;
+    for (const Cause& cause : kCauses) worker.counters.overhead.*cause.member = static_cast<double>(++n);
+  }
+  const Counters sum = sum_of(workers), &one = workers[0].counters, &other = workers[1].counters;
+  EXPECT_EQ(sum.num_committed(), one.num_committed() + other.num_committed());
+  for (const Count& count : kCounts)
+    EXPECT_EQ(sum.*count.member, one.*count.member + other.*count.member) << count.name;
+  for (const Cause& cause : kCauses)
+    EXPECT_EQ(sum.overhead.*cause.member, one.overhead.*cause.member + other.overhead.*cause.member)
+        << cause.name;
+}
 
 TEST(Accesses, OfEveryKindAreCountedByDistance) {
   const Topology machine = four_nodes();
