@@ -3,19 +3,21 @@
 set -euf  # no file name patterns: those of may_include are for `case`
 cd "$(dirname "$0")/.."
 
-# Folders whose files a file of folder $1 may include besides its own; include/ holds podm/*.h.
+# Folders whose files a file of folder $1 may include besides its own; include/ holds podm/*.h. Of these those of a whole
+# run are a part of their own, podm: what the layers below the algorithms need of the public API stands in small headers.
 may_include() {
   case $1 in
     mesher/geometry | mesher/runtime | mesher/include) ;;
     mesher/files) echo mesher/include ;;
     mesher/image) echo mesher/files mesher/geometry mesher/runtime mesher/include ;;
     mesher/octree) echo mesher/geometry mesher/runtime mesher/include ;;
-    mesher/delaunay) echo mesher/octree mesher/geometry mesher/runtime mesher/include ;;
-    mesher/refine) echo mesher/delaunay mesher/octree mesher/image mesher/geometry mesher/runtime mesher/include ;;
+    mesher/delaunay) echo mesher/geometry mesher/runtime mesher/include ;;
+    mesher/refine) echo mesher/delaunay mesher/image mesher/geometry mesher/runtime mesher/include ;;
     mesher/workers) echo mesher/refine mesher/delaunay mesher/runtime mesher/include ;;
     mesher/io) echo mesher/files mesher/include ;;
-    examples/*) echo mesher/include ;;
-    mesher | mesher/*) echo "mesher mesher/*" ;;  # the algorithms, the command line, whole-mesher tests
+    podm) echo mesher/include ;;
+    examples/*) echo mesher/include podm ;;
+    mesher | mesher/*) echo "mesher mesher/* podm" ;;  # the algorithms, the command line, whole-mesher tests
     harness) echo mesher/runtime ;;  # asks the system as the mesher does, whom it knows as a program and by its files
     verifiers) ;;                    # they know it by its files alone
   esac
@@ -24,6 +26,7 @@ may_include() {
 # The part of the tree that a file belongs to. Tests and benchmarks of the mesher see all of it.
 part_of() {
   case $1 in
+    mesher/include/podm/mesh_image.h | mesher/include/podm/meshing_*.h) echo podm ;;
     mesher/*/tests/*) echo mesher/tests ;;
     mesher/*/*) echo "$1" | cut -d/ -f1-2 ;;
     examples/*) echo "$1" | cut -d/ -f1-2 ;;

@@ -5,6 +5,7 @@
 #include <span>
 
 #include "algorithms/leaf_cells.h"
+#include "algorithms/leaf_locks.h"
 #include "octree/leaf_region.h"
 #include "podm/mesh_image.h"
 #include "refine/worker.h"

@@ -15,6 +15,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "algorithms/leaf_locks.h"
 #include "refine/virtual_box.h"
 
 namespace podm {

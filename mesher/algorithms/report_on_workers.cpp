@@ -1,5 +1,7 @@
 #include "algorithms/report_on_workers.h"
 
+#include "algorithms/leaf_locks.h"
+
 namespace podm {
 
 namespace {

@@ -16,7 +16,6 @@
 #include <vector>
 
 #include "delaunay/hole.h"
-#include "delaunay/leaf_locks.h"
 #include "delaunay/mesh.h"
 #include "delaunay/star.h"
 #include "delaunay/vertex_locks.h"
@@ -118,7 +117,5 @@ class Operation {
 
 extern template class Operation<NoLocks>;
 extern template class Operation<VertexLocks>;
-extern template class Operation<LeafLocks<NoLocks>>;
-extern template class Operation<LeafLocks<VertexLocks>>;
 
 }  // namespace podm

@@ -2,7 +2,7 @@
 
 #include <algorithm>
 
-#include "podm/mesh_image.h"
+#include "podm/bounds.h"
 
 namespace podm {
 

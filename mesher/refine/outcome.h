@@ -1,6 +1,9 @@
 // What becomes of a worker's attempt at one cell.
 #pragma once
 
+#include "delaunay/step_result.h"
+#include "podm/errors.h"
+
 namespace podm {
 
 enum class Outcome {
@@ -11,5 +14,23 @@ enum class Outcome {
   kRejected,      ///< nothing was changed: a vertex is too near to the point, or covers it
   kOutOfLeaf,     ///< nothing was changed, and the cell is among the deferred
 };
+
+/// The outcome of an attempt that ends at a step which is not done.
+inline Outcome outcome_of(StepResult result) {
+  switch (result) {
+    case StepResult::kLockConflict:
+      return Outcome::kLockConflict;
+    case StepResult::kOutOfLeaf:
+      return Outcome::kOutOfLeaf;
+    case StepResult::kStaleCell:
+      return Outcome::kStaleCell;
+    case StepResult::kNotInConflict:
+    case StepResult::kTooNear:
+      return Outcome::kRejected;
+    case StepResult::kDone:
+      break;
+  }
+  throw InternalError("a step that is done ends no attempt");
+}
 
 }  // namespace podm

@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "podm/mesh_image.h"
+#include "podm/bounds.h"
 #include "runtime/shared_word.h"
 
 namespace podm {

@@ -60,6 +60,16 @@ class Worker {
   std::int64_t net_cells() const { return operation_.net_cells(); }
 
  private:
+  // Invariants keep vertices s apart, to a thousandth at a time (rules.h). Only an oracle that errs about the
+  // nearest point can bring them much closer; far below s the insertion is refused, so that the process ends
+  // whatever the image.
+  static constexpr double kSpacingFloor = 0.1;
+  static constexpr std::size_t kOperationsToFlush = 4096;
+  // A clock costs 2 % when every attempt reads it; one in so many stands for the others.
+  static constexpr std::uint64_t kAttemptsForOneTimed = 16;
+
+  static std::optional<AccessTally> tally_for(const Mesh& mesh);
+  static std::optional<CountedReads> reads_for(std::optional<AccessTally>& tally, const ImageOwners* owners);
   Outcome attempt_next();
   Outcome try_entry(const PoorElementList::Entry& entry);
   Outcome apply_first_rule(CellId c);
@@ -86,7 +96,5 @@ class Worker {
 
 extern template class Worker<NoLocks>;
 extern template class Worker<VertexLocks>;
-extern template class Worker<LeafLocks<NoLocks>>;
-extern template class Worker<LeafLocks<VertexLocks>>;
 
 }  // namespace podm

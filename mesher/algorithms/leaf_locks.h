@@ -7,8 +7,10 @@
 #include <algorithm>
 #include <vector>
 
+#include "delaunay/operation.h"
 #include "delaunay/vertex_locks.h"
 #include "octree/leaf_region.h"
+#include "refine/worker.h"
 
 namespace podm {
 
@@ -46,5 +48,10 @@ class LeafLocks {
   bool is_watching_ = false;
   std::vector<LeafId> touched_leaves_;
 };
+
+extern template class Operation<LeafLocks<NoLocks>>;
+extern template class Operation<LeafLocks<VertexLocks>>;
+extern template class Worker<LeafLocks<NoLocks>>;
+extern template class Worker<LeafLocks<VertexLocks>>;
 
 }  // namespace podm

@@ -1,0 +1,225 @@
+// The definitions of Operation's members, for those who bring locks of their own: they include this in one
+// source, which instantiates Operation for them. Everybody else includes operation.h.
+#pragma once
+
+#include <algorithm>
+#include <limits>
+#include <span>
+
+#include "delaunay/operation.h"
+
+namespace podm {
+
+// The stamp is compared under the locks: who replaced the cell after our peek held both vertices before
+// us, and a peek of the new cell shows the new stamp as well.
+template <class Locks>
+StepResult Operation<Locks>::reserve(CellId c, std::uint32_t stamp) {
+  StepResult result = StepResult::kDone;
+  if constexpr (Locks::kIsShared) {
+    const std::array<VertexId, 2> two = mesh_.peek_two_vertices(c);
+    for (const VertexId v : std::span(two).first(locks_to_read())) {
+      if (result != StepResult::kDone) break;
+      result = v == kNoVertex ? StepResult::kStaleCell : lock(v);
+    }
+  }
+  if (mesh_.stamp(c) != stamp) result = StepResult::kStaleCell;
+  if (result != StepResult::kDone) locks_.unlock_all();
+  return result;
+}
+
+template <class Locks>
+inline StepResult Operation<Locks>::lock(VertexId v) {
+  count_vertex(AccessKind::kMeshRead, v);
+  return locks_.try_lock(mesh_.vertex(v));
+}
+
+template <class Locks>
+StepResult Operation<Locks>::lock_cell(CellId c) {
+  for (const VertexId v : mesh_.cell(c).vertices) {
+    if (const StepResult locked = lock(v); locked != StepResult::kDone) return locked;
+  }
+  return StepResult::kDone;
+}
+
+// Locks the cell that `facet` belongs to; the facet's own vertices are held.
+template <class Locks>
+StepResult Operation<Locks>::lock_beyond(FacetId facet) {
+  const auto& vertices = mesh_.cell(cell_of(facet)).vertices;
+  return lock(vertices[static_cast<unsigned>(index_in_cell(facet))]);
+}
+
+template <class Locks>
+void Operation<Locks>::add_to_region(CellId c) {
+  region_.cells.push_back(c);
+  mesh_.mark(c, true);
+  ++counters_.region_cells;
+  for (const FacetId mirror : mesh_.cell(c).mirrors) {
+    if (mirror != kNoFacet) mesh_.prefetch(cell_of(mirror));  // read when the front gets to c
+  }
+}
+
+template <class Locks>
+inline bool Operation<Locks>::is_in_conflict(CellId c, const Point& p) {
+  ++counters_.conflict_tests;
+  count(AccessKind::kMeshRead, c);
+  const Side side = side_of(mesh_.cell(c).sphere, p);
+  if (side != Side::kUndecided) return side == Side::kInside;
+  ++counters_.exact_decisions;
+  return mesh_.is_in_conflict(c, p);
+}
+
+template <class Locks>
+StepResult Operation<Locks>::plan_insertion(const Point& p, CellId start) {
+  is_cavity_ = true;
+  if (!is_in_conflict(start, p)) return StepResult::kNotInConflict;
+  if (const StepResult locked = lock_cell(start); locked != StepResult::kDone) return locked;
+  add_to_region(start);
+  for (std::size_t i = 0; i < region_.cells.size(); ++i) {
+    const CellId c = region_.cells[i];
+    const std::array<FacetId, 4> mirrors = mesh_.cell(c).mirrors;
+    for (unsigned k = 0; k < 4; ++k) {
+      if (mirrors[k] == kNoFacet) {
+        region_.boundary.push_back(4 * c + k);
+        continue;
+      }
+      const CellId neighbor = cell_of(mirrors[k]);
+      if (mesh_.is_marked(neighbor)) continue;
+      if (is_in_conflict(neighbor, p)) {
+        if (const StepResult locked = lock_beyond(mirrors[k]); locked != StepResult::kDone) return locked;
+        add_to_region(neighbor);
+      } else {
+        region_.boundary.push_back(4 * c + k);
+      }
+    }
+  }
+  return StepResult::kDone;
+}
+
+template <class Locks>
+StepResult Operation<Locks>::plan_removal(VertexId v, CellId seed) {
+  is_cavity_ = false;
+  region_.removed.push_back(v);
+  // Cells around v that the region already has are passed through, so the walk keeps its own list.
+  ball_.assign(1, seed);
+  if (const StepResult locked = lock_cell(seed); locked != StepResult::kDone) return locked;
+  if (!mesh_.is_marked(seed)) add_to_region(seed);
+  for (std::size_t i = 0; i < ball_.size(); ++i) {
+    const Cell& cell = mesh_.cell(ball_[i]);
+    for (unsigned k = 0; k < 4; ++k) {
+      if (cell.vertices[k] == v || cell.mirrors[k] == kNoFacet) continue;
+      const CellId neighbor = cell_of(cell.mirrors[k]);
+      if (std::find(ball_.begin(), ball_.end(), neighbor) != ball_.end()) continue;
+      if (const StepResult locked = lock_beyond(cell.mirrors[k]); locked != StepResult::kDone) return locked;
+      if (!mesh_.is_marked(neighbor)) add_to_region(neighbor);
+      ball_.push_back(neighbor);
+    }
+  }
+  return StepResult::kDone;
+}
+
+template <class Locks>
+bool Operation<Locks>::removes(VertexId v) const {
+  return std::find(region_.removed.begin(), region_.removed.end(), v) != region_.removed.end();
+}
+
+template <class Locks>
+void Operation<Locks>::collect_boundary() {
+  region_.boundary.clear();
+  for (const CellId c : region_.cells) {
+    for (unsigned k = 0; k < 4; ++k) {
+      const FacetId mirror = mesh_.cell(c).mirrors[k];
+      if (mirror == kNoFacet || !mesh_.is_marked(cell_of(mirror))) region_.boundary.push_back(4 * c + k);
+    }
+  }
+}
+
+template <class Locks>
+double Operation<Locks>::squared_distance_to_region(const Point& p) const {
+  double nearest = std::numeric_limits<double>::infinity();
+  for_each_region_vertex([&](VertexId v, CellId) {
+    if (!removes(v)) nearest = std::min(nearest, squared_distance(mesh_.point(v), p));
+  });
+  return nearest;
+}
+
+// What the commit writes to has room for it: nothing after this throws.
+template <class Locks>
+void Operation<Locks>::reserve_memory(std::size_t num_created) {
+  region_.created.reserve(num_created);
+  pool_.reserve(region_.cells, num_created, region_.removed.size());
+}
+
+template <class Locks>
+StepResult Operation<Locks>::commit_insertion(const Point& p, VertexKind kind, double min_distance) {
+  const bool is_star = is_cavity_ && star_.prepare(mesh_, region_, p);
+  const double nearest = is_star ? star_.squared_distance() : squared_distance_to_region(p);
+  if (nearest < min_distance * min_distance) return StepResult::kTooNear;
+  if (!is_star) {
+    if (!is_cavity_) collect_boundary();
+    if (!hole_.plan(mesh_, region_, &p)) return StepResult::kTooNear;
+  }
+  reserve_memory(is_star ? star_.num_cells() : hole_.num_cells());
+  count_gluing();
+  inserted_ = pool_.take_vertex();
+  place(mesh_.vertex(inserted_), p, kind);  // its lock may be tried by who has a stale entry
+  const std::size_t num_destroyed = region_.cells.size();
+  if (is_star) {
+    star_.fill(mesh_, pool_, region_, inserted_);
+  } else {
+    hole_.fill(mesh_, pool_, region_, inserted_);
+  }
+  count_vertex(AccessKind::kMeshWrite, inserted_);
+  finish(num_destroyed);
+  return StepResult::kDone;
+}
+
+template <class Locks>
+StepResult Operation<Locks>::commit_removals() {
+  collect_boundary();
+  if (!hole_.plan(mesh_, region_, nullptr)) return StepResult::kTooNear;
+  reserve_memory(hole_.num_cells());
+  count_gluing();
+  const std::size_t num_destroyed = region_.cells.size();
+  hole_.fill(mesh_, pool_, region_, kNoVertex);
+  finish(num_destroyed);
+  return StepResult::kDone;
+}
+
+// Before the filling: the cells beyond the boundary, each as often as a facet of it is glued.
+template <class Locks>
+void Operation<Locks>::count_gluing() {
+  if (!counts()) return;
+  for (const FacetId f : region_.boundary) {
+    const FacetId mirror = mesh_.cell(cell_of(f)).mirrors[static_cast<unsigned>(index_in_cell(f))];
+    if (mirror != kNoFacet) count(AccessKind::kMeshWrite, cell_of(mirror));
+  }
+}
+
+// After it: the cells made, the slots that stay empty, the vertices that go.
+template <class Locks>
+void Operation<Locks>::count_filling() {
+  if (!counts()) return;
+  for (const CellId c : region_.created) count(AccessKind::kMeshWrite, c);
+  for (const CellId c : region_.cells)
+    if (!mesh_.cell(c).is_alive()) count(AccessKind::kMeshWrite, c);
+  for (const VertexId v : region_.removed) count_vertex(AccessKind::kMeshWrite, v);
+}
+
+template <class Locks>
+void Operation<Locks>::finish(std::size_t num_destroyed) {
+  count_filling();
+  counters_.cells_created += region_.created.size();
+  net_cells_ += static_cast<std::int64_t>(region_.created.size()) - static_cast<std::int64_t>(num_destroyed);
+  for (const VertexId v : region_.removed) pool_.release_vertex(v);
+  removed_.swap(region_.removed);
+  region_.clear();
+}
+
+template <class Locks>
+void Operation<Locks>::rollback() {
+  for (const CellId c : region_.cells) mesh_.mark(c, false);
+  region_.clear();
+  region_.created.clear();
+}
+
+}  // namespace podm
