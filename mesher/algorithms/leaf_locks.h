@@ -33,6 +33,7 @@ class LeafLocks {
     if (is_watching_) remember(region_->octree().leaf_at(p));
     return inner_.try_lock(v);
   }
+  bool holds(const Vertex& v) const { return region_->contains(peek_point(v)) && inner_.holds(v); }
   void unlock_all() { inner_.unlock_all(); }
   WorkerId conflicting_worker() const { return inner_.conflicting_worker(); }
 

@@ -70,6 +70,7 @@ void Mesh::refresh_sphere(CellId c) {
 }
 
 bool Mesh::is_in_conflict(CellId c, const Point& p) const {
+  assert_may_read(*this, c);
   const Side side = side_of(cells_[c].sphere, p);
   if (side != Side::kUndecided) return side == Side::kInside;
   const auto& v = cells_[c].vertices;

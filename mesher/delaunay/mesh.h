@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "delaunay/id_arena.h"
+#include "delaunay/lock_contract.h"
 #include "delaunay/step.h"
 #include "geometry/circumsphere.h"
 #include "geometry/point.h"
@@ -94,10 +95,11 @@ class Mesh {
   /// `num_nodes` is how many NUMA nodes they are on.
   Mesh(const Box& box, std::size_t cell_capacity, int num_nodes = 1);
 
-  Cell& cell(CellId c) { return note_read(c), cells_[c]; }
-  const Cell& cell(CellId c) const { return note_read(c), cells_[c]; }
+  // In a build that checks the lock protocol it does so here: step.h, lock_contract.h.
+  Cell& cell(CellId c) { return note_read(c), assert_may_read(*this, c), cells_[c]; }
+  const Cell& cell(CellId c) const { return note_read(c), assert_may_read(*this, c), cells_[c]; }
   const CellState& state(CellId c) const { return states_[c]; }
-  LabelIndex& label(CellId c) { return step(), states_[c].label; }
+  LabelIndex& label(CellId c) { return step(), assert_may_read(*this, c), states_[c].label; }
   LabelIndex label(CellId c) const { return states_[c].label; }
   Vertex& vertex(VertexId v) { return step(), vertices_[v]; }
   const Vertex& vertex(VertexId v) const { return step(), vertices_[v]; }
@@ -118,10 +120,26 @@ class Mesh {
     step();
     return {last, load(v[0], std::memory_order_acquire)};
   }
+  /// Others that may be asked for without locks: of a cell that is being replaced the answer may be of the
+  /// old cell or the new, or of neither.
+  std::array<VertexId, 4> peek_vertices(CellId c) const { return peek(cells_[c].vertices); }
+  std::array<FacetId, 4> peek_mirrors(CellId c) const { return peek(cells_[c].mirrors); }
+  bool peek_is_alive(CellId c) const {
+    const std::array<VertexId, 4> v = peek_vertices(c);
+    return v[0] != v[1];
+  }
+  const Point& peek_center(CellId c) const { return cells_[c].sphere.center; }
+  /// Where a cell lies, whatever is there.
+  const void* address(CellId c) const { return &cells_[c]; }
   /// Scratch of the operation that holds the locks: the cell is in its region.
-  bool is_marked(CellId c) const { return step(), (states_[c].stamp_and_mark & kMark) != 0; }
+  bool is_marked(CellId c) const {
+    step();
+    assert_may_read(*this, c);
+    return (states_[c].stamp_and_mark & kMark) != 0;
+  }
   void mark(CellId c, bool is_marked) {
     step();
+    assert_may_replace(*this, c);
     const auto stamp = static_cast<std::uint16_t>(states_[c].stamp_and_mark & kStampBits);
     store(states_[c].stamp_and_mark, static_cast<std::uint16_t>(is_marked ? stamp | kMark : stamp),
           std::memory_order_relaxed);
@@ -131,6 +149,7 @@ class Mesh {
   void renew(CellId c, const std::array<VertexId, 4>& vertices) {
     CellState& state = states_[c];
     note_replaced(c);
+    assert_may_replace(*this, c);
     step();
     store(state.stamp_and_mark, static_cast<std::uint16_t>((state.stamp_and_mark + 1) & kStampBits),
           std::memory_order_relaxed);
@@ -143,7 +162,9 @@ class Mesh {
   /// Tells the facet `of` that `mirror` lies on its other side. Nothing is beyond the box.
   void set_mirror(FacetId of, FacetId mirror) {
     step();
-    if (of != kNoFacet) cells_[cell_of(of)].mirrors[static_cast<unsigned>(index_in_cell(of))] = mirror;
+    if (of == kNoFacet) return;
+    assert_may_write_mirrors(*this, cell_of(of));
+    cells_[cell_of(of)].mirrors[static_cast<unsigned>(index_in_cell(of))] = mirror;
   }
 
   /// Asks for a cell's cache lines before they are needed.
@@ -184,6 +205,11 @@ class Mesh {
   NodeIndex node_of_vertex(VertexId v) const { return vertex_ids_.node_of(v); }
 
  private:
+  static std::array<std::uint32_t, 4> peek(const std::array<std::uint32_t, 4>& words) {
+    const auto at = [&](std::size_t i) { return load(words[i], std::memory_order_relaxed); };
+    return {at(0), at(1), at(2), at(3)};
+  }
+
   Box box_;
   double extent_;
   HugeArray<Cell> cells_;

@@ -84,7 +84,7 @@ class Operation {
   StepResult lock(VertexId v);
   void count(AccessKind kind, CellId c) {
     if (counts()) [[unlikely]]
-      tally_->add(kind, mesh_.node_of_cell(c), &mesh_.cell(c));
+      tally_->add(kind, mesh_.node_of_cell(c), mesh_.address(c));
   }
   void count_vertex(AccessKind kind, VertexId v) {
     if (counts()) [[unlikely]]

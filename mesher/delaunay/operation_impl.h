@@ -7,6 +7,7 @@
 #include <span>
 
 #include "delaunay/operation.h"
+#include "delaunay/planted_fault.h"
 
 namespace podm {
 
@@ -17,7 +18,7 @@ StepResult Operation<Locks>::reserve(CellId c, std::uint32_t stamp) {
   StepResult result = StepResult::kDone;
   if constexpr (Locks::kIsShared) {
     const std::array<VertexId, 2> two = mesh_.peek_two_vertices(c);
-    for (const VertexId v : std::span(two).first(locks_to_read())) {
+    for (const VertexId v : std::span(two).first(locks_taken().to_read)) {
       if (result != StepResult::kDone) break;
       result = v == kNoVertex ? StepResult::kStaleCell : lock(v);
     }
@@ -44,6 +45,7 @@ StepResult Operation<Locks>::lock_cell(CellId c) {
 // Locks the cell that `facet` belongs to; the facet's own vertices are held.
 template <class Locks>
 StepResult Operation<Locks>::lock_beyond(FacetId facet) {
+  if (locks_taken().to_replace < 4) return StepResult::kDone;
   const auto& vertices = mesh_.cell(cell_of(facet)).vertices;
   return lock(vertices[static_cast<unsigned>(index_in_cell(facet))]);
 }
@@ -201,7 +203,7 @@ void Operation<Locks>::count_filling() {
   if (!counts()) return;
   for (const CellId c : region_.created) count(AccessKind::kMeshWrite, c);
   for (const CellId c : region_.cells)
-    if (!mesh_.cell(c).is_alive()) count(AccessKind::kMeshWrite, c);
+    if (!mesh_.peek_is_alive(c)) count(AccessKind::kMeshWrite, c);
   for (const VertexId v : region_.removed) count_vertex(AccessKind::kMeshWrite, v);
 }
 

@@ -2,7 +2,6 @@
 
 #include <atomic>
 #include <cstdint>
-#include <cstdlib>
 #include <random>
 #include <string>
 #include <thread>
@@ -22,20 +21,6 @@ constexpr std::uint64_t kStepsToYield = 256;
 // Cells that attempts rely on. Those of threads are not known.
 using Reads = std::unordered_map<const Fibre*, std::unordered_set<std::uint32_t>>;
 thread_local Reads reads;
-
-unsigned named_in_environment() {
-  const char* fault = std::getenv("PODM_PLANTED_FAULT");
-  if (fault == nullptr) return 2;
-  if (fault == std::string("one_lock")) return 1;
-  if (fault == std::string("no_lock")) return 0;
-  throw InputError("PODM_PLANTED_FAULT: no such fault: '" + std::string(fault) +
-                   "'; one_lock and no_lock there are");
-}
-
-unsigned& planted() {
-  static unsigned locks = named_in_environment();
-  return locks;
-}
 
 // Threads draw differently. Relaxed: what orders threads would hide their races from the thread sanitizer.
 std::uint32_t next_seed() {
@@ -70,8 +55,5 @@ void note_replaced(std::uint32_t cell) {
     throw InternalError("cell " + std::to_string(cell) + " is replaced while another worker reads it");
   }
 }
-
-unsigned locks_to_read() { return planted(); }
-void plant_locks_to_read(unsigned locks) { planted() = locks; }
 
 }  // namespace podm

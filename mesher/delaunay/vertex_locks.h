@@ -34,6 +34,7 @@ class NoLocks {
   static constexpr bool kIsShared = false;
   explicit NoLocks(WorkerId) {}
   static constexpr StepResult try_lock(Vertex&) { return StepResult::kDone; }
+  static constexpr bool holds(const Vertex&) { return true; }
   static constexpr void unlock_all() {}
   static constexpr WorkerId conflicting_worker() { return kNoWorker; }
 };
@@ -62,6 +63,8 @@ class VertexLocks {
     conflicting_worker_ = holder - 1;
     return StepResult::kLockConflict;
   }
+  /// Relaxed: only we write our own id.
+  bool holds(const Vertex& v) const { return load(v.lock, std::memory_order_relaxed) == mine_; }
   void unlock_all() {
     // Release: the next holder sees what we wrote.
     for (Vertex* v : held_) {

@@ -72,7 +72,7 @@ class Rules {
 
   Examination examine(CellId c) const;
   /// Asks for what examine(c) will read, the cell itself apart.
-  void prefetch(CellId c) const { isosurface_.prefetch(mesh_.cell(c).sphere.center); }
+  void prefetch(CellId c) const { isosurface_.prefetch(mesh_.peek_center(c)); }
 
   /// R1's point, unless a vertex of the cell itself already covers it. The caller must still look for
   /// isosurface vertices closer than delta among the point's cavity: the nearest one would be joined to it by

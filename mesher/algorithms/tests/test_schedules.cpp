@@ -18,7 +18,7 @@
 
 #include "algorithms/podm.h"
 #include "cost_model.h"
-#include "delaunay/step.h"
+#include "delaunay/planted_fault.h"
 #include "delaunay/tests/cells_by_points.h"
 #include "refine/invariants.h"
 #include "refine/virtual_box.h"
@@ -104,7 +104,7 @@ class Schedules : public testing::Test {
   }
   ~Schedules() override {
     std::filesystem::remove_all(folder_);
-    plant_locks_to_read(2);
+    plant_fault({});
   }
 
   static Refinement refine(const Scene& scene, std::uint64_t seed, StopControl& stop, OperationLogWriter* log,
@@ -204,12 +204,17 @@ TEST_F(Schedules, AllMakeTheMeshOfASerialRun) {
 }
 
 TEST_F(Schedules, FindThatOneLockIsTooFew) {
-  plant_locks_to_read(1);
+  plant_fault({.to_read = 1});
   expect_found();
 }
 
 TEST_F(Schedules, FindThatNoLockIsTooFew) {
-  plant_locks_to_read(0);
+  plant_fault({.to_read = 0});
+  expect_found();
+}
+
+TEST_F(Schedules, FindThatThreeLocksAreTooFewToReplace) {
+  plant_fault({.to_replace = 3});
   expect_found();
 }
 

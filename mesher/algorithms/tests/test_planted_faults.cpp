@@ -1,0 +1,56 @@
+// The lock contract notices an operation that takes a lock too few. Of builds with PODM_CHECK_LOCKS.
+#include <gtest/gtest.h>
+
+#include "algorithms/podm.h"
+#include "cost_model.h"
+#include "delaunay/planted_fault.h"
+#include "tests/images.h"
+
+namespace podm::test {
+namespace {
+
+class PlantedFaultDeathTest : public testing::Test {
+ protected:
+  void podm_with(LocksTaken locks) {
+    plant_fault(locks);
+    StopControl stop({}, {}, [](std::uint64_t) {});
+    podm(problem_, {.executor = Executor::kVirtual, .coordination = workers_}, stop);
+  }
+  // Two workers a leaf. One worker makes the initial mesh, and locks nothing.
+  void pdr_podm_with(LocksTaken locks) {
+    plant_fault(locks);
+    StopControl stop({}, {}, [](std::uint64_t) {});
+    pdr_podm(problem_, {.coordination = workers_, .num_nodes = 2, .initial_workers = 1}, {}, stop);
+  }
+  void TearDown() override { plant_fault({}); }
+
+  CoordinationOptions workers_{4, Contention::kLocal, {}, 3};
+  LabelImage image_ = ball(16, 6);
+  Isosurface isosurface_{image_, 1};
+  Problem problem_{isosurface_, foreground_bounds(image_), 1.2, SizeField(std::vector<double>(2, 1.6)),
+                   1 << 20};
+};
+
+TEST_F(PlantedFaultDeathTest, IsNoneInASoundProtocol) {
+  podm_with({});
+  pdr_podm_with({});
+}
+
+TEST_F(PlantedFaultDeathTest, OfNoLockToReadIsNoticed) {
+  EXPECT_DEATH(podm_with({.to_read = 0}), "is read with 0 of its vertices held");
+}
+
+TEST_F(PlantedFaultDeathTest, OfOneLockToReadIsNoticed) {
+  EXPECT_DEATH(podm_with({.to_read = 1}), "is read with 1 of its vertices held");
+}
+
+TEST_F(PlantedFaultDeathTest, OfThreeLocksToReplaceIsNoticed) {
+  EXPECT_DEATH(podm_with({.to_replace = 3}), "is replaced with 3 of its vertices held");
+}
+
+TEST_F(PlantedFaultDeathTest, IsNoticedInALeafToo) {
+  EXPECT_DEATH(pdr_podm_with({.to_read = 1}), "is read with 1 of its vertices held");
+}
+
+}  // namespace
+}  // namespace podm::test

@@ -1,0 +1,66 @@
+#include "delaunay/lock_contract.h"
+
+#include <algorithm>
+#include <cstdio>
+#include <cstdlib>
+#include <unordered_map>
+
+#include "delaunay/mesh.h"
+#include "runtime/fibre.h"
+
+namespace podm {
+
+namespace {
+
+// The attempts of this thread by their fibres, which may stop in the middle of one; of no fibre: nullptr.
+thread_local std::unordered_map<const Fibre*, const AttemptScope*> attempts;
+
+const AttemptScope* attempt_at_hand() {
+  const auto found = attempts.find(Fibre::current());
+  return found != attempts.end() ? found->second : nullptr;
+}
+
+int num_held(const AttemptScope& attempt, const Mesh& mesh, CellId c) {
+  const auto vertices = mesh.peek_vertices(c);
+  if (vertices[0] == vertices[1]) return 0;  // no living cell
+  return static_cast<int>(std::count_if(vertices.begin(), vertices.end(), [&](VertexId v) {
+    return v != kNoVertex && attempt.holds(mesh.vertex(v));
+  }));
+}
+
+[[noreturn]] void fail(CellId c, const char* what, int num_held) {
+  std::fprintf(stderr, "lock contract: cell %u is %s with %d of its vertices held\n", c, what, num_held);
+  std::abort();
+}
+
+}  // namespace
+
+void AttemptScope::begin() { attempts[Fibre::current()] = this; }
+AttemptScope::~AttemptScope() { attempts.erase(Fibre::current()); }
+
+void assert_may_read(const Mesh& mesh, CellId c) {
+  const AttemptScope* const attempt = attempt_at_hand();
+  if (attempt == nullptr) return;
+  const int own = num_held(*attempt, mesh, c);
+  if (own >= 2) return;
+  const auto mirrors = mesh.peek_mirrors(c);
+  if (mesh.peek_is_alive(c) && std::any_of(mirrors.begin(), mirrors.end(), [&](FacetId mirror) {
+        return mirror != kNoFacet && num_held(*attempt, mesh, cell_of(mirror)) >= 2;
+      }))
+    return;
+  fail(c, "read", own);
+}
+
+void assert_may_write_mirrors(const Mesh& mesh, CellId c) {
+  const AttemptScope* const attempt = attempt_at_hand();
+  if (attempt == nullptr) return;
+  if (const int held = num_held(*attempt, mesh, c); held < 3) fail(c, "given a mirror", held);
+}
+
+void assert_may_replace(const Mesh& mesh, CellId c) {
+  const AttemptScope* const attempt = attempt_at_hand();
+  if (attempt == nullptr || !mesh.peek_is_alive(c)) return;
+  if (const int held = num_held(*attempt, mesh, c); held < 4) fail(c, "replaced", held);
+}
+
+}  // namespace podm

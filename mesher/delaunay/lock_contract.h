@@ -1,0 +1,58 @@
+// The contract of vertex_locks.h, asserted at every access to a cell in a build with PODM_CHECK_LOCKS: in any
+// other there is nothing to it.
+//
+//   A cell is read under locks on two of its vertices, or on two of a neighbour's. Its mirrors are written
+//   under three, and it is replaced under all four. In a leaf without locks a vertex is held if it lies in
+//   the region.
+//
+// The contract binds attempts. Whoever uses the store outside of one has it alone: before workers run, after
+// they have ended, and where the master of a computing node ends a leaf. Peeks and prefetches are bound by
+// nothing.
+#pragma once
+
+#include <cstdint>
+
+namespace podm {
+
+class Mesh;
+struct Vertex;
+
+#ifdef PODM_CHECK_LOCKS
+/// An attempt of this thread, or of this fibre, under these locks, until the scope ends.
+class AttemptScope {
+ public:
+  template <class Locks>
+  explicit AttemptScope(const Locks& locks)
+      : locks_(&locks),
+        holds_([](const void* of, const Vertex& v) { return static_cast<const Locks*>(of)->holds(v); }) {
+    begin();
+  }
+  ~AttemptScope();
+  AttemptScope(const AttemptScope&) = delete;
+  AttemptScope& operator=(const AttemptScope&) = delete;
+  bool holds(const Vertex& v) const { return holds_(locks_, v); }
+
+ private:
+  void begin();
+
+  const void* locks_;
+  bool (*holds_)(const void* locks, const Vertex& v);
+};
+
+/// These abort, and say why, where the attempt at hand may not do so.
+void assert_may_read(const Mesh& mesh, std::uint32_t cell);
+void assert_may_write_mirrors(const Mesh& mesh, std::uint32_t cell);
+/// A slot without a living cell is its pool's, which may do so.
+void assert_may_replace(const Mesh& mesh, std::uint32_t cell);
+#else
+class AttemptScope {
+ public:
+  template <class Locks>
+  explicit AttemptScope(const Locks&) {}
+};
+inline void assert_may_read(const Mesh&, std::uint32_t) {}
+inline void assert_may_write_mirrors(const Mesh&, std::uint32_t) {}
+inline void assert_may_replace(const Mesh&, std::uint32_t) {}
+#endif
+
+}  // namespace podm

@@ -1,0 +1,22 @@
+// Faults in the lock protocol for tests and CI to plant: they show that a broken protocol would be seen, by
+// schedules and the thread sanitizer (step.h) and by the assertions of lock_contract.h. An ordinary build has
+// none.
+#pragma once
+
+namespace podm {
+
+/// How many of a cell's vertices are locked before it is read, and before it is replaced.
+struct LocksTaken {
+  unsigned to_read = 2, to_replace = 4;
+};
+
+#if defined(PODM_INTERLEAVING) || defined(PODM_CHECK_LOCKS)
+/// As planted, or as $PODM_PLANTED_FAULT says: no_lock or one_lock to read a cell, three_locks to replace it.
+/// Throws InputError when it names another fault.
+LocksTaken locks_taken();
+void plant_fault(LocksTaken locks);
+#else
+constexpr LocksTaken locks_taken() { return {}; }
+#endif
+
+}  // namespace podm

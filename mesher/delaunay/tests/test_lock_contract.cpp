@@ -1,0 +1,106 @@
+// What the lock contract lets an attempt do with so many vertices of a cell held, and where it aborts. Of
+// builds with PODM_CHECK_LOCKS.
+#include <gtest/gtest.h>
+
+#include "delaunay/lock_contract.h"
+#include "delaunay/vertex_locks.h"
+#include "point_sets.h"
+#include "triangulator.h"
+
+namespace podm::test {
+namespace {
+
+class LockContract : public testing::Test {
+ protected:
+  LockContract() {
+    for (const Point& p : random_points(3, 50, 9)) t_.insert(p);
+    cell_ = t_.operation.created().front();
+  }
+  void TearDown() override { locks_.unlock_all(); }
+
+  // Locks the first so many vertices of the cell.
+  void hold(CellId c, unsigned num_vertices) {
+    locks_.unlock_all();
+    const auto vertices = t_.mesh.peek_vertices(c);
+    for (unsigned i = 0; i < num_vertices; ++i) locks_.try_lock(t_.mesh.vertex(vertices[i]));
+  }
+  template <class Access>
+  void attempt(const Access& access) {
+    const AttemptScope scope(locks_);
+    access();
+  }
+
+  Triangulator t_{kBox};
+  VertexLocks locks_{7};
+  CellId cell_;
+};
+
+using LockContractDeathTest = LockContract;
+
+TEST_F(LockContractDeathTest, LetsReadUnderTwoLocks) {
+  const auto read = [&] { attempt([&] { t_.mesh.cell(cell_); }); };
+  hold(cell_, 2);
+  read();
+  hold(cell_, 1);
+  EXPECT_DEATH(read(), "is read with 1 of its vertices held");
+  hold(cell_, 0);
+  EXPECT_DEATH(read(), "is read with 0 of its vertices held");
+}
+
+TEST_F(LockContractDeathTest, LetsReadNextToACellOfTwoLocks) {
+  const FacetId mirror = t_.mesh.peek_mirrors(cell_)[0];
+  ASSERT_NE(mirror, kNoFacet);
+  // The neighbour's vertex off the common facet, and one on it: of the cell itself one is held.
+  const auto vertices = t_.mesh.peek_vertices(cell_of(mirror));
+  const auto far = static_cast<unsigned>(index_in_cell(mirror));
+  locks_.try_lock(t_.mesh.vertex(vertices[far]));
+  locks_.try_lock(t_.mesh.vertex(vertices[(far + 1) % 4]));
+  attempt([&] { t_.mesh.cell(cell_); });
+}
+
+TEST_F(LockContractDeathTest, LetsWriteMirrorsUnderThreeLocks) {
+  const FacetId mirror = t_.mesh.peek_mirrors(cell_)[1];
+  const auto write = [&] { attempt([&] { t_.mesh.set_mirror(4 * cell_ + 1, mirror); }); };
+  hold(cell_, 3);
+  write();
+  hold(cell_, 2);
+  EXPECT_DEATH(write(), "is given a mirror with 2 of its vertices held");
+}
+
+TEST_F(LockContractDeathTest, LetsReplaceUnderFourLocks) {
+  const auto vertices = t_.mesh.peek_vertices(cell_);
+  const auto replace = [&] { attempt([&] { t_.mesh.renew(cell_, vertices); }); };
+  hold(cell_, 4);
+  replace();
+  hold(cell_, 3);
+  EXPECT_DEATH(replace(), "is replaced with 3 of its vertices held");
+}
+
+TEST_F(LockContractDeathTest, LetsNobodyReadWhatHasDied) {
+  hold(cell_, 4);
+  attempt([&] { t_.mesh.renew(cell_, {kNoVertex, kNoVertex, kNoVertex, kNoVertex}); });
+  EXPECT_DEATH(attempt([&] { t_.mesh.cell(cell_); }), "is read with 0 of its vertices held");
+}
+
+TEST_F(LockContractDeathTest, KnowsWhoseLocksTheyAre) {
+  VertexLocks others(8);
+  for (const VertexId v : t_.mesh.peek_vertices(cell_)) others.try_lock(t_.mesh.vertex(v));
+  EXPECT_DEATH(attempt([&] { t_.mesh.cell(cell_); }), "is read with 0 of its vertices held");
+  others.unlock_all();
+}
+
+TEST_F(LockContractDeathTest, BindsNobodyOutsideOfAnAttempt) {
+  t_.mesh.set_mirror(4 * cell_ + 1, t_.mesh.cell(cell_).mirrors[1]);
+}
+
+TEST_F(LockContractDeathTest, LetsPeekAndPrefetchWithoutLocks) {
+  attempt([&] {
+    t_.mesh.prefetch(cell_);
+    t_.mesh.peek_two_vertices(cell_);
+    t_.mesh.peek_center(cell_);
+    t_.mesh.stamp(cell_);
+  });
+}
+
+}  // namespace
+}  // namespace podm::test
