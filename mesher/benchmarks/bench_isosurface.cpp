@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "image/isosurface.h"
+#include "image/tests/closest_point.h"
 
 namespace podm {
 namespace {
@@ -86,7 +87,7 @@ void distance_lower_bound_near(benchmark::State& state) {
 }
 void closest_point_near(benchmark::State& state) {
   const Isosurface& isosurface = queries().isosurface;
-  ask_all(state, queries().near, [&](const Point& p) { return isosurface.closest_point(p, 10); });
+  ask_all(state, queries().near, [&](const Point& p) { return test::closest_point(isosurface, p, 10); });
 }
 void segment_intersection_near(benchmark::State& state) {
   const Vector step{0.3, -0.2, 0.2};

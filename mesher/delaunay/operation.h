@@ -1,4 +1,4 @@
-// One operation on the triangulation: insert a vertex, remove vertices, or both at once.
+// One operation on the triangulation: the insertion of a vertex, and with it the removal of others.
 //
 // An operation is cautious. *Reserving* locks two vertices of the cell that asks for it, enough to read it.
 // *Planning* reads, locks and collects the region: the cells that will die. For an insertion these are the
@@ -62,8 +62,6 @@ class Operation {
   /// kTooNear: a vertex that stays lies nearer to p than `min_distance` (mm), or the region has more
   /// vertices than HoleFiller numbers; nothing was written, roll back.
   StepResult commit_insertion(const Point& p, VertexKind kind, double min_distance);
-  /// kTooNear: the region has more vertices than HoleFiller numbers.
-  StepResult commit_removals();
   /// Gives the plan up; nothing was written. Locks are kept until release().
   void rollback();
 

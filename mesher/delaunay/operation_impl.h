@@ -175,18 +175,6 @@ StepResult Operation<Locks>::commit_insertion(const Point& p, VertexKind kind, d
   return StepResult::kDone;
 }
 
-template <class Locks>
-StepResult Operation<Locks>::commit_removals() {
-  collect_boundary();
-  if (!hole_.plan(mesh_, region_, nullptr)) return StepResult::kTooNear;
-  reserve_memory(hole_.num_cells());
-  count_gluing();
-  const std::size_t num_destroyed = region_.cells.size();
-  hole_.fill(mesh_, pool_, region_, kNoVertex);
-  finish(num_destroyed);
-  return StepResult::kDone;
-}
-
 // Before the filling: the cells beyond the boundary, each as often as a facet of it is glued.
 template <class Locks>
 void Operation<Locks>::count_gluing() {

@@ -61,10 +61,8 @@ class Oracle {
   /// shapes it exceeds the nearest distance typically by nothing, in 1 % of cases by more than 0.2 and never
   /// by more than 1 of a voxel's shortest side.
   std::optional<NearPoint> near_point(const Point& p, double radius) const;
-  /// The same, less than 1e-6 voxel from the isosurface, for p's near point. May be a little beyond `radius`.
+  /// p's near point, brought to less than 1e-6 voxel from the isosurface. May be a little beyond `radius`.
   Point polished(const NearPoint& near, const Point& p) const;
-  /// Both at once, within the radius.
-  std::optional<Point> closest_point(const Point& p, double radius) const;
 
   /// The point where the label changes along segment ab, searched from a; none if there is no change.
   /// If the labels at a and b differ one is always found. Double crossings are found down to 1e-6 of the

@@ -306,19 +306,9 @@ Point Oracle<Reads>::polished(const NearPoint& near, const Point& p) const {
   return from_voxels(midpoint.u);
 }
 
-template <class Reads>
-std::optional<Point> Oracle<Reads>::closest_point(const Point& p, double radius) const {
-  const auto near = near_point(p, radius);
-  if (!near) return std::nullopt;
-  const Point z = polished(*near, p);
-  return squared_distance(z, p) <= square(radius) ? std::optional(z) : std::nullopt;
-}
-
 template std::optional<NearPoint> Oracle<NoReads>::near_point(const Point&, double) const;
 template std::optional<NearPoint> Oracle<CountedReads>::near_point(const Point&, double) const;
 template Point Oracle<NoReads>::polished(const NearPoint&, const Point&) const;
 template Point Oracle<CountedReads>::polished(const NearPoint&, const Point&) const;
-template std::optional<Point> Oracle<NoReads>::closest_point(const Point&, double) const;
-template std::optional<Point> Oracle<CountedReads>::closest_point(const Point&, double) const;
 
 }  // namespace podm

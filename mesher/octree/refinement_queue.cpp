@@ -99,15 +99,10 @@ void RefinementQueue::push(LeafId leaf, std::uint64_t num_poor) {
   if (num_poor == 0) return;
   const std::lock_guard lock(mutex_);
   if (is_ready(leaf)) ready_of(leaf).erase(key(leaf));
-  if (num_poor_[leaf] == 0) ++counts_.pending;
+  if (num_poor_[leaf] == 0) ++num_pending_;
   num_poor_[leaf] += num_poor;
   num_poor_of_share_[share_of_[leaf]] += num_poor;
   if (is_ready(leaf)) ready_of(leaf).insert(key(leaf));
-}
-
-std::size_t RefinementQueue::home_of(LeafId leaf) const {
-  const std::lock_guard lock(mutex_);
-  return share_of_[leaf];
 }
 
 std::optional<LeafId> RefinementQueue::pop(unsigned node) {
@@ -119,21 +114,21 @@ RefinementQueue::Popped RefinementQueue::pop_or_wait(unsigned node, const std::s
   const std::lock_guard lock(mutex_);
   if (stop.stop_requested()) return {std::nullopt, false};
   const std::optional<LeafId> leaf = take(node);
-  const bool must_wait = !leaf && counts_.pending + counts_.active > 0;
+  const bool must_wait = !leaf && num_pending_ + num_active_ > 0;
   if (must_wait) {
     is_waiting_[node] = true;
-    ++counts_.waiting;
+    ++num_waiting_;
   }
   return {leaf, must_wait};
 }
 
 void RefinementQueue::wake_all(unsigned first) {
   const auto num_nodes = static_cast<unsigned>(is_waiting_.size());
-  for (unsigned i = 0; i < num_nodes && counts_.waiting > 0; ++i) {
+  for (unsigned i = 0; i < num_nodes && num_waiting_ > 0; ++i) {
     const unsigned node = (first + i) % num_nodes;
     if (!is_waiting_[node]) continue;
     is_waiting_[node] = false;
-    --counts_.waiting;
+    --num_waiting_;
     wake_(node);
   }
 }
@@ -143,13 +138,6 @@ void RefinementQueue::finish(LeafId leaf) {
   const std::lock_guard lock(mutex_);
   set_active(zones, false);
   wake_all(node_of_active_[leaf] + 1);
-}
-
-RefinementQueue::Counts RefinementQueue::counts() const {
-  const std::lock_guard lock(mutex_);
-  Counts counts = counts_;
-  for (const auto& ready : ready_) counts.ready += ready.size();
-  return counts;
 }
 
 const std::set<RefinementQueue::Key>& RefinementQueue::ready_for(unsigned node) const {
@@ -193,7 +181,7 @@ void RefinementQueue::set_active(const std::vector<LeafId>& zones, bool is_activ
     if (was_ready && !is_ready(near)) ready_of(near).erase(key(near));
     if (!was_ready && is_ready(near)) ready_of(near).insert(key(near));
   }
-  is_active ? ++counts_.active : --counts_.active;
+  is_active ? ++num_active_ : --num_active_;
 }
 
 std::optional<LeafId> RefinementQueue::take(unsigned node) {
@@ -208,7 +196,7 @@ std::optional<LeafId> RefinementQueue::take(unsigned node) {
   set_active(buffer_zones(leaf), true);
   node_of_active_[leaf] = node;
   num_poor_of_share_[share_of_[leaf]] -= std::exchange(num_poor_[leaf], 0);
-  --counts_.pending;
+  --num_pending_;
   return leaf;
 }
 

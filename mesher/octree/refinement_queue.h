@@ -40,8 +40,6 @@ class RefinementQueue {
   /// leaves where there are none; until then all are the first node's. A stop request leaves the shares
   /// unequal.
   void share_out(const std::stop_token& stop = {});
-  /// The node whose share has the leaf; 0 where there are no shares.
-  std::size_t home_of(LeafId leaf) const;
 
   /// The leaf has `num_poor` more poor cells. Leaves that never had any are not handed out. Nodes that wait
   /// are told at the next finish().
@@ -64,15 +62,9 @@ class RefinementQueue {
   /// wait, that after its own first.
   void finish(LeafId leaf);
 
-  struct Counts {
-    std::size_t pending = 0, ready = 0;  // leaves with poor cells; those of them that may be handed out
-    std::size_t active = 0;
-    std::size_t waiting = 0;  // nodes that are to be woken
-  };
-  Counts counts() const;
-
  private:
-  using Key = std::uint64_t;  // rank in the order, then leaf
+  friend class RefinementQueueState;  // what tests see of it: octree/tests/refinement_queue_state.h
+  using Key = std::uint64_t;          // rank in the order, then leaf
 
   struct Popped {
     std::optional<LeafId> leaf;
@@ -95,7 +87,7 @@ class RefinementQueue {
 
   const Octree& octree_;
   const LeafOrder order_;
-  mutable std::mutex mutex_;
+  std::mutex mutex_;
   std::function<void(unsigned)> wake_;
   std::vector<bool> is_waiting_;          // by node
   std::vector<unsigned> node_of_active_;  // by leaf
@@ -105,7 +97,9 @@ class RefinementQueue {
   std::vector<std::uint64_t> num_poor_of_share_;
   std::vector<std::set<Key>> ready_;  // by share
   std::vector<Key> resume_at_;        // by node: where in the order its next leaf is looked for
-  Counts counts_;
+  std::size_t num_pending_ = 0;       // leaves with poor cells
+  std::size_t num_active_ = 0;
+  std::size_t num_waiting_ = 0;  // nodes that are to be woken
 };
 
 }  // namespace podm

@@ -41,8 +41,9 @@ double Rules::distance_lower_bound(const Point& p, double radius) const {
   return ask([&](const auto& oracle) { return oracle.distance_lower_bound(p, radius); });
 }
 
-// A vertex on the isosurface lies within 2r of z: below r = delta/2 it silences R1, and R2 with it.
-bool Rules::is_settled(const Cell& cell, double squared_radius) const {
+// Below r = delta/2 a vertex of the cell on the isosurface, which is within 2r of z, silences R1, and R2 with
+// it.
+bool Rules::obeys_r1_and_r2(const Cell& cell, double squared_radius) const {
   return 4 * squared_radius < squared_delta_ &&
          std::any_of(cell.vertices.begin(), cell.vertices.end(),
                      [&](VertexId v) { return mesh_.vertex(v).kind == VertexKind::kIsosurface; });
@@ -56,7 +57,7 @@ Examination Rules::examine(CellId c) const {
     t.squared_radius = squared_distance(center, mesh_.point(cell.vertices[0]));
   const double radius = std::sqrt(t.squared_radius);
   t.isosurface_distance = distance_lower_bound(center, radius);
-  if (t.isosurface_distance > radius || is_settled(cell, t.squared_radius)) return t;
+  if (t.isosurface_distance > radius || obeys_r1_and_r2(cell, t.squared_radius)) return t;
   t.nearest = ask([&](const auto& oracle) { return oracle.near_point(center, radius); });
   t.is_distance_proven = false;
   t.isosurface_distance = kNearestTrust * (t.nearest ? distance(center, t.nearest->point) : radius);

@@ -92,19 +92,10 @@ TEST(TriangulationEdge, HoleOfMoreVerticesThanCanBeNumberedIsNotPlanned) {
   Triangulator t(kBox);
   for (const Point& p : random_points(4, 200, 9)) t.insert(p);
   const Point p{0.1, 0.2, 0.3};
-  Region region;
+  const Region region = t.region_of([&](CellId c) { return t.mesh.is_in_conflict(c, p); });
   std::set<VertexId> vertices;
-  for (CellId c = 0; c < t.mesh.cell_bound(); ++c) {
-    if (!t.mesh.cell(c).is_alive() || !t.mesh.is_in_conflict(c, p)) continue;
-    region.cells.push_back(c);
-    t.mesh.mark(c, true);
-    vertices.insert(t.mesh.cell(c).vertices.begin(), t.mesh.cell(c).vertices.end());
-  }
   for (const CellId c : region.cells)
-    for (unsigned k = 0; k < 4; ++k)
-      if (const FacetId mirror = t.mesh.cell(c).mirrors[k];
-          mirror == kNoFacet || !t.mesh.is_marked(cell_of(mirror)))
-        region.boundary.push_back(4 * c + k);
+    vertices.insert(t.mesh.cell(c).vertices.begin(), t.mesh.cell(c).vertices.end());
   ASSERT_GT(vertices.size(), 8u);
   for (std::size_t room = 5; room <= vertices.size(); ++room)
     EXPECT_FALSE(HoleFiller(room).plan(t.mesh, region, &p)) << room;

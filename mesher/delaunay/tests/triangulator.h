@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "cells_by_points.h"
+#include "delaunay/hole.h"
 #include "delaunay/operation.h"
 
 namespace podm::test {
@@ -36,9 +37,35 @@ class Triangulator {
     }
     throw std::runtime_error("vertex in no cell");
   }
+  /// The cells that `is_of_it(CellId)` picks, marked, and their boundary.
+  template <class Predicate>
+  Region region_of(const Predicate& is_of_it) {
+    Region region;
+    for (CellId c = 0; c < mesh.cell_bound(); ++c) {
+      if (!mesh.cell(c).is_alive() || !is_of_it(c)) continue;
+      region.cells.push_back(c);
+      mesh.mark(c, true);
+    }
+    for (const CellId c : region.cells) {
+      for (unsigned k = 0; k < 4; ++k) {
+        const FacetId mirror = mesh.cell(c).mirrors[k];
+        if (mirror == kNoFacet || !mesh.is_marked(cell_of(mirror))) region.boundary.push_back(4 * c + k);
+      }
+    }
+    return region;
+  }
+  /// Removes v and puts nothing in its place, as no operation of the mesher does.
   void remove(VertexId v) {
-    operation.plan_removal(v, cell_around(v));
-    operation.commit_removals();
+    Region region = region_of([&](CellId c) {
+      const auto& vertices = mesh.cell(c).vertices;
+      return std::find(vertices.begin(), vertices.end(), v) != vertices.end();
+    });
+    region.removed = {v};
+    HoleFiller hole;
+    if (!hole.plan(mesh, region, nullptr)) throw std::runtime_error("a hole of too many vertices");
+    pool.reserve(region.cells, hole.num_cells(), 1);
+    hole.fill(mesh, pool, region, kNoVertex);
+    pool.release_vertex(v);
   }
   auto cells() const { return cells_by_points(mesh); }
 

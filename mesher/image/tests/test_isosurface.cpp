@@ -4,6 +4,7 @@
 #include <cmath>
 #include <limits>
 
+#include "closest_point.h"
 #include "image/isosurface.h"
 #include "image/working_frame.h"
 #include "isosurface_reference.h"
@@ -70,7 +71,7 @@ TEST(IsosurfaceFrame, CarriesAnswersAlong) {
       if (std::isfinite(bound)) {
         ASSERT_NEAR(isosurface.distance_lower_bound(q, 100), bound, 1e-9);
       }
-      const auto near = isosurface.closest_point(q, radius);
+      const auto near = closest_point(isosurface, q, radius);
       if (!near) continue;
       ASSERT_LE(distance(*near, q), radius + shortest_voxel_side(image));
       const Point u = map(inverse(moved.voxel_to_ras), *near);
@@ -88,7 +89,7 @@ TEST(IsosurfaceFrame, IsTheImagesOwnUnderShear) {
   for (int n = 0; n < 300; ++n) {
     const Point p = random_point(random, image, 1);
     ASSERT_EQ(isosurface.label_at(p), expected.label_at(p));
-    ASSERT_EQ(isosurface.closest_point(p, 3), expected.closest_point(p, 3));
+    ASSERT_EQ(closest_point(isosurface, p, 3), closest_point(expected, p, 3));
     const Point world = map(working_to_world(sheared), p);
     const Point mapped = map(sheared.voxel_to_ras, Point{p.x, p.y / 1.5, p.z / 2});
     ASSERT_NEAR(distance(world, mapped), 0, 1e-12);
@@ -133,7 +134,7 @@ TEST(IsosurfaceReads, AreCountedAndChangeNoAnswer) {
       });
       EXPECT_LE(of_label.image, of_crossing.image);
       const Reads of_nearest = reads([&](const auto& oracle) {
-        const auto z = oracle.closest_point(p, radius);
+        const auto z = closest_point(oracle, p, radius);
         return z ? std::array{z->x, z->y, z->z} : std::array<double, 3>{};
       });
       EXPECT_GT(of_nearest.transform, 0u);
@@ -205,7 +206,7 @@ TEST(ClosestPoint, LiesOnTheIsosurfaceWithinTheRadius) {
     for (int n = 0; n < 500; ++n) {
       const Point p = random_point(random, image, 2);
       const double radius = uniform(random, 0, 4);
-      const auto z = isosurface.closest_point(p, radius);
+      const auto z = closest_point(isosurface, p, radius);
       if (!z) continue;
       ASSERT_LE(distance(p, *z), radius * (1 + 1e-12));
       ASSERT_GE(distance(p, *z), isosurface.distance_lower_bound(p, radius) * (1 - 1e-9));
@@ -228,7 +229,7 @@ TEST(ClosestPoint, IsNearestOnSmoothPhantoms) {
     std::vector<double> excess;
     for (int n = 0; n < 1000; ++n) {
       const Point p = random_point(random, phantom.image, 1);
-      const auto z = isosurface.closest_point(p, 1e9);
+      const auto z = closest_point(isosurface, p, 1e9);
       ASSERT_TRUE(z);
       excess.push_back((distance(p, *z) - distance_to_nearest(surface, p)) / side);
     }
@@ -250,8 +251,8 @@ TEST(ClosestPoint, IsSeldomMissedOnSmoothPhantoms) {
     for (int n = 0; n < 1000; ++n) {
       const Point p = random_point(random, phantom.image, 1);
       const double nearest = distance_to_nearest(surface, p);
-      num_missed += !isosurface.closest_point(p, nearest / 0.95);
-      EXPECT_TRUE(isosurface.closest_point(p, nearest + kGreatestExcess * side)) << nearest;
+      num_missed += !closest_point(isosurface, p, nearest / 0.95);
+      EXPECT_TRUE(closest_point(isosurface, p, nearest + kGreatestExcess * side)) << nearest;
     }
     EXPECT_LE(num_missed, 10);
   }
@@ -301,7 +302,7 @@ TEST(Isosurface, AnswersDoNotDependOnThreads) {
     const Point a = random_point(random, image, 2), b = random_point(random, image, 2);
     ASSERT_EQ(one.label_at(a), many.label_at(a));
     ASSERT_EQ(one.distance_lower_bound(a, 1), many.distance_lower_bound(a, 1));
-    ASSERT_EQ(one.closest_point(a, 5), many.closest_point(a, 5));
+    ASSERT_EQ(closest_point(one, a, 5), closest_point(many, a, 5));
     ASSERT_EQ(one.segment_intersection(a, b), many.segment_intersection(a, b));
   }
 }
@@ -311,7 +312,7 @@ TEST(Isosurface, OfAnEmptyImageIsEmpty) {
   const Isosurface isosurface(image, 1);
   EXPECT_EQ(isosurface.label_at({1, 1, 1}), kBackground);
   EXPECT_EQ(isosurface.distance_lower_bound({1, 1, 1}, 1), std::numeric_limits<double>::infinity());
-  EXPECT_FALSE(isosurface.closest_point({1, 1, 1}, 1e9));
+  EXPECT_FALSE(closest_point(isosurface, {1, 1, 1}, 1e9));
   EXPECT_FALSE(isosurface.segment_intersection({-9, 1, 1}, {9, 2, 1}));
 }
 

@@ -7,6 +7,7 @@
 
 #include "octree/refinement_queue.h"
 #include "random_octrees.h"
+#include "refinement_queue_state.h"
 
 namespace podm::test {
 namespace {
@@ -80,7 +81,7 @@ TEST_P(Queue, HandsOutEveryPendingLeafAwayFromActiveOnes) {
       EXPECT_EQ(pending.erase(*leaf), 1u);
       active.push_back(*leaf);
     }
-    const RefinementQueue::Counts counts = queue.counts();
+    const RefinementQueueState::Counts counts = RefinementQueueState(queue).counts();
     EXPECT_EQ(counts.pending, pending.size());
     EXPECT_EQ(counts.active, active.size());
     EXPECT_EQ(counts.ready, std::size_t(std::count_if(pending.begin(), pending.end(), is_free)));
@@ -155,7 +156,7 @@ TEST_P(Queue, ThreadsRefineEveryLeafWithItsRegionToThemselves) {
   }
   EXPECT_EQ(num_shared, 0u);
   EXPECT_EQ(num_refined, num_pushed);
-  const RefinementQueue::Counts counts = queue.counts();
+  const RefinementQueueState::Counts counts = RefinementQueueState(queue).counts();
   EXPECT_EQ(counts.pending + counts.active + counts.waiting, 0u);
 }
 
@@ -177,14 +178,14 @@ TEST_P(Shares, HaveEqualWorkAndGoToTheirNodes) {
   }
   queue.share_out();
   for (LeafId leaf = 0; leaf < octree.num_leaves(); ++leaf)
-    work_of_node[queue.home_of(leaf)] += work_of_leaf[leaf] + 1;
+    work_of_node[RefinementQueueState(queue).home_of(leaf)] += work_of_leaf[leaf] + 1;
   const double mean = std::reduce(work_of_node.begin(), work_of_node.end()) / kNumNodes;
   for (unsigned node = 0; node < kNumNodes; ++node) {
     EXPECT_NEAR(work_of_node[node], mean, 2 * (kMost + 1));
     if (work_of_node[node] == 0) continue;
     const std::optional<LeafId> leaf = queue.pop(node);
     ASSERT_TRUE(leaf);
-    EXPECT_EQ(queue.home_of(*leaf), node);
+    EXPECT_EQ(RefinementQueueState(queue).home_of(*leaf), node);
     queue.finish(*leaf);
   }
 }
@@ -195,13 +196,13 @@ TEST(Share, OfWhoHasMostIsHalvedForWhoHasNone) {
   RefinementQueue queue(octree, 2);
   queue.share_out();
   for (LeafId leaf = 0; leaf < 16; ++leaf) queue.push(leaf, 10);
-  ASSERT_EQ(queue.home_of(15), 0u);
+  ASSERT_EQ(RefinementQueueState(queue).home_of(15), 0u);
   const std::optional<LeafId> taken = queue.pop(1);
   ASSERT_TRUE(taken);
   unsigned num_taken_over = 0;
-  for (LeafId leaf = 0; leaf < 16; ++leaf) num_taken_over += queue.home_of(leaf) == 1;
+  for (LeafId leaf = 0; leaf < 16; ++leaf) num_taken_over += RefinementQueueState(queue).home_of(leaf) == 1;
   EXPECT_EQ(num_taken_over, 8u);
-  EXPECT_EQ(queue.home_of(*taken), 1u);
+  EXPECT_EQ(RefinementQueueState(queue).home_of(*taken), 1u);
 }
 
 TEST(Share, OfTheFirstNodeIsAllUntilItIsSharedOutWithoutAStopRequest) {
@@ -209,7 +210,8 @@ TEST(Share, OfTheFirstNodeIsAllUntilItIsSharedOutWithoutAStopRequest) {
   RefinementQueue queue(octree, 4);
   const auto shares = [&] {
     std::vector<int> leaves(4);
-    for (LeafId leaf = 0; leaf < octree.num_leaves(); ++leaf) ++leaves[queue.home_of(leaf)];
+    for (LeafId leaf = 0; leaf < octree.num_leaves(); ++leaf)
+      ++leaves[RefinementQueueState(queue).home_of(leaf)];
     return leaves;
   };
   EXPECT_EQ(shares(), (std::vector{32, 0, 0, 0}));
@@ -268,7 +270,7 @@ TEST_F(SmallQueue, WaitersGoOnWhenALeafIsFinishedAndEndTogether) {
       }
     });
   }
-  while (queue.counts().waiting < 2) std::this_thread::yield();
+  while (RefinementQueueState(queue).counts().waiting < 2) std::this_thread::yield();
   EXPECT_EQ(num_taken, 0u);
   queue.finish(3);
   for (std::jthread& waiter : waiters) waiter.join();
@@ -281,13 +283,13 @@ TEST_F(SmallQueue, StopWakesWaitersAndHandsOutNothingMore) {
   queue.push(4, 1);
   std::optional<LeafId> answer = 0;
   std::jthread waiter([&](std::stop_token stop) { answer = wait_and_pop(1, stop); });
-  while (queue.counts().waiting == 0) std::this_thread::yield();
+  while (RefinementQueueState(queue).counts().waiting == 0) std::this_thread::yield();
   waiter.request_stop();
   waiter.join();
   EXPECT_EQ(answer, std::nullopt);
   queue.finish(3);
   EXPECT_EQ(wait_and_pop(1, waiter.get_stop_token()), std::nullopt);
-  EXPECT_EQ(queue.counts().pending, 1u);
+  EXPECT_EQ(RefinementQueueState(queue).counts().pending, 1u);
 }
 
 }  // namespace
