@@ -26,12 +26,12 @@ class ComputingNode {
   Worker<Locks>& master() const { return *workers_.front(); }
   Coordination& group() { return group_; }
 
-  /// From now on the workers keep to the leaf. None works meanwhile, here and below.
+  /// The workers keep to the leaf from now on. None works while this is called, or end().
   void begin(const Octree& octree, LeafId leaf, double now_s);
   /// The leaf ends: new cells of others go to them, cells that need vertices outside its region are deferred.
   LeafSchedule::Activation end(LeafCells& cells, RefinementQueue& queue, const std::stop_token& stop,
                                double now_s);
-  /// That has begun and not ended.
+  /// Whether a leaf has begun that has not ended.
   bool has_leaf() const { return region_.has_value(); }
   LeafId leaf() const { return region_->leaf(); }
 

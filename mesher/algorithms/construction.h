@@ -38,19 +38,19 @@ struct Team {
   int initial_workers = 1;  // so many make their initial mesh
   VirtualCost cost = VirtualCost::kMeasured;
   OperationLogWriter* log = nullptr;
-  const Topology* machine = nullptr;    // whose nodes the places name; none: all are on one
-  std::vector<Place> places = {};       // of the workers; none: anywhere
-  const ImageOwners* owners = nullptr;  // of the machine's nodes, image and transform; none: not counted
+  const Topology* machine = nullptr;    // the places name its nodes; none: all are on one
+  std::vector<Place> places = {};       // the workers' places; none: anywhere
+  const ImageOwners* owners = nullptr;  // nodes that own image and transform; none: these are not counted
   const PageSampler* pages = nullptr;   // asked at the end of each phase, if any
 };
 
 struct Refinement {
   std::unique_ptr<Mesh> mesh;
   StopReason stop_reason = StopReason::kComplete;
-  Counters counters;  // of all workers
+  Counters counters;  // summed over all workers
   std::vector<WorkerReport> workers;
   std::map<std::string, double> phases_s;          // allocate, initial, octree, refine, closing
-  std::map<std::string, double> virtual_phases_s;  // of Executor::kVirtual; some of these phases
+  std::map<std::string, double> virtual_phases_s;  // some of these phases, if the executor is virtual
   std::uint64_t num_leaves = 0;
   std::optional<LeafSchedule> schedule;
   PageSamples pages;
@@ -116,7 +116,7 @@ class Construction {
       add_counters(*workers[id], time.overhead(*workers[id]));
     }
   }
-  /// At the end of a phase; in none of its seconds.
+  /// Called at the end of a phase; no phase is charged for it.
   void sample_pages(const std::string& phase);
   void take_down_leaves(std::uint64_t num_leaves, std::optional<LeafSchedule> schedule) {
     result_.num_leaves = num_leaves;
@@ -137,10 +137,10 @@ class Construction {
   const Problem& problem_;
   const Team& team_;
   StopControl& stop_;
-  std::vector<std::unique_ptr<Pool>> pools_;  // of the workers, from phase to phase
-  std::vector<SampledAccesses> accesses_;     // by worker, of the last phase
+  std::vector<std::unique_ptr<Pool>> pools_;  // workers keep them from phase to phase
+  std::vector<SampledAccesses> accesses_;     // what each worker accessed in the last phase
   Refinement result_;
-  double charged_s_ = 0;  // to all phases
+  double charged_s_ = 0;  // the sum over all phases
 };
 
 }  // namespace podm

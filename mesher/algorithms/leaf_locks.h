@@ -23,14 +23,14 @@ class LeafLocks {
   /// Nothing is held meanwhile. The region must outlive the operations.
   void confine(const LeafRegion& region) { region_ = &region; }
   const LeafRegion& region() const { return *region_; }
-  /// From now on remembers the leaves that locked vertices lie in.
-  void watch_leaves() { is_watching_ = true; }
+  /// Remembers, from now on, the leaves that locked vertices lie in.
+  void record_leaves() { is_recording_ = true; }
   std::vector<LeafId>& touched_leaves() { return touched_leaves_; }
 
   StepResult try_lock(Vertex& v) {
     const Point p = peek_point(v);
     if (!region_->contains(p)) return StepResult::kOutOfLeaf;
-    if (is_watching_) remember(region_->octree().leaf_at(p));
+    if (is_recording_) remember(region_->octree().leaf_at(p));
     return inner_.try_lock(v);
   }
   bool holds(const Vertex& v) const { return region_->contains(peek_point(v)) && inner_.holds(v); }
@@ -46,7 +46,7 @@ class LeafLocks {
 
   Inner inner_;
   const LeafRegion* region_ = nullptr;
-  bool is_watching_ = false;
+  bool is_recording_ = false;
   std::vector<LeafId> touched_leaves_;
 };
 

@@ -85,7 +85,7 @@ Construction::Entries refine_leaves_with(Construction& construction, const Param
   const std::stop_token over = construction.stop().over();
   auto workers = construction.make_workers<Locks>(parameters, num_workers);
   if (options.with_schedule)
-    for (const auto& worker : workers) worker->locks().watch_leaves();
+    for (const auto& worker : workers) worker->locks().record_leaves();
   const auto num_nodes = static_cast<unsigned>(construction.team().num_nodes);
   const std::size_t per_node = workers.size() / num_nodes;
   const auto resume = [&](WorkerId worker) { time.resume(worker); };

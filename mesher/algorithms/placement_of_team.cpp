@@ -18,7 +18,7 @@ void add_level(const std::vector<Place>& places, int Place::*member, WorkerGroup
   if (num_groups > 1 && num_groups < places.size()) groups.push_back(std::move(level));
 }
 
-// Sockets in nodes or nodes in sockets: the level of more groups is the inner one.
+// Sockets may be in nodes or nodes in sockets: the level of more groups is the inner one.
 WorkerGroups groups_of(const std::vector<Place>& places) {
   WorkerGroups groups;
   add_level(places, &Place::socket, groups);

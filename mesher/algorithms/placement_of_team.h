@@ -1,4 +1,4 @@
-// Where in which machine the workers of a run stand.
+// The places of a run's workers in a machine.
 #pragma once
 
 #include <vector>
@@ -13,7 +13,7 @@ namespace podm {
 struct PlacementOfTeam {
   Topology machine;  // this one, or the one described
   std::vector<Place> places;
-  WorkerGroups groups;  // of the begging list
+  WorkerGroups groups;  // as the begging list needs them
   bool is_real = true;  // threads of this machine, neither virtual workers nor those of a described one
 };
 

@@ -77,7 +77,7 @@ bool HoleFiller::plan(Mesh& mesh, const Region& region, const Point* added) {
     cells_.push_back(local);
     glued_.push_back({facet.other, FacetRef{first + 3, true}});
     for (unsigned k = 0; k < 3; ++k) {
-      const auto& turn = kFacetVertices[k];  // from inside the new cell; the hole sees it the other way round
+      const auto& turn = kFacetVertices[k];  // as the new cell sees it; the hole sees it the other way round
       add_or_match({{local[static_cast<unsigned>(turn[0])], local[static_cast<unsigned>(turn[2])],
                      local[static_cast<unsigned>(turn[1])]},
                     {first + k, true}});
@@ -136,14 +136,14 @@ void HoleFiller::rebuild_table(std::size_t size) {
   used_slots_ = 0;
 }
 
-// Among the candidates on the inner side, the one whose sphere with the facet has its centre lowest along the
-// facet's axis, by rounded arithmetic. Marks the inner side exactly.
+// Finds, by rounded arithmetic, the candidate on the inner side whose sphere with the facet has its centre
+// lowest along the facet's axis. It marks the inner side exactly.
 unsigned HoleFiller::nearest_apex(const OpenFacet& facet) {
   const Point& a = points_[facet.local[0]];
   const Vector ab = points_[facet.local[1]] - a, ac = points_[facet.local[2]] - a;
   const Vector normal = cross(ab, ac);
   const double n2 = squared_length(normal);
-  // Foot of the axis, from a.
+  // The foot of the axis, relative to a.
   const Vector foot =
       (0.5 / n2) * (squared_length(ab) * cross(ac, normal) + squared_length(ac) * cross(normal, ab));
   // |ab|,|ac|,|x-a| times 16 u bounds the rounding of dot(normal, x-a) (each product of three differences).

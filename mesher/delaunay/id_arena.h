@@ -92,7 +92,7 @@ class IdArena {
     nodes_[node].end = first + size;
   }
 
-  std::size_t num_ids_, capacity_;  // those that are withheld lie between
+  std::size_t num_ids_, capacity_;  // the ids between them are withheld
   unsigned run_bits_;
   std::mutex mutex_;
   std::vector<OfNode> nodes_;

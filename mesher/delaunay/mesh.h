@@ -76,7 +76,7 @@ inline constexpr LabelIndex kUnknownLabel = 0xffff;
 
 struct CellState {
   std::uint16_t stamp_and_mark = 0;  // Mesh::stamp and Mesh::is_marked
-  LabelIndex label = kUnknownLabel;  // of the image at the circumcentre, once asked for
+  LabelIndex label = kUnknownLabel;  // the image's at the circumcentre, once asked for
 };
 static_assert(sizeof(CellState) == 4);
 
@@ -95,7 +95,7 @@ class Mesh {
   /// `num_nodes` is how many NUMA nodes they are on.
   Mesh(const Box& box, std::size_t cell_capacity, int num_nodes = 1);
 
-  // In a build that checks the lock protocol it does so here: step.h, lock_contract.h.
+  // Builds that check the lock protocol do it here: step.h, lock_contract.h.
   Cell& cell(CellId c) { return note_read(c), assert_may_read(*this, c), cells_[c]; }
   const Cell& cell(CellId c) const { return note_read(c), assert_may_read(*this, c), cells_[c]; }
   const CellState& state(CellId c) const { return states_[c]; }
@@ -129,7 +129,7 @@ class Mesh {
     return v[0] != v[1];
   }
   const Point& peek_center(CellId c) const { return cells_[c].sphere.center; }
-  /// Where a cell lies, whatever is there.
+  /// The address of a cell's slot, whatever is in it.
   const void* address(CellId c) const { return &cells_[c]; }
   /// Scratch of the operation that holds the locks: the cell is in its region.
   bool is_marked(CellId c) const {
@@ -196,7 +196,7 @@ class Mesh {
   /// Whether a cell or a vertex was wanted beyond the capacity.
   bool is_used_up() const { return cell_ids_.is_used_up() || vertex_ids_.is_used_up(); }
 
-  /// Which ids there are, and whose; pools take them.
+  /// These know which ids there are, and whose; pools take them.
   IdArena& cell_ids() { return cell_ids_; }
   IdArena& vertex_ids() { return vertex_ids_; }
   int num_nodes() const { return cell_ids_.num_nodes(); }

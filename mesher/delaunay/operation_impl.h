@@ -175,7 +175,8 @@ StepResult Operation<Locks>::commit_insertion(const Point& p, VertexKind kind, d
   return StepResult::kDone;
 }
 
-// Before the filling: the cells beyond the boundary, each as often as a facet of it is glued.
+// Called before the filling: it counts the cells beyond the boundary, each as often as a facet of it is
+// glued.
 template <class Locks>
 void Operation<Locks>::count_gluing() {
   if (!counts()) return;
@@ -185,7 +186,7 @@ void Operation<Locks>::count_gluing() {
   }
 }
 
-// After it: the cells made, the slots that stay empty, the vertices that go.
+// Called after it: it counts the cells made, the slots that stay empty and the vertices that go.
 template <class Locks>
 void Operation<Locks>::count_filling() {
   if (!counts()) return;

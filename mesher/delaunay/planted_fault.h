@@ -11,8 +11,8 @@ struct LocksTaken {
 };
 
 #if defined(PODM_INTERLEAVING) || defined(PODM_CHECK_LOCKS)
-/// As planted, or as $PODM_PLANTED_FAULT says: no_lock or one_lock to read a cell, three_locks to replace it.
-/// Throws InputError when it names another fault.
+/// They are as planted, or as $PODM_PLANTED_FAULT says: no_lock or one_lock to read a cell, three_locks to
+/// replace it. Throws InputError when it names another fault.
 LocksTaken locks_taken();
 void plant_fault(LocksTaken locks);
 #else

@@ -27,13 +27,13 @@ class FreeIds {
   NodeIndex node_;
   std::uint32_t block_;  // ids taken at once
   std::vector<std::uint32_t> free_, foreign_;
-  std::uint32_t next_ = 0, end_ = 0;  // of the block at hand
+  std::uint32_t next_ = 0, end_ = 0;  // what is left of the block at hand
 };
 
 /// One worker's cells and vertices.
 class Pool {
  public:
-  /// One of those of `num_workers` workers.
+  /// It is one of the pools of `num_workers` workers.
   explicit Pool(Mesh& mesh, NodeIndex node = 0, std::size_t num_workers = 1)
       : mesh_(mesh),
         cells_(mesh.cell_ids(), node, num_workers),

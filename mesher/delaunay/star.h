@@ -17,7 +17,7 @@ class StarFiller {
   /// fit; then HoleFiller must be used.
   bool prepare(Mesh& mesh, const Region& region, const Point& p);
   std::size_t num_cells() const { return num_facets_; }
-  /// Of the prepared boundary to p, mm^2.
+  /// The squared distance from p to the nearest vertex of the prepared boundary, mm^2.
   double squared_distance() const { return squared_distance_; }
   /// Replaces the region by the star of `apex`, whose point is p. Cells get their spheres here.
   void fill(Mesh& mesh, Pool& pool, Region& region, VertexId apex);

@@ -18,7 +18,7 @@ namespace {
 // An operation has some hundred steps: about one thread in two yields in its middle.
 constexpr std::uint64_t kStepsToYield = 256;
 
-// Cells that attempts rely on. Those of threads are not known.
+// The cells that attempts rely on. Those of threads are not known.
 using Reads = std::unordered_map<const Fibre*, std::unordered_set<std::uint32_t>>;
 thread_local Reads reads;
 
@@ -51,7 +51,7 @@ void note_replaced(std::uint32_t cell) {
   const Fibre* const self = Fibre::current();
   for (const auto& [other, cells] : reads) {
     if (other == self || !cells.contains(cell)) continue;
-    reads.clear();  // of a run that ends here
+    reads.clear();  // the run ends here
     throw InternalError("cell " + std::to_string(cell) + " is replaced while another worker reads it");
   }
 }

@@ -7,9 +7,9 @@ enum class StepResult {
   kDone,
   kLockConflict,   ///< another worker holds a vertex
   kOutOfLeaf,      ///< a vertex lies outside the region of the leaf being refined
-  kStaleCell,      ///< of a reservation: the cell has died
-  kNotInConflict,  ///< of a plan: the point lies outside the ball of the cell where its cavity was to begin
-  kTooNear,        ///< of a commit: to a vertex, or the region has too many vertices
+  kStaleCell,      ///< a reservation found that the cell has died
+  kNotInConflict,  ///< a plan found the point outside the ball of the cell where its cavity was to begin
+  kTooNear,        ///< a commit found a vertex too near, or too many vertices in the region
 };
 
 }  // namespace podm

@@ -53,7 +53,7 @@ class Splits {
   bool is_inside(const GridCube& cube) const {
     return cube.corner[0] < size_[0] && cube.corner[1] < size_[1] && cube.corner[2] < size_[2];
   }
-  // Of the cubes that are split; those beyond the grid do not count. Not all after a stop request.
+  // Lists the cubes that are split, but for those beyond the grid. After a stop request some are missing.
   template <class Visit>
   void for_each_child(unsigned level, const Visit& visit) const {
     for (const MortonCode code : split_[level]) {
@@ -90,7 +90,7 @@ class Splits {
   GridPoint size_;
   const std::stop_token& stop_;
   unsigned root_level_;
-  std::vector<std::vector<MortonCode>> split_;  // by level, sorted
+  std::vector<std::vector<MortonCode>> split_;  // the split cubes of each level, sorted
 };
 
 }  // namespace

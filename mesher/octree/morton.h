@@ -11,7 +11,7 @@ namespace podm {
 using GridPoint = std::array<std::uint32_t, 3>;
 using MortonCode = std::uint64_t;
 
-inline constexpr unsigned kMortonBits = 21;  // of a coordinate
+inline constexpr unsigned kMortonBits = 21;  // a coordinate has so many
 
 inline MortonCode morton_code(const GridPoint& p) {
   const auto spread = [](std::uint64_t x) {  // two zeros between any two bits

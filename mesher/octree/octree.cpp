@@ -65,7 +65,7 @@ void Octree::set_blocks() {
   blocks_.resize(count());
   for (CubeId id = 0; id < cubes_.size(); ++id) {
     const auto& [corner, side] = cubes_[id];
-    GridPoint end;  // of the cube's cells in the grid
+    GridPoint end;  // one past the cube's last cell in the grid
     for (unsigned axis = 0; axis < 3; ++axis) end[axis] = std::min(corner[axis] + side, size_[axis]);
     const std::uint32_t step = 1u << block_shift_;
     for (std::uint32_t z = corner[2]; z < end[2]; z += step)

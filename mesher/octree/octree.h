@@ -30,14 +30,15 @@ inline constexpr LeafId kNoLeaf = 0xffffffffu;
 
 class Octree {
  public:
-  /// Of the cube [low, high], mm: the largest side that a cube in there may have; whether to make it a leaf.
+  /// These are asked of the cube [low, high], mm: which side a cube in there may have at most, and whether to
+  /// make it a leaf.
   using LargestSide = std::function<double(const Point& low, const Point& high)>;
   using IsNeeded = std::function<bool(const Point& low, const Point& high)>;
 
   /// Tiles the box [low, high] with cubes whose sides are finest_side_mm times a power of two, as large as
   /// `largest_side` and balance allow, never smaller than the finest. A constant makes the tree uniform.
   /// InputError: an empty box, or a side that is not positive or of which the box takes more than 2^20.
-  /// After a stop request it asks no more: leaves are too few, and cubes perhaps too large.
+  /// A stop request ends the asking: leaves are too few then, and cubes perhaps too large.
   Octree(const Point& low, const Point& high, double finest_side_mm, const LargestSide& largest_side,
          const IsNeeded& is_needed, const std::stop_token& stop = {});
 
@@ -64,7 +65,7 @@ class Octree {
   bool is_in_region(LeafId leaf, const Point& g) const {
     return touch(cube(leaf), cubes_[cube_at(cell_at(g))]);
   }
-  /// In Morton order.
+  /// These answer in Morton order.
   std::vector<GridCube> region(LeafId leaf) const;
   std::vector<LeafId> first_ring(LeafId leaf) const;
   std::vector<LeafId> second_ring(LeafId leaf) const;

@@ -30,8 +30,8 @@ enum class LeafOrder { kHome, kMostWork, kMorton, kColoring };
 /// held for some ten microseconds a leaf, whose refinement takes milliseconds.
 class RefinementQueue {
  public:
-  /// For nodes 0 to num_nodes - 1, at least one. The octree must outlive the queue. `wake(node)` ends the
-  /// waiting of a node.
+  /// It serves nodes 0 to num_nodes - 1, at least one. The octree must outlive the queue. `wake(node)` ends
+  /// the waiting of a node.
   RefinementQueue(
       const Octree& octree, unsigned num_nodes, LeafOrder order = LeafOrder::kHome,
       std::function<void(unsigned)> wake = [](unsigned) {});
@@ -48,8 +48,8 @@ class RefinementQueue {
   /// A leaf for the node, now active, with all its poor cells taken; nothing if all that have poor cells are
   /// near active ones. Never waits.
   std::optional<LeafId> pop(unsigned node);
-  /// As pop, but waits for a leaf, by wait(), which returns when the node was woken or a stop is requested.
-  /// Nothing: no leaf is active nor has poor cells, or `stop` was requested.
+  /// Does as pop, but waits for a leaf, by wait(), which returns when the node was woken or a stop is
+  /// requested. Nothing: no leaf is active nor has poor cells, or `stop` was requested.
   template <class Wait>
   std::optional<LeafId> wait_and_pop(unsigned node, const Wait& wait, const std::stop_token& stop = {}) {
     for (;;) {
@@ -89,14 +89,14 @@ class RefinementQueue {
   const LeafOrder order_;
   std::mutex mutex_;
   std::function<void(unsigned)> wake_;
-  std::vector<bool> is_waiting_;          // by node
-  std::vector<unsigned> node_of_active_;  // by leaf
+  std::vector<bool> is_waiting_;          // indexed by node
+  std::vector<unsigned> node_of_active_;  // indexed by leaf
   std::vector<std::uint64_t> num_poor_;
   std::vector<std::uint32_t> num_active_near_;  // active leaves within two rings, the leaf itself included
-  std::vector<std::size_t> share_of_;           // by leaf; there is one a node for home, else one
+  std::vector<std::size_t> share_of_;           // indexed by leaf; there is one a node for home, else one
   std::vector<std::uint64_t> num_poor_of_share_;
-  std::vector<std::set<Key>> ready_;  // by share
-  std::vector<Key> resume_at_;        // by node: where in the order its next leaf is looked for
+  std::vector<std::set<Key>> ready_;  // indexed by share
+  std::vector<Key> resume_at_;        // indexed by node: where in the order its next leaf is looked for
   std::size_t num_pending_ = 0;       // leaves with poor cells
   std::size_t num_active_ = 0;
   std::size_t num_waiting_ = 0;  // nodes that are to be woken

@@ -17,7 +17,7 @@ class PoorElementList {
     CellId cell;
     std::uint16_t stamp;
   };
-  /// Of a worker on a store of so many cells.
+  /// It is a worker's, on a store of so many cells.
   explicit PoorElementList(std::size_t cell_capacity)
       : first_cleaning_(std::min(kFirstCleaning, cell_capacity / kCellsAnEntry)) {}
   /// Bytes that the lists of so many workers take at most beside entries of live cells: they hold stale ones
@@ -56,7 +56,7 @@ class PoorElementList {
   }
 
  private:
-  // Before it a list is as short as it need be, in a small store too.
+  // A list that is not due for its first cleaning is short, in a small store too.
   static constexpr std::size_t kFirstCleaning = 1 << 16, kCellsAnEntry = 64;
   std::size_t first_cleaning_;
   std::vector<Entry> entries_;

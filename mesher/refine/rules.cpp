@@ -84,8 +84,8 @@ std::optional<Point> Rules::r2_center(const Examination& t) const {
                std::clamp(t.center.z, box.low.z, box.high.z)};
 }
 
-// Some vertex off the isosurface, or an angle of at most 30 degrees: a side at most as long as the facet's
-// circumradius (side = 2 R sin(opposite angle)).
+// It does if a vertex is off the isosurface or an angle is at most 30 degrees: a side is then at most as long
+// as the facet's circumradius (side = 2 R sin(opposite angle)).
 bool Rules::needs_sample(CellId c, unsigned facet) const {
   const auto& vertices = mesh_.cell(c).vertices;
   std::array<const Point*, 3> p{};
@@ -114,7 +114,7 @@ std::optional<SurfaceCenter> Rules::r3_surface_center(const Examination& t) cons
     if (mirror == kNoFacet) continue;
     const CellId neighbor = cell_of(mirror);
     if (!may_be_restricted(t, neighbor) || !needs_sample(t.cell, k)) continue;
-    // From the smaller centre to the larger: the same point whichever cell asks.
+    // The search goes from the smaller centre to the larger: the same point whichever cell asks.
     const Point *from = &t.center, *to = &mesh_.cell(neighbor).sphere.center;
     if (lexicographically_less(*to, *from)) std::swap(from, to);
     const std::optional<Point> z =

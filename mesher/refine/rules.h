@@ -52,7 +52,7 @@ struct Examination {
   CellId cell;
   Point center;
   double squared_radius;
-  LabelIndex label;            // at the centre
+  LabelIndex label;            // the image's at the centre
   double isosurface_distance;  // a lower bound, from the centre
   bool is_distance_proven;     // else it rests on the nearest point found
   // z, if the circumball meets the isosurface and R1 or R2 may care
@@ -83,7 +83,7 @@ class Rules {
   std::optional<SurfaceCenter> r3_surface_center(const Examination& t) const;
   /// R4 and R5 insert the circumcentre.
   std::optional<Rule> volume_rule(const Examination& t) const;
-  /// R6.
+  /// Whether R6 removes v when z is inserted.
   bool r6_removes(VertexId v, const Point& z) const;
 
   /// Label at the circumcentre, remembered in the store so that all cells around see the same.

@@ -22,7 +22,7 @@ class SizeField {
   }
   std::size_t num_labels() const { return squared_.size(); }  // the background included
   double squared_radius(LabelIndex label) const { return squared_[label]; }
-  /// Of all labels but the background.
+  /// The least of all labels but the background.
   double smallest_squared_radius() const { return *std::min_element(squared_.begin() + 1, squared_.end()); }
 
  private:

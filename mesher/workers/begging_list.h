@@ -57,7 +57,7 @@ class BeggingList {
 
   WorkerGroups groups_;  // the machine last
   std::vector<std::unique_ptr<Group[]>> levels_;
-  std::vector<int> num_groups_;  // by level
+  std::vector<int> num_groups_;  // indexed by level
 };
 
 }  // namespace podm

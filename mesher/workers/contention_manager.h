@@ -53,7 +53,7 @@ class ContentionManager {
   void run_again(WorkerId worker);
 
  private:
-  // Of one worker, guarded by the mutex; of Contention::kGlobal the first alone is used.
+  // What belongs to one worker, guarded by the mutex; Contention::kGlobal uses the first alone.
   struct alignas(128) Queue {
     std::mutex mutex;
     std::deque<WorkerId> waiting;
@@ -68,7 +68,7 @@ class ContentionManager {
   double random_pause_s();
   bool wait_for(WorkerId self, WorkerId holder);
   bool wait_for_any(WorkerId self);
-  // Under the lock of its queue.
+  // The caller holds the lock of its queue.
   void stop_running(Queue& own);
 
   Contention kind_;

@@ -49,7 +49,7 @@ bool Coordination::beg(WorkerId id) {
     contention_.run_again(kMaster);
     return false;
   }
-  end_begging(kMaster);  // to see that nobody has cells
+  end_begging(kMaster);  // it shall see that nobody has cells
   return true;
 }
 

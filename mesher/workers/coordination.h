@@ -28,12 +28,12 @@ namespace podm {
 struct CoordinationOptions {
   int num_workers = 1;
   Contention contention = Contention::kLocal;
-  WorkerGroups groups = {};  // of the begging list
+  WorkerGroups groups = {};  // as the begging list needs them
   std::uint64_t seed = 1;
 };
 
-/// Of the workers from `first_id` on, as locks name them. The first is the master, to whom the others' end is
-/// told. Any worker may call for itself at any time.
+/// It coordinates the workers from `first_id` on, as locks name them. The first is the master, to whom the
+/// others' end is told. Any worker may call for itself at any time.
 class Coordination {
  public:
   using Entries = std::vector<PoorElementList::Entry>;
@@ -60,7 +60,7 @@ class Coordination {
   /// worker has any, and it is the master; or the master has dismissed it.
   bool beg(WorkerId self);
   Entries take_gift(WorkerId self);
-  /// By the master, when beg() has told it that no worker has cells, and there will be no more.
+  /// Called by the master, when beg() has told it that no worker has cells, and there will be no more.
   void dismiss();
 
  private:
@@ -70,7 +70,7 @@ class Coordination {
 
   // What belongs to one worker, in cache lines of its own.
   struct alignas(128) Member {
-    int conflicts = 0, successes = 0;  // in a row; it alone counts
+    int conflicts = 0, successes = 0;  // in a row, as the worker alone counts them
     std::mutex mutex;                  // guards the gift
     Entries gift;
   };
@@ -83,7 +83,7 @@ class Coordination {
     return ++member.successes % ContentionManager::kSuccessesToWake == 0 && contention_.may_wake(self);
   }
   void wake_one(WorkerId self);
-  // A hint: somebody begs whom `giver`, which lists so many cells, could serve.
+  // A hint whether somebody begs whom `giver`, which lists so many cells, could serve.
   bool may_share(WorkerId giver, std::size_t num_listed) const {
     return num_listed >= kEnoughToShare && begging_.may_serve(giver);
   }

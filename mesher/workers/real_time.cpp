@@ -38,7 +38,7 @@ void RealTime::work_on_thread(const std::function<void(WorkerId)>& work, WorkerI
   fail();
 }
 
-// While an exception is handled: it ends the run.
+// The exception that is being handled ends the run.
 void RealTime::fail() {
   {
     const std::scoped_lock lock(mutex_);
@@ -51,7 +51,7 @@ void RealTime::block(WorkerId self, double Overhead::*cause) {
   const auto start = Clock::now();
   if (!is_over()) seats_[self].resumed.acquire();
   seats_[self].overhead.*cause += seconds_since(start);
-  stop_.check_limits();  // which takes the time of thousands of attempts
+  stop_.check_limits();  // the wait took the time of thousands of attempts
 }
 
 void RealTime::pause(WorkerId self, double seconds) {

@@ -26,7 +26,7 @@ class RealTime {
   /// ends it as a limit does.
   void run(const std::function<void(WorkerId)>& work);
 
-  /// An attempt, after which nothing is locked.
+  /// Makes an attempt, after which nothing is locked.
   template <class Worker>
   Outcome attempt(Worker& worker) {
     const Outcome outcome = worker.attempt();
@@ -40,7 +40,7 @@ class RealTime {
   void pause(WorkerId self, double seconds);
   bool is_over() const { return stop_.is_over(); }
 
-  /// Since it was made.
+  /// Seconds since this was made.
   double now_s() const { return seconds_since(start_); }
   /// Seconds of run() that went by before worker 0 began: threads were started for the others.
   double start_s() const { return start_s_; }

@@ -17,7 +17,7 @@ namespace podm {
 class StopControl {
  public:
   using Clock = std::chrono::steady_clock;
-  static constexpr int kAttemptsBetweenChecks = 1 << 8;  // of each worker, well below a millisecond
+  static constexpr int kAttemptsBetweenChecks = 1 << 8;  // a worker makes them in well below a millisecond
 
   /// Cells are those of the store, and seconds count from `start`; lack of memory shows itself.
   /// `observe(cells)` is called a few times a second. Whoever requests the stop ends the run, so that over()
@@ -51,7 +51,7 @@ class StopControl {
   Clock::time_point deadline_;
   std::function<void(std::uint64_t)> observe_;
   std::atomic<std::int64_t> num_cells_ = 0;
-  std::atomic<StopReason> reason_ = StopReason::kComplete;  // of the end, once there is one
+  std::atomic<StopReason> reason_ = StopReason::kComplete;  // the end's, once there is one
   std::stop_source over_;
   Clock::time_point next_observation_ = Clock::now();
   std::stop_callback<std::function<void()>> on_stop_;  // the last: it may be called before it is made

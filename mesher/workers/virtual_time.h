@@ -2,8 +2,8 @@
 // once at its beginning, but its locks are held to its virtual end, so that workers conflict as they would on
 // as many cores. Only the locks of an attempt that fails fall at once: its time is charged, but that attempts
 // make each other fail for ever, as they may under Contention::kAggressive, does not show. The same seed
-// gives the same run to the bit. For tests of interleavings, and for studies of machines that nobody has at
-// hand; times are simulated, not measured.
+// gives the same run to the bit. This serves tests of interleavings, and studies of machines that nobody has
+// at hand; times are simulated, not measured.
 //
 // In a build with PODM_INTERLEAVING an attempt takes its virtual time in parts and holds its locks meanwhile:
 // it stops at steps (delaunay/step.h), between which others go on.
@@ -31,7 +31,7 @@ class VirtualTime {
   /// throws ends the run and is thrown again here, but for std::bad_alloc, which ends it as a limit does.
   void run(const std::function<void(WorkerId)>& work);
 
-  /// An attempt, after whose virtual end nothing is locked.
+  /// Makes an attempt, after whose virtual end nothing is locked.
   template <class Worker>
   Outcome attempt(Worker& worker) {
     const WorkerId self = worker.id();
@@ -80,7 +80,7 @@ class VirtualTime {
   struct Seat {
     std::unique_ptr<Fibre> fibre;
     double since_s = 0;            // its attempt began
-    std::uint64_t most_steps = 0;  // of a part of it
+    std::uint64_t most_steps = 0;  // a part of it takes at most so many
     CellMeter meter;
     Overhead overhead;
   };
