@@ -7,8 +7,8 @@
 namespace podm {
 
 RealTime::RealTime(StopControl& stop, std::size_t num_workers, std::vector<Place> places)
-    : stop_(stop), places_(std::move(places)), seats_(num_workers), on_over_(stop.over(), [this] {
-        for (Seat& seat : seats_) seat.resumed.release();
+    : stop_(stop), places_(std::move(places)), states_(num_workers), on_over_(stop.over(), [this] {
+        for (WorkerState& state : states_) state.resumed.release();
       }) {}
 
 void RealTime::run(const std::function<void(WorkerId)>& work) {
@@ -16,8 +16,8 @@ void RealTime::run(const std::function<void(WorkerId)>& work) {
   {
     std::vector<boost::scoped_thread<>> threads;
     try {
-      threads.reserve(seats_.size());
-      for (WorkerId self = 1; self < seats_.size(); ++self)
+      threads.reserve(states_.size());
+      for (WorkerId self = 1; self < states_.size(); ++self)
         threads.emplace_back([&, self] { work_on_thread(work, self); });
     } catch (...) {  // a thread was not to be had: those that run already end now
       fail();
@@ -30,7 +30,7 @@ void RealTime::run(const std::function<void(WorkerId)>& work) {
 
 void RealTime::work_on_thread(const std::function<void(WorkerId)>& work, WorkerId self) try {
   const ScopedBinding binding(places_.empty() ? std::nullopt : places_[self].processor);
-  seats_[self].processor = processor_of_this_thread();
+  states_[self].processor = processor_of_this_thread();
   work(self);
 } catch (const std::bad_alloc&) {
   stop_.end(StopReason::kMemoryLimit);
@@ -49,15 +49,15 @@ void RealTime::fail() {
 
 void RealTime::block(WorkerId self, double Overhead::*cause) {
   const auto start = Clock::now();
-  if (!is_over()) seats_[self].resumed.acquire();
-  seats_[self].overhead.*cause += seconds_since(start);
+  if (!is_over()) states_[self].resumed.acquire();
+  states_[self].overhead.*cause += seconds_since(start);
   stop_.check_limits();  // the wait took the time of thousands of attempts
 }
 
 void RealTime::pause(WorkerId self, double seconds) {
   const auto start = Clock::now();
   std::this_thread::sleep_for(std::chrono::duration<double>(seconds));
-  seats_[self].overhead.contention_s += seconds_since(start);
+  states_[self].overhead.contention_s += seconds_since(start);
   stop_.check_limits();
 }
 

@@ -31,12 +31,12 @@ class RealTime {
   Outcome attempt(Worker& worker) {
     const Outcome outcome = worker.attempt();
     worker.release();
-    if (++seats_[worker.id()].attempts % StopControl::kAttemptsBetweenChecks == 0) check(worker);
+    if (++states_[worker.id()].attempts % StopControl::kAttemptsBetweenChecks == 0) check(worker);
     return outcome;
   }
   /// Waits until another resumes it, maybe before, or the run is over. The time is charged to `cause`.
   void block(WorkerId self, double Overhead::*cause);
-  void resume(WorkerId worker) { seats_[worker].resumed.release(); }
+  void resume(WorkerId worker) { states_[worker].resumed.release(); }
   void pause(WorkerId self, double seconds);
   bool is_over() const { return stop_.is_over(); }
 
@@ -45,10 +45,10 @@ class RealTime {
   /// Seconds of run() that went by before worker 0 began: threads were started for the others.
   double start_s() const { return start_s_; }
   /// What the system said of the worker's thread after it was bound.
-  const ThreadProcessor& processor(WorkerId worker) const { return seats_[worker].processor; }
+  const ThreadProcessor& processor(WorkerId worker) const { return states_[worker].processor; }
   template <class Worker>
   Overhead overhead(const Worker& worker) const {
-    Overhead overhead = seats_[worker.id()].overhead;
+    Overhead overhead = states_[worker.id()].overhead;
     overhead.rollback_s = worker.counters().overhead.rollback_s;
     return overhead;
   }
@@ -60,7 +60,7 @@ class RealTime {
   }
 
   // What belongs to one worker, in cache lines of its own.
-  struct alignas(128) Seat {
+  struct alignas(128) WorkerState {
     std::counting_semaphore<> resumed{0};
     unsigned attempts = 0;
     CellMeter meter;
@@ -70,7 +70,7 @@ class RealTime {
 
   template <class Worker>
   void check(const Worker& worker) {
-    seats_[worker.id()].meter.report(worker, stop_);
+    states_[worker.id()].meter.report(worker, stop_);
     stop_.check_limits();
     if (worker.id() == 0) stop_.observe();
   }
@@ -79,7 +79,7 @@ class RealTime {
 
   StopControl& stop_;
   std::vector<Place> places_;
-  std::vector<Seat> seats_;
+  std::vector<WorkerState> states_;
   Clock::time_point start_ = Clock::now();
   double start_s_ = 0;
   std::mutex mutex_;  // guards failure_

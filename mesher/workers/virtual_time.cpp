@@ -18,14 +18,16 @@ constexpr double kUnit = 1e-6;
 }  // namespace
 
 VirtualTime::VirtualTime(StopControl& stop, std::size_t num_workers, VirtualCost cost, std::uint64_t seed)
-    : stop_(stop), cost_(cost), random_(seed), seats_(num_workers) {}
+    : stop_(stop), cost_(cost), random_(seed), states_(num_workers) {}
 
 void VirtualTime::run(const std::function<void(WorkerId)>& work) try {
-  for (WorkerId self = 0; self < seats_.size(); ++self) {
-    seats_[self].fibre = std::make_unique<Fibre>([&work, self] { work(self); });
+  for (WorkerId self = 0; self < states_.size(); ++self) {
+    states_[self].fibre = std::make_unique<Fibre>([&work, self] { work(self); });
     schedule(self, 0);
   }
-  const auto is_at_work = [](const Seat& seat) { return seat.fibre->state() != Fibre::State::kEnded; };
+  const auto is_at_work = [](const WorkerState& state) {
+    return state.fibre->state() != Fibre::State::kEnded;
+  };
   while (!events_.empty() && !is_over()) {
     const Event event = events_.top();
     events_.pop();
@@ -35,7 +37,7 @@ void VirtualTime::run(const std::function<void(WorkerId)>& work) try {
     stop_.observe();
     stop_.check_limits();
   }
-  if (!is_over() && std::any_of(seats_.begin(), seats_.end(), is_at_work))
+  if (!is_over() && std::any_of(states_.begin(), states_.end(), is_at_work))
     throw InternalError("virtual time stands still: every worker waits");
   finish_all();
 } catch (const std::bad_alloc&) {
@@ -49,11 +51,11 @@ void VirtualTime::run(const std::function<void(WorkerId)>& work) try {
 
 // A run ends between operations: those that have begun end as well.
 void VirtualTime::finish_all() {
-  for (Seat& seat : seats_) {
-    while (seat.fibre && seat.fibre->state() != Fibre::State::kEnded) {
-      seat.fibre->allow(Fibre::kUnlimited);
+  for (WorkerState& state : states_) {
+    while (state.fibre && state.fibre->state() != Fibre::State::kEnded) {
+      state.fibre->allow(Fibre::kUnlimited);
       try {
-        seat.fibre->resume();
+        state.fibre->resume();
       } catch (const std::bad_alloc&) {  // it has rolled back
       }
     }
@@ -61,35 +63,35 @@ void VirtualTime::finish_all() {
 }
 
 void VirtualTime::go_on(WorkerId worker) {
-  Seat& seat = seats_[worker];
-  if (seat.most_steps > 0) allow_part(seat);
-  if (seat.fibre->resume() != Fibre::State::kOutOfSteps) return;
+  WorkerState& state = states_[worker];
+  if (state.most_steps > 0) allow_part(state);
+  if (state.fibre->resume() != Fibre::State::kOutOfSteps) return;
   // Most stops are short, and a few so long that others carry out whole operations.
   schedule(worker, 1e-9 * std::exp(std::uniform_real_distribution(0.0, 12.0)(random_)));
 }
 
-void VirtualTime::allow_part(Seat& seat) {
-  seat.fibre->allow(std::uniform_int_distribution(std::uint64_t{1}, seat.most_steps)(random_));
+void VirtualTime::allow_part(WorkerState& state) {
+  state.fibre->allow(std::uniform_int_distribution(std::uint64_t{1}, state.most_steps)(random_));
 }
 
 void VirtualTime::begin_attempt(WorkerId self) {
-  Seat& seat = seats_[self];
-  seat.since_s = now_s_;
+  WorkerState& state = states_[self];
+  state.since_s = now_s_;
   if (!kIsInParts || is_over()) return;
-  seat.most_steps =
+  state.most_steps =
       1u << std::uniform_int_distribution(3, 9)(random_);  // some stop at many steps, some at few
-  allow_part(seat);
+  allow_part(state);
 }
 
 void VirtualTime::end_attempt(WorkerId self, const Work& work, Outcome outcome) {
-  Seat& seat = seats_[self];
-  seat.most_steps = 0;
-  seat.fibre->allow(Fibre::kUnlimited);
+  WorkerState& state = states_[self];
+  state.most_steps = 0;
+  state.fibre->allow(Fibre::kUnlimited);
   // Seeded perturbation: attempts of equal work do not end together.
   const double stretch = std::uniform_real_distribution(0.5, 1.5)(random_);
   schedule(self, kIsInParts ? 0 : stretch * seconds(work));
-  if (!is_over()) seat.fibre->suspend();
-  if (outcome == Outcome::kLockConflict) seat.overhead.rollback_s += now_s_ - seat.since_s;
+  if (!is_over()) state.fibre->suspend();
+  if (outcome == Outcome::kLockConflict) state.overhead.rollback_s += now_s_ - state.since_s;
 }
 
 double VirtualTime::seconds(const Work& work) const {
@@ -104,14 +106,14 @@ void VirtualTime::schedule(WorkerId worker, double delay_s) {
 
 void VirtualTime::block(WorkerId self, double Overhead::*cause) {
   const double since_s = now_s_;
-  if (!is_over()) seats_[self].fibre->suspend();
-  seats_[self].overhead.*cause += now_s_ - since_s;
+  if (!is_over()) states_[self].fibre->suspend();
+  states_[self].overhead.*cause += now_s_ - since_s;
 }
 
 void VirtualTime::pause(WorkerId self, double seconds) {
-  seats_[self].overhead.contention_s += seconds;
+  states_[self].overhead.contention_s += seconds;
   schedule(self, seconds);
-  if (!is_over()) seats_[self].fibre->suspend();
+  if (!is_over()) states_[self].fibre->suspend();
 }
 
 }  // namespace podm

@@ -38,7 +38,7 @@ class VirtualTime {
     begin_attempt(self);
     const Work before = work_of(worker);
     const Outcome outcome = worker.attempt();
-    seats_[self].meter.report(worker, stop_);
+    states_[self].meter.report(worker, stop_);
     if (kIsInParts || outcome == Outcome::kLockConflict) worker.release();
     end_attempt(self, work_of(worker) - before, outcome);
     worker.release();
@@ -54,7 +54,7 @@ class VirtualTime {
   double now_s() const { return now_s_; }
   template <class Worker>
   const Overhead& overhead(const Worker& worker) const {
-    return seats_[worker.id()].overhead;
+    return states_[worker.id()].overhead;
   }
 
  private:
@@ -77,7 +77,7 @@ class VirtualTime {
     return {counters.classified_cells, counters.conflict_tests, counters.cells_created};
   }
 
-  struct Seat {
+  struct WorkerState {
     std::unique_ptr<Fibre> fibre;
     double since_s = 0;            // its attempt began
     std::uint64_t most_steps = 0;  // a part of it takes at most so many
@@ -96,7 +96,7 @@ class VirtualTime {
   double seconds(const Work& work) const;
   void begin_attempt(WorkerId self);
   void end_attempt(WorkerId self, const Work& work, Outcome outcome);
-  void allow_part(Seat& seat);
+  void allow_part(WorkerState& state);
   void schedule(WorkerId worker, double delay_s);
   void go_on(WorkerId worker);
   void finish_all();
@@ -104,7 +104,7 @@ class VirtualTime {
   StopControl& stop_;
   VirtualCost cost_;
   std::mt19937_64 random_;
-  std::vector<Seat> seats_;
+  std::vector<WorkerState> states_;
   std::priority_queue<Event, std::vector<Event>, std::greater<>> events_;
   std::uint64_t num_events_ = 0;
   double now_s_ = 0;
