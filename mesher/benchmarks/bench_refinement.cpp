@@ -35,7 +35,7 @@ BENCHMARK(BM_mesh_phantom)->Arg(8)->Arg(5)->Unit(benchmark::kMillisecond);
 
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
 
-// Of this thread: what others do to the machine counts less than in time on the wall.
+// This thread's processor time: what others do to the machine counts less than in time on the wall.
 double cpu_s() {
   std::timespec t{};
   clock_gettime(CLOCK_THREAD_CPUTIME_ID, &t);
@@ -78,7 +78,7 @@ void BM_cost_of_locks(benchmark::State& state) {
     cells = construction.mesh().num_cells();
     return seconds;
   };
-  std::array<double, 2> fastest_s{kInfinity, kInfinity};  // without, with
+  std::array<double, 2> fastest_s{kInfinity, kInfinity};  // without locks, with them
   bool with_locks_first = false;
   for (auto _ : state) {
     for (const bool with_locks : {with_locks_first, !with_locks_first})

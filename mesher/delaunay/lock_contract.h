@@ -5,9 +5,10 @@
 //   under three, and it is replaced under all four. In a leaf without locks a vertex is held if it lies in
 //   the region.
 //
-// The contract binds attempts. Whoever uses the store outside of one has it alone: before workers run, after
-// they have ended, and where the master of a computing node ends a leaf. Peeks and prefetches are bound by
-// nothing.
+// Vertices go unchecked: whoever may read a cell may read its vertices, and those that locks are tried on are
+// peeked at. The contract binds attempts. Whoever uses the store outside of one has it alone: before workers
+// run, after they have ended, and where the master of a computing node ends a leaf. Peeks and prefetches are
+// bound by nothing.
 #pragma once
 
 #include <cstdint>

@@ -98,9 +98,9 @@ class Mesh {
   // Builds that check the lock protocol do it here: step.h, lock_contract.h.
   Cell& cell(CellId c) { return note_read(c), assert_may_read(*this, c), cells_[c]; }
   const Cell& cell(CellId c) const { return note_read(c), assert_may_read(*this, c), cells_[c]; }
-  const CellState& state(CellId c) const { return states_[c]; }
+  const CellState& state(CellId c) const { return assert_may_read(*this, c), states_[c]; }
   LabelIndex& label(CellId c) { return step(), assert_may_read(*this, c), states_[c].label; }
-  LabelIndex label(CellId c) const { return states_[c].label; }
+  LabelIndex label(CellId c) const { return assert_may_read(*this, c), states_[c].label; }
   Vertex& vertex(VertexId v) { return step(), vertices_[v]; }
   const Vertex& vertex(VertexId v) const { return step(), vertices_[v]; }
   const Point& point(VertexId v) const { return step(), vertices_[v].point; }

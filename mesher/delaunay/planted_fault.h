@@ -5,7 +5,8 @@
 
 namespace podm {
 
-/// How many of a cell's vertices are locked before it is read, and before it is replaced.
+/// How many of a cell's vertices are locked before it is read, and before it is replaced. With three to
+/// replace it, the vertex beyond the facet by which an operation comes to a cell is not locked.
 struct LocksTaken {
   unsigned to_read = 2, to_replace = 4;
 };

@@ -29,7 +29,7 @@
 namespace podm::test {
 namespace {
 
-constexpr unsigned kMostSeconds = 20;  // of a schedule; most take some hundredths
+constexpr unsigned kMostSeconds = 20;  // a schedule may take them; most take some hundredths
 
 constexpr int kSound = 100, kMostToFind = 10000;
 // Their meshes have a vertex of R4 nearer than sqrt(2 + sqrt(3)) s, as rules.h allows.
@@ -192,7 +192,8 @@ class Schedules : public testing::Test {
     return true;
   }
 
-  // In memory where there is such a folder: a log is written through to the disk, which may take seconds.
+  // It lies in memory where there is such a folder: a log is written through to the disk, which may take
+  // seconds.
   std::filesystem::path folder_ =
       std::filesystem::path(std::filesystem::exists("/dev/shm") ? "/dev/shm" : testing::TempDir()) /
       ("podm_schedules_" + std::to_string(getpid()));

@@ -25,7 +25,7 @@ struct RandomOctree {
 
   double uniform(double from, double to) { return std::uniform_real_distribution(from, to)(random); }
   double finest_side_mm() const { return is_graded ? side_mm / 4 : side_mm; }
-  // As the distance of the fine point from the cube, so that it grows to the side of a leaf there.
+  // It grows as the distance of the fine point from the cube, to the side of a leaf.
   double largest_side(const Point& from, const Point& to) const {
     if (!is_graded) return side_mm;
     const auto gap = [](double x, double a, double b) { return std::max({0.0, a - x, x - b}); };
@@ -46,7 +46,8 @@ struct RandomOctree {
     return {low, high, finest_side_mm(),
             [this](const Point& a, const Point& b) { return largest_side(a, b); }, is_leaf};
   }
-  // In the box and around it; every third coordinate is on a face of a cube, as exactly as rounding lets it.
+  // It lies in the box or around it; every third coordinate is on a face of a cube, as exactly as rounding
+  // lets it.
   Point point() {
     const auto coordinate = [&](double from, double to) {
       const double x = uniform(from - side_mm, to + side_mm);

@@ -67,7 +67,7 @@ class Reach {
     if (rule == 1) p = near(p, radius_mm_);                           // R1, R2
     if (rule == 2) p = near(near(p, radius_mm_), radius_mm_);         // R3: by way of a vertex of the cell
     if (rule != 0 && random_() % 2 == 0) p = near(p, 2 * delta_mm_);  // R6
-    return near(near(p, radius_mm_), radius_mm_);  // by way of the centre of a cell with p in its ball
+    return near(near(p, radius_mm_), radius_mm_);  // it goes by the centre of a cell with p in its ball
   }
 
  private:

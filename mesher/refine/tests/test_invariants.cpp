@@ -44,7 +44,7 @@ class NeedleInABall {
   Triangulator triangulator{{{-20, -20, -20}, {40, 40, 40}}};
 
  private:
-  static constexpr Point center_{4.5, 22.5, 14.5};  // of the ball
+  static constexpr Point center_{4.5, 22.5, 14.5};  // the ball's
   LabelImage image_ = ball(24, 11);
   Isosurface isosurface_{image_, 1};
   Parameters parameters_{.delta_mm = kSpacing,
@@ -53,7 +53,7 @@ class NeedleInABall {
                          .spacing_mm = kSpacing};
 };
 
-// Between the published bound and sqrt(2 + sqrt(3)), too.
+// Ratios between the published bound and sqrt(2 + sqrt(3)) are tried, too.
 TEST(Invariants, HoldForTheNearestVertexThatR4MayInsert) {
   for (const double ratio : {1.93, 1.9301, 1.9305, 1.931, 1.9318, 1.94}) {
     NeedleInABall scene(ratio);
@@ -96,7 +96,7 @@ TEST(Invariants, HoldForR4BesideANearSample) {
   }
 }
 
-// Of triangles with two sides of at least `ratio` and a third of at least 1.
+// The least of triangles with two sides of at least `ratio` and a third of at least 1.
 double least_circumradius(double ratio) {
   constexpr int kSteps = 60;
   double least = std::numeric_limits<double>::infinity();

@@ -60,7 +60,7 @@ class Player {
 
 class Coordinated : public testing::TestWithParam<std::tuple<Contention, bool>> {
  protected:
-  // As PODM's loop does, round after round of the master, as for one leaf after the other.
+  // Players do what PODM's loop does, round after round of the master, as for one leaf after the other.
   template <class Time>
   void play(Time& time) {
     constexpr int kRounds = 50, kCells = 3000;
