@@ -244,10 +244,9 @@ Session::Session(const RunCommand& given, const std::string& mesher_sha256, cons
       preparer(given.programs.podm, mesher_sha256, given.results_folder),
       keys(mesher_sha256, machine.summary, Peers(given.programs.peers, given.programs.podm)),
       runner(given.programs) {
-  const ScratchFolder scratch(command.results_folder);
-  programs = describe_programs(command.programs, scratch.path());
+  programs = describe_programs(command.programs);
   environment = describe(machine, command.results_folder);
-  environment.update(environment_of_run(scratch.path()));
+  environment.update(environment_of_run());
 }
 
 bool run_experiment(Session& session, const Experiment& experiment, Plan plan) {

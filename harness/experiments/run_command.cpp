@@ -1,7 +1,5 @@
 #include <fmt/format.h>
 
-#include <atomic>
-#include <csignal>
 #include <cstdio>
 #include <utility>
 
@@ -11,15 +9,12 @@
 #include "machine/machine.h"
 #include "rows/results_file.h"
 #include "trials/sha256.h"
+#include "trials/stop_request.h"
 
 namespace podm::bench {
 namespace {
 
 using Json = nlohmann::ordered_json;
-
-std::atomic<bool> interrupted = false;
-
-void on_signal(int) { interrupted = true; }
 
 std::vector<Json> recorded_rows(const std::string& path) {
   const RowsRead read = repair_rows(path);
@@ -35,19 +30,18 @@ int run(const RunCommand& command) {
   const std::vector<Experiment> experiments = read_experiments(command);
   const std::string mesher_sha256 = sha256_of_file(command.programs.podm);  // refuses before a folder is made
   const ResultsLock lock(command.results_folder);
-  std::signal(SIGINT, on_signal);
-  std::signal(SIGTERM, on_signal);
-  Session session(command, mesher_sha256, this_machine(), [] { return interrupted.load(); });
+  const StopQuery is_interrupted = stop_on_signals();
+  Session session(command, mesher_sha256, this_machine(), is_interrupted);
   std::vector<Plan> plans;  // all, so that a bad file is refused before anything runs
   for (const Experiment& experiment : experiments)
     plans.push_back(make_plan(command, experiment,
                               recorded_rows(rows_path(command.results_folder, experiment)), session.preparer,
                               session.keys));
   bool all_well = true;
-  for (std::size_t i = 0; i < experiments.size() && !interrupted; ++i)
+  for (std::size_t i = 0; i < experiments.size() && !is_interrupted(); ++i)
     if (!plans[i].turns.empty())
       all_well = run_experiment(session, experiments[i], std::move(plans[i])) && all_well;
-  return all_well && !interrupted ? 0 : kExitMissed;
+  return all_well && !is_interrupted() ? 0 : kExitMissed;
 }
 
 }  // namespace podm::bench

@@ -2,7 +2,6 @@
 
 #include <fmt/format.h>
 
-#include <filesystem>
 #include <fstream>
 
 #include "machine/environment.h"
@@ -61,7 +60,7 @@ void write_budgets(const Budgets& budgets, const std::string& path) {
 }
 
 std::string this_build() {
-  const Json build = environment_of_run(std::filesystem::temp_directory_path());
+  const Json build = environment_of_run();
   return fmt::format("{} {} {}", build["compiler"].get<std::string>(),
                      build["compiler_flags"].get<std::string>(), build["build_type"].get<std::string>());
 }

@@ -2,26 +2,18 @@
 
 #include <fmt/format.h>
 
-#include <atomic>
-#include <csignal>
-
 #include "gate/compare.h"
+#include "trials/stop_request.h"
 
 namespace podm::bench {
 namespace {
 
 constexpr int kExitWorse = 1;
 
-std::atomic<bool> interrupted = false;
-
-void on_signal(int) { interrupted = true; }
-
 }  // namespace
 
 int run_gate(const GateOptions& options, bool renews) {
-  std::signal(SIGINT, on_signal);
-  std::signal(SIGTERM, on_signal);
-  const auto stop_requested = [] { return interrupted.load(); };
+  const StopQuery stop_requested = stop_on_signals();
   if (!renews) return gate(options, stop_requested) ? 0 : kExitWorse;
   renew_budgets(options, stop_requested);
   return 0;

@@ -16,7 +16,6 @@ namespace {
 namespace fs = std::filesystem;
 
 constexpr double kTimeoutS = 600;
-constexpr std::size_t kTailBytes = 2000;
 constexpr std::size_t kWarmBytesOfGate = std::size_t{1} << 28;  // more than a trial of the gate takes
 
 }  // namespace
@@ -48,16 +47,12 @@ std::vector<std::string> GateMesher::command(const std::string& podm, const Gate
           "--quiet"};
 }
 
-ProcessOutcome GateMesher::run(const std::vector<std::string>& arguments) const {
-  const ProcessOutcome outcome = run_process({.arguments = arguments,
-                                              .stdout_path = {},
-                                              .stderr_path = folder_ + "/stderr.txt",
-                                              .timeout_s = kTimeoutS},
-                                             stop_requested_);
+Reply GateMesher::run(const std::vector<std::string>& arguments) const {
+  Reply reply = ask(arguments, kTimeoutS, stop_requested_);
   using End = ProcessOutcome::End;
-  if (outcome.end == End::kNotStarted || outcome.end == End::kInterrupted)
-    throw InputError(fmt::format("{}: {}", arguments.front(), outcome.describe()));
-  return outcome;
+  if (reply.outcome.end == End::kNotStarted || reply.outcome.end == End::kInterrupted)
+    throw InputError(fmt::format("{}: {}", arguments.front(), reply.outcome.describe()));
+  return reply;
 }
 
 MesherRun GateMesher::mesh(const std::string& podm, const GateTrial& trial, int threads, bool verify) const {
@@ -66,7 +61,7 @@ MesherRun GateMesher::mesh(const std::string& podm, const GateTrial& trial, int 
   fs::remove(folder_ + "/record.jsonl", error);
   auto arguments = command(podm, trial, threads);
   if (verify) arguments.push_back("--verify");
-  MesherRun run{.process = this->run(arguments), .record = {}};
+  MesherRun run{.process = this->run(arguments).outcome, .record = {}};
   std::ifstream file(folder_ + "/record.jsonl");
   if (file) run.record = nlohmann::ordered_json::parse(file, nullptr, false);
   if (!run.record.is_object()) run.record = nullptr;
@@ -76,14 +71,13 @@ MesherRun GateMesher::mesh(const std::string& podm, const GateTrial& trial, int 
 std::uint64_t GateMesher::count_instructions(const std::string& podm, const GateTrial& trial) const {
   std::vector<std::string> arguments{"valgrind", "--tool=callgrind", "--callgrind-out-file=/dev/null"};
   for (const std::string& argument : command(podm, trial, 1)) arguments.push_back(argument);
-  const ProcessOutcome outcome = run(arguments);
-  const std::string said = read_tail(folder_ + "/stderr.txt", kTailBytes);
+  const Reply reply = run(arguments);
   const std::string key = "Collected : ";
-  const auto found = said.rfind(key);
-  if (!outcome.succeeded() || found == std::string::npos)
-    throw InputError(fmt::format("callgrind counts no instructions of {} on {}: {}\n{}", podm, trial.image,
-                                 outcome.describe(), said));
-  return std::stoull(said.substr(found + key.size()));
+  const auto found = reply.messages.rfind(key);
+  if (!reply.succeeded() || found == std::string::npos)
+    throw InputError(
+        fmt::format("callgrind counts no instructions of {} on {}: {}", podm, trial.image, reply.why_not()));
+  return std::stoull(reply.messages.substr(found + key.size()));
 }
 
 }  // namespace podm::bench

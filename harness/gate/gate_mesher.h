@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "experiments/experiment.h"
-#include "trials/process.h"
+#include "trials/ask.h"
 
 namespace podm::bench {
 
@@ -40,7 +40,8 @@ class GateMesher {
 
  private:
   std::vector<std::string> command(const std::string& podm, const GateTrial& trial, int threads) const;
-  ProcessOutcome run(const std::vector<std::string>& arguments) const;
+  // Throws where the program did not start and where the user ended it.
+  Reply run(const std::vector<std::string>& arguments) const;
 
   std::string folder_;
   StopQuery stop_requested_;

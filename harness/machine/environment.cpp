@@ -11,16 +11,13 @@
 
 #include "machine/machine.h"
 #include "runtime/control_group.h"
-#include "trials/process.h"
+#include "trials/ask.h"
 #include "trials/sha256.h"
 
 namespace podm::bench {
 namespace {
 
 using Json = nlohmann::ordered_json;
-
-constexpr double kAnswerTimeoutS = 30;
-constexpr std::size_t kMaxAnswerBytes = 4096;
 
 std::string first_line(const std::string& path) {
   std::ifstream file(path);
@@ -71,27 +68,11 @@ Json cgroup_limits() {
           {"memory_max", memory_limit()}};
 }
 
-std::string trimmed(std::string text) {
-  while (text.ends_with('\n')) text.pop_back();
-  return text;
-}
-
-// What a program prints on stdout; false when it fails.
-bool ask(const std::vector<std::string>& arguments, const std::string& scratch_folder, std::string& answer) {
-  const std::string path = scratch_folder + "/answer.txt";
-  const ProcessOutcome outcome = run_process(
-      {.arguments = arguments, .stdout_path = path, .stderr_path = {}, .timeout_s = kAnswerTimeoutS});
-  answer = trimmed(read_tail(path, kMaxAnswerBytes));
-  return outcome.succeeded();
-}
-
-Json sources(const std::string& scratch_folder) {
-  std::string commit, changes;
-  if (!ask({"git", "-C", PODM_SOURCE_DIR, "rev-parse", "HEAD"}, scratch_folder, commit) ||
-      !ask({"git", "-C", PODM_SOURCE_DIR, "status", "--porcelain", "--untracked-files=no"}, scratch_folder,
-           changes))
-    return "unavailable: the sources are in no git checkout";
-  return {{"commit", commit}, {"dirty", !changes.empty()}};
+Json sources() {
+  const Reply commit = ask({"git", "-C", PODM_SOURCE_DIR, "rev-parse", "HEAD"}),
+              changes = ask({"git", "-C", PODM_SOURCE_DIR, "status", "--porcelain", "--untracked-files=no"});
+  if (!commit.succeeded() || !changes.succeeded()) return "unavailable: the sources are in no git checkout";
+  return {{"commit", commit.text}, {"dirty", !changes.text.empty()}};
 }
 
 // Of the lines "key: value".
@@ -104,10 +85,9 @@ Json build_of(std::istringstream& lines) {
 }
 
 // What it prints is a line of name and version and then lines of its build.
-Json describe_program(const std::string& path, const std::string& scratch_folder) {
-  std::string answer;
-  if (!ask({path, "--version"}, scratch_folder, answer)) answer = "unavailable: --version fails";
-  std::istringstream lines(answer);
+Json describe_program(const std::string& path) {
+  const Reply reply = ask({path, "--version"});
+  std::istringstream lines(reply.succeeded() ? reply.text : "unavailable: --version fails");
   std::string version;
   std::getline(lines, version);
   const Json build = build_of(lines);
@@ -118,7 +98,7 @@ Json describe_program(const std::string& path, const std::string& scratch_folder
 
 }  // namespace
 
-Json environment_of_run(const std::string& scratch_folder) {
+Json environment_of_run() {
   return {
       {"kernel", kernel()},
       {"smt", first_line("/sys/devices/system/cpu/smt/control")},
@@ -128,7 +108,7 @@ Json environment_of_run(const std::string& scratch_folder) {
       {"compiler", PODM_COMPILER},
       {"compiler_flags", PODM_COMPILER_FLAGS},
       {"build_type", PODM_BUILD_TYPE},
-      {"sources", sources(scratch_folder)},
+      {"sources", sources()},
   };
 }
 
@@ -142,10 +122,9 @@ Json environment_now() {
   };
 }
 
-Json describe_programs(const Programs& programs, const std::string& scratch_folder) {
-  Json described = {{"podm", describe_program(programs.podm, scratch_folder)}};
-  described["podm_verify"] =
-      programs.verifier.empty() ? Json("none") : describe_program(programs.verifier, scratch_folder);
+Json describe_programs(const Programs& programs) {
+  Json described = {{"podm", describe_program(programs.podm)}};
+  described["podm_verify"] = programs.verifier.empty() ? Json("none") : describe_program(programs.verifier);
   return described;
 }
 

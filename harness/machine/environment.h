@@ -9,13 +9,13 @@
 
 namespace podm::bench {
 
-/// What stays during a run: sources, build, libraries, limits. Uses `scratch_folder`, which must exist.
-nlohmann::ordered_json environment_of_run(const std::string& scratch_folder);
+/// What stays during a run: sources, build, libraries, limits.
+nlohmann::ordered_json environment_of_run();
 
 /// What may change between trials: load, memory available, governor, huge pages and NUMA balancing.
 nlohmann::ordered_json environment_now();
 
 /// Hash and --version of mesher and verifier. Throws InputError naming a program that cannot be read.
-nlohmann::ordered_json describe_programs(const Programs& programs, const std::string& scratch_folder);
+nlohmann::ordered_json describe_programs(const Programs& programs);
 
 }  // namespace podm::bench

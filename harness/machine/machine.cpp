@@ -68,13 +68,18 @@ int usable_processors() {
                   allowed > 0 ? static_cast<int>(allowed) : static_cast<int>(sysconf(_SC_NPROCESSORS_ONLN)));
 }
 
-std::string value_of(const std::string& path, const std::string& key) {
-  std::ifstream file(path);
-  for (std::string line; std::getline(file, line);)
+std::string value_in(std::istream& lines, const std::string& key) {
+  for (std::string line; std::getline(lines, line);)
     if (line.starts_with(key))
       if (const auto begin = line.find_first_not_of(" \t", line.find(':') + 1); begin != std::string::npos)
         return line.substr(begin);
-  return fmt::format("unavailable: {} does not tell '{}'", path, key);
+  return "";
+}
+
+std::string value_of(const std::string& path, const std::string& key) {
+  std::ifstream file(path);
+  const std::string value = value_in(file, key);
+  return value.empty() ? fmt::format("unavailable: {} does not tell '{}'", path, key) : value;
 }
 
 }  // namespace podm::bench

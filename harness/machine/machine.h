@@ -1,6 +1,7 @@
 // The machine as hwloc sees it.
 #pragma once
 
+#include <iosfwd>
 #include <nlohmann/json.hpp>
 #include <string>
 #include <vector>
@@ -21,7 +22,9 @@ int usable_processors();
 /// Their numbers, the lowest first; none where the kernel does not tell.
 std::vector<int> usable_processor_ids();
 
-/// The text after the colon of the first line "key : text" of a file, or "unavailable: why".
+/// The text after the colon of the first line "key : text"; empty when no line has the key.
+std::string value_in(std::istream& lines, const std::string& key);
+/// The same of a file's lines, or "unavailable: why".
 std::string value_of(const std::string& path, const std::string& key);
 
 }  // namespace podm::bench

@@ -1,12 +1,11 @@
 #include "machine/memory_levels.h"
 
 #include <fmt/format.h>
-#include <unistd.h>
 
 #include <algorithm>
 #include <cmath>
-#include <filesystem>
 #include <limits>
+#include <sstream>
 #include <stdexcept>
 #include <vector>
 
@@ -14,7 +13,7 @@
 #include "machine/machine.h"
 #include "machine/pointer_chase.h"
 #include "rows/statistics.h"
-#include "trials/process.h"
+#include "trials/ask.h"
 
 namespace podm::bench {
 namespace {
@@ -27,7 +26,6 @@ constexpr int kRepeats = 7;
 constexpr std::size_t kLoads = 250'000;  // a repeat takes some 30 ms from memory
 constexpr std::uint64_t kSeed = 1;
 constexpr double kBenchTimeoutS = 60;
-constexpr std::size_t kMaxBenchBytes = 4000;
 
 struct Cache {
   int level;
@@ -69,17 +67,11 @@ Json latency(hwloc_topology_t topology, std::size_t bytes, hwloc_obj_t node) {
 // Clock cycles a cache line when likwid-bench streams through the working set with the prefetchers' help.
 Json likwid_bench(std::size_t bytes) {
   if (!is_installed("likwid-bench")) return "unavailable: likwid-bench is not installed";
-  const std::string path =
-      fmt::format("{}/podm-bench-{}", std::filesystem::temp_directory_path().string(), getpid());
-  const ProcessOutcome outcome =
-      run_process({.arguments = {"likwid-bench", "-t", "clload", "-w", fmt::format("N:{}B:1", bytes)},
-                   .stdout_path = path,
-                   .stderr_path = {},
-                   .timeout_s = kBenchTimeoutS});
-  const std::string cycles = value_of(path, "Cycles per cacheline");
-  std::filesystem::remove(path);
-  if (!outcome.succeeded() || cycles.starts_with("unavailable"))
-    return "unavailable: likwid-bench: " + outcome.describe();
+  const Reply reply =
+      ask({"likwid-bench", "-t", "clload", "-w", fmt::format("N:{}B:1", bytes)}, kBenchTimeoutS);
+  std::istringstream lines(reply.text);
+  const std::string cycles = value_in(lines, "Cycles per cacheline");
+  if (!reply.succeeded() || cycles.empty()) return "unavailable: likwid-bench: " + reply.why_not();
   return std::stod(cycles);
 }
 

@@ -8,7 +8,7 @@
 
 #include "experiments/option_matrix.h"
 #include "rows/record.h"
-#include "trials/process.h"
+#include "trials/ask.h"
 #include "trials/sha256.h"
 
 namespace podm::bench {
@@ -16,23 +16,15 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
-constexpr double kVersionTimeoutS = 30;
-constexpr std::size_t kMaxVersionBytes = 500;
 constexpr int kMesherSchemaOfPeers = 1;  // as podm's records
 
 std::string first_line(const std::string& text) { return text.substr(0, text.find('\n')); }
 
 Peer ask_for_version(const std::string& program, const std::string& podm) {
-  const std::string answer_path =
-      fmt::format("{}/podm-bench-{}", std::filesystem::temp_directory_path().string(), getpid());
-  const ProcessOutcome outcome = run_process({.arguments = {program, "--version", "--podm", podm},
-                                              .stdout_path = answer_path,
-                                              .stderr_path = {},
-                                              .timeout_s = kVersionTimeoutS});
-  const std::string answer = first_line(read_tail(answer_path, kMaxVersionBytes));
-  std::filesystem::remove(answer_path);
-  if (outcome.succeeded()) return {program, answer, {}};
-  return {program, {}, answer.empty() ? program + " --version: " + outcome.describe() : answer};
+  const Reply reply = ask({program, "--version", "--podm", podm});
+  const std::string line = first_line(reply.text);
+  if (reply.succeeded()) return {program, line, {}};
+  return {program, {}, line.empty() ? program + " --version: " + reply.why_not() : line};
 }
 
 }  // namespace

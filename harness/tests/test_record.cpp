@@ -150,8 +150,7 @@ TEST_F(RowTest, TableHasMediansOfWhatIsProvedAndNoOther) {
 }
 
 TEST(Environment, KnowsThisMachineOrSaysWhyNot) {
-  const TemporaryFolder folder;
-  Json known = environment_of_run(folder.path());
+  Json known = environment_of_run();
   known.update(environment_now());
   for (const char* key :
        {"governor", "transparent_huge_pages", "numa_balancing", "smt", "cgroup", "kernel", "load_average",
@@ -169,13 +168,13 @@ TEST(Environment, ProgramsAreKnownByTheirBytesAndVersion) {
   const Programs programs{
       folder.script("podm", R"(printf 'podm 9.9\ncommit: abc\nlibraries: ITK 5: a, zlib 1\n')"),
       folder.script("podm-verify", "exit 3")};
-  const Json described = describe_programs(programs, folder.path());
+  const Json described = describe_programs(programs);
   EXPECT_EQ(described["podm"]["version"], "podm 9.9");
   EXPECT_EQ(described["podm"]["build"], Json({{"commit", "abc"}, {"libraries", "ITK 5: a, zlib 1"}}));
   EXPECT_TRUE(text_in(described["podm_verify"], "build").starts_with("unavailable"));
   EXPECT_TRUE(text_in(described["podm_verify"], "version").starts_with("unavailable"));
   EXPECT_NE(described["podm"]["sha256"], described["podm_verify"]["sha256"]);
-  EXPECT_THROW(describe_programs({folder / "absent", {}}, folder.path()), InputError);
+  EXPECT_THROW(describe_programs({folder / "absent", {}}), InputError);
 }
 
 TEST(Machine, IsTheSameEachTimeAndTellsNoHostName) {

@@ -12,8 +12,9 @@ namespace podm::bench {
 /// Why a trial cannot start; its row tells it.
 class PreparationError : public std::runtime_error {
  public:
-  /// `what` was being done by the process.
-  PreparationError(const std::string& what, const ProcessRequest& request, const ProcessOutcome& outcome);
+  /// `what` was to be made by the command, which ended with `outcome` and these last words on stderr.
+  PreparationError(const std::string& what, std::vector<std::string> command, const ProcessOutcome& outcome,
+                   std::string stderr_tail);
 
   std::vector<std::string> command;
   ProcessOutcome process;
@@ -37,8 +38,7 @@ class InputFiles {
 
  private:
   std::string mark_of(const std::string& phantom) const;
-  std::string size_of(const std::string& phantom, const std::string& scratch_folder,
-                      const StopQuery& stop_requested) const;
+  std::string size_of(const std::string& phantom, const StopQuery& stop_requested) const;
 
   std::string podm_, podm_sha256_, folder_;
 };

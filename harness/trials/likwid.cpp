@@ -10,8 +10,8 @@
 #include <sstream>
 
 #include "machine/machine.h"
+#include "trials/ask.h"
 #include "trials/counter_tool.h"
-#include "trials/process.h"
 
 namespace podm::bench {
 namespace {
@@ -20,8 +20,6 @@ using Json = nlohmann::ordered_json;
 
 constexpr const char* kProgram = "likwid-perfctr";
 constexpr const char* kOutput = "/likwid.csv";
-constexpr double kLikwidTimeoutS = 30;
-constexpr std::size_t kMaxLikwidBytes = 500;
 
 // "0,1,4": what this process may run on.
 std::string usable_processor_list() {
@@ -39,27 +37,21 @@ std::vector<std::string> command_of(const std::string& events, const std::string
 }
 
 // likwid's short name of this processor, a folder of groups; empty when likwid knows none.
-std::string architecture(const std::string& scratch_folder) {
-  const std::string path = scratch_folder + "/likwid_info.txt";
-  run_process(
-      {.arguments = {kProgram, "-i"}, .stdout_path = path, .stderr_path = {}, .timeout_s = kLikwidTimeoutS});
-  const std::string name = value_of(path, "CPU short");
-  return name.starts_with("unavailable") || name == "nil" ? "" : name;
+std::string architecture() {
+  std::istringstream lines(ask({kProgram, "-i"}).text);
+  const std::string name = value_in(lines, "CPU short");
+  return name == "nil" ? "" : name;
 }
 
 // What likwid-perfctr says when it refuses to count `events`, or a group of its own, in one line; empty: it
 // counts.
 std::string refusal_of(const std::string& events, const std::string& scratch_folder) {
-  const std::string path = scratch_folder + "/likwid_refusal.txt";
   std::vector<std::string> command = command_of(events, scratch_folder + "/likwid_probe.csv");
   command.push_back("true");
-  const ProcessOutcome outcome = run_process(
-      {.arguments = command, .stdout_path = {}, .stderr_path = path, .timeout_s = kLikwidTimeoutS});
-  if (outcome.succeeded()) return {};
-  std::istringstream said(read_tail(path, kMaxLikwidBytes));
-  std::string words;
-  for (std::string line; std::getline(said, line);) words += (words.empty() ? "" : "; ") + line;
-  return fmt::format("{}: {}", kProgram, words.empty() ? outcome.describe() : words);
+  const Reply reply = ask(command);
+  if (reply.succeeded()) return "";
+  return fmt::format("{}: {}", kProgram,
+                     reply.messages.empty() ? reply.outcome.describe() : reply.complaint());
 }
 
 // Why there are no counts on a processor of which likwid has no events. It may say more than its name does.
@@ -103,7 +95,7 @@ Likwid::Likwid(const std::string& group, const std::string& groups_folder, const
     absence_ = fmt::format("{} is not installed", kProgram);
     return;
   }
-  const std::string processor = architecture(scratch_folder);
+  const std::string processor = architecture();
   const std::string path = fmt::format("{}/{}/{}.txt", groups_folder, processor, group);
   events_ = events_of_group(path);
   absence_ = processor.empty() ? refusal_of_processor(group, scratch_folder)

@@ -2,15 +2,13 @@
 #pragma once
 
 #include <cstdint>
-#include <functional>
 #include <optional>
 #include <string>
 #include <vector>
 
-namespace podm::bench {
+#include "trials/stop_request.h"
 
-/// Asked a few times a second; true ends the child.
-using StopQuery = std::function<bool()>;
+namespace podm::bench {
 
 struct ProcessRequest {
   std::vector<std::string> arguments;    ///< the program first; looked up in PATH unless it has a slash

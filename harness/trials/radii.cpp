@@ -19,6 +19,7 @@ namespace {
 using Json = nlohmann::ordered_json;
 
 constexpr const char* kSchema = "podm-bench-radius/1";
+constexpr std::size_t kTailBytes = 2000;
 
 std::string now() {
   return fmt::format("{:%Y-%m-%dT%H:%M:%SZ}", fmt::gmtime(std::chrono::system_clock::now()));
@@ -97,7 +98,7 @@ Json Radii::resolve(const Trial& trial, const std::string& image, const std::str
   const Json record = file ? Json::parse(file, nullptr, false) : Json();
   if (outcome.end != ProcessOutcome::End::kExited || !tells_radius(record))
     throw PreparationError(fmt::format("no radius for {} cells", trial.options[kTargetElements].dump()),
-                           request, outcome);
+                           request.arguments, outcome, read_tail(request.stderr_path, kTailBytes));
   const Json calibration = calibration_of(record);
   store({{"schema", kSchema},
          {"key", key_of(trial, image_sha256)},

@@ -5,13 +5,13 @@
 
 #include <algorithm>
 #include <filesystem>
-#include <fstream>
 
 #include "experiments/option_matrix.h"
 #include "machine/machine.h"
 #include "rows/measure.h"
 #include "rows/record.h"
 #include "trials/counters.h"
+#include "trials/image_info.h"
 #include "trials/judgement.h"
 #include "trials/side_by_side.h"
 #include "trials/stopwatch.h"
@@ -23,7 +23,6 @@ namespace {
 using Json = nlohmann::ordered_json;
 
 constexpr std::size_t kTailBytes = 2000;
-constexpr double kInfoTimeoutS = 120;
 constexpr const char* kMeshName = "/mesh.vtu";
 constexpr const char* kMessagesName = "/stderr.txt";
 
@@ -44,19 +43,6 @@ std::vector<std::string> mesh_command(const Trial& trial, const Preparation& pre
 std::string mesh_path(const Json& record, const std::string& folder) {
   if (!record.is_object() || !record.contains("mesh")) return folder + kMeshName;
   return fmt::format("{}/{}", folder, text_in(record, "mesh"));
-}
-
-// The record names the image by path and hash; how many voxels it has is for memory per cell.
-Json read_image_size(const std::string& image_path, const std::string& podm, const std::string& folder) {
-  const std::string path = folder + "/info.json";
-  const ProcessOutcome info = run_process({.arguments = {podm, "info", image_path, "--json"},
-                                           .stdout_path = path,
-                                           .stderr_path = {},
-                                           .timeout_s = kInfoTimeoutS});
-  if (!info.succeeded()) return nullptr;  // meshing tells why
-  std::ifstream file(path);
-  const Json image = Json::parse(file, nullptr, false);
-  return image.is_object() ? image.value("size", Json()) : Json();
 }
 
 ProcessRequest request_of(const Trial& trial, const std::vector<std::string>& command,
@@ -119,9 +105,10 @@ std::string to_string(Status status) {
   return "skipped";
 }
 
-const Json& TrialRunner::image_size(const std::string& image, const std::string& scratch_folder) {
+const Json& TrialRunner::image_size(const std::string& image) {
   const auto [entry, is_new] = image_sizes_.try_emplace(image);
-  if (is_new) entry->second = read_image_size(image, programs_.podm, scratch_folder);
+  if (is_new)
+    if (const auto size = ask_for_info(programs_.podm, image).size) entry->second = *size;
   return entry->second;
 }
 
@@ -182,7 +169,7 @@ void TrialRunner::measure(const Run& run, TrialResult& result) {
 
 void TrialRunner::make_mesh(const Run& run, TrialResult& result) {
   const Stopwatch watch;
-  result.image_size = image_size(run.preparation.image, run.folder);
+  result.image_size = image_size(run.preparation.image);
   result.command = command_of(run, run.folder, result);
   warm_memory_of(run.trial);
   result.preparation_s = watch.seconds();

@@ -62,7 +62,7 @@ class TrialRunner {
  private:
   // What a trial's steps have in common.
   struct Run;
-  const nlohmann::ordered_json& image_size(const std::string& image, const std::string& scratch_folder);
+  const nlohmann::ordered_json& image_size(const std::string& image);
   void make_mesh(const Run& run, TrialResult& result);
   // Of the machine, no mesh.
   void measure(const Run& run, TrialResult& result);

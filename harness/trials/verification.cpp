@@ -6,7 +6,7 @@
 #include <fstream>
 
 #include "experiments/option_matrix.h"
-#include "trials/process.h"
+#include "trials/ask.h"
 
 namespace podm::bench {
 namespace {
@@ -16,7 +16,6 @@ using Json = nlohmann::ordered_json;
 constexpr const char* kClaims = "structure,radius_edge,boundary_angles,delaunay,conformity,surface,labels";
 constexpr double kTimeoutS = 600;
 constexpr int kExitDiffers = 1;  // of podm replay
-constexpr std::size_t kTailBytes = 500;
 
 Json read_json(const std::string& path) {
   std::ifstream file(path);
@@ -55,8 +54,7 @@ Verification verify_mesh(const Trial& trial, const std::string& image, const Jso
   if (radius_mm > 0) add("--radius", fmt::format("{}", radius_mm));
   if (with_fidelity) add("--delta", fmt::format("{}", used.value("delta_mm", 0.0)));
   if (trial.options.value(kSchedule, false)) add("--schedule", folder + kScheduleName);
-  const ProcessOutcome outcome = run_process(
-      {.arguments = command, .stdout_path = {}, .stderr_path = {}, .timeout_s = kTimeoutS}, stop_requested);
+  const ProcessOutcome outcome = ask(command, kTimeoutS, stop_requested).outcome;
   const Json report = read_json(report_path);
   Verification verification{Json::object(), {}, outcome.end == ProcessOutcome::End::kInterrupted};
   if (!report.is_object()) {
@@ -71,18 +69,11 @@ Verification verify_mesh(const Trial& trial, const std::string& image, const Jso
 
 Replay replay_mesh(const std::string& image, const std::string& podm, const std::string& folder,
                    const StopQuery& stop_requested) {
-  const std::string messages = folder + "/replay.txt";
-  const ProcessOutcome outcome = run_process({.arguments = {podm, "replay", image, folder + kLogName},
-                                              .stdout_path = {},
-                                              .stderr_path = messages,
-                                              .timeout_s = kTimeoutS},
-                                             stop_requested);
-  if (outcome.succeeded()) return {"equal"};
-  if (outcome.end == ProcessOutcome::End::kExited && outcome.exit_code == kExitDiffers) return {"differs"};
-  std::string why = outcome.describe();
-  if (const std::string said = read_tail(messages, kTailBytes); !said.empty())
-    why += ": " + said.substr(0, said.find_last_not_of('\n') + 1);
-  return {"failed: " + why, outcome.end == ProcessOutcome::End::kInterrupted};
+  using End = ProcessOutcome::End;
+  const Reply reply = ask({podm, "replay", image, folder + kLogName}, kTimeoutS, stop_requested);
+  if (reply.succeeded()) return {"equal"};
+  if (reply.outcome.end == End::kExited && reply.outcome.exit_code == kExitDiffers) return {"differs"};
+  return {"failed: " + reply.why_not(), reply.outcome.end == End::kInterrupted};
 }
 
 }  // namespace podm::bench
