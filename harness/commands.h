@@ -17,7 +17,7 @@ struct RunCommand {
   std::vector<std::string> experiment_paths;
   std::string only;                 ///< a pattern of trial names, as in a shell; empty: all
   std::optional<Tier> tier;         ///< trials of this tier and the lower ones; nothing: all
-  std::vector<std::string> images;  ///< in place of all inputs; none: the inputs
+  std::vector<std::string> images;  ///< they stand for all inputs; none: the inputs
   std::string results_folder = "results/runs";
   std::uint64_t order_seed = 1;
   Programs programs;

@@ -13,16 +13,16 @@ namespace podm::bench {
 
 enum class ClaimKind {
   kBound,  ///< the value is within bounds in every group
-  kRatio,  ///< of one series over another
+  kRatio,  ///< the ratio of one series over another is within bounds
   kOrder,  ///< one series is above another
   kTrend,  ///< the value grows or falls along an option
-  kShare,  ///< of rows whose value is 1
+  kShare,  ///< a share of the rows has the value 1
 };
 
 /// Which numbers of threads a claim is about.
 enum class Extent {
   kAll,
-  kOneSocket,    ///< as many as a socket of the rows' machine has cores
+  kOneSocket,    ///< at most as many as a socket of the rows' machine has cores
   kMostThreads,  ///< the largest number there are rows of
 };
 
@@ -34,16 +34,16 @@ struct Claim {
   std::vector<std::string> trials;  ///< patterns of stems, the first with all it needs counts; none: all rows
   Filter where;
   Extent extent = Extent::kAll;
-  int needs_cores = 0;  ///< of the rows' machine
+  int needs_cores = 0;  ///< the rows' machine needs to have
   const Measure* value = nullptr;
   ClaimKind kind = ClaimKind::kBound;
   std::optional<double> at_least, at_most;  ///< bounds of the value, ratio or share
   Filter of, over;                          ///< series compared; in an order `of` is the one above
   bool over_best = false;                   ///< `over` is the best of the rows that are not `of`
   std::vector<std::string> across;          ///< options that may differ within a group
-  std::string along;                        ///< of a trend, an option
-  bool grows = false;                       ///< of a trend, or else it falls
-  double factor_per_doubling = 0;           ///< of a trend, at least; 0: any
+  std::string along;                        ///< the option that a trend goes along
+  bool grows = false;                       ///< the trend grows, or else it falls
+  double factor_per_doubling = 0;           ///< the least of a trend; 0: any
 };
 
 /// The options of one trial, and the name that the file gives it.

@@ -5,14 +5,11 @@
 #include <algorithm>
 #include <map>
 
-#include "rows/record.h"
+#include "rows/row_filter.h"
 #include "rows/statistics.h"
-#include "rows/table.h"
 
 namespace podm::bench {
 namespace {
-
-using Json = nlohmann::ordered_json;
 
 constexpr const char* kSchema = "podm-crossover/1";
 
@@ -23,7 +20,7 @@ struct Rates {
 
 // The trials of one [[trials]] on one image.
 struct Series {
-  const Json* row = nullptr;  // any
+  const Row* row = nullptr;  // any
   double cells_per_thread = 0;
   std::map<int, Rates> by_threads;
 
@@ -34,76 +31,73 @@ struct Series {
   }
 };
 
-bool is_measured(const Json& row, const Json& asked) {
-  return text_in(row, "status") == to_string(Status::kOk) && !row.value("warmup", false) &&
-         asked.value("executor", "threads") == "threads" && !asked.contains("topology") &&
-         !asked.contains("oversubscribe");
+bool is_measured(const Row& row) {
+  return row.status == Status::kOk && !row.warmup && row.mesh &&
+         row.asked.value("executor", "threads") == "threads" && !row.asked.contains("topology") &&
+         !row.asked.contains("oversubscribe");
 }
 
-void add(const Json& row, std::map<std::string, Series>& all) {
-  const Json asked = row.value("asked", Json::object());
-  const std::string algorithm = asked.value("algorithm", ""), trial = text_in(row, "trial");
-  if (!is_measured(row, asked) || (algorithm != "podm" && algorithm != "pdr-podm")) return;
-  const int threads = asked.value("threads", 1);
-  const double cells = row["cells"];
+void add(const Row& row, std::map<std::string, Series>& all) {
+  const std::string algorithm = row.asked.value("algorithm", "");
+  if (!is_measured(row) || (algorithm != "podm" && algorithm != "pdr-podm")) return;
+  const int threads = row.asked.value("threads", 1);
+  const auto cells = static_cast<double>(row.mesh->cells);
   // Keys of a matrix follow the name; those that matter here are algorithm and threads.
-  Series& series = all[trial.substr(0, trial.find(',')) + '\n' + text_in(row["input"], "name")];
+  Series& series = all[stem_of(row.trial) + '\n' + row.input.name];
   series.row = &row;
   series.cells_per_thread = std::max(series.cells_per_thread, cells / threads);
   Rates& rates = series.by_threads[threads];
-  (algorithm == "podm" ? rates.podm : rates.pdr_podm).push_back(cells / meshing_seconds(row));
+  (algorithm == "podm" ? rates.podm : rates.pdr_podm).push_back(cells / meshing_seconds(row.mesh->phases_s));
 }
 
-Json crossover_of(const Series& series) {
-  Json threshold, measurements = Json::array();
+Crossover crossover_of(const Series& series) {
+  const Row& row = *series.row;
+  Crossover crossover{.schema = kSchema,
+                      .threads = {},
+                      .machine = row.environment,
+                      .podm = row.programs.podm,
+                      .experiment = row.experiment,
+                      .trial = stem_of(row.trial),
+                      .input = row.input.name,
+                      .measurements = {}};
   bool is_ahead = true;
-  int most = 0;
   for (auto entry = series.by_threads.rbegin(); entry != series.by_threads.rend(); ++entry) {
     const auto& [threads, rates] = *entry;
     if (rates.podm.empty() || rates.pdr_podm.empty()) continue;
     const Ratio ratio = ratio_of_medians(rates.pdr_podm, rates.podm, Sampling::kIndependent);
     is_ahead = is_ahead && ratio.low > 1;
-    if (is_ahead) threshold = threads;
-    most = std::max(most, threads);
-    measurements.push_back({{"threads", threads},
-                            {"podm_cells_per_second", median(rates.podm)},
-                            {"pdr_podm_cells_per_second", median(rates.pdr_podm)},
-                            {"ratio", ratio.value},
-                            {"ratio_interval", {ratio.low, ratio.high}},
-                            {"rows", {rates.podm.size(), rates.pdr_podm.size()}}});
+    if (is_ahead) crossover.threads = threads;
+    crossover.measured_up_to = std::max(crossover.measured_up_to, threads);
+    crossover.measurements.push_back({threads,
+                                      median(rates.podm),
+                                      median(rates.pdr_podm),
+                                      ratio.value,
+                                      {ratio.low, ratio.high},
+                                      {rates.podm.size(), rates.pdr_podm.size()}});
   }
-  std::reverse(measurements.begin(), measurements.end());
-  const Json& row = *series.row;
-  return {{"schema", kSchema},
-          {"threads", threshold},
-          {"measured_up_to", most},
-          {"machine", machine_of(row)},
-          {"podm", row.value(Json::json_pointer("/programs/podm"), Json())},
-          {"experiment", text_in(row, "experiment")},
-          {"trial", text_in(row, "trial").substr(0, text_in(row, "trial").find(','))},
-          {"input", text_in(row["input"], "name")},
-          {"measurements", measurements}};
+  std::reverse(crossover.measurements.begin(), crossover.measurements.end());
+  return crossover;
 }
 
 }  // namespace
 
-Json crossover_of(const std::vector<std::vector<Json>>& rows_of_trials) {
+std::optional<Crossover> crossover_of(const std::vector<std::vector<Row>>& rows_of_trials) {
   std::map<std::string, Series> all;
-  for (const std::vector<Json>& rows : rows_of_trials)
-    for (const Json& row : rows) add(row, all);
+  for (const std::vector<Row>& rows : rows_of_trials)
+    for (const Row& row : rows) add(row, all);
   const Series* largest = nullptr;
   for (const auto& [name, series] : all)
     if (series.has_both() && (largest == nullptr || series.cells_per_thread > largest->cells_per_thread))
       largest = &series;
-  return largest == nullptr ? Json() : crossover_of(*largest);
+  return largest == nullptr ? std::nullopt : std::optional(crossover_of(*largest));
 }
 
-std::string tell_crossover(const Json& crossover) {
-  if (crossover["threads"].is_null())
+std::string tell_crossover(const Crossover& crossover) {
+  if (!crossover.threads)
     return fmt::format("pdr-podm overtook podm on no number of threads up to {} (trial {})",
-                       crossover["measured_up_to"].get<int>(), text_in(crossover, "trial"));
-  return fmt::format("pdr-podm overtook podm from {} threads on (trial {})", crossover["threads"].get<int>(),
-                     text_in(crossover, "trial"));
+                       crossover.measured_up_to, crossover.trial);
+  return fmt::format("pdr-podm overtook podm from {} threads on (trial {})", *crossover.threads,
+                     crossover.trial);
 }
 
 }  // namespace podm::bench

@@ -1,21 +1,65 @@
-// From how many threads on PDR.PODM outruns PODM on this machine, by the rows of an experiment. `podm mesh
-// --algorithm auto` reads what is stored of it.
+// The crossover is the number of threads from which on PDR.PODM outruns PODM on this machine, by the rows of
+// an experiment. `podm mesh --algorithm auto` reads what is stored of it.
 #pragma once
 
-#include <nlohmann/json.hpp>
+#include <array>
+#include <optional>
 #include <string>
 #include <vector>
 
+#include "rows/row.h"
+
 namespace podm::bench {
 
-/// What rows say, by trial, all of one machine and one mesher. `threads` is the least number from which on
-/// PDR.PODM makes more cells a second than PODM, with evidence (95 % interval of the ratio of medians), on
-/// every number measured; null: on none up to `measured_up_to`. Only what really ran decides, never virtual
-/// time, described machines or more threads than processors. Of several trials that of the most cells a
-/// thread decides. Null where none has both algorithms at one number of threads.
-nlohmann::ordered_json crossover_of(const std::vector<std::vector<nlohmann::ordered_json>>& rows_of_trials);
+/// Both algorithms on one number of threads.
+struct CrossoverMeasurement {
+  int threads = 0;
+  double podm_cells_per_second = 0, pdr_podm_cells_per_second = 0;  ///< medians
+  double ratio = 1;                                                 ///< cells a second of pdr-podm over podm
+  std::array<double, 2> ratio_interval{};                           ///< that holds it with 95 %
+  std::array<std::uint64_t, 2> rows{};                              ///< how many of podm and pdr-podm
+  static constexpr auto fields() {
+    using C = CrossoverMeasurement;
+    return std::tuple{field("threads", &C::threads),
+                      field("podm_cells_per_second", &C::podm_cells_per_second),
+                      field("pdr_podm_cells_per_second", &C::pdr_podm_cells_per_second),
+                      field("ratio", &C::ratio),
+                      field("ratio_interval", &C::ratio_interval),
+                      field("rows", &C::rows)};
+  }
+};
 
-/// The same as a sentence without its end.
-std::string tell_crossover(const nlohmann::ordered_json& crossover);
+/// What is stored in crossover.json.
+struct Crossover {
+  std::string schema;
+  std::optional<int> threads;  ///< the least number from which on pdr-podm is ahead; nothing: none is
+  int measured_up_to = 0;
+  MachineRecord machine;
+  ProgramRecord podm;
+  std::string experiment, trial, input;
+  std::vector<CrossoverMeasurement> measurements;  ///< numbers of threads rise
+  static constexpr auto fields() {
+    using C = Crossover;
+    return std::tuple{field("schema", &C::schema),
+                      field("threads", &C::threads),
+                      field("measured_up_to", &C::measured_up_to),
+                      field("machine", &C::machine),
+                      field("podm", &C::podm),
+                      field("experiment", &C::experiment),
+                      field("trial", &C::trial),
+                      field("input", &C::input),
+                      field("measurements", &C::measurements)};
+  }
+};
+
+/// What rows say, by trial, all of one machine and one mesher. PDR.PODM is ahead where it makes more cells a
+/// second than PODM, with evidence (95 % interval of the ratio of medians), on every number of threads
+/// measured from there on. Only what really ran decides, never virtual time, described machines or more
+/// threads than processors. Of several trials that of the most cells a thread decides. Nothing where none has
+/// both algorithms at one number of threads.
+std::optional<Crossover> crossover_of(const std::vector<std::vector<Row>>& rows_of_trials);
+
+/// Tells the crossover in a sentence without its end.
+std::string tell_crossover(const Crossover& crossover);
 
 }  // namespace podm::bench

@@ -22,12 +22,12 @@ std::string mebibytes(const std::optional<double>& bytes) {
 }
 
 // The turns of one trial: all of them and those still to run.
-struct Count {
+struct TurnCount {
   std::size_t all = 0, to_run = 0;
 };
 
-std::vector<Count> counts_of(const Plan& plan) {
-  std::vector<Count> counts(plan.trials.size());
+std::vector<TurnCount> counts_of(const Plan& plan) {
+  std::vector<TurnCount> counts(plan.trials.size());
   for (const PlannedTurn& planned : plan.turns) {
     ++counts[planned.turn.trial].all;
     counts[planned.turn.trial].to_run += !planned.row;
@@ -35,13 +35,13 @@ std::vector<Count> counts_of(const Plan& plan) {
   return counts;
 }
 
-// With the radius where it is found already.
-nlohmann::ordered_json options_of(const Trial& trial, Preparer& preparer) {
+// The options hold the radius where it is found already.
+Json options_of(const Trial& trial, Preparer& preparer) {
   const auto preparation = preparer.find(trial);
   return preparation ? resolved_options(trial, *preparation) : trial.options;
 }
 
-void print_matrix(const Plan& plan, const std::vector<Count>& counts, Preparer& preparer) {
+void print_matrix(const Plan& plan, const std::vector<TurnCount>& counts, Preparer& preparer) {
   std::vector<std::vector<std::string>> lines{
       {"trial", "input", "runs", "to run", "s/run", "MiB", "mesh MiB", "options"}};
   for (std::size_t i = 0; i < plan.trials.size(); ++i) {
@@ -57,8 +57,9 @@ void print_matrix(const Plan& plan, const std::vector<Count>& counts, Preparer& 
   fmt::print("{}", align(lines, 2));
 }
 
-// Of all turns still to run; memory and disk are those of the largest, as one runs at a time.
-Expectation total_of(const Plan& plan, const std::vector<Count>& counts) {
+// Seconds are those of all turns still to run; memory and disk are those of the largest, as one runs at a
+// time.
+Expectation total_of(const Plan& plan, const std::vector<TurnCount>& counts) {
   Expectation total;
   const auto keep_largest = [](std::optional<double>& largest, const std::optional<double>& value) {
     if (value) largest = std::max(largest.value_or(0), *value);
@@ -74,7 +75,7 @@ Expectation total_of(const Plan& plan, const std::vector<Count>& counts) {
   return total;
 }
 
-// Where the folder is not there yet, of the one that it will be in.
+// A folder that is not there yet has the space of the one that it will be in.
 std::optional<double> free_bytes(std::filesystem::path folder) {
   std::error_code error;
   folder = std::filesystem::absolute(folder, error);
@@ -83,7 +84,7 @@ std::optional<double> free_bytes(std::filesystem::path folder) {
   return error ? std::nullopt : std::optional<double>(static_cast<double>(space.available));
 }
 
-void print_total(const Plan& plan, const std::vector<Count>& counts, const std::string& results_folder) {
+void print_total(const Plan& plan, const std::vector<TurnCount>& counts, const std::string& results_folder) {
   const Expectation total = total_of(plan, counts);
   fmt::print("{} runs, {} to do: time {}; memory {} MiB; disk {} MiB, {} MiB free\n", plan.turns.size(),
              plan.turns.size() - plan.num_present(),
@@ -102,7 +103,7 @@ int dry_run(const RunCommand& command) {
     const Plan plan = make_plan(
         command, experiment, read_rows(rows_path(command.results_folder, experiment)).rows, preparer, keys);
     if (plan.turns.empty()) continue;
-    const std::vector<Count> counts = counts_of(plan);
+    const std::vector<TurnCount> counts = counts_of(plan);
     fmt::print("{}\n", experiment.title);
     print_matrix(plan, counts, preparer);
     print_total(plan, counts, command.results_folder);

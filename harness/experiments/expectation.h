@@ -1,31 +1,31 @@
 // What a trial will probably take, from what it took before.
 #pragma once
 
-#include <nlohmann/json.hpp>
 #include <optional>
 #include <vector>
 
 #include "experiments/experiment.h"
+#include "rows/row.h"
 
 namespace podm::bench {
 
-/// Nothing where nothing is known.
+/// Members are empty where nothing is known.
 struct Expectation {
-  std::optional<double> seconds;                   ///< of one turn, verification included
-  std::optional<double> memory_bytes, disk_bytes;  ///< from elements aimed at: beyond the image
+  std::optional<double> seconds;                   ///< one turn takes them, verification included
+  std::optional<double> memory_bytes, disk_bytes;  ///< without rows, only what elements aimed at take
 };
 
 class Expectations {
  public:
-  Expectations(const Experiment& experiment, std::vector<nlohmann::ordered_json> rows);
+  Expectations(const Experiment& experiment, std::vector<Row> rows);
 
-  /// From the finished rows of the trial on the same image; without any, its share of the experiment's
-  /// minutes by the elements aimed at.
+  /// The finished rows of the trial on the same image tell it; without any, the trial has its share of the
+  /// experiment's minutes by the elements aimed at.
   Expectation of(const Trial& trial) const;
 
  private:
-  std::optional<double> seconds_per_weight_;  // from the experiment's minutes
-  std::vector<nlohmann::ordered_json> rows_;
+  std::optional<double> seconds_per_weight_;  // the experiment's minutes tell it
+  std::vector<Row> rows_;
 };
 
 }  // namespace podm::bench

@@ -91,7 +91,7 @@ struct NamedInput {
   Input input;
 };
 
-// Those of the file, or the images in their place.
+// Inputs are those of the file, or the images in their place.
 std::vector<NamedInput> inputs_of_trials(Section& section, const Inputs& inputs,
                                          const std::vector<std::string>& images) {
   std::vector<NamedInput> named;

@@ -21,10 +21,10 @@ Tier parse_tier(const std::string& text);
 
 /// The settings of one mesh to make, some number of times.
 struct Trial {
-  std::string name;        ///< as in the file, then ",key=value" of each key given as an array
+  std::string name;        ///< the file's name for it, then ",key=value" of each key given as an array
   std::string image;       ///< a file or phantom:NAME[@SIZE]; empty: it makes no mesh
   bool if_exists = false;  ///< skip the trial, saying so, when the image file is absent
-  nlohmann::ordered_json options = nlohmann::ordered_json::object();  ///< of the mesher, by key of the file
+  nlohmann::ordered_json options = nlohmann::ordered_json::object();  ///< the mesher's, by the file's keys
   int repeats = 1, warmups = 0;
   double timeout_s = 0;
   double memory_limit_gib = 0;  ///< 0: none
@@ -39,7 +39,7 @@ struct Experiment {
   std::string title, claim, paper;  ///< the last may be empty
   Tier tier = Tier::kDefault;
   double expected_minutes = 0;
-  bool stores_crossover = false;  ///< at its end, for podm mesh --algorithm auto: crossover.h
+  bool stores_crossover = false;  ///< its end stores it for podm mesh --algorithm auto: crossover.h
   std::vector<Trial> trials;      ///< the matrix, expanded, in the order of the file
   std::vector<Claim> claims;      ///< what its rows are to show; at least one
 

@@ -22,20 +22,13 @@
 namespace podm::bench {
 namespace {
 
-using Json = nlohmann::ordered_json;
-
-// Stores the machine's topology in the folder of results once; what rows tell of the machine.
-Json describe(const Machine& machine, const std::string& results_folder) {
-  Json described = machine.summary;
-  if (machine.topology_xml.empty()) {
-    described["topology_sha256"] = "unavailable: hwloc finds no topology";
-    return described;
-  }
+// Stores the machine's topology in the folder of results once; returns what rows tell of it.
+std::string store_topology(const Machine& machine, const std::string& results_folder) {
+  if (machine.topology_xml.empty()) return Unavailable{"hwloc finds no topology"}.text();
   const std::string hash = sha256_of(machine.topology_xml);
   const std::string path = fmt::format("{}/topology-{}.xml", results_folder, hash);
   if (!std::filesystem::exists(path)) write_file(path, machine.topology_xml);
-  described["topology_sha256"] = hash;
-  return described;
+  return hash;
 }
 
 // Seconds of this program's own between two rows.
@@ -58,13 +51,12 @@ std::string label_of(const Trial& trial, const Turn& turn) {
 }
 
 std::string one_line(const std::string& label, const TrialResult& result) {
-  if (!result.record.is_object())
-    return fmt::format("{}: {}: {}", label, to_string(result.status), result.reason);
-  if (result.record.contains(kMemoryLevels))
-    return fmt::format("{}: {} in {:.2f} s", label, memory_levels({&result.record}), result.process.wall_s);
+  if (result.measured)
+    return fmt::format("{}: {} in {:.2f} s", label, memory_levels({&*result.measured}),
+                       result.process.wall_s);
+  if (!result.mesh) return fmt::format("{}: {}: {}", label, to_string(result.status), result.reason);
   return fmt::format("{}: {}, {} cells in {:.2f} s, {:.2f} s in all", label, to_string(result.status),
-                     result.record["cells"].get<std::uint64_t>(), meshing_seconds(result.record),
-                     result.process.wall_s);
+                     result.mesh->cells, meshing_seconds(result.mesh->phases_s), result.process.wall_s);
 }
 
 // The turns of one experiment, one after the other.
@@ -109,13 +101,13 @@ class ExperimentRun {
       fmt::print(stderr, "{} of them skipped: already in {} (--again runs them anew)\n", num_present, path_);
   }
 
-  Json run_turn(const PlannedTurn& planned, Progress& progress, HarnessClock& clock) {
+  Row run_turn(const PlannedTurn& planned, Progress& progress, HarnessClock& clock) {
     const Trial& trial = plan_.trials[planned.turn.trial];
     const std::string label = label_of(trial, planned.turn);
     progress.start_turn(label);
     TrialResult result = prepare(trial, progress);
-    Json environment = session_.environment;
-    environment.update(environment_now());
+    EnvironmentRecord environment = session_.environment;
+    renew(environment);
     const std::string key = session_.keys.of(trial, planned.turn, result.preparation);
     if (const auto known = plan_.finished.find(key); known != plan_.finished.end()) {
       progress.finish_turn(label + ": already measured");
@@ -125,13 +117,13 @@ class ExperimentRun {
     RowContext context{experiment_.name, key, session_.command.order_seed, 0, session_.programs, environment};
     context.harness_s =
         clock.lap_without(result.preparation_s + result.process.wall_s + result.verification_s);
-    const Json row = make_row(context, trial, planned.turn, result);
+    const Row row = make_row(context, trial, planned.turn, result);
     if (result.status != Status::kSkipped) file_.append(row);
     progress.finish_turn(one_line(label, result));
     return row;
   }
 
-  // Of status kOk when the trial can start.
+  // The result is of status kOk when the trial can start.
   TrialResult prepare(const Trial& trial, Progress& progress) {
     const Stopwatch watch;
     TrialResult result;
@@ -185,40 +177,38 @@ class ExperimentRun {
     fmt::print(stderr, "kept: {}\n", path);
   }
 
-  // By the turns asked for, as for the crossover below.
+  // The turns asked for decide, as for the crossover below.
   void print_verdicts() const {
-    std::vector<Json> rows;
+    std::vector<Row> rows;
     for (const auto& of_trial : rows_) rows.insert(rows.end(), of_trial.begin(), of_trial.end());
     fmt::print("\n{}", format_verdicts({judge(experiment_, rows)}));
   }
 
-  // Of the turns asked for: their keys make them this machine's and this mesher's.
+  // The turns asked for decide: their keys make them this machine's and this mesher's.
   void store_crossover() const {
-    const Json crossover = crossover_of(rows_);
-    if (crossover.is_null()) {
+    const auto crossover = crossover_of(rows_);
+    if (!crossover) {
       fmt::print("No crossover stored: podm and pdr-podm did not both run on this machine's own cores\n");
       return;
     }
     const std::string path = fmt::format("{}/crossover.json", session_.command.results_folder);
-    write_file(path, crossover.dump(2) + "\n");
+    write_file(path, to_json(*crossover).dump(2) + "\n");
     fmt::print(
         "{}; stored in {}. To have podm mesh --algorithm auto follow it:\n  export PODM_CROSSOVER={}\n",
-        tell_crossover(crossover), path, std::filesystem::absolute(path).lexically_normal().string());
+        tell_crossover(*crossover), path, std::filesystem::absolute(path).lexically_normal().string());
   }
 
-  static bool is_good(const Json& row) {
-    const std::string status = text_in(row, "status");
-    const bool is_of_peer = !at(row, "/programs/peer").is_null();
-    return status == to_string(Status::kOk) || status == to_string(Status::kSkipped) ||
-           (is_of_peer && status == to_string(Status::kUnmet));
+  static bool is_good(const Row& row) {
+    return row.status == Status::kOk || row.status == Status::kSkipped ||
+           (row.programs.peer && row.status == Status::kUnmet);
   }
 
   bool summarize() const {
     std::map<std::string, int> num_by_status;
     bool are_all_good = true;
     for (const auto& rows : rows_)
-      for (const Json& row : rows) {
-        ++num_by_status[text_in(row, "status")];
+      for (const Row& row : rows) {
+        ++num_by_status[to_string(row.status)];
         are_all_good = are_all_good && is_good(row);
       }
     std::vector<std::string> counts;
@@ -232,7 +222,7 @@ class ExperimentRun {
   Plan plan_;
   std::string path_;
   RecordFile file_;
-  std::vector<std::vector<Json>> rows_;  // of each trial's turns so far, those of earlier runs included
+  std::vector<std::vector<Row>> rows_;  // a list a trial; those of earlier runs are among them
 };
 
 }  // namespace
@@ -245,8 +235,8 @@ Session::Session(const RunCommand& given, const std::string& mesher_sha256, cons
       keys(mesher_sha256, machine.summary, Peers(given.programs.peers, given.programs.podm)),
       runner(given.programs) {
   programs = describe_programs(command.programs);
-  environment = describe(machine, command.results_folder);
-  environment.update(environment_of_run());
+  environment = environment_of_run(machine.summary);
+  environment.topology_sha256 = store_topology(machine, command.results_folder);
 }
 
 bool run_experiment(Session& session, const Experiment& experiment, Plan plan) {

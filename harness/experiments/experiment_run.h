@@ -1,7 +1,6 @@
 // The turns of an experiment that are not measured yet, one after the other, and what is told at its end.
 #pragma once
 
-#include <nlohmann/json.hpp>
 #include <string>
 
 #include "commands.h"
@@ -20,8 +19,9 @@ struct Session {
           StopQuery is_interrupted);
 
   const RunCommand& command;
-  StopQuery is_interrupted;  ///< by Ctrl-C or a request to end
-  nlohmann::ordered_json programs, environment;
+  StopQuery is_interrupted;  ///< whether Ctrl-C or a request to end has come
+  ProgramRecords programs;
+  EnvironmentRecord environment;
   Preparer preparer;
   TrialKeys keys;
   TrialRunner runner;

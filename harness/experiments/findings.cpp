@@ -8,12 +8,9 @@
 #include <map>
 
 #include "experiments/option_matrix.h"
-#include "rows/record.h"
 
 namespace podm::bench {
 namespace {
-
-using Json = nlohmann::ordered_json;
 
 // A claim is not decided by the groups that there are while one lacks rows.
 void lack(Findings& findings, const std::string& what, const std::string& label) {
@@ -21,7 +18,7 @@ void lack(Findings& findings, const std::string& what, const std::string& label)
   findings.has_failed_rows = findings.has_failed_rows || what.starts_with(kRowsFailed);
 }
 
-// Between rows of one series.
+// Whether rows of one series may differ in the option.
 bool may_differ(const Claim& claim, const std::string& key) {
   return std::find(claim.across.begin(), claim.across.end(), key) != claim.across.end() ||
          (claim.value->per != nullptr && key == kTargetElements);
@@ -51,7 +48,7 @@ void judge_bound_of(const Claim& claim, const RowPointers& rows, const std::stri
 // What does not vary holds of each row; the rest of the median of its repeats.
 void judge_bound(const Claim& claim, const RowPointers& rows, Findings& findings) {
   if (!varies(*claim.value)) {
-    for (const Json* row : rows) judge_bound_of(claim, {row}, text_in(*row, "trial"), findings);
+    for (const Row* row : rows) judge_bound_of(claim, {row}, row->trial, findings);
     return;
   }
   const auto groups = group_rows(rows, [&](const std::string& key) { return may_differ(claim, key); });
@@ -63,7 +60,7 @@ void judge_bound(const Claim& claim, const RowPointers& rows, Findings& findings
 void judge_share(const Claim& claim, const RowPointers& rows, Findings& findings) {
   std::size_t num_yes = 0, num_open = 0;
   std::string absence, no;
-  for (const Json* row : rows) {
+  for (const Row* row : rows) {
     const Samples samples = sample({row}, *claim.value);
     if (!samples.absence.empty()) {
       absence = samples.absence;
@@ -71,7 +68,7 @@ void judge_share(const Claim& claim, const RowPointers& rows, Findings& findings
     } else if (samples.middle() == 1) {
       ++num_yes;
     } else if (no.empty()) {
-      no = ", not " + text_in(*row, "trial");
+      no = ", not " + row->trial;
     }
   }
   const double share = static_cast<double>(num_yes) / static_cast<double>(rows.size() - num_open);
@@ -126,7 +123,7 @@ Finding compare(const Claim& claim, const Side& of, const Side& over, const std:
 // way round: over = {threads = 1} is the base of the series of every number of threads.
 void compare_series(const Claim& claim, const RowGroup& group, const std::string& label, Findings& findings) {
   RowPointers of_rows, over_rows;
-  for (const Json* row : group.rows) {
+  for (const Row* row : group.rows) {
     const Json options = options_of(*row);
     const bool is_of = matches(options, claim.of);
     const bool is_over = claim.over_best ? !is_of : matches(options, claim.over);
@@ -172,7 +169,8 @@ struct Place {
   Samples samples;
 };
 
-// From one value of the option to another. Without a factor it may stay as it is on the way, not in all.
+// Judges the step from one value of the option to another. Without a factor the measure may rest on a step,
+// but not from the first value to the last.
 Finding judge_step(const Claim& claim, const Place& from, const Place& to, bool is_all,
                    const std::string& label) {
   const SeriesRatio compared =
@@ -188,7 +186,7 @@ Finding judge_step(const Claim& claim, const Place& from, const Place& to, bool 
 
 void judge_trend_of(const Claim& claim, const RowGroup& group, const std::string& label, Findings& findings) {
   std::map<double, RowPointers> by_place;
-  for (const Json* row : group.rows) {
+  for (const Row* row : group.rows) {
     const Json place = option(options_of(*row), claim.along);
     if (place.is_number() && place > 0) by_place[place].push_back(row);
   }

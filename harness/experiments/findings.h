@@ -16,7 +16,7 @@ struct Finding {
   double value = 0;
   double excess = 0;  ///< how far beyond the bound, relative to it; below 0: within
   std::string text;   ///< the numbers behind it
-  std::string label;  ///< of the group among others; empty for one alone
+  std::string label;  ///< tells the group from others; empty for one alone
   std::size_t num_rows = 0;
 };
 

@@ -7,12 +7,9 @@
 #include <cmath>
 
 #include "experiments/findings.h"
-#include "rows/record.h"
 
 namespace podm::bench {
 namespace {
-
-using Json = nlohmann::ordered_json;
 
 // "3 of 4 hold; threads=256: 1.2 over 2.4 s".
 std::string told(const Findings& findings, const Finding& worst) {
@@ -45,11 +42,15 @@ Judgement conclude(const Findings& findings) {
   return judgement;
 }
 
-std::optional<double> cores_of(const Json& row) {
-  const auto cores = number_at(row, "/environment/cores"),
-             usable = number_at(row, "/environment/usable_processors");
-  if (!cores) return {};
-  return std::min(*cores, usable.value_or(*cores));
+std::optional<double> cores_of(const Row& row) {
+  const auto* const cores = std::get_if<std::uint64_t>(&row.environment.cores);
+  if (cores == nullptr) return {};
+  return std::min(static_cast<double>(*cores), static_cast<double>(row.environment.usable_processors));
+}
+
+double packages_of(const Row& row) {
+  const auto* const packages = std::get_if<std::uint64_t>(&row.environment.packages);
+  return packages == nullptr ? 1 : std::max(1.0, static_cast<double>(*packages));
 }
 
 // Why the rows' machine cannot decide the claim; empty: it can.
@@ -60,40 +61,37 @@ std::string lack_of_cores(const Claim& claim, const RowPointers& rows) {
   return *cores >= claim.needs_cores ? "" : fmt::format("needs {} cores, has {}", claim.needs_cores, *cores);
 }
 
-double threads_of(const Json& row) { return number_at(row, "/asked/threads").value_or(1); }
+double threads_of(const Row& row) { return row.asked.value("threads", 1.0); }
 
 RowPointers within_extent(const Claim& claim, RowPointers rows) {
   if (rows.empty() || claim.extent == Extent::kAll) return rows;
   double most = 0;
   if (claim.extent == Extent::kMostThreads)
-    for (const Json* row : rows) most = std::max(most, threads_of(*row));
+    for (const Row* row : rows) most = std::max(most, threads_of(*row));
   const bool is_least = claim.extent == Extent::kMostThreads;
-  std::erase_if(rows, [&](const Json* row) {
-    const double packages = number_at(*row, "/environment/packages").value_or(1);
+  std::erase_if(rows, [&](const Row* row) {
     return is_least ? threads_of(*row) < most
-                    : threads_of(*row) > cores_of(*row).value_or(0) / std::max(1.0, packages);
+                    : threads_of(*row) > cores_of(*row).value_or(0) / packages_of(*row);
   });
   return rows;
 }
 
-// Of rows that were planned and did not run, why.
+// Why rows that were planned did not run.
 std::string why_skipped(const RowPointers& skipped) {
   if (skipped.empty()) return "";
-  return fmt::format(" ({} skipped: {})", text_in(*skipped.front(), "trial"),
-                     text_in(*skipped.front(), "reason"));
+  return fmt::format(" ({} skipped: {})", skipped.front()->trial, skipped.front()->reason);
 }
 
 struct Chosen {
   RowPointers rows, skipped;
 };
 
-Chosen choose(const Claim& claim, const std::vector<Json>& rows, const std::string& pattern) {
+Chosen choose(const Claim& claim, const std::vector<Row>& rows, const std::string& pattern) {
   Chosen chosen;
-  for (const Json& row : rows) {
-    if (!pattern.empty() && fnmatch(pattern.c_str(), stem_of(text_in(row, "trial")).c_str(), 0) != 0)
-      continue;
+  for (const Row& row : rows) {
+    if (!pattern.empty() && fnmatch(pattern.c_str(), stem_of(row.trial).c_str(), 0) != 0) continue;
     if (!is_of(row, claim.basis) || !matches(options_of(row), claim.where)) continue;
-    (text_in(row, "status") == to_string(Status::kSkipped) ? chosen.skipped : chosen.rows).push_back(&row);
+    (row.status == Status::kSkipped ? chosen.skipped : chosen.rows).push_back(&row);
   }
   return chosen;
 }
@@ -103,7 +101,7 @@ struct Attempt {
   bool has_rows = false, has_failed_rows = false;
 };
 
-Attempt judge_pattern(const Claim& claim, const std::vector<Json>& all_rows, const std::string& pattern) {
+Attempt judge_pattern(const Claim& claim, const std::vector<Row>& all_rows, const std::string& pattern) {
   const Chosen chosen = choose(claim, all_rows, pattern);
   const RowPointers rows = within_extent(claim, chosen.rows);
   const auto undecided = [&](const std::string& reason) {
@@ -131,10 +129,10 @@ std::string to_string(Verdict verdict) {
                                             : "cannot_be_decided";
 }
 
-Judgement judge(const Claim& claim, const std::vector<Json>& rows) {
+Judgement judge(const Claim& claim, const std::vector<Row>& rows) {
   std::vector<std::string> patterns = claim.trials;
   if (patterns.empty()) patterns.push_back("");
-  std::optional<Attempt> told;  // of the largest size that has rows
+  std::optional<Attempt> told;  // by the largest size that has rows
   for (const std::string& pattern : patterns) {
     Attempt attempt = judge_pattern(claim, rows, pattern);
     // A size whose rows failed is not passed over for a smaller one that went well.

@@ -1,7 +1,6 @@
 // Whether rows bear out a claim.
 #pragma once
 
-#include <nlohmann/json.hpp>
 #include <optional>
 #include <string>
 #include <vector>
@@ -16,14 +15,15 @@ std::string to_string(Verdict verdict);
 
 struct Judgement {
   Verdict verdict = Verdict::kCannotBeDecided;
-  std::string reason;           ///< the group that the value is of, or what is missing
-  std::optional<double> value;  ///< of the group that is nearest to breaking the claim, or breaks it most
-  std::size_t num_rows = 0;     ///< that were judged
+  std::string reason;  ///< the group that the value is of, or what is missing
+  std::optional<double>
+      value;                 ///< that of the group that is nearest to breaking the claim, or breaks it most
+  std::size_t num_rows = 0;  ///< that were judged
 };
 
 /// `rows` are those of one experiment, as rows_to_judge() leaves them. A claim holds when it does in every
 /// group of equal options; it cannot be decided when a group lacks rows or has failed ones, unless another
 /// group already breaks it.
-Judgement judge(const Claim& claim, const std::vector<nlohmann::ordered_json>& rows);
+Judgement judge(const Claim& claim, const std::vector<Row>& rows);
 
 }  // namespace podm::bench

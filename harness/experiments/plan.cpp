@@ -8,22 +8,19 @@
 #include <map>
 
 #include "experiments/option_matrix.h"
-#include "rows/record.h"
 
 namespace podm::bench {
 namespace {
-
-using Json = nlohmann::ordered_json;
 
 bool is_chosen(const Trial& trial, const RunCommand& command) {
   return (command.only.empty() || fnmatch(command.only.c_str(), trial.name.c_str(), 0) == 0) &&
          (!command.tier || trial.tier <= *command.tier);
 }
 
-FinishedRows finished_rows(const std::vector<Json>& rows) {
+FinishedRows finished_rows(const std::vector<Row>& rows) {
   FinishedRows finished;
-  for (const Json& row : rows)
-    if (is_finished(row)) finished[text_in(row, "key")] = row;
+  for (const Row& row : rows)
+    if (is_finished(row)) finished[row.key] = row;
   return finished;
 }
 
@@ -63,7 +60,7 @@ std::string rows_path(const std::string& results_folder, const Experiment& exper
   return fmt::format("{}/{}.jsonl", results_folder, experiment.name);
 }
 
-Plan make_plan(const RunCommand& command, const Experiment& experiment, const std::vector<Json>& rows,
+Plan make_plan(const RunCommand& command, const Experiment& experiment, const std::vector<Row>& rows,
                Preparer& preparer, TrialKeys& keys) {
   Plan plan;
   const Expectations expectations(experiment, rows);

@@ -2,7 +2,6 @@
 #pragma once
 
 #include <map>
-#include <nlohmann/json.hpp>
 #include <optional>
 #include <string>
 #include <vector>
@@ -16,17 +15,17 @@ namespace podm::bench {
 
 struct PlannedTurn {
   Turn turn;
-  std::string key;  ///< empty while the trial's radius is not found or its phantom not drawn
-  std::optional<nlohmann::ordered_json> row;  ///< of an earlier run; it need not run again
+  std::string key;         ///< empty while the trial's radius is not found or its phantom not drawn
+  std::optional<Row> row;  ///< an earlier run left it; the turn need not run again
 };
 
 /// The newest finished row of each key.
-using FinishedRows = std::map<std::string, nlohmann::ordered_json>;
+using FinishedRows = std::map<std::string, Row>;
 
 struct Plan {
-  std::vector<Trial> trials;          ///< as chosen
-  std::vector<Expectation> expected;  ///< of each trial
-  std::vector<PlannedTurn> turns;     ///< in their order
+  std::vector<Trial> trials;          ///< those chosen
+  std::vector<Expectation> expected;  ///< one a trial
+  std::vector<PlannedTurn> turns;     ///< those of all trials, in their order
   FinishedRows finished;              ///< that need not run again
 
   std::size_t num_present() const;
@@ -38,7 +37,7 @@ std::vector<Experiment> read_experiments(const RunCommand& command);
 std::string rows_path(const std::string& results_folder, const Experiment& experiment);
 
 /// `rows` are those recorded for the experiment before.
-Plan make_plan(const RunCommand& command, const Experiment& experiment,
-               const std::vector<nlohmann::ordered_json>& rows, Preparer& preparer, TrialKeys& keys);
+Plan make_plan(const RunCommand& command, const Experiment& experiment, const std::vector<Row>& rows,
+               Preparer& preparer, TrialKeys& keys);
 
 }  // namespace podm::bench

@@ -12,11 +12,11 @@ namespace podm::bench {
 /// The seconds still to come: those expected, in proportion to how true expectations were so far.
 class RemainingTime {
  public:
-  /// Of each turn, in their order.
+  /// Takes the seconds of each turn, in their order.
   explicit RemainingTime(std::vector<std::optional<double>> expected_s);
 
   void finish_turn(double seconds);
-  /// Nothing while nothing is known. `elapsed_s` of the turn that runs are over.
+  /// Empty while nothing is known. `elapsed_s` are the seconds of the turn that runs so far.
   std::optional<double> seconds(double elapsed_s) const;
 
  private:

@@ -14,9 +14,7 @@
 namespace podm::bench {
 namespace {
 
-using Json = nlohmann::ordered_json;
-
-std::vector<Json> recorded_rows(const std::string& path) {
+std::vector<Row> recorded_rows(const std::string& path) {
   const RowsRead read = repair_rows(path);
   if (read.broken_line > 0)
     fmt::print(stderr, "{}:{}: a broken line, left by a crash, is now in {}.broken; the other rows count\n",

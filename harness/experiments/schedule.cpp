@@ -11,7 +11,7 @@ void shuffle(std::vector<Turn>& turns, std::mt19937_64& generator) {
   for (std::size_t i = turns.size(); i > 1; --i) std::swap(turns[i - 1], turns[generator() % i]);
 }
 
-// Until a round is empty.
+// Rounds are appended until one is empty.
 void append_rounds(const std::vector<Trial>& trials, int Trial::*count, bool is_warmup,
                    std::mt19937_64& generator, std::vector<Turn>& turns) {
   for (int repeat = 1;; ++repeat) {

@@ -11,7 +11,7 @@ namespace podm::bench {
 /// One mesh to make.
 struct Turn {
   std::size_t trial = 0;  ///< its index
-  int repeat = 1;         ///< from 1, counted among warm-ups or among measured repeats
+  int repeat = 1;         ///< its number, from 1, counted among warm-ups or among measured repeats
   bool is_warmup = false;
 
   bool operator==(const Turn&) const = default;

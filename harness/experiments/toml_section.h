@@ -45,7 +45,7 @@ class Section {
   std::vector<const toml::node*> values(std::string_view key);
   /// The table at `key`, which is there.
   Section table(std::string_view key);
-  /// In the order of the file, each asked for.
+  /// The keys in the order of the file; each counts as asked for.
   std::vector<std::string> keys();
   /// The tables [key.NAME], by name.
   std::vector<std::pair<std::string, Section>> tables(std::string_view key);

@@ -5,14 +5,11 @@
 #include <algorithm>
 #include <set>
 
-#include "rows/record.h"
 #include "rows/row_filter.h"
 #include "rows/table.h"
 
 namespace podm::bench {
 namespace {
-
-using Json = nlohmann::ordered_json;
 
 constexpr const char* kSchema = "podm-bench-verdicts/1";
 
@@ -38,11 +35,11 @@ void for_each_claim(const std::vector<ExperimentVerdicts>& all, Visit&& visit) {
 
 }  // namespace
 
-ExperimentVerdicts judge(const Experiment& experiment, const std::vector<Json>& rows) {
+ExperimentVerdicts judge(const Experiment& experiment, const std::vector<Row>& rows) {
   std::set<std::string> stems;
   for (const Trial& trial : experiment.trials) stems.insert(stem_of(trial.name));
-  std::vector<Json> judged = rows_to_judge(rows);
-  std::erase_if(judged, [&](const Json& row) { return !stems.contains(stem_of(text_in(row, "trial"))); });
+  std::vector<Row> judged = rows_to_judge(rows);
+  std::erase_if(judged, [&](const Row& row) { return !stems.contains(stem_of(row.trial)); });
   ExperimentVerdicts verdicts{&experiment, {}};
   for (const Claim& claim : experiment.claims) verdicts.judgements.push_back(judge(claim, judged));
   return verdicts;

@@ -1,7 +1,6 @@
 // The claims of experiments and what their rows say of them, for people and for programs.
 #pragma once
 
-#include <nlohmann/json.hpp>
 #include <string>
 #include <vector>
 
@@ -12,16 +11,16 @@ namespace podm::bench {
 
 struct ExperimentVerdicts {
   const Experiment* experiment = nullptr;
-  std::vector<Judgement> judgements;  ///< of each of its claims
+  std::vector<Judgement> judgements;  ///< one a claim, in their order
 };
 
 /// `rows` are all there are of the experiment; those that may be judged are chosen here.
-ExperimentVerdicts judge(const Experiment& experiment, const std::vector<nlohmann::ordered_json>& rows);
+ExperimentVerdicts judge(const Experiment& experiment, const std::vector<Row>& rows);
 
 /// A table, then what is known of the claims that do not hold, then their numbers.
 std::string format_verdicts(const std::vector<ExperimentVerdicts>& all);
 
-/// As results/README.md says.
-nlohmann::ordered_json verdicts_as_json(const std::vector<ExperimentVerdicts>& all);
+/// The format is told in results/README.md.
+Json verdicts_as_json(const std::vector<ExperimentVerdicts>& all);
 
 }  // namespace podm::bench

@@ -5,47 +5,69 @@
 
 #include <array>
 #include <fstream>
+#include <functional>
 #include <map>
 #include <optional>
 #include <set>
 
-#include "rows/record.h"
 #include "rows/statistics.h"
-#include "rows/table.h"
 
 namespace podm::bench {
 namespace {
 
-using Json = nlohmann::ordered_json;
-using Rows = std::vector<Json>;
+using Rows = std::vector<Row>;
+using Number = std::optional<double>;
 
 constexpr double kNegligible = 1.02;
-
-std::optional<double> seconds(const Json& row, const char* phases) {
-  return at(row, phases).is_object() ? std::optional<double>(meshing_seconds(row)) : std::nullopt;
-}
 
 enum class Better { kLess, kMore, kNeither };
 
 // A number of a row.
 struct Metric {
   const char* name;
-  const char* place;
   Better better;
   bool is_work;  ///< decided by the program alone when it has one thread
-  std::optional<double> (*read)(const Json& row, const char* place) = number_at;
+  Number (*read)(const Row& row);
 };
 
+template <class T>
+Number as_number(const std::optional<T>& number) {
+  return number ? Number(static_cast<double>(*number)) : Number();
+}
+
+Number seconds(const Row& row) { return row.mesh ? Number(meshing_seconds(row.mesh->phases_s)) : Number(); }
+Number cells_per_second(const Row& row) { return row.mesh ? row.mesh->cells_per_second : Number(); }
+Number cells(const Row& row) { return row.mesh ? Number(row.mesh->cells) : Number(); }
+// A record alone tells nothing of its process.
+Number peak_bytes(const Row& row) {
+  return row.process.peak_rss_bytes > 0 ? Number(row.process.peak_rss_bytes) : Number();
+}
+
+WorkRecord work_of(const Row& row) {
+  return row.mesh ? row.mesh->counters.value_or(WorkRecord{}) : WorkRecord{};
+}
+template <std::optional<std::uint64_t> WorkRecord::*kMember>
+Number work(const Row& row) {
+  return as_number(work_of(row).*kMember);
+}
+Number insertions(const Row& row) {
+  const auto by_rule = work_of(row).insertions;
+  if (!by_rule) return {};
+  double sum = 0;
+  for (const auto& [rule, number] : *by_rule) sum += static_cast<double>(number);
+  return sum;
+}
+
 constexpr std::array kMetrics{
-    Metric{"seconds", "/phases_s", Better::kLess, false, seconds},
-    Metric{"cells/s", "/cells_per_second", Better::kMore, false},
-    Metric{"peak bytes", "/process/peak_rss_bytes", Better::kLess, false},
-    Metric{"cells", "/cells", Better::kNeither, true},
-    Metric{"insertions", "/counters/insertions", Better::kLess, true, sum_at},
-    Metric{"removals", "/counters/removals", Better::kLess, true},
-    Metric{"conflict tests", "/counters/conflict_tests", Better::kLess, true},
-    Metric{"exact decisions", "/counters/exact_decisions", Better::kNeither, true},
-    Metric{"cells created", "/counters/cells_created", Better::kLess, true},
+    Metric{"seconds", Better::kLess, false, seconds},
+    Metric{"cells/s", Better::kMore, false, cells_per_second},
+    Metric{"peak bytes", Better::kLess, false, peak_bytes},
+    Metric{"cells", Better::kNeither, true, cells},
+    Metric{"insertions", Better::kLess, true, insertions},
+    Metric{"removals", Better::kLess, true, work<&WorkRecord::removals>},
+    Metric{"conflict tests", Better::kLess, true, work<&WorkRecord::conflict_tests>},
+    Metric{"exact decisions", Better::kNeither, true, work<&WorkRecord::exact_decisions>},
+    Metric{"cells created", Better::kLess, true, work<&WorkRecord::cells_created>},
 };
 
 // Rows that measure the same.
@@ -54,102 +76,114 @@ struct Group {
   Rows a, b;
 };
 
-// A row's name for it; the path in a mesher's own record, which has no other.
-Json image_of(const Json& row) {
-  const Json name = at(row, "/input/name");
-  return name.is_null() ? at(row, "/input/path") : name;
-}
-
 // What two rows that measure the same share. A row without a mesh does not tell its options: those of another
 // row of its trial are taken.
 class Keys {
  public:
   explicit Keys(std::initializer_list<const Rows*> files) {
     for (const Rows* rows : files)
-      for (const Json& row : *rows)
-        if (row.contains("options")) settings_.emplace(trial(row), settings(row));
+      for (const Row& row : *rows)
+        if (row.mesh) settings_.emplace(trial(row), settings(row));
   }
-  std::string of(const Json& row) const {
-    if (row.contains("options")) return trial(row) + settings(row);
+  std::string of(const Row& row) const {
+    if (row.mesh) return trial(row) + settings(row);
     const auto found = settings_.find(trial(row));
     return trial(row) + (found == settings_.end() ? "" : found->second);
   }
 
  private:
-  static std::string trial(const Json& row) { return Json{at(row, "/trial"), image_of(row)}.dump(); }
+  static std::string trial(const Row& row) { return Json{row.trial, row.input.name}.dump(); }
   // A radius that was found stands for a number of cells, which two meshers may reach by different ones.
-  static std::string settings(const Json& row) {
-    Json options = at(row, "/options");
-    if (const Json elements = at(row, "/resolved/target_elements"); !elements.is_null()) {
+  static std::string settings(const Row& row) {
+    Json options = row.mesh->options.value_or(Json::object());
+    if (row.resolved) {
       for (const char* key : {"radius_mm", "delta_mm"}) options.erase(key);
-      options["target_elements"] = elements;
+      options["target_elements"] = row.resolved->target_elements;
     }
-    return Json{at(row, "/algorithm"), options, at(row, "/seed"), at(row, "/threads/asked")}.dump();
+    const auto threads = row.mesh->threads.value_or(ThreadsRecord{});
+    return Json{to_json(row.mesh->algorithm), options, to_json(row.mesh->seed), to_json(threads.asked)}
+        .dump();
   }
-  std::map<std::string, std::string> settings_;  // by trial
+  std::map<std::string, std::string> settings_;  // keys are trials
 };
 
 // The trial, or the image where a mesher's record has none.
-std::string name_of(const Json& row) {
-  const Json trial = at(row, "/trial"), image = image_of(row);
-  return trial.is_string() ? trial : image.is_string() ? image : Json("");
-}
+std::string name_of(const Row& row) { return row.trial.empty() ? row.input.name : row.trial; }
 
-// In the order of `a`; those without a row of `b` are left out.
+// Groups come in the order of `a`; those without a row of `b` are left out.
 std::vector<Group> groups_of(const Rows& a, const Rows& b) {
   const Keys keys{&a, &b};
   std::vector<Group> groups;
   std::map<std::string, std::size_t> places;
-  for (const Json& row : a) {
+  for (const Row& row : a) {
     const auto [found, is_new] = places.emplace(keys.of(row), groups.size());
     if (is_new) groups.push_back({name_of(row), {}, {}});
     groups[found->second].a.push_back(row);
   }
-  for (const Json& row : b)
+  for (const Row& row : b)
     if (const auto found = places.find(keys.of(row)); found != places.end())
       groups[found->second].b.push_back(row);
   std::erase_if(groups, [](const Group& group) { return group.b.empty(); });
   return groups;
 }
 
-// The different answers at a place, those of rows without one left out.
-std::set<std::string> answers(const Rows& rows, const std::string& place) {
+// An answer of a row, empty where it gives none.
+using ReadAnswer = std::function<std::string(const Row& row)>;
+
+// The different answers of the rows that give one.
+std::set<std::string> answers(const Rows& rows, const ReadAnswer& read) {
   std::set<std::string> found;
-  for (const Json& row : rows)
-    if (const Json answer = at(row, place.c_str()); answer.is_string()) found.insert(answer);
+  for (const Row& row : rows)
+    if (const std::string answer = read(row); !answer.empty()) found.insert(answer);
   return found;
 }
 
 // Worse when A answers well each time and B does not.
-void add_verdict(const Group& group, const std::string& place, const std::string& good, Comparison& result) {
-  const auto a = answers(group.a, place), b = answers(group.b, place);
+void add_verdict(const Group& group, const std::string& name, const ReadAnswer& read, const std::string& good,
+                 Comparison& result) {
+  const auto a = answers(group.a, read), b = answers(group.b, read);
   if (a == b) return;
   const bool is_worse = a == std::set{good};
   result.is_worse = result.is_worse || is_worse;
   result.text +=
-      fmt::format("{}: {}: {} in A, {} in B{}\n", group.name, place.substr(1), fmt::join(a, "/"),
+      fmt::format("{}: {}: {} in A, {} in B{}\n", group.name, name, fmt::join(a, "/"),
                   b.empty() ? "none" : fmt::format("{}", fmt::join(b, "/")), is_worse ? ": WORSE" : "");
 }
 
-bool has_one_thread(const Group& group) { return at(group.a.front(), "/threads/used") == 1; }
+bool has_one_thread(const Group& group) {
+  const auto& mesh = group.a.front().mesh;
+  return mesh && mesh->threads && mesh->threads->used == 1;
+}
+
+std::string hash_of(const Row& row) { return row.mesh ? row.mesh->mesh_sha256.value_or("") : ""; }
+
+ByName<Proof> verdicts_of(const Row& row) {
+  return row.mesh ? row.mesh->verdicts.value_or(ByName<Proof>{}) : ByName<Proof>{};
+}
 
 void add_differences(const Group& group, Comparison& result) {
-  add_verdict(group, "/status", "ok", result);
+  add_verdict(
+      group, "status", [](const Row& row) { return to_string(row.status); }, to_string(Status::kOk), result);
   std::set<std::string> claims;
   for (const Rows* rows : {&group.a, &group.b})
-    for (const Json& row : *rows) {
-      const Json verdicts = at(row, "/verdicts");
-      for (const auto& [claim, verdict] : verdicts.items()) claims.insert(claim);
-    }
-  for (const std::string& claim : claims) add_verdict(group, "/verdicts/" + claim, "pass", result);
-  if (has_one_thread(group) && answers(group.a, "/mesh_sha256") != answers(group.b, "/mesh_sha256"))
+    for (const Row& row : *rows)
+      for (const auto& [claim, verdict] : verdicts_of(row)) claims.insert(claim);
+  for (const std::string& claim : claims) {
+    const auto verdict_on = [&claim](const Row& row) {
+      const ByName<Proof> verdicts = verdicts_of(row);
+      const Proof* const verdict = verdicts.find(claim);
+      return verdict == nullptr ? "" : to_string(*verdict);
+    };
+    add_verdict(group, "verdicts/" + claim, verdict_on, to_string(Proof::kPass), result);
+  }
+  if (has_one_thread(group) && answers(group.a, hash_of) != answers(group.b, hash_of))
     result.text += group.name + ": another mesh on one thread\n";
 }
 
 std::vector<double> values(const Rows& rows, const Metric& metric) {
   std::vector<double> found;
-  for (const Json& row : rows)
-    if (const auto value = metric.read(row, metric.place)) found.push_back(*value);
+  for (const Row& row : rows)
+    if (const auto value = metric.read(row)) found.push_back(*value);
   return found;
 }
 
@@ -183,6 +217,14 @@ void add_metric(const Group& group, const Metric& metric, Comparison& result) {
 
 }  // namespace
 
+Row row_of(const MeshRecord& record) {
+  Row row;
+  row.status = Status::kOk;
+  if (record.input) row.input.name = record.input->path.value_or("");
+  row.mesh = record;
+  return row;
+}
+
 Rows read_record_file(const std::string& path) {
   std::ifstream file(path);
   if (!file) throw InputError(fmt::format("cannot read {}", path));
@@ -190,12 +232,16 @@ Rows read_record_file(const std::string& path) {
   std::size_t line_number = 0;
   for (std::string line; std::getline(file, line);) {
     ++line_number;
-    Json row = Json::parse(line, nullptr, false);
-    if (!row.is_object() || name_of(row).empty())
-      throw InputError(fmt::format("{}:{}: is no record of a trial or of the mesher", path, line_number));
-    rows.push_back(std::move(row));
+    try {
+      const Json json = Json::parse(line, nullptr, false);
+      const bool is_row = json.is_object() && json.contains("trial");
+      rows.push_back(is_row ? from_json<Row>(json) : row_of(from_json<MeshRecord>(json)));
+    } catch (const FieldError& fault) {
+      throw InputError(fmt::format("{}:{}: is no record of a trial or of the mesher: {}", path, line_number,
+                                   fault.what()));
+    }
   }
-  if (rows.empty()) throw InputError(fmt::format("{}:1: holds no rows", path));
+  if (rows.empty()) throw InputError(fmt::format("{} holds no records", path));
   return rows;
 }
 

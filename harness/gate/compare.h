@@ -1,16 +1,20 @@
 // Two files of records set side by side, e.g. of a program before and after a change.
 #pragma once
 
-#include <nlohmann/json.hpp>
 #include <string>
 #include <vector>
 
-#include "experiments/experiment.h"
+#include "errors.h"
+#include "rows/row.h"
 
 namespace podm::bench {
 
-/// The rows of a file of JSON lines. Throws InputError "file:line: fault", also when there are none.
-std::vector<nlohmann::ordered_json> read_record_file(const std::string& path);
+/// A mesher's record alone as a row of status ok, of a trial without a name on the image that it read.
+Row row_of(const MeshRecord& record);
+
+/// The rows of a file of JSON lines, which are rows or mesher's records. Throws InputError "file:line:
+/// fault", also when there are none.
+std::vector<Row> read_record_file(const std::string& path);
 
 struct Comparison {
   std::string text;       ///< differing verdicts and meshes, then a table of ratios
@@ -21,8 +25,7 @@ struct Comparison {
 /// measurements. A value is worse when the 95 % interval of B's median over A's lies beyond 2 % on its bad
 /// side; it has an interval when both have kFewestRepeats rows or one thread decides it. Throws InputError
 /// when no row of `a` matches one of `b`.
-Comparison compare(const std::vector<nlohmann::ordered_json>& a,
-                   const std::vector<nlohmann::ordered_json>& b);
+Comparison compare(const std::vector<Row>& a, const std::vector<Row>& b);
 
 inline constexpr int kFewestRepeats = 5;  ///< fewer show too little of the spread
 

@@ -15,28 +15,30 @@
 namespace podm::bench {
 namespace {
 
-using Json = nlohmann::ordered_json;
-
 void say(const std::string& line) {
   fmt::print("{}\n", line);
   std::fflush(stdout);  // the next line may be minutes away
 }
 
+// The verdicts that the mesher had from podm-verify.
+ByName<Proof> verdicts_of(const MesherRun& run) {
+  return run.record ? run.record->verdicts.value_or(ByName<Proof>{}) : ByName<Proof>{};
+}
+
 // Why the mesh is not proved; empty: every claim passes.
 std::string unproved(const MesherRun& run) {
-  const Json verdicts = run.record.is_object() ? run.record.value("verdicts", Json()) : Json();
+  const ByName<Proof> verdicts = verdicts_of(run);
   std::string text;
-  for (const auto& [claim, verdict] : verdicts.items())
-    if (const auto text_of = verdict.get<std::string>(); text_of != "pass")
-      text += fmt::format("claim {}: {}; ", claim, text_of);
+  for (const auto& [claim, verdict] : verdicts)
+    if (verdict != Proof::kPass) text += fmt::format("claim {}: {}; ", claim, to_string(verdict));
   if (verdicts.empty()) text += "no verdicts; ";
   return run.process.succeeded() && text.empty() ? "" : text + run.process.describe();
 }
 
-// Of a mesh that is proved.
+// The mesh is proved already.
 Budget measure(const GateTrial& trial, const MesherRun& run, const std::string& podm,
                const GateMesher& mesher) {
-  return {trial, work_of(run.record), mesher.count_instructions(podm, trial)};
+  return {trial, work_of(*run.record), mesher.count_instructions(podm, trial)};
 }
 
 bool instructions_fit(const Budgets& budgets, const Budget& budget, std::uint64_t counted) {
@@ -64,8 +66,7 @@ bool trial_passes(const Budgets& budgets, const Budget& budget, const std::strin
   const auto texts = differences(budget.work, now.work);
   for (const std::string& text : texts) say(fmt::format("  BLOCKS {}: {}", budget.trial.name, text));
   if (texts.empty())
-    say(fmt::format("  {}: {} claims pass, work as committed", budget.trial.name,
-                    run.record["verdicts"].size()));
+    say(fmt::format("  {}: {} claims pass, work as committed", budget.trial.name, verdicts_of(run).size()));
   return instructions_fit(budgets, budget, now.instructions) && texts.empty();
 }
 
@@ -79,7 +80,7 @@ bool work_passes(const Budgets& budgets, const std::string& podm, const GateMesh
 MesherRun mesh_or_throw(const std::string& podm, const GateTrial& trial, int threads,
                         const GateMesher& mesher) {
   MesherRun run = mesher.mesh(podm, trial, threads, false);
-  if (!run.process.succeeded() || !run.record.is_object())
+  if (!run.process.succeeded() || !run.record)
     throw InputError(fmt::format("{} on {}: {}", podm, trial.image, run.process.describe()));
   return run;
 }
@@ -109,20 +110,25 @@ bool speed_passes(const GateTrial& trial, const GateOptions& options, const Gate
   return !blocks;
 }
 
+// Numbers of operations; 0 where the record does not tell.
+std::pair<double, double> commits_and_conflicts(const MeshRecord& record) {
+  const OutcomesRecord outcomes = record.outcomes.value_or(OutcomesRecord{});
+  return {outcomes.committed.value_or(0), outcomes.lock_conflict.value_or(0)};
+}
+
 void print_scaling(const GateTrial& trial, const std::string& podm, const GateMesher& mesher) {
   const int all = static_cast<int>(std::max(1U, std::thread::hardware_concurrency()));
   say(fmt::format("Tier 3, advises: {} at 1 and at {} threads", trial.name, all));
   double one_thread = 0;
   for (const int threads : {1, all}) {
-    const Json record = mesh_or_throw(podm, trial, threads, mesher).record;
-    const double speed = record.at("refine_cells_per_second");
+    const MeshRecord record = *mesh_or_throw(podm, trial, threads, mesher).record;
+    const double speed = record.refine_cells_per_second;
     if (threads == 1) one_thread = speed;
-    const double committed = record.at("outcomes").at("committed"),
-                 conflicts = record.at("outcomes").at("lock_conflict");
+    const auto [committed, conflicts] = commits_and_conflicts(record);
     say(fmt::format(
         "  {} threads: {:.0f} refined cells/s, {:.2f} of one thread; {:.4f} rollbacks a commit; "
         "seconds lost {}",
-        threads, speed, speed / one_thread, conflicts / committed, record.at("overhead_s").dump()));
+        threads, speed, speed / one_thread, conflicts / committed, to_json(record.overhead_s).dump()));
   }
 }
 

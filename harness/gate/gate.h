@@ -15,7 +15,7 @@ struct GateOptions {
   std::string base;  ///< the mesher before the change; empty: no seconds are compared
   std::string budgets_path = "ci/gate_budgets.json";
   std::vector<int> tiers{1, 2, 3};  ///< those to pass
-  std::uint64_t order_seed = 1;     ///< of the order within rounds
+  std::uint64_t order_seed = 1;     ///< draws the order within rounds
 };
 
 /// Prints what was found to standard output; whether the change may go in. Throws InputError, also when the

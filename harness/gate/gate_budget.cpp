@@ -9,8 +9,6 @@
 namespace podm::bench {
 namespace {
 
-using Json = nlohmann::ordered_json;
-
 constexpr int kBudgetSchema = 1;
 
 GateTrial trial_of(const Json& json) { return {json.at("name"), json.at("image"), json.at("radius_mm")}; }
@@ -26,7 +24,8 @@ Budgets budgets_of(const Json& json) {
                   .budgets = {},
                   .timed = trial_of(json.at("timed"))};
   for (const Json& member : json.at("budgets"))
-    budgets.budgets.push_back({trial_of(member), member.at("work"), member.at("instructions")});
+    budgets.budgets.push_back(
+        {trial_of(member), from_json<Work>(member.at("work"), "work"), member.at("instructions")});
   return budgets;
 }
 
@@ -51,7 +50,7 @@ void write_budgets(const Budgets& budgets, const std::string& path) {
   for (const Budget& budget : budgets.budgets) {
     Json member = json_of(budget.trial);
     member["instructions"] = budget.instructions;
-    member["work"] = budget.work;
+    member["work"] = to_json(budget.work);
     json["budgets"].push_back(member);
   }
   std::ofstream file(path);
@@ -60,27 +59,25 @@ void write_budgets(const Budgets& budgets, const std::string& path) {
 }
 
 std::string this_build() {
-  const Json build = environment_of_run();
-  return fmt::format("{} {} {}", build["compiler"].get<std::string>(),
-                     build["compiler_flags"].get<std::string>(), build["build_type"].get<std::string>());
+  const EnvironmentRecord build = environment_of_run({});
+  return fmt::format("{} {} {}", build.compiler, build.compiler_flags, build.build_type);
 }
 
-Json work_of(const Json& record) {
-  const Json counters = record.value("counters", Json::object());
-  const auto counted = [&](const char* key) { return counters.value(key, Json()); };
-  return {{"cells", record.value("cells", Json())},
-          {"vertices", record.value("vertices", Json())},
-          {"insertions", counted("insertions")},
-          {"removals", counted("removals")},
-          {"classified_cells", counted("classified_cells")},
-          {"conflict_tests", counted("conflict_tests")},
-          {"exact_decisions", counted("exact_decisions")},
-          {"cells_created", counted("cells_created")},
-          {"mesh_sha256", record.value("mesh_sha256", Json())}};
+Work work_of(const MeshRecord& record) {
+  const WorkRecord counted = record.counters.value_or(WorkRecord{});
+  return {record.cells,
+          record.vertices,
+          counted.insertions,
+          counted.removals,
+          counted.classified_cells,
+          counted.conflict_tests,
+          counted.exact_decisions,
+          counted.cells_created,
+          record.mesh_sha256};
 }
 
-std::vector<std::string> differences(const Json& committed, const Json& measured) {
-  const Json before = committed.flatten(), now = measured.flatten();
+std::vector<std::string> differences(const Work& committed, const Work& measured) {
+  const Json before = to_json(committed).flatten(), now = to_json(measured).flatten();
   std::vector<std::string> texts;
   const auto add = [&](const std::string& pointer) {
     texts.push_back(fmt::format("{}: {}, committed {}", pointer.substr(1), now.value(pointer, Json()).dump(),

@@ -3,7 +3,6 @@
 #pragma once
 
 #include <cstdint>
-#include <nlohmann/json.hpp>
 #include <string>
 #include <vector>
 
@@ -11,9 +10,29 @@
 
 namespace podm::bench {
 
+/// What one thread's mesh takes and is, in values that it repeats exactly.
+struct Work {
+  std::optional<std::uint64_t> cells, vertices;
+  std::optional<ByName<std::uint64_t>> insertions;  ///< numbers by rule
+  std::optional<std::uint64_t> removals, classified_cells, conflict_tests, exact_decisions, cells_created;
+  std::optional<std::string> mesh_sha256;
+  static constexpr auto fields() {
+    using W = Work;
+    return std::tuple{field_if_any("cells", &W::cells),
+                      field_if_any("vertices", &W::vertices),
+                      field_if_any("insertions", &W::insertions),
+                      field_if_any("removals", &W::removals),
+                      field_if_any("classified_cells", &W::classified_cells),
+                      field_if_any("conflict_tests", &W::conflict_tests),
+                      field_if_any("exact_decisions", &W::exact_decisions),
+                      field_if_any("cells_created", &W::cells_created),
+                      field_if_any("mesh_sha256", &W::mesh_sha256)};
+  }
+};
+
 struct Budget {
   GateTrial trial;
-  nlohmann::ordered_json work;     ///< as work_of()
+  Work work;
   std::uint64_t instructions = 0;  ///< counted by callgrind
 };
 
@@ -31,11 +50,9 @@ void write_budgets(const Budgets& budgets, const std::string& path);
 /// The compiler and the flags of this build.
 std::string this_build();
 
-/// Deterministic work in a mesher's record: operations by rule, tests, cells, hash of the mesh.
-nlohmann::ordered_json work_of(const nlohmann::ordered_json& record);
+Work work_of(const MeshRecord& record);
 
 /// Each value that is not as committed, e.g. "conflict_tests: 130, committed 120".
-std::vector<std::string> differences(const nlohmann::ordered_json& committed,
-                                     const nlohmann::ordered_json& measured);
+std::vector<std::string> differences(const Work& committed, const Work& measured);
 
 }  // namespace podm::bench

@@ -63,8 +63,11 @@ MesherRun GateMesher::mesh(const std::string& podm, const GateTrial& trial, int 
   if (verify) arguments.push_back("--verify");
   MesherRun run{.process = this->run(arguments).outcome, .record = {}};
   std::ifstream file(folder_ + "/record.jsonl");
-  if (file) run.record = nlohmann::ordered_json::parse(file, nullptr, false);
-  if (!run.record.is_object()) run.record = nullptr;
+  try {
+    if (file) run.record = from_json<MeshRecord>(Json::parse(file, nullptr, false));
+  } catch (const FieldError& fault) {
+    throw InputError(fmt::format("{}: the record of {}: {}", podm, trial.image, fault.what()));
+  }
   return run;
 }
 

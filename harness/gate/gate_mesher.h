@@ -1,24 +1,25 @@
 // The mesher as the gate runs it: one process, what it took and what it recorded.
 #pragma once
 
-#include <nlohmann/json.hpp>
+#include <optional>
 #include <string>
 #include <vector>
 
 #include "experiments/experiment.h"
+#include "rows/mesher_record.h"
 #include "trials/ask.h"
 
 namespace podm::bench {
 
 struct GateTrial {
   std::string name;
-  std::string image;  ///< as `podm mesh` takes it
+  std::string image;  ///< the name that `podm mesh` takes
   double radius_mm = 0;
 };
 
 struct MesherRun {
   ProcessOutcome process;
-  nlohmann::ordered_json record;  ///< as the mesher wrote it; null when it did not
+  std::optional<MeshRecord> record;  ///< nothing when the mesher wrote none
 
   double cpu_s() const { return process.user_s + process.system_s; }
 };

@@ -17,24 +17,23 @@
 namespace podm::bench {
 namespace {
 
-using Json = nlohmann::ordered_json;
-
 std::string first_line(const std::string& path) {
   std::ifstream file(path);
   std::string line;
   return std::getline(file, line) ? line : "unavailable: no " + path;
 }
 
-// From a line "key: 123 kB".
-Json bytes_of(const std::string& key) {
-  const std::string text = value_of("/proc/meminfo", key);
-  if (text.starts_with("unavailable")) return text;
-  return 1024 * std::stoull(text);
+// The line reads "key: 123 kB".
+Count bytes_of(const std::string& key) {
+  std::ifstream file("/proc/meminfo");
+  const std::string kibibytes = value_in(file, key);
+  if (kibibytes.empty()) return Unavailable{fmt::format("/proc/meminfo does not tell '{}'", key)};
+  return std::uint64_t{1024} * std::stoull(kibibytes);
 }
 
-Json load_average() {
-  double minutes_1_5_15[3];
-  if (getloadavg(minutes_1_5_15, 3) != 3) return "unavailable: getloadavg";
+std::variant<std::vector<double>, Unavailable> load_average() {
+  std::vector<double> minutes_1_5_15(3);
+  if (getloadavg(minutes_1_5_15.data(), 3) != 3) return Unavailable{"getloadavg"};
   return minutes_1_5_15;
 }
 
@@ -44,7 +43,7 @@ std::string kernel() {
   return fmt::format("{} {} {}", name.sysname, name.release, name.machine);
 }
 
-// Of this process's own group; `unified` and `legacy` are its files in versions 2 and 1.
+// The limit is that of this process's own group; `unified` and `legacy` are its files in versions 2 and 1.
 std::string limit_in_group(const std::string& controller, const std::string& unified,
                            const std::vector<std::string>& legacy) {
   const ControlGroup group = control_group_of(controller);
@@ -62,22 +61,21 @@ std::string memory_limit() {
   return bytes == kNoLimit ? "max" : fmt::format("{}", bytes);
 }
 
-Json cgroup_limits() {
-  return {{"cpu_max", limit_in_group("cpu", "/cpu.max", {"/cpu.cfs_quota_us", "/cpu.cfs_period_us"})},
-          {"cpuset", limit_in_group("cpuset", "/cpuset.cpus.effective", {"/cpuset.effective_cpus"})},
-          {"memory_max", memory_limit()}};
+ControlGroupLimits cgroup_limits() {
+  return {limit_in_group("cpu", "/cpu.max", {"/cpu.cfs_quota_us", "/cpu.cfs_period_us"}),
+          limit_in_group("cpuset", "/cpuset.cpus.effective", {"/cpuset.effective_cpus"}), memory_limit()};
 }
 
-Json sources() {
+std::variant<Sources, Unavailable> sources() {
   const Reply commit = ask({"git", "-C", PODM_SOURCE_DIR, "rev-parse", "HEAD"}),
               changes = ask({"git", "-C", PODM_SOURCE_DIR, "status", "--porcelain", "--untracked-files=no"});
-  if (!commit.succeeded() || !changes.succeeded()) return "unavailable: the sources are in no git checkout";
-  return {{"commit", commit.text}, {"dirty", !changes.text.empty()}};
+  if (!commit.succeeded() || !changes.succeeded()) return Unavailable{"the sources are in no git checkout"};
+  return Sources{commit.text, !changes.text.empty()};
 }
 
-// Of the lines "key: value".
-Json build_of(std::istringstream& lines) {
-  Json build = Json::object();
+// The rest of the lines read "key: value".
+ByName<std::string> build_of(std::istringstream& lines) {
+  ByName<std::string> build;
   for (std::string line; std::getline(lines, line);)
     if (const auto colon = line.find(": "); colon != std::string::npos)
       build[line.substr(0, colon)] = line.substr(colon + 2);
@@ -85,46 +83,44 @@ Json build_of(std::istringstream& lines) {
 }
 
 // What it prints is a line of name and version and then lines of its build.
-Json describe_program(const std::string& path) {
+ProgramRecord describe_program(const std::string& path) {
   const Reply reply = ask({path, "--version"});
   std::istringstream lines(reply.succeeded() ? reply.text : "unavailable: --version fails");
   std::string version;
   std::getline(lines, version);
-  const Json build = build_of(lines);
-  return {{"sha256", sha256_of_file(path)},
-          {"version", version},
-          {"build", build.empty() ? Json("unavailable: --version tells nothing of it") : build}};
+  ProgramRecord program{sha256_of_file(path), version, Unavailable{"--version tells nothing of it"}};
+  if (auto build = build_of(lines); !build.empty()) program.build = std::move(build);
+  return program;
 }
 
 }  // namespace
 
-Json environment_of_run() {
-  return {
-      {"kernel", kernel()},
-      {"smt", first_line("/sys/devices/system/cpu/smt/control")},
-      {"cgroup", cgroup_limits()},
-      {"libraries",
-       {{"glibc", gnu_get_libc_version()}, {"hwloc", fmt::format("{:#x}", hwloc_get_api_version())}}},
-      {"compiler", PODM_COMPILER},
-      {"compiler_flags", PODM_COMPILER_FLAGS},
-      {"build_type", PODM_BUILD_TYPE},
-      {"sources", sources()},
-  };
+EnvironmentRecord environment_of_run(const MachineRecord& machine) {
+  EnvironmentRecord environment;
+  static_cast<MachineRecord&>(environment) = machine;
+  environment.kernel = kernel();
+  environment.smt = first_line("/sys/devices/system/cpu/smt/control");
+  environment.cgroup = cgroup_limits();
+  environment.libraries = {{"glibc", gnu_get_libc_version()},
+                           {"hwloc", fmt::format("{:#x}", hwloc_get_api_version())}};
+  environment.compiler = PODM_COMPILER;
+  environment.compiler_flags = PODM_COMPILER_FLAGS;
+  environment.build_type = PODM_BUILD_TYPE;
+  environment.sources = sources();
+  return environment;
 }
 
-Json environment_now() {
-  return {
-      {"load_average", load_average()},
-      {"memory_bytes", {{"total", bytes_of("MemTotal")}, {"available", bytes_of("MemAvailable")}}},
-      {"governor", first_line("/sys/devices/system/cpu/cpu0/cpufreq/scaling_governor")},
-      {"transparent_huge_pages", first_line("/sys/kernel/mm/transparent_hugepage/enabled")},
-      {"numa_balancing", first_line("/proc/sys/kernel/numa_balancing")},
-  };
+void renew(EnvironmentRecord& environment) {
+  environment.load_average = load_average();
+  environment.memory_bytes = {bytes_of("MemTotal"), bytes_of("MemAvailable")};
+  environment.governor = first_line("/sys/devices/system/cpu/cpu0/cpufreq/scaling_governor");
+  environment.transparent_huge_pages = first_line("/sys/kernel/mm/transparent_hugepage/enabled");
+  environment.numa_balancing = first_line("/proc/sys/kernel/numa_balancing");
 }
 
-Json describe_programs(const Programs& programs) {
-  Json described = {{"podm", describe_program(programs.podm)}};
-  described["podm_verify"] = programs.verifier.empty() ? Json("none") : describe_program(programs.verifier);
+ProgramRecords describe_programs(const Programs& programs) {
+  ProgramRecords described{describe_program(programs.podm), ProgramRecords::kNone, {}};
+  if (!programs.verifier.empty()) described.podm_verify = describe_program(programs.verifier);
   return described;
 }
 

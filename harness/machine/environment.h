@@ -2,20 +2,22 @@
 // "unavailable: why".
 #pragma once
 
-#include <nlohmann/json.hpp>
 #include <string>
 
+#include "machine/machine.h"
+#include "rows/row.h"
 #include "trials/verification.h"
 
 namespace podm::bench {
 
-/// What stays during a run: sources, build, libraries, limits.
-nlohmann::ordered_json environment_of_run();
+/// The machine, and what else stays during a run: sources, build, libraries, limits. The hash of the topology
+/// is left empty.
+EnvironmentRecord environment_of_run(const MachineRecord& machine);
 
-/// What may change between trials: load, memory available, governor, huge pages and NUMA balancing.
-nlohmann::ordered_json environment_now();
+/// Sets what may change between trials: load, memory available, governor, huge pages and NUMA balancing.
+void renew(EnvironmentRecord& environment);
 
 /// Hash and --version of mesher and verifier. Throws InputError naming a program that cannot be read.
-nlohmann::ordered_json describe_programs(const Programs& programs);
+ProgramRecords describe_programs(const Programs& programs);
 
 }  // namespace podm::bench

@@ -9,7 +9,7 @@
 namespace podm::bench {
 
 int latency(const std::string& record_path) {
-  const std::string line = measure_memory_levels().dump() + "\n";
+  const std::string line = to_json(measure_memory_levels()).dump() + "\n";
   if (record_path.empty())
     fmt::print("{}", line);
   else

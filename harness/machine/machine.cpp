@@ -13,8 +13,6 @@
 namespace podm::bench {
 namespace {
 
-using Json = nlohmann::ordered_json;
-
 // hwloc writes one element a line; who owns the machine is nobody's business.
 std::string without_host_name(const std::string& xml) {
   std::istringstream lines(xml);
@@ -37,17 +35,17 @@ std::string xml_of(hwloc_topology_t topology) {
 
 Machine this_machine() {
   Machine machine;
-  machine.summary = {{"cpu", value_of("/proc/cpuinfo", "model name")}};
+  machine.summary.cpu = value_of("/proc/cpuinfo", "model name");
   const Topology topology = load_topology();
-  const auto count = [&](hwloc_obj_type_t type) -> Json {
-    if (!topology) return "unavailable: hwloc finds no topology";
-    return hwloc_get_nbobjs_by_type(topology.get(), type);
+  const auto count = [&](hwloc_obj_type_t type) -> Count {
+    if (!topology) return Unavailable{"hwloc finds no topology"};
+    return static_cast<std::uint64_t>(std::max(0, hwloc_get_nbobjs_by_type(topology.get(), type)));
   };
-  machine.summary["packages"] = count(HWLOC_OBJ_PACKAGE);
-  machine.summary["numa_nodes"] = count(HWLOC_OBJ_NUMANODE);
-  machine.summary["cores"] = count(HWLOC_OBJ_CORE);
-  machine.summary["processors"] = count(HWLOC_OBJ_PU);
-  machine.summary["usable_processors"] = usable_processors();
+  machine.summary.packages = count(HWLOC_OBJ_PACKAGE);
+  machine.summary.numa_nodes = count(HWLOC_OBJ_NUMANODE);
+  machine.summary.cores = count(HWLOC_OBJ_CORE);
+  machine.summary.processors = count(HWLOC_OBJ_PU);
+  machine.summary.usable_processors = usable_processors();
   if (topology) machine.topology_xml = xml_of(topology.get());
   return machine;
 }

@@ -2,15 +2,15 @@
 #pragma once
 
 #include <iosfwd>
-#include <nlohmann/json.hpp>
 #include <string>
 #include <vector>
+
+#include "rows/row.h"
 
 namespace podm::bench {
 
 struct Machine {
-  /// Processor and numbers of packages, NUMA nodes, cores and processors; nothing of a host's name or state.
-  nlohmann::ordered_json summary;
+  MachineRecord summary;
   std::string topology_xml;  ///< hwloc's, without the host's name; empty when hwloc cannot tell
 };
 
@@ -24,7 +24,7 @@ std::vector<int> usable_processor_ids();
 
 /// The text after the colon of the first line "key : text"; empty when no line has the key.
 std::string value_in(std::istream& lines, const std::string& key);
-/// The same of a file's lines, or "unavailable: why".
+/// What value_in() finds in a file, or "unavailable: why".
 std::string value_of(const std::string& path, const std::string& key);
 
 }  // namespace podm::bench

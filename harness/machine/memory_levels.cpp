@@ -18,8 +18,6 @@
 namespace podm::bench {
 namespace {
 
-using Json = nlohmann::ordered_json;
-
 constexpr std::size_t kSmallestSet = std::size_t{4} << 10, kLeastMemorySet = std::size_t{256} << 20;
 constexpr std::size_t kMemoryOverCache = 4;  // a quarter of such a set may hit
 constexpr int kRepeats = 7;
@@ -41,8 +39,9 @@ std::vector<Cache> caches_of(hwloc_obj_t processor) {
   return caches;
 }
 
-// Of one working set in the memory of a node. Throws std::runtime_error where it cannot be bound to it.
-Json latency(hwloc_topology_t topology, std::size_t bytes, hwloc_obj_t node) {
+// Measures loads from one working set in the memory of a node. Throws std::runtime_error where the set cannot
+// be bound to the node.
+LatencyRecord latency(hwloc_topology_t topology, std::size_t bytes, hwloc_obj_t node) {
   const auto bind = [&](void* memory, std::size_t size) {
     constexpr int kFlags = HWLOC_MEMBIND_BYNODESET | HWLOC_MEMBIND_STRICT;
     if (hwloc_get_nbobjs_by_type(topology, HWLOC_OBJ_NUMANODE) > 1 &&
@@ -57,63 +56,72 @@ Json latency(hwloc_topology_t topology, std::size_t bytes, hwloc_obj_t node) {
     seconds.push_back(chase.seconds_per_load(kLoads));
     cycles.push_back(seconds.back() * clock);
   }
-  return {{"working_set_bytes", bytes},
-          {"node", node->os_index},
-          {"ns", 1e9 * median(seconds)},
-          {"cycles", median(cycles)},
-          {"huge_page_share", chase.huge_page_share()}};
+  return {bytes, static_cast<int>(node->os_index), 1e9 * median(seconds), median(cycles),
+          chase.huge_page_share()};
 }
 
 // Clock cycles a cache line when likwid-bench streams through the working set with the prefetchers' help.
-Json likwid_bench(std::size_t bytes) {
-  if (!is_installed("likwid-bench")) return "unavailable: likwid-bench is not installed";
+Measured likwid_bench(std::size_t bytes) {
+  if (!is_installed("likwid-bench")) return Unavailable{"likwid-bench is not installed"};
   const Reply reply =
       ask({"likwid-bench", "-t", "clload", "-w", fmt::format("N:{}B:1", bytes)}, kBenchTimeoutS);
   std::istringstream lines(reply.text);
   const std::string cycles = value_in(lines, "Cycles per cacheline");
-  if (!reply.succeeded() || cycles.empty()) return "unavailable: likwid-bench: " + reply.why_not();
+  if (!reply.succeeded() || cycles.empty()) return Unavailable{"likwid-bench: " + reply.why_not()};
   return std::stod(cycles);
 }
 
 // The measurement at the level, or what is known of it and why there is none.
-Json level_of(hwloc_topology_t topology, Json level, std::size_t bytes, hwloc_obj_t node) {
+MemoryLevel level_of(hwloc_topology_t topology, MemoryLevel level, std::size_t bytes, hwloc_obj_t node) {
   try {
-    level.update(latency(topology, bytes, node));
+    const LatencyRecord measured = latency(topology, bytes, node);
+    level.working_set_bytes = measured.working_set_bytes;
+    level.node = measured.node;
+    level.ns = measured.ns;
+    level.cycles = measured.cycles;
+    level.huge_page_share = measured.huge_page_share;
   } catch (const std::exception& error) {
-    level["ns"] = level["cycles"] = fmt::format("unavailable: {}", error.what());
+    level.ns = level.cycles = Unavailable{error.what()};
   }
   return level;
 }
 
-Json levels(hwloc_topology_t topology, const std::vector<Cache>& caches, hwloc_obj_t own_node,
-            std::size_t memory_set) {
-  Json measured = Json::array();
+// A level that is not measured yet.
+MemoryLevel level_named(int level, const std::string& module, std::size_t bytes) {
+  MemoryLevel named;
+  named.level = level;
+  named.module = module;
+  named.size_bytes = bytes;
+  return named;
+}
+
+std::vector<MemoryLevel> levels(hwloc_topology_t topology, const std::vector<Cache>& caches,
+                                hwloc_obj_t own_node, std::size_t memory_set) {
+  std::vector<MemoryLevel> measured;
   std::size_t last_bytes = kSmallestSet;
   for (const Cache& cache : caches) {
-    // Between the cache before it and its own size, of which others may hold a part.
+    // The set lies between the cache before this one and its own size, of which other programs may hold a
+    // part.
     const auto bytes = static_cast<std::size_t>(
         std::sqrt(static_cast<double>(last_bytes) * static_cast<double>(cache.bytes)));
     last_bytes = cache.bytes;
-    const Json level = {{"level", cache.level},
-                        {"module", fmt::format("L{} cache", cache.level)},
-                        {"size_bytes", cache.bytes}};
+    const MemoryLevel level = level_named(cache.level, fmt::format("L{} cache", cache.level), cache.bytes);
     measured.push_back(level_of(topology, level, bytes, own_node));
-    measured.back()["likwid_bench_cycles_per_line"] = likwid_bench(bytes);
+    measured.back().likwid_bench_cycles_per_line = likwid_bench(bytes);
   }
   const int memory_level = caches.empty() ? 1 : caches.back().level + 1;
   for (hwloc_obj_t node = nullptr; (node = hwloc_get_next_obj_by_type(topology, HWLOC_OBJ_NUMANODE, node));) {
     const bool is_own = node == own_node;
-    const Json level = {
-        {"level", memory_level + !is_own},
-        {"module", fmt::format("memory of {} node {}", is_own ? "the own" : "another", node->os_index)},
-        {"size_bytes", node->attr->numanode.local_memory}};
+    const std::string module =
+        fmt::format("memory of {} node {}", is_own ? "the own" : "another", node->os_index);
+    const MemoryLevel level = level_named(memory_level + !is_own, module, node->attr->numanode.local_memory);
     measured.push_back(level_of(topology, level, memory_set, node));
-    if (is_own) measured.back()["likwid_bench_cycles_per_line"] = likwid_bench(memory_set);
+    if (is_own) measured.back().likwid_bench_cycles_per_line = likwid_bench(memory_set);
   }
   return measured;
 }
 
-// Of memory; no limit where the kernel does not tell.
+// There is no limit where the kernel does not tell how much memory is available.
 std::size_t available_bytes() {
   const std::string kibibytes = value_of("/proc/meminfo", "MemAvailable");
   return kibibytes.starts_with("unavailable") ? std::numeric_limits<std::size_t>::max()
@@ -128,7 +136,7 @@ hwloc_obj_t node_of(hwloc_topology_t topology, hwloc_obj_t processor) {
 
 }  // namespace
 
-Json measure_memory_levels() {
+MemoryLevelsRecord measure_memory_levels() {
   const Topology owner = load_topology();
   hwloc_topology_t topology = owner.get();
   // The last processor: the first one serves most interrupts.
@@ -144,13 +152,11 @@ Json measure_memory_levels() {
   const std::size_t last_bytes = caches.empty() ? 0 : caches.back().bytes;
   const std::size_t memory_set =
       std::min(std::max(kLeastMemorySet, kMemoryOverCache * last_bytes), available_bytes() / 2);
-  Json sets = Json::array();
+  std::vector<LatencyRecord> sets;
   for (std::size_t bytes = kSmallestSet; bytes < memory_set; bytes *= 2)
     sets.push_back(latency(topology, bytes, own_node));
-  return {{"processor", processor->os_index},
-          {"pinned", is_pinned},
-          {"memory_levels", levels(topology, caches, own_node, memory_set)},
-          {"latency", sets}};
+  return {static_cast<int>(processor->os_index), is_pinned, levels(topology, caches, own_node, memory_set),
+          sets};
 }
 
 }  // namespace podm::bench

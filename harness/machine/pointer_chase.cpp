@@ -23,7 +23,7 @@ void* map(std::size_t bytes) {
   return memory;
 }
 
-// Of this thread on its processor: what others take of it between does not count.
+// The clock runs while this thread has its processor: what others take of it between does not count.
 double processor_seconds() {
   timespec time{};
   clock_gettime(CLOCK_THREAD_CPUTIME_ID, &time);
@@ -88,7 +88,8 @@ std::size_t PointerChase::cycle_length() {
   return length;
 }
 
-// From the part of /proc/self/smaps that begins with the mapping, or with what the kernel joined to it.
+// The kernel tells it in the part of /proc/self/smaps that begins with the mapping, or with what it joined to
+// it.
 double PointerChase::huge_page_share() const {
   std::ifstream file("/proc/self/smaps");
   const auto start = reinterpret_cast<std::uintptr_t>(mapping_);

@@ -7,16 +7,12 @@
 #include <filesystem>
 
 #include "experiments/option_matrix.h"
-#include "rows/record.h"
+#include "rows/mesher_record.h"
 #include "trials/ask.h"
 #include "trials/sha256.h"
 
 namespace podm::bench {
 namespace {
-
-using Json = nlohmann::ordered_json;
-
-constexpr int kMesherSchemaOfPeers = 1;  // as podm's records
 
 std::string first_line(const std::string& text) { return text.substr(0, text.find('\n')); }
 
@@ -60,14 +56,15 @@ std::vector<std::string> peer_command(const Trial& trial, const Preparation& pre
 
 Json complete_record(const Trial& trial, const Preparation& preparation, Json record) {
   if (!record.is_object()) return record;
-  record["schema"] = kMesherSchemaOfPeers;
+  record["schema"] = kMesherSchema;
   record["algorithm"] = trial.options[kMesher];
   record["guarantees"] = Json::object();  // it promises claims of the verifier instead
-  record["stop_reason"] = "complete";
+  record["stop_reason"] = kComplete;
   record["used"]["radius_mm"] = resolved_options(trial, preparation).value("radius_mm", 0.0);
-  const auto seconds = number_in(record.value("phases_s", Json::object()), "refine");
-  const auto cells = number_in(record, "cells");
-  if (seconds && *seconds > 0 && cells) record["refine_cells_per_second"] = *cells / *seconds;
+  const Json phases = record.value("phases_s", Json()), cells = record.value("cells", Json());
+  const Json seconds = phases.is_object() ? phases.value("refine", Json()) : Json();
+  if (seconds.is_number() && seconds > 0 && cells.is_number())
+    record["refine_cells_per_second"] = cells.get<double>() / seconds.get<double>();
   return record;
 }
 

@@ -2,7 +2,6 @@
 #pragma once
 
 #include <map>
-#include <nlohmann/json.hpp>
 #include <string>
 #include <vector>
 
@@ -16,7 +15,8 @@ struct Peer {
   std::string version;  ///< and licence, in one line
   std::string absence;  ///< why it cannot run here; empty: it can
 
-  /// Of its bytes and version, and of what the adapters share, the *.py beside their folders.
+  /// The hash is that of its bytes and version, and of what the adapters share, the *.py beside their
+  /// folders.
   std::string sha256() const;
 };
 
@@ -42,8 +42,7 @@ class Peers {
 std::vector<std::string> peer_command(const Trial& trial, const Preparation& preparation, const Peer& peer,
                                       const std::string& podm, const std::string& folder);
 
-/// A peer's record with what a row of podm has and a peer need not tell.
-nlohmann::ordered_json complete_record(const Trial& trial, const Preparation& preparation,
-                                       nlohmann::ordered_json record);
+/// A peer's record, as it wrote it, with what a MeshRecord has and a peer need not tell.
+Json complete_record(const Trial& trial, const Preparation& preparation, Json record);
 
 }  // namespace podm::bench

@@ -4,28 +4,24 @@
 
 #include <algorithm>
 
-#include "rows/record.h"
-#include "rows/table.h"
 #include "trials/counter_tool.h"
 
 namespace podm::bench {
 namespace {
 
-using Json = nlohmann::ordered_json;
-
 Value absent(const std::string& why) { return {{}, why}; }
 
-// The number at a place, or the row's own words on why there is none.
-Value number_or_reason(const Json& row, const char* place) {
-  if (const auto number = number_at(row, place)) return {number, ""};
-  const Json found = at(row, place);
-  return absent(found.is_string() ? found.get<std::string>() : fmt::format("rows have no {}", place + 1));
+// The number at a place, or why rows have none.
+template <class T>
+Value number_or_reason(const std::optional<T>& number, const char* place) {
+  if (!number) return absent(fmt::format("rows have no {}", place));
+  return {static_cast<double>(*number), ""};
 }
 
-Value sum_or_reason(const Json& row, const char* place) {
-  if (const auto sum = sum_at(row, place)) return {sum, ""};
-  const Json found = at(row, place);
-  return absent(found.is_string() ? found.get<std::string>() : fmt::format("rows have no {}", place + 1));
+Value sum_of(const ByName<std::uint64_t>& parts) {
+  double sum = 0;
+  for (const auto& [name, number] : parts) sum += static_cast<double>(number);
+  return {sum, ""};
 }
 
 Value quotient(const Value& dividend, const Value& divisor) {
@@ -35,98 +31,147 @@ Value quotient(const Value& dividend, const Value& divisor) {
   return {*dividend.number / *divisor.number, ""};
 }
 
-Value cells(const Json& row) { return number_or_reason(row, "/cells"); }
-Value threads(const Json& row) { return number_or_reason(row, "/asked/threads"); }
-
-Value seconds(const Json& row) {
-  return at(row, "/phases_s").is_object() ? Value{meshing_seconds(row), ""} : absent("rows have no phases_s");
+// A member of a part of the mesher's record, both of which may be missing.
+template <class Part, class T>
+Value of_mesh(const Row& row, std::optional<Part> MeshRecord::*part, std::optional<T> Part::*member,
+              const char* place) {
+  const bool is_there = row.mesh && *row.mesh.*part;
+  return number_or_reason(is_there ? *(*row.mesh.*part).*member : std::optional<T>(), place);
 }
 
-// Of all that refining is; phases that an algorithm does not have cost nothing.
-Value refining_seconds(const Json& row) {
-  const Value refine = number_or_reason(row, "/phases_s/refine");
-  if (!refine.number) return refine;
-  double sum = *refine.number;
-  for (const char* place : {"/phases_s/initial", "/phases_s/octree", "/phases_s/closing"})
-    sum += number_at(row, place).value_or(0);
+Value cells(const Row& row) {
+  return row.mesh ? Value{static_cast<double>(row.mesh->cells), ""} : absent("rows have no cells");
+}
+Value threads(const Row& row) {
+  const Json threads = row.asked.value("threads", Json());
+  return threads.is_number() ? Value{threads.get<double>(), ""} : absent("rows have no asked/threads");
+}
+
+Value seconds(const Row& row) {
+  return row.mesh ? Value{meshing_seconds(row.mesh->phases_s), ""} : absent("rows have no phases_s");
+}
+
+// Refining is all of these; phases that an algorithm does not have cost nothing.
+Value refining_seconds_of(const ByName<double>& phases_s) {
+  if (phases_s.find("refine") == nullptr) return absent("rows have no phases_s/refine");
+  double sum = 0;
+  for (const char* phase : {"refine", "initial", "octree", "closing"})
+    if (const double* phase_s = phases_s.find(phase)) sum += *phase_s;
   return {sum, ""};
 }
+Value refining_seconds(const Row& row) {
+  return row.mesh ? refining_seconds_of(row.mesh->phases_s) : absent("rows have no phases_s");
+}
 
-Value cells_per_second(const Json& row) { return quotient(cells(row), seconds(row)); }
-Value cells_per_second_and_core(const Json& row) { return quotient(cells_per_second(row), threads(row)); }
-Value refining_cells_per_second(const Json& row) { return quotient(cells(row), refining_seconds(row)); }
-Value refining_cells_per_second_and_core(const Json& row) {
+Value cells_per_second(const Row& row) { return quotient(cells(row), seconds(row)); }
+Value cells_per_second_and_core(const Row& row) { return quotient(cells_per_second(row), threads(row)); }
+Value refining_cells_per_second(const Row& row) { return quotient(cells(row), refining_seconds(row)); }
+Value refining_cells_per_second_and_core(const Row& row) {
   return quotient(refining_cells_per_second(row), threads(row));
 }
 
-// Of all processes that ran at the same time; of one that ran alone, its own.
-Value side_by_side_refining_cells_per_second(const Json& row) {
-  const Json processes = at(row, "/side_by_side");
-  if (!processes.is_array()) return refining_cells_per_second(row);
+// The sum over all processes that ran at the same time; the rate of one that ran alone.
+Value side_by_side_refining_cells_per_second(const Row& row) {
+  if (!row.side_by_side) return refining_cells_per_second(row);
   double sum = 0;
-  for (const Json& process : processes) {
-    const Value rate = refining_cells_per_second(process);
+  for (const CopyRecord& copy : *row.side_by_side) {
+    const Value rate = quotient({static_cast<double>(copy.cells), ""}, refining_seconds_of(copy.phases_s));
     if (!rate.number) return rate;
     sum += *rate.number;
   }
   return {sum, ""};
 }
 
-Value virtual_refining_seconds(const Json& row) { return number_or_reason(row, "/virtual/refine_s"); }
-Value virtual_cells_per_second(const Json& row) {
-  return quotient(cells(row), virtual_refining_seconds(row));
+Value virtual_refining_seconds(const Row& row) {
+  return of_mesh(row, &MeshRecord::virtual_time, &VirtualRecord::refine_s, "virtual/refine_s");
 }
+Value virtual_cells_per_second(const Row& row) { return quotient(cells(row), virtual_refining_seconds(row)); }
 
-Value contention_seconds(const Json& row) { return number_or_reason(row, "/overhead_s/contention"); }
-Value rollback_seconds(const Json& row) { return number_or_reason(row, "/overhead_s/rollback"); }
-Value begging_seconds(const Json& row) { return number_or_reason(row, "/overhead_s/begging"); }
-Value lost_seconds(const Json& row) {
+Value contention_seconds(const Row& row) {
+  return of_mesh(row, &MeshRecord::overhead_s, &OverheadRecord::contention, "overhead_s/contention");
+}
+Value rollback_seconds(const Row& row) {
+  return of_mesh(row, &MeshRecord::overhead_s, &OverheadRecord::rollback, "overhead_s/rollback");
+}
+Value begging_seconds(const Row& row) {
+  return of_mesh(row, &MeshRecord::overhead_s, &OverheadRecord::begging, "overhead_s/begging");
+}
+Value lost_seconds(const Row& row) {
   const Value contention = contention_seconds(row), rollback = rollback_seconds(row);
   if (!contention.number || !rollback.number) return contention.number ? rollback : contention;
   return {*contention.number + *rollback.number, ""};
 }
 
-Value deferred_operations(const Json& row) { return number_or_reason(row, "/outcomes/out_of_leaf"); }
-
-Value zero_hop_share(const Json& row) {
-  return quotient(number_or_reason(row, at(row, "/hops").is_array() ? "/hops/0" : "/hops"),
-                  sum_or_reason(row, "/hops"));
+Value deferred_operations(const Row& row) {
+  return of_mesh(row, &MeshRecord::outcomes, &OutcomesRecord::out_of_leaf, "outcomes/out_of_leaf");
 }
 
-// Also of what Table 2 leaves out.
-Value zero_hop_share_of_all_kinds(const Json& row) {
-  const Json kinds = at(row, "/hops_by_kind");
-  if (!kinds.is_object()) return sum_or_reason(row, "/hops_by_kind");
+// Accesses to the own node, and all; nothing more where they are not available.
+struct Visits {
   double near = 0, all = 0;
-  for (const auto& [kind, hops] : kinds.items()) {
-    if (!hops.is_array())
-      return absent(fmt::format("{}: {}", kind, hops.is_string() ? hops.get<std::string>() : "none"));
-    for (const Json& visits : hops) all += visits.get<double>();
-    near += hops.empty() ? 0 : hops[0].get<double>();
+  std::string absence;
+
+  void add(const Hops& hops) {
+    const auto* const numbers = std::get_if<std::vector<std::uint64_t>>(&hops);
+    if (numbers == nullptr) {
+      absence = std::get<Unavailable>(hops).text();
+      return;
+    }
+    for (const std::uint64_t number : *numbers) all += static_cast<double>(number);
+    near += numbers->empty() ? 0 : static_cast<double>(numbers->front());
   }
-  return quotient({near, ""}, {all, ""});
+  Value near_share() const { return absence.empty() ? quotient({near, ""}, {all, ""}) : absent(absence); }
+};
+
+Value zero_hop_share(const Row& row) {
+  if (!row.mesh || !row.mesh->hops) return absent("rows have no hops");
+  Visits visits;
+  visits.add(*row.mesh->hops);
+  return visits.near_share();
 }
 
-// Of who was asked to count alone: where likwid may not, the kernel counts in its place. Loads and stores
-// together where the source tells both.
-Value last_level_misses(const Json& row) {
-  const Json counters = at(row, "/process/counters");
-  const std::string source = at(row, "/asked").value(kCounters, kPerfEvent);
-  if (const std::string why = text_in(counters, source.c_str()); !why.empty())
-    return absent(fmt::format("{}: {}", source, why));
+// Counts also the accesses that Table 2 leaves out.
+Value zero_hop_share_of_all_kinds(const Row& row) {
+  if (!row.mesh || !row.mesh->hops_by_kind) return absent("rows have no hops_by_kind");
+  const auto* const kinds = std::get_if<ByName<Hops>>(&*row.mesh->hops_by_kind);
+  if (kinds == nullptr) return absent(std::get<Unavailable>(*row.mesh->hops_by_kind).text());
+  Visits visits;
+  for (const auto& [kind, hops] : *kinds) {
+    visits.add(hops);
+    if (!visits.absence.empty()) return absent(fmt::format("{}: {}", kind, visits.absence));
+  }
+  return visits.near_share();
+}
+
+// A count of the trial's process, or why there is none.
+Value count(const Row& row, const std::string& name) {
+  const auto* const counted = row.process.counters.find(name);
+  if (counted == nullptr) return absent("rows have no process/counters/" + name);
+  const auto* const counter = std::get_if<Counter>(counted);
+  if (counter == nullptr) return absent(name + ": " + std::get<Unavailable>(*counted).text());
+  return {as_double(counter->value), ""};
+}
+
+// The misses that the source which was asked to count has counted: where likwid may not, the kernel counts in
+// its place. Loads and stores count together where the source tells both.
+Value last_level_misses(const Row& row) {
+  const std::string source = row.asked.value(kCounters, kPerfEvent);
+  if (row.process.counters.find(source) != nullptr) return count(row, source);
   if (source.starts_with(kLikwid)) {
-    for (const char* event : {"/MEM_LOAD_RETIRED_L3_MISS/value", "/L3_CACHE_REQ_MISS/value"})
-      if (const auto misses = number_at(counters, event)) return {misses, ""};
+    for (const char* event : {"MEM_LOAD_RETIRED_L3_MISS", "L3_CACHE_REQ_MISS"})
+      if (const Value misses = count(row, event); misses.number) return misses;
     return absent(source + " counts no misses of the last level");
   }
-  if (const std::string why = text_in(counters, "llc_load_misses"); !why.empty())
-    return absent("llc_load_misses: " + why);
-  const Value loads = number_or_reason(row, "/process/counters/llc_load_misses/value");
+  const Value loads = count(row, "llc_load_misses");
   if (!loads.number) return loads;
-  return {*loads.number + number_at(counters, "/llc_store_misses/value").value_or(0), ""};
+  return {*loads.number + count(row, "llc_store_misses").number.value_or(0), ""};
 }
 
-Value insertions(const Json& row) { return sum_or_reason(row, "/counters/insertions"); }
+Value insertions(const Row& row) {
+  if (!row.mesh || !row.mesh->counters || !row.mesh->counters->insertions)
+    return absent("rows have no counters/insertions");
+  return sum_of(*row.mesh->counters->insertions);
+}
 
 // Cycles of a load by the caches in their order, then the own memory, then that of other nodes.
 struct Levels {
@@ -135,19 +180,19 @@ struct Levels {
   std::string absence;
 };
 
-Levels levels_of(const Json& row) {
+Levels levels_of(const Row& row) {
+  if (!row.measured) return {{}, {}, {}, "rows have no memory_levels"};
   Levels levels;
-  const Json told = at(row, std::string("/") + kMemoryLevels);
-  if (!told.is_array()) levels.absence = "rows have no memory_levels";
-  for (const Json& level : told) {
-    const std::string module = text_in(level, "module");
-    const auto cycles = number_in(level, "cycles");
-    if (!cycles) levels.absence = fmt::format("{}: {}", module, text_in(level, "cycles"));
-    if (!cycles) break;
-    if (module.ends_with("cache"))
+  for (const MemoryLevel& level : row.measured->memory_levels) {
+    const auto* const cycles = std::get_if<double>(&level.cycles);
+    if (cycles == nullptr) {
+      levels.absence = fmt::format("{}: {}", level.module, std::get<Unavailable>(level.cycles).text());
+      break;
+    }
+    if (level.module.ends_with("cache"))
       levels.caches.push_back(*cycles);
-    else if (module.starts_with("memory of the own"))
-      levels.own = cycles;
+    else if (level.module.starts_with("memory of the own"))
+      levels.own = *cycles;
     else
       levels.others.push_back(*cycles);
   }
@@ -156,12 +201,12 @@ Levels levels_of(const Json& row) {
   return levels;
 }
 
-Value first_cache_cycles(const Json& row) {
+Value first_cache_cycles(const Row& row) {
   const Levels levels = levels_of(row);
   return levels.absence.empty() ? Value{levels.caches.front(), ""} : absent(levels.absence);
 }
 
-Value least_step_between_levels(const Json& row) {
+Value least_step_between_levels(const Row& row) {
   Levels levels = levels_of(row);
   if (!levels.absence.empty()) return absent(levels.absence);
   levels.caches.push_back(*levels.own);
@@ -171,46 +216,53 @@ Value least_step_between_levels(const Json& row) {
   return {least, ""};
 }
 
-Value memory_over_last_cache(const Json& row) {
+Value memory_over_last_cache(const Row& row) {
   const Levels levels = levels_of(row);
   return levels.absence.empty() ? Value{*levels.own / levels.caches.back(), ""} : absent(levels.absence);
 }
 
-Value other_node_over_own(const Json& row) {
+Value other_node_over_own(const Row& row) {
   const Levels levels = levels_of(row);
   if (!levels.absence.empty()) return absent(levels.absence);
   if (levels.others.empty()) return absent("one NUMA node");
   return {*std::min_element(levels.others.begin(), levels.others.end()) / *levels.own, ""};
 }
 
-Value guarantee_misses(const Json& row) { return sum_or_reason(row, "/guarantees"); }
+Value guarantee_misses(const Row& row) {
+  return row.mesh ? sum_of(row.mesh->guarantees) : absent("rows have no guarantees");
+}
+
+const ByName<Proof>* verdicts_of(const Row& row) {
+  return row.mesh && row.mesh->verdicts ? &*row.mesh->verdicts : nullptr;
+}
 
 // not_run never counts as pass.
-Value unproved_claims(const Json& row) {
-  const Json verdicts = at(row, "/verdicts");
-  if (!verdicts.is_object() || verdicts.empty()) return absent("podm-verify did not run");
-  return {static_cast<double>(std::count_if(verdicts.begin(), verdicts.end(),
-                                            [](const Json& verdict) { return verdict != "pass"; })),
-          ""};
+Value unproved_claims(const Row& row) {
+  const auto* const verdicts = verdicts_of(row);
+  if (verdicts == nullptr || verdicts->empty()) return absent("podm-verify did not run");
+  return {
+      static_cast<double>(std::count_if(verdicts->begin(), verdicts->end(),
+                                        [](const auto& verdict) { return verdict.second != Proof::kPass; })),
+      ""};
 }
 
 Value yes(bool is_so) { return {is_so ? 1.0 : 0.0, ""}; }
 
-Value proved(const Json& row, const std::string& claim) {
-  const Json verdict = at(row, "/verdicts/" + claim);
-  return verdict.is_string() ? yes(verdict == "pass")
-                             : absent(fmt::format("podm-verify was not asked for {}", claim));
+Value proved(const Row& row, const std::string& claim) {
+  const auto* const verdicts = verdicts_of(row);
+  const Proof* const verdict = verdicts == nullptr ? nullptr : verdicts->find(claim);
+  return verdict == nullptr ? absent(fmt::format("podm-verify was not asked for {}", claim))
+                            : yes(*verdict == Proof::kPass);
 }
-Value conformity_proved(const Json& row) { return proved(row, "conformity"); }
-Value fidelity_proved(const Json& row) { return proved(row, "fidelity"); }
+Value conformity_proved(const Row& row) { return proved(row, "conformity"); }
+Value fidelity_proved(const Row& row) { return proved(row, "fidelity"); }
 
-Value replay_equal(const Json& row) {
-  const std::string replay = text_in(row, "replay");
-  return replay.empty() ? absent("no replay was asked for") : yes(replay == "equal");
+Value replay_equal(const Row& row) {
+  return row.replay ? yes(row.replay->end == Replay::End::kEqual) : absent("no replay was asked for");
 }
 
-Value has_ended(const Json& row) { return yes(is_finished(row)); }
-Value has_passed(const Json& row) { return yes(text_in(row, "status") == to_string(Status::kOk)); }
+Value has_ended(const Row& row) { return yes(is_finished(row)); }
+Value has_passed(const Row& row) { return yes(row.status == Status::kOk); }
 
 constexpr auto kLess = Better::kLess, kMore = Better::kMore;
 using enum Meaning;
@@ -247,10 +299,6 @@ constexpr Measure kMeasures[] = {
 };
 
 }  // namespace
-
-std::string to_string(Basis basis) {
-  return basis == Basis::kMeasured ? "measured" : basis == Basis::kSimulated ? "simulated" : "any";
-}
 
 std::span<const Measure> measures() { return kMeasures; }
 

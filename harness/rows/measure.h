@@ -1,18 +1,13 @@
 // The numbers of a row that claims of experiments speak of, by name. experiments/README.md lists them.
 #pragma once
 
-#include <nlohmann/json.hpp>
 #include <optional>
 #include <span>
 #include <string>
 
-namespace podm::bench {
+#include "rows/row.h"
 
-/// Where a row's numbers come from. A row is simulated when its workers or its caches are, or its machine is
-/// a described one.
-enum class Basis { kMeasured, kSimulated, kAny };
-/// "measured", "simulated", "any".
-std::string to_string(Basis basis);
+namespace podm::bench {
 
 /// A number, or why a row has none.
 struct Value {
@@ -37,14 +32,14 @@ struct Measure {
   const char* unit;
   Better better;
   Meaning meaning;
-  Value (*read)(const nlohmann::ordered_json& row);
-  /// Where it is there, the measure is the growth of read() over that of `per` from the smallest to the
+  Value (*read)(const Row& row);
+  /// Where this is there, the measure is the growth of read() over that of `per` from the smallest to the
   /// largest target_elements: what is the same for both, reading the image, falls out.
-  Value (*per)(const nlohmann::ordered_json& row) = nullptr;
+  Value (*per)(const Row& row) = nullptr;
 };
 
 std::span<const Measure> measures();
-/// Null where there is none of this name.
+/// Returns null where there is no measure of this name.
 const Measure* find_measure(const std::string& name);
 /// Whether a claim of this basis may ask for the measure.
 bool fits(const Measure& measure, Basis basis);

@@ -11,12 +11,8 @@
 #include <filesystem>
 #include <fstream>
 
-#include "rows/record.h"
-
 namespace podm::bench {
 namespace {
-
-using Json = nlohmann::ordered_json;
 
 // 0 or the number of the error.
 int write_all(int descriptor, const std::string& text) {
@@ -32,11 +28,17 @@ int write_all(int descriptor, const std::string& text) {
   throw InputError(fmt::format("cannot write {}: {}", path, std::strerror(error_number)));
 }
 
-void check_schema(const Json& row, const std::string& path, std::size_t line) {
-  const Json schema = row.value("schema", Json());
-  if (schema == kRowSchema) return;
-  throw InputError(fmt::format("{}:{}: a row of schema {}; this program reads {}: move the file away", path,
-                               line, schema.is_null() ? "none" : schema.dump(), kRowSchema));
+// Throws InputError naming the line.
+Row row_of(const Json& json, const std::string& path, std::size_t line) {
+  const Json schema = json.value("schema", Json());
+  if (schema != kRowSchema)
+    throw InputError(fmt::format("{}:{}: a row of schema {}; this program reads {}: move the file away", path,
+                                 line, schema.is_null() ? "none" : schema.dump(), kRowSchema));
+  try {
+    return from_json<Row>(json);
+  } catch (const FieldError& fault) {
+    throw InputError(fmt::format("{}:{}: {}", path, line, fault.what()));
+  }
 }
 
 }  // namespace
@@ -63,10 +65,9 @@ RowsRead read_rows(const std::string& path) {
   std::size_t number = 0;
   for (std::string line; std::getline(file, line);) {
     ++number;
-    Json row = Json::parse(line, nullptr, false);
-    if (row.is_object()) {
-      check_schema(row, path, number);
-      read.rows.push_back(std::move(row));
+    const Json json = Json::parse(line, nullptr, false);
+    if (json.is_object()) {
+      read.rows.push_back(row_of(json, path, number));
       read.whole += line + "\n";
       continue;
     }
@@ -102,9 +103,8 @@ RecordFile::RecordFile(const std::string& path)
 
 RecordFile::~RecordFile() { ::close(descriptor_); }
 
-std::string RecordFile::as_line(const Json& row) {
-  // stderr may hold any bytes; what is not UTF-8 is replaced.
-  return row.dump(-1, ' ', false, Json::error_handler_t::replace) + "\n";
+std::string as_line(const Row& row) {
+  return to_json(row).dump(-1, ' ', false, Json::error_handler_t::replace) + "\n";
 }
 
 void RecordFile::append_text(const std::string& text) {

@@ -1,11 +1,11 @@
 // Files of JSON lines that outlive a crash of the program, of the machine, and full disks.
 #pragma once
 
-#include <nlohmann/json.hpp>
 #include <string>
 #include <vector>
 
 #include "errors.h"
+#include "rows/row.h"
 
 namespace podm::bench {
 
@@ -23,19 +23,22 @@ class ResultsLock {
 };
 
 struct RowsRead {
-  std::vector<nlohmann::ordered_json> rows;
+  std::vector<Row> rows;
   std::string whole;            ///< their lines, each ended
   std::string broken;           ///< the lines that are no JSON object, each ended
   std::size_t broken_line = 0;  ///< the number of the first of them; 0: none
 };
 
 /// All rows of a file; none when there is no file. Throws InputError "file:line: fault" on a row of a schema
-/// that this program does not know.
+/// that this program does not know and on one that is not as its schema says.
 RowsRead read_rows(const std::string& path);
 
-/// The same, once the broken lines, left by a crash, have been moved to the end of FILE.broken. Needs the
-/// lock.
+/// Moves the broken lines, which a crash left, to the end of FILE.broken and reads the others. The caller
+/// holds the lock.
 RowsRead repair_rows(const std::string& path);
+
+/// A row as its line, ended. What is not UTF-8, which stderr may hold, is replaced.
+std::string as_line(const Row& row);
 
 /// Writes a file whole or not at all. Throws InputError naming it.
 void write_file(const std::string& path, const std::string& text);
@@ -50,12 +53,10 @@ class RecordFile {
   RecordFile& operator=(const RecordFile&) = delete;
 
   /// Throws InputError naming the file and the fault; then it is as before.
-  void append(const nlohmann::ordered_json& row) { append_text(as_line(row)); }
+  void append(const Row& row) { append_text(as_line(row)); }
   void append_text(const std::string& text);
 
  private:
-  static std::string as_line(const nlohmann::ordered_json& row);
-
   std::string path_;
   int descriptor_;
 };

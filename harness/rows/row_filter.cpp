@@ -4,14 +4,12 @@
 
 #include <algorithm>
 #include <map>
+#include <tuple>
 
 #include "experiments/option_matrix.h"
-#include "rows/record.h"
 
 namespace podm::bench {
 namespace {
-
-using Json = nlohmann::ordered_json;
 
 constexpr const char *kExecutor = "executor", *kThreads = "threads";
 
@@ -22,22 +20,22 @@ std::string text_of(const Json& value) {
 }
 
 // Who made the row: this program, podm or a peer.
-std::string maker_of(const Json& row) {
-  const Json asked = at(row, "/asked");
-  return asked.contains(kMeasure) ? kMeasure : asked.value(kMesher, kPodm);
+std::string maker_of(const Row& row) {
+  return row.asked.contains(kMeasure) ? kMeasure : row.asked.value(kMesher, kPodm);
 }
 
+const MachineRecord& machine_of(const Row& row) { return row.environment; }
+
 // What rows of one series share: the machine and, where a mesh is made, the mesher's bytes.
-std::string origin_of(const Json& row) {
-  const std::string maker = maker_of(row);
-  const Json program = maker == kPodm ? at(row, "/programs/podm/sha256") : at(row, "/programs/peer/sha256");
-  return machine_of(row).dump() + program.dump();
+std::string origin_of(const Row& row) {
+  const auto& [podm, verifier, peer] = row.programs;
+  return to_json(machine_of(row)).dump() + (maker_of(row) == kPodm ? podm.sha256 : peer ? peer->sha256 : "");
 }
 
 // What a later row replaces. A trial that could not be prepared, or whose options or radius changed since,
 // has another key.
-Json turn_of(const Json& row) {
-  return {text_in(row, "trial"), row.value("repeat", 1), at(row, "/input/name")};
+std::tuple<std::string, int, std::string> turn_of(const Row& row) {
+  return {row.trial, row.repeat, row.input.name};
 }
 
 }  // namespace
@@ -49,10 +47,9 @@ Json complete_options(Json asked) {
   return asked;
 }
 
-Json options_of(const Json& row) {
-  Json options = complete_options(at(row, "/asked"));
-  const Json name = at(row, "/input/name");
-  options[kInput] = name.is_string() ? name : at(row, "/input/path");
+Json options_of(const Row& row) {
+  Json options = complete_options(row.asked);
+  options[kInput] = row.input.name;
   return options;
 }
 
@@ -98,30 +95,30 @@ std::string describe(const Filter& filter) {
 std::string missing_value(const Filter& filter, const RowPointers& rows) {
   for (const Condition& condition : filter)
     for (const Json& value : condition.values) {
-      const auto has = [&](const Json* row) { return option(options_of(*row), condition.key) == value; };
+      const auto has = [&](const Row* row) { return option(options_of(*row), condition.key) == value; };
       if (std::none_of(rows.begin(), rows.end(), has)) return describe(condition.key, value);
     }
   return "";
 }
 
-bool is_simulated(const Json& row) { return text_in(row, "basis") == to_string(Basis::kSimulated); }
+bool is_simulated(const Row& row) { return row.basis == Basis::kSimulated; }
 
-bool is_of(const Json& row, Basis basis) {
+bool is_of(const Row& row, Basis basis) {
   return basis == Basis::kAny || is_simulated(row) == (basis == Basis::kSimulated);
 }
 
 std::string stem_of(const std::string& trial) { return trial.substr(0, trial.find(',')); }
 
-std::vector<Json> rows_to_judge(const std::vector<Json>& rows) {
-  std::vector<Json> chosen;
+std::vector<Row> rows_to_judge(const std::vector<Row>& rows) {
+  std::vector<Row> chosen;
   if (rows.empty()) return chosen;
-  const Json newest_machine = machine_of(rows.back());
-  std::map<std::string, std::string> newest_origins;  // by maker
-  for (const Json& row : rows)
+  const MachineRecord& newest_machine = machine_of(rows.back());
+  std::map<std::string, std::string> newest_origins;  // keys are makers
+  for (const Row& row : rows)
     if (machine_of(row) == newest_machine) newest_origins[maker_of(row)] = origin_of(row);
-  std::map<Json, std::size_t> places;
-  for (const Json& row : rows) {
-    if (row.value("warmup", false) || text_in(row, "status") == to_string(Status::kInterrupted)) continue;
+  std::map<std::tuple<std::string, int, std::string>, std::size_t> places;
+  for (const Row& row : rows) {
+    if (row.warmup || row.status == Status::kInterrupted) continue;
     if (origin_of(row) != newest_origins[maker_of(row)]) continue;
     const auto [place, is_new] = places.emplace(turn_of(row), chosen.size());
     if (is_new)

@@ -7,34 +7,29 @@
 #include <map>
 
 #include "experiments/option_matrix.h"
-#include "rows/record.h"
 
 namespace podm::bench {
 namespace {
 
-using Json = nlohmann::ordered_json;
-
 // Which statuses have a number that counts.
-bool counts(const Json& row, const Measure& measure) {
-  const std::string status = text_in(row, "status");
+bool counts(const Row& row, const Measure& measure) {
   if (measure.meaning == Meaning::kOutcome) return true;
-  return status == to_string(Status::kOk) || (!varies(measure) && status == to_string(Status::kUnmet));
+  return row.status == Status::kOk || (!varies(measure) && row.status == Status::kUnmet);
 }
 
-std::string fault_of(const Json& row) {
-  return fmt::format("{}: {}: {}: {}", kRowsFailed, text_in(row, "trial"), text_in(row, "status"),
-                     text_in(row, "reason"));
+std::string fault_of(const Row& row) {
+  return fmt::format("{}: {}: {}: {}", kRowsFailed, row.trial, to_string(row.status), row.reason);
 }
 
 // read() of each row, or why one has none.
-Samples read_each(const RowPointers& rows, const Measure& measure, Value (*read)(const Json&)) {
+Samples read_each(const RowPointers& rows, const Measure& measure, Value (*read)(const Row&)) {
   Samples samples;
   samples.num_rows = rows.size();
-  for (const Json* row : rows) {
+  for (const Row* row : rows) {
     const Value value = counts(*row, measure) ? read(*row) : Value{{}, fault_of(*row)};
     if (!value.number) return {{}, {}, value.absence, rows.size()};
     samples.numbers.push_back(*value.number);
-    samples.rounds.push_back(row->value("repeat", 1));
+    samples.rounds.push_back(row->repeat);
   }
   return samples;
 }
@@ -42,7 +37,7 @@ Samples read_each(const RowPointers& rows, const Measure& measure, Value (*read)
 // The growth of read() over that of per() from the smallest size to the largest.
 Samples sample_growth(const RowPointers& rows, const Measure& measure) {
   std::map<double, RowPointers> by_size;
-  for (const Json* row : rows) by_size[number_at(*row, "/asked/target_elements").value_or(0)].push_back(row);
+  for (const Row* row : rows) by_size[row->asked.value(kTargetElements, 0.0)].push_back(row);
   if (by_size.size() < 2) return {{}, {}, "needs two target_elements, has one", rows.size()};
   double growth[2] = {0, 0};
   for (const bool is_largest : {false, true}) {
@@ -89,9 +84,9 @@ std::vector<RowGroup> group_rows(const RowPointers& rows,
                                  const std::function<bool(const std::string& key)>& is_free) {
   std::vector<RowGroup> groups;
   std::map<std::string, std::size_t> places;
-  for (const Json* row : rows) {
+  for (const Row* row : rows) {
     std::map<std::string, Json>
-        agreed;  // by key, so that the order in which a file gives them does not count
+        agreed;  // sorted by key, so that the order in which a file gives them does not count
     const Json options = options_of(*row);
     for (const auto& [key, value] : options.items())
       if (!is_free(key)) agreed[key] = value;

@@ -2,7 +2,6 @@
 #pragma once
 
 #include <functional>
-#include <nlohmann/json.hpp>
 #include <string>
 #include <vector>
 
@@ -17,7 +16,7 @@ inline constexpr const char* kRowsFailed = "rows failed";
 
 /// Rows whose options agree but for some keys, in the order of their first rows.
 struct RowGroup {
-  nlohmann::ordered_json options;  ///< those that they agree in
+  Json options;  ///< those that they agree in
   RowPointers rows;
 };
 /// The keys that `is_free` says yes to may differ within a group.
@@ -30,7 +29,7 @@ std::vector<std::string> labels_of(const std::vector<RowGroup>& groups);
 /// Repeats of one measurement.
 struct Samples {
   std::vector<double> numbers;
-  std::vector<int> rounds;  ///< of each number
+  std::vector<int> rounds;  ///< the round of each number
   std::string absence;      ///< why there are no numbers; empty: there are
   std::size_t num_rows = 0;
 
@@ -43,8 +42,9 @@ struct SeriesRatio {
   Ratio ratio;
   bool has_interval = false;  ///< both were measured more than once
 };
-/// Of medians; where both ran in the same rounds, the median of the ratios within rounds. Numbers that are
-/// not positive have no interval, and a ratio over 0 is infinite, or 1 where both are 0.
+/// The ratio is that of the medians; where both ran in the same rounds, it is the median of the ratios within
+/// rounds. Numbers that are not positive have no interval, and a ratio over 0 is infinite, or 1 where both
+/// are 0.
 SeriesRatio ratio_of(const Samples& above, const Samples& below);
 
 }  // namespace podm::bench

@@ -7,7 +7,7 @@
 
 namespace podm::bench {
 
-/// Of at least one sample; of an even number the mean of the middle two.
+/// The median of at least one sample; that of an even number is the mean of the middle two.
 double median(std::vector<double> samples);
 
 /// An estimate and the interval that holds the truth with the confidence asked for.

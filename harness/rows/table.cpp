@@ -6,69 +6,72 @@
 #include <filesystem>
 #include <functional>
 
-#include "rows/record.h"
 #include "rows/statistics.h"
 
 namespace podm::bench {
 namespace {
 
-using Json = nlohmann::ordered_json;
 using Line = std::vector<std::string>;
-using Rows = std::vector<const Json*>;
+using Rows = std::vector<const Row*>;
 
 constexpr double kBytesPerMib = 1024.0 * 1024;
-// Phases outside the time of eq. (1): finding a radius, drawing a phantom, measuring the mesh, writing it.
-constexpr const char* kNotMeshing[] = {"calibrate", "draw", "measure", "write"};
+
+// "-" without any value.
+template <class T>
+std::string median_over(const std::vector<const T*>& all,
+                        const std::function<std::optional<double>(const T&)>& value_of,
+                        const std::function<std::string(double)>& print) {
+  std::vector<double> values;
+  for (const T* one : all)
+    if (const auto value = value_of(*one)) values.push_back(*value);
+  return values.empty() ? "-" : print(median(std::move(values)));
+}
+
+std::string memory_levels_of(const Rows& rows) {
+  std::vector<const MemoryLevelsRecord*> records;
+  for (const Row* row : rows) records.push_back(&*row->measured);
+  return memory_levels(records);
+}
 
 // What became of the repeats: the first fault where there is one.
 std::string verdict(const Rows& repeats) {
-  const auto is_ok = [](const Json* row) { return text_in(*row, "status") == to_string(Status::kOk); };
-  const auto fault = std::find_if_not(repeats.begin(), repeats.end(), is_ok);
-  if (fault != repeats.end()) {
-    const std::string status = text_in(**fault, "status");
-    return fmt::format("{}: {}", status == to_string(Status::kUnmet) ? "NOT met" : status,
-                       text_in(**fault, "reason"));
-  }
-  if (repeats.front()->contains(kMemoryLevels)) return memory_levels(repeats);
-  const Json verdicts = repeats.front()->value("verdicts", Json::object());
-  const auto num_proved = std::count(verdicts.begin(), verdicts.end(), "pass");
+  for (const Row* row : repeats)
+    if (row->status != Status::kOk)
+      return fmt::format("{}: {}", row->status == Status::kUnmet ? "NOT met" : to_string(row->status),
+                         row->reason);
+  if (repeats.front()->measured) return memory_levels_of(repeats);
+  const auto& mesh = repeats.front()->mesh;
+  const auto verdicts = mesh ? mesh->verdicts.value_or(ByName<Proof>{}) : ByName<Proof>{};
+  const auto num_proved = std::count_if(verdicts.begin(), verdicts.end(),
+                                        [](const auto& verdict) { return verdict.second == Proof::kPass; });
   return num_proved > 0 ? fmt::format("met, {} claims proved", num_proved) : "met";
-}
-
-// "-" without any value.
-std::string median_over(const Rows& rows, const std::function<std::optional<double>(const Json&)>& value_of,
-                        const std::function<std::string(double)>& print) {
-  std::vector<double> values;
-  for (const Json* row : rows)
-    if (const auto value = value_of(*row)) values.push_back(*value);
-  return values.empty() ? "-" : print(median(std::move(values)));
 }
 
 std::string print_count(double count) { return thousands(static_cast<std::uint64_t>(count)); }
 
 Line line_of(const Rows& repeats) {
-  const Json& first = *repeats.front();
+  using Number = std::optional<double>;
   Rows proved;
-  for (const Json* row : repeats)
-    if (text_in(*row, "status") == to_string(Status::kOk)) proved.push_back(row);
-  const auto number = [](const char* key) { return [key](const Json& row) { return number_in(row, key); }; };
-  const auto seconds = [](const Json& row) {
-    return row.contains("phases_s") ? std::optional<double>(meshing_seconds(row)) : std::nullopt;
+  for (const Row* row : repeats)
+    if (row->status == Status::kOk) proved.push_back(row);
+  const auto over_meshes = [&proved](const auto& number_of, const auto& print) {
+    return median_over<Row>(
+        proved, [&](const Row& row) { return row.mesh ? Number(number_of(*row.mesh)) : Number(); }, print);
   };
-  const auto of_process = [](const char* key) {
-    return [key](const Json& row) { return number_in(row.value("process", Json::object()), key); };
-  };
-  return {text_in(first, "trial"),
-          std::filesystem::path(text_in(first.value("input", Json::object()), "name")).filename().string(),
+  const auto seconds = [](const MeshRecord& mesh) { return meshing_seconds(mesh.phases_s); };
+  return {repeats.front()->trial,
+          std::filesystem::path(repeats.front()->input.name).filename().string(),
           std::to_string(repeats.size()),
-          median_over(proved, number("cells"), print_count),
-          median_over(proved, number("vertices"), print_count),
-          median_over(proved, seconds, [](double s) { return fmt::format("{:.2f}", s); }),
-          median_over(proved, number("refine_cells_per_second"), print_count),
-          median_over(proved, of_process("peak_rss_bytes"),
-                      [](double bytes) { return fmt::format("{:.0f}", bytes / kBytesPerMib); }),
-          median_over(proved, of_process("bytes_per_cell_beyond_image"),
-                      [](double bytes) { return fmt::format("{:.0f}", bytes); }),
+          over_meshes([](const MeshRecord& mesh) { return mesh.cells; }, print_count),
+          over_meshes([](const MeshRecord& mesh) { return mesh.vertices; }, print_count),
+          over_meshes(seconds, [](double s) { return fmt::format("{:.2f}", s); }),
+          over_meshes([](const MeshRecord& mesh) { return mesh.refine_cells_per_second; }, print_count),
+          median_over<Row>(
+              proved, [](const Row& row) { return Number(row.process.peak_rss_bytes); },
+              [](double bytes) { return fmt::format("{:.0f}", bytes / kBytesPerMib); }),
+          median_over<Row>(
+              proved, [](const Row& row) { return row.process.bytes_per_cell_beyond_image; },
+              [](double bytes) { return fmt::format("{:.0f}", bytes); }),
           verdict(repeats)};
 }
 
@@ -80,21 +83,17 @@ std::string thousands(std::uint64_t number) {
   return digits;
 }
 
-double meshing_seconds(const Json& record) {
-  double seconds = 0;
-  for (const auto& [phase, phase_s] : record["phases_s"].items())
-    if (std::find(std::begin(kNotMeshing), std::end(kNotMeshing), phase) == std::end(kNotMeshing))
-      seconds += phase_s.get<double>();
-  return seconds;
-}
-
-std::string memory_levels(const std::vector<const Json*>& rows) {
+std::string memory_levels(const std::vector<const MemoryLevelsRecord*>& records) {
   std::vector<std::string> parts;
-  const Json& levels = (*rows.front())[kMemoryLevels];
+  const auto& levels = records.front()->memory_levels;
   for (std::size_t i = 0; i < levels.size(); ++i) {
-    const auto cycles_of = [i](const Json& row) { return number_in(row[kMemoryLevels][i], "cycles"); };
+    const auto cycles_of = [i](const MemoryLevelsRecord& record) -> std::optional<double> {
+      const auto* const cycles = std::get_if<double>(&record.memory_levels.at(i).cycles);
+      return cycles == nullptr ? std::nullopt : std::optional(*cycles);
+    };
     const auto print = [](double cycles) { return fmt::format("{:.3g} cycles", cycles); };
-    parts.push_back(fmt::format("{} {}", text_in(levels[i], "module"), median_over(rows, cycles_of, print)));
+    parts.push_back(
+        fmt::format("{} {}", levels[i].module, median_over<MemoryLevelsRecord>(records, cycles_of, print)));
   }
   return fmt::format("{}", fmt::join(parts, ", "));
 }
@@ -114,13 +113,13 @@ std::string align(const std::vector<Line>& lines, std::size_t num_text_columns) 
   return text;
 }
 
-std::string format_table(const std::vector<std::vector<Json>>& rows_of_trials) {
+std::string format_table(const std::vector<std::vector<Row>>& rows_of_trials) {
   std::vector<Line> lines{{"trial", "input", "runs", "cells", "vertices", "seconds", "refine cells/s",
                            "peak MiB", "bytes/cell", "guarantees"}};
-  for (const std::vector<Json>& rows : rows_of_trials) {
+  for (const std::vector<Row>& rows : rows_of_trials) {
     Rows repeats;
-    for (const Json& row : rows)
-      if (!row.value("warmup", false)) repeats.push_back(&row);
+    for (const Row& row : rows)
+      if (!row.warmup) repeats.push_back(&row);
     if (!repeats.empty()) lines.push_back(line_of(repeats));
   }
   return align(lines, 2);

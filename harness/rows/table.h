@@ -1,10 +1,11 @@
 // What a person reads at the end of an experiment.
 #pragma once
 
-#include <nlohmann/json.hpp>
 #include <optional>
 #include <string>
 #include <vector>
+
+#include "rows/row.h"
 
 namespace podm::bench {
 
@@ -15,14 +16,10 @@ std::string align(const std::vector<std::vector<std::string>>& lines, std::size_
 /// A line for each trial that has rows besides those of warm-ups. Seconds are those
 /// of meshing_seconds(); numbers are medians over the repeats that hold all they promise, and "-" without
 /// any.
-std::string format_table(const std::vector<std::vector<nlohmann::ordered_json>>& rows_of_trials);
+std::string format_table(const std::vector<std::vector<Row>>& rows_of_trials);
 
-/// The time of the paper's eq. (1): of all phases of a mesher's record but those that make no part of the
-/// mesh, results/README.md.
-double meshing_seconds(const nlohmann::ordered_json& record);
-
-/// "L1 cache 4.1 cycles, L2 cache 14 cycles, ...": medians over rows that measure the same machine.
-std::string memory_levels(const std::vector<const nlohmann::ordered_json*>& rows);
+/// "L1 cache 4.1 cycles, L2 cache 14 cycles, ...": medians over records that measure the same machine.
+std::string memory_levels(const std::vector<const MemoryLevelsRecord*>& records);
 
 /// "1 234 567".
 std::string thousands(std::uint64_t number);

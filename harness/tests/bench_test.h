@@ -62,7 +62,7 @@ class BenchTest : public testing::Test {
     for (std::string line; std::getline(file, line);) rows.push_back(nlohmann::json::parse(line));
     return rows;
   }
-  // In the order in which they ran.
+  // Names stand in the order in which the trials ran.
   std::vector<std::string> in_order() {
     std::vector<std::string> trials;
     for (const auto& row : rows()) trials.push_back(row.at("trial"));

@@ -56,8 +56,8 @@ inline const std::string kGoodRecord =
     R"("refine_cells_per_second":1000.0,"phases_s":{"read":0.5,"refine":1.0,"extract":0.5,"write":5.0},)"
     R"("guarantees":{"radius_edge":0,"facet_angle":0},"stop_reason":"complete"})";
 
-/// Of a trial on an image that is a file and with a radius.
-inline Preparation prepared(const Trial& trial) { return {trial.image, "00", nullptr}; }
+/// What is prepared for a trial on an image that is a file and with a radius.
+inline Preparation prepared(const Trial& trial) { return {trial.image, "00", {}}; }
 
 /// A script for `podm`: answers --version, and `info` with 10 x 10 x 10 voxels; `phantom` writes its name and
 /// size and notes them in the file "drawn"; `replay` of a log runs the file "replay"; `mesh` notes its

@@ -1,7 +1,6 @@
 // Rows as podm-bench would have written them, of numbers that a test makes up.
 #pragma once
 
-#include <nlohmann/json.hpp>
 #include <string>
 #include <vector>
 
@@ -11,31 +10,54 @@
 namespace podm::bench {
 
 /// A row of status ok on a machine of two sockets of eight cores. `asked` decides whether it is simulated.
-inline nlohmann::ordered_json made_up_row(const std::string& trial, const nlohmann::ordered_json& asked,
-                                          int repeat = 1) {
+inline Row made_up_row(const std::string& trial, const Json& asked, int repeat = 1) {
   static int num_rows = 0;
-  using Json = nlohmann::ordered_json;
-  Json options = asked;
-  if (!options.contains("threads")) options["threads"] = 1;
-  return {{"key", "key " + std::to_string(++num_rows)},
-          {"trial", trial},
-          {"repeat", repeat},
-          {"warmup", false},
-          {"status", "ok"},
-          {"reason", ""},
-          {"asked", options},
-          {"basis", basis_of(options, Json::object())},
-          {"input", {{"name", "image"}, {"path", "image.nii"}}},
-          {"environment", {{"cpu", "some"}, {"packages", 2}, {"cores", 16}, {"usable_processors", 16}}},
-          {"programs", {{"podm", {{"sha256", "build"}}}}}};
+  Row row;
+  row.key = "key " + std::to_string(++num_rows);
+  row.experiment = "exp";
+  row.trial = trial;
+  row.repeat = repeat;
+  row.status = Status::kOk;
+  row.asked = asked.is_null() ? Json::object() : asked;
+  if (!row.asked.contains("threads")) row.asked["threads"] = 1;
+  row.basis = basis_of(row.asked, {});
+  row.command = {"podm", "mesh", "image.nii"};
+  row.input.name = "image";
+  row.input.path = "image.nii";
+  row.programs.podm.sha256 = "build";
+  row.environment.cpu = "some";
+  row.environment.packages = std::uint64_t{2};
+  row.environment.cores = std::uint64_t{16};
+  row.environment.usable_processors = 16;
+  return row;
 }
 
-/// The same where refinement took so many seconds.
-inline nlohmann::ordered_json refined_in(double seconds, const nlohmann::ordered_json& asked, int repeat = 1,
-                                         const std::string& trial = "1M") {
-  nlohmann::ordered_json row = made_up_row(trial, asked, repeat);
-  row["cells"] = 1000;
-  row["phases_s"] = {{"read", 0.5}, {"refine", seconds}};
+/// The mesher's record in a row, made if need be.
+inline MeshRecord& mesh_of(Row& row) {
+  if (!row.mesh) row.mesh.emplace().stop_reason = kComplete;
+  return *row.mesh;
+}
+
+/// A line of Table 3.
+inline MemoryLevel level(const std::string& module, double cycles) {
+  MemoryLevel made;
+  made.module = module;
+  made.cycles = cycles;
+  return made;
+}
+
+inline void set_overhead(Row& row, double contention, double rollback, double begging) {
+  OverheadRecord& overhead = mesh_of(row).overhead_s.emplace();
+  overhead.contention = contention;
+  overhead.rollback = rollback;
+  overhead.begging = begging;
+}
+
+/// A made-up row of a mesh whose refinement took so many seconds.
+inline Row refined_in(double seconds, const Json& asked, int repeat = 1, const std::string& trial = "1M") {
+  Row row = made_up_row(trial, asked, repeat);
+  mesh_of(row).cells = 1000;
+  mesh_of(row).phases_s = {{"read", 0.5}, {"refine", seconds}};
   return row;
 }
 

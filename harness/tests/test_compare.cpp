@@ -4,27 +4,32 @@
 #include <gtest/gtest.h>
 
 #include "fake_mesher.h"
+#include "made_up_rows.h"
+#include "rows/results_file.h"
 #include "trials/process.h"
 
 namespace podm::bench {
 namespace {
 
-using Json = nlohmann::ordered_json;
-using Rows = std::vector<Json>;
+using Rows = std::vector<Row>;
 
-Json row(double seconds, int threads = 1) {
-  return {{"trial", "some"},
-          {"status", "ok"},
-          {"input", {{"path", "image.nii"}}},
-          {"options", {{"radius_mm", 2.0}}},
-          {"threads", {{"asked", threads}, {"used", threads}}},
-          {"phases_s", {{"refine", seconds}, {"write", 50.0}}},
-          {"cells", 1000},
-          {"cells_per_second", 1000 / seconds},
-          {"counters", {{"insertions", {{"R1", 7}, {"R2", 3}}}, {"removals", 1}, {"conflict_tests", 100}}},
-          {"mesh_sha256", "aa"},
-          {"verdicts", {{"size", "pass"}}},
-          {"process", {{"peak_rss_bytes", 5000}}}};
+Row row(double seconds, int threads = 1) {
+  Row made = made_up_row("some", {{"threads", threads}});
+  made.input.name = made.input.path;
+  made.process.peak_rss_bytes = 5000;
+  MeshRecord& mesh = mesh_of(made);
+  mesh.options = Json{{"radius_mm", 2.0}};
+  mesh.threads = {threads, threads};
+  mesh.phases_s = {{"refine", seconds}, {"write", 50.0}};
+  mesh.cells = 1000;
+  mesh.cells_per_second = 1000 / seconds;
+  WorkRecord& work = mesh.counters.emplace();
+  work.insertions = {{"R1", 7}, {"R2", 3}};
+  work.removals = 1;
+  work.conflict_tests = 100;
+  mesh.mesh_sha256 = "aa";
+  mesh.verdicts = {{"size", Proof::kPass}};
+  return made;
 }
 
 // Seven measurements within 2 % of each other.
@@ -64,17 +69,18 @@ TEST(Compare, FewRowsAreNoEvidenceOfTime) {
 
 TEST(Compare, WorkOfOneThreadNeedsNoRepeats) {
   for (const int threads : {1, 2}) {
-    Json more = row(2, threads);
-    more["counters"]["conflict_tests"] = 110;
+    Row more = row(2, threads);
+    mesh_of(more).counters->conflict_tests = 110;
     EXPECT_EQ(compare({row(2, threads)}, {more}).is_worse, threads == 1);
   }
 }
 
 TEST(Compare, LostVerdictsAndStatusComeFirstAndAreWorse) {
-  Json unproved = row(2),
-       failed = {{"trial", "some"}, {"status", "failed"}, {"input", {{"path", "image.nii"}}}};
-  unproved["verdicts"]["size"] = "fail";
-  for (const Json& bad : {unproved, failed}) {
+  Row unproved = row(2), failed = row(2);
+  mesh_of(unproved).verdicts = {{"size", Proof::kFail}};
+  failed.status = Status::kFailed;
+  failed.mesh.reset();
+  for (const Row& bad : {unproved, failed}) {
     const Comparison comparison = compare({row(2)}, {row(2), bad});
     EXPECT_TRUE(comparison.is_worse);
     EXPECT_LT(comparison.text.find("WORSE"), comparison.text.find("median"));
@@ -84,16 +90,16 @@ TEST(Compare, LostVerdictsAndStatusComeFirstAndAreWorse) {
 
 TEST(Compare, AnotherMeshIsToldOnOneThreadOnly) {
   for (const int threads : {1, 2}) {
-    Json other = row(2, threads);
-    other["mesh_sha256"] = "bb";
+    Row other = row(2, threads);
+    mesh_of(other).mesh_sha256 = "bb";
     EXPECT_EQ(has(compare({row(2, threads)}, {other}), "another mesh"), threads == 1);
   }
 }
 
 TEST(Compare, MatchesOnlyWhatMeasuresTheSame) {
   EXPECT_THROW(compare({row(2)}, {row(2, 2)}), InputError);
-  Json other = row(2);
-  other["options"]["radius_mm"] = 3.0;
+  Row other = row(2);
+  mesh_of(other).options = Json{{"radius_mm", 3.0}};
   EXPECT_THROW(compare({row(2)}, {other}), InputError);
   Rows both = repeats(2);
   both.push_back(row(9, 2));
@@ -101,10 +107,9 @@ TEST(Compare, MatchesOnlyWhatMeasuresTheSame) {
 }
 
 TEST(Compare, TakesRecordsOfTheMesherAlone) {
-  Json record = row(2);
-  record.erase("trial");
-  record.erase("status");
-  const Comparison comparison = compare({record}, {record});
+  MeshRecord record = *row(2).mesh;
+  record.input.emplace().path = "image.nii";
+  const Comparison comparison = compare({row_of(record)}, {row_of(record)});
   EXPECT_FALSE(comparison.is_worse);
   EXPECT_TRUE(has(comparison, "image.nii"));
 }
@@ -113,7 +118,7 @@ class CompareCommand : public testing::Test {
  protected:
   std::string file(const std::string& name, const Rows& rows) {
     std::string text;
-    for (const Json& one : rows) text += one.dump() + "\n";
+    for (const Row& one : rows) text += as_line(one);
     return folder_.write(name, text);
   }
   int run(const std::string& a, const std::string& b) {
@@ -131,6 +136,13 @@ TEST_F(CompareCommand, ExitCodeTells) {
   EXPECT_EQ(run(a, a), 0);
   EXPECT_EQ(run(b, a), 0);
   EXPECT_EQ(run(a, b), 1);
+  Json record = Json::parse(kGoodRecord);
+  const std::string alone = folder_.write("alone", record.dump() + "\n");
+  EXPECT_EQ(run(alone, alone), 0) << read_tail(folder_ / "err", 1000);
+  record["cells"] = "many";
+  EXPECT_EQ(run(alone, folder_.write("broken", record.dump() + "\n")), 2);
+  EXPECT_NE(read_tail(folder_ / "err", 1000).find("broken:1:"), std::string::npos);
+  EXPECT_NE(read_tail(folder_ / "err", 1000).find("cells: must be"), std::string::npos);
 }
 
 TEST_F(CompareCommand, BadInputExitsWithTwoAndNamesThePlace) {

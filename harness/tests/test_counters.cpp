@@ -12,8 +12,6 @@
 namespace podm::bench {
 namespace {
 
-using Json = nlohmann::ordered_json;
-
 ProcessOutcome run_shell(const std::string& command) {
   return run_process(
       {.arguments = {"/bin/sh", "-c", command}, .stdout_path = {}, .stderr_path = {}, .timeout_s = 20});
@@ -35,7 +33,7 @@ TEST(PerfCounters, ChildAndItsChildrenAreCountedAndThisProcessIsNot) {
   fault_pages(30'000);
   const ProcessOutcome outcome = run_shell("dd if=/dev/zero of=/dev/null count=1 bs=40M; true");
   fault_pages(30'000);
-  const Json counts = counters.read(outcome);
+  const Json counts = to_json(counters.read(outcome));
   EXPECT_EQ(counts.size(), 4u) << counts;
   EXPECT_GT(counts["task_clock_ns"]["value"], 0);
   EXPECT_GT(counts["page_faults"]["value"], 20) << "dd's buffer, in huge pages";
@@ -44,7 +42,7 @@ TEST(PerfCounters, ChildAndItsChildrenAreCountedAndThisProcessIsNot) {
 
 TEST(PerfCounters, EveryCounterIsAValueWithItsSourceOrAReason) {
   const PerfCounters counters(CounterKinds::kSoftwareAndHardware);
-  const Json counts = counters.read(run_shell("exit 0"));
+  const Json counts = to_json(counters.read(run_shell("exit 0")));
   EXPECT_EQ(counts.size(), 9u) << counts;
   for (const auto& [name, count] : counts.items())
     EXPECT_TRUE(count.is_string() ? count.get<std::string>().starts_with("unavailable: ")
@@ -58,7 +56,7 @@ TEST(PerfCounters, RefusedOnesComeFromGetrusageOrSayWhy) {
         std::pair{ENOSYS, "Function not implemented"}}) {
     const PerfCounters counters(CounterKinds::kSoftwareAndHardware,
                                 [code = error](perf_event_attr&) { return -code; });
-    const Json counts = counters.read(run_shell("exit 0"));
+    const Json counts = to_json(counters.read(run_shell("exit 0")));
     for (const char* name : {"task_clock_ns", "page_faults", "context_switches"})
       EXPECT_EQ(counts[name]["source"], "getrusage") << name;
     EXPECT_GT(counts["page_faults"]["value"], 0);
@@ -74,7 +72,7 @@ TEST(PerfCounters, HardwareIsCountedOutsideTheKernelWhereThatAloneIsAllowed) {
   const PerfCounters counters(CounterKinds::kSoftwareAndHardware, [&](perf_event_attr& attributes) {
     return attributes.exclude_kernel ? open(path.c_str(), O_RDONLY | O_CLOEXEC) : -EACCES;
   });
-  const Json counts = counters.read(run_shell("exit 0"));
+  const Json counts = to_json(counters.read(run_shell("exit 0")));
   EXPECT_EQ(counts["cycles"], Json({{"value", 7}, {"source", "perf_event, user mode"}}));
   EXPECT_EQ(counts["context_switches"]["source"], "getrusage") << "those happen in the kernel";
 }
@@ -87,7 +85,7 @@ TEST(PerfCounters, CountsOfAShareOfTheTimeAreScaledAndSaySo) {
         {reinterpret_cast<const char*>(count_enabled_running.data()), 8 * count_enabled_running.size()});
     const PerfCounters counters(CounterKinds::kSoftware,
                                 [&](perf_event_attr&) { return open(path.c_str(), O_RDONLY | O_CLOEXEC); });
-    return counters.read(run_shell("exit 0"))["page_faults"];
+    return to_json(counters.read(run_shell("exit 0")))["page_faults"];
   };
   EXPECT_EQ(read_as({100, 40, 40}), Json({{"value", 100}, {"source", "perf_event"}}));
   EXPECT_EQ(read_as({100, 40, 10}),
@@ -98,8 +96,8 @@ TEST(PerfCounters, CountsOfAShareOfTheTimeAreScaledAndSaySo) {
 
 TEST(PerfCounters, ProcessThatDidNotStartHasNoCounts) {
   const PerfCounters counters(CounterKinds::kSoftware);
-  const Json counts = counters.read(
-      run_process({.arguments = {"/no/such/program"}, .stdout_path = {}, .stderr_path = {}, .timeout_s = 1}));
+  const Json counts = to_json(counters.read(run_process(
+      {.arguments = {"/no/such/program"}, .stdout_path = {}, .stderr_path = {}, .timeout_s = 1})));
   for (const auto& [name, count] : counts.items())
     EXPECT_EQ(count, "unavailable: the process did not start") << name;
 }

@@ -4,30 +4,25 @@
 #include <gtest/gtest.h>
 
 #include "fake_mesher.h"
+#include "made_up_rows.h"
 #include "rows/results_file.h"
 #include "trials/process.h"
 
 namespace podm::bench {
 namespace {
 
-using Json = nlohmann::ordered_json;
-
 // A run of a million cells a thread, at so many million cells a second.
-Json row(const std::string& algorithm, int threads, double rate, const std::string& trial = "1M") {
-  const double cells = 1e6 * threads;
-  return {{"trial", trial + ",algorithm=" + algorithm},
-          {"status", "ok"},
-          {"asked", {{"algorithm", algorithm}, {"threads", threads}}},
-          {"input", {{"name", "image.nii"}}},
-          {"cells", cells},
-          {"phases_s", {{"refine", cells / (1e6 * rate)}, {"write", 99.0}}},
-          {"environment", {{"cpu", "some"}, {"cores", 64}, {"load_average", 0.1}}}};
+Row row(const std::string& algorithm, int threads, double rate, const std::string& trial = "1M") {
+  Row made = made_up_row(trial + ",algorithm=" + algorithm, {{"algorithm", algorithm}, {"threads", threads}});
+  mesh_of(made).cells = static_cast<std::uint64_t>(threads) * 1'000'000;
+  mesh_of(made).phases_s = {{"refine", threads / rate}, {"write", 99.0}};
+  return made;
 }
 
 using Rates = std::vector<std::array<double, 2>>;  // of podm and pdr-podm at 1, 2, 4, ... threads
 
-std::vector<std::vector<Json>> rows(const Rates& rates) {
-  std::vector<std::vector<Json>> rows;
+std::vector<std::vector<Row>> rows(const Rates& rates) {
+  std::vector<std::vector<Row>> rows;
   int threads = 1;
   for (const auto& [podm, pdr_podm] : rates) {
     rows.push_back({row("podm", threads, podm)});
@@ -37,7 +32,7 @@ std::vector<std::vector<Json>> rows(const Rates& rates) {
   return rows;
 }
 
-Json threads_of(const Rates& rates) { return crossover_of(rows(rates))["threads"]; }
+std::optional<int> threads_of(const Rates& rates) { return crossover_of(rows(rates)).value().threads; }
 
 TEST(Crossover, IsTheLeastNumberFromWhichOnPdrPodmStaysAhead) {
   EXPECT_EQ(threads_of({{1, 0.9}, {2, 1.9}, {3, 3.1}, {4, 5}}), 4);
@@ -46,50 +41,52 @@ TEST(Crossover, IsTheLeastNumberFromWhichOnPdrPodmStaysAhead) {
 }
 
 TEST(Crossover, NoneUpToTheMostThreadsMeasured) {
-  const Json none = crossover_of(rows({{1, 0.9}, {2, 1.9}, {4, 3.9}}));
-  EXPECT_TRUE(none["threads"].is_null());
-  EXPECT_EQ(none["measured_up_to"], 4);
+  const Crossover none = crossover_of(rows({{1, 0.9}, {2, 1.9}, {4, 3.9}})).value();
+  EXPECT_FALSE(none.threads);
+  EXPECT_EQ(none.measured_up_to, 4);
   EXPECT_NE(tell_crossover(none).find("up to 4"), std::string::npos);
-  EXPECT_TRUE(threads_of({{1, 1.1}, {2, 1.9}}).is_null()) << "behind where it was measured last";
+  EXPECT_FALSE(threads_of({{1, 1.1}, {2, 1.9}})) << "behind where it was measured last";
 }
 
 TEST(Crossover, RepeatsThatOverlapAreNoEvidence) {
   auto repeats = rows({{1, 0.9}, {2, 2.1}});
-  EXPECT_EQ(crossover_of(repeats)["threads"], 2);
+  EXPECT_EQ(crossover_of(repeats).value().threads, 2);
   for (const double podm : {2.2, 1.9}) repeats.push_back({row("podm", 2, podm)});
   for (const double pdr_podm : {1.9, 2.2}) repeats.push_back({row("pdr-podm", 2, pdr_podm)});
-  EXPECT_TRUE(crossover_of(repeats)["threads"].is_null());
+  EXPECT_FALSE(crossover_of(repeats).value().threads);
 }
 
 TEST(Crossover, OnlyWhatRanOnThisMachineDecides) {
   for (const Json& simulated :
        {Json{{"executor", "virtual"}}, Json{{"topology", "x.xml"}}, Json{{"oversubscribe", true}}}) {
     auto all = rows({{1, 2}});
-    for (auto& trial : all) trial.front()["asked"].update(simulated);
-    EXPECT_TRUE(crossover_of(all).is_null()) << simulated;
+    for (auto& trial : all) trial.front().asked.update(simulated);
+    EXPECT_FALSE(crossover_of(all)) << simulated;
   }
-  for (const auto& [key, value] : {std::pair<const char*, Json>{"warmup", true}, {"status", "unmet"}}) {
-    auto all = rows({{1, 2}});
-    all[1].front()[key] = value;
-    EXPECT_TRUE(crossover_of(all).is_null()) << key;
-  }
-  EXPECT_TRUE(crossover_of({{row("podm", 1, 1)}, {row("auto", 1, 2)}, {row("pdr-podm", 2, 2)}}).is_null());
+  auto warmup = rows({{1, 2}}), unmet = warmup;
+  warmup[1].front().warmup = true;
+  unmet[1].front().status = Status::kUnmet;
+  EXPECT_FALSE(crossover_of(warmup));
+  EXPECT_FALSE(crossover_of(unmet));
+  EXPECT_FALSE(crossover_of({{row("podm", 1, 1)}, {row("auto", 1, 2)}, {row("pdr-podm", 2, 2)}}));
 }
 
 TEST(Crossover, TheTrialOfTheMostCellsAThreadDecides) {
   auto all = rows({{1, 2}, {2, 3}});
   for (const char* algorithm : {"podm", "pdr-podm"}) {
-    Json larger = row(algorithm, 2, std::string(algorithm) == "podm" ? 2 : 1, "9M");
-    larger["cells"] = 9 * larger["cells"].get<double>();
+    Row larger = row(algorithm, 2, std::string(algorithm) == "podm" ? 2 : 1, "9M");
+    mesh_of(larger).cells *= 9;
     all.push_back({larger});
   }
-  const Json crossover = crossover_of(all);
-  EXPECT_EQ(crossover["trial"], "9M");
-  EXPECT_TRUE(crossover["threads"].is_null());
+  const Crossover crossover = crossover_of(all).value();
+  EXPECT_EQ(crossover.trial, "9M");
+  EXPECT_FALSE(crossover.threads);
 }
 
 TEST(Crossover, NamesItsMachineWithoutItsMood) {
-  EXPECT_EQ(crossover_of(rows({{1, 2}}))["machine"], (Json{{"cpu", "some"}, {"cores", 64}}));
+  const MachineRecord machine = crossover_of(rows({{1, 2}})).value().machine;
+  EXPECT_EQ(machine, row("podm", 1, 1).environment);
+  EXPECT_FALSE(to_json(machine).contains("load_average"));
 }
 
 // An experiment whose fake mesher takes 1 s, pdr-podm half of it.

@@ -5,7 +5,7 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
-#include <functional>
+#include <map>
 
 #include "experiments/experiment.h"
 #include "experiments/judge.h"
@@ -15,110 +15,109 @@
 namespace podm::bench {
 namespace {
 
-using Json = nlohmann::ordered_json;
-using Rows = std::vector<Json>;
+using Rows = std::vector<Row>;
 
 constexpr double kMuch = 1e6;  // so that counts, which are whole, keep small differences
 
+std::uint64_t many(double value) { return static_cast<std::uint64_t>(std::llround(kMuch * value)); }
+
+void set_levels(Row& row, double first, double second, double own, double other) {
+  row.measured.emplace().memory_levels = {level("L1 cache", first), level("L2 cache", second),
+                                          level("memory of the own node 0", own),
+                                          level("memory of another node 1", other)};
+}
+
+void set_rate(Row& row, double cells_per_second) {
+  mesh_of(row).cells = many(cells_per_second);
+  mesh_of(row).phases_s = {{"refine", kMuch}};
+}
+
+void set_unproved(Row& row, double number) {
+  ByName<Proof>& verdicts = mesh_of(row).verdicts.emplace();
+  verdicts["structure"] = Proof::kPass;
+  for (int i = 0; i < number; ++i)
+    verdicts["claim " + std::to_string(i)] = i == 0 ? Proof::kFail : Proof::kNotRun;
+}
+
+void set_misses_per_insertion(Row& row, double value) {
+  const double size = row.asked["target_elements"];
+  const bool is_likwid = row.asked.value("counters", "").starts_with("likwid");
+  mesh_of(row).counters.emplace().insertions = {{"R1", static_cast<std::uint64_t>(size)}};
+  row.process.counters = {
+      {is_likwid ? "MEM_LOAD_RETIRED_L3_MISS" : "llc_load_misses", Counter{value * size, "s", {}}}};
+}
+
+using SetValue = void (*)(Row& row, double value);
+
+const std::map<std::string, SetValue> kSetters = {
+    {"seconds",
+     [](Row& row, double value) {
+       mesh_of(row).phases_s = {{"refine", value}};
+     }},
+    {"refining_seconds",
+     [](Row& row, double value) {
+       mesh_of(row).phases_s = {{"refine", value}};
+     }},
+    {"cells_per_second", set_rate},
+    {"cells_per_second_and_core",
+     [](Row& row, double value) { set_rate(row, value * row.asked["threads"].get<double>()); }},
+    {"refining_cells_per_second", set_rate},
+    {"refining_cells_per_second_and_core",
+     [](Row& row, double value) { set_rate(row, value * row.asked["threads"].get<double>()); }},
+    {"side_by_side_refining_cells_per_second", set_rate},
+    {"virtual_refining_seconds",
+     [](Row& row, double value) { mesh_of(row).virtual_time.emplace().refine_s = value; }},
+    {"virtual_cells_per_second",
+     [](Row& row, double value) {
+       mesh_of(row).cells = many(value);
+       mesh_of(row).virtual_time.emplace().refine_s = kMuch;
+     }},
+    {"lost_seconds", [](Row& row, double value) { set_overhead(row, value, 0, 0); }},
+    {"contention_seconds", [](Row& row, double value) { set_overhead(row, value, 0, 0); }},
+    {"rollback_seconds", [](Row& row, double value) { set_overhead(row, 0, value, 0); }},
+    {"begging_seconds", [](Row& row, double value) { set_overhead(row, 0, 0, value); }},
+    {"deferred_operations",
+     [](Row& row, double value) { mesh_of(row).outcomes.emplace().out_of_leaf = many(value); }},
+    {"zero_hop_share",
+     [](Row& row, double value) {
+       mesh_of(row).hops = std::vector{many(value), many(1 - value)};
+     }},
+    {"zero_hop_share_of_all_kinds",
+     [](Row& row, double value) {
+       mesh_of(row).hops_by_kind = ByName<Hops>{{"mesh_reads", std::vector{many(value), many(1 - value)}}};
+     }},
+    {"last_level_misses_per_further_insertion", set_misses_per_insertion},
+    {"first_cache_cycles", [](Row& row, double value) { set_levels(row, value, 100, 1000, 2000); }},
+    {"least_step_between_levels",
+     [](Row& row, double value) { set_levels(row, 100, 100 * value, 100 * value * value, 5000); }},
+    {"memory_over_last_cache", [](Row& row, double value) { set_levels(row, 4, 100, 100 * value, 5000); }},
+    {"other_node_over_own", [](Row& row, double value) { set_levels(row, 4, 10, 100, 100 * value); }},
+    {"guarantee_misses",
+     [](Row& row, double value) {
+       mesh_of(row).guarantees = {{"radius_edge", static_cast<std::uint64_t>(value)}};
+     }},
+    {"unproved_claims", set_unproved},
+    {"conformity_proved",
+     [](Row& row, double value) {
+       mesh_of(row).verdicts = {{"conformity", value == 1 ? Proof::kPass : Proof::kFail}};
+     }},
+    {"fidelity_proved",
+     [](Row& row, double value) {
+       mesh_of(row).verdicts = {{"fidelity", value == 1 ? Proof::kPass : Proof::kNotRun}};
+     }},
+    {"replay_equal",
+     [](Row& row, double value) {
+       row.replay = {value == 1 ? Replay::End::kEqual : Replay::End::kDiffers, ""};
+     }},
+    {"ended", [](Row& row, double value) { row.status = value == 1 ? Status::kUnmet : Status::kTimedOut; }},
+    {"passed", [](Row& row, double value) { row.status = value == 1 ? Status::kOk : Status::kUnmet; }},
+};
+
 // Makes the row's measure so much.
-void set_value(Json& row, const std::string& measure, double value) {
-  const double threads = row["asked"]["threads"];
-  const Json counts = {{"radius_edge", value}};
-  const auto set_rate = [&](double cells_per_second) {
-    row["cells"] = kMuch * cells_per_second;
-    row["phases_s"] = {{"refine", kMuch}};
-  };
-  const auto levels = [&](double first, double second, double own, double other) {
-    row["memory_levels"] = {{{"module", "L1 cache"}, {"cycles", first}},
-                            {{"module", "L2 cache"}, {"cycles", second}},
-                            {{"module", "memory of the own node 0"}, {"cycles", own}},
-                            {{"module", "memory of another node 1"}, {"cycles", other}}};
-  };
-  const std::map<std::string, std::function<void()>> setters = {
-      {"seconds",
-       [&] {
-         row["phases_s"] = {{"refine", value}};
-       }},
-      {"refining_seconds",
-       [&] {
-         row["phases_s"] = {{"refine", value}};
-       }},
-      {"cells_per_second", [&] { set_rate(value); }},
-      {"cells_per_second_and_core", [&] { set_rate(value * threads); }},
-      {"refining_cells_per_second", [&] { set_rate(value); }},
-      {"refining_cells_per_second_and_core", [&] { set_rate(value * threads); }},
-      {"side_by_side_refining_cells_per_second", [&] { set_rate(value); }},
-      {"virtual_refining_seconds",
-       [&] {
-         row["virtual"] = {{"refine_s", value}};
-       }},
-      {"virtual_cells_per_second",
-       [&] {
-         row["cells"] = value;
-         row["virtual"] = {{"refine_s", 1.0}};
-       }},
-      {"lost_seconds",
-       [&] {
-         row["overhead_s"] = {{"contention", value}, {"rollback", 0.0}, {"begging", 0.0}};
-       }},
-      {"contention_seconds",
-       [&] {
-         row["overhead_s"] = {{"contention", value}};
-       }},
-      {"rollback_seconds",
-       [&] {
-         row["overhead_s"] = {{"rollback", value}};
-       }},
-      {"begging_seconds",
-       [&] {
-         row["overhead_s"] = {{"begging", value}};
-       }},
-      {"deferred_operations",
-       [&] {
-         row["outcomes"] = {{"out_of_leaf", value}};
-       }},
-      {"zero_hop_share",
-       [&] {
-         row["hops"] = {value, 1 - value};
-       }},
-      {"zero_hop_share_of_all_kinds",
-       [&] {
-         row["hops_by_kind"] = {{"mesh_reads", {value, 1 - value}}};
-       }},
-      {"last_level_misses_per_further_insertion",
-       [&] {
-         const double size = row["asked"]["target_elements"];
-         const bool is_likwid = row["asked"].value("counters", "").starts_with("likwid");
-         row["counters"] = {{"insertions", {{"R1", size}}}};
-         row["process"]["counters"] = {
-             {is_likwid ? "MEM_LOAD_RETIRED_L3_MISS" : "llc_load_misses", {{"value", value * size}}}};
-       }},
-      {"first_cache_cycles", [&] { levels(value, 100, 1000, 2000); }},
-      {"least_step_between_levels", [&] { levels(100, 100 * value, 100 * value * value, 5000); }},
-      {"memory_over_last_cache", [&] { levels(4, 100, 100 * value, 5000); }},
-      {"other_node_over_own", [&] { levels(4, 10, 100, 100 * value); }},
-      {"guarantee_misses", [&] { row["guarantees"] = counts; }},
-      {"unproved_claims",
-       [&] {
-         row["verdicts"] = {{"structure", "pass"}};
-         for (int i = 0; i < value; ++i)
-           row["verdicts"]["claim " + std::to_string(i)] = i == 0 ? "fail" : "not_run";
-       }},
-      {"conformity_proved",
-       [&] {
-         row["verdicts"] = {{"conformity", value == 1 ? "pass" : "fail"}};
-       }},
-      {"fidelity_proved",
-       [&] {
-         row["verdicts"] = {{"fidelity", value == 1 ? "pass" : "not_run"}};
-       }},
-      {"replay_equal", [&] { row["replay"] = value == 1 ? "equal" : "differs"; }},
-      {"ended", [&] { row["status"] = value == 1 ? "unmet" : "timed_out"; }},
-      {"passed", [&] { row["status"] = value == 1 ? "ok" : "unmet"; }},
-  };
-  const auto setter = setters.find(measure);
-  ASSERT_NE(setter, setters.end()) << "this test does not know how to make rows of " << measure;
-  setter->second();
+void set_value(Row& row, const std::string& measure, double value) {
+  const auto setter = kSetters.find(measure);
+  ASSERT_NE(setter, kSetters.end()) << "this test does not know how to make rows of " << measure;
+  setter->second(row, value);
 }
 
 // Rows of the first trials that the claim takes, of several numbers of threads where those are the machine's.
@@ -129,23 +128,24 @@ Rows rows_of(const Experiment& experiment, const Claim& claim) {
     if (fnmatch(pattern.c_str(), stem_of(trial.name).c_str(), 0) != 0) continue;
     std::vector<Json> asked{trial.options};
     const char* number = trial.options.contains("copies") ? "copies" : "threads";
-    if (!is_simulated({{"asked", trial.options}}))
-      for (const int processors : {1, 2, 4, 8}) {
-        asked.push_back(trial.options);
-        asked.back()[number] = processors;
-      }
+    for (const int processors : {1, 2, 4, 8}) {
+      asked.push_back(trial.options);
+      asked.back()[number] = processors;
+    }
     for (const Json& options : asked) {
       rows.push_back(made_up_row(trial.name, options));
-      rows.back()["input"]["name"] = trial.image;
+      rows.back().input.name = trial.image;
       const int cores = std::max(claim.needs_cores, 16);
-      rows.back()["environment"].update({{"packages", 1}, {"cores", cores}, {"usable_processors", cores}});
+      rows.back().environment.packages = std::uint64_t{1};
+      rows.back().environment.cores = static_cast<std::uint64_t>(cores);
+      rows.back().environment.usable_processors = cores;
     }
   }
   return rows;
 }
 
 // The value of a row where the claim's ratio, bound or factor comes to `value`.
-double value_of(const Claim& claim, const Json& row, double value) {
+double value_of(const Claim& claim, const Row& row, double value) {
   const Json options = options_of(row);
   if (claim.kind == ClaimKind::kTrend) {
     const Json place = option(options, claim.along);
@@ -158,7 +158,7 @@ double value_of(const Claim& claim, const Json& row, double value) {
 }
 
 Rows with_value(const Claim& claim, Rows rows, double value) {
-  for (Json& row : rows) set_value(row, claim.value->name, value_of(claim, row, value));
+  for (Row& row : rows) set_value(row, claim.value->name, value_of(claim, row, value));
   return rows;
 }
 
@@ -206,27 +206,28 @@ void expect_either_way(const Experiment& experiment, const Claim& claim) {
   }
 }
 
-Rows with_status(Rows rows, const char* status) {
-  for (Json& row : rows) row["status"] = status;
+Rows with_status(Rows rows, Status status) {
+  for (Row& row : rows) row.status = status;
   return rows;
 }
 
 void expect_undecided(const Experiment& experiment, const Claim& claim) {
   const Rows fine = with_value(claim, rows_of(experiment, claim), within(claim));
   expect_open(claim, {}, "without rows");
-  expect_open(claim, with_status(fine, "skipped"), "skipped");
-  if (claim.value->meaning != Meaning::kOutcome) expect_open(claim, with_status(fine, "failed"), "failed");
+  expect_open(claim, with_status(fine, Status::kSkipped), "skipped");
+  if (claim.value->meaning != Meaning::kOutcome)
+    expect_open(claim, with_status(fine, Status::kFailed), "failed");
   if (claim.basis != Basis::kAny) {
     Rows other = fine;
-    for (Json& row : other)
-      row["basis"] = to_string(claim.basis == Basis::kMeasured ? Basis::kSimulated : Basis::kMeasured);
+    for (Row& row : other) row.basis = claim.basis == Basis::kMeasured ? Basis::kSimulated : Basis::kMeasured;
     expect_open(claim, other, "of another basis");
   }
   Rows lonely = fine;  // a series without the one it is compared with
-  std::erase_if(lonely, [&](const Json& row) { return matches(options_of(row), claim.of); });
+  std::erase_if(lonely, [&](const Row& row) { return matches(options_of(row), claim.of); });
   if (!claim.of.empty() && !names(claim.over, "threads")) expect_open(claim, lonely, "without a series");
   Rows small = fine;
-  for (Json& row : small) row["environment"]["cores"] = claim.needs_cores - 1;
+  for (Row& row : small)
+    row.environment.cores = static_cast<std::uint64_t>(std::max(0, claim.needs_cores - 1));
   if (claim.needs_cores > 0) expect_open(claim, small, "on a small machine");
 }
 

@@ -15,8 +15,6 @@
 namespace podm::bench {
 namespace {
 
-using Json = nlohmann::ordered_json;
-
 // A shared machine: its speed wanders by 1.6 within an hour and jumps every five minutes or so, each process
 // has noise of its own, and one in ten is disturbed by a quarter more or less.
 class SimulatedMachine {
@@ -111,9 +109,9 @@ TEST(Slowdown, SmallerThanTheDifferenceOfTheBaseToItselfIsNoEvidence) {
 }
 
 TEST(Work, DifferencesNameEachValueThatChangedCameOrWent) {
-  const Json committed = {{"cells", 10}, {"insertions", {{"R1", 3}, {"R2", 4}}}};
+  const auto committed = from_json<Work>({{"cells", 10}, {"insertions", {{"R1", 3}, {"R2", 4}}}});
   EXPECT_TRUE(differences(committed, committed).empty());
-  const Json measured = {{"cells", 10}, {"insertions", {{"R1", 5}, {"R3", 6}}}};
+  const auto measured = from_json<Work>({{"cells", 10}, {"insertions", {{"R1", 5}, {"R3", 6}}}});
   EXPECT_EQ(differences(committed, measured),
             (std::vector<std::string>{"insertions/R1: 5, committed 3", "insertions/R2: null, committed 4",
                                       "insertions/R3: 6, committed null"}));
@@ -141,7 +139,7 @@ class GateTest : public testing::Test {
 
 TEST_F(GateTest, WorkAsCommittedPassesAndAnyOtherBlocks) {
   renew_budgets(options(mesher(proved_), {}), {});
-  EXPECT_EQ(read_budgets(folder_ / "budgets.json").budgets.at(0).work.at("conflict_tests"), 5);
+  EXPECT_EQ(read_budgets(folder_ / "budgets.json").budgets.at(0).work.conflict_tests, 5u);
   EXPECT_TRUE(gate(options(mesher(proved_), {1}), {}));
   EXPECT_FALSE(
       gate(options(mesher(R"("verdicts":{"size":"pass"},"counters":{"conflict_tests":6})"), {1}), {}));

@@ -8,8 +8,7 @@
 namespace podm::bench {
 namespace {
 
-using Json = nlohmann::ordered_json;
-using Rows = std::vector<Json>;
+using Rows = std::vector<Row>;
 
 constexpr auto kHolds = Verdict::kHolds, kFails = Verdict::kDoesNotHold, kOpen = Verdict::kCannotBeDecided;
 
@@ -22,11 +21,11 @@ Verdict verdict_of(const Claim& claim, const Rows& rows) { return judge(claim, r
 
 bool has(const std::string& text, const std::string& words) { return text.find(words) != std::string::npos; }
 
-// Of a trial that came to no mesh.
-Json failed(Json row, const std::string& status = "timed_out") {
-  row["status"] = status;
-  row["reason"] = "killed after 300 s";
-  row.erase("phases_s");
+// The row of a trial that came to no mesh.
+Row failed(Row row, Status status = Status::kTimedOut) {
+  row.status = status;
+  row.reason = "killed after 300 s";
+  row.mesh.reset();
   return row;
 }
 
@@ -61,11 +60,11 @@ TEST(JudgeBound, OfFaultsIsAboutEachRepeatAndUnmetRowsToo) {
   Rows rows;
   for (int repeat = 1; repeat <= 3; ++repeat) {
     rows.push_back(made_up_row("1M", {}, repeat));
-    rows.back()["guarantees"] = {{"radius_edge", 0}, {"facet_angle", 0}};
+    mesh_of(rows.back()).guarantees = {{"radius_edge", 0}, {"facet_angle", 0}};
   }
   EXPECT_EQ(verdict_of(claim, rows), kHolds);
-  rows[1]["guarantees"]["facet_angle"] = 1;
-  rows[1]["status"] = "unmet";
+  mesh_of(rows[1]).guarantees["facet_angle"] = 1;
+  rows[1].status = Status::kUnmet;
   EXPECT_EQ(judge(claim, rows).value, 1);
   EXPECT_EQ(verdict_of(claim, rows), kFails) << "one in three";
   EXPECT_EQ(verdict_of(claim, rows + Rows{failed(rows[0])}), kFails) << "a failed row takes nothing back";
@@ -83,7 +82,7 @@ at_most = 1.1
 
 TEST(JudgeRatio, ComparesWithinGroupsOfEqualOptions) {
   const Claim claim = read_claim_of(kRatio);
-  // Of podm 1 s on one thread and 0.5 s on two.
+  // podm takes 1 s on one thread and 0.5 s on two.
   const auto rows = [](double one, double two) {
     return Rows{refined_in(1, {{"algorithm", "podm"}, {"threads", 1}}),
                 refined_in(one, {{"algorithm", "pdr-podm"}, {"threads", 1}}),
@@ -165,7 +164,7 @@ at_least = 0.7
     for (const double s : seconds) {
       made.push_back(
           refined_in(s, {{"algorithm", "podm"}, {"threads", threads}, {"target_elements", 1000 * threads}}));
-      made.back()["cells"] = 1000 * threads;
+      mesh_of(made.back()).cells = static_cast<std::uint64_t>(1000 * threads);
       threads *= 2;
     }
     return made;
@@ -181,7 +180,7 @@ at_least = 0.7
 
 TEST(JudgeRatio, ImagesAreGroupsUnlessTheyMayDiffer) {
   Rows rows{refined_in(1, {{"algorithm", "podm"}}), refined_in(1, {{"algorithm", "pdr-podm"}})};
-  rows[1]["input"]["name"] = "another";
+  rows[1].input.name = "another";
   EXPECT_EQ(verdict_of(read_claim_of(kRatio), rows), kOpen);
   EXPECT_EQ(verdict_of(read_claim_of(std::string(kRatio) + "across = 'input'\n"), rows), kHolds);
 }
@@ -192,8 +191,8 @@ TEST(JudgeRatio, OverNothingIsInfiniteAndOfNothingIsOne) {
       "over = {contention = 'random'}\nat_most = 1.1\n");
   const auto rows = [](double local, double random) {
     Rows made{made_up_row("1M", {{"contention", "local"}}), made_up_row("1M", {{"contention", "random"}})};
-    made[0]["overhead_s"] = {{"contention", local}, {"rollback", 0.0}, {"begging", 5.0}};
-    made[1]["overhead_s"] = {{"contention", random}, {"rollback", 0.0}, {"begging", 0.0}};
+    set_overhead(made[0], local, 0, 5);
+    set_overhead(made[1], random, 0, 0);
     return made;
   };
   EXPECT_EQ(verdict_of(claim, rows(0, 0)), kHolds);
@@ -215,8 +214,8 @@ TEST(JudgeOrder, OneSeriesIsAboveTheOtherInEveryGroup) {
   EXPECT_EQ(verdict_of(claim, rows(1, 0.99)), kFails);
   EXPECT_EQ(verdict_of(claim, rows(1, 1)), kFails) << "as many is not more";
   Rows on_two_inputs = rows(1, 2);
-  for (const Json& row : rows(2, 1)) on_two_inputs.push_back(row);
-  for (std::size_t i = 2; i < 4; ++i) on_two_inputs[i]["input"]["name"] = "another";
+  for (const Row& row : rows(2, 1)) on_two_inputs.push_back(row);
+  for (std::size_t i = 2; i < 4; ++i) on_two_inputs[i].input.name = "another";
   EXPECT_EQ(verdict_of(claim, on_two_inputs), kFails);
 }
 
@@ -258,7 +257,7 @@ TEST(JudgeTrend, WithoutAFactorMayRestOnTheWayButNotTurn) {
     double size = 10;
     for (const int number : numbers) {
       made.push_back(made_up_row("1M", {{"leaf_size", size}}));
-      made.back()["outcomes"] = {{"out_of_leaf", number}};
+      mesh_of(made.back()).outcomes.emplace().out_of_leaf = static_cast<std::uint64_t>(number);
       size *= 2;
     }
     return made;
@@ -285,15 +284,16 @@ TEST(JudgeShare, OfTrialsThatEnded) {
 
 TEST(JudgeShare, ARefutationIsNotTakenBackByRowsThatCannotTell) {
   const Claim claim = read_claim_of("basis = 'any'\nkind = 'share'\nvalue = 'replay_equal'\nat_least = 1\n");
-  const auto replayed = [](const Json& replay) {
-    Json row = made_up_row("1M", {});
-    row["replay"] = replay;
+  using enum Replay::End;
+  const auto replayed = [](std::optional<Replay::End> end) {
+    Row row = made_up_row("1M", {});
+    if (end) row.replay = {*end, ""};
     return row;
   };
-  EXPECT_EQ(verdict_of(claim, {replayed("equal"), replayed("differs"), replayed(nullptr)}), kFails);
-  EXPECT_EQ(verdict_of(claim, {replayed("equal"), replayed(nullptr)}), kOpen);
-  EXPECT_EQ(verdict_of(claim, {replayed(nullptr)}), kOpen);
-  EXPECT_EQ(verdict_of(claim, {replayed("equal")}), kHolds);
+  EXPECT_EQ(verdict_of(claim, {replayed(kEqual), replayed(kDiffers), replayed({})}), kFails);
+  EXPECT_EQ(verdict_of(claim, {replayed(kEqual), replayed({})}), kOpen);
+  EXPECT_EQ(verdict_of(claim, {replayed({})}), kOpen);
+  EXPECT_EQ(verdict_of(claim, {replayed(kEqual)}), kHolds);
 }
 
 TEST(JudgeRatio, ASeriesThatFailedDoesNotHideAnotherThatRefutes) {
@@ -405,8 +405,8 @@ TEST(Judge, RowsOfAnotherBasisNeverEnter) {
   Rows rows{made_up_row("1M", {}), made_up_row("1M", {{"executor", "virtual"}}),
             made_up_row("1M", {{"topology", "machine.xml"}}),
             made_up_row("1M", {{"counters", "cachegrind"}})};
-  for (Json& row : rows) row["overhead_s"] = {{"contention", 5.0}, {"rollback", 0.0}, {"begging", 0.0}};
-  rows[0]["overhead_s"]["contention"] = 0.5;
+  for (Row& row : rows) set_overhead(row, 5, 0, 0);
+  set_overhead(rows[0], 0.5, 0, 0);
   const Judgement measured = judge(read_claim_of(lines + "'measured'\n"), rows);
   EXPECT_EQ(measured.verdict, kHolds);
   EXPECT_EQ(measured.num_rows, 1u);
@@ -436,8 +436,8 @@ TEST(Judge, SkippedRowsSayWhy) {
   const Claim claim = read_claim_of(
       "basis = 'measured'\nkind = 'order'\nvalue = 'refining_cells_per_second'\nabove = {mesher = 'podm'}\n"
       "below = {mesher = 'other'}\n");
-  Rows rows{refined_in(1, {}), failed(refined_in(1, {{"mesher", "other"}}), "skipped")};
-  rows[1]["reason"] = "not installed";
+  Rows rows{refined_in(1, {}), failed(refined_in(1, {{"mesher", "other"}}), Status::kSkipped)};
+  rows[1].reason = "not installed";
   EXPECT_EQ(judge(claim, rows).reason, "no rows: mesher=other (1M skipped: not installed)");
   EXPECT_EQ(verdict_of(claim, {rows[0], refined_in(2, {{"mesher", "other"}})}), kHolds);
 }

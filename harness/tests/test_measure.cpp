@@ -9,14 +9,11 @@
 namespace podm::bench {
 namespace {
 
-using Json = nlohmann::ordered_json;
-
 // A row in which every measure has another number.
-Json full_row() {
-  return Json::parse(R"({
-    "trial": "1M", "repeat": 1, "status": "ok", "reason": "",
-    "asked": {"threads": 4, "target_elements": 1000},
-    "cells": 1200,
+Row full_row() {
+  Row row = made_up_row("1M", {{"threads", 4}, {"target_elements", 1000}});
+  row.mesh = from_json<MeshRecord>(Json::parse(R"({
+    "cells": 1200, "vertices": 300, "refine_cells_per_second": 300, "stop_reason": "complete",
     "phases_s": {"read": 1, "transform": 2, "allocate": 0.5, "calibrate": 50, "draw": 70, "initial": 1, "octree": 0.25,
                  "refine": 4, "closing": 0.75, "extract": 0.5, "measure": 60, "write": 100},
     "virtual": {"refine_s": 0.5},
@@ -24,136 +21,158 @@ Json full_row() {
     "outcomes": {"out_of_leaf": 11},
     "hops": [60, 30, 10],
     "hops_by_kind": {"mesh_reads": [60, 30, 10], "mesh_writes": [40, 0, 60]},
-    "process": {"counters": {"llc_load_misses": {"value": 3000, "source": "s"},
-                             "llc_store_misses": {"value": 1000, "source": "s"}}},
     "counters": {"insertions": {"R1": 300, "R2": 100}},
-    "memory_levels": [{"module": "L1 cache", "cycles": 4}, {"module": "L2 cache", "cycles": 12},
-                      {"module": "L3 cache", "cycles": 60}, {"module": "memory of the own node 0", "cycles": 240},
-                      {"module": "memory of another node 1", "cycles": 480},
-                      {"module": "memory of another node 2", "cycles": 360}],
     "guarantees": {"radius_edge": 2, "facet_angle": 1},
-    "verdicts": {"structure": "pass", "conformity": "pass", "labels": "fail", "fidelity": "not_run"},
-    "replay": "equal",
-    "side_by_side": [{"cells": 1200, "phases_s": {"refine": 6}}, {"cells": 1200, "phases_s": {"refine": 3}}]
-  })");
+    "verdicts": {"structure": "pass", "conformity": "pass", "labels": "fail", "fidelity": "not_run"}
+  })"));
+  row.process.counters = {{"llc_load_misses", Counter{3000UL, "s", {}}},
+                          {"llc_store_misses", Counter{1000UL, "s", {}}}};
+  row.measured.emplace().memory_levels = {level("L1 cache", 4),
+                                          level("L2 cache", 12),
+                                          level("L3 cache", 60),
+                                          level("memory of the own node 0", 240),
+                                          level("memory of another node 1", 480),
+                                          level("memory of another node 2", 360)};
+  row.replay = {Replay::End::kEqual, ""};
+  row.side_by_side = {{0, 1200, {{"refine", 6.0}}, 200, {}}, {1, 1200, {{"refine", 3.0}}, 400, {}}};
+  return row;
 }
+
+// What is taken from the full row.
+using Take = void (*)(Row& row);
+void take_mesh(Row& row) { row.mesh.reset(); }
+void take_threads(Row& row) { row.asked.erase("threads"); }
+void take_phases(Row& row) { row.mesh->phases_s.clear(); }
+void take_virtual(Row& row) { row.mesh->virtual_time.reset(); }
+void take_overhead(Row& row) { row.mesh->overhead_s.reset(); }
+void take_rollback(Row& row) { row.mesh->overhead_s->rollback.reset(); }
+void take_levels(Row& row) { row.measured.reset(); }
+void take_own_memory(Row& row) {
+  auto& levels = row.measured->memory_levels;
+  levels.erase(levels.begin() + 3);
+}
+void take_verdicts(Row& row) { row.mesh->verdicts.reset(); }
 
 struct Expected {
   const char* name;
   double number;
-  const char* needs;  ///< a place in the row without which there is no number
+  Take take;  ///< what the number needs; null: a row is enough
 };
 
 TEST(Measures, AreWhatTheTableSays) {
   const Expected expected[] = {
-      {"seconds", 10, "/phases_s"},          // without measuring, writing, calibration and drawing
-      {"refining_seconds", 6, "/phases_s"},  // initial, octree, refine, closing
-      {"cells_per_second", 120, "/cells"},
-      {"cells_per_second_and_core", 30, "/asked/threads"},
-      {"refining_cells_per_second", 200, "/phases_s/refine"},
-      {"refining_cells_per_second_and_core", 50, "/cells"},
-      {"side_by_side_refining_cells_per_second", 600, "/side_by_side/0/cells"},
-      {"virtual_refining_seconds", 0.5, "/virtual"},
-      {"virtual_cells_per_second", 2400, "/virtual"},
-      {"contention_seconds", 0.25, "/overhead_s"},
-      {"rollback_seconds", 0.125, "/overhead_s"},
-      {"begging_seconds", 7, "/overhead_s"},
-      {"lost_seconds", 0.375, "/overhead_s/rollback"},
-      {"deferred_operations", 11, "/outcomes"},
-      {"zero_hop_share", 0.6, "/hops"},
-      {"zero_hop_share_of_all_kinds", 0.5, "/hops_by_kind"},
-      {"last_level_misses_per_further_insertion", 4000, "/process"},  // of one row: the misses
-      {"first_cache_cycles", 4, "/memory_levels"},
-      {"least_step_between_levels", 3, "/memory_levels/3"},
-      {"memory_over_last_cache", 4, "/memory_levels/3"},
-      {"other_node_over_own", 1.5, "/memory_levels/3"},
-      {"guarantee_misses", 3, "/guarantees"},
-      {"unproved_claims", 2, "/verdicts"},
-      {"conformity_proved", 1, "/verdicts/conformity"},
-      {"fidelity_proved", 0, "/verdicts/fidelity"},
-      {"replay_equal", 1, "/replay"},
+      {"seconds", 10, take_mesh},            // without measuring, writing, calibration and drawing
+      {"refining_seconds", 6, take_phases},  // initial, octree, refine, closing
+      {"cells_per_second", 120, take_mesh},
+      {"cells_per_second_and_core", 30, take_threads},
+      {"refining_cells_per_second", 200, take_phases},
+      {"refining_cells_per_second_and_core", 50, take_mesh},
+      {"side_by_side_refining_cells_per_second", 600,
+       [](Row& row) { row.side_by_side->front().phases_s.clear(); }},
+      {"virtual_refining_seconds", 0.5, take_virtual},
+      {"virtual_cells_per_second", 2400, take_virtual},
+      {"contention_seconds", 0.25, take_overhead},
+      {"rollback_seconds", 0.125, take_overhead},
+      {"begging_seconds", 7, take_overhead},
+      {"lost_seconds", 0.375, take_rollback},
+      {"deferred_operations", 11, [](Row& row) { row.mesh->outcomes.reset(); }},
+      {"zero_hop_share", 0.6, [](Row& row) { row.mesh->hops.reset(); }},
+      {"zero_hop_share_of_all_kinds", 0.5, [](Row& row) { row.mesh->hops_by_kind.reset(); }},
+      {"last_level_misses_per_further_insertion", 4000,  // of one row: the misses
+       [](Row& row) { row.process.counters.clear(); }},
+      {"first_cache_cycles", 4, take_levels},
+      {"least_step_between_levels", 3, take_own_memory},
+      {"memory_over_last_cache", 4, take_own_memory},
+      {"other_node_over_own", 1.5, take_own_memory},
+      {"guarantee_misses", 3, take_mesh},
+      {"unproved_claims", 2, take_verdicts},
+      {"conformity_proved", 1, take_verdicts},
+      {"fidelity_proved", 0, take_verdicts},
+      {"replay_equal", 1, [](Row& row) { row.replay.reset(); }},
       {"ended", 1, nullptr},
       {"passed", 1, nullptr},
   };
   EXPECT_EQ(std::size(expected), measures().size()) << "each measure of the table is told here";
-  for (const auto& [name, number, needs] : expected) {
+  for (const auto& [name, number, take] : expected) {
     const Measure* measure = find_measure(name);
     ASSERT_NE(measure, nullptr) << name;
     const Value value = measure->read(full_row());
     ASSERT_TRUE(value.number) << name << ": " << value.absence;
     EXPECT_DOUBLE_EQ(*value.number, number) << name;
-    if (needs == nullptr) continue;
-    Json row = full_row();
-    const Json::json_pointer place(needs);
-    row[place.parent_pointer()].is_array()
-        ? static_cast<void>(row[place.parent_pointer()].erase(std::stoul(place.back())))
-        : static_cast<void>(row[place.parent_pointer()].erase(place.back()));
-    EXPECT_FALSE(measure->read(row).number) << name << " without " << needs;
+    if (take == nullptr) continue;
+    Row row = full_row();
+    take(row);
+    EXPECT_FALSE(measure->read(row).number) << name << " without what it needs";
     EXPECT_FALSE(measure->read(row).absence.empty()) << name;
   }
   EXPECT_EQ(find_measure("beauty"), nullptr);
 }
 
 TEST(Measures, PassOnTheRowsOwnReason) {
-  Json row = full_row();
-  row["hops"] = row["hops_by_kind"] = "unavailable: one node";
-  row["process"]["counters"] = {{"llc_load_misses", "unavailable: no counter"}};
-  row["memory_levels"].erase(4);
-  row["memory_levels"].erase(4);
+  Row row = full_row();
+  row.mesh->hops = Unavailable{"one node"};
+  row.mesh->hops_by_kind = Unavailable{"one node"};
+  row.process.counters = {{"llc_load_misses", Unavailable{"no counter"}}};
+  row.measured->memory_levels.resize(4);
   const auto absence = [&](const char* name) { return find_measure(name)->read(row).absence; };
   EXPECT_EQ(absence("zero_hop_share"), "unavailable: one node");
   EXPECT_EQ(absence("zero_hop_share_of_all_kinds"), "unavailable: one node");
   EXPECT_EQ(absence("last_level_misses_per_further_insertion"), "llc_load_misses: unavailable: no counter");
   EXPECT_EQ(absence("other_node_over_own"), "one NUMA node");
-  row["memory_levels"][1]["cycles"] = "unavailable: no memory";
+  row.measured->memory_levels[1].cycles = Unavailable{"no memory"};
   EXPECT_EQ(absence("first_cache_cycles"), "L2 cache: unavailable: no memory");
 }
 
 TEST(Measures, OfLikwidAreItsEventsAndNobodyElses) {
   const Measure& misses = *find_measure("last_level_misses_per_further_insertion");
-  Json row = full_row();  // the kernel's counters are there too
-  row["asked"]["counters"] = "likwid:CACHE";
+  Row row = full_row();  // the kernel's counters are there too
+  row.asked["counters"] = "likwid:CACHE";
   EXPECT_EQ(misses.read(row).absence, "likwid:CACHE counts no misses of the last level");
-  row["process"]["counters"]["likwid:CACHE"] = "unavailable: not installed";
+  row.process.counters["likwid:CACHE"] = Unavailable{"not installed"};
   EXPECT_EQ(misses.read(row).absence, "likwid:CACHE: unavailable: not installed");
   for (const char* event : {"MEM_LOAD_RETIRED_L3_MISS", "L3_CACHE_REQ_MISS"}) {
-    row["process"]["counters"] = {{event, {{"value", 77}, {"source", "likwid"}}}};
+    row.process.counters = {{event, Counter{77UL, "likwid", {}}}};
     EXPECT_EQ(misses.read(row).number, 77) << event;
   }
 }
 
 TEST(Measures, OfOneProcessAloneAreItsOwn) {
-  Json row = full_row();
-  row["side_by_side"] = nullptr;
+  Row row = full_row();
+  row.side_by_side.reset();
   EXPECT_EQ(find_measure("side_by_side_refining_cells_per_second")->read(row).number, 200);
 }
 
 TEST(Measures, OfTrialsTellFailedOnesFromUnmetOnes) {
-  for (const auto& [status, ended, passed] :
-       {std::tuple("ok", 1, 1), {"unmet", 1, 0}, {"failed", 0, 0}, {"timed_out", 0, 0}}) {
-    const Json row{{"status", status}};
-    EXPECT_EQ(find_measure("ended")->read(row).number, ended) << status;
-    EXPECT_EQ(find_measure("passed")->read(row).number, passed) << status;
+  Row row;
+  for (const auto& [status, ended, passed] : {std::tuple(Status::kOk, 1, 1),
+                                              {Status::kUnmet, 1, 0},
+                                              {Status::kFailed, 0, 0},
+                                              {Status::kTimedOut, 0, 0}}) {
+    row.status = status;
+    EXPECT_EQ(find_measure("ended")->read(row).number, ended) << to_string(status);
+    EXPECT_EQ(find_measure("passed")->read(row).number, passed) << to_string(status);
   }
-  EXPECT_EQ(find_measure("replay_equal")->read({{"replay", "differs"}}).number, 0);
-  EXPECT_EQ(find_measure("replay_equal")->read({{"replay", "failed: no log"}}).number, 0);
+  for (const auto end : {Replay::End::kDiffers, Replay::End::kFailed}) {
+    row.replay = {end, ""};
+    EXPECT_EQ(find_measure("replay_equal")->read(row).number, 0);
+  }
 }
 
 // Reading the image costs 1000 misses whatever the size; a further insertion 2.
 TEST(Growth, LeavesOutWhatBothSizesPay) {
-  std::vector<Json> rows;
-  for (const int size : {1000, 5000, 9000}) {
+  std::vector<Row> rows;
+  for (const std::uint64_t size : {1000, 5000, 9000}) {
     rows.push_back(full_row());
-    rows.back()["asked"]["target_elements"] = size;
-    rows.back()["process"]["counters"] = {{"llc_load_misses", {{"value", 1000 + 2 * size}}}};
-    rows.back()["counters"]["insertions"] = {{"R1", size}};
+    rows.back().asked["target_elements"] = size;
+    rows.back().process.counters = {{"llc_load_misses", Counter{1000 + 2 * size, "s", {}}}};
+    rows.back().mesh->counters->insertions = {{"R1", size}};
   }
   const Measure& misses = *find_measure("last_level_misses_per_further_insertion");
   const Samples samples = sample({&rows[0], &rows[1], &rows[2]}, misses);
   ASSERT_EQ(samples.absence, "");
   EXPECT_DOUBLE_EQ(samples.middle(), 2);
   EXPECT_EQ(sample({&rows[1]}, misses).absence, "needs two target_elements, has one");
-  rows[2]["status"] = "timed_out";
+  rows[2].status = Status::kTimedOut;
   EXPECT_TRUE(sample({&rows[0], &rows[2]}, misses).absence.starts_with("rows failed"));
 }
 

@@ -4,13 +4,10 @@
 #include <filesystem>
 
 #include "fake_mesher.h"
-#include "rows/record.h"
 #include "trials/trial.h"
 
 namespace podm::bench {
 namespace {
-
-using Json = nlohmann::ordered_json;
 
 class PeerTest : public testing::Test {
  protected:
@@ -52,16 +49,17 @@ TEST_F(PeerTest, GetsTheSizesAndItsMeshAndRecordCount) {
   EXPECT_NE(arguments.find(" --image image.nii --output " + folder_.path() + " --threads 2 --radius 2.5"),
             std::string::npos)
       << arguments;
-  EXPECT_EQ(number_in(result.record, "refine_cells_per_second"), 50.0);
+  ASSERT_TRUE(result.mesh);
+  EXPECT_EQ(result.mesh->refine_cells_per_second, 50.0);
   EXPECT_EQ(result.mesh_bytes, 5u);
-  EXPECT_EQ(result.peer["version"], "Other 1.0, MIT");
+  EXPECT_EQ(result.peer.value().version, "Other 1.0, MIT");
 }
 
 TEST_F(PeerTest, AnswersForTheClaimsItPromises) {
   const std::string verdicts = R"({"structure":{"verdict":"pass"},"size":{"verdict":"fail"}})";
-  const TrialResult promised = run(version_, record(R"(,"promises":["structure"])"), verdicts);
+  TrialResult promised = run(version_, record(R"(,"promises":["structure"])"), verdicts);
   EXPECT_EQ(promised.status, Status::kOk) << promised.reason;
-  EXPECT_EQ(promised.record["verdicts"]["size"], "fail") << "all verdicts are recorded";
+  EXPECT_EQ(promised.mesh.value().verdicts.value()["size"], Proof::kFail) << "all verdicts are recorded";
   EXPECT_EQ(run(version_, record(R"(,"promises":["size"])"), verdicts).status, Status::kUnmet);
   EXPECT_EQ(run(version_, record(), verdicts).status, Status::kUnmet) << "without promises all count";
 }

@@ -10,8 +10,6 @@
 namespace podm::bench {
 namespace {
 
-using Json = nlohmann::ordered_json;
-
 Trial some_trial(const std::string& image, const Json& options) {
   Trial trial;
   trial.name = "some";
@@ -79,7 +77,7 @@ TEST_F(PreparationTest, FileIsReadWhereItIs) {
   Preparer any = preparer();
   ASSERT_TRUE(any.find(trial).has_value());
   EXPECT_EQ(any.find(trial)->image, trial.image);
-  EXPECT_TRUE(any.find(trial)->resolved.is_null());
+  EXPECT_FALSE(any.find(trial)->resolved);
   EXPECT_EQ(any.find(some_trial(folder_ / "absent.nii", {}))->sha256, "absent") << "its mesher says so";
 }
 
@@ -87,11 +85,11 @@ TEST_F(PreparationTest, RadiusIsFoundOnceOnAllProcessorsAndStoredWithItsEvidence
   const Trial trial = some_trial(folder_.write("image.nii", "voxels"), kTarget);
   Preparer first = preparer();
   EXPECT_EQ(first.find(trial), std::nullopt);
-  const Json found = make(first, trial).resolved;
-  EXPECT_EQ(found["radius_mm"], 2.25);
-  EXPECT_EQ(found["delta_mm"], 1.125);
-  EXPECT_EQ(found["target_elements"], 1000);
-  EXPECT_EQ(found["cells"], 990);
+  const ResolvedRadius found = make(first, trial).resolved.value();
+  EXPECT_EQ(found.radius_mm, 2.25);
+  EXPECT_EQ(found.delta_mm, 1.125);
+  EXPECT_EQ(found.target_elements, 1000u);
+  EXPECT_EQ(found.cells, 990u);
   EXPECT_NE(told_.find("1000 cells"), std::string::npos) << told_;
   const std::string asked = read_tail(folder_ / "arguments", 1000);
   EXPECT_NE(asked.find("--target-elements 1000 --threads " + std::to_string(usable_processors())),
@@ -137,11 +135,11 @@ TEST_F(PreparationTest, RadiusIsAnotherOnesForAnotherImageNumberDeltaOrMesher) {
 TEST_F(PreparationTest, NumberOfMeshesIsThatOfTheMesherWhereItTells) {
   const Trial trial = some_trial(folder_.write("image.nii", "voxels"), kTarget);
   Preparer silent = preparer();
-  EXPECT_TRUE(make(silent, trial).resolved["meshes"].is_null());
+  EXPECT_FALSE(make(silent, trial).resolved.value().meshes);
   Preparer telling =
       preparer("t", R"(echo '{"stop_reason":"complete","cells":990,"used":{"radius_mm":2,"delta_mm":1},
 "calibration":{"meshes":[{"radius_mm":4,"cells":120,"seconds":0.1}],"seconds":0.1}}' | tr -d '\n' > "$record")");
-  EXPECT_EQ(make(telling, trial).resolved["meshes"], 2) << "the coarse one and the last";
+  EXPECT_EQ(make(telling, trial).resolved.value().meshes, 2u) << "the coarse one and the last";
 }
 
 TEST_F(PreparationTest, RadiusThatIsNotFoundIsAFaultAndTriedOnce) {

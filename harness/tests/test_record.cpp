@@ -13,30 +13,29 @@
 namespace podm::bench {
 namespace {
 
-using Json = nlohmann::ordered_json;
-
 struct RowTest : testing::Test {
   RowTest() {
     context.experiment = "exp";
     context.key = "some key";
-    context.environment = {{"cpu", "some cpu"}};
+    context.environment.cpu = "some cpu";
     trial.name = "some";
     trial.image = "folder/image.nii";
     trial.timeout_s = 20;
     trial.options = {{"threads", 2}};
     good.status = Status::kOk;
-    good.record = Json::parse(kGoodRecord);
+    good.mesh = from_json<MeshRecord>(Json::parse(kGoodRecord));
     good.preparation = prepared(trial);
-    good.image_size = {10, 10, 10};
+    good.image_size = ImageSize{10, 10, 10};
     good.process.end = ProcessOutcome::End::kExited;
     good.process.peak_rss_bytes = 106'000;
-    failed.preparation = {trial.image, "", nullptr};
+    failed.preparation = {trial.image, "", {}};
     failed.reason = "killed by signal 6";
     failed.process.end = ProcessOutcome::End::kSignalled;
     failed.process.signal = 6;
     failed.stderr_tail = "not UTF-8: \xff\n";
   }
-  Json row_of(const TrialResult& result) const { return make_row(context, trial, turn, result); }
+  Row made_of(const TrialResult& result) const { return make_row(context, trial, turn, result); }
+  Json row_of(const TrialResult& result) const { return to_json(made_of(result)); }
   RowContext context;
   Trial trial;
   Turn turn{0, 3, false};
@@ -45,7 +44,7 @@ struct RowTest : testing::Test {
 
 TEST_F(RowTest, HoldsTheMesherRecordAndWhatTheHarnessSaw) {
   const Json row = row_of(good);
-  for (const auto& [key, value] : good.record.items()) {
+  for (const auto& [key, value] : Json::parse(kGoodRecord).items()) {
     if (key == "input" || key == "schema") continue;  // the harness adds the size; rows have their own schema
     EXPECT_EQ(row.at(key), value) << key;
   }
@@ -59,7 +58,7 @@ TEST_F(RowTest, HoldsTheMesherRecordAndWhatTheHarnessSaw) {
   EXPECT_EQ(row.at("status"), "ok");
   EXPECT_EQ(row.at("input").at("name"), trial.image);
   EXPECT_EQ(row.at("input").at("sha256"), "00");
-  EXPECT_EQ(row.at("input").at("size"), good.image_size);
+  EXPECT_EQ(row.at("input").at("size"), Json({10, 10, 10}));
   EXPECT_EQ(row.at("process").at("exit_code"), 0);
   EXPECT_TRUE(row.at("process").at("signal").is_null());
   EXPECT_EQ(row.at("environment").at("cpu"), "some cpu");
@@ -78,44 +77,50 @@ TEST_F(RowTest, OfAFailureSaysWhyAndOnWhat) {
 TEST_F(RowTest, TellsRadiusReplayAndCopies) {
   for (const char* key : {"resolved", "replay", "side_by_side"})
     EXPECT_TRUE(row_of(good).at(key).is_null()) << key;
-  good.preparation.resolved = {{"radius_mm", 2.0}};
-  good.replay = "equal";
-  good.side_by_side = {{{"processor", 1}}};
+  good.preparation.resolved.emplace().radius_mm = 2;
+  good.replay = {Replay::End::kEqual, ""};
+  good.side_by_side.emplace(1);
   EXPECT_EQ(row_of(good).at("resolved").at("radius_mm"), 2.0);
   EXPECT_EQ(row_of(good).at("replay"), "equal");
   EXPECT_EQ(row_of(good).at("side_by_side").size(), 1u);
 }
 
 TEST_F(RowTest, SecondsOfTheTableAreThoseOfTheMeshAlone) {
-  good.record["phases_s"] = {{"draw", 100}, {"read", 0.5},     {"calibrate", 100}, {"allocate", 0.25},
-                             {"refine", 1}, {"extract", 0.25}, {"measure", 100},   {"write", 100}};
-  EXPECT_DOUBLE_EQ(meshing_seconds(good.record), 2);
+  const ByName<double> phases_s = {{"draw", 100}, {"read", 0.5},     {"calibrate", 100}, {"allocate", 0.25},
+                                   {"refine", 1}, {"extract", 0.25}, {"measure", 100},   {"write", 100}};
+  EXPECT_DOUBLE_EQ(meshing_seconds(phases_s), 2);
 }
 
 TEST_F(RowTest, MemoryPerCellLeavesOutLabelsAndTransform) {
   // 1000 voxels of 2 + 4 bytes, 1000 cells.
   EXPECT_DOUBLE_EQ(bytes_per_cell_beyond_image(good).value(), 100);
   EXPECT_FALSE(bytes_per_cell_beyond_image(failed).has_value());
-  good.record["cells"] = 0u;
+  good.mesh->cells = 0;
   EXPECT_FALSE(bytes_per_cell_beyond_image(good).has_value());
 }
 
 TEST_F(RowTest, TableHasMediansOfTheMemoryLevels) {
-  std::vector<Json> rows;
-  for (const double cycles : {4.0, 9.0, 5.0}) {
-    rows.push_back({{"trial", "latency"}, {"status", "ok"}});
-    rows.back()["memory_levels"] = {{{"module", "L1 cache"}, {"cycles", cycles}},
-                                    {{"module", "memory"}, {"cycles", "unavailable: too little"}}};
+  std::vector<Row> rows(3);
+  const double cycles[] = {4, 9, 5};
+  for (std::size_t i = 0; i < rows.size(); ++i) {
+    rows[i].trial = "latency";
+    rows[i].status = Status::kOk;
+    auto& levels = rows[i].measured.emplace().memory_levels;
+    levels.resize(2);
+    levels[0].module = "L1 cache";
+    levels[0].cycles = cycles[i];
+    levels[1].module = "memory";
+    levels[1].cycles = Unavailable{"too little"};
   }
   const std::string table = format_table({rows});
   EXPECT_NE(table.find("L1 cache 5 cycles, memory -\n"), std::string::npos) << table;
 }
 
 TEST_F(RowTest, TableIsAlignedAndTellsEveryTrial) {
-  good.record["cells"] = 1234567u;
-  const Json met = row_of(good);
+  good.mesh->cells = 1234567;
+  const Row met = made_of(good);
   trial.name = "another-with-a-long-name";
-  std::istringstream text(format_table({{met}, {row_of(failed)}, {}}));
+  std::istringstream text(format_table({{met}, {made_of(failed)}, {}}));
   std::vector<std::string> lines;
   for (std::string line; std::getline(text, line);) lines.push_back(line);
   ASSERT_EQ(lines.size(), 3u);
@@ -128,20 +133,20 @@ TEST_F(RowTest, TableIsAlignedAndTellsEveryTrial) {
 }
 
 TEST_F(RowTest, TableHasMediansOfWhatIsProvedAndNoOther) {
-  std::vector<Json> rows;
+  std::vector<Row> rows;
   for (const unsigned cells : {10u, 30u, 20u}) {
-    good.record["cells"] = cells;
-    rows.push_back(row_of(good));
+    good.mesh->cells = cells;
+    rows.push_back(made_of(good));
   }
   EXPECT_NE(format_table({rows}).find(" 20 "), std::string::npos);
 
-  good.record["cells"] = 4000u;
+  good.mesh->cells = 4000;
   turn.is_warmup = true;
-  rows.push_back(row_of(good));
+  rows.push_back(made_of(good));
   turn.is_warmup = false;
   good.status = Status::kUnmet;
   good.reason = "facet_angle 7";
-  rows.push_back(row_of(good));
+  rows.push_back(made_of(good));
   const std::string table = format_table({rows});
   EXPECT_NE(table.find(" 20 "), std::string::npos) << table;
   EXPECT_NE(table.find("NOT met: facet_angle 7"), std::string::npos) << table;
@@ -150,8 +155,9 @@ TEST_F(RowTest, TableHasMediansOfWhatIsProvedAndNoOther) {
 }
 
 TEST(Environment, KnowsThisMachineOrSaysWhyNot) {
-  Json known = environment_of_run();
-  known.update(environment_now());
+  EnvironmentRecord environment = environment_of_run(this_machine().summary);
+  renew(environment);
+  const Json known = to_json(environment);
   for (const char* key :
        {"governor", "transparent_huge_pages", "numa_balancing", "smt", "cgroup", "kernel", "load_average",
         "memory_bytes", "compiler", "compiler_flags", "build_type", "libraries", "sources"}) {
@@ -168,11 +174,11 @@ TEST(Environment, ProgramsAreKnownByTheirBytesAndVersion) {
   const Programs programs{
       folder.script("podm", R"(printf 'podm 9.9\ncommit: abc\nlibraries: ITK 5: a, zlib 1\n')"),
       folder.script("podm-verify", "exit 3")};
-  const Json described = describe_programs(programs);
+  const Json described = to_json(describe_programs(programs));
   EXPECT_EQ(described["podm"]["version"], "podm 9.9");
   EXPECT_EQ(described["podm"]["build"], Json({{"commit", "abc"}, {"libraries", "ITK 5: a, zlib 1"}}));
-  EXPECT_TRUE(text_in(described["podm_verify"], "build").starts_with("unavailable"));
-  EXPECT_TRUE(text_in(described["podm_verify"], "version").starts_with("unavailable"));
+  EXPECT_TRUE(described["podm_verify"]["build"].get<std::string>().starts_with("unavailable"));
+  EXPECT_TRUE(described["podm_verify"]["version"].get<std::string>().starts_with("unavailable"));
   EXPECT_NE(described["podm"]["sha256"], described["podm_verify"]["sha256"]);
   EXPECT_THROW(describe_programs({folder / "absent", {}}), InputError);
 }
@@ -180,7 +186,7 @@ TEST(Environment, ProgramsAreKnownByTheirBytesAndVersion) {
 TEST(Machine, IsTheSameEachTimeAndTellsNoHostName) {
   const Machine machine = this_machine();
   EXPECT_EQ(machine.summary, this_machine().summary);
-  EXPECT_GE(machine.summary["usable_processors"], 1);
+  EXPECT_GE(machine.summary.usable_processors, 1);
   EXPECT_NE(machine.topology_xml.find("<topology"), std::string::npos);
   EXPECT_EQ(machine.topology_xml.find("HostName"), std::string::npos);
 }

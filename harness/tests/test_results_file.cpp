@@ -2,16 +2,15 @@
 #include <gtest/gtest.h>
 
 #include "fake_mesher.h"
+#include "made_up_rows.h"
 #include "rows/results_file.h"
 #include "trials/process.h"
 
 namespace podm::bench {
 namespace {
 
-using Json = nlohmann::ordered_json;
-
-const std::string kOne = R"({"schema":4,"trial":"one"})" + std::string("\n");
-const std::string kTwo = R"({"schema":4,"trial":"two"})" + std::string("\n");
+const std::string kOne = as_line(made_up_row("one", {}));
+const std::string kTwo = as_line(made_up_row("two", {}));
 
 class ResultsFileTest : public testing::Test {
  protected:
@@ -22,17 +21,17 @@ class ResultsFileTest : public testing::Test {
 
 TEST_F(ResultsFileTest, EachAppendAddsOneWholeLineToWhatWasThere) {
   const std::string path = folder_.write("rows.jsonl", kOne);
-  RecordFile(path).append({{"schema", 4}, {"trial", "not UTF-8: \xff"}});
-  RecordFile(path).append({{"schema", 4}, {"trial", "two\nlines"}});
+  RecordFile(path).append(made_up_row("not UTF-8: \xff", {}));
+  RecordFile(path).append(made_up_row("two\nlines", {}));
   const auto rows = read_rows(path).rows;
   ASSERT_EQ(rows.size(), 3u);
-  EXPECT_EQ(rows[0].at("trial"), "one");
-  EXPECT_EQ(rows[2].at("trial"), "two\nlines");
+  EXPECT_EQ(rows[0].trial, "one");
+  EXPECT_EQ(rows[2].trial, "two\nlines");
 }
 
 TEST_F(ResultsFileTest, UnwritableFileIsRefused) {
   EXPECT_THROW(RecordFile("/no/such/folder/rows.jsonl"), InputError);
-  EXPECT_THROW(RecordFile("/dev/full").append(Json::object()), InputError);
+  EXPECT_THROW(RecordFile("/dev/full").append(made_up_row("one", {})), InputError);
   EXPECT_THROW(write_file("/no/such/folder/file", "text"), InputError);
 }
 
@@ -83,6 +82,25 @@ TEST_F(ResultsFileTest, UnknownSchemaIsRefusedWithItsPlaceAndLeftAlone) {
       EXPECT_TRUE(std::string(error.what()).starts_with(path + ":2: a row of schema")) << error.what();
     }
     EXPECT_EQ(text_of("rows.jsonl"), kOne + row + "\n" + "{half");
+  }
+}
+
+TEST_F(ResultsFileTest, RowThatIsNotAsItsSchemaSaysIsRefusedWithItsPlaceAndLeftAlone) {
+  Json without_key = Json::parse(kOne), of_another_type = without_key, nested = without_key;
+  without_key.erase("harness_s");
+  of_another_type["repeat"] = "first";
+  nested["process"]["counters"]["cycles"] = {{"value", 7}};
+  for (const auto& [row, fault] : {std::pair{without_key, "has no key 'harness_s'"},
+                                   {of_another_type, "repeat: must be an integer"},
+                                   {nested, "process/counters/cycles: has no key 'source'"}}) {
+    const std::string text = kOne + row.dump() + "\n", path = folder_.write("rows.jsonl", text);
+    try {
+      repair_rows(path);
+      ADD_FAILURE() << fault;
+    } catch (const InputError& error) {
+      EXPECT_TRUE(std::string(error.what()).starts_with(path + ":2: " + fault)) << error.what();
+    }
+    EXPECT_EQ(text_of("rows.jsonl"), text);
   }
 }
 

@@ -13,8 +13,6 @@
 namespace podm::bench {
 namespace {
 
-using Json = nlohmann::ordered_json;
-
 std::vector<Trial> some_trials() {
   std::vector<Trial> trials(6);
   for (std::size_t i = 0; i < trials.size(); ++i) {
@@ -64,7 +62,9 @@ TEST(Schedule, SeedAloneDecidesTheOrderAndRoundsDiffer) {
 class TrialKeysTest : public testing::Test {
  protected:
   static std::string key(const Trial& trial, const Turn& turn = {}, const std::string& mesher = "m",
-                         const Json& machine = {{"cpu", "c"}}) {
+                         const std::string& cpu = "c") {
+    MachineRecord machine;
+    machine.cpu = cpu;
     return TrialKeys(mesher, machine).of(trial, turn, prepared(trial));
   }
   TemporaryFolder folder_;
@@ -74,7 +74,7 @@ TEST_F(TrialKeysTest, DifferWithAllThatChangesAMeasurement) {
   Trial trial = some_trials()[0];
   trial.options = {{"threads", 1}, {"radius_mm", 2.0}};
   std::set<std::string> keys = {key(trial), key(trial, {0, 2, false}), key(trial, {0, 1, true}),
-                                key(trial, {}, "other"), key(trial, {}, "m", {{"cpu", "other"}})};
+                                key(trial, {}, "other"), key(trial, {}, "m", "other")};
   const auto add_with = [&](const char* option, const Json& value) {
     Trial other = trial;
     other.options[option] = value;
@@ -85,7 +85,9 @@ TEST_F(TrialKeysTest, DifferWithAllThatChangesAMeasurement) {
   add_with("pin", true);
   Preparation preparation = prepared(trial);
   preparation.sha256 = "of another image";
-  keys.insert(TrialKeys("m", {{"cpu", "c"}}).of(trial, {}, preparation));
+  MachineRecord machine;
+  machine.cpu = "c";
+  keys.insert(TrialKeys("m", machine).of(trial, {}, preparation));
   EXPECT_EQ(keys.size(), 9u);
 }
 
@@ -105,8 +107,8 @@ TEST_F(TrialKeysTest, DifferWithTheRadiusThatWasFound) {
   trial.options = {{"threads", 1}, {"target_elements", 1000}};
   const auto key_with = [&](double radius_mm) {
     Preparation preparation = prepared(trial);
-    preparation.resolved = {{"radius_mm", radius_mm}, {"delta_mm", 1.0}};
-    return TrialKeys("m", Json()).of(trial, {}, preparation);
+    preparation.resolved.emplace().radius_mm = radius_mm;
+    return TrialKeys("m", {}).of(trial, {}, preparation);
   };
   EXPECT_EQ(key_with(2), key_with(2));
   EXPECT_NE(key_with(2), key_with(2.5));
@@ -129,15 +131,19 @@ TEST(Expectations, ComeFromRowsOfTheTrialThenFromTheFile) {
   EXPECT_DOUBLE_EQ(*Expectations(experiment, {}).of(trial).seconds, 9 * 60.0 / 27);
   EXPECT_GT(*Expectations(experiment, {}).of(trial).memory_bytes, 1e8);
 
-  const auto row = [](double wall_s, const char* status) {
-    return Json{{"trial", "0"},
-                {"status", status},
-                {"input", {{"name", "phantom:torus"}}},
-                {"verification_s", 0.5},
-                {"mesh_bytes", 700},
-                {"process", {{"wall_s", wall_s}, {"peak_rss_bytes", 5000 * wall_s}}}};
+  const auto row = [](double wall_s, Status status) {
+    Row made;
+    made.trial = "0";
+    made.status = status;
+    made.input.name = "phantom:torus";
+    made.verification_s = 0.5;
+    made.mesh_bytes = 700;
+    made.process.wall_s = wall_s;
+    made.process.peak_rss_bytes = static_cast<std::uint64_t>(5000 * wall_s);
+    return made;
   };
-  const Expectations known(experiment, {row(1, "ok"), row(3, "unmet"), row(2, "ok"), row(99, "timed_out")});
+  const Expectations known(experiment, {row(1, Status::kOk), row(3, Status::kUnmet), row(2, Status::kOk),
+                                        row(99, Status::kTimedOut)});
   EXPECT_DOUBLE_EQ(*known.of(trial).seconds, 2.5);
   EXPECT_DOUBLE_EQ(*known.of(trial).memory_bytes, 15000);
   EXPECT_DOUBLE_EQ(*known.of(trial).disk_bytes, 700);

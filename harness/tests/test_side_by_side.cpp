@@ -9,8 +9,6 @@
 namespace podm::bench {
 namespace {
 
-using Json = nlohmann::ordered_json;
-
 class SideBySideTest : public testing::Test {
  protected:
   void SetUp() override {
@@ -26,7 +24,7 @@ class SideBySideTest : public testing::Test {
     const std::string body = "copy=; case $record in */copy2/*) copy=2;; esac\n" + mesh_body;
     return TrialRunner({fake_mesher(folder_, body), {}}).run(trial, prepared(trial), folder_.path());
   }
-  // With the processors that the copy may run on as the hash of its mesh, or `hash`.
+  // A good record whose hash of the mesh is `hash`, a text for the shell.
   static std::string record(const std::string& hash) {
     std::string text = kGoodRecord;
     text.insert(1, R"("mesh_sha256":"')" + hash + R"('",)");
@@ -42,12 +40,12 @@ mine=$(dirname "$0")/is$copy other=$(dirname "$0")/is$([ "$copy" ] || echo 2)
 : > "$mine"; until [ -e "$other" ]; do sleep 0.01; done
 )" + record("same"));
   EXPECT_EQ(result.status, Status::kOk) << result.reason;
-  ASSERT_EQ(result.side_by_side.size(), 2u);
-  EXPECT_EQ(result.record["cells"], 1000);
-  for (const Json& entry : result.side_by_side) {
-    EXPECT_EQ(entry["cells"], 1000);
-    EXPECT_EQ(entry["refine_cells_per_second"], 1000.0);
-    EXPECT_EQ(entry["phases_s"]["refine"], 1.0);
+  ASSERT_EQ(result.side_by_side.value().size(), 2u);
+  EXPECT_EQ(result.mesh.value().cells, 1000u);
+  for (const CopyRecord& copy : *result.side_by_side) {
+    EXPECT_EQ(copy.cells, 1000u);
+    EXPECT_EQ(copy.refine_cells_per_second, 1000.0);
+    EXPECT_EQ(*copy.phases_s.find("refine"), 1.0);
   }
   EXPECT_EQ(result.command.back(), "--quiet");
 }
@@ -55,19 +53,20 @@ mine=$(dirname "$0")/is$copy other=$(dirname "$0")/is$([ "$copy" ] || echo 2)
 TEST_F(SideBySideTest, EachHasAProcessorOfItsOwn) {
   const TrialResult result =
       run("taskset -cp $$ | sed 's/.*: //' > \"$(dirname \"$0\")/processors$copy\"\n" + record("same"));
-  ASSERT_EQ(result.side_by_side.size(), 2u) << result.reason;
+  ASSERT_TRUE(result.side_by_side) << result.reason;
+  const std::vector<CopyRecord>& copies = *result.side_by_side;
+  ASSERT_EQ(copies.size(), 2u);
   for (const int i : {0, 1})
-    EXPECT_EQ(
-        read_tail(folder_ / (i == 0 ? "processors" : "processors2"), 100),
-        std::to_string(result.side_by_side[static_cast<std::size_t>(i)]["processor"].get<int>()) + "\n");
-  EXPECT_NE(result.side_by_side[0]["processor"], result.side_by_side[1]["processor"]);
+    EXPECT_EQ(read_tail(folder_ / (i == 0 ? "processors" : "processors2"), 100),
+              std::to_string(copies[static_cast<std::size_t>(i)].processor) + "\n");
+  EXPECT_NE(copies[0].processor, copies[1].processor);
 }
 
 TEST_F(SideBySideTest, FaultOfAnyIsTheTrials) {
   const TrialResult failed = run(record("same") + "[ -z \"$copy\" ] || exit 3\n");
   EXPECT_EQ(failed.status, Status::kFailed);
   EXPECT_EQ(failed.reason, "copy 2: exit code 3");
-  EXPECT_TRUE(failed.side_by_side.is_null());
+  EXPECT_FALSE(failed.side_by_side);
   const TrialResult first_failed = run(record("same") + "[ \"$copy\" ] || exit 3\n");
   EXPECT_EQ(first_failed.status, Status::kFailed);
   EXPECT_EQ(first_failed.reason, "exit code 3");
@@ -77,7 +76,7 @@ TEST_F(SideBySideTest, FaultOfAnyIsTheTrials) {
 }
 
 TEST_F(SideBySideTest, CountersOfTheKernelAreNotMixedUp) {
-  const Json counters = run(record("same")).counters;
+  const Json counters = to_json(run(record("same")).counters);
   ASSERT_EQ(counters.size(), 1u);
   EXPECT_TRUE(counters["perf_event"].get<std::string>().starts_with("unavailable: "));
 }

@@ -45,7 +45,7 @@ TEST(Median, HalfTheSamplesAreOnEitherSide) {
   }
 }
 
-// Of the 27 resamples of three, 7 have the least as their median and 7 the greatest: 26 % each.
+// Seven of the 27 resamples of three have the least as their median and 7 the greatest: 26 % each.
 TEST(RatioOfMedians, IntervalsThatCanBeCounted) {
   const Samples ones{1, 1, 1};
   const Ratio all = ratio_of_medians(Samples{1, 2, 4}, ones, Sampling::kPaired, {.confidence = 0.95});

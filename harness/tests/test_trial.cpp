@@ -37,8 +37,9 @@ TEST_F(TrialTest, GoodRunIsOkWithItsRecordAndImageSize) {
   const TrialResult result = run(write_record(kGoodRecord));
   EXPECT_EQ(result.status, Status::kOk);
   EXPECT_EQ(result.reason, "");
-  EXPECT_EQ(result.record, nlohmann::ordered_json::parse(kGoodRecord));
-  EXPECT_EQ(result.image_size, nlohmann::ordered_json({10, 10, 10}));
+  ASSERT_TRUE(result.mesh);
+  EXPECT_EQ(to_json(*result.mesh), Json::parse(kGoodRecord));
+  EXPECT_EQ(result.image_size, (ImageSize{10, 10, 10}));
   EXPECT_GT(result.process.peak_rss_bytes, 0u);
 }
 
@@ -51,7 +52,7 @@ TEST_F(TrialTest, VerdictsOfTheVerifierDecide) {
   const TrialResult proved =
       run_with_verifier(R"(echo '{"claims":{"size":{"verdict":"pass"}}}' > "$report")");
   EXPECT_EQ(proved.status, Status::kOk);
-  EXPECT_EQ(proved.record["verdicts"], nlohmann::ordered_json({{"size", "pass"}}));
+  EXPECT_EQ(to_json(proved.mesh.value().verdicts), Json({{"size", "pass"}}));
 
   const TrialResult refuted =
       run_with_verifier(R"(echo '{"claims":{"size":{"verdict":"fail"}}}' > "$report"; exit 1)");
@@ -103,7 +104,7 @@ TEST_F(TrialTest, EachImageIsLookedAtOnce) {
   runner.run(some_trial(), prepared(some_trial()), folder_.path());
   std::filesystem::remove(mesher);
   EXPECT_EQ(runner.run(some_trial(), prepared(some_trial()), folder_.path()).image_size,
-            nlohmann::ordered_json({10, 10, 10}));
+            (ImageSize{10, 10, 10}));
 }
 
 TEST_F(TrialTest, MissedGuaranteeIsUnmetAndNamed) {
@@ -111,7 +112,7 @@ TEST_F(TrialTest, MissedGuaranteeIsUnmetAndNamed) {
     const TrialResult result = run(good_record_but(R"("facet_angle":0)", R"("facet_angle":7)") + exit_code);
     EXPECT_EQ(result.status, Status::kUnmet);
     EXPECT_EQ(result.reason, "facet_angle 7");
-    EXPECT_TRUE(result.record.is_object());
+    EXPECT_TRUE(result.mesh);
   }
 }
 
@@ -132,7 +133,7 @@ TEST_F(TrialTest, FailingExitCodeKeepsWhatTheMesherSaid) {
   EXPECT_EQ(result.status, Status::kFailed);
   EXPECT_EQ(result.reason, "exit code 2");
   EXPECT_EQ(result.stderr_tail, "podm: no foreground\n");
-  EXPECT_TRUE(result.record.is_null());
+  EXPECT_FALSE(result.mesh);
 }
 
 TEST_F(TrialTest, OnlyTheEndOfLongMessagesIsKept) {
@@ -173,7 +174,7 @@ TEST_F(TrialTest, MissingOrUnusableRecordFails) {
     const TrialResult result = run(body);
     EXPECT_EQ(result.status, Status::kFailed) << body;
     EXPECT_NE(result.reason.find("record"), std::string::npos) << body;
-    EXPECT_TRUE(result.record.is_null()) << body;
+    EXPECT_FALSE(result.mesh) << body;
   }
 }
 
@@ -214,7 +215,9 @@ TEST_F(TrialTest, RadiusFoundReachesTheMesherInPlaceOfTheTarget) {
   Trial trial = some_trial();
   trial.options = {{"threads", 1}, {"target_elements", 1000}};
   Preparation preparation = prepared(trial);
-  preparation.resolved = {{"radius_mm", 2.25}, {"delta_mm", 1.125}};
+  ResolvedRadius& radius = preparation.resolved.emplace();
+  radius.radius_mm = 2.25;
+  radius.delta_mm = 1.125;
   TrialRunner({fake_mesher(folder_, write_record(kGoodRecord)), {}}).run(trial, preparation, folder_.path());
   const std::string arguments = " " + read_tail(folder_ / "arguments", 1000);
   EXPECT_NE(arguments.find(" --radius 2.25 --delta 1.125 "), std::string::npos) << arguments;
@@ -230,16 +233,16 @@ TEST_F(TrialTest, ReplayDecides) {
   };
   const TrialResult equal = run_with_replay("exit 0");
   EXPECT_EQ(equal.status, Status::kOk) << equal.reason;
-  EXPECT_EQ(equal.replay, "equal");
+  EXPECT_EQ(equal.replay.value().text(), "equal");
   const TrialResult differs = run_with_replay("exit 1");
   EXPECT_EQ(differs.status, Status::kUnmet);
-  EXPECT_EQ(differs.replay, "differs");
+  EXPECT_EQ(differs.replay.value().text(), "differs");
   EXPECT_EQ(differs.reason, "replay differs");
   const TrialResult failed = run_with_replay("echo 'podm: another image' >&2; exit 2");
   EXPECT_EQ(failed.status, Status::kUnmet);
-  EXPECT_EQ(failed.replay, "failed: exit code 2: podm: another image");
+  EXPECT_EQ(failed.replay.value().text(), "failed: exit code 2: podm: another image");
   trial.options["replay"] = false;
-  EXPECT_TRUE(run_with_replay("exit 1").replay.is_null());
+  EXPECT_FALSE(run_with_replay("exit 1").replay);
 }
 
 TEST_F(TrialTest, FidelityIsAskedForWithTheDeltaThatWasUsed) {
@@ -270,16 +273,18 @@ TEST_F(TrialTest, MeasurementOfTheMachineIsARecordOfThisProgram) {
     return TrialRunner({.podm = folder_ / "absent", .verifier = folder_ / "absent", .bench = bench})
         .run(trial, prepared(trial), folder_.path());
   };
-  const TrialResult measured = measure("echo '{\"memory_levels\":[]}' > \"$3\"");
+  const std::string good = R"({"processor":1,"pinned":true,"memory_levels":[],"latency":[]})";
+  const TrialResult measured = measure("echo '" + good + "' > \"$3\"");
   EXPECT_EQ(measured.status, Status::kOk) << measured.reason;
-  EXPECT_TRUE(measured.record.contains("memory_levels"));
+  ASSERT_TRUE(measured.measured);
+  EXPECT_EQ(measured.measured->processor, 1);
   EXPECT_FALSE(measured.counters.empty());
-  for (const char* body :
-       {"", "echo '{}' > \"$3\"", "echo x > \"$3\"", "echo '{\"memory_levels\":[]}' > \"$3\"; exit 3"}) {
+  for (const std::string& body : {std::string(), std::string("echo '{}' > \"$3\""),
+                                  std::string("echo x > \"$3\""), "echo '" + good + "' > \"$3\"; exit 3"}) {
     const TrialResult failed = measure(body);
     EXPECT_EQ(failed.status, Status::kFailed) << body;
     EXPECT_NE(failed.reason, "") << body;
-    EXPECT_TRUE(failed.record.is_null()) << body;
+    EXPECT_FALSE(failed.measured) << body;
   }
 }
 

@@ -5,12 +5,10 @@
 
 #include "bench_test.h"
 #include "made_up_rows.h"
-#include "rows/record.h"
+#include "rows/results_file.h"
 
 namespace podm::bench {
 namespace {
-
-using Json = nlohmann::ordered_json;
 
 const std::string kExperimentWithClaims = R"(title = "Title"
 claim = "Headline"
@@ -59,9 +57,8 @@ class VerdictsTest : public BenchTest {
     std::string lines;
     int threads = 0;
     for (const double s : seconds) {
-      Json row = refined_in(s, {{"threads", ++threads}}, 1, "some,threads=" + std::to_string(threads));
-      row["schema"] = kRowSchema;
-      lines += row.dump() + "\n";
+      ++threads;
+      lines += as_line(refined_in(s, {{"threads", threads}}, 1, "some,threads=" + std::to_string(threads)));
     }
     folder_.write("results/exp.jsonl", lines);
   }

@@ -11,15 +11,14 @@
 namespace podm::bench {
 namespace {
 
-using Json = nlohmann::ordered_json;
-
 constexpr const char* kOutput = "/cachegrind.out";
-// Those of a core of the paper's machine: 32 KiB, and 2 MiB as its share of the last level. Always the same,
-// so that runs on different machines compare, and small enough for the small meshes that are simulated.
+// The caches are those of a core of the paper's machine: 32 KiB, and 2 MiB as its share of the last level.
+// They are always the same, so that runs on different machines compare, and small enough for the small meshes
+// that are simulated.
 constexpr const char *kL1Instructions = "32768,4,64", *kL1Data = "32768,8,64", *kLastLevel = "2097152,16,64";
 constexpr const char* kSource = "valgrind cachegrind (simulated: L1 32 KiB, 8-way; last level 2 MiB, 16-way)";
 
-// In the order of cachegrind's own names.
+// Our names stand in the order of cachegrind's.
 constexpr const char* kCachegrindEvents = "Ir I1mr ILmr Dr D1mr DLmr Dw D1mw DLmw";
 constexpr std::array<const char*, 9> kNames = {
     "instructions", "l1_instruction_misses", "llc_instruction_misses",
@@ -58,16 +57,16 @@ std::vector<std::string> Cachegrind::wrap(const std::vector<std::string>& comman
   return wrapped;
 }
 
-Json Cachegrind::read(const std::string& folder) const {
+Counters Cachegrind::read(const std::string& folder) const {
   std::ifstream file(folder + kOutput);
   if (without_last_space(line_of(file, "events")) != kCachegrindEvents)
-    return {{kCachegrind, "unavailable: valgrind wrote no counts of caches"}};
+    return {{kCachegrind, Unavailable{"valgrind wrote no counts of caches"}}};
   std::istringstream totals(line_of(file, "summary"));
-  Json counts = Json::object();
+  Counters counts;
   for (const char* name : kNames) {
     std::uint64_t value = 0;
-    if (!(totals >> value)) return {{kCachegrind, "unavailable: valgrind did not come to its totals"}};
-    counts[name] = {{"value", value}, {"source", kSource}};
+    if (!(totals >> value)) return {{kCachegrind, Unavailable{"valgrind did not come to its totals"}}};
+    counts[name] = Counter{value, kSource, {}};
   }
   return counts;
 }

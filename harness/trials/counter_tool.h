@@ -3,9 +3,10 @@
 #pragma once
 
 #include <memory>
-#include <nlohmann/json.hpp>
 #include <string>
 #include <vector>
+
+#include "rows/row.h"
 
 namespace podm::bench {
 
@@ -23,8 +24,8 @@ class CounterTool {
   /// What runs the command and writes counts into `folder`.
   virtual std::vector<std::string> wrap(const std::vector<std::string>& command,
                                         const std::string& folder) const = 0;
-  /// Counts by name, {value, source}; "unavailable: why" by the tool's name where it wrote none.
-  virtual nlohmann::ordered_json read(const std::string& folder) const = 0;
+  /// Counts by name; why there are none by the tool's name.
+  virtual Counters read(const std::string& folder) const = 0;
 };
 
 /// Runs the command on a simulated processor with two levels of cache, some 50 times as slow: one thread at a
@@ -35,7 +36,7 @@ class Cachegrind : public CounterTool {
   bool is_simulation() const override { return true; }
   std::vector<std::string> wrap(const std::vector<std::string>& command,
                                 const std::string& folder) const override;
-  nlohmann::ordered_json read(const std::string& folder) const override;
+  Counters read(const std::string& folder) const override;
 };
 
 /// Counts all that the usable processors do while the command runs, whoever does it.
@@ -49,7 +50,7 @@ class Likwid : public CounterTool {
   bool is_simulation() const override { return false; }
   std::vector<std::string> wrap(const std::vector<std::string>& command,
                                 const std::string& folder) const override;
-  nlohmann::ordered_json read(const std::string& folder) const override;
+  Counters read(const std::string& folder) const override;
 
  private:
   std::string group_, events_, absence_;

@@ -13,8 +13,6 @@
 namespace podm::bench {
 namespace {
 
-using Json = nlohmann::ordered_json;
-
 constexpr std::uint64_t cache_event(std::uint64_t cache, std::uint64_t result) {
   return cache | (PERF_COUNT_HW_CACHE_OP_READ << 8U) | (result << 16U);
 }
@@ -40,7 +38,7 @@ constexpr Event kEvents[] = {
 };
 constexpr std::size_t kNumSoftwareEvents = 4;
 
-// As the kernel writes it for the `read_format` below.
+// The kernel writes this for the `read_format` below.
 struct Reading {
   std::uint64_t count, enabled_ns, running_ns;
 };
@@ -78,14 +76,12 @@ std::optional<double> of_getrusage(const Event& event, const ProcessOutcome& out
   }
 }
 
-Json value_of(const Reading& reading, const char* source) {
+std::variant<Counter, Unavailable> value_of(const Reading& reading, const char* source) {
   if (reading.running_ns == 0 && reading.enabled_ns > 0)
-    return "unavailable: the processor's counters were never free";
-  if (reading.running_ns == reading.enabled_ns) return {{"value", reading.count}, {"source", source}};
+    return Unavailable{"the processor's counters were never free"};
+  if (reading.running_ns == reading.enabled_ns) return Counter{reading.count, source, {}};
   const double share = static_cast<double>(reading.running_ns) / static_cast<double>(reading.enabled_ns);
-  return {{"value", std::round(static_cast<double>(reading.count) / share)},
-          {"source", source},
-          {"running_share", share}};
+  return Counter{std::round(static_cast<double>(reading.count) / share), source, share};
 }
 
 }  // namespace
@@ -121,24 +117,26 @@ PerfCounters::PerfCounters(CounterKinds kinds, const OpenCounter& open) {
 }
 
 PerfCounters::~PerfCounters() {
-  for (const Counter& counter : counters_)
+  for (const OpenedCounter& counter : counters_)
     if (counter.descriptor >= 0) close(counter.descriptor);
 }
 
-Json PerfCounters::read(const ProcessOutcome& outcome) const {
-  Json counts = Json::object();
+Counters PerfCounters::read(const ProcessOutcome& outcome) const {
+  Counters counts;
   for (std::size_t i = 0; i < counters_.size(); ++i) {
-    const Counter& counter = counters_[i];
-    Json& count = counts[kEvents[i].name];
+    const OpenedCounter& counter = counters_[i];
+    auto& count = counts[kEvents[i].name];
     Reading reading{};
     if (outcome.end == ProcessOutcome::End::kNotStarted)
-      count = "unavailable: the process did not start";
+      count = Unavailable{"the process did not start"};
     else if (counter.descriptor < 0) {
       const auto value = of_getrusage(kEvents[i], outcome);
-      count = value ? Json({{"value", *value}, {"source", "getrusage"}})
-                    : Json("unavailable: " + in_words(-counter.descriptor));
+      if (value)
+        count = Counter{*value, "getrusage", {}};
+      else
+        count = Unavailable{in_words(-counter.descriptor)};
     } else if (::read(counter.descriptor, &reading, sizeof(reading)) != sizeof(reading))
-      count = fmt::format("unavailable: cannot read the counter: {}", std::strerror(errno));
+      count = Unavailable{fmt::format("cannot read the counter: {}", std::strerror(errno))};
     else
       count = value_of(reading, counter.is_of_user_mode ? "perf_event, user mode" : "perf_event");
   }

@@ -4,9 +4,9 @@
 #include <linux/perf_event.h>
 
 #include <functional>
-#include <nlohmann/json.hpp>
 #include <vector>
 
+#include "rows/row.h"
 #include "trials/process.h"
 
 namespace podm::bench {
@@ -43,16 +43,15 @@ class PerfCounters {
   PerfCounters(const PerfCounters&) = delete;
   PerfCounters& operator=(const PerfCounters&) = delete;
 
-  /// By name {value, source} of the process that has ended with `outcome`, or "unavailable: why". With
-  /// `running_share` where the processor counted for that share of the time only and the value is scaled up.
-  nlohmann::ordered_json read(const ProcessOutcome& outcome) const;
+  /// Counts by name of the process that has ended with `outcome`.
+  Counters read(const ProcessOutcome& outcome) const;
 
  private:
-  struct Counter {
+  struct OpenedCounter {
     int descriptor;  // or minus the error
     bool is_of_user_mode;
   };
-  std::vector<Counter> counters_;  // in the order of the table of events
+  std::vector<OpenedCounter> counters_;  // their order is that of the table of events
 };
 
 }  // namespace podm::bench

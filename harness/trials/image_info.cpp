@@ -1,24 +1,22 @@
 #include "trials/image_info.h"
 
-#include <nlohmann/json.hpp>
-
 namespace podm::bench {
 namespace {
 
-using Json = nlohmann::ordered_json;
-
 constexpr double kTimeoutS = 120;  // an image of hundreds of MiB is unpacked
 
+// What is read of `podm info --json`.
+struct InfoRecord {
+  ImageSize size;
+  static constexpr auto fields() { return std::tuple{field("size", &InfoRecord::size)}; }
+};
+
 std::optional<ImageSize> size_in(const std::string& info) {
-  const Json image = Json::parse(info, nullptr, false);
-  const Json size = image.is_object() ? image.value("size", Json()) : Json();
-  if (!size.is_array() || size.size() != ImageSize{}.size()) return {};
-  ImageSize voxels{};
-  for (std::size_t axis = 0; axis < voxels.size(); ++axis) {
-    if (!size[axis].is_number_unsigned()) return {};
-    voxels[axis] = size[axis];
+  try {
+    return from_json<InfoRecord>(Json::parse(info, nullptr, false)).size;
+  } catch (const FieldError&) {
+    return {};
   }
-  return voxels;
 }
 
 }  // namespace

@@ -1,16 +1,14 @@
 // What `podm info` tells of an image.
 #pragma once
 
-#include <array>
 #include <optional>
 #include <string>
 #include <vector>
 
+#include "rows/row.h"
 #include "trials/ask.h"
 
 namespace podm::bench {
-
-using ImageSize = std::array<int, 3>;  ///< voxels along each axis
 
 struct ImageInfo {
   std::vector<std::string> command;  ///< that asked

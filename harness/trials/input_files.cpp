@@ -18,7 +18,7 @@ namespace fs = std::filesystem;
 constexpr double kDrawingTimeoutS = 600;
 constexpr std::size_t kMaxMarkBytes = 100;
 
-// After "phantom:".
+// The part of the name after "phantom:".
 std::string name_and_size(const std::string& phantom) { return phantom.substr(phantom.find(':') + 1); }
 
 }  // namespace

@@ -9,6 +9,8 @@
 
 namespace podm::bench {
 
+inline constexpr const char* kRecordName = "/record.jsonl";  ///< the mesher's, in the folder of a trial
+
 /// Why a trial cannot start; its row tells it.
 class PreparationError : public std::runtime_error {
  public:
@@ -30,7 +32,7 @@ class InputFiles {
 
   /// The image itself where it is a file.
   std::string path_of(const std::string& image) const;
-  /// False of a phantom that is not drawn by this mesher yet. Of a file, reading it tells.
+  /// Whether this mesher has drawn the phantom. A file is taken to be there: reading it tells.
   bool is_there(const std::string& image) const;
   /// Draws a phantom, in the mesher's own size where it names none. Throws PreparationError.
   void draw(const std::string& phantom, const std::string& scratch_folder,

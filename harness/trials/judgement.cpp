@@ -2,47 +2,42 @@
 
 #include <fmt/format.h>
 
-#include <algorithm>
 #include <fstream>
+#include <functional>
 
 #include "peers/peer.h"
-#include "rows/record.h"
 
 namespace podm::bench {
 namespace {
 
-using Json = nlohmann::ordered_json;
-
-constexpr int kMesherSchema = 1;  // of the mesher's records
 constexpr int kExitUnmet = 1;
-constexpr int kExitRefused = 77;  // of a peer: peers/README.md
-
-// Why `record` cannot be used; empty: it can. Asks only for what is read here and in the table.
-std::string fault_of(const Json& record) {
-  if (!record.is_object()) return "is not a JSON object";
-  if (record.value("schema", Json()) != kMesherSchema)
-    return fmt::format("is not of schema {}", kMesherSchema);
-  const auto at = [&](const char* key) { return record.value(key, Json()); };
-  const Json phases = at("phases_s");
-  if (!phases.is_object() ||
-      !std::all_of(phases.begin(), phases.end(), [](const Json& s) { return s.is_number(); }))
-    return "has no seconds by phase";
-  for (const char* count : {"cells", "vertices"})
-    if (!at(count).is_number_unsigned()) return fmt::format("has no count '{}'", count);
-  if (!at("refine_cells_per_second").is_number()) return "has no number 'refine_cells_per_second'";
-  if (!at("guarantees").is_object()) return "has no 'guarantees'";
-  if (!at("stop_reason").is_string()) return "has no 'stop_reason'";
-  return {};
-}
+constexpr int kExitRefused = 77;  // a peer ends with it: peers/README.md
 
 // Guarantees by name with the number of their misses, e.g. "radius_edge 3, facet_angle 1".
-std::string unmet(const Json& record) {
+std::string unmet(const MeshRecord& record) {
   std::string text;
-  for (const auto& [name, misses] : record["guarantees"].items())
-    if (misses != 0) text += fmt::format("{}{} {}", text.empty() ? "" : ", ", name, misses.dump());
-  if (record["stop_reason"] != "complete")
-    text += fmt::format("{}stopped: {}", text.empty() ? "" : ", ", record["stop_reason"].get<std::string>());
+  for (const auto& [name, misses] : record.guarantees)
+    if (misses != 0) text += fmt::format("{}{} {}", text.empty() ? "" : ", ", name, misses);
+  if (record.stop_reason != kComplete)
+    text += fmt::format("{}stopped: {}", text.empty() ? "" : ", ", record.stop_reason);
   return text;
+}
+
+// What a program left, or nothing with the fault added to the reason.
+template <class Record>
+std::optional<Record> read_record(const std::string& path, const std::function<Json(Json)>& complete,
+                                  TrialResult& result) {
+  std::ifstream file(path);
+  if (!file) {
+    result.reason += ", without a record";
+    return {};
+  }
+  try {
+    return from_json<Record>(complete(Json::parse(file, nullptr, false)), "record");
+  } catch (const FieldError& fault) {
+    result.reason += fmt::format(", {}", fault.what());
+    return {};
+  }
 }
 
 void judge_end(TrialResult& result) {
@@ -57,13 +52,8 @@ void judge_end(TrialResult& result) {
 void judge_measurement(const std::string& record_path, TrialResult& result) {
   judge_end(result);
   if (!result.process.succeeded()) return;
-  std::ifstream file(record_path);
-  Json record = Json::parse(file, nullptr, false);
-  if (!record.is_object() || !record.value(kMemoryLevels, Json()).is_array()) {
-    result.reason += ", without a record";
-    return;
-  }
-  result.record = std::move(record);
+  result.measured = read_record<MemoryLevelsRecord>(record_path, std::identity(), result);
+  if (!result.measured) return;
   result.status = Status::kOk;
   result.reason.clear();
 }
@@ -75,19 +65,17 @@ void judge(const Trial& trial, const std::string& record_path, TrialResult& resu
   if (is_of_peer(trial) && process.exit_code == kExitRefused) result.status = Status::kSkipped;
   if (process.exit_code != 0 && process.exit_code != kExitUnmet) return;
 
-  std::ifstream file(record_path);
-  if (!file) {
-    result.reason += ", without a record";
+  const auto complete = [&](Json record) {
+    return is_of_peer(trial) ? complete_record(trial, result.preparation, std::move(record)) : record;
+  };
+  auto mesh = read_record<MeshRecord>(record_path, complete, result);
+  if (mesh && mesh->schema != kMesherSchema) {
+    result.reason += fmt::format(", record: is not of schema {}", kMesherSchema);
     return;
   }
-  Json record = Json::parse(file, nullptr, false);
-  if (is_of_peer(trial)) record = complete_record(trial, result.preparation, std::move(record));
-  if (const std::string fault = fault_of(record); !fault.empty()) {
-    result.reason += ", with a record that " + fault;
-    return;
-  }
-  const std::string misses = unmet(record);
-  result.record = std::move(record);
+  if (!mesh) return;
+  result.mesh = std::move(mesh);
+  const std::string misses = unmet(*result.mesh);
   if (process.exit_code == 0 && misses.empty()) {
     result.status = Status::kOk;
     result.reason.clear();

@@ -10,7 +10,7 @@ namespace podm::bench {
 /// Sets status, reason and record of a mesh that the process of `result` was to make.
 void judge(const Trial& trial, const std::string& record_path, TrialResult& result);
 
-/// The same of a measurement of the machine.
+/// Sets status, reason and record of a measurement of the machine.
 void judge_measurement(const std::string& record_path, TrialResult& result);
 
 }  // namespace podm::bench

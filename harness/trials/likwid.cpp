@@ -16,8 +16,6 @@
 namespace podm::bench {
 namespace {
 
-using Json = nlohmann::ordered_json;
-
 constexpr const char* kProgram = "likwid-perfctr";
 constexpr const char* kOutput = "/likwid.csv";
 
@@ -111,7 +109,7 @@ std::vector<std::string> Likwid::wrap(const std::vector<std::string>& command,
 }
 
 // Lines EVENT,COUNTER,COUNT of each processor,... A count that is no number was not taken.
-Json Likwid::read(const std::string& folder) const {
+Counters Likwid::read(const std::string& folder) const {
   std::ifstream file(folder + kOutput);
   const std::string events = "," + events_ + ",";
   std::map<std::string, double> sums;
@@ -122,10 +120,10 @@ Json Likwid::read(const std::string& folder) const {
     for (std::size_t i = 2; i < cells.size(); ++i)
       if (const auto count = number_of(cells[i])) sums[cells[0]] += *count;
   }
-  Json counts = Json::object();
+  Counters counts;
   for (const auto& [event, sum] : sums)
-    counts[event] = {{"value", sum}, {"source", fmt::format("{}, group {}", kProgram, group_)}};
-  if (counts.empty()) counts[kLikwid + group_] = "unavailable: likwid-perfctr wrote no counts";
+    counts[event] = Counter{sum, fmt::format("{}, group {}", kProgram, group_), {}};
+  if (counts.empty()) counts[kLikwid + group_] = Unavailable{"likwid-perfctr wrote no counts"};
   return counts;
 }
 

@@ -6,13 +6,12 @@
 
 namespace podm::bench {
 
-using Json = nlohmann::ordered_json;
-
 Json resolved_options(const Trial& trial, const Preparation& preparation) {
   Json options = trial.options;
-  if (preparation.resolved.is_null()) return options;
+  if (!preparation.resolved) return options;
   options.erase(kTargetElements);
-  for (const char* key : {"radius_mm", "delta_mm"}) options[key] = preparation.resolved[key];
+  options["radius_mm"] = preparation.resolved->radius_mm;
+  options["delta_mm"] = preparation.resolved->delta_mm;
   return options;
 }
 
@@ -24,10 +23,10 @@ std::optional<Preparation> Preparer::find(const Trial& trial) {
   if (!makes_mesh(trial)) return Preparation{};
   if (!inputs_.is_there(trial.image)) return {};
   const std::string path = inputs_.path_of(trial.image);
-  Preparation preparation{path, hashes_.of(path), nullptr};
+  Preparation preparation{path, hashes_.of(path), {}};
   if (!trial.options.contains(kTargetElements)) return preparation;
   preparation.resolved = radii_.find(trial, preparation.sha256);
-  return preparation.resolved.is_null() ? std::nullopt : std::optional(preparation);
+  return preparation.resolved ? std::optional(preparation) : std::nullopt;
 }
 
 Preparation Preparer::make(const Trial& trial, const std::string& scratch_folder, const Announce& announce,

@@ -4,7 +4,6 @@
 
 #include <functional>
 #include <map>
-#include <nlohmann/json.hpp>
 #include <optional>
 #include <string>
 
@@ -17,13 +16,13 @@
 namespace podm::bench {
 
 struct Preparation {
-  std::string image;                ///< the file that is read
-  std::string sha256;               ///< of its bytes; "absent" where there is no file
-  nlohmann::ordered_json resolved;  ///< of a number of cells: Radii; else null
+  std::string image;                       ///< the file that is read
+  std::string sha256;                      ///< hash of its bytes; "absent" where there is no file
+  std::optional<ResolvedRadius> resolved;  ///< where the trial asks for a number of cells
 };
 
 /// The trial's options with radius and delta in place of the number of cells.
-nlohmann::ordered_json resolved_options(const Trial& trial, const Preparation& preparation);
+Json resolved_options(const Trial& trial, const Preparation& preparation);
 
 /// Makes what is not there yet, once for all trials.
 class Preparer {
@@ -31,12 +30,12 @@ class Preparer {
   /// Neither reads nor writes anything but what is in the folder of results.
   Preparer(const std::string& podm, const std::string& podm_sha256, const std::string& results_folder);
 
-  /// Nothing while something has to be made first.
+  /// Returns nothing while something has to be made first.
   std::optional<Preparation> find(const Trial& trial);
 
-  /// Told what is being made.
+  /// Hears what is being made.
   using Announce = std::function<void(const std::string& what)>;
-  /// The same; makes what is missing. Throws PreparationError. `scratch_folder` must exist.
+  /// Makes what find() misses. Throws PreparationError. `scratch_folder` must exist.
   Preparation make(const Trial& trial, const std::string& scratch_folder, const Announce& announce,
                    const StopQuery& stop_requested);
 

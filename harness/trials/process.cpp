@@ -45,7 +45,7 @@ double seconds(const timeval& time) {
   return static_cast<double>(time.tv_sec) + 1e-6 * static_cast<double>(time.tv_usec);
 }
 
-// In the child, for good: the file in place of `descriptor`. False with errno.
+// Puts the file in place of `descriptor`, in the child and for good. Returns false with errno.
 bool redirect(int descriptor, const std::string& path, int flags) {
   close(descriptor);  // it may be the last that is to be had
   const int file = open(path.empty() ? "/dev/null" : path.c_str(), flags, 0666);
@@ -188,7 +188,7 @@ class Child {
   ProcessOutcome outcome_;  // its end is kNotStarted until there is one
 };
 
-// Until one of them ends, or it is time to look.
+// Waits until one of them ends, or it is time to look.
 void wait_for_news(const std::list<Child>& children) {
   std::vector<pollfd> running;
   int poll_ms = kPollMs;

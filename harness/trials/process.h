@@ -36,7 +36,7 @@ struct ProcessOutcome {
 /// dies with this process, however that ends.
 ProcessOutcome run_process(const ProcessRequest& request, const StopQuery& stop_requested = {});
 
-/// The same of several that run at the same time, until the last has ended.
+/// Runs several at the same time in the same way, until the last has ended.
 std::vector<ProcessOutcome> run_processes(const std::vector<ProcessRequest>& requests,
                                           const StopQuery& stop_requested = {});
 

@@ -8,15 +8,12 @@
 
 #include "experiments/option_matrix.h"
 #include "machine/machine.h"
-#include "rows/record.h"
 #include "rows/results_file.h"
 #include "trials/input_files.h"
 #include "trials/sha256.h"
 
 namespace podm::bench {
 namespace {
-
-using Json = nlohmann::ordered_json;
 
 constexpr const char* kSchema = "podm-bench-radius/1";
 constexpr std::size_t kTailBytes = 2000;
@@ -37,32 +34,72 @@ ProcessRequest request_of(const Trial& trial, const std::string& podm, const std
   const auto arguments = mesher_arguments(options);
   request.arguments.insert(request.arguments.end(), arguments.begin(), arguments.end());
   for (const std::string& argument : {std::string("-o"), folder + "/mesh.vtu", std::string("--record"),
-                                      folder + "/record.jsonl", std::string("--quiet")})
+                                      folder + kRecordName, std::string("--quiet")})
     request.arguments.push_back(argument);
   return request;
 }
 
-// Of a run that went to its end. A guarantee that it misses is the trial's to tell.
-bool tells_radius(const Json& record) {
-  return record.is_object() && text_in(record, "stop_reason") == "complete" && number_in(record, "cells") &&
-         number_in(record.value("used", Json()), "radius_mm") &&
-         number_in(record.value("used", Json()), "delta_mm");
+// What is read of the record of a run that finds a radius.
+struct Calibration {
+  std::vector<Json> meshes;  // made before the last
+  static constexpr auto fields() { return std::tuple{field("meshes", &Calibration::meshes)}; }
+};
+struct RadiusRecord {
+  std::string stop_reason;
+  std::uint64_t cells = 0;
+  UsedSizes used;
+  std::optional<std::string> program;
+  std::optional<Json> calibration, warnings;
+  static constexpr auto fields() {
+    using R = RadiusRecord;
+    return std::tuple{field("stop_reason", &R::stop_reason),
+                      field("cells", &R::cells),
+                      field("used", &R::used),
+                      field_if_any("program", &R::program),
+                      field_if_any("calibration", &R::calibration),
+                      field_if_any("warnings", &R::warnings)};
+  }
+};
+
+// The record of a run that went to its end; nothing of another. A guarantee that it misses is the trial's to
+// tell.
+std::optional<RadiusRecord> read_record(const std::string& path) {
+  try {
+    std::ifstream file(path);
+    auto record = from_json<RadiusRecord>(Json::parse(file, nullptr, false));
+    const bool is_complete = record.stop_reason == kComplete && record.used.radius_mm && record.used.delta_mm;
+    return is_complete ? std::optional(std::move(record)) : std::nullopt;
+  } catch (const FieldError&) {
+    return {};
+  }
 }
 
-// What the mesher tells of finding the radius; null of one that does not.
-Json calibration_of(const Json& record) { return record.value("calibration", Json()); }
-
-// All meshes made, the last among them; null where the mesher does not tell.
-Json num_meshes(const Json& calibration) {
-  if (!calibration.is_object() || !calibration.value("meshes", Json()).is_array()) return nullptr;
-  return calibration["meshes"].size() + 1;
+// All meshes made, the last among them; nothing where the mesher does not tell.
+std::optional<std::uint64_t> num_meshes(const Json& calibration) {
+  try {
+    return from_json<Calibration>(calibration).meshes.size() + 1;
+  } catch (const FieldError&) {
+    return {};
+  }
 }
 
-Json as_in_rows(const Json& line) {
-  Json resolved;
-  for (const char* key : {kTargetElements, "radius_mm", "delta_mm", "cells", "meshes", "seconds", "key"})
-    resolved[key] = line.value(key, Json());
-  return resolved;
+std::optional<RadiusLine> line_of(const std::string& text) {
+  try {
+    auto line = from_json<RadiusLine>(Json::parse(text, nullptr, false));
+    return line.schema == kSchema ? std::optional(std::move(line)) : std::nullopt;
+  } catch (const FieldError&) {
+    return {};
+  }
+}
+
+ResolvedRadius as_in_rows(const RadiusLine& line) {
+  return {line.target_elements, line.radius_mm, line.delta_mm, line.cells,
+          line.meshes,          line.seconds,   line.key};
+}
+
+std::optional<double> delta_asked(const Trial& trial) {
+  const Json delta = trial.options.value("delta_mm", Json());
+  return delta.is_number() ? std::optional(delta.get<double>()) : std::nullopt;
 }
 
 }  // namespace
@@ -71,8 +108,7 @@ Radii::Radii(std::string podm, std::string podm_sha256, std::string path)
     : podm_(std::move(podm)), podm_sha256_(std::move(podm_sha256)), path_(std::move(path)) {
   std::ifstream file(path_);
   for (std::string text; std::getline(file, text);)
-    if (Json line = Json::parse(text, nullptr, false); line.is_object() && text_in(line, "schema") == kSchema)
-      lines_.push_back(std::move(line));
+    if (auto line = line_of(text)) lines_.push_back(std::move(*line));
 }
 
 std::string Radii::key_of(const Trial& trial, const std::string& image_sha256) const {
@@ -83,46 +119,45 @@ std::string Radii::key_of(const Trial& trial, const std::string& image_sha256) c
   return sha256_of(identity.dump());
 }
 
-Json Radii::find(const Trial& trial, const std::string& image_sha256) const {
+std::optional<ResolvedRadius> Radii::find(const Trial& trial, const std::string& image_sha256) const {
   const std::string key = key_of(trial, image_sha256);
-  for (const Json& line : lines_)
-    if (text_in(line, "key") == key) return as_in_rows(line);
-  return nullptr;
+  for (const RadiusLine& line : lines_)
+    if (line.key == key) return as_in_rows(line);
+  return {};
 }
 
-Json Radii::resolve(const Trial& trial, const std::string& image, const std::string& image_sha256,
-                    const std::string& scratch_folder, const StopQuery& stop_requested) {
+ResolvedRadius Radii::resolve(const Trial& trial, const std::string& image, const std::string& image_sha256,
+                              const std::string& scratch_folder, const StopQuery& stop_requested) {
   const ProcessRequest request = request_of(trial, podm_, image, scratch_folder);
   const ProcessOutcome outcome = run_process(request, stop_requested);
-  std::ifstream file(scratch_folder + "/record.jsonl");
-  const Json record = file ? Json::parse(file, nullptr, false) : Json();
-  if (outcome.end != ProcessOutcome::End::kExited || !tells_radius(record))
+  const auto record = read_record(scratch_folder + kRecordName);
+  if (outcome.end != ProcessOutcome::End::kExited || !record)
     throw PreparationError(fmt::format("no radius for {} cells", trial.options[kTargetElements].dump()),
                            request.arguments, outcome, read_tail(request.stderr_path, kTailBytes));
-  const Json calibration = calibration_of(record);
-  store({{"schema", kSchema},
-         {"key", key_of(trial, image_sha256)},
-         {"input", {{"name", trial.image}, {"path", image}, {"sha256", image_sha256}}},
-         {kTargetElements, trial.options[kTargetElements]},
-         {"delta_asked_mm", trial.options.value("delta_mm", Json())},
-         {"radius_mm", record["used"]["radius_mm"]},
-         {"delta_mm", record["used"]["delta_mm"]},
-         {"cells", record["cells"]},
-         {"meshes", num_meshes(calibration)},
-         {"seconds", outcome.wall_s},
-         {"calibration", calibration},
-         {"warnings", record.value("warnings", Json::array())},
-         {"command", request.arguments},
-         {"mesher", {{"sha256", podm_sha256_}, {"version", text_in(record, "program")}}},
-         {"date", now()}});
+  const Json calibration = record->calibration.value_or(Json());
+  store({.schema = kSchema,
+         .key = key_of(trial, image_sha256),
+         .input = {trial.image, image, image_sha256},
+         .target_elements = trial.options[kTargetElements],
+         .delta_asked_mm = delta_asked(trial),
+         .radius_mm = *record->used.radius_mm,
+         .delta_mm = *record->used.delta_mm,
+         .cells = record->cells,
+         .meshes = num_meshes(calibration),
+         .seconds = outcome.wall_s,
+         .calibration = calibration,
+         .warnings = record->warnings.value_or(Json::array()),
+         .command = request.arguments,
+         .mesher = {podm_sha256_, record->program.value_or("")},
+         .date = now()});
   return as_in_rows(lines_.back());
 }
 
 // The file is written whole: a crash leaves no half line in it.
-void Radii::store(Json line) {
+void Radii::store(RadiusLine line) {
   lines_.push_back(std::move(line));
   std::string text;
-  for (const Json& each : lines_) text += each.dump() + "\n";
+  for (const RadiusLine& each : lines_) text += to_json(each).dump() + "\n";
   write_file(path_, text);
 }
 

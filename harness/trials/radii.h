@@ -2,14 +2,65 @@
 // this number do the same work, on any number of cores and with any algorithm.
 #pragma once
 
-#include <nlohmann/json.hpp>
+#include <optional>
 #include <string>
 #include <vector>
 
 #include "experiments/experiment.h"
+#include "rows/row.h"
 #include "trials/process.h"
 
 namespace podm::bench {
+
+/// The mesher that made a mesh.
+struct MesherIdentity {
+  std::string sha256, version;
+  static constexpr auto fields() {
+    return std::tuple{field("sha256", &MesherIdentity::sha256), field("version", &MesherIdentity::version)};
+  }
+};
+
+struct ImageIdentity {
+  std::string name, path, sha256;
+  static constexpr auto fields() {
+    using I = ImageIdentity;
+    return std::tuple{field("name", &I::name), field("path", &I::path), field("sha256", &I::sha256)};
+  }
+};
+
+/// A line of radii.jsonl: a radius and what it was found from, results/README.md.
+struct RadiusLine {
+  std::string schema, key;
+  ImageIdentity input;
+  std::uint64_t target_elements = 0;
+  std::optional<double> delta_asked_mm;
+  double radius_mm = 0, delta_mm = 0;
+  std::uint64_t cells = 0;              ///< those of the mesh that is the evidence
+  std::optional<std::uint64_t> meshes;  ///< made to find it
+  double seconds = 0;                   ///< spent to find it
+  Json calibration, warnings;           ///< the mesher's own words
+  std::vector<std::string> command;
+  MesherIdentity mesher;
+  std::string date;  ///< UTC, written as ISO 8601 has it
+  static constexpr auto fields() {
+    using R = RadiusLine;
+    return std::tuple{field("schema", &R::schema),
+                      field("key", &R::key),
+                      field("input", &R::input),
+                      field("target_elements", &R::target_elements),
+                      field("delta_asked_mm", &R::delta_asked_mm),
+                      field("radius_mm", &R::radius_mm),
+                      field("delta_mm", &R::delta_mm),
+                      field("cells", &R::cells),
+                      field("meshes", &R::meshes),
+                      field("seconds", &R::seconds),
+                      field("calibration", &R::calibration),
+                      field("warnings", &R::warnings),
+                      field("command", &R::command),
+                      field("mesher", &R::mesher),
+                      field("date", &R::date)};
+  }
+};
 
 /// A file of JSON lines, one a radius with what it was found from: results/README.md.
 class Radii {
@@ -17,23 +68,21 @@ class Radii {
   /// Reads what the file holds; there need be none. A broken line is passed over.
   Radii(std::string podm, std::string podm_sha256, std::string path);
 
-  /// What rows tell of the radius: number of cells asked for, `radius_mm`, `delta_mm`, `cells` of the mesh
-  /// that is the evidence, `meshes` that finding it took, `seconds` that it cost, `key`. Null while there is
-  /// none for the trial's number of cells, and delta where it gives one, on an image of this hash.
-  nlohmann::ordered_json find(const Trial& trial, const std::string& image_sha256) const;
+  /// Returns nothing while there is no radius for the trial's number of cells, and delta where it gives one,
+  /// on an image of this hash.
+  std::optional<ResolvedRadius> find(const Trial& trial, const std::string& image_sha256) const;
 
   /// Finds it by a mesh on all usable processors and stores it. The trial's limits hold. Throws
   /// PreparationError.
-  nlohmann::ordered_json resolve(const Trial& trial, const std::string& image,
-                                 const std::string& image_sha256, const std::string& scratch_folder,
-                                 const StopQuery& stop_requested);
+  ResolvedRadius resolve(const Trial& trial, const std::string& image, const std::string& image_sha256,
+                         const std::string& scratch_folder, const StopQuery& stop_requested);
 
  private:
   std::string key_of(const Trial& trial, const std::string& image_sha256) const;
-  void store(nlohmann::ordered_json line);
+  void store(RadiusLine line);
 
   std::string podm_, podm_sha256_, path_;
-  std::vector<nlohmann::ordered_json> lines_;
+  std::vector<RadiusLine> lines_;
 };
 
 }  // namespace podm::bench

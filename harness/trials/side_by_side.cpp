@@ -4,31 +4,27 @@
 
 #include "experiments/option_matrix.h"
 #include "machine/machine.h"
-#include "rows/record.h"
 #include "trials/judgement.h"
 
 namespace podm::bench {
 namespace {
 
-using Json = nlohmann::ordered_json;
-
 // What the row tells of a copy.
-Json entry_of(int processor, const Json& record) {
-  Json entry = {{"processor", processor}};
-  for (const char* key : {"cells", "phases_s", "refine_cells_per_second", "cells_per_second"})
-    entry[key] = record.value(key, Json());
-  return entry;
+CopyRecord entry_of(int processor, const MeshRecord& record) {
+  return {processor, record.cells, record.phases_s, record.refine_cells_per_second, record.cells_per_second};
 }
 
+// Asked while the first copy is well, so that it has a mesh.
 std::string fault_of(const TrialResult& copy, const TrialResult& first) {
   if (copy.status != Status::kOk) return copy.reason;
-  return text_in(copy.record, "mesh_sha256") == text_in(first.record, "mesh_sha256") ? "" : "another mesh";
+  return copy.mesh->mesh_sha256 == first.mesh->mesh_sha256 ? "" : "another mesh";
 }
 
 // The first fault is the trial's.
 void blame(const TrialResult& copy, int number, TrialResult& result) {
+  if (result.status != Status::kOk) return;
   const std::string fault = fault_of(copy, result);
-  if (fault.empty() || result.status != Status::kOk) return;
+  if (fault.empty()) return;
   result.status = copy.status == Status::kOk ? Status::kUnmet : copy.status;
   result.reason = fmt::format("copy {}: {}", number, fault);
 }
@@ -47,14 +43,14 @@ void run_side_by_side(const Trial& trial, std::vector<ProcessRequest> requests,
   const std::vector<int> processors = usable_processor_ids();
   for (std::size_t i = 0; i < requests.size(); ++i) requests[i].processor = processors.at(i);
   const std::vector<ProcessOutcome> outcomes = run_processes(requests, stop_requested);
-  Json entries = Json::array();
+  std::vector<CopyRecord> entries;
   for (int i = 0; i < static_cast<int>(outcomes.size()); ++i) {
     const auto at = static_cast<std::size_t>(i);
     TrialResult copy;
     copy.preparation = result.preparation;
     copy.process = outcomes[at];
     judge(trial, folder_of_copy(scratch_folder, i) + kRecordName, copy);
-    if (copy.record.is_object()) entries.push_back(entry_of(processors[at], copy.record));
+    if (copy.mesh) entries.push_back(entry_of(processors[at], *copy.mesh));
     if (i > 0) {
       blame(copy, i + 1, result);
       continue;
@@ -62,10 +58,10 @@ void run_side_by_side(const Trial& trial, std::vector<ProcessRequest> requests,
     result.status = copy.status;
     result.reason = copy.reason;
     result.process = copy.process;
-    result.record = copy.record;
+    result.mesh = copy.mesh;
   }
   if (entries.size() == outcomes.size()) result.side_by_side = entries;
-  result.counters[kPerfEvent] = "unavailable: the kernel counts processes side by side together";
+  result.counters[kPerfEvent] = Unavailable{"the kernel counts processes side by side together"};
 }
 
 }  // namespace podm::bench

@@ -8,7 +8,6 @@
 
 #include "experiments/option_matrix.h"
 #include "machine/machine.h"
-#include "rows/measure.h"
 #include "rows/record.h"
 #include "trials/counters.h"
 #include "trials/image_info.h"
@@ -19,8 +18,6 @@
 
 namespace podm::bench {
 namespace {
-
-using Json = nlohmann::ordered_json;
 
 constexpr std::size_t kTailBytes = 2000;
 constexpr const char* kMeshName = "/mesh.vtu";
@@ -40,9 +37,8 @@ std::vector<std::string> mesh_command(const Trial& trial, const Preparation& pre
 }
 
 // A peer writes what format it likes and names the file.
-std::string mesh_path(const Json& record, const std::string& folder) {
-  if (!record.is_object() || !record.contains("mesh")) return folder + kMeshName;
-  return fmt::format("{}/{}", folder, text_in(record, "mesh"));
+std::string mesh_path(const std::optional<MeshRecord>& record, const std::string& folder) {
+  return record && record->mesh ? fmt::format("{}/{}", folder, *record->mesh) : folder + kMeshName;
 }
 
 ProcessRequest request_of(const Trial& trial, const std::vector<std::string>& command,
@@ -61,9 +57,9 @@ std::size_t bytes_to_warm(const Trial& trial) {
   return std::min(kWarmBytes, kOfProgram + kOfCell * cells);
 }
 
-// Not more than half of what is free: it is to be touched, not to be had. Simulated times need none.
+// Warms no more than half of what is free: memory is to be touched, not to be had. Simulated times need none.
 void warm_memory_of(const Trial& trial) {
-  if (basis_of(trial.options, Json::object()) == to_string(Basis::kSimulated)) return;
+  if (basis_of(trial.options, {}) == Basis::kSimulated) return;
   const auto free_bytes = static_cast<std::size_t>(std::max(0L, sysconf(_SC_AVPHYS_PAGES))) *
                           static_cast<std::size_t>(sysconf(_SC_PAGESIZE));
   const auto copies = static_cast<std::size_t>(std::max(1, num_copies(trial)));
@@ -83,32 +79,13 @@ void add_fault(const std::string& fault, bool is_interrupted, TrialResult& resul
 struct TrialRunner::Run {
   const Trial& trial;
   const Preparation& preparation;
-  const std::string& folder;  ///< for its files
+  const std::string& folder;  ///< holds its files
   const StopQuery& stop_requested;
 };
 
-std::string to_string(Status status) {
-  switch (status) {
-    case Status::kOk:
-      return "ok";
-    case Status::kUnmet:
-      return "unmet";
-    case Status::kFailed:
-      return "failed";
-    case Status::kTimedOut:
-      return "timed_out";
-    case Status::kInterrupted:
-      return "interrupted";
-    case Status::kSkipped:
-      break;
-  }
-  return "skipped";
-}
-
-const Json& TrialRunner::image_size(const std::string& image) {
+const std::optional<ImageSize>& TrialRunner::image_size(const std::string& image) {
   const auto [entry, is_new] = image_sizes_.try_emplace(image);
-  if (is_new)
-    if (const auto size = ask_for_info(programs_.podm, image).size) entry->second = *size;
+  if (is_new) entry->second = ask_for_info(programs_.podm, image).size;
   return entry->second;
 }
 
@@ -126,7 +103,7 @@ std::vector<std::string> TrialRunner::command_of(const Run& run, const std::stri
                                                  TrialResult& result) {
   if (!is_of_peer(run.trial)) return mesh_command(run.trial, run.preparation, programs_.podm, folder);
   const Peer& peer = peers_.of(run.trial);
-  result.peer = {{"name", run.trial.options[kMesher]}, {"sha256", peer.sha256()}, {"version", peer.version}};
+  result.peer = {run.trial.options[kMesher], peer.sha256(), peer.version};
   return peer_command(run.trial, run.preparation, peer, programs_.podm, folder);
 }
 
@@ -146,9 +123,10 @@ void TrialRunner::run_program(const Run& run, TrialResult& result) {
   const PerfCounters kernel(is_used ? CounterKinds::kSoftware : CounterKinds::kSoftwareAndHardware);
   result.process = run_process(request_of(run.trial, result.command, run.folder), run.stop_requested);
   if (!is_used || !tool->is_simulation()) result.counters = kernel.read(result.process);
-  if (is_used) result.counters.update(tool->read(run.folder));
+  if (is_used)
+    for (const auto& [name, count] : tool->read(run.folder)) result.counters[name] = count;
   if (!absence.empty())
-    result.counters[run.trial.options[kCounters].get<std::string>()] = "unavailable: " + absence;
+    result.counters[run.trial.options[kCounters].get<std::string>()] = Unavailable{absence};
 }
 
 void TrialRunner::run_copies(const Run& run, TrialResult& result) {
@@ -180,24 +158,26 @@ void TrialRunner::make_mesh(const Run& run, TrialResult& result) {
     judge(run.trial, run.folder + kRecordName, result);
   }
   std::error_code error;
-  const auto mesh_bytes = std::filesystem::file_size(mesh_path(result.record, run.folder), error);
+  const auto mesh_bytes = std::filesystem::file_size(mesh_path(result.mesh, run.folder), error);
   if (!error) result.mesh_bytes = mesh_bytes;
-  if (result.record.is_object()) prove(run, result);
+  if (result.mesh) prove(run, result);
 }
 
 void TrialRunner::prove(const Run& run, TrialResult& result) {
   const Stopwatch watch;
   if (!programs_.verifier.empty()) {
     const Verification verification =
-        verify_mesh(run.trial, run.preparation.image, result.record, mesh_path(result.record, run.folder),
+        verify_mesh(run.trial, run.preparation.image, *result.mesh, mesh_path(result.mesh, run.folder),
                     programs_.verifier, run.folder, run.stop_requested);
-    result.record["verdicts"] = verification.verdicts;
+    result.mesh->verdicts = verification.verdicts;
     add_fault(verification.fault, verification.is_interrupted, result);
   }
   if (run.trial.options.value(kReplay, false) && result.status != Status::kInterrupted) {
-    const Replay replay = replay_mesh(run.preparation.image, programs_.podm, run.folder, run.stop_requested);
-    result.replay = replay.answer;
-    add_fault(replay.is_equal() ? "" : "replay " + replay.answer, replay.is_interrupted, result);
+    const auto [replay, is_interrupted] =
+        replay_mesh(run.preparation.image, programs_.podm, run.folder, run.stop_requested);
+    result.replay = replay;
+    const bool is_equal = replay.end == Replay::End::kEqual;
+    add_fault(is_equal ? "" : "replay " + replay.text(), is_interrupted, result);
   }
   result.verification_s = watch.seconds();
 }

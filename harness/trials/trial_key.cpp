@@ -5,17 +5,17 @@
 namespace podm::bench {
 
 std::string TrialKeys::of(const Trial& trial, const Turn& turn, const Preparation& preparation) {
-  nlohmann::ordered_json options = resolved_options(trial, preparation);
+  Json options = resolved_options(trial, preparation);
   if (options.contains("topology")) options["topology"] = hashes_.of(options["topology"]);
-  const nlohmann::ordered_json identity = {{"mesher", !makes_mesh(trial)  ? "none"
-                                                      : is_of_peer(trial) ? peers_.of(trial).sha256()
-                                                                          : mesher_sha256_},
-                                           {"input", preparation.sha256},
-                                           {"trial", trial.name},
-                                           {"options", options},
-                                           {"machine", machine_},
-                                           {"repeat", turn.repeat},
-                                           {"warmup", turn.is_warmup}};
+  const Json identity = {{"mesher", !makes_mesh(trial)  ? "none"
+                                    : is_of_peer(trial) ? peers_.of(trial).sha256()
+                                                        : mesher_sha256_},
+                         {"input", preparation.sha256},
+                         {"trial", trial.name},
+                         {"options", options},
+                         {"machine", to_json(machine_)},
+                         {"repeat", turn.repeat},
+                         {"warmup", turn.is_warmup}};
   return sha256_of(identity.dump());
 }
 

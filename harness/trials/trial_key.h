@@ -13,15 +13,15 @@ namespace podm::bench {
 /// the radius that was found, the machine and the number of the repeat. Not by paths, limits or the verifier.
 class TrialKeys {
  public:
-  TrialKeys(std::string mesher_sha256, const nlohmann::ordered_json& machine_summary, Peers peers = {})
-      : mesher_sha256_(std::move(mesher_sha256)), machine_(machine_summary), peers_(std::move(peers)) {}
+  TrialKeys(std::string mesher_sha256, MachineRecord machine, Peers peers = {})
+      : mesher_sha256_(std::move(mesher_sha256)), machine_(std::move(machine)), peers_(std::move(peers)) {}
 
   /// 64 hexadecimal digits. Throws InputError when a topology cannot be read or a peer is unknown.
   std::string of(const Trial& trial, const Turn& turn, const Preparation& preparation);
 
  private:
   std::string mesher_sha256_;
-  nlohmann::ordered_json machine_;
+  MachineRecord machine_;
   Peers peers_;
   FileHashes hashes_;
 };

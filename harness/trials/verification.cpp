@@ -11,34 +11,45 @@
 namespace podm::bench {
 namespace {
 
-using Json = nlohmann::ordered_json;
-
 constexpr const char* kClaims = "structure,radius_edge,boundary_angles,delaunay,conformity,surface,labels";
 constexpr double kTimeoutS = 600;
-constexpr int kExitDiffers = 1;  // of podm replay
+constexpr int kExitDiffers = 1;  // podm replay ends with it
 
-Json read_json(const std::string& path) {
-  std::ifstream file(path);
-  return file ? Json::parse(file, nullptr, false) : Json();
+// What is read of podm-verify's report.
+struct ClaimReport {
+  Proof verdict = Proof::kNotRun;
+  static constexpr auto fields() { return std::tuple{field("verdict", &ClaimReport::verdict)}; }
+};
+struct VerifierReport {
+  ByName<ClaimReport> claims;
+  static constexpr auto fields() { return std::tuple{field("claims", &VerifierReport::claims)}; }
+};
+
+// Returns nothing where there is no report or not all of it.
+std::optional<VerifierReport> read_report(const std::string& path) {
+  try {
+    std::ifstream file(path);
+    return from_json<VerifierReport>(Json::parse(file, nullptr, false));
+  } catch (const FieldError&) {
+    return {};
+  }
 }
 
-// Of the claims that the record promises: all, unless it names them.
-std::string fault_of(const Json& verdicts, const Json& record) {
+// The claims that the record promises and that are not proved. It promises all unless it names them.
+std::string fault_of(const ByName<Proof>& verdicts, const MeshRecord& record) {
   const auto is_promised = [&](const std::string& claim) {
-    const auto promises = record.find("promises");
-    return promises == record.end() ||
-           std::find(promises->begin(), promises->end(), claim) != promises->end();
+    return !record.promises || std::ranges::count(*record.promises, claim) > 0;
   };
   std::string text;
-  for (const auto& [claim, verdict] : verdicts.items())
-    if (verdict != "pass" && is_promised(claim))
-      text += fmt::format("{}{} {}", text.empty() ? "" : ", ", claim, verdict.get<std::string>());
+  for (const auto& [claim, verdict] : verdicts)
+    if (verdict != Proof::kPass && is_promised(claim))
+      text += fmt::format("{}{} {}", text.empty() ? "" : ", ", claim, to_string(verdict));
   return text;
 }
 
 }  // namespace
 
-Verification verify_mesh(const Trial& trial, const std::string& image, const Json& record,
+Verification verify_mesh(const Trial& trial, const std::string& image, const MeshRecord& record,
                          const std::string& mesh_path, const std::string& verifier, const std::string& folder,
                          const StopQuery& stop_requested) {
   const std::string report_path = folder + "/verification.json";
@@ -46,34 +57,34 @@ Verification verify_mesh(const Trial& trial, const std::string& image, const Jso
   const auto add = [&command](const std::string& option, const std::string& value) {
     command.insert(command.end(), {option, value});
   };
-  const Json used = record.value("used", Json::object());
-  const double radius_mm = used.value("radius_mm", 0.0);
+  const UsedSizes used = record.used.value_or(UsedSizes{});
+  const double radius_mm = used.radius_mm.value_or(0);
   const bool with_fidelity = trial.options.value(kFidelity, false);
   add("--claims",
       fmt::format("{}{}{}", kClaims, radius_mm > 0 ? ",size" : "", with_fidelity ? ",fidelity" : ""));
   if (radius_mm > 0) add("--radius", fmt::format("{}", radius_mm));
-  if (with_fidelity) add("--delta", fmt::format("{}", used.value("delta_mm", 0.0)));
+  if (with_fidelity) add("--delta", fmt::format("{}", used.delta_mm.value_or(0)));
   if (trial.options.value(kSchedule, false)) add("--schedule", folder + kScheduleName);
   const ProcessOutcome outcome = ask(command, kTimeoutS, stop_requested).outcome;
-  const Json report = read_json(report_path);
-  Verification verification{Json::object(), {}, outcome.end == ProcessOutcome::End::kInterrupted};
-  if (!report.is_object()) {
+  const auto report = read_report(report_path);
+  Verification verification{{}, {}, outcome.end == ProcessOutcome::End::kInterrupted};
+  if (!report) {
     verification.fault = "not verified: " + outcome.describe();
     return verification;
   }
-  const Json claims = report.value("claims", Json::object());
-  for (const auto& [claim, result] : claims.items()) verification.verdicts[claim] = result["verdict"];
+  for (const auto& [claim, told] : report->claims) verification.verdicts[claim] = told.verdict;
   verification.fault = fault_of(verification.verdicts, record);
   return verification;
 }
 
-Replay replay_mesh(const std::string& image, const std::string& podm, const std::string& folder,
-                   const StopQuery& stop_requested) {
+ReplayAttempt replay_mesh(const std::string& image, const std::string& podm, const std::string& folder,
+                          const StopQuery& stop_requested) {
   using End = ProcessOutcome::End;
   const Reply reply = ask({podm, "replay", image, folder + kLogName}, kTimeoutS, stop_requested);
-  if (reply.succeeded()) return {"equal"};
-  if (reply.outcome.end == End::kExited && reply.outcome.exit_code == kExitDiffers) return {"differs"};
-  return {"failed: " + reply.why_not(), reply.outcome.end == End::kInterrupted};
+  if (reply.succeeded()) return {{Replay::End::kEqual, ""}};
+  if (reply.outcome.end == End::kExited && reply.outcome.exit_code == kExitDiffers)
+    return {{Replay::End::kDiffers, ""}};
+  return {{Replay::End::kFailed, reply.why_not()}, reply.outcome.end == End::kInterrupted};
 }
 
 }  // namespace podm::bench

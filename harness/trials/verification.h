@@ -1,15 +1,15 @@
 // A mesh handed to podm-verify, a program of its own, after the clock has stopped.
 #pragma once
 
-#include <nlohmann/json.hpp>
 #include <string>
 
 #include "experiments/experiment.h"
+#include "rows/row.h"
 #include "trials/process.h"
 
 namespace podm::bench {
 
-inline constexpr const char* kScheduleName = "/schedule.jsonl";  ///< in the folder of a trial
+inline constexpr const char* kScheduleName = "/schedule.jsonl";  ///< its file in the folder of a trial
 
 /// The programs that a trial runs.
 struct Programs {
@@ -21,29 +21,26 @@ struct Programs {
 };
 
 struct Verification {
-  nlohmann::ordered_json
-      verdicts;       ///< claim: "pass", "fail" or "not_run"; empty when the verifier told nothing
-  std::string fault;  ///< why the mesh is not proved; empty: every claim promised passes
+  ByName<Proof> verdicts;  ///< one a claim; empty when the verifier told nothing
+  std::string fault;       ///< why the mesh is not proved; empty: every claim promised passes
   bool is_interrupted = false;
 };
 
 /// Every claim; fidelity only where the trial asks for it, as it is promised of cells about as small as
 /// voxels alone. `record` is the mesher's, of the mesh at `mesh_path`.
-Verification verify_mesh(const Trial& trial, const std::string& image, const nlohmann::ordered_json& record,
+Verification verify_mesh(const Trial& trial, const std::string& image, const MeshRecord& record,
                          const std::string& mesh_path, const std::string& verifier, const std::string& folder,
                          const StopQuery& stop_requested);
 
-inline constexpr const char* kLogName = "/run.log";  ///< of a trial's operations, in its folder
+inline constexpr const char* kLogName = "/run.log";  ///< the log of a trial's operations, in its folder
 
-struct Replay {
-  std::string answer;  ///< "equal", "differs" or "failed: why"
+struct ReplayAttempt {
+  Replay replay;
   bool is_interrupted = false;
-
-  bool is_equal() const { return answer == "equal"; }
 };
 
 /// Whether the operations in the folder's log, one after the other, make the mesh that the run made.
-Replay replay_mesh(const std::string& image, const std::string& podm, const std::string& folder,
-                   const StopQuery& stop_requested);
+ReplayAttempt replay_mesh(const std::string& image, const std::string& podm, const std::string& folder,
+                          const StopQuery& stop_requested);
 
 }  // namespace podm::bench

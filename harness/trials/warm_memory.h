@@ -13,7 +13,8 @@ namespace podm::bench {
 
 inline constexpr std::size_t kWarmBytes = std::size_t{1} << 30;
 
-/// In a process of its own, so that the peak memory of this one, which its children inherit, stays small.
+/// Touches the bytes in a process of its own, so that the peak memory of this one, which its children
+/// inherit, stays small.
 inline void warm_memory(std::size_t bytes) {
   const pid_t child = fork();
   if (child < 0) return;  // then the trial pays for itself

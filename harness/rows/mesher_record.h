@@ -1,0 +1,213 @@
+// What programs record of themselves, as far as this program reads it: meshers of a mesh (podm mesh --record,
+// and peers by harness/peers/README.md), and `podm-bench latency` of the machine. What is not read is carried
+// along unchanged.
+#pragma once
+
+#include <array>
+#include <optional>
+#include <string>
+#include <variant>
+#include <vector>
+
+#include "rows/fields.h"
+
+namespace podm::bench {
+
+inline constexpr int kMesherSchema = 1;
+inline constexpr const char* kComplete = "complete";  ///< the reason for which a run stops that met no limit
+
+/// What podm-verify says of a claim. Only kPass counts as proved.
+enum class Proof { kPass, kFail, kNotRun };
+constexpr std::array<const char*, 3> names_of(Proof) { return {"pass", "fail", "not_run"}; }
+
+using Count = std::variant<std::uint64_t, Unavailable>;
+using Measured = std::variant<double, Unavailable>;
+using Hops = std::variant<std::vector<std::uint64_t>, Unavailable>;  ///< accesses at 0, 1, ... hops
+
+/// The file that a mesher read.
+struct InputOfMesher {
+  std::optional<std::string> path, sha256;
+  std::optional<std::vector<std::vector<double>>> affine;  ///< rows of the matrix from voxels to mm
+  Json as_written = Json::object();
+  static constexpr auto fields() {
+    using I = InputOfMesher;
+    return std::tuple{field_if_any("path", &I::path), field_if_any("sha256", &I::sha256),
+                      field_if_any("affine", &I::affine)};
+  }
+};
+
+struct UsedSizes {
+  std::optional<double> radius_mm, delta_mm;
+  Json as_written = Json::object();
+  static constexpr auto fields() {
+    return std::tuple{field_if_any("radius_mm", &UsedSizes::radius_mm),
+                      field_if_any("delta_mm", &UsedSizes::delta_mm)};
+  }
+};
+
+struct ThreadsRecord {
+  std::optional<int> asked, used;
+  Json as_written = Json::object();
+  static constexpr auto fields() {
+    return std::tuple{field_if_any("asked", &ThreadsRecord::asked),
+                      field_if_any("used", &ThreadsRecord::used)};
+  }
+};
+
+/// Times of virtual workers.
+struct VirtualRecord {
+  std::optional<double> refine_s;
+  Json as_written = Json::object();
+  static constexpr auto fields() { return std::tuple{field_if_any("refine_s", &VirtualRecord::refine_s)}; }
+};
+
+/// Attempts at operations by what came of them.
+struct OutcomesRecord {
+  std::optional<std::uint64_t> committed, lock_conflict, out_of_leaf;
+  Json as_written = Json::object();
+  static constexpr auto fields() {
+    using O = OutcomesRecord;
+    return std::tuple{field_if_any("committed", &O::committed),
+                      field_if_any("lock_conflict", &O::lock_conflict),
+                      field_if_any("out_of_leaf", &O::out_of_leaf)};
+  }
+};
+
+/// Seconds lost by all workers together, by cause.
+struct OverheadRecord {
+  std::optional<double> contention, begging, rollback;
+  Json as_written = Json::object();
+  static constexpr auto fields() {
+    using O = OverheadRecord;
+    return std::tuple{field_if_any("contention", &O::contention), field_if_any("begging", &O::begging),
+                      field_if_any("rollback", &O::rollback)};
+  }
+};
+
+/// What the mesh took, in numbers that one thread repeats exactly.
+struct WorkRecord {
+  std::optional<ByName<std::uint64_t>> insertions;  ///< numbers by rule
+  std::optional<std::uint64_t> removals, classified_cells, conflict_tests, exact_decisions, cells_created;
+  Json as_written = Json::object();
+  static constexpr auto fields() {
+    using W = WorkRecord;
+    return std::tuple{field_if_any("insertions", &W::insertions),
+                      field_if_any("removals", &W::removals),
+                      field_if_any("classified_cells", &W::classified_cells),
+                      field_if_any("conflict_tests", &W::conflict_tests),
+                      field_if_any("exact_decisions", &W::exact_decisions),
+                      field_if_any("cells_created", &W::cells_created)};
+  }
+};
+
+/// A mesher's record of a mesh.
+struct MeshRecord {
+  std::optional<int> schema;           ///< kMesherSchema; rows have their own instead
+  std::optional<InputOfMesher> input;  ///< rows have their own instead
+  std::optional<std::string> mesh;     ///< the name of the file that holds a peer's mesh
+  std::optional<std::string> algorithm;
+  std::optional<Json> options;  ///< what was asked for, by the mesher's own keys
+  std::optional<UsedSizes> used;
+  std::optional<std::uint64_t> seed;
+  std::optional<ThreadsRecord> threads;
+  std::optional<VirtualRecord> virtual_time;
+  ByName<double> phases_s;
+  std::uint64_t cells = 0, vertices = 0;
+  std::optional<double> cells_per_second;
+  double refine_cells_per_second = 0;
+  std::optional<OutcomesRecord> outcomes;
+  std::optional<OverheadRecord> overhead_s;
+  std::optional<Hops> hops;
+  std::optional<std::variant<ByName<Hops>, Unavailable>> hops_by_kind;
+  std::optional<WorkRecord> counters;
+  ByName<std::uint64_t> guarantees;  ///< how often each is missed
+  std::optional<std::string> mesh_sha256;
+  std::optional<ByName<Proof>> verdicts;             ///< one a claim; nothing where podm-verify did not run
+  std::optional<std::vector<std::string>> promises;  ///< claims; nothing: all
+  std::string stop_reason;
+  Json as_written = Json::object();
+  static constexpr auto fields() {
+    using M = MeshRecord;
+    return std::tuple{field_if_any("schema", &M::schema),
+                      field_if_any("input", &M::input),
+                      field_if_any("mesh", &M::mesh),
+                      field_if_any("algorithm", &M::algorithm),
+                      field_if_any("options", &M::options),
+                      field_if_any("used", &M::used),
+                      field_if_any("seed", &M::seed),
+                      field_if_any("threads", &M::threads),
+                      field_if_any("virtual", &M::virtual_time),
+                      field("phases_s", &M::phases_s),
+                      field("cells", &M::cells),
+                      field("vertices", &M::vertices),
+                      field_if_any("cells_per_second", &M::cells_per_second),
+                      field("refine_cells_per_second", &M::refine_cells_per_second),
+                      field_if_any("outcomes", &M::outcomes),
+                      field_if_any("overhead_s", &M::overhead_s),
+                      field_if_any("hops", &M::hops),
+                      field_if_any("hops_by_kind", &M::hops_by_kind),
+                      field_if_any("counters", &M::counters),
+                      field("guarantees", &M::guarantees),
+                      field_if_any("mesh_sha256", &M::mesh_sha256),
+                      field_if_any("verdicts", &M::verdicts),
+                      field_if_any("promises", &M::promises),
+                      field("stop_reason", &M::stop_reason)};
+  }
+};
+
+/// The time of the paper's eq. (1), in seconds: that of all phases but those that make no part of the mesh,
+/// results/README.md.
+double meshing_seconds(const ByName<double>& phases_s);
+
+/// Loads from one working set in the memory of a node.
+struct LatencyRecord {
+  std::uint64_t working_set_bytes = 0;
+  int node = 0;
+  double ns = 0, cycles = 0;   ///< what a load takes
+  double huge_page_share = 0;  ///< the part of the working set on huge pages
+  static constexpr auto fields() {
+    using L = LatencyRecord;
+    return std::tuple{field("working_set_bytes", &L::working_set_bytes), field("node", &L::node),
+                      field("ns", &L::ns), field("cycles", &L::cycles),
+                      field("huge_page_share", &L::huge_page_share)};
+  }
+};
+
+/// A line of Table 3: a cache, or the memory of a node.
+struct MemoryLevel {
+  int level = 1;
+  std::string module;  ///< "L1 cache", "memory of the own node 0"
+  std::uint64_t size_bytes = 0;
+  std::optional<std::uint64_t> working_set_bytes;
+  std::optional<int> node;
+  Measured ns, cycles;  ///< what a load takes
+  std::optional<double> huge_page_share;
+  std::optional<Measured> likwid_bench_cycles_per_line;
+  static constexpr auto fields() {
+    using M = MemoryLevel;
+    return std::tuple{field("level", &M::level),
+                      field("module", &M::module),
+                      field("size_bytes", &M::size_bytes),
+                      field_if_any("working_set_bytes", &M::working_set_bytes),
+                      field_if_any("node", &M::node),
+                      field("ns", &M::ns),
+                      field("cycles", &M::cycles),
+                      field_if_any("huge_page_share", &M::huge_page_share),
+                      field_if_any("likwid_bench_cycles_per_line", &M::likwid_bench_cycles_per_line)};
+  }
+};
+
+/// What `podm-bench latency` records: Table 3 for this machine.
+struct MemoryLevelsRecord {
+  int processor = 0;    ///< that measured
+  bool pinned = false;  ///< it stayed there
+  std::vector<MemoryLevel> memory_levels;
+  std::vector<LatencyRecord> latency;  ///< one a working set, of all sizes
+  static constexpr auto fields() {
+    using M = MemoryLevelsRecord;
+    return std::tuple{field("processor", &M::processor), field("pinned", &M::pinned),
+                      field("memory_levels", &M::memory_levels), field("latency", &M::latency)};
+  }
+};
+
+}  // namespace podm::bench

@@ -1,0 +1,304 @@
+// A row: the JSON line that a trial leaves behind, as results/README.md tells it key by key. fields() of
+// these structs are the one definition from which rows are written and read;
+// results/schema/podm-bench-row.schema.json, which others read them by, is held to it by
+// tests/test_row_schema.cpp.
+#pragma once
+
+#include <array>
+#include <optional>
+#include <string>
+#include <variant>
+#include <vector>
+
+#include "rows/mesher_record.h"
+
+namespace podm::bench {
+
+inline constexpr int kRowSchema = 4;
+
+/// Where a row's numbers come from. A row is simulated when its workers or its caches are, or its machine is
+/// a described one; a claim may be of any.
+enum class Basis { kMeasured, kSimulated, kAny };
+constexpr std::array<const char*, 3> names_of(Basis) { return {"measured", "simulated", "any"}; }
+
+enum class Status {
+  kOk,
+  kUnmet,        ///< there is a mesh, but a guarantee or limit is unmet or a claim is not proved
+  kFailed,       ///< there is no mesh, or no record of it
+  kTimedOut,     ///< it was ended at its limit
+  kInterrupted,  ///< the user ended it, and all trials after it
+  kSkipped,      ///< it cannot run here and need not; no file holds such a row
+};
+constexpr std::array<const char*, 6> names_of(Status) {
+  return {"ok", "unmet", "failed", "timed_out", "interrupted", "skipped"};
+}
+
+using ImageSize = std::array<int, 3>;                ///< voxels along each axis
+using Number = std::variant<std::uint64_t, double>;  ///< written as it was counted
+
+double as_double(const Number& number);
+
+/// A count by perf_event_open(2), valgrind or likwid.
+struct Counter {
+  Number value;
+  std::string source;                   ///< who counted
+  std::optional<double> running_share;  ///< the part of the time that was counted, where `value` is scaled up
+  static constexpr auto fields() {
+    return std::tuple{field("value", &Counter::value), field("source", &Counter::source),
+                      field_if_any("running_share", &Counter::running_share)};
+  }
+};
+using Counters = ByName<std::variant<Counter, Unavailable>>;
+
+/// The radius that stands for a number of cells: trials/radii.h.
+struct ResolvedRadius {
+  std::uint64_t target_elements = 0;  ///< cells asked for
+  double radius_mm = 0, delta_mm = 0;
+  std::uint64_t cells = 0;              ///< those of the mesh that is the evidence
+  std::optional<std::uint64_t> meshes;  ///< made to find it; nothing where the mesher does not tell
+  double seconds = 0;                   ///< spent to find it
+  std::string key;                      ///< names its line in radii.jsonl
+  static constexpr auto fields() {
+    using R = ResolvedRadius;
+    return std::tuple{field("target_elements", &R::target_elements),
+                      field("radius_mm", &R::radius_mm),
+                      field("delta_mm", &R::delta_mm),
+                      field("cells", &R::cells),
+                      field("meshes", &R::meshes),
+                      field("seconds", &R::seconds),
+                      field("key", &R::key)};
+  }
+  bool operator==(const ResolvedRadius&) const = default;
+};
+
+/// The image of a trial.
+struct InputRecord {
+  std::string name;                                        ///< the experiment's name for it
+  std::string path;                                        ///< the file that was read
+  std::optional<std::string> sha256;                       ///< hash of its bytes
+  std::optional<std::vector<std::vector<double>>> affine;  ///< rows of the matrix from voxels to mm
+  std::optional<ImageSize> size;
+  static constexpr auto fields() {
+    using I = InputRecord;
+    return std::tuple{field("name", &I::name), field("path", &I::path), field("sha256", &I::sha256),
+                      field_if_any("affine", &I::affine), field("size", &I::size)};
+  }
+};
+
+/// Whether the operations of a mesh's log, one after the other, make the same mesh: "equal", "differs" or
+/// "failed: why".
+struct Replay {
+  enum class End { kEqual, kDiffers, kFailed };
+  End end = End::kEqual;
+  std::string why;  ///< it failed
+
+  std::string text() const;
+  bool operator==(const Replay&) const = default;
+};
+template <>
+struct Codec<Replay> {
+  static Json write(const Replay& replay) { return replay.text(); }
+  static Replay read(const Json& json, const std::string& place);
+};
+
+/// What a row tells of one of the processes that ran at the same time.
+struct CopyRecord {
+  int processor = 0;  ///< that it ran on
+  std::uint64_t cells = 0;
+  ByName<double> phases_s;
+  double refine_cells_per_second = 0;
+  std::optional<double> cells_per_second;
+  static constexpr auto fields() {
+    using C = CopyRecord;
+    return std::tuple{field("processor", &C::processor), field("cells", &C::cells),
+                      field("phases_s", &C::phases_s),
+                      field("refine_cells_per_second", &C::refine_cells_per_second),
+                      field("cells_per_second", &C::cells_per_second)};
+  }
+};
+
+/// How the mesher's process ended and what it took.
+struct ProcessRecord {
+  std::optional<int> exit_code, signal;  ///< nothing where it did not end so
+  double timeout_s = 0;                  ///< its limit
+  std::optional<double> memory_limit_gib;
+  double wall_s = 0, user_s = 0, system_s = 0;
+  std::uint64_t peak_rss_bytes = 0;
+  std::optional<double> bytes_per_cell_beyond_image;  ///< nothing without a mesh
+  Counters counters;
+  static constexpr auto fields() {
+    using P = ProcessRecord;
+    return std::tuple{field("exit_code", &P::exit_code),
+                      field("signal", &P::signal),
+                      field("timeout_s", &P::timeout_s),
+                      field("memory_limit_gib", &P::memory_limit_gib),
+                      field("wall_s", &P::wall_s),
+                      field("user_s", &P::user_s),
+                      field("system_s", &P::system_s),
+                      field("peak_rss_bytes", &P::peak_rss_bytes),
+                      field("bytes_per_cell_beyond_image", &P::bytes_per_cell_beyond_image),
+                      field("counters", &P::counters)};
+  }
+};
+
+struct ProgramRecord {
+  std::string sha256;                                                   ///< hash of its bytes
+  std::string version;                                                  ///< the first line of its --version
+  std::optional<std::variant<ByName<std::string>, Unavailable>> build;  ///< the lines "key: value" after it
+  static constexpr auto fields() {
+    return std::tuple{field("sha256", &ProgramRecord::sha256), field("version", &ProgramRecord::version),
+                      field_if_any("build", &ProgramRecord::build)};
+  }
+};
+
+/// A mesher other than podm.
+struct PeerRecord {
+  std::string name, sha256, version;
+  static constexpr auto fields() {
+    return std::tuple{field("name", &PeerRecord::name), field("sha256", &PeerRecord::sha256),
+                      field("version", &PeerRecord::version)};
+  }
+};
+
+struct ProgramRecords {
+  static constexpr const char* kNone = "none";
+  ProgramRecord podm;
+  std::variant<ProgramRecord, std::string> podm_verify = kNone;  ///< kNone where meshes are not verified
+  std::optional<PeerRecord> peer;
+  static constexpr auto fields() {
+    using P = ProgramRecords;
+    return std::tuple{field("podm", &P::podm), field("podm_verify", &P::podm_verify),
+                      field_if_any("peer", &P::peer)};
+  }
+};
+
+/// The machine; nothing of a host's name or state.
+struct MachineRecord {
+  std::string cpu;
+  Count packages = 0UL, numa_nodes = 0UL, cores = 0UL, processors = 0UL;
+  int usable_processors = 0;
+  static constexpr auto fields() {
+    using M = MachineRecord;
+    return std::tuple{field("cpu", &M::cpu),
+                      field("packages", &M::packages),
+                      field("numa_nodes", &M::numa_nodes),
+                      field("cores", &M::cores),
+                      field("processors", &M::processors),
+                      field("usable_processors", &M::usable_processors)};
+  }
+  bool operator==(const MachineRecord&) const = default;
+};
+
+/// Limits of this process's control groups, as the kernel writes them, or "unavailable: why".
+struct ControlGroupLimits {
+  std::string cpu_max, cpuset, memory_max;
+  static constexpr auto fields() {
+    using C = ControlGroupLimits;
+    return std::tuple{field("cpu_max", &C::cpu_max), field("cpuset", &C::cpuset),
+                      field("memory_max", &C::memory_max)};
+  }
+};
+
+struct Sources {
+  std::string commit;
+  bool dirty = false;  ///< tracked files differ from the commit
+  static constexpr auto fields() {
+    return std::tuple{field("commit", &Sources::commit), field("dirty", &Sources::dirty)};
+  }
+};
+
+struct MemoryBytes {
+  Count total = 0UL, available = 0UL;
+  static constexpr auto fields() {
+    return std::tuple{field("total", &MemoryBytes::total), field("available", &MemoryBytes::available)};
+  }
+};
+
+/// The machine with its state and the build of this program. Texts may read "unavailable: why".
+struct EnvironmentRecord : MachineRecord {
+  std::string topology_sha256;  ///< HASH in topology-HASH.xml beside the rows
+  std::string kernel, smt;
+  ControlGroupLimits cgroup;
+  ByName<std::string> libraries;  ///< versions by name
+  std::string compiler, compiler_flags, build_type;
+  std::variant<Sources, Unavailable> sources;
+  std::variant<std::vector<double>, Unavailable> load_average;  ///< over 1, 5 and 15 minutes
+  MemoryBytes memory_bytes;
+  std::string governor, transparent_huge_pages, numa_balancing;
+  static constexpr auto fields() {
+    using E = EnvironmentRecord;
+    return std::tuple_cat(
+        MachineRecord::fields(),
+        std::tuple{field("topology_sha256", &E::topology_sha256), field("kernel", &E::kernel),
+                   field("smt", &E::smt), field("cgroup", &E::cgroup), field("libraries", &E::libraries),
+                   field("compiler", &E::compiler), field("compiler_flags", &E::compiler_flags),
+                   field("build_type", &E::build_type), field("sources", &E::sources),
+                   field("load_average", &E::load_average), field("memory_bytes", &E::memory_bytes),
+                   field("governor", &E::governor),
+                   field("transparent_huge_pages", &E::transparent_huge_pages),
+                   field("numa_balancing", &E::numa_balancing)});
+  }
+};
+
+/// One line of a file of results.
+struct Row {
+  int schema = kRowSchema;
+  std::string key;  ///< names the turn: TrialKeys
+  std::string experiment, trial;
+  int repeat = 1;  ///< its number, from 1, counted among warm-ups or among measured repeats
+  bool warmup = false;
+  std::uint64_t order_seed = 0;  ///< draws the schedule
+  Status status = Status::kFailed;
+  std::string reason;           ///< why the status is not kOk
+  Json asked = Json::object();  ///< the trial's options by the keys of experiments/*.toml
+  Basis basis = Basis::kMeasured;
+  std::vector<std::string> command;  ///< the arguments of the process
+  std::optional<ResolvedRadius> resolved;
+  InputRecord input;
+
+  std::optional<MeshRecord> mesh;              ///< what the mesher recorded; nothing without a mesh
+  std::optional<MemoryLevelsRecord> measured;  ///< what a trial that makes no mesh measured of the machine
+
+  std::optional<Replay> replay;                         ///< nothing where none was asked for
+  std::optional<std::vector<CopyRecord>> side_by_side;  ///< nothing where one process ran alone
+  std::optional<std::uint64_t> mesh_bytes;              ///< size of the mesh file
+  ProcessRecord process;
+  double preparation_s = 0, verification_s = 0;  ///< before the mesher starts and after it has ended
+  double harness_s = 0;                          ///< spent by this program since the row before
+  std::string stderr_tail;                       ///< last words of a trial that is not kOk
+  ProgramRecords programs;
+  EnvironmentRecord environment;
+
+  /// The keys before the mesher's own, and those after them.
+  static constexpr auto fields_before() {
+    return std::tuple{field("schema", &Row::schema),         field("key", &Row::key),
+                      field("experiment", &Row::experiment), field("trial", &Row::trial),
+                      field("repeat", &Row::repeat),         field("warmup", &Row::warmup),
+                      field("order_seed", &Row::order_seed), field("status", &Row::status),
+                      field("reason", &Row::reason),         field("asked", &Row::asked),
+                      field("basis", &Row::basis),           field("command", &Row::command),
+                      field("resolved", &Row::resolved),     field("input", &Row::input)};
+  }
+  static constexpr auto fields_after() {
+    return std::tuple{field("replay", &Row::replay),
+                      field("side_by_side", &Row::side_by_side),
+                      field("mesh_bytes", &Row::mesh_bytes),
+                      field("process", &Row::process),
+                      field("preparation_s", &Row::preparation_s),
+                      field("verification_s", &Row::verification_s),
+                      field("harness_s", &Row::harness_s),
+                      field("stderr_tail", &Row::stderr_tail),
+                      field("programs", &Row::programs),
+                      field("environment", &Row::environment)};
+  }
+};
+/// Whether a row holds a mesh that met its guarantees or is known not to.
+inline bool is_finished(const Row& row) { return row.status == Status::kOk || row.status == Status::kUnmet; }
+
+template <>
+struct Codec<Row> {
+  static Json write(const Row& row);
+  static Row read(const Json& json, const std::string& place);
+};
+
+}  // namespace podm::bench
