@@ -3,8 +3,8 @@
 set -euf  # no file name patterns: those of may_include are for `case`
 cd "$(dirname "$0")/.."
 
-# Folders whose files a file of folder $1 may include besides its own; include/ holds podm/*.h. Of these those of a whole
-# run are a part of their own, podm: what the layers below the algorithms need of the public API stands in small headers.
+# Folders whose files a file of folder $1 may include besides its own. include/ holds podm/*.h; those of a whole run are
+# a part of their own, podm: what layers below the algorithms need of the public API stands in small headers.
 may_include() {
   case $1 in
     mesher/geometry | mesher/runtime | mesher/include) ;;
