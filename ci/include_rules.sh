@@ -15,9 +15,11 @@ may_include() {
     mesher/refine) echo mesher/delaunay mesher/image mesher/geometry mesher/runtime mesher/include ;;
     mesher/workers) echo mesher/refine mesher/delaunay mesher/runtime mesher/include ;;
     mesher/io) echo mesher/files mesher/include ;;
+    mesher/algorithms) echo mesher/workers mesher/refine mesher/delaunay mesher/octree mesher/image mesher/geometry \
+      mesher/runtime mesher/include podm ;;
     podm) echo mesher/include ;;
     examples/*) echo mesher/include podm ;;
-    mesher | mesher/*) echo "mesher mesher/* podm" ;;  # the algorithms, the command line, whole-mesher tests
+    mesher | mesher/*) echo "mesher mesher/* podm" ;;  # the phases of a run, the command line, whole-mesher tests
     harness) echo mesher/runtime ;;  # asks the system as the mesher does, whom it knows as a program and by its files
     verifiers) ;;                    # they know it by its files alone
   esac

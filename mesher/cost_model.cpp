@@ -6,10 +6,10 @@
 #include <limits>
 #include <numeric>
 
+#include "algorithms/memory_model.h"
 #include "algorithms/team_size.h"
 #include "default_sizes.h"
 #include "image/working_frame.h"
-#include "memory_model.h"
 #include "runtime/parallel_for.h"
 
 namespace podm {

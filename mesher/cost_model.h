@@ -6,8 +6,9 @@
 #include <optional>
 #include <vector>
 
-#include "delaunay/mesh.h"
-#include "podm/mesh_image.h"
+#include "geometry/box.h"
+#include "podm/label_image.h"
+#include "podm/meshing_options.h"
 
 namespace podm {
 

@@ -6,17 +6,17 @@
 #include <algorithm>
 #include <chrono>
 
+#include "algorithms/memory_model.h"
 #include "algorithms/podm.h"
+#include "algorithms/team_of_run.h"
 #include "calibrate.h"
 #include "check_options.h"
 #include "cost_model.h"
 #include "default_sizes.h"
 #include "extract_mesh.h"
 #include "measure_quality.h"
-#include "memory_model.h"
 #include "podm/operation_log.h"
 #include "replay.h"
-#include "team_of_run.h"
 
 namespace podm {
 
@@ -50,7 +50,7 @@ class Run {
     report.phases_s["transform"] = seconds_since(start);
     team_.locate_memory(image_, isosurface.transform());
     Refinement refinement = refine(isosurface, report);
-    take_down(refinement, report);
+    report_refinement(refinement, report);
     extract(isosurface, refinement, result);
     measure(result);
     if (options_.space == Space::kVoxel) convert(result);
@@ -99,7 +99,7 @@ class Run {
     }
   }
 
-  void take_down(Refinement& refinement, MeshingReport& report) const {
+  void report_refinement(Refinement& refinement, MeshingReport& report) const {
     report.radius_mm = sizes_.radius_mm;
     report.delta_mm = sizes_.delta_mm;
     report.phases_s.merge(refinement.phases_s);

@@ -34,7 +34,7 @@ struct Histogram {
   std::string name;  ///< "radius_edge_ratio"
   std::string unit;  ///< "", "degrees", "mm"
   double low = 0, high = 0;
-  double minimum = 0, maximum = 0;  ///< of all values
+  double minimum = 0, maximum = 0;  ///< extremes of all values
   std::vector<std::uint64_t> counts;
 };
 

@@ -1,8 +1,8 @@
 #include "algorithms/construction.h"
 
 #include "algorithms/leaf_locks.h"
+#include "algorithms/memory_model.h"
 #include "algorithms/report_on_workers.h"
-#include "memory_model.h"
 #include "refine/virtual_box.h"
 
 namespace podm {

@@ -8,7 +8,7 @@
 #include <string>
 #include <vector>
 
-#include "page_sampler.h"
+#include "algorithms/page_sampler.h"
 #include "podm/operation_log.h"
 #include "refine/rules.h"
 #include "refine/worker.h"
@@ -27,7 +27,8 @@ struct Problem {
   std::size_t cell_capacity = 0;  // the most cells the store may hold
   // What store, workers and leaves may take together. The capacity takes workers into account, not leaves.
   std::uint64_t memory_bytes = std::numeric_limits<std::uint64_t>::max();
-  std::size_t most_numbered_cells = kMostStoredCells;  // a capacity as large is none of memory
+  // A store of this capacity has run out of numbers, not of memory. Tests set it lower.
+  std::size_t most_numbered_cells = kMostStoredCells;
 };
 
 /// Who refines.
@@ -118,7 +119,7 @@ class Construction {
   }
   /// Called at the end of a phase; no phase is charged for it.
   void sample_pages(const std::string& phase);
-  void take_down_leaves(std::uint64_t num_leaves, std::optional<LeafSchedule> schedule) {
+  void report_leaves(std::uint64_t num_leaves, std::optional<LeafSchedule> schedule) {
     result_.num_leaves = num_leaves;
     result_.schedule = std::move(schedule);
   }

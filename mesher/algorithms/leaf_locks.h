@@ -29,7 +29,7 @@ class LeafLocks {
 
   StepResult try_lock(Vertex& v) {
     const Point p = peek_point(v);
-    if (!region_->contains(p)) return StepResult::kOutOfLeaf;
+    if (!region_->contains(p)) return StepResult::kOutOfReach;
     if (is_recording_) remember(region_->octree().leaf_at(p));
     return inner_.try_lock(v);
   }

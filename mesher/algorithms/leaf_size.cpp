@@ -6,7 +6,7 @@
 #include <cmath>
 #include <vector>
 
-#include "memory_model.h"
+#include "algorithms/memory_model.h"
 #include "octree/leaf_region.h"
 #include "podm/errors.h"
 

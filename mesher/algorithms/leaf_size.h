@@ -4,7 +4,7 @@
 #include <memory>
 #include <stop_token>
 
-#include "algorithms/podm.h"
+#include "algorithms/construction.h"
 #include "octree/octree.h"
 
 namespace podm {
@@ -21,9 +21,9 @@ Radii radii_of(const Problem& problem);
 /// whole box.
 std::uint64_t checked_bytes_of_leaves(const Problem& problem, const LeafOptions& options, const Box& box);
 
-/// Leaves near the object; the cells elsewhere are few, and left to the closing phase. Their sides are by the
-/// labels' bounds, longer where a leaf has to feed several workers, then shorter until there are leaves
-/// enough to keep all nodes at work. A stop request leaves them unfit.
+/// Leaves near the object; the cells elsewhere are few, and left to the closing phase. Their sides follow
+/// from the labels' bounds, longer where a leaf has to feed several workers, then shorter until there are
+/// leaves enough to keep all nodes at work. A stop request leaves them unfit.
 std::unique_ptr<const Octree> make_octree(const Problem& problem, const Radii& radii, const Box& box,
                                           const LeafOptions& options, const Team& team,
                                           const std::stop_token& stop);

@@ -14,8 +14,8 @@
 
 #include "algorithms/computing_node.h"
 #include "algorithms/leaf_size.h"
+#include "algorithms/memory_model.h"
 #include "algorithms/podm.h"
-#include "memory_model.h"
 #include "refine/virtual_box.h"
 
 namespace podm {
@@ -112,9 +112,9 @@ Construction::Entries refine_leaves_with(Construction& construction, const Param
   for (auto& node : nodes)
     if (node.has_leaf()) leaves.end_leaf(node);  // the run ended early
   construction.account(workers, time);
-  construction.take_down_leaves(octree.num_leaves(), options.with_schedule
-                                                         ? described(octree, std::move(leaves.schedule))
-                                                         : std::nullopt);
+  construction.report_leaves(octree.num_leaves(), options.with_schedule
+                                                      ? described(octree, std::move(leaves.schedule))
+                                                      : std::nullopt);
   return cells.take_leftover();
 }
 
@@ -154,7 +154,7 @@ Refinement refine_by_leaves(const Problem& problem, const Team& team, const Leaf
   construction.withhold(bytes_of_leaves);
   refine_anywhere(construction, "initial", initial, construction.all_cells(), team.initial_workers);  // 4
   std::unique_ptr<const Octree> octree;
-  construction.timed("octree", [&] {  // 2, 3: of a size that may depend on nothing but the bounds
+  construction.timed("octree", [&] {  // 2, 3: after 4, which makes no difference to leaves
     octree = make_octree(problem, radii, clamp, options, team, stop.over());
   });
   construction.withhold(octree->num_cubes() * kBytesPerCube + octree->num_leaves() * kBytesPerLeaf);

@@ -8,7 +8,7 @@
 //   Between any two operations the cells are the Delaunay triangulation of the vertices
 //   (delaunay/vertex_locks.h). Between any two operations vertices keep the distances I1 to I3
 //   (refine/rules.h), so that insertions end. Every cell that may break a rule is on a list, in a gift, or in
-//   an operation. So when all workers beg, none does. Who waits, waits for one who runs
+//   an operation. So when all workers beg, no cell breaks a rule any more. Who waits, waits for one who runs
 //   (workers/contention_manager.h): the last to run never waits.
 #include "algorithms/podm.h"
 

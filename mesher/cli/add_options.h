@@ -19,11 +19,11 @@ CLI::App& add_command(CLI::App& program, const std::string& name, const std::str
 void begin_group(CLI::App& app, const std::string& title);
 
 /// An option taking one value, given once or, add_many, any number of times. Help ends with the target's
-/// value untold, if it has any.
+/// default, if it has any.
 CLI::Option* add_one(CLI::App& app, const std::string& names, const std::string& type,
                      const std::string& description, const Target& target);
 CLI::Option* add_many(CLI::App& app, const std::string& names, const std::string& type,
-                      const std::string& description, const Take& take);
+                      const std::string& description, const Setter& set);
 void add_flag(CLI::App& app, const std::string& names, bool& target, const std::string& description);
 void require(CLI::Option* option);
 void exclude(CLI::Option* option, CLI::Option* other);

@@ -17,14 +17,14 @@ struct MeshRun {
   const MeshCommand& command;
   const LabelImage& image;
   MeshingOptions options;  ///< as handed to mesh_image()
-  Crossover crossover;     ///< of --algorithm auto
+  Crossover crossover;     ///< what --algorithm auto went by
   MeshingResult result;
   std::string mesh_sha256;
   double read_s = 0, write_s = 0;
   std::uint64_t peak_rss_bytes = 0;
-  std::map<std::string, std::string> verdicts;  ///< of podm-verify by claim; empty: none
+  std::map<std::string, std::string> verdicts;  ///< podm-verify's by claim; empty: none were asked for
 
-  /// Seconds by phase: those of the library between "read", of a phantom "draw", and "write".
+  /// Seconds by phase: those of the library between "read" ("draw" where a phantom was drawn) and "write".
   std::map<std::string, double> phases_s() const;
   /// The elements per second of the paper's eq. (1): cells over the seconds of all phases but measuring,
   /// writing, the drawing of a phantom and calibration.

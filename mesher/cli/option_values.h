@@ -41,15 +41,15 @@ Choice parse_choice(const std::string& text, const std::string& option) {
 std::pair<std::string, double> parse_label_length(const std::string& text, const std::string& option);
 
 /// Stores the text given to the option of this name, or refuses it with an InputError.
-using Take = std::function<void(const std::string& text, const std::string& name)>;
+using Setter = std::function<void(const std::string& text, const std::string& name)>;
 
-/// Where an option's value goes, and the value that is there untold, as help shows it. Empty: 0 or no text,
-/// which stand for what help says in words.
+/// Where an option's value goes, and its default, as help shows it. Empty: the default is 0 or no text, which
+/// stand for what help says in words.
 struct Target {
-  template <std::convertible_to<Take> T>
-  Target(T of, std::string value_untold = "") : take(std::move(of)), untold(std::move(value_untold)) {}
-  Take take;
-  std::string untold;
+  template <std::convertible_to<Setter> T>
+  Target(T sets, std::string shown = "") : set(std::move(sets)), default_value(std::move(shown)) {}
+  Setter set;
+  std::string default_value;
 };
 
 Target into(std::string& text);

@@ -27,12 +27,12 @@ class HelpFormatter : public CLI::Formatter {
 };
 
 CLI::Option* add_value(CLI::App& app, const std::string& names, const std::string& type,
-                       const std::string& description, const Take& take) {
+                       const std::string& description, const Setter& set) {
   const std::string name = names.substr(names.rfind(',') + 1);
-  const auto take_all = [take, name](const std::vector<std::string>& texts) {
-    for (const std::string& text : texts) take(text, name);
+  const auto set_all = [set, name](const std::vector<std::string>& texts) {
+    for (const std::string& text : texts) set(text, name);
   };
-  CLI::Option* option = app.add_option_function<std::vector<std::string>>(names, take_all, description);
+  CLI::Option* option = app.add_option_function<std::vector<std::string>>(names, set_all, description);
   return option->type_name(type)->type_size(1)->allow_extra_args(false);
 }
 
@@ -46,15 +46,15 @@ void begin_group(CLI::App& app, const std::string& title) { app.option_defaults(
 
 CLI::Option* add_one(CLI::App& app, const std::string& names, const std::string& type,
                      const std::string& description, const Target& target) {
-  const std::string untold = target.untold.empty() ? "" : " [default: " + target.untold + "]";
-  return add_value(app, names, type, description + untold, target.take)
+  const std::string ending = target.default_value.empty() ? "" : " [default: " + target.default_value + "]";
+  return add_value(app, names, type, description + ending, target.set)
       ->expected(1)
       ->multi_option_policy(CLI::MultiOptionPolicy::Throw);
 }
 
 CLI::Option* add_many(CLI::App& app, const std::string& names, const std::string& type,
-                      const std::string& description, const Take& take) {
-  return add_value(app, names, type, description, take);
+                      const std::string& description, const Setter& set) {
+  return add_value(app, names, type, description, set);
 }
 
 void add_flag(CLI::App& app, const std::string& names, bool& target, const std::string& description) {

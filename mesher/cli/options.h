@@ -30,9 +30,9 @@ struct MeshCommand {
   std::string log_path;       ///< empty: no linearization log
   std::string schedule_path;  ///< empty: no schedule
   std::string crossover;      ///< a number of threads or a file; empty: not asked
-  MeshingOptions meshing;  ///< but for crossover and the two fields below: these need files, image or machine
+  MeshingOptions meshing;  ///< lacks crossover and the two fields below, which need files, image or machine
   std::vector<std::pair<std::string, double>> radius_of_mm;  ///< by label name or value
-  std::uint64_t max_memory_bytes = 0;                        ///< of the process; 0: as the machine has
+  std::uint64_t max_memory_bytes = 0;  ///< what the process may take; 0: as the machine has
   bool verify = false;
   bool verify_fidelity = false;  ///< implies verify
   bool stats = false;

@@ -5,9 +5,9 @@
 #include <algorithm>
 #include <limits>
 
+#include "algorithms/memory_model.h"
 #include "cli/labelled_image.h"
 #include "cli/process_memory.h"
-#include "memory_model.h"
 #include "podm/errors.h"
 
 namespace podm::cli {

@@ -25,7 +25,7 @@ class ProgressDisplay {
  private:
   std::FILE* stream_;
   Style style_;
-  std::string phase_;       // of the last line written
+  std::string phase_;       // the one that the last line told of
   double next_line_s_ = 0;  // kLines: when the next one is due
 };
 

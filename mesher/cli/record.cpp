@@ -36,6 +36,7 @@ Json options_of(const MeshRun& run) {
           {"radius_of_mm", radius_of},
           {"delta_mm", options.sizes.delta_mm},
           {"target_elements", options.sizes.target_elements},
+          {"target_tolerance_percent", options.sizes.target_tolerance_percent},
           {"space", to_string(options.space)},
           {"max_elements", options.limits.max_elements},
           {"max_seconds", options.limits.max_seconds},

@@ -2,10 +2,11 @@
 // other there is nothing to it.
 //
 //   A cell is read under locks on two of its vertices, or on two of a neighbour's. Its mirrors are written
-//   under three, and it is replaced under all four. In a leaf without locks a vertex is held if it lies in
-//   the region.
+//   under three, and it is replaced under all four. Locks may count as held what no other worker can reach
+//   (algorithms/leaf_locks.h).
 //
-// Vertices go unchecked: whoever may read a cell may read its vertices, and those that locks are tried on are
+// Spheres and mirrors of cells that the operation itself has made go unchecked: nobody else knows of these
+// yet. So do vertices: whoever may read a cell may read its vertices, and those that locks are tried on are
 // peeked at. The contract binds attempts. Whoever uses the store outside of one has it alone: before workers
 // run, after they have ended, and where the master of a computing node ends a leaf. Peeks and prefetches are
 // bound by nothing.

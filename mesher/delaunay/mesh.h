@@ -9,6 +9,7 @@
 #include "delaunay/id_arena.h"
 #include "delaunay/lock_contract.h"
 #include "delaunay/step.h"
+#include "geometry/box.h"
 #include "geometry/circumsphere.h"
 #include "geometry/point.h"
 #include "geometry/tetrahedron.h"
@@ -79,15 +80,6 @@ struct CellState {
   LabelIndex label = kUnknownLabel;  // the image's at the circumcentre, once asked for
 };
 static_assert(sizeof(CellState) == 4);
-
-/// An axis-aligned box, by opposite corners.
-struct Box {
-  Point low, high;
-};
-inline bool is_in(const Box& box, const Point& p) {
-  return box.low.x <= p.x && p.x <= box.high.x && box.low.y <= p.y && p.y <= box.high.y && box.low.z <= p.z &&
-         p.z <= box.high.z;
-}
 
 class Mesh {
  public:

@@ -1,8 +1,9 @@
 // The places where a worker reads or writes what others share. In an ordinary build there is nothing to them.
 //
 // With PODM_INTERLEAVING another worker may go on at each of them, as it would with a core to each worker: a
-// thread yields now and then, and an attempt of the virtual executor stops there and goes on later. What that
-// attempt has read must be as it was until it is over: replacing a cell that another has read is an error.
+// thread yields now and then, and an attempt in virtual time (workers/virtual_time.h) stops there and goes on
+// later. What that attempt has read must be as it was until it is over: replacing a cell that another has
+// read is an error.
 #pragma once
 
 #include <cstdint>

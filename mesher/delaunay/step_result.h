@@ -6,10 +6,11 @@ namespace podm {
 enum class StepResult {
   kDone,
   kLockConflict,   ///< another worker holds a vertex
-  kOutOfLeaf,      ///< a vertex lies outside the region of the leaf being refined
+  kOutOfReach,     ///< these locks may not have a vertex (algorithms/leaf_locks.h)
   kStaleCell,      ///< a reservation found that the cell has died
   kNotInConflict,  ///< a plan found the point outside the ball of the cell where its cavity was to begin
   kTooNear,        ///< a commit found a vertex too near, or too many vertices in the region
+  kCovered,        ///< the worker found an isosurface vertex that covers the point
 };
 
 }  // namespace podm

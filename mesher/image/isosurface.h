@@ -126,8 +126,8 @@ class Oracle {
   Affine from_voxels_, to_voxels_;             // to the working frame, from it
   Vector spacing_, inverse_spacing_;           // mm a voxel, voxels a mm
   Point end_;                                  // half a voxel beyond the last
-  double half_diagonal_mm_;                    // of a voxel
-  double shortest_side_mm_, longest_side_mm_;  // of a voxel
+  double half_diagonal_mm_;                    // a voxel's
+  double shortest_side_mm_, longest_side_mm_;  // a voxel's
   double weight_mm_;                           // no weight grows by 1 within less
 };
 

@@ -13,9 +13,9 @@ namespace podm {
 namespace {
 
 constexpr int kMaxSteps = 8;          // tried, taken or not
-constexpr double kShorter = 0.35;     // of a step that leads no nearer
+constexpr double kShorter = 0.35;     // what is left of a step that leads no nearer
 constexpr double kNegligible = 0.01;  // voxel sides: twice the least gain in distance of a step
-constexpr double kTowards = 1e-3;     // of the way to u
+constexpr double kTowards = 1e-3;     // a share of the way to u
 constexpr int kPullsToStep = 1, kMaxPulls = 8;
 constexpr double kOnIsosurface = 1e-7;  // voxels
 constexpr double kAside = 0.01;         // voxels

@@ -19,7 +19,7 @@ struct RawImage {
   VoxelType type = VoxelType::kUint8;
   std::array<double, 12> voxel_to_ras{};   ///< row-major 3x4, mm
   std::vector<unsigned char> bytes;        ///< voxels, x fastest, this machine's byte order
-  std::vector<std::string> warnings = {};  ///< of LabelImage
+  std::vector<std::string> warnings = {};  ///< become those of LabelImage
 };
 
 /// Turns values of `width` bytes into the other byte order.

@@ -32,7 +32,8 @@ void RefinementQueue::share_out(const std::stop_token& stop) {
   divide(leaves, 0, ready_.size(), stop);
 }
 
-// Into shares with equal work: recursive bisection. (Berger, Bokhari, IEEE Trans. Comput. C-36, 1987.)
+// Divides the leaves into shares of equal work by recursive bisection. (Berger, Bokhari, IEEE Trans. Comput.
+// C-36, 1987.)
 void RefinementQueue::divide(std::span<LeafId> leaves, std::size_t first_share, std::size_t num_shares,
                              const std::stop_token& stop) {
   if (stop.stop_requested()) return;

@@ -11,7 +11,8 @@ enum class Outcome {
   kSound,         ///< the cell breaks no rule
   kStaleCell,     ///< the cell has died
   kLockConflict,  ///< nothing was changed, and the cell is back on the list
-  kRejected,      ///< nothing was changed: a vertex is too near to the point, or covers it
+  kRejected,      ///< nothing was changed: a vertex is too near to the point or covers it, or the point lies
+                  ///< outside the ball of its cell
   kOutOfLeaf,     ///< nothing was changed, and the cell is among the deferred
 };
 
@@ -20,12 +21,13 @@ inline Outcome outcome_of(StepResult result) {
   switch (result) {
     case StepResult::kLockConflict:
       return Outcome::kLockConflict;
-    case StepResult::kOutOfLeaf:
+    case StepResult::kOutOfReach:
       return Outcome::kOutOfLeaf;
     case StepResult::kStaleCell:
       return Outcome::kStaleCell;
     case StepResult::kNotInConflict:
     case StepResult::kTooNear:
+    case StepResult::kCovered:
       return Outcome::kRejected;
     case StepResult::kDone:
       break;

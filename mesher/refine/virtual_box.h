@@ -5,14 +5,10 @@
 // larger, so that no vertex ever lies on the hull.
 #pragma once
 
-#include "delaunay/mesh.h"
+#include "geometry/box.h"
 
 namespace podm {
 
-inline Box grown(const Box& box, double margin) {
-  const Vector m{margin, margin, margin};
-  return {box.low - m, box.high + m};
-}
 inline Box clamp_box(const Box& object, double delta_mm) { return grown(object, 2 * delta_mm); }
 inline Box virtual_box(const Box& clamp) { return grown(clamp, 0.25 * distance(clamp.low, clamp.high)); }
 

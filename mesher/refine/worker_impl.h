@@ -105,7 +105,7 @@ Outcome Worker<Locks>::apply_first_rule(CellId c) {
 template <class Locks>
 Outcome Worker<Locks>::insert_on_isosurface(const Point& z, CellId start, Rule rule) {
   StepResult planned = operation_.plan_insertion(z, start);
-  if (planned == StepResult::kDone && rule == Rule::kR1 && is_covered(z)) planned = StepResult::kTooNear;
+  if (planned == StepResult::kDone && rule == Rule::kR1 && is_covered(z)) planned = StepResult::kCovered;
   if (planned == StepResult::kDone) planned = plan_r6_removals(z);
   if (planned == StepResult::kDone) return commit(z, VertexKind::kIsosurface, rule);
   operation_.rollback();

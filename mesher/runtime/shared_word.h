@@ -7,7 +7,7 @@
 
 namespace podm {
 
-// Not const in std::atomic_ref of C++20; a load writes nothing.
+// std::atomic_ref of C++20 takes no const word; a load writes nothing.
 template <class T>
 T load(const T& word, std::memory_order order) {
   return std::atomic_ref<T>(const_cast<T&>(word)).load(order);

@@ -6,10 +6,10 @@
 #include <optional>
 #include <vector>
 
+#include "algorithms/image_owners.h"
+#include "algorithms/page_sampler.h"
 #include "algorithms/podm.h"
 #include "cost_model.h"
-#include "image_owners.h"
-#include "page_sampler.h"
 #include "tests/images.h"
 
 namespace podm::test {

@@ -77,8 +77,8 @@ void BeggingList::remove(WorkerId worker) {
   }
 }
 
-// From the smallest groups upwards, as add() goes: who finds a list full meets the next before it is closed,
-// and is returned, or after.
+// Lists are closed from the smallest groups upwards, as add() goes: whoever finds one full either reaches the
+// next before it is closed, and is returned, or finds that one closed.
 std::vector<WorkerId> BeggingList::close() {
   std::vector<WorkerId> beggars;
   for (std::size_t level = 0; level < levels_.size(); ++level)

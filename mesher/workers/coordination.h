@@ -43,9 +43,9 @@ class Coordination {
   Coordination(const CoordinationOptions& options, std::function<void(WorkerId)> resume,
                WorkerId first_id = 0);
 
-  /// What `self` does after an attempt, whose locks are released. A conflict: after kWait it must block,
-  /// after kPause sleep; nobody waits for a worker of another group. A success may wake a worker, and share
-  /// cells.
+  /// What `self` does after an attempt, whose locks are released. After a conflict it must block (kWait) or
+  /// sleep (kPause), or may try on; nobody waits for a worker of another group. A success may wake a worker,
+  /// and share cells.
   template <class Worker>
   Answer after(Outcome outcome, WorkerId self, Worker& worker) {
     const WorkerId number = self - first_id_;

@@ -33,7 +33,7 @@ class InterfaceFacets {
   void sample(std::uint32_t i, Visit visit) const;
 
  private:
-  /// Into how many parts edges are cut.
+  /// The number of parts that edges are cut into.
   int num_parts(const std::array<Point, 3>& triangle) const;
 
   const ImageFrame& frame_;

@@ -1,8 +1,7 @@
 // Claim surface.
 //   Statements  each edge of the boundary of a label's cells, and of all cells together, is passed as often
-//   in
-//               one direction as in the other by the boundary's facets, turned outwards from their cells: it
-//               is a closed and oriented surface. Where the file lists facets with the labels on their two
+//               in one direction as in the other by the boundary's facets, turned outwards from their cells:
+//               it is a closed and oriented surface. Where the file lists facets with the labels on their two
 //               sides, these are the facets between different labels, each once, with the labels of the cells
 //               there and all turned alike. A label's boundary are the facets between one of its cells and a
 //               cell of another label, or none. Cells of label 0 count as outside. A mesh without labels

@@ -12,7 +12,7 @@
 namespace podm::verify {
 namespace {
 
-constexpr std::uint64_t kBestRatio = 1032;  // of deflate
+constexpr std::uint64_t kBestRatio = 1032;  // the best that deflate reaches
 
 class ArrayLoader {
  public:

@@ -28,7 +28,7 @@ TEST_F(LeafLocksTest, HoldWhatIsLockedInTheRegion) {
   EXPECT_FALSE(locks.holds(inside_));
   EXPECT_EQ(locks.try_lock(inside_), StepResult::kDone);
   EXPECT_TRUE(locks.holds(inside_));
-  EXPECT_EQ(locks.try_lock(outside_), StepResult::kOutOfLeaf);
+  EXPECT_EQ(locks.try_lock(outside_), StepResult::kOutOfReach);
   EXPECT_FALSE(locks.holds(outside_));
   locks.unlock_all();
   EXPECT_FALSE(locks.holds(inside_));
@@ -38,7 +38,7 @@ TEST_F(LeafLocksTest, OfOneWorkerHoldAllThatIsInTheRegion) {
   LeafLocks<NoLocks> locks(3);
   locks.confine(region_);
   EXPECT_TRUE(locks.holds(inside_));
-  EXPECT_EQ(locks.try_lock(outside_), StepResult::kOutOfLeaf);
+  EXPECT_EQ(locks.try_lock(outside_), StepResult::kOutOfReach);
   EXPECT_FALSE(locks.holds(outside_));
 }
 

@@ -216,7 +216,7 @@ TEST(ClosestPoint, LiesOnTheIsosurfaceWithinTheRadius) {
 }
 
 // How much farther than the nearest point, in voxel sides. Voxelised, "smooth" means bumps of voxel size, and
-// the search may settle on the second nearest. Negative: the samples compared with are not dense.
+// the search may end at the second nearest. Negative: the samples compared with are not dense.
 constexpr double kMedianExcess = 0.001, k99PercentExcess = 0.2, kGreatestExcess = 1;
 
 TEST(ClosestPoint, IsNearestOnSmoothPhantoms) {

@@ -27,8 +27,10 @@ struct HopsByKind {
 struct Counters {
   std::array<std::uint64_t, 5> insertions_by_rule{};  ///< R1..R5
   std::uint64_t removals = 0;                         ///< vertices removed by R6
-  std::uint64_t rejected = 0;                         ///< operations that broke the spacing floor
-  std::uint64_t stale_cells = 0;                      ///< poor element list entries that had died
+  /// Insertions given up: a vertex lay nearer than the spacing floor, or a circumcentre outside its cell's
+  /// ball. Points of R1 and R3 that were refused while planned are not counted.
+  std::uint64_t rejected = 0;
+  std::uint64_t stale_cells = 0;  ///< poor element list entries that had died
   std::uint64_t classified_cells = 0;
   std::uint64_t conflict_tests = 0;
   std::uint64_t exact_decisions = 0;  ///< conflict tests that the cached sphere left undecided

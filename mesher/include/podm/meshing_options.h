@@ -1,5 +1,6 @@
 // What a run is asked for. A new option is a member here, with its default, and a line in
-// cli/add_mesh_options.cpp, whose help reads the default.
+// cli/add_mesh_options.cpp, whose help reads the default. Records tell it by a line in cli/record.cpp, and
+// check_options.cpp refuses what is senseless.
 #pragma once
 
 #include <cstdint>

@@ -72,7 +72,7 @@ class OperationLogWriter {
   std::atomic<std::uint64_t> sequence_ = 0;
 };
 
-/// Of the selected labels, the voxels and the affine: what a mesh depends on.
+/// Hashes what a mesh depends on: the voxels of the selected labels, and the affine.
 std::string label_image_sha256(const LabelImage& image);
 
 /// Throws InputError with file, place and fault.

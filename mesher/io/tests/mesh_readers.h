@@ -16,8 +16,8 @@ std::string read_bytes(const std::string& path);
 /// The mesh that a file tells, with the label values and names of the file; background first.
 TetMesh read_medit(const std::string& path);
 
-/// Beside the mesh, the signed surfaces around each volume, as pairs of labels: {first, second} where the
-/// file says that the surface's normal points out of the volume, {second, first} where it points in.
+/// Holds, beside the mesh, the signed surfaces around each volume, as pairs of labels: {first, second} where
+/// the file says that the surface's normal points out of the volume, {second, first} where it points in.
 struct GmshFile {
   TetMesh mesh;
   std::map<LabelIndex, std::vector<std::array<LabelIndex, 2>>> surfaces_of_volume;

@@ -1,4 +1,4 @@
-#include "image_owners.h"
+#include "algorithms/image_owners.h"
 
 namespace podm {
 

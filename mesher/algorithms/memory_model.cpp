@@ -1,4 +1,4 @@
-#include "memory_model.h"
+#include "algorithms/memory_model.h"
 
 #include <unistd.h>
 

@@ -1,5 +1,5 @@
 // Page samples of runs on made-up machines, whose system is a fake.
-#include "page_sampler.h"
+#include "algorithms/page_sampler.h"
 
 #include <gtest/gtest.h>
 

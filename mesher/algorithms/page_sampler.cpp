@@ -1,4 +1,4 @@
-#include "page_sampler.h"
+#include "algorithms/page_sampler.h"
 
 #include <algorithm>
 

@@ -5,10 +5,10 @@
 #include <optional>
 
 #include "algorithms/construction.h"
+#include "algorithms/page_sampler.h"
 #include "algorithms/placement_of_team.h"
 #include "algorithms/team_size.h"
 #include "image/feature_transform.h"
-#include "page_sampler.h"
 
 namespace podm {
 

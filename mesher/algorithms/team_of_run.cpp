@@ -1,6 +1,6 @@
-#include "team_of_run.h"
+#include "algorithms/team_of_run.h"
 
-#include "image_owners.h"
+#include "algorithms/image_owners.h"
 
 namespace podm {
 
