@@ -4,7 +4,8 @@
 # of operations (mesher/delaunay/step.h). Then four threads mesh phantoms for RACE_SECONDS (120), by podm, pdr and
 # pdr-podm in turn: the first finding ends it with exit code 1, and so does a mesh that podm-verify rejects or that
 # differs from the replay of its log. In the same program each planted fault of the lock protocol, one lock instead
-# of two and none, must be found within as many seconds; else it would not see a broken protocol, and exits with 1.
+# of two or none to read a cell, and three instead of four to replace it, must be found within as many seconds; else it
+# would not see a broken protocol, and exits with 1.
 set -eu
 cd "$(dirname "$0")/.."
 build=${1:-.}/build-race
@@ -53,7 +54,7 @@ while [ "$(seconds_since "$start")" -lt "$seconds" ]; do
 done
 echo "== $count runs without a finding"
 
-for fault in one_lock no_lock; do
+for fault in one_lock no_lock three_locks; do
   export PODM_PLANTED_FAULT=$fault
   start=$(date +%s)
   count=0
