@@ -37,7 +37,7 @@ Worker<Locks>::Worker(Mesh& mesh, const Isosurface& isosurface, const Parameters
 
 template <class Locks>
 Outcome Worker<Locks>::attempt() try {
-  const AttemptScope scope(operation_.locks());
+  [[maybe_unused]] const AttemptScope scope(operation_.locks());
   return attempt_next();
 } catch (...) {
   operation_.rollback();
