@@ -20,12 +20,12 @@ using Number = std::optional<double>;
 
 constexpr double kNegligible = 1.02;
 
-enum class Better { kLess, kMore, kNeither };
+enum class Wanted { kLess, kMore, kNeither };
 
 // A number of a row.
 struct Metric {
   const char* name;
-  Better better;
+  Wanted wanted;
   bool is_work;  ///< decided by the program alone when it has one thread
   Number (*read)(const Row& row);
 };
@@ -59,15 +59,15 @@ Number insertions(const Row& row) {
 }
 
 constexpr std::array kMetrics{
-    Metric{"seconds", Better::kLess, false, seconds},
-    Metric{"cells/s", Better::kMore, false, cells_per_second},
-    Metric{"peak bytes", Better::kLess, false, peak_bytes},
-    Metric{"cells", Better::kNeither, true, cells},
-    Metric{"insertions", Better::kLess, true, insertions},
-    Metric{"removals", Better::kLess, true, work<&WorkRecord::removals>},
-    Metric{"conflict tests", Better::kLess, true, work<&WorkRecord::conflict_tests>},
-    Metric{"exact decisions", Better::kNeither, true, work<&WorkRecord::exact_decisions>},
-    Metric{"cells created", Better::kLess, true, work<&WorkRecord::cells_created>},
+    Metric{"seconds", Wanted::kLess, false, seconds},
+    Metric{"cells/s", Wanted::kMore, false, cells_per_second},
+    Metric{"peak bytes", Wanted::kLess, false, peak_bytes},
+    Metric{"cells", Wanted::kNeither, true, cells},
+    Metric{"insertions", Wanted::kLess, true, insertions},
+    Metric{"removals", Wanted::kLess, true, work<&WorkRecord::removals>},
+    Metric{"conflict tests", Wanted::kLess, true, work<&WorkRecord::conflict_tests>},
+    Metric{"exact decisions", Wanted::kNeither, true, work<&WorkRecord::exact_decisions>},
+    Metric{"cells created", Wanted::kLess, true, work<&WorkRecord::cells_created>},
 };
 
 // Rows that measure the same.
@@ -187,11 +187,11 @@ std::vector<double> values(const Rows& rows, const Metric& metric) {
   return found;
 }
 
-const char* judgement(const Ratio& ratio, Better better) {
-  if (better == Better::kNeither) return "";
+const char* judgement(const Ratio& ratio, Wanted wanted) {
+  if (wanted == Wanted::kNeither) return "";
   const bool is_more = ratio.low > kNegligible, is_less = ratio.high < 1 / kNegligible;
   if (!is_more && !is_less) return "same";
-  return is_more == (better == Better::kMore) ? "better" : "WORSE";
+  return is_more == (wanted == Wanted::kMore) ? "better" : "WORSE";
 }
 
 void add_metric(const Group& group, const Metric& metric, Comparison& result) {
@@ -210,7 +210,7 @@ void add_metric(const Group& group, const Metric& metric, Comparison& result) {
     result.text += fmt::format("  no interval of {} and {} rows\n", a.size(), b.size());
     return;
   }
-  const std::string verdict = judgement(ratio, metric.better);
+  const std::string verdict = judgement(ratio, metric.wanted);
   result.is_worse = result.is_worse || verdict == "WORSE";
   result.text += fmt::format("  [{:.3f}, {:.3f}]  {}\n", ratio.low, ratio.high, verdict);
 }

@@ -160,8 +160,8 @@ inline Shape shape_in(const Json& schema, const Json& root) {
     shape.types.insert(name_of_type(word));
     if (word.is_string()) shape.words.insert(word.get<std::string>());
   }
-  for (const auto& [key, member] : schema.value("properties", Json::object()).items())
-    shape.keys[key] = shape_in(member, root);
+  const Json keys = schema.value("properties", Json::object());
+  for (const auto& [key, member] : keys.items()) shape.keys[key] = shape_in(member, root);
   for (const Json& key : schema.value("required", Json::array()))
     shape.required.insert(key.get<std::string>());
   const Json others = schema.value("additionalProperties", Json());

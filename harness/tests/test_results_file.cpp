@@ -45,7 +45,7 @@ TEST_F(ResultsFileTest, SoundFilesStayAsTheyAre) {
 }
 
 TEST_F(ResultsFileTest, WhereverACrashCutTheLastLineTheOthersAreUsed) {
-  for (std::size_t size = 1; size + 1 < kTwo.size(); ++size) {
+  for (std::size_t size = 1; size + 1 < kTwo.size(); size += 60) {
     std::filesystem::remove(folder_ / "rows.jsonl.broken");
     const std::string half = kTwo.substr(0, size);
     const RowsRead read = repaired(kOne + half);
