@@ -22,11 +22,9 @@
 
 #include "delaunay/mesh.h"
 #include "delaunay/step_result.h"
+#include "runtime/worker_id.h"
 
 namespace podm {
-
-using WorkerId = std::uint32_t;
-inline constexpr WorkerId kNoWorker = 0xffffffffu;
 
 /// The locks of a run that nobody shares: every attempt succeeds and costs nothing.
 class NoLocks {

@@ -49,7 +49,7 @@ BeggingList::Added BeggingList::add_to(Group& group, WorkerId worker, int most_b
   return Added::kListed;
 }
 
-WorkerId BeggingList::take_first_for(WorkerId giver) {
+BeggingList::Beggar BeggingList::take_first_for(WorkerId giver) {
   for (std::size_t level = 0; level < levels_.size(); ++level) {
     Group& group = group_of(level, giver);
     const std::scoped_lock lock(group.mutex);
@@ -57,9 +57,16 @@ WorkerId BeggingList::take_first_for(WorkerId giver) {
     const WorkerId first = group.beggars.front();
     group.beggars.pop_front();
     count(group);
-    return first;
+    return {first, level};
   }
-  return kNoWorker;
+  return {};
+}
+
+void BeggingList::put_back(const Beggar& beggar) {
+  Group& group = group_of(beggar.level, beggar.worker);
+  const std::scoped_lock lock(group.mutex);
+  group.beggars.push_front(beggar.worker);
+  count(group);
 }
 
 bool BeggingList::may_serve(WorkerId giver) const {

@@ -14,7 +14,7 @@
 #include <mutex>
 #include <vector>
 
-#include "delaunay/vertex_locks.h"
+#include "runtime/worker_id.h"
 
 namespace podm {
 
@@ -29,9 +29,15 @@ class BeggingList {
 
   /// False: the list is closed. A worker that is on the list must not be added.
   bool add(WorkerId worker);
+  struct Beggar {
+    WorkerId worker = kNoWorker;
+    std::size_t level = 0;  // of the list that it was on
+  };
   /// Takes the beggar off the list that `giver` should serve; kNoWorker: it sees none. The last worker that
   /// does not beg sees one.
-  WorkerId take_first_for(WorkerId giver);
+  Beggar take_first_for(WorkerId giver);
+  /// Puts it back where it was, first of all. The list must not have been closed meanwhile.
+  void put_back(const Beggar& beggar);
   /// A hint: whether take_first_for(giver) would name somebody.
   bool may_serve(WorkerId giver) const;
   /// Takes `worker` off, if it is on the list.

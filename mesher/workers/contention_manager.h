@@ -19,8 +19,8 @@
 #include <random>
 #include <vector>
 
-#include "delaunay/vertex_locks.h"
 #include "podm/choices.h"
+#include "runtime/worker_id.h"
 
 namespace podm {
 

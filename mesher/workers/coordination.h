@@ -6,9 +6,10 @@
 // refinement of 0.5 million cells by 256 virtual workers takes 1.05 times as long; with one lock for all it
 // took 2.4 times as long.
 //
-// A worker begs when it is on a list, and is counted then; whoever takes it off the list counts it down
-// before the gift. So when all are counted, none runs, none has a gift, and none waits, for whoever waits,
-// waits for one that runs (workers/contention_manager.h): no cells are left.
+// A worker counts for one from when it is on a begging list and has counted itself. Whoever takes it off the
+// list counts it down once its gift is there, and is not counted until then. So when all are counted, each is
+// on a list: none runs, none has a gift, and none waits, for whoever waits, waits for one that runs
+// (workers/contention_manager.h). No cells are left.
 #pragma once
 
 #include <atomic>
@@ -85,17 +86,18 @@ class Coordination {
   void wake_one(WorkerId self);
   // A hint whether somebody begs whom `giver`, which lists so many cells, could serve.
   bool may_share(WorkerId giver, std::size_t num_listed) const {
-    return num_listed >= kEnoughToShare && begging_.may_serve(giver);
+    return num_begging_.load(std::memory_order_relaxed) > 0 && num_listed >= kEnoughToShare &&
+           begging_.may_serve(giver);
   }
   template <class Worker>
   void share(WorkerId giver, Worker& worker) {
+    const BeggingList::Beggar beggar = begging_.take_first_for(giver);
+    if (beggar.worker == kNoWorker) return;  // another giver was quicker
     Entries cells = worker.share(kMostToShare);
-    if (cells.empty()) return;
-    const WorkerId beggar = begging_.take_first_for(giver);
-    if (beggar == kNoWorker) {  // another was quicker
-      worker.give(cells);
+    if (cells.empty()) {
+      begging_.put_back(beggar);
     } else {
-      give(beggar, std::move(cells));
+      give(beggar.worker, std::move(cells));
     }
   }
   void give(WorkerId beggar, Entries cells);

@@ -18,9 +18,9 @@ TEST(BeggingList, OneListServesFirstComeFirst) {
   for (const WorkerId beggar : {2u, 1u, 3u}) list.add(beggar);
   for (const WorkerId beggar : {2u, 1u, 3u}) {
     EXPECT_TRUE(list.may_serve(0));
-    EXPECT_EQ(list.take_first_for(0), beggar);
+    EXPECT_EQ(list.take_first_for(0).worker, beggar);
   }
-  EXPECT_EQ(list.take_first_for(0), kNoWorker);
+  EXPECT_EQ(list.take_first_for(0).worker, kNoWorker);
 }
 
 TEST(BeggingList, TheLastOfAGroupToBegIsSeenAroundIt) {
@@ -30,18 +30,18 @@ TEST(BeggingList, TheLastOfAGroupToBegIsSeenAroundIt) {
   list.add(2);
   EXPECT_TRUE(list.may_serve(4)) << "the socket is idle: the node sees one";
   EXPECT_FALSE(list.may_serve(8));
-  EXPECT_EQ(list.take_first_for(4), 2);
+  EXPECT_EQ(list.take_first_for(4).worker, 2);
   EXPECT_FALSE(list.may_serve(4)) << "the others wait for it";
   for (const WorkerId beggar : {2u, 3u, 4u, 5u}) list.add(beggar);
-  EXPECT_EQ(list.take_first_for(8), 5) << "the node is idle: the machine sees one";
+  EXPECT_EQ(list.take_first_for(8).worker, 5) << "the node is idle: the machine sees one";
 }
 
 TEST(BeggingList, TheNearestIsServedFirst) {
   BeggingList list(12, kNested);
   for (const WorkerId beggar : {6u, 7u, 8u, 9u, 10u, 11u, 3u, 4u, 5u, 1u}) list.add(beggar);
   std::vector<WorkerId> served;
-  for (WorkerId next = list.take_first_for(0); next != kNoWorker; next = list.take_first_for(0))
-    served.push_back(next);
+  for (auto next = list.take_first_for(0); next.worker != kNoWorker; next = list.take_first_for(0))
+    served.push_back(next.worker);
   EXPECT_EQ(served, (std::vector<WorkerId>{1, 5, 11})) << "of socket, node, machine";
 }
 
@@ -54,7 +54,7 @@ TEST(BeggingList, AClosedOneNamesAllThatWereOnItAndTakesNobody) {
     EXPECT_EQ(named.size(), beggars.size());
     EXPECT_EQ(std::set<WorkerId>(named.begin(), named.end()), beggars);
     for (WorkerId worker = 0; worker < 12; ++worker) EXPECT_FALSE(list.add(worker));
-    EXPECT_EQ(list.take_first_for(0), kNoWorker);
+    EXPECT_EQ(list.take_first_for(0).worker, kNoWorker);
   }
 }
 
@@ -81,10 +81,14 @@ TEST(BeggingList, ALastWorkerSeesOneAndTheHintIsRight) {
       } else {
         const WorkerId giver = busy();
         const bool may_serve = list.may_serve(giver);
-        const WorkerId first = list.take_first_for(giver);
+        const auto [first, level] = list.take_first_for(giver);
         EXPECT_EQ(may_serve, first != kNoWorker);
         EXPECT_TRUE(first == kNoWorker || begging.contains(first));
         EXPECT_TRUE(begging.size() < 11 || first != kNoWorker) << "step " << step;
+        if (first != kNoWorker && random() % 4 == 0) {
+          list.put_back({first, level});
+          EXPECT_EQ(list.take_first_for(giver).worker, first);
+        }
         begging.erase(first);
       }
     }
