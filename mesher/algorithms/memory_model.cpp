@@ -11,8 +11,8 @@ namespace podm {
 
 namespace {
 
-// Scratch of operations, and of those on threads a stack too.
-constexpr std::uint64_t kBytesPerWorker = 5 << 15, kBytesPerThread = kBytesPerWorker + (1 << 16);
+// Scratch of operations, and what is touched of a stack.
+constexpr std::uint64_t kBytesPerWorker = (5 << 15) + (1 << 16);
 // What the allocator holds back of lists that have grown, or that other threads have freed. It grows with the
 // threads at first, then no more: their lists become shorter. As measured with 1 to 224 threads.
 constexpr std::uint64_t kBytesHeldPerThread = 3 << 18, kMostThreadsThatHold = 16;
@@ -20,7 +20,7 @@ constexpr std::uint64_t kLeastCells = 1 << 12;
 static_assert(4 * kMostStoredCells - 1 < kNoFacet);
 
 std::uint64_t bytes_of_threads(std::uint64_t threads) {
-  return threads * kBytesPerThread + std::min(threads, kMostThreadsThatHold) * kBytesHeldPerThread;
+  return threads * kBytesPerWorker + std::min(threads, kMostThreadsThatHold) * kBytesHeldPerThread;
 }
 
 }  // namespace

@@ -1,5 +1,6 @@
 #include "runtime/fibre.h"
 
+#include <boost/context/protected_fixedsize_stack.hpp>
 #include <utility>
 
 #if defined(__SANITIZE_ADDRESS__)
@@ -28,14 +29,10 @@ namespace podm {
 
 namespace {
 
+// Whoever needs more meets the page behind it, which is nobody's.
 constexpr std::size_t kStackBytes = 256 << 10;
 
 thread_local Fibre* running = nullptr;
-
-// Memory that is the fibre's own.
-struct KeptStack {
-  void deallocate(boost::context::stack_context&) {}
-};
 
 }  // namespace
 
@@ -73,15 +70,12 @@ struct Fibre::Stacks {
 
 Fibre* Fibre::current() { return running; }
 
-Fibre::Fibre(std::function<void()> call)
-    : call_(std::move(call)),
-      stack_(std::make_unique_for_overwrite<std::byte[]>(kStackBytes)),
-      stacks_(std::make_unique<Stacks>()) {
-  boost::context::stack_context context;
-  context.size = kStackBytes;
-  context.sp = stack_.get() + kStackBytes;
-  own_ = boost::context::fiber(std::allocator_arg,
-                               boost::context::preallocated(context.sp, context.size, context), KeptStack{},
+Fibre::Fibre(std::function<void()> call) : call_(std::move(call)), stacks_(std::make_unique<Stacks>()) {
+  boost::context::protected_fixedsize_stack allocator(kStackBytes);
+  const boost::context::stack_context stack = allocator.allocate();
+  bottom_ = static_cast<const std::byte*>(stack.sp) - kStackBytes;
+  own_ = boost::context::fiber(std::allocator_arg, boost::context::preallocated(stack.sp, stack.size, stack),
+                               allocator,
                                [this](boost::context::fiber&& resumer) { return run(std::move(resumer)); });
 }
 
@@ -89,7 +83,7 @@ Fibre::~Fibre() = default;
 
 Fibre::State Fibre::resume() {
   Fibre* const outer = std::exchange(running, this);
-  stacks_->enter(stack_.get());
+  stacks_->enter(bottom_);
   own_ = std::move(own_).resume();
   stacks_->left();
   running = outer;

@@ -50,8 +50,8 @@ class Fibre {
   State state_ = State::kSuspended;
   std::uint64_t steps_left_ = kUnlimited;
   std::exception_ptr failure_;
-  std::unique_ptr<std::byte[]> stack_;
   std::unique_ptr<Stacks> stacks_;
+  const std::byte* bottom_ = nullptr;  // of its stack
   boost::context::fiber own_, resumer_;
 };
 
