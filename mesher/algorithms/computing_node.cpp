@@ -19,7 +19,7 @@ void ComputingNode<Locks>::begin(const Octree& octree, LeafId leaf, double now_s
 
 template <class Locks>
 LeafSchedule::Activation ComputingNode<Locks>::end(LeafCells& cells, RefinementQueue& queue,
-                                                   const std::stop_token& stop, double now_s) {
+                                                   const std::stop_token& stop) {
   std::vector<LeafId>& touched = activation_.touched_leaves;
   for (const auto& worker : workers_) {
     cells.add(worker->take_foreign(), queue, stop);
@@ -32,7 +32,6 @@ LeafSchedule::Activation ComputingNode<Locks>::end(LeafCells& cells, RefinementQ
   std::sort(touched.begin(), touched.end());
   touched.erase(std::unique(touched.begin(), touched.end()), touched.end());
   activation_.operations = num_committed() - activation_.operations;
-  activation_.end_s = now_s;
   region_.reset();
   return std::move(activation_);
 }

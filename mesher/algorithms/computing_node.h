@@ -7,7 +7,7 @@
 #include "algorithms/leaf_cells.h"
 #include "algorithms/leaf_locks.h"
 #include "octree/leaf_region.h"
-#include "podm/mesh_image.h"
+#include "podm/meshing_report.h"
 #include "refine/worker.h"
 #include "workers/coordination.h"
 
@@ -29,8 +29,9 @@ class ComputingNode {
   /// The workers keep to the leaf from now on. None works while this is called, or end().
   void begin(const Octree& octree, LeafId leaf, double now_s);
   /// The leaf ends: new cells of others go to them, cells that need vertices outside its region are deferred.
-  LeafSchedule::Activation end(LeafCells& cells, RefinementQueue& queue, const std::stop_token& stop,
-                               double now_s);
+  /// Returns what happened meanwhile, but for the time, which the caller takes when nobody works there any
+  /// more.
+  LeafSchedule::Activation end(LeafCells& cells, RefinementQueue& queue, const std::stop_token& stop);
   /// Whether a leaf has begun that has not ended.
   bool has_leaf() const { return region_.has_value(); }
   LeafId leaf() const { return region_->leaf(); }

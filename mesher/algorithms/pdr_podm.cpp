@@ -49,9 +49,10 @@ struct Leaves {
   // New cells go to the leaves that have them, and so does this leaf, if they are its own, back to the queue.
   void end_leaf(ComputingNode<Locks>& node) {
     const LeafId leaf = node.leaf();
-    LeafSchedule::Activation activation = node.end(cells, queue, over, time.now_s());
+    LeafSchedule::Activation activation = node.end(cells, queue, over);
     {
       const std::scoped_lock lock(mutex);
+      activation.end_s = time.now_s();  // under the lock: they are listed by their ends
       schedule.push_back(std::move(activation));
     }
     queue.finish(leaf);
@@ -123,7 +124,6 @@ Construction::Entries refine_leaves(Construction& construction, const Parameters
                                     const Octree& octree, const LeafOptions& options) {
   Construction::Entries left;
   construction.timed("refine", [&] {
-    if (construction.stop().is_over()) return;
     construction.in_time("refine", construction.num_workers(), [&](auto& time) {
       left = refine_leaves_with<Locks>(construction, parameters, octree, options, time);
     });
@@ -134,6 +134,12 @@ Construction::Entries refine_leaves(Construction& construction, const Parameters
 
 // Large balls outside reach over the shell to the object only if they are empty of its vertices.
 constexpr double kShellOverRadius = 2;
+
+// Every run has a phase of refinement. No octree is made for nothing: it may be one that cannot be.
+Refinement ended_early(Construction& construction) {
+  construction.timed("refine", [] {});
+  return construction.finish();
+}
 
 template <class Locks>
 Refinement refine_by_leaves(const Problem& problem, const Team& team, const LeafOptions& options,
@@ -153,6 +159,7 @@ Refinement refine_by_leaves(const Problem& problem, const Team& team, const Leaf
   Construction construction(problem, clamp, team, stop);  // 1
   construction.withhold(bytes_of_leaves);
   refine_anywhere(construction, "initial", initial, construction.all_cells(), team.initial_workers);  // 4
+  if (stop.is_over()) return ended_early(construction);
   std::unique_ptr<const Octree> octree;
   construction.timed("octree", [&] {  // 2, 3: after 4, which makes no difference to leaves
     octree = make_octree(problem, radii, clamp, options, team, stop.over());

@@ -30,12 +30,14 @@ bool refine(Worker<Locks>& worker, Coordination& group, Time& time) {
       if (answer == ContentionManager::Answer::kWait) time.block(self, &Overhead::contention_s);
       if (answer == ContentionManager::Answer::kPause) time.pause(self, pause_s);
     } else {
-      if (!group.beg(self)) return true;
+      if (!group.beg(self)) break;
       time.block(self, &Overhead::begging_s);
       worker.give(group.take_gift(self));
     }
   }
-  return false;
+  const bool is_done = !time.is_over();
+  time.check_limits(worker);
+  return is_done;
 }
 
 namespace {
@@ -68,8 +70,8 @@ void refine_with(Construction& construction, const Parameters& parameters, const
 
 void refine_anywhere(Construction& construction, const std::string& phase, const Parameters& parameters,
                      const Construction::Entries& cells, int num_workers) {
+  if (construction.stop().is_over()) return construction.timed(phase, [] {});  // every run has this phase
   construction.timed(phase, [&] {
-    if (construction.stop().is_over()) return;
     construction.in_time(phase, num_workers, [&](auto& time) {
       if (num_workers > 1 || construction.team().executor == Executor::kVirtual) {
         refine_with<VertexLocks>(construction, parameters, cells, num_workers, time);

@@ -193,6 +193,44 @@ TEST(MeshImageRuns, LimitsAndCancellationLeaveAMeshThatSaysSo) {
   for (std::size_t c = 0; c < cancelled.mesh.cells.size(); ++c) ASSERT_GT(volume_of(cancelled.mesh, c), 0);
 }
 
+// No check falls between two of a worker's.
+TEST(MeshImageRuns, ALimitThatASmallMeshPassesIsToldOf) {
+  for (const int threads : {1, 3}) {
+    MeshingOptions options = radius(9);
+    options.team = {.threads = threads, .oversubscribe = true};
+    options.limits.max_elements = 7;
+    EXPECT_EQ(mesh_image(ball(16, 6), options).report.stop_reason, StopReason::kElementLimit) << threads;
+  }
+}
+
+// An octree of so small leaves is refused, but only where it is asked for.
+TEST(MeshImageRuns, ALimitPassedByTheInitialMeshIsNoFaultOfLeaves) {
+  MeshingOptions options = radius(4e-7);
+  options.sizes.delta_mm = 1;
+  options.algorithm = Algorithm::kPdr;
+  options.limits.max_elements = 3000;
+  const MeshingReport report = mesh_image(ball(16, 6), options).report;
+  EXPECT_EQ(report.stop_reason, StopReason::kElementLimit);
+  EXPECT_FALSE(report.phases_s.contains("octree"));
+  EXPECT_TRUE(report.phases_s.contains("refine"));
+}
+
+TEST(MeshImageRuns, ScheduleListsLeavesByTheirEnds) {
+  MeshingOptions options = radius(0.5);
+  options.algorithm = Algorithm::kPdr;
+  options.team = {.threads = 6, .oversubscribe = true};
+  options.leaves.with_schedule = true;
+  const auto schedule = mesh_image(ball(24, 9), options).report.schedule;
+  ASSERT_TRUE(schedule);
+  EXPECT_GT(schedule->activations.size(), 10u);
+  double last_s = 0;
+  for (const LeafSchedule::Activation& activation : schedule->activations) {
+    EXPECT_LE(activation.begin_s, activation.end_s);
+    EXPECT_LE(last_s, activation.end_s);
+    last_s = activation.end_s;
+  }
+}
+
 TEST(MeshImageRefusals, BadOptionsAndEmptyImages) {
   const LabelImage image = ball(10, 3);
   for (const double bad :
@@ -204,6 +242,9 @@ TEST(MeshImageRefusals, BadOptionsAndEmptyImages) {
     MeshingOptions label = radius(1);
     label.sizes.radius_of_mm[10] = bad;
     EXPECT_THROW(mesh_image(image, label), InputError);
+    MeshingOptions tolerance = radius(1);
+    tolerance.sizes.target_tolerance_percent = bad;
+    EXPECT_THROW(mesh_image(image, tolerance), InputError);
   }
   MeshingOptions absent = radius(1);
   absent.sizes.radius_of_mm[77] = 1;

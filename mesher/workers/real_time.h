@@ -8,10 +8,10 @@
 #include <semaphore>
 #include <vector>
 
-#include "delaunay/vertex_locks.h"
 #include "podm/counters.h"
 #include "refine/outcome.h"
 #include "runtime/placement.h"
+#include "runtime/worker_id.h"
 #include "workers/stop_control.h"
 
 namespace podm {
@@ -31,8 +31,15 @@ class RealTime {
   Outcome attempt(Worker& worker) {
     const Outcome outcome = worker.attempt();
     worker.release();
-    if (++states_[worker.id()].attempts % StopControl::kAttemptsBetweenChecks == 0) check(worker);
+    if (++states_[worker.id()].attempts % StopControl::kAttemptsBetweenChecks == 0) check_limits(worker);
     return outcome;
+  }
+  /// Ends the run if a limit is passed, as is looked at now and then, and when a worker has nothing to do.
+  template <class Worker>
+  void check_limits(const Worker& worker) {
+    states_[worker.id()].meter.report(worker, stop_);
+    stop_.check_limits();
+    if (worker.id() == 0) stop_.observe();
   }
   /// Waits until another resumes it, maybe before, or the run is over. The time is charged to `cause`.
   void block(WorkerId self, double Overhead::*cause);
@@ -68,12 +75,6 @@ class RealTime {
     ThreadProcessor processor;
   };
 
-  template <class Worker>
-  void check(const Worker& worker) {
-    states_[worker.id()].meter.report(worker, stop_);
-    stop_.check_limits();
-    if (worker.id() == 0) stop_.observe();
-  }
   void work_on_thread(const std::function<void(WorkerId)>& work, WorkerId self);
   void fail();
 

@@ -15,10 +15,10 @@
 #include <random>
 #include <vector>
 
-#include "delaunay/vertex_locks.h"
 #include "podm/counters.h"
 #include "refine/outcome.h"
 #include "runtime/fibre.h"
+#include "runtime/worker_id.h"
 #include "workers/stop_control.h"
 
 namespace podm {
@@ -43,6 +43,11 @@ class VirtualTime {
     end_attempt(self, work_of(worker) - before, outcome);
     worker.release();
     return outcome;
+  }
+  /// Ends the run if a limit is passed; as in RealTime.
+  template <class Worker>
+  void check_limits(const Worker&) {
+    stop_.check_limits();
   }
   /// Waits until another resumes it, or the run is over. The time is charged to `cause`.
   void block(WorkerId self, double Overhead::*cause);
