@@ -25,12 +25,14 @@ void add_sizing_options(CLI::App& app, MeshCommand& command) {
            });
   add_one(app, "--delta", "MM", "sampling distance of the surfaces, mm [default: from voxel size and radius]",
           into_length(meshing.sizes.delta_mm));
-  exclude(add_one(app, "--target-elements", "N", "choose the radius for this many cells [default: none]",
-                  into_count(meshing.sizes.target_elements)),
-          radius);
-  add_one(app, "--target-tolerance", "PERCENT",
-          "cells that the mesh may have more or fewer than that, in percent",
-          into_positive(meshing.sizes.target_tolerance_percent, "percentage"));
+  CLI::Option* target =
+      add_one(app, "--target-elements", "N", "choose the radius for this many cells [default: none]",
+              into_count(meshing.sizes.target_elements));
+  exclude(target, radius);
+  need(add_one(app, "--target-tolerance", "PERCENT",
+               "cells that the mesh may have more or fewer than that, in percent",
+               into_positive(meshing.sizes.target_tolerance_percent, "percentage")),
+       target);
 }
 
 void add_limit_options(CLI::App& app, MeshCommand& command) {

@@ -27,6 +27,8 @@ CLI::Option* add_many(CLI::App& app, const std::string& names, const std::string
 void add_flag(CLI::App& app, const std::string& names, bool& target, const std::string& description);
 void require(CLI::Option* option);
 void exclude(CLI::Option* option, CLI::Option* other);
+/// `option` may be given only with `other`.
+void need(CLI::Option* option, CLI::Option* other);
 
 /// IMAGE and what is kept of its labels.
 void add_image_options(CLI::App& app, ImageArguments& image);

@@ -47,7 +47,7 @@ std::pair<std::string, double> parse_label_length(const std::string& text, const
 
 Target into(std::string& text) {
   return {[&text](const std::string& told, const std::string& name) {
-            if (told.empty()) throw InputError(name + ": is empty");
+            if (told.empty()) throw InputError(name + ": its value is empty");
             text = told;
           },
           text};

@@ -64,6 +64,7 @@ void add_flag(CLI::App& app, const std::string& names, bool& target, const std::
 void require(CLI::Option* option) { option->required(); }
 
 void exclude(CLI::Option* option, CLI::Option* other) { option->excludes(other); }
+void need(CLI::Option* option, CLI::Option* other) { option->needs(other); }
 
 namespace {
 

@@ -120,6 +120,9 @@ class Usage(PodmTestCase):
                             "--target-elements")
         self.assert_refused(self.mesh("--radius", "2", "--radius", "3"), "--radius")
 
+    def test_an_option_that_needs_another(self):
+        self.assert_refused(self.mesh("--target-tolerance", "1"), "--target-tolerance", "--target-elements")
+
 
 if __name__ == "__main__":
     unittest.main()
