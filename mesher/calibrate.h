@@ -5,6 +5,7 @@
 
 #include "algorithms/construction.h"
 #include "image/isosurface.h"
+#include "podm/meshing_options.h"
 
 namespace podm {
 

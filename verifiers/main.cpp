@@ -87,8 +87,9 @@ void declare_selection(CLI::App& app, Command& command) {
       ->allow_extra_args(false)
       ->needs(image);
   app.add_option("--background", command.options.selection.background,
-                 "label value of the background in mesh and image; a foreground label 0 is then\n"
-                 "reported as VALUE [default: 0]")
+                 fmt::format("label value of the background in mesh and image; a foreground label 0 is then\n"
+                             "reported as VALUE [default: {}]",
+                             command.options.selection.background))
       ->option_text("VALUE");
 }
 

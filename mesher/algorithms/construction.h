@@ -9,6 +9,8 @@
 #include <vector>
 
 #include "algorithms/page_sampler.h"
+#include "podm/limits.h"
+#include "podm/meshing_report.h"
 #include "podm/operation_log.h"
 #include "refine/rules.h"
 #include "refine/worker.h"

@@ -6,6 +6,7 @@
 
 #include "algorithms/construction.h"
 #include "octree/octree.h"
+#include "podm/meshing_options.h"
 
 namespace podm {
 

@@ -5,7 +5,9 @@
 #include <cstdint>
 
 #include "delaunay/mesh.h"
-#include "podm/mesh_image.h"
+#include "podm/choices.h"
+#include "podm/label_image.h"
+#include "podm/limits.h"
 
 namespace podm {
 

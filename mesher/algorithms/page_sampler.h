@@ -7,7 +7,7 @@
 
 #include "delaunay/mesh.h"
 #include "image/oracle_reads.h"
-#include "podm/mesh_image.h"
+#include "podm/meshing_report.h"
 #include "runtime/numa_memory.h"
 #include "runtime/topology.h"
 

@@ -2,6 +2,7 @@
 #pragma once
 
 #include "algorithms/construction.h"
+#include "podm/meshing_options.h"
 
 namespace podm {
 

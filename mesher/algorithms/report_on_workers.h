@@ -3,7 +3,7 @@
 
 #include <vector>
 
-#include "podm/mesh_image.h"
+#include "podm/meshing_report.h"
 #include "refine/worker.h"
 #include "runtime/placement.h"
 

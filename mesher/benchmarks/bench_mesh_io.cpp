@@ -8,7 +8,7 @@
 namespace podm {
 namespace {
 
-// In random order, the worst that canonicalize can meet: a refined mesh has some locality.
+// The order is random, the worst that canonicalize can meet: a refined mesh has some locality.
 const TetMesh& shuffled_mesh() {
   static const TetMesh mesh = shuffled(make_test_mesh(80), 1);
   return mesh;

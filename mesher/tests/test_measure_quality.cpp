@@ -30,7 +30,7 @@ double circumradius(const Corners& p) {
   return length(sum) / (2 * std::abs(six_volumes(p)));
 }
 
-// Between the planes through the edge's ends and either of the other two corners.
+// The angle between the planes through the edge's ends and either of the other two corners.
 double dihedral_deg(const Corners& p, unsigned i, unsigned j, unsigned k, unsigned l) {
   const Vector edge = p[j] - p[i];
   return angle_deg(cross(edge, p[k] - p[i]), cross(edge, p[l] - p[i]));

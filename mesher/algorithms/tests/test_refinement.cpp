@@ -7,6 +7,7 @@
 
 #include "algorithms/podm.h"
 #include "cost_model.h"
+#include "podm/mesh_image.h"
 #include "refine/invariants.h"
 #include "refine/virtual_box.h"
 #include "tests/images.h"

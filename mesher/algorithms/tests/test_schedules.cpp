@@ -20,6 +20,7 @@
 #include "cost_model.h"
 #include "delaunay/planted_fault.h"
 #include "delaunay/tests/cells_by_points.h"
+#include "podm/mesh_image.h"
 #include "refine/invariants.h"
 #include "refine/virtual_box.h"
 #include "replay.h"

@@ -5,6 +5,10 @@
 
 namespace podm {
 
+/// The most cells of a mesh while it is made, those of the background among them: facets have numbers of 32
+/// bits.
+inline constexpr std::uint64_t kMostStoredCells = (std::uint64_t{1} << 30) - 1;
+
 /// Each ends a run early, with a valid Delaunay mesh that says what is unmet. 0: no limit.
 struct Limits {
   std::uint64_t max_elements = 0;

@@ -16,10 +16,6 @@ namespace podm {
 
 struct OperationLog;
 
-/// The most cells of a mesh while it is made, those of the background among them: facets have numbers of 32
-/// bits.
-inline constexpr std::uint64_t kMostStoredCells = (std::uint64_t{1} << 30) - 1;
-
 /// What a run is expected to cost, from the image and the options alone.
 struct Estimate {
   double cells = 0;
