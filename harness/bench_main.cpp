@@ -40,8 +40,10 @@ void add_run(CLI::App& program, int& exit_code) {
   app.add_flag("--dry-run", state->is_dry, "print trials, time, memory and disk; run nothing [default: no]");
   app.add_flag("--again", command.again, "also run what is measured already [default: skip it]");
   app.add_flag("--keep", command.keep, "keep each trial's mesh and messages [default: delete them]");
-  app.add_option("--order-seed", command.order_seed, "of the order within each round [default: 1]");
-  app.add_option("--results", command.results_folder, "folder of the JSON lines [default: results/runs]");
+  app.add_option("--order-seed", command.order_seed,
+                 fmt::format("draws the order within each round [default: {}]", command.order_seed));
+  app.add_option("--results", command.results_folder,
+                 fmt::format("folder of the JSON lines [default: {}]", kResultsFolder));
   app.add_option("--podm", command.programs.podm, "file of the mesher [default: podm beside this program]");
   app.add_option("--verifier", command.programs.verifier,
                  "file of the verifier, or none [default: podm-verify beside this program]");
@@ -57,19 +59,20 @@ void add_run(CLI::App& program, int& exit_code) {
 void add_list(CLI::App& program, int& exit_code) {
   const auto folder = std::make_shared<std::string>("experiments");
   CLI::App& app = *program.add_subcommand("list", "list experiments: title, trials, expected time");
-  app.add_option("FOLDER", *folder, "where they are [default: experiments]");
+  app.add_option("FOLDER", *folder, fmt::format("where they are [default: {}]", *folder));
   app.callback([folder, &exit_code] { exit_code = list(*folder); });
 }
 
 void add_verdicts(CLI::App& program, int& exit_code) {
   struct State {
     std::vector<std::string> experiment_paths;
-    std::string results_folder = "results/runs", json_path;
+    std::string results_folder = kResultsFolder, json_path;
   };
   const auto state = std::make_shared<State>();
   CLI::App& app = *program.add_subcommand("verdicts", "judge the claims of experiments by their rows");
   app.add_option("EXPERIMENT", state->experiment_paths, "files of experiments/")->required();
-  app.add_option("--results", state->results_folder, "folder of the JSON lines [default: results/runs]");
+  app.add_option("--results", state->results_folder,
+                 fmt::format("folder of the JSON lines [default: {}]", kResultsFolder));
   app.add_option("--json", state->json_path, "also write them as JSON to this file [default: none]");
   app.callback([state, &exit_code] {
     exit_code = verdicts(state->experiment_paths, state->results_folder, state->json_path);
@@ -107,8 +110,10 @@ void add_gate(CLI::App& program, int& exit_code) {
                  "file of the mesher before the change [default: compare no seconds]");
   app.add_option("--tier", options.tiers, "1 work, 2 seconds, 3 scaling; repeatable [default: all]")
       ->check(CLI::Range(1, 3));
-  app.add_option("--budgets", options.budgets_path, "committed work [default: ci/gate_budgets.json]");
-  app.add_option("--order-seed", options.order_seed, "of the order within each round [default: 1]");
+  app.add_option("--budgets", options.budgets_path,
+                 fmt::format("committed work [default: {}]", options.budgets_path));
+  app.add_option("--order-seed", options.order_seed,
+                 fmt::format("draws the order within each round [default: {}]", options.order_seed));
   app.add_flag("--renew", state->renews, "put what the head does into the file of budgets [default: judge]");
   app.callback([state, &exit_code] { exit_code = run_gate(state->options, state->renews); });
 }

@@ -1,4 +1,5 @@
-// The commands of podm-bench, one file each. Each returns the exit code; all throw InputError.
+// The commands of podm-bench; those of the gate are in gate/gate_command.h. Each returns the exit code; all
+// throw InputError.
 #pragma once
 
 #include <cstdint>
@@ -13,12 +14,14 @@ namespace podm::bench {
 
 inline constexpr int kExitMissed = 1, kExitInput = 2, kExitInternal = 3;
 
+inline constexpr const char* kResultsFolder = "results/runs";  ///< unless told otherwise
+
 struct RunCommand {
   std::vector<std::string> experiment_paths;
   std::string only;                 ///< a pattern of trial names, as in a shell; empty: all
   std::optional<Tier> tier;         ///< trials of this tier and the lower ones; nothing: all
   std::vector<std::string> images;  ///< they stand for all inputs; none: the inputs
-  std::string results_folder = "results/runs";
+  std::string results_folder = kResultsFolder;
   std::uint64_t order_seed = 1;
   Programs programs;
   bool again = false;  ///< also what is measured already

@@ -1,3 +1,4 @@
+// What podm-bench throws at its user.
 #pragma once
 
 #include <stdexcept>

@@ -43,11 +43,11 @@ struct MesherOption {
   Kind kind;
 };
 
-// Of the harness, which passes them to no mesher.
+// These are the harness's own; no mesher is passed them.
 constexpr std::array kOfHarness{kMesher,     kSchedule, kReplay,   kFidelity,
                                 kImageGrows, kCopies,   kCounters, kMeasure};
 
-// Of all meshers.
+// Every mesher takes these.
 constexpr std::array kOfAll{kMesher, "radius_mm", "delta_mm", kTargetElements, kPerThread, "threads"};
 
 template <class Keys>

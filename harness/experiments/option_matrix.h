@@ -35,8 +35,8 @@ struct Variant {
 /// topology is a file relative to `folder`.
 std::vector<Variant> read_matrix(Section& section, const std::string& folder);
 
-/// As `podm mesh` takes them: radius_mm = 2 is "--radius", "2"; true is the bare option, false none. Without
-/// those that are the harness's business: the keys above but the last, and kCounters.
+/// Options are written as `podm mesh` takes them: radius_mm = 2 is "--radius", "2"; true is the bare option,
+/// false none. Without those that are the harness's business: the keys above but the last, and kCounters.
 std::vector<std::string> mesher_arguments(const nlohmann::ordered_json& options);
 
 /// `value` as it stands in the name of a trial, made of letters, digits and . _ -

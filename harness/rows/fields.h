@@ -5,8 +5,8 @@
 //     double value;
 //     std::optional<double> running_share;
 //     static constexpr auto fields() {
-//       return std::tuple{field("value", &Counter::value), field_if_any("running_share",
-//       &Counter::running_share)};
+//       return std::tuple{field("value", &Counter::value),
+//                         field_if_any("running_share", &Counter::running_share)};
 //     }
 //   };
 //

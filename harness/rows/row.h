@@ -1,7 +1,7 @@
 // A row: the JSON line that a trial leaves behind, as results/README.md tells it key by key. fields() of
 // these structs are the one definition from which rows are written and read;
 // results/schema/podm-bench-row.schema.json, which others read them by, is held to it by
-// tests/test_row_schema.cpp.
+// rows/tests/test_row_schema.cpp.
 #pragma once
 
 #include <array>

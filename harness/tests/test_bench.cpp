@@ -4,9 +4,9 @@
 #include <chrono>
 #include <thread>
 
-#include "bench_test.h"
 #include "experiments/schedule.h"
 #include "rows/results_file.h"
+#include "tests/bench_test.h"
 #include "trials/sha256.h"
 
 namespace podm::bench {

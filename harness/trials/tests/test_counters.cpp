@@ -6,7 +6,7 @@
 
 #include <cerrno>
 
-#include "fake_mesher.h"
+#include "tests/fake_mesher.h"
 #include "trials/counters.h"
 
 namespace podm::bench {

@@ -3,11 +3,11 @@
 
 #include <sstream>
 
-#include "fake_mesher.h"
 #include "machine/environment.h"
 #include "machine/machine.h"
 #include "rows/record.h"
 #include "rows/table.h"
+#include "tests/fake_mesher.h"
 #include "trials/sha256.h"
 
 namespace podm::bench {

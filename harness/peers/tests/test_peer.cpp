@@ -3,7 +3,7 @@
 
 #include <filesystem>
 
-#include "fake_mesher.h"
+#include "tests/fake_mesher.h"
 #include "trials/trial.h"
 
 namespace podm::bench {

@@ -1,5 +1,5 @@
 // Trials that ask for a number of cells, as a user runs them.
-#include "bench_test.h"
+#include "tests/bench_test.h"
 
 namespace podm::bench {
 namespace {

@@ -3,8 +3,8 @@
 
 #include <sstream>
 
-#include "fake_mesher.h"
 #include "machine/machine.h"
+#include "tests/fake_mesher.h"
 #include "trials/preparation.h"
 
 namespace podm::bench {

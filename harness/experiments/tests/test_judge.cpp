@@ -3,7 +3,7 @@
 
 #include <gtest/gtest.h>
 
-#include "made_up_rows.h"
+#include "tests/made_up_rows.h"
 
 namespace podm::bench {
 namespace {

@@ -7,7 +7,7 @@
 #include <regex>
 #include <set>
 
-#include "fake_mesher.h"
+#include "tests/fake_mesher.h"
 #include "trials/counter_tool.h"
 #include "trials/trial.h"
 

@@ -3,8 +3,8 @@
 #include <set>
 
 #include "experiments/experiment.h"
-#include "fake_mesher.h"
 #include "machine/machine.h"
+#include "tests/fake_mesher.h"
 
 namespace podm::bench {
 namespace {

@@ -2,8 +2,8 @@
 #include <gtest/gtest.h>
 
 #include "experiments/option_matrix.h"
-#include "fake_mesher.h"
 #include "machine/machine.h"
+#include "tests/fake_mesher.h"
 #include "trials/trial.h"
 
 namespace podm::bench {

@@ -6,7 +6,7 @@
 #include <fstream>
 
 #include "rows/results_file.h"
-#include "schema_of.h"
+#include "tests/schema_of.h"
 
 namespace podm::bench {
 namespace {

@@ -3,9 +3,9 @@
 
 #include <gtest/gtest.h>
 
-#include "bench_test.h"
-#include "made_up_rows.h"
 #include "rows/results_file.h"
+#include "tests/bench_test.h"
+#include "tests/made_up_rows.h"
 
 namespace podm::bench {
 namespace {

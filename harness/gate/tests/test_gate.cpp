@@ -8,9 +8,9 @@
 #include <cmath>
 #include <random>
 
-#include "fake_mesher.h"
 #include "gate/gate_budget.h"
 #include "gate/gate_slowdown.h"
+#include "tests/fake_mesher.h"
 
 namespace podm::bench {
 namespace {

@@ -3,9 +3,9 @@
 
 #include <gtest/gtest.h>
 
-#include "fake_mesher.h"
-#include "made_up_rows.h"
 #include "rows/results_file.h"
+#include "tests/fake_mesher.h"
+#include "tests/made_up_rows.h"
 #include "trials/process.h"
 
 namespace podm::bench {

@@ -7,7 +7,7 @@
 #include "experiments/expectation.h"
 #include "experiments/progress.h"
 #include "experiments/schedule.h"
-#include "fake_mesher.h"
+#include "tests/fake_mesher.h"
 #include "trials/trial_key.h"
 
 namespace podm::bench {

@@ -1,8 +1,8 @@
 // What becomes of a trial whose mesher does well, fails, hangs, lies or is not there.
 #include <gtest/gtest.h>
 
-#include "fake_mesher.h"
 #include "machine/machine.h"
+#include "tests/fake_mesher.h"
 #include "trials/trial.h"
 
 namespace podm::bench {

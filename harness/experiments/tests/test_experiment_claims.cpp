@@ -10,7 +10,7 @@
 #include "experiments/experiment.h"
 #include "experiments/judge.h"
 #include "experiments/option_matrix.h"
-#include "made_up_rows.h"
+#include "tests/made_up_rows.h"
 
 namespace podm::bench {
 namespace {

@@ -5,7 +5,7 @@
 
 #include <cstdlib>
 
-#include "fake_mesher.h"
+#include "tests/fake_mesher.h"
 
 namespace podm::bench {
 namespace {

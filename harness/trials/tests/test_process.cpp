@@ -8,7 +8,7 @@
 #include <csignal>
 #include <thread>
 
-#include "fake_mesher.h"
+#include "tests/fake_mesher.h"
 #include "trials/process.h"
 
 namespace podm::bench {

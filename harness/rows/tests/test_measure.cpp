@@ -3,8 +3,8 @@
 
 #include <gtest/gtest.h>
 
-#include "made_up_rows.h"
 #include "rows/series.h"
+#include "tests/made_up_rows.h"
 
 namespace podm::bench {
 namespace {
