@@ -1,5 +1,5 @@
-// The sizes that an image gives to what options leave open: delta, and a radius for each label. Of the public
-// API default_delta_mm() is defined beside them.
+// The sizes that an image gives to what options leave open: delta, and a radius for each label. The public
+// default_delta_mm() is defined beside them.
 #pragma once
 
 #include "podm/mesh_image.h"

@@ -161,7 +161,7 @@ def unit(vector):
 
 
 def lights():
-    """From the viewer's upper left and, weaker, from the right: facets of a flat cut differ in shade."""
+    """Light comes from the viewer's upper left and, weaker, from the right: facets of a flat cut differ in shade."""
     for place, intensity in ((-0.6, 0.8, 1.0), 0.75), ((0.9, -0.1, 0.6), 0.35):
         light = vtk.vtkLight()
         light.SetLightTypeToCameraLight()

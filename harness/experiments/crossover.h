@@ -55,8 +55,8 @@ struct Crossover {
 /// What rows say, by trial, all of one machine and one mesher. PDR.PODM is ahead where it makes more cells a
 /// second than PODM, with evidence (95 % interval of the ratio of medians), on every number of threads
 /// measured from there on. Only what really ran decides, never virtual time, described machines or more
-/// threads than processors. Of several trials that of the most cells a thread decides. Nothing where none has
-/// both algorithms at one number of threads.
+/// threads than processors. The trial of the most cells a thread decides. There is none where no trial
+/// has both algorithms at one number of threads.
 std::optional<Crossover> crossover_of(const std::vector<std::vector<Row>>& rows_of_trials);
 
 /// Tells the crossover in a sentence without its end.

@@ -14,7 +14,7 @@ namespace {
 // Scratch of operations, and what is touched of a stack.
 constexpr std::uint64_t kBytesPerWorker = (5 << 15) + (1 << 16);
 // What the allocator holds back of lists that have grown, or that other threads have freed. It grows with the
-// threads at first, then no more: their lists become shorter. As measured with 1 to 224 threads.
+// threads at first, then no more: their lists become shorter. 1 to 224 threads were measured.
 constexpr std::uint64_t kBytesHeldPerThread = 3 << 18, kMostThreadsThatHold = 16;
 constexpr std::uint64_t kLeastCells = 1 << 12;
 static_assert(4 * kMostStoredCells - 1 < kNoFacet);

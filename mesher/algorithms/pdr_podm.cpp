@@ -30,6 +30,7 @@ struct Leaves {
   RefinementQueue& queue;
   Time& time;
   std::stop_token over;
+  bool with_schedule;
   std::mutex mutex = {};  // guards the schedule
   std::vector<LeafSchedule::Activation> schedule = {};
 
@@ -50,7 +51,7 @@ struct Leaves {
   void end_leaf(ComputingNode<Locks>& node) {
     const LeafId leaf = node.leaf();
     LeafSchedule::Activation activation = node.end(cells, queue, over);
-    {
+    if (with_schedule) {
       const std::scoped_lock lock(mutex);
       activation.end_s = time.now_s();  // under the lock: they are listed by their ends
       schedule.push_back(std::move(activation));
@@ -101,7 +102,12 @@ Construction::Entries refine_leaves_with(Construction& construction, const Param
   for (unsigned node = 0; node < num_nodes; ++node)
     nodes.emplace_back(node, std::span(workers).subspan(node * per_node, per_node),
                        coordination_of_node(construction.team()), resume);
-  Leaves<Locks, Time> leaves{.octree = octree, .cells = cells, .queue = queue, .time = time, .over = over};
+  Leaves<Locks, Time> leaves{.octree = octree,
+                             .cells = cells,
+                             .queue = queue,
+                             .time = time,
+                             .over = over,
+                             .with_schedule = options.with_schedule};
   time.run([&](WorkerId self) {  // 7
     ComputingNode<Locks>& node = nodes[self / per_node];
     if (self % per_node == 0) {

@@ -6,6 +6,7 @@
 
 #include "cli/add_options.h"
 #include "cli/crossover.h"
+#include "cli/options_for_image.h"
 
 namespace podm::cli {
 namespace {
@@ -42,7 +43,9 @@ void add_limit_options(CLI::App& app, MeshCommand& command) {
           into_count(meshing.limits.max_elements));
   add_one(app, "--max-seconds", "S", "stop meshing after this many seconds [default: none]",
           into_positive(meshing.limits.max_seconds, "number of seconds"));
-  add_one(app, "--max-memory-gib", "GIB", "memory of the process, GiB [default: 80 % of what is available]",
+  add_one(app, "--max-memory-gib", "GIB",
+          fmt::format("memory of the process, GiB [default: {} % of what is available]",
+                      kPercentOfAvailableMemory),
           [&command](const std::string& text, const std::string& name) {
             const double bytes = parse_positive(text, name, "number of GiB") * kBytesPerGib;
             constexpr double kMost = 1e18;  // far above any machine, and within an integer
@@ -105,7 +108,7 @@ void add_run_options(CLI::App& app, MeshCommand& command) {
           into_choice(meshing.team.executor));
   add_one(app, "--virtual-cost", "COST", "time of an attempt: unit (1 us) or measured (by its work)",
           into_choice(meshing.team.virtual_cost));
-  add_one(app, "--seed", "N", "of pauses after conflicts and of virtual time",
+  add_one(app, "--seed", "N", "draws pauses after conflicts, and what virtual time draws",
           {[&meshing](const std::string& text, const std::string& name) {
              meshing.team.seed = parse_integer(text, name, 0, std::numeric_limits<std::uint32_t>::max());
            },

@@ -13,7 +13,6 @@
 namespace podm::cli {
 namespace {
 
-constexpr double kShareOfAvailableMemory = 0.8;
 constexpr double kBytesPerGib = 1024.0 * 1024 * 1024;
 constexpr std::uint64_t kLeastBytesForMesh = 1 << 20;
 
@@ -63,7 +62,7 @@ std::uint64_t bytes_for_mesh(std::uint64_t limit_bytes, const std::string& image
 
 std::uint64_t memory_limit_bytes(const MeshCommand& command) {
   if (command.max_memory_bytes > 0) return command.max_memory_bytes;
-  return static_cast<std::uint64_t>(kShareOfAvailableMemory * static_cast<double>(available_memory_bytes()));
+  return available_memory_bytes() / 100 * kPercentOfAvailableMemory;
 }
 
 std::uint64_t bytes_for_image(std::uint64_t limit_bytes) {

@@ -9,7 +9,10 @@
 
 namespace podm::cli {
 
-/// What the process may take: as asked for, else a share of what is available now, before the image is read.
+inline constexpr unsigned kPercentOfAvailableMemory = 80;
+
+/// What the process may take: as asked for, else that share of what is available now, before the image is
+/// read.
 std::uint64_t memory_limit_bytes(const MeshCommand& command);
 /// What of it the image may take while it is read.
 std::uint64_t bytes_for_image(std::uint64_t limit_bytes);

@@ -1,15 +1,14 @@
 // The contract of vertex_locks.h, asserted at every access to a cell in a build with PODM_CHECK_LOCKS: in any
 // other there is nothing to it.
 //
-//   A cell is read under locks on two of its vertices, or on two of a neighbour's. Its mirrors are written
-//   under three, and it is replaced under all four. Locks may count as held what no other worker can reach
-//   (algorithms/leaf_locks.h).
+//   A cell is read under locks on two of its vertices, or on two of a neighbour's. Its mirrors and its sphere
+//   are written under three, and it is replaced under all four. Locks may count as held what no other worker
+//   can reach (algorithms/leaf_locks.h).
 //
-// Spheres and mirrors of cells that the operation itself has made go unchecked: nobody else knows of these
-// yet. So do vertices: whoever may read a cell may read its vertices, and those that locks are tried on are
-// peeked at. The contract binds attempts. Whoever uses the store outside of one has it alone: before workers
-// run, after they have ended, and where the master of a computing node ends a leaf. Peeks and prefetches are
-// bound by nothing.
+// Vertices go unchecked: whoever may read a cell may read its vertices, those that locks are tried on are
+// peeked at, and what is written of one is its maker's, or its cavity's owner's. The contract binds attempts.
+// Whoever uses the store outside of one has it alone: before workers run, after they have ended, and where
+// the master of a computing node ends a leaf. Peeks and prefetches are bound by nothing.
 #pragma once
 
 #include <cstdint>

@@ -65,6 +65,7 @@ Mesh::Mesh(const Box& box, std::size_t cell_capacity, int num_nodes)
 }
 
 void Mesh::refresh_sphere(CellId c) {
+  assert_may_write_mirrors(*this, c);
   const auto& v = cells_[c].vertices;
   cells_[c].sphere = circumsphere(point(v[0]), point(v[1]), point(v[2]), point(v[3]), extent_);
 }

@@ -88,8 +88,9 @@ class Mesh {
   Mesh(const Box& box, std::size_t cell_capacity, int num_nodes = 1);
 
   // Builds that check the lock protocol do it here: step.h, lock_contract.h.
-  Cell& cell(CellId c) { return note_read(c), assert_may_read(*this, c), cells_[c]; }
   const Cell& cell(CellId c) const { return note_read(c), assert_may_read(*this, c), cells_[c]; }
+  /// A cell whose sphere and mirrors are not set yet, for its maker to do so.
+  Cell& new_cell(CellId c) { return step(), assert_may_write_mirrors(*this, c), cells_[c]; }
   const CellState& state(CellId c) const { return assert_may_read(*this, c), states_[c]; }
   LabelIndex& label(CellId c) { return step(), assert_may_read(*this, c), states_[c].label; }
   LabelIndex label(CellId c) const { return assert_may_read(*this, c), states_[c].label; }

@@ -65,7 +65,7 @@ void StarFiller::fill(Mesh& mesh, Pool& pool, Region& region, VertexId apex) {
     const Facet& facet = facets_[f];
     const CellId id = region.created[f];
     mesh.renew(id, {facet.vertices[0], facet.vertices[1], facet.vertices[2], apex});
-    Cell& cell = mesh.cell(id);
+    Cell& cell = mesh.new_cell(id);
     cell.sphere = {{spheres_[0][f], spheres_[1][f], spheres_[2][f]}, spheres_[3][f]};
     cell.mirrors[3] = facet.mirror;
     mesh.set_mirror(facet.mirror, 4 * id + 3);
@@ -76,7 +76,7 @@ void StarFiller::fill(Mesh& mesh, Pool& pool, Region& region, VertexId apex) {
   }
   for (unsigned f = 0; f < num_facets_; ++f) {
     const unsigned a = facets_[f].local[0], b = facets_[f].local[1], c = facets_[f].local[2];
-    auto& mirrors = mesh.cell(region.created[f]).mirrors;
+    auto& mirrors = mesh.new_cell(region.created[f]).mirrors;
     mirrors[0] = facet_at_edge_[(c << row_bits_) + b];
     mirrors[1] = facet_at_edge_[(a << row_bits_) + c];
     mirrors[2] = facet_at_edge_[(b << row_bits_) + a];

@@ -106,11 +106,6 @@ void RefinementQueue::push(LeafId leaf, std::uint64_t num_poor) {
   if (is_ready(leaf)) ready_of(leaf).insert(key(leaf));
 }
 
-std::optional<LeafId> RefinementQueue::pop(unsigned node) {
-  const std::lock_guard lock(mutex_);
-  return take(node);
-}
-
 RefinementQueue::Popped RefinementQueue::pop_or_wait(unsigned node, const std::stop_token& stop) {
   const std::lock_guard lock(mutex_);
   if (stop.stop_requested()) return {std::nullopt, false};

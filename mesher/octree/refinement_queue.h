@@ -45,11 +45,9 @@ class RefinementQueue {
   /// are told at the next finish().
   void push(LeafId leaf, std::uint64_t num_poor);
 
-  /// A leaf for the node, now active, with all its poor cells taken; nothing if all that have poor cells are
-  /// near active ones. Never waits.
-  std::optional<LeafId> pop(unsigned node);
-  /// Does as pop, but waits for a leaf, by wait(), which returns when the node was woken or a stop is
-  /// requested. Nothing: no leaf is active nor has poor cells, or `stop` was requested.
+  /// A leaf for the node, now active, with all its poor cells taken. While all that have poor cells are near
+  /// active ones it waits, by wait(), which returns when the node was woken or a stop is requested. Nothing:
+  /// no leaf is active nor has poor cells, or `stop` was requested.
   template <class Wait>
   std::optional<LeafId> wait_and_pop(unsigned node, const Wait& wait, const std::stop_token& stop = {}) {
     for (;;) {

@@ -131,7 +131,7 @@ def fill_box(rng, labels):
 
 
 def swap_labels(rng, labels):
-    """From some slice on."""
+    """Two labels are exchanged from some slice on."""
     a, b = rng.integers(0, labels.max() + 1, 2)
     part = labels[rng.integers(0, labels.shape[0]):]
     is_a, is_b = part == a, part == b
@@ -174,7 +174,7 @@ class Phantoms:
 
 
 def drawn_size(rng, longest):
-    """Of any shape: a cube, a slice, a row, a voxel."""
+    """The size may be of any shape: a cube, a slice, a row, a voxel."""
     size = [max(1, round(longest * rng.uniform(0.35, 1))) for _ in range(3)]
     for axis in rng.permutation(3)[:rng.integers(1, 4) if rng.random() < 0.08 else 0]:
         size[axis] = 1
@@ -203,7 +203,7 @@ def drawn_frame(rng, spacing):
 
 
 def drawn_values(rng, count, datatype):
-    """Of labels 0 to `count` - 1 in a file: 0 stays 0, others are any that the type holds."""
+    """The values that labels 0 to `count` - 1 have in a file: 0 stays 0, others are any that the type holds."""
     is_float = datatype == small_images.FLOAT32
     largest = 1 << 24 if is_float else min(int(numpy.iinfo(TYPES[datatype]).max), (1 << 32) - 1)
     if rng.random() < 0.5:

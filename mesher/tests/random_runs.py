@@ -130,7 +130,7 @@ def worker_options(rng, algorithm, most):
 
 
 def leaf_options(rng, sizes):
-    """Of leaves from the size of the image down to less than a voxel; some ten thousands of them at most, in a box that
+    """Leaves from the size of the image down to less than a voxel; at most some ten thousands of them, in a box that
     reaches beyond the image.
     """
     ratio = pick(rng, [1, 1.5, 2, 4, 7.5])

@@ -20,7 +20,7 @@ def ball_voxels(size):
 
 
 def nifti_bytes(voxels, dimensions=(12, 12, 12), datatype=UINT8, affine=None, magic=b"n+1\0"):
-    """Of a NIfTI-1 file; `affine` is three rows of four numbers."""
+    """The header of a NIfTI-1 file; `affine` is three rows of four numbers."""
     header = bytearray(352)
     struct.pack_into("<i", header, 0, 348)
     struct.pack_into("<8h", header, 40, len(dimensions), *dimensions, *([1] * (7 - len(dimensions))))

@@ -13,7 +13,7 @@ LIMIT_BYTES = 100 * 2 ** 20
 
 
 def own_folder():
-    """Of this process's group for memory, in version 1 or 2; None where it cannot be found."""
+    """The limit of this process's group for memory, in version 1 or 2; None where it cannot be found."""
     for line in pathlib.Path("/proc/self/cgroup").read_text().splitlines():
         _, controllers, path = line.split(":", 2)
         for root, legacy in (("/sys/fs/cgroup/memory", True), ("/sys/fs/cgroup", False)):

@@ -112,7 +112,7 @@ class Verification(PodmTestCase):
         self.assert_exit(run_podm(self.folder / "out.vtu", "--claims", "structure,delaunay", program=VERIFIER), 0)
 
     def test_signals_that_end_at_once_end_the_verifier_too(self):
-        """Of an image in a file: without that of a phantom the verifier would end by itself."""
+        """The image is in a file: without that of a phantom the verifier would end by itself."""
         image = self.folder / "image.nii.gz"
         self.assert_exit(run_podm("phantom", "abdomen", "--size", 48, "-o", image), 0)
         for number in signal.SIGUSR1, signal.SIGRTMIN:

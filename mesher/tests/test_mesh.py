@@ -112,7 +112,7 @@ class Mesh(PodmTestCase):
                     self.assertLessEqual({"labels", "surface", "size"}, set(verdicts))
 
     def test_fidelity_is_verified_within_what_the_sampling_distance_promises(self):
-        """By voxels alone the coarse mesh would fail."""
+        """The coarse mesh would fail if voxels alone set its size."""
         coarse = ["--radius", "26", "--delta", "13"]
         for options, image in ((coarse, "phantom:torus@64"), (["--radius", "9", "--labels", "1,3", "--space", "LPS"],
                                                              "phantom:spheres@32")):

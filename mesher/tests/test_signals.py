@@ -204,7 +204,7 @@ class Refinement(PodmTestCase):
             self.assertLessEqual(end.seconds, LONGEST_S + seconds_of_writing(self.read_record(runs)))
 
     def test_leaves_in_the_making_keep_nobody_waiting(self):
-        """As many leaves as there may be: octree and queue take seconds to be made."""
+        """There are as many leaves as there may be: octree and queue take seconds to be made."""
         for moment_s in 0.3, 0.8, 1.3, 1.8:
             with self.subTest(moment_s=moment_s), tempfile.TemporaryDirectory() as elsewhere:
                 image = write_nifti(pathlib.Path(elsewhere) / "full.nii", bytes([1]) * 24 ** 3, (24, 24, 24))

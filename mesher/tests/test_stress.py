@@ -116,7 +116,7 @@ class Judge(unittest.TestCase):
 
 
 class Faults(PodmTestCase):
-    """Of programs that break what podm promises: a script in its place."""
+    """Programs that break what podm promises are caught: a script stands in its place."""
 
     def setUp(self):
         super().setUp()

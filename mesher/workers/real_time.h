@@ -6,6 +6,7 @@
 #include <functional>
 #include <mutex>
 #include <semaphore>
+#include <thread>
 #include <vector>
 
 #include "podm/counters.h"
@@ -31,6 +32,9 @@ class RealTime {
   Outcome attempt(Worker& worker) {
     const Outcome outcome = worker.attempt();
     worker.release();
+    // Who holds the vertices may want this processor. Without this `aggressive` hardly ends where threads
+    // outnumber processors.
+    if (outcome == Outcome::kLockConflict) std::this_thread::yield();
     if (++states_[worker.id()].attempts % StopControl::kAttemptsBetweenChecks == 0) check_limits(worker);
     return outcome;
   }

@@ -51,15 +51,19 @@ void VirtualTime::run(const std::function<void(WorkerId)>& work) try {
 
 // A run ends between operations: those that have begun end as well.
 void VirtualTime::finish_all() {
+  std::exception_ptr failure;
   for (WorkerState& state : states_) {
     while (state.fibre && state.fibre->state() != Fibre::State::kEnded) {
       state.fibre->allow(Fibre::kUnlimited);
       try {
         state.fibre->resume();
       } catch (const std::bad_alloc&) {  // it has rolled back
+      } catch (...) {
+        if (!failure) failure = std::current_exception();
       }
     }
   }
+  if (failure) std::rethrow_exception(failure);
 }
 
 void VirtualTime::go_on(WorkerId worker) {

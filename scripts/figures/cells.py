@@ -18,7 +18,7 @@ def cells(frame, series, hops):
 
 
 def shares_agree(ours, published):
-    """Of all accesses, or of those that leave their node."""
+    """The share of all accesses, or of those that leave their node."""
     is_near = published / SHARE_FACTOR <= ours <= published * SHARE_FACTOR
     return is_near or abs(ours - published) <= SHARE_DIGIT
 

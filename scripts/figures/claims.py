@@ -123,7 +123,7 @@ def _zero_hops(hops, frame, basis):
 
 
 def _latencies(frame):
-    """Of Table 3, whose cycles are a machine's own: their order. Measured, or not at all."""
+    """The order of Table 3's cycles is compared, which are a machine's own. Measured, or not at all."""
     costs = table3.costs(frame)
     own = costs[~costs["is_another"]]["cycles"].tolist()
     another = costs[costs["is_another"]]["cycles"].tolist()

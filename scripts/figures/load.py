@@ -104,7 +104,7 @@ def image_of(row):
 
 
 def usable_cores(environment):
-    """Of the machine of a row; None where it says nothing."""
+    """What a row says of its machine; None where it says nothing."""
     return environment.get("usable_processors")
 
 

@@ -10,7 +10,7 @@ CORRECTED = {("podm", 64, "speedup"): 62.8}
 
 
 def table1():
-    """As printed, indexed by (algorithm, cores)."""
+    """The values as printed, indexed by (algorithm, cores)."""
     wide = pandas.read_csv(FOLDER / "table1.csv")
     parts = []
     for algorithm in ALGORITHMS:
@@ -28,7 +28,7 @@ def table1():
 
 
 def corrected_table1():
-    """As printed, but for misprints: what ours are compared with."""
+    """The values as printed, but for misprints: what ours are compared with."""
     table = table1()
     for (algorithm, cores, column), value in CORRECTED.items():
         table.loc[(algorithm, cores), column] = value
@@ -43,5 +43,5 @@ def table2():
 
 
 def table3():
-    """As printed, indexed by level; clock cycles are text, `O(n)` being an order of magnitude."""
+    """The values as printed, indexed by level; clock cycles are text, `O(n)` being an order of magnitude."""
     return pandas.read_csv(FOLDER / "table3.csv", index_col="level", dtype={"access_clock_cycles": str})

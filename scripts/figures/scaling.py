@@ -38,7 +38,7 @@ class Series:
         return ", ".join(part for part in (key["experiment"], key["setting"], image, size, key["machine"]) if part)
 
     def kind(self):
-        """Of its numbers, for legends and tables."""
+        """What legends and tables say of its numbers."""
         return self.key["basis"] + (", image grows" if self.grows else "")
 
 

@@ -47,7 +47,7 @@ def _median(group, column):
 
 
 def _zero_hops(group):
-    """Of its rows together, or the reason why there is none."""
+    """What its rows say together, or the reason why there is none."""
     counts = list(group["hops"]) if "hops" in group else []
     lists = [one for one in counts if isinstance(one, list)]
     if not lists:

@@ -40,7 +40,7 @@ def _joined(blocks):
 
 
 def in_order(table):
-    """By cores, then as people compare: PODM first, the published value before ours."""
+    """Rows are ordered by cores, then as people compare: PODM first, the published value before ours."""
     peers = sorted(set(table["algorithm"]) - set(paper.ALGORITHMS))
     ranks = {"basis": ["published", "measured", "simulated"], "algorithm": [*paper.ALGORITHMS, *peers],
              "images": ["one", "growing"]}
@@ -53,7 +53,7 @@ def in_order(table):
 
 
 def readable(table):
-    """As the paper prints it: millions, two digits; an interval in brackets where there is one."""
+    """The number as the paper prints it: millions, two digits; an interval in brackets where there is one."""
     is_simulated = set(table["basis"]) == {"simulated"}
     shown = table[["cores", "algorithm", "basis", "images", "n"]].copy()
     for name, title in (SIMULATED_TITLES if is_simulated else TITLES).items():

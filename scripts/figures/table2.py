@@ -48,7 +48,7 @@ def why_no_hops(frame):
 
 
 def zero_hop_share(counts):
-    """Of one row's counts: its share, or the reason why there is none."""
+    """The share that one row's counts make, or the reason why there is none."""
     return counts[0] / sum(counts) if isinstance(counts, list) and sum(counts) else counts
 
 
@@ -85,7 +85,7 @@ def _label(row):
 
 
 def _shown(frame):
-    """Of each basis the rows of one machine, program, trial and image: those with the most core counts, then the most
+    """The rows of each basis, of one machine, program, trial and image: those with the most core counts, then the most
     cells, then the newest."""
     rows = scaling.headline_rows(frame)
     if rows.empty or "hops" not in rows:

@@ -36,7 +36,7 @@ def costs(frame):
 
 
 def _levels(frame):
-    """Of all rows of the machine that the newest one measured."""
+    """All rows of the machine that the newest one measured."""
     if "memory_levels" not in frame:
         return pandas.DataFrame()
     rows = frame[[isinstance(levels, list) for levels in frame["memory_levels"]]]

@@ -31,7 +31,7 @@ def _aside(text):
 
 
 def works(frame, outcome):
-    """Of our meshes alone; other meshers have a table of their own."""
+    """Our meshes alone are counted; other meshers have a table of their own."""
     if "guarantees" not in outcome.tables:
         return _answer("Not known: no mesh of ours was verified.")
     table = outcome.tables["guarantees"][0]
@@ -135,7 +135,7 @@ def scales(outcome):
 
 
 def _some(counts):
-    """At most MOST_COUNTS of them, the most cores among these."""
+    """Takes at most MOST_COUNTS of them, the most cores among these."""
     step = -(-len(counts) // MOST_COUNTS)
     return counts[::-1][::step][::-1]
 

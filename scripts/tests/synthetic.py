@@ -19,7 +19,7 @@ BIG_MACHINE = ROW["environment"] | {"usable_processors": 256}
 
 
 def row(algorithm="podm", cores=1, **changes):
-    """Of a run in virtual time, its seconds are virtual; those of the machine at hand mean nothing then."""
+    """The seconds of a run in virtual time are virtual; those of the machine at hand mean nothing then."""
     made = copy.deepcopy(ROW)
     made.update(algorithm=algorithm, threads={"asked": cores, "used": cores}, cells=3_000_000 * cores,
                 trial=f"made-up,algorithm={algorithm},threads={cores},seed={next(SEEDS)}")

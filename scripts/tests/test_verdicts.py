@@ -150,7 +150,7 @@ class Published(unittest.TestCase):
 
 class Crossover(unittest.TestCase):
     def claim(self, counts, ahead_from):
-        """Of rows on those numbers of cores, where PDR.PODM is ahead from one of them on."""
+        """Rows on those numbers of cores, where PDR.PODM is ahead from one of them on."""
         rows = [synthetic.row(algorithm, cores, environment=synthetic.BIG_MACHINE,
                               phases_s={"refine": 9.0 if ahead else 10.0})
                 for cores in counts for algorithm in paper.ALGORITHMS

@@ -80,7 +80,7 @@ double determinant(const Matrix& m) {
 }
 
 // One step of Newton's iteration for the orthonormal matrix nearest to m: the mean of m and its inverse
-// transposed. From a distance e it comes within e^2.
+// transposed. A distance e becomes one within e^2.
 Matrix step_to_orthonormal(const Matrix& m) {
   const double d = determinant(m);
   Matrix mean{};

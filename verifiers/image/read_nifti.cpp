@@ -35,9 +35,9 @@ enum Field : std::size_t {
   kMagic = 344
 };
 
-class Header {
+class NiftiHeader {
  public:
-  Header(const std::string& path, ByteSource& source) {
+  NiftiHeader(const std::string& path, ByteSource& source) {
     source.read(bytes_.data(), bytes_.size());
     std::int32_t size = at<std::int32_t>(kSizeOfHeader);
     is_swapped_ = size != kHeaderBytes && size != kNifti2HeaderBytes;
@@ -62,7 +62,7 @@ class Header {
   bool is_swapped_ = false;
 };
 
-std::vector<std::int64_t> size_of(const std::string& path, const Header& header) {
+std::vector<std::int64_t> size_of(const std::string& path, const NiftiHeader& header) {
   const int num_axes = header.at<std::int16_t>(kDim);
   if (num_axes < 1 || num_axes > 7)
     refuse(path, "not a NIfTI-1 file (" + std::to_string(num_axes) + " dimensions)");
@@ -72,7 +72,7 @@ std::vector<std::int64_t> size_of(const std::string& path, const Header& header)
   return size;
 }
 
-VoxelType voxel_type(const std::string& path, const Header& header) {
+VoxelType voxel_type(const std::string& path, const NiftiHeader& header) {
   static const std::map<int, VoxelType> kTypes{{2, VoxelType::kUint8},    {4, VoxelType::kInt16},
                                                {8, VoxelType::kInt32},    {16, VoxelType::kFloat},
                                                {64, VoxelType::kDouble},  {256, VoxelType::kInt8},
@@ -86,7 +86,7 @@ VoxelType voxel_type(const std::string& path, const Header& header) {
 }
 
 // A header that names no unit means mm.
-double unit_mm(const Header& header) {
+double unit_mm(const NiftiHeader& header) {
   constexpr int kSpatialBits = 7, kMetre = 1, kMicrometre = 3;
   const int unit = header.at<std::uint8_t>(kXyztUnits) & kSpatialBits;
   return unit == kMetre ? 1000 : unit == kMicrometre ? 0.001 : 1;
@@ -96,7 +96,7 @@ using Affine = std::array<double, 12>;
 
 // Method 2 of nifti1.h: a rotation by the unit quaternion (a, b, c, d), a >= 0, with the third axis turned
 // over where pixdim[0] is negative. A sum b^2 + c^2 + d^2 of 1 but for rounding is half a turn.
-Affine qform(const Header& header) {
+Affine qform(const NiftiHeader& header) {
   constexpr double kHalfTurn = 1e-7;
   double b = header.at<float>(kQuaternB, 0), c = header.at<float>(kQuaternB, 1),
          d = header.at<float>(kQuaternB, 2);
@@ -130,7 +130,7 @@ Affine qform(const Header& header) {
 }
 
 // The sform if there is one, else the qform, else the voxel sizes alone.
-Affine voxel_to_world(const std::string& path, const Header& header) {
+Affine voxel_to_world(const std::string& path, const NiftiHeader& header) {
   Affine affine{};
   if (header.at<std::int16_t>(kSformCode) > 0) {
     for (std::size_t i = 0; i < affine.size(); ++i) affine[i] = header.at<float>(kSrowX, i);
@@ -145,7 +145,7 @@ Affine voxel_to_world(const std::string& path, const Header& header) {
 }
 
 // Bytes between the header and the voxels. An offset below the least that a file may have counts as that.
-std::uint64_t gap_after(const std::string& path, const Header& header) {
+std::uint64_t gap_after(const std::string& path, const NiftiHeader& header) {
   constexpr float kSmallest = 352, kLargest = 1 << 24;  // the latter exact in a float
   const float offset = header.at<float>(kVoxOffset);
   if (!(offset <= kLargest)) refuse(path, "the NIfTI header is damaged (vox_offset)");
@@ -156,7 +156,7 @@ std::uint64_t gap_after(const std::string& path, const Header& header) {
 
 RawImage read_nifti(const std::string& path) {
   ByteSource source(path, path, 0, Compression::kIfGzipped);
-  const Header header(path, source);
+  const NiftiHeader header(path, source);
   RawImage raw;
   raw.is_swapped = header.is_swapped();
   const std::vector<std::int64_t> size = size_of(path, header);

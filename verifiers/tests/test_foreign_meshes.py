@@ -100,7 +100,7 @@ class CgalTest(ForeignMeshes):
     PROGRAM = os.environ["PODM_CGAL_MESH3"]
 
     def verdicts_of_half_balls(self, *options):
-        """Of CGAL's mesh of two half balls, within the bounds that it was given."""
+        """CGAL's mesh of two half balls is certified within the bounds that it was given."""
         write_inr(self.folder / "balls.inr", half_balls())
         self.run_program("balls.inr", "--cell-size", "3", "--facet-distance", "0.5", "--output", "balls.mesh", *options)
         return self.verdicts("balls.mesh", "--image", self.folder / "balls.inr", "--radius", "3")

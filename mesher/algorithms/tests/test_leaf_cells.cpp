@@ -4,6 +4,8 @@
 
 #include <set>
 
+#include "octree/tests/refinement_queue_state.h"
+
 namespace podm::test {
 namespace {
 
@@ -29,25 +31,25 @@ class OneLeaf : public testing::Test {
 // goes with the others, and the leaf is handed out once more, with none.
 TEST_F(OneLeaf, CellsThatComeLateAreTakenOnce) {
   cells_.add(entries({0, 1}), queue_, {});
-  const auto leaf = queue_.pop(0);
+  const auto leaf = pop(queue_, 0);
   ASSERT_TRUE(leaf);
   cells_.add(entries({2}), queue_, {});
   std::multiset<CellId> taken;
   for (const auto& entry : cells_.take(*leaf)) taken.insert(entry.cell);
   queue_.finish(*leaf);
-  const auto again = queue_.pop(1);
+  const auto again = pop(queue_, 1);
   ASSERT_TRUE(again);
   for (const auto& entry : cells_.take(*again)) taken.insert(entry.cell);
   queue_.finish(*again);
   EXPECT_EQ(taken, (std::multiset<CellId>{0, 1, 2}));
-  EXPECT_FALSE(queue_.pop(0));
+  EXPECT_FALSE(pop(queue_, 0));
 }
 
 TEST_F(OneLeaf, ListsNothingWhenTheRunIsOver) {
   std::stop_source over;
   over.request_stop();
   cells_.add(entries({0}), queue_, over.get_token());
-  EXPECT_FALSE(queue_.pop(0));
+  EXPECT_FALSE(pop(queue_, 0));
   EXPECT_TRUE(cells_.take(0).empty());
 }
 

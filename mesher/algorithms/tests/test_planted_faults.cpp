@@ -1,4 +1,5 @@
-// The lock contract notices an operation that takes a lock too few. Of builds with PODM_CHECK_LOCKS.
+// The lock contract notices an operation that takes a lock too few. Only builds with
+// PODM_CHECK_LOCKS have it.
 #include <gtest/gtest.h>
 
 #include "algorithms/podm.h"

@@ -1,5 +1,5 @@
-// What the lock contract lets an attempt do with so many vertices of a cell held, and where it aborts. Of
-// builds with PODM_CHECK_LOCKS.
+// The lock contract lets an attempt do so much with so many vertices of a cell held, and aborts beyond it.
+// Only builds with PODM_CHECK_LOCKS have it.
 #include <gtest/gtest.h>
 
 #include "delaunay/lock_contract.h"
@@ -65,6 +65,17 @@ TEST_F(LockContractDeathTest, LetsWriteMirrorsUnderThreeLocks) {
   write();
   hold(cell_, 2);
   EXPECT_DEATH(write(), "is given a mirror with 2 of its vertices held");
+}
+
+TEST_F(LockContractDeathTest, LetsFinishANewCellUnderThreeLocks) {
+  const auto finish = [&] {
+    attempt([&] { t_.mesh.new_cell(cell_).mirrors = t_.mesh.peek_mirrors(cell_); });
+  };
+  hold(cell_, 3);
+  finish();
+  hold(cell_, 2);
+  EXPECT_DEATH(finish(), "is given a mirror with 2 of its vertices held");
+  EXPECT_DEATH(attempt([&] { t_.mesh.refresh_sphere(cell_); }), "with 2 of its vertices held");
 }
 
 TEST_F(LockContractDeathTest, LetsReplaceUnderFourLocks) {

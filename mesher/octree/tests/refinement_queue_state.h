@@ -28,8 +28,18 @@ class RefinementQueueState {
     return queue_.share_of_[leaf];
   }
 
+  /// A leaf for the node; nothing if it would have to wait for one.
+  std::optional<LeafId> pop(unsigned node) {
+    const std::scoped_lock lock(queue_.mutex_);
+    return queue_.take(node);
+  }
+
  private:
   RefinementQueue& queue_;
 };
+
+inline std::optional<LeafId> pop(RefinementQueue& queue, unsigned node) {
+  return RefinementQueueState(queue).pop(node);
+}
 
 }  // namespace podm

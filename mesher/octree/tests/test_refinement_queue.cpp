@@ -74,7 +74,7 @@ TEST_P(Queue, HandsOutEveryPendingLeafAwayFromActiveOnes) {
       queue.finish(active.back());
       active.pop_back();
     } else if (active.size() < kNumNodes) {
-      const std::optional<LeafId> leaf = queue.pop(static_cast<unsigned>(seeded.random() % kNumNodes));
+      const std::optional<LeafId> leaf = pop(queue, static_cast<unsigned>(seeded.random() % kNumNodes));
       ASSERT_EQ(leaf.has_value(), std::any_of(pending.begin(), pending.end(), is_free));
       if (!leaf) return;
       EXPECT_TRUE(is_free(*leaf));
@@ -100,7 +100,7 @@ TEST_P(Queue, RepeatsItselfForTheSameCalls) {
     std::vector<std::optional<LeafId>> answers;
     std::vector<LeafId> active;
     for (unsigned i = 0; i < 200; ++i) {
-      answers.push_back(queue.pop(i % 4));
+      answers.push_back(pop(queue, i % 4));
       if (answers.back()) active.push_back(*answers.back());
       if (active.empty() || random() % 2 == 0) continue;
       queue.finish(active.front());
@@ -183,7 +183,7 @@ TEST_P(Shares, HaveEqualWorkAndGoToTheirNodes) {
   for (unsigned node = 0; node < kNumNodes; ++node) {
     EXPECT_NEAR(work_of_node[node], mean, 2 * (kMost + 1));
     if (work_of_node[node] == 0) continue;
-    const std::optional<LeafId> leaf = queue.pop(node);
+    const std::optional<LeafId> leaf = pop(queue, node);
     ASSERT_TRUE(leaf);
     EXPECT_EQ(RefinementQueueState(queue).home_of(*leaf), node);
     queue.finish(*leaf);
@@ -197,7 +197,7 @@ TEST(Share, OfWhoHasMostIsHalvedForWhoHasNone) {
   queue.share_out();
   for (LeafId leaf = 0; leaf < 16; ++leaf) queue.push(leaf, 10);
   ASSERT_EQ(RefinementQueueState(queue).home_of(15), 0u);
-  const std::optional<LeafId> taken = queue.pop(1);
+  const std::optional<LeafId> taken = pop(queue, 1);
   ASSERT_TRUE(taken);
   unsigned num_taken_over = 0;
   for (LeafId leaf = 0; leaf < 16; ++leaf) num_taken_over += RefinementQueueState(queue).home_of(leaf) == 1;
@@ -249,16 +249,16 @@ TEST_F(SmallQueue, LeavesNearAnActiveOneWaitForItsEnd) {
   ASSERT_EQ(wait_and_pop(0), LeafId{3});
   queue.push(3, 1);
   queue.push(5, 1);
-  EXPECT_EQ(queue.pop(1), std::nullopt);
+  EXPECT_EQ(pop(queue, 1), std::nullopt);
   queue.push(6, 1);
-  EXPECT_EQ(queue.pop(1), LeafId{6});
+  EXPECT_EQ(pop(queue, 1), LeafId{6});
   queue.finish(3);
-  EXPECT_EQ(queue.pop(0), LeafId{3});
+  EXPECT_EQ(pop(queue, 0), LeafId{3});
 }
 
 TEST_F(SmallQueue, WaitersGoOnWhenALeafIsFinishedAndEndTogether) {
   queue.push(3, 1);
-  ASSERT_EQ(queue.pop(0), LeafId{3});
+  ASSERT_EQ(pop(queue, 0), LeafId{3});
   queue.push(4, 1);
   std::atomic<unsigned> num_taken = 0;
   std::vector<std::jthread> waiters;
@@ -279,7 +279,7 @@ TEST_F(SmallQueue, WaitersGoOnWhenALeafIsFinishedAndEndTogether) {
 
 TEST_F(SmallQueue, StopWakesWaitersAndHandsOutNothingMore) {
   queue.push(3, 1);
-  ASSERT_EQ(queue.pop(0), LeafId{3});
+  ASSERT_EQ(pop(queue, 0), LeafId{3});
   queue.push(4, 1);
   std::optional<LeafId> answer = 0;
   std::jthread waiter([&](std::stop_token stop) { answer = wait_and_pop(1, stop); });

@@ -20,6 +20,7 @@
 #include <random>
 
 #include "octree/refinement_queue.h"
+#include "refinement_queue_state.h"
 
 namespace podm::test {
 namespace {
@@ -88,7 +89,7 @@ class Simulation {
   }
   void begin_all() {
     std::erase_if(idle_, [&](unsigned node) {
-      const std::optional<LeafId> leaf = queue_.pop(node);
+      const std::optional<LeafId> leaf = pop(queue_, node);
       if (leaf) begin(node, *leaf);
       return leaf.has_value();
     });

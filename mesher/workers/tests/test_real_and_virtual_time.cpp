@@ -74,6 +74,16 @@ TYPED_TEST(Times, ThrowAgainWhatAWorkerThrows) {
   EXPECT_TRUE(this->stop_.is_over());
 }
 
+TYPED_TEST(Times, ThrowAgainOneOfWhatSeveralThrow) {
+  auto time = TypeParam::make(this->stop_);
+  EXPECT_THROW(time.run([&](WorkerId self) {
+    if (self == 0) throw std::bad_alloc();
+    time.block(self, &Overhead::begging_s);
+    throw std::runtime_error("thrown by two");
+  }),
+               std::runtime_error);
+}
+
 TYPED_TEST(Times, TakeALackOfMemoryForALimit) {
   auto time = TypeParam::make(this->stop_);
   time.run([&](WorkerId self) {
