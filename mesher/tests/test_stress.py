@@ -111,8 +111,10 @@ class Judge(unittest.TestCase):
 
     def test_meshes_without_a_cell(self):
         self.judge(1, cells=0, verdicts={})
+        self.judge(1, cells=0, verdicts={}, guarantees={"missing_labels": 1})
         self.assert_fault(0, cells=0, verdicts={})
-        self.assert_fault(1, cells=0, verdicts={}, guarantees={"missing_labels": 1})
+        self.assert_fault(1, cells=0, verdicts={}, guarantees={"radius": 1})
+        self.assert_fault(1, guarantees={"missing_labels": 1})
 
 
 class Faults(PodmTestCase):
