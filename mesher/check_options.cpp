@@ -24,8 +24,8 @@ void check_sizes(const LabelImage& image, const SizeOptions& sizes) {
   }
   if (sizes.target_elements > 0 && sizes.radius_mm > 0)
     throw InputError("a target number of elements excludes a radius");
-  if (!(sizes.target_tolerance_percent > 0 && sizes.target_tolerance_percent < 100))
-    throw InputError("the tolerance of a target must be more than 0 and less than 100 percent");
+  if (!(sizes.target_tolerance_percent > 0 && sizes.target_tolerance_percent <= 100))
+    throw InputError("the tolerance of a target must be more than 0 and at most 100 percent");
 }
 
 void check_leaves(const LeafOptions& leaves) {

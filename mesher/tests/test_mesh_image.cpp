@@ -246,6 +246,9 @@ TEST(MeshImageRefusals, BadOptionsAndEmptyImages) {
     tolerance.sizes.target_tolerance_percent = bad;
     EXPECT_THROW(mesh_image(image, tolerance), InputError);
   }
+  MeshingOptions anything = radius(1);
+  anything.sizes.target_tolerance_percent = 101;
+  EXPECT_THROW(mesh_image(image, anything), InputError);
   MeshingOptions absent = radius(1);
   absent.sizes.radius_of_mm[77] = 1;
   EXPECT_THROW(mesh_image(image, absent), InputError);
