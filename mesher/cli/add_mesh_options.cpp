@@ -11,8 +11,6 @@
 namespace podm::cli {
 namespace {
 
-constexpr double kBytesPerGib = 1024.0 * 1024 * 1024;
-
 void add_sizing_options(CLI::App& app, MeshCommand& command) {
   MeshingOptions& meshing = command.meshing;
   begin_group(app, "Size of the cells");

@@ -13,7 +13,6 @@
 namespace podm::cli {
 namespace {
 
-constexpr double kBytesPerGib = 1024.0 * 1024 * 1024;
 constexpr std::uint64_t kLeastBytesForMesh = 1 << 20;
 
 void refuse_coarse_sampling(const MeshCommand& command, const LabelImage& image) {
