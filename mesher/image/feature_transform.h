@@ -30,18 +30,13 @@ class Neighborhood {
     return static_cast<unsigned>(13 + i + 3 * j + 9 * k);
   }
   constexpr bool differs(unsigned position) const { return (bits_ >> position & 1) != 0; }
+  /// A bit at each position.
+  constexpr std::uint32_t bits() const { return bits_; }
   /// The eight corners of the block whose lowest corner is (i,j,k) away, each -1 or 0: a bit for each that
   /// differs, corner i + 2 j + 4 k.
   constexpr unsigned differing_corners(int i, int j, int k) const {
     const std::uint32_t b = bits_ >> position(i, j, k);
     return (b & 0x3) | (b >> 1 & 0xc) | (b >> 5 & 0x30) | (b >> 6 & 0xc0);
-  }
-  /// The edges between two of the 27 voxels that differ in this sense, along axis 0, 1 or 2: a bit at the
-  /// position of each edge's first voxel.
-  constexpr std::uint32_t differing_edges(unsigned axis) const {
-    constexpr std::uint32_t kStart[] = {0x36db6db, 0x0fc7e3f, 0x003ffff};
-    constexpr unsigned kStep[] = {1, 3, 9};
-    return (bits_ ^ bits_ >> kStep[axis]) & kStart[axis];
   }
   /// Whether all that differ have one label.
   constexpr bool has_two_labels() const { return (bits_ >> 30 & 1) != 0; }

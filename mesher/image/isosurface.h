@@ -58,7 +58,7 @@ class Oracle {
 
   /// The isosurface point nearest to p, as found by local search from the nearest surface voxels, if within
   /// `radius` of p. Among several bumps of voxel size the search may take the second nearest: on smooth
-  /// shapes it exceeds the nearest distance typically by nothing, in 1 % of cases by more than 0.2 and never
+  /// shapes it exceeds the nearest distance typically by nothing, in 1 % of cases by more than 0.25 and never
   /// by more than 1 of a voxel's shortest side.
   std::optional<NearPoint> near_point(const Point& p, double radius) const;
   /// p's near point, brought to less than 1e-6 voxel from the isosurface. May be a little beyond `radius`.
@@ -112,13 +112,16 @@ class Oracle {
   std::optional<LabelChange> first_change(const Point& u, const Vector& d, LabelIndex label) const;
   std::optional<LabelChange> change_in_block(const Point& from, const Vector& d, const Voxel& block,
                                              const BlockLabels& labels, LabelIndex label) const;
+  using EightIndices = std::array<typename Features<Reads>::VoxelIndex, 8>;
   struct Nearest;
   class Sheet;
-  double squared_distance_to_midpoint(Neighborhood around, const Vector& d) const;
-  Voxel feature_near(const Point& u) const;
-  bool pull(Sheet& sheet, Point& z, int max_pulls) const;
-  bool try_midpoints_around(const Point& u, Nearest& best) const;
-  std::optional<Vector> tangent_step(Sheet& sheet, const Point& u, const Point& z) const;
+  EightIndices features_around(const Point& u) const;
+  Nearest nearest_midpoint(const EightIndices& surface_voxels, const Point& u) const;
+  Nearest nearest_start(const Point& u) const;
+  bool pull(Sheet& sheet, Point& z) const;
+  std::optional<Vector> tangent_step(const Sheet& sheet, const Point& u, const Point& z,
+                                     double negligible) const;
+  double negligible_gain(const Nearest& best) const;
   void descend(Sheet& sheet, const Point& u, Nearest& best) const;
 
   LabelGrid<Reads> grid_;

@@ -217,7 +217,7 @@ TEST(ClosestPoint, LiesOnTheIsosurfaceWithinTheRadius) {
 
 // How much farther than the nearest point, in voxel sides. Voxelised, "smooth" means bumps of voxel size, and
 // the search may end at the second nearest. Negative: the samples compared with are not dense.
-constexpr double kMedianExcess = 0.001, k99PercentExcess = 0.2, kGreatestExcess = 1;
+constexpr double kMedianExcess = 0.001, k99PercentExcess = 0.25, kGreatestExcess = 1;
 
 TEST(ClosestPoint, IsNearestOnSmoothPhantoms) {
   for (const Phantom& phantom : smooth_phantoms()) {
@@ -240,6 +240,25 @@ TEST(ClosestPoint, IsNearestOnSmoothPhantoms) {
   }
 }
 
+// From there bumps of voxel size hold a local search up.
+constexpr double kFarExcess = 4;
+
+TEST(ClosestPoint, IsNearFromFarOutside) {
+  for (const Phantom& phantom : smooth_phantoms()) {
+    SCOPED_TRACE(phantom.name);
+    const Isosurface isosurface(phantom.image, 1);
+    const std::vector<Point> surface = sample_isosurface(phantom.image, 4);
+    const double side = shortest_voxel_side(phantom.image);
+    Random random(13);
+    for (int n = 0; n < 300; ++n) {
+      const Point p = random_point(random, phantom.image, 60);
+      const auto z = closest_point(isosurface, p, 1e9);
+      ASSERT_TRUE(z);
+      EXPECT_LE(distance(p, *z) - distance_to_nearest(surface, p), kFarExcess * side);
+    }
+  }
+}
+
 TEST(ClosestPoint, IsSeldomMissedOnSmoothPhantoms) {
   for (const Phantom& phantom : smooth_phantoms()) {
     SCOPED_TRACE(phantom.name);
@@ -254,7 +273,7 @@ TEST(ClosestPoint, IsSeldomMissedOnSmoothPhantoms) {
       num_missed += !closest_point(isosurface, p, nearest / 0.95);
       EXPECT_TRUE(closest_point(isosurface, p, nearest + kGreatestExcess * side)) << nearest;
     }
-    EXPECT_LE(num_missed, 10);
+    EXPECT_LE(num_missed, 15);
   }
 }
 
