@@ -52,9 +52,8 @@ class Oracle {
     grid_.prefetch(index);
   }
 
-  /// A lower bound of the distance from p to the isosurface, mm; 0 when p may lie on it. One or two look-ups,
-  /// and some more where only that can tell whether the distance is above `radius`.
-  double distance_lower_bound(const Point& p, double radius) const;
+  /// A lower bound of the distance from p to the isosurface, mm; 0 when p may lie on it. One look-up.
+  double distance_lower_bound(const Point& p) const;
 
   /// The isosurface point nearest to p, as found by local search from the nearest surface voxels, if within
   /// `radius` of p. Among several bumps of voxel size the search may take the second nearest: on smooth
@@ -108,7 +107,6 @@ class Oracle {
   }
   double bound_from_outside(const Point& u) const;
   double bound_by_feature(const Point& u, const Voxel& v) const;
-  double bound_by_blocks(const Point& u) const;
   std::optional<LabelChange> first_change(const Point& u, const Vector& d, LabelIndex label) const;
   std::optional<LabelChange> change_in_block(const Point& from, const Vector& d, const Voxel& block,
                                              const BlockLabels& labels, LabelIndex label) const;
@@ -126,12 +124,10 @@ class Oracle {
 
   LabelGrid<Reads> grid_;
   Features<Reads> features_;
-  Affine from_voxels_, to_voxels_;             // to the working frame, from it
-  Vector spacing_, inverse_spacing_;           // mm a voxel, voxels a mm
-  Point end_;                                  // half a voxel beyond the last
-  double half_diagonal_mm_;                    // a voxel's
-  double shortest_side_mm_, longest_side_mm_;  // a voxel's
-  double weight_mm_;                           // no weight grows by 1 within less
+  Affine from_voxels_, to_voxels_;              // to the working frame, from it
+  Vector spacing_, inverse_spacing_;            // mm a voxel, voxels a mm
+  Point end_;                                   // half a voxel beyond the last
+  double half_diagonal_mm_, shortest_side_mm_;  // a voxel's
 };
 
 /// The oracle as most ask it: nobody counts.

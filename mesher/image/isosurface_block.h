@@ -192,10 +192,6 @@ class LabelGrid {
     return labels;
   }
 
-  /// A bit for each of the 64 corners of b and its 26 neighbours: bit i + 4 j + 16 k tells whether voxel
-  /// (b.i - 1 + i, b.j - 1 + j, b.k - 1 + k) has another label than `label`.
-  std::uint64_t corners_of_other_label(const Voxel& b, LabelIndex label) const;
-
  private:
   static bool is_in(int i, int n) { return static_cast<unsigned>(i) < static_cast<unsigned>(n); }
   const LabelIndex* row_from(std::size_t index) const {

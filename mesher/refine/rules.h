@@ -97,7 +97,7 @@ class Rules {
       return question(*counted_);
     return question(isosurface_);
   }
-  double distance_lower_bound(const Point& p, double radius) const;
+  double distance_lower_bound(const Point& p) const;
   bool has_poor_ratio(CellId c, double squared_radius) const;
   bool may_be_restricted(const Examination& t, CellId neighbor) const;
   bool obeys_r1_and_r2(const Cell& cell, double squared_radius) const;
