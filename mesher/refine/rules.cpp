@@ -74,7 +74,18 @@ std::optional<Point> Rules::r1_sample(const Examination& t) const {
   for (const VertexId v : mesh_.cell(t.cell).vertices) {
     if (is_covered(t.nearest->point, v)) return std::nullopt;
   }
-  return ask([&](const auto& oracle) { return oracle.polished(*t.nearest, t.center); });
+  const Point z = ask([&](const auto& oracle) { return oracle.polished(*t.nearest, t.center); });
+  return is_covered_beside(t.cell, z) ? std::nullopt : std::optional(z);
+}
+
+// By a vertex opposite to one of the cell's facets. The caller would find it among the cavity's, or one
+// nearer to z, at the price of the cavity.
+bool Rules::is_covered_beside(CellId c, const Point& z) const {
+  const auto& mirrors = mesh_.cell(c).mirrors;
+  return std::any_of(mirrors.begin(), mirrors.end(), [&](FacetId mirror) {
+    return mirror != kNoFacet &&
+           is_covered(z, mesh_.cell(cell_of(mirror)).vertices[static_cast<unsigned>(index_in_cell(mirror))]);
+  });
 }
 
 std::optional<Point> Rules::r2_center(const Examination& t) const {

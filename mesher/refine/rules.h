@@ -74,9 +74,9 @@ class Rules {
   /// Asks for what examine(c) will read, the cell itself apart.
   void prefetch(CellId c) const { isosurface_.prefetch(mesh_.peek_center(c)); }
 
-  /// R1's point, unless a vertex of the cell itself already covers it. The caller must still look for
-  /// isosurface vertices closer than delta among the point's cavity: the nearest one would be joined to it by
-  /// a Gabriel edge, hence is among the cavity's vertices.
+  /// R1's point, unless a vertex of the cell itself or of a neighbour already covers it. The caller must
+  /// still look for isosurface vertices closer than delta among the point's cavity: the nearest one would be
+  /// joined to it by a Gabriel edge, hence is among the cavity's vertices.
   std::optional<Point> r1_sample(const Examination& t) const;
   bool is_covered(const Point& z, VertexId by) const;
   std::optional<Point> r2_center(const Examination& t) const;
@@ -98,6 +98,7 @@ class Rules {
     return question(isosurface_);
   }
   double distance_lower_bound(const Point& p) const;
+  bool is_covered_beside(CellId c, const Point& z) const;
   bool has_poor_ratio(CellId c, double squared_radius) const;
   bool may_be_restricted(const Examination& t, CellId neighbor) const;
   bool obeys_r1_and_r2(const Cell& cell, double squared_radius) const;
