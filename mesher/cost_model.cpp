@@ -164,7 +164,7 @@ Estimate estimate(const LabelImage& image, const MeshingOptions& options) {
     cells = CostModel(image, loop_threads(options.team)).cells(sizes);
   }
   return {cells, cells * kPeakBytesPerMeshCell + static_cast<double>(image.num_voxels()) *
-                                                     (kImageBytesPerVoxel + kTransformBytesPerVoxel)};
+                                                     (sizeof(LabelIndex) + kTransformBytesPerVoxel)};
 }
 
 Box foreground_bounds(const LabelImage& image, int threads) {

@@ -5,7 +5,7 @@
 namespace podm::bench {
 namespace {
 
-constexpr double kImageBytesPerVoxel = 2 + 4;  // its label and its feature transform
+constexpr double kImageBytesPerVoxel = 2;  // its label
 
 ProcessRecord process_of(const Trial& trial, const TrialResult& result) {
   using End = ProcessOutcome::End;

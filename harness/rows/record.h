@@ -24,7 +24,7 @@ struct RowContext {
 /// cachegrind's core, else measured.
 Basis basis_of(const Json& asked, const Counters& counters);
 
-/// Peak resident bytes a cell beyond labels and feature transform of the image; nothing without a mesh.
+/// Peak resident bytes a cell beyond the labels of the image; nothing without a mesh.
 std::optional<double> bytes_per_cell_beyond_image(const TrialResult& result);
 
 /// The row of a trial that ran, whatever came of it.

@@ -52,7 +52,7 @@ Octree octree_of_sides(const Problem& problem, const Radii& radii, const Box& bo
     const Point middle = low + 0.5 * (high - low);
     const double reach = 0.5 * distance(low, high) + ratio * radii.most;
     return problem.isosurface.label_at(middle) != kBackground ||
-           problem.isosurface.distance_lower_bound(middle) < reach;
+           problem.isosurface.distance_lower_bound(middle, reach) < reach;
   };
   const auto largest_side = [&](const Point& low, const Point& high) {
     if (coarsest_mm <= finest_mm) return finest_mm;

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <bit>
 
+#include "image/feature_transform.h"
 #include "refine/poor_element_list.h"
 
 namespace podm {
@@ -24,6 +25,12 @@ std::uint64_t bytes_of_threads(std::uint64_t threads) {
 }
 
 }  // namespace
+
+std::uint64_t transform_bytes(const LabelImage& image, std::uint64_t limit_bytes, int threads) {
+  constexpr std::uint64_t kLittle = 32;  // a part of the limit that need not be known
+  const std::uint64_t most = FeatureTransform::most_bytes(image);
+  return most <= limit_bytes / kLittle ? most : FeatureTransform::num_bytes(image, threads);
+}
 
 std::uint64_t memory_of_run(const Limits& limits) {
   if (limits.max_memory_bytes > 0) return limits.max_memory_bytes;

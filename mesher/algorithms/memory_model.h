@@ -20,10 +20,12 @@ inline constexpr double kPeakBytesPerMeshCell = 110;
 /// 1.39 of 0.25, 1.27 of 0.8, 1.13 of 5.1 million. Less than all these, so that what can be numbered is not
 /// refused.
 inline constexpr double kStoredCellsPerMeshCell = 1.1;
+/// Of the feature transform: 0.6 of one organ, 1 to 2 of segmentations, 3 to 4 of small images full of
+/// labels.
+inline constexpr double kTransformBytesPerVoxel = 1;
 
 // ---- Limits ----
 
-inline constexpr std::uint64_t kImageBytesPerVoxel = sizeof(LabelIndex), kTransformBytesPerVoxel = 4;
 /// Buffers of files, the record, code not yet touched.
 inline constexpr std::uint64_t kBytesOfOutput = 6 << 20;
 /// A cell of a store that is full takes itself, a quarter of a vertex at most, an entry of a list that may
@@ -36,6 +38,8 @@ inline constexpr std::uint64_t kBytesPerCube = 32, kBytesPerLeaf = 160;
 /// Leaves of a size that was asked for may take so much of the memory of a run; the mesh has the rest.
 inline constexpr double kMostMemoryOfLeaves = 0.5;
 
+/// What the feature transform will take, or the most that it can where that is little of the limit.
+std::uint64_t transform_bytes(const LabelImage& image, std::uint64_t limit_bytes, int threads);
 /// What a run may take beside image and transform: as asked for, else all the machine has.
 std::uint64_t memory_of_run(const Limits& limits);
 /// The most cells for which a store, its workers and their lists stay within so many bytes.

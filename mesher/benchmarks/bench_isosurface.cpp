@@ -47,7 +47,7 @@ struct Queries {
       const Point a = {uniform(0, 120), uniform(0, 120), uniform(0, 72)};
       for (int n = 0; n < 50; ++n) {  // neighbours are asked about together
         const Point b = around(a, 5);
-        if (isosurface.distance_lower_bound(b) > 2) far.push_back(b);
+        if (isosurface.distance_lower_bound(b, 2) > 2) far.push_back(b);
         if (const auto z = isosurface.segment_intersection(b, around(b, 5))) near.push_back(around(*z, 0.4));
       }
     }
@@ -79,11 +79,11 @@ void label_near(benchmark::State& state) {
 }
 void distance_lower_bound_far(benchmark::State& state) {
   const Isosurface& isosurface = queries().isosurface;
-  ask_all(state, queries().far, [&](const Point& p) { return isosurface.distance_lower_bound(p); });
+  ask_all(state, queries().far, [&](const Point& p) { return isosurface.distance_lower_bound(p, 1); });
 }
 void distance_lower_bound_near(benchmark::State& state) {
   const Isosurface& isosurface = queries().isosurface;
-  ask_all(state, queries().near, [&](const Point& p) { return isosurface.distance_lower_bound(p); });
+  ask_all(state, queries().near, [&](const Point& p) { return isosurface.distance_lower_bound(p, 1); });
 }
 void closest_point_near(benchmark::State& state) {
   const Isosurface& isosurface = queries().isosurface;
@@ -99,7 +99,7 @@ void feature_transform_512x512x200(benchmark::State& state) {
   const LabelImage image = torus({512, 512, 200});
   for (auto _ : state) {
     const FeatureTransform transform(image, static_cast<int>(state.range(0)));
-    benchmark::DoNotOptimize(transform.nearest(0));
+    benchmark::DoNotOptimize(transform.words().back());
   }
 }
 

@@ -1,11 +1,15 @@
 #include "image/feature_transform.h"
 
 #include <algorithm>
-#include <array>
-#include <optional>
+#include <atomic>
+#include <bit>
+#include <cmath>
+#include <limits>
 #include <string>
 #include <vector>
 
+#include "image/brick_distances.h"
+#include "image/surface_masks.h"
 #include "podm/errors.h"
 #include "runtime/parallel_for.h"
 
@@ -13,274 +17,181 @@ namespace podm {
 
 namespace {
 
-using VoxelIndex = FeatureTransform::VoxelIndex;
-constexpr VoxelIndex kNone = FeatureTransform::kNone;
+constexpr std::size_t kWordsOfLine = 8;
+// Of a near brick, words of 8 bytes: those of its voxels, then the mask of surface voxels and so on.
+constexpr std::size_t kMaskAt = 16, kMostLines = 7;
+constexpr double kInfinity = std::numeric_limits<double>::infinity();
+// Squares and roots err by less.
+constexpr double kRoundedDown = 1 - 1e-12;
 
-// Lines along y and z are worked on in tiles of neighbours in x: whole cache lines travel.
-constexpr int kTileWidth = 32;
+std::size_t in_lines(std::size_t words) { return (words + kWordsOfLine - 1) / kWordsOfLine; }
 
-constexpr double square(double x) { return x * x; }
-
-// The parabolas cost + (spacing * (i - position))^2 of one line that are lowest somewhere.
-class LowerEnvelope {
- public:
-  LowerEnvelope(int length, double spacing)
-      : sites_(static_cast<std::size_t>(length)), squared_spacing_(square(spacing)) {}
-
-  void clear() { count_ = 0; }
-
-  /// Adds the site at `position`, beyond all earlier ones.
-  void add(int position, double cost, VoxelIndex feature) {
-    const Site site{static_cast<double>(position), cost, feature};
-    while (count_ >= 2 && is_hidden(sites_[count_ - 2], sites_[count_ - 1], site)) --count_;
-    sites_[count_++] = site;
-  }
-
-  /// Calls write(i, site) for i in [0, length) with the lowest site there, the first of equals.
-  template <class Write>
-  void for_each_lowest(int length, Write&& write) const {
-    for (std::size_t i = 0, s = 0; i < static_cast<std::size_t>(length); ++i) {
-      while (s + 1 < count_ && height(sites_[s + 1], i) < height(sites_[s], i)) ++s;
-      write(static_cast<int>(i), sites_[s]);
-    }
-  }
-
-  bool is_empty() const { return count_ == 0; }
-
-  struct Site {
-    double position, cost;
-    VoxelIndex feature;
-  };
-
- private:
-  double height(const Site& s, std::size_t i) const {
-    return s.cost + squared_spacing_ * square(static_cast<double>(i) - s.position);
-  }
-
-  // Whether b, between a and c, is nowhere lower than both.
-  bool is_hidden(const Site& a, const Site& b, const Site& c) const {
-    const double ab = b.position - a.position, bc = c.position - b.position, ac = ab + bc;
-    return ac * b.cost - bc * a.cost - ab * c.cost > ab * bc * ac * squared_spacing_;
-  }
-
-  std::vector<Site> sites_;
-  std::size_t count_ = 0;
-  double squared_spacing_;
-};
-
-// Buffers of one thread.
-struct Workspace {
-  Workspace(const LabelImage& image)
-      : is_surface(static_cast<std::size_t>(image.size[0])),
-        tile(static_cast<std::size_t>(kTileWidth) *
-             static_cast<std::size_t>(std::max(image.size[1], image.size[2]))),
-        along_y(image.size[1], image.spacing[1]),
-        along_z(image.size[2], image.spacing[2]) {}
-
-  std::vector<std::uint8_t> is_surface;
-  std::vector<VoxelIndex> tile;
-  LowerEnvelope along_y, along_z;
-};
-
-class Transformer {
- public:
-  Transformer(const LabelImage& image, HugeArray<VoxelIndex>& features)
-      : voxels_(image.voxels.data()),
-        features_(features),
-        num_x_(image.size[0]),
-        num_y_(image.size[1]),
-        num_z_(image.size[2]),
-        row_(static_cast<std::size_t>(image.size[0])),
-        slice_(row_ * static_cast<std::size_t>(image.size[1])),
-        spacing_(image.spacing),
-        inverse_row_(1.0 / image.size[0]) {}
-
-  // Features become x of the nearest surface voxel in the x-line, then y * num_x + x of that in the slice.
-  void transform_slice(int z, Workspace& work) {
-    for (int y = 0; y < num_y_; ++y) {
-      mark_surface(y, z, work.is_surface.data());
-      find_nearest_in_row(work.is_surface.data(), &features_[row_start(y, z)]);
-    }
-    const std::size_t start = row_start(0, z);
-    for (int x = 0; x < num_x_; x += kTileWidth) {
-      transform_tile(
-          start + static_cast<std::size_t>(x), row_, num_y_, work,
-          [&](int c, int y, VoxelIndex f) {
-            work.along_y.add(y, square(spacing_[0] * (x + c - static_cast<double>(f))),
-                             static_cast<VoxelIndex>(y) * static_cast<VoxelIndex>(num_x_) + f);
-          },
-          work.along_y);
-    }
-  }
-
-  // Features of the lines along z at this y become voxel indices.
-  void transform_depth(int y, Workspace& work) {
-    for (int x = 0; x < num_x_; x += kTileWidth) {
-      transform_tile(
-          row_start(y, 0) + static_cast<std::size_t>(x), slice_, num_z_, work,
-          [&](int c, int z, VoxelIndex f) {
-            // Exact: (f + 0.5) / num_x is at least 0.5 / num_x from an integer, far more than it is rounded
-            // by.
-            const double fy = static_cast<double>(static_cast<VoxelIndex>((f + 0.5) * inverse_row_));
-            const double fx = f - fy * num_x_;
-            work.along_z.add(z, square(spacing_[0] * (x + c - fx)) + square(spacing_[1] * (y - fy)),
-                             static_cast<VoxelIndex>(static_cast<std::size_t>(z) * slice_) + f);
-          },
-          work.along_z);
-    }
-  }
-
- private:
-  std::size_t row_start(int y, int z) const {
-    return static_cast<std::size_t>(z) * slice_ + static_cast<std::size_t>(y) * row_;
-  }
-
-  void mark_surface(int y, int z, std::uint8_t* is_surface) const {
-    const std::size_t start = row_start(y, z);
-    const LabelIndex* row = voxels_ + start;
-    for (int x = 0; x < num_x_; ++x) is_surface[x] = 0;
-    mark_differing(row, y > 0 ? row - row_ : nullptr, is_surface);
-    mark_differing(row, y + 1 < num_y_ ? row + row_ : nullptr, is_surface);
-    mark_differing(row, z > 0 ? row - slice_ : nullptr, is_surface);
-    mark_differing(row, z + 1 < num_z_ ? row + slice_ : nullptr, is_surface);
-    for (int x = 0; x + 1 < num_x_; ++x) {
-      const std::uint8_t differ = row[x] != row[x + 1];
-      is_surface[x] |= differ;
-      is_surface[x + 1] |= differ;
-    }
-    is_surface[0] |= row[0] != kBackground;
-    is_surface[num_x_ - 1] |= row[num_x_ - 1] != kBackground;
-  }
-
-  // `other` null: outside the grid.
-  void mark_differing(const LabelIndex* row, const LabelIndex* other, std::uint8_t* is_surface) const {
-    if (other == nullptr) {
-      for (int x = 0; x < num_x_; ++x) is_surface[x] |= row[x] != kBackground;
-    } else {
-      for (int x = 0; x < num_x_; ++x) is_surface[x] |= row[x] != other[x];
-    }
-  }
-
-  void find_nearest_in_row(const std::uint8_t* is_surface, VoxelIndex* nearest) const {
-    int begin = 0;  // of the voxels whose nearest is still unknown
-    VoxelIndex last = kNone;
-    for (int x = 0; x < num_x_; ++x) {
-      if (!is_surface[x]) continue;
-      const VoxelIndex here = static_cast<VoxelIndex>(x);
-      const int middle = last == kNone ? 0 : static_cast<int>((last + here) / 2) + 1;
-      std::fill(nearest + begin, nearest + std::max(begin, middle), last);
-      std::fill(nearest + std::max(begin, middle), nearest + x + 1, here);
-      begin = x + 1;
-      last = here;
-    }
-    std::fill(nearest + begin, nearest + num_x_, last);
-  }
-
-  // Replaces the features of up to kTileWidth lines of `length` voxels, `stride` apart, by the lowest sites
-  // of their envelopes. `add(c, i, feature)` adds voxel i of line c to the envelope.
-  template <class Add>
-  void transform_tile(std::size_t start, std::size_t stride, int length, Workspace& work, Add&& add,
-                      LowerEnvelope& envelope) {
-    const int width = std::min(kTileWidth, num_x_ - static_cast<int>(start % row_));
-    VoxelIndex* const tile = work.tile.data();
-    for (int i = 0; i < length; ++i) {
-      const VoxelIndex* from = &features_[start + static_cast<std::size_t>(i) * stride];
-      for (int c = 0; c < width; ++c) tile[c * length + i] = from[c];
-    }
-    for (int c = 0; c < width; ++c) {
-      VoxelIndex* const line = tile + c * length;
-      envelope.clear();
-      for (int i = 0; i < length; ++i) {
-        if (line[i] != kNone) add(c, i, line[i]);
-      }
-      if (envelope.is_empty()) continue;
-      envelope.for_each_lowest(length,
-                               [&](int i, const LowerEnvelope::Site& site) { line[i] = site.feature; });
-    }
-    for (int i = 0; i < length; ++i) {
-      VoxelIndex* to = &features_[start + static_cast<std::size_t>(i) * stride];
-      for (int c = 0; c < width; ++c) to[c] = tile[c * length + i];
-    }
-  }
-
-  const LabelIndex* voxels_;
-  HugeArray<VoxelIndex>& features_;
-  int num_x_, num_y_, num_z_;
-  std::size_t row_, slice_;  // voxels
-  std::array<double, 3> spacing_;
-  double inverse_row_;
-};
-
-// The words of surface voxels, see Neighborhood.
-class NeighborhoodFinder {
- public:
-  explicit NeighborhoodFinder(const LabelImage& image) : image_(image) {}
-
-  std::uint32_t bits(std::size_t voxel) const {
-    const auto row = static_cast<std::size_t>(image_.size[0]),
-               rows = static_cast<std::size_t>(image_.size[1]);
-    const int x = static_cast<int>(voxel % row), y = static_cast<int>(voxel / row % rows),
-              z = static_cast<int>(voxel / row / rows);
-    const LabelIndex own = image_.voxels[voxel];
-    std::uint32_t bits = 0;
-    std::optional<LabelIndex> other;
-    bool has_two_labels = true;
-    for (int k = -1; k <= 1; ++k) {
-      for (int j = -1; j <= 1; ++j) {
-        for (int i = -1; i <= 1; ++i) {
-          const LabelIndex label = label_at(x + i, y + j, z + k);
-          if (label == own) continue;
-          bits |= 1u << Neighborhood::position(i, j, k);
-          has_two_labels = has_two_labels && other.value_or(label) == label;
-          other = label;
-        }
-      }
-    }
-    return bits | static_cast<std::uint32_t>(has_two_labels) << 30;
-  }
-
- private:
-  LabelIndex label_at(int x, int y, int z) const {
-    const auto is_in = [](int i, int n) { return static_cast<unsigned>(i) < static_cast<unsigned>(n); };
-    return is_in(x, image_.size[0]) && is_in(y, image_.size[1]) && is_in(z, image_.size[2])
-               ? image_.voxels[image_.index(x, y, z)]
-               : kBackground;
-  }
-
-  const LabelImage& image_;
-};
-
-std::size_t checked_num_voxels(const LabelImage& image) {
-  static_assert(kMaxVoxels == kNone, "kNone is no voxel");
+const LabelImage& checked(const LabelImage& image) {
   if (image.num_voxels() > kMaxVoxels) {
     throw InputError("image: " + std::to_string(image.num_voxels()) +
                      " voxels; the feature transform takes at most " + std::to_string(kMaxVoxels));
   }
-  return image.num_voxels();
+  return image;
+}
+
+std::size_t lines_of(std::uint64_t mask) {
+  const auto num_surface = static_cast<std::size_t>(std::popcount(mask));
+  return in_lines(num_surface == 0 ? kMaskAt : kMaskAt + 1 + (num_surface + 1) / 2);
+}
+
+// With so many lines: table, masks and words.
+std::uint64_t bytes_of(const BrickGrid& bricks, std::size_t lines) {
+  return sizeof(std::uint64_t) * (2 * (bricks.count() + kWordsOfLine) + lines * kWordsOfLine);
 }
 
 }  // namespace
 
-FeatureTransform::FeatureTransform(const LabelImage& image, int threads)
-    : HugeArray<std::uint32_t>(checked_num_voxels(image)), Features<NoReads>(&(*this)[0], {}) {
-  HugeArray<std::uint32_t>& words = *this;
-  const auto num_y = static_cast<std::size_t>(image.size[1]), num_z = static_cast<std::size_t>(image.size[2]);
-  const std::size_t used = std::clamp<std::size_t>(num_threads(threads), 1, std::max(num_y, num_z));
-  std::vector<Workspace> workspaces(used, Workspace(image));
-  Transformer transformer(image, words);
-  parallel_for(num_z, used, [&](std::size_t z, std::size_t thread) {
-    transformer.transform_slice(static_cast<int>(z), workspaces[thread]);
-  });
-  parallel_for(num_y, used, [&](std::size_t y, std::size_t thread) {
-    transformer.transform_depth(static_cast<int>(y), workspaces[thread]);
-  });
-  const NeighborhoodFinder finder(image);
-  const std::size_t slice = image.num_voxels() / num_z;
-  parallel_for(num_z, used, [&](std::size_t z, std::size_t) {
-    for (std::size_t v = z * slice; v < (z + 1) * slice; ++v) {
-      if (words[v] == v) words[v] = kSurface | finder.bits(v);
+// Makes the table and the words, a row of bricks at a time.
+class FeatureWriter {
+ public:
+  FeatureWriter(const LabelImage& image, const BrickGrid& bricks, const SurfaceMasks& masks,
+                const Surroundings& surroundings)
+      : image_(image),
+        bricks_(bricks),
+        masks_(masks),
+        surroundings_(surroundings),
+        features_(image, bricks, masks, surroundings),
+        row_(static_cast<std::size_t>(bricks.size()[0])) {}
+
+  std::size_t num_rows() const { return bricks_.count() / row_; }
+
+  std::size_t count_lines(std::size_t row) const {
+    const std::vector<std::uint64_t> around = surface_around(row, surroundings_.num_bricks());
+    std::size_t lines = 0;
+    for (std::size_t i = 0; i < row_; ++i)
+      if (around[i] != 0) lines += lines_of(masks_[row * row_ + i]);
+    return lines;
+  }
+
+  // The table gets 0 for bricks beside those with surface voxels, infinity for others, as numbers.
+  void mark_beside_surface(std::size_t row, HugeArray<std::uint64_t>& words) const {
+    const std::vector<std::uint64_t> beside = surface_around(row, {1, 1, 1});
+    for (std::size_t i = 0; i < row_; ++i)
+      words[row * row_ + i] = std::bit_cast<std::uint64_t>(beside[i] != 0 ? 0.0 : kInfinity);
+  }
+
+  // The table has squared distances, and gets what it is for; words of this row's bricks begin at `line`.
+  void write(std::size_t row, std::size_t line, double step_mm, HugeArray<std::uint64_t>& words) const {
+    const std::vector<std::uint64_t> around = surface_around(row, surroundings_.num_bricks());
+    for (std::size_t i = 0; i < row_; ++i) {
+      const Voxel brick = at(row, static_cast<int>(i));
+      const std::uint64_t mask = masks_[row * row_ + i];
+      std::uint64_t& word = words[row * row_ + i];
+      const LabelIndex label =
+          mask != 0 ? Brick::kMixed : image_.voxels[image_.index(4 * brick.i, 4 * brick.j, 4 * brick.k)];
+      if (around[i] == 0) {
+        const double steps = std::sqrt(std::bit_cast<double>(word)) * kRoundedDown / step_mm;
+        word = Brick::far(label,
+                          steps < Brick::kMostSteps ? static_cast<std::uint16_t>(steps) : Brick::kMostSteps)
+                   .word();
+      } else {
+        word = Brick::near(static_cast<std::uint32_t>(line), label).word();
+        write_words(brick, mask, &words[line * kWordsOfLine]);
+        line += lines_of(mask);
+      }
     }
+  }
+
+ private:
+  Voxel at(std::size_t row, int i) const {
+    const auto rows = static_cast<std::size_t>(bricks_.size()[1]);
+    return {i, static_cast<int>(row % rows), static_cast<int>(row / rows)};
+  }
+
+  // Not 0 for the bricks of a row that have surface voxels in so many bricks on each side.
+  std::vector<std::uint64_t> surface_around(std::size_t row, const std::array<int, 3>& num_bricks) const {
+    const auto [x, y, z] = num_bricks;
+    const Voxel first = at(row, 0);
+    std::vector<std::uint64_t> any(row_ + 2 * static_cast<std::size_t>(x)), around(row_);
+    for (int k = std::max(0, first.k - z); k <= std::min(bricks_.size()[2] - 1, first.k + z); ++k)
+      for (int j = std::max(0, first.j - y); j <= std::min(bricks_.size()[1] - 1, first.j + y); ++j) {
+        const std::uint64_t* const masks = &masks_[bricks_.index(0, j, k)];
+        for (std::size_t i = 0; i < row_; ++i) any[i + static_cast<std::size_t>(x)] |= masks[i];
+      }
+    for (std::size_t d = 0; d <= 2 * static_cast<std::size_t>(x); ++d)
+      for (std::size_t i = 0; i < row_; ++i) around[i] |= any[i + d];
+    return around;
+  }
+
+  void write_words(const Voxel& brick, std::uint64_t mask, std::uint64_t* to) const {
+    const std::array<FeatureOffset, 64> offsets = features_.offsets(brick);
+    std::array<std::uint16_t, 64> of_voxels;
+    for (std::size_t p = 0; p < 64; ++p) of_voxels[p] = offsets[p].bits();
+    if (mask != 0) {
+      const BrickNeighborhoods neighborhoods(image_, brick);
+      std::array<std::uint32_t, 64> bits;
+      std::size_t count = 0;
+      for (std::uint64_t rest = mask; rest != 0; rest &= rest - 1) {
+        const auto p = static_cast<unsigned>(std::countr_zero(rest));
+        bits[count++] = neighborhoods.around(p).bits();
+        of_voxels[p] =
+            Features<NoReads>::kSurface | std::min(neighborhoods.label(p), Features<NoReads>::kUntold);
+      }
+      to[kMaskAt] = mask;
+      std::memcpy(to + kMaskAt + 1, bits.data(), count * sizeof bits[0]);
+    }
+    std::memcpy(to, of_voxels.data(), sizeof of_voxels);
+  }
+
+  const LabelImage& image_;
+  const BrickGrid& bricks_;
+  const SurfaceMasks& masks_;
+  const Surroundings& surroundings_;
+  BrickFeatures features_;
+  std::size_t row_;  // bricks
+};
+
+FeatureTransform::FeatureTransform(const LabelImage& image, int threads)
+    : bricks_(checked(image).size),
+      words_(kWordsOfLine * (in_lines(bricks_.count()) + kMostLines * bricks_.count())) {
+  const std::size_t num_bricks = bricks_.count(), used = num_threads(threads);
+  SurfaceMasks masks(num_bricks);
+  mark_surface(image, bricks_, used, masks);
+  tree_ = SurfaceTree(bricks_, {&masks[0], num_bricks}, image.spacing);
+
+  const Surroundings surroundings(image);
+  reach_mm_ = surroundings.reach_mm();
+  const FeatureWriter writer(image, bricks_, masks, surroundings);
+  std::vector<std::size_t> line_of_row(writer.num_rows() + 1, 0);
+  parallel_for(writer.num_rows(), used, [&](std::size_t row, std::size_t) {
+    line_of_row[row + 1] = writer.count_lines(row);
+    writer.mark_beside_surface(row, words_);
   });
+  line_of_row[0] = in_lines(num_bricks);
+  for (std::size_t row = 0; row < writer.num_rows(); ++row) line_of_row[row + 1] += line_of_row[row];
+  num_words_ = line_of_row.back() * kWordsOfLine;
+
+  const auto& [x, y, z] = image.spacing;
+  const auto& [nx, ny, nz] = bricks_.size();
+  step_mm_ = tree_.is_empty() ? kInfinity : 4 * std::hypot(x * nx, y * ny, z * nz) / (Brick::kMostSteps - 1);
+  static_assert(sizeof(double) == sizeof(std::uint64_t));
+  find_squared_distances(bricks_, {4 * x, 4 * y, 4 * z}, used,
+                         {reinterpret_cast<double*>(&words_[0]), num_bricks});
+  parallel_for(writer.num_rows(), used,
+               [&](std::size_t row, std::size_t) { writer.write(row, line_of_row[row], step_mm_, words_); });
+}
+
+std::uint64_t FeatureTransform::num_bytes(const LabelImage& image, int threads) {
+  const BrickGrid bricks(checked(image).size);
+  const std::size_t used = num_threads(threads);
+  SurfaceMasks masks(bricks.count());
+  mark_surface(image, bricks, used, masks);
+  const Surroundings surroundings(image);
+  const FeatureWriter writer(image, bricks, masks, surroundings);
+  std::atomic<std::size_t> lines{0};
+  parallel_for(writer.num_rows(), used,
+               [&](std::size_t row, std::size_t) { lines += writer.count_lines(row); });
+  return bytes_of(bricks, lines);
+}
+
+std::uint64_t FeatureTransform::most_bytes(const LabelImage& image) {
+  const BrickGrid bricks(image.size);
+  return bytes_of(bricks, kMostLines * bricks.count());
 }
 
 }  // namespace podm

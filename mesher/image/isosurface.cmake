@@ -1,5 +1,6 @@
-add_library(podm_isosurface STATIC feature_transform.cpp isosurface.cpp isosurface_block.cpp isosurface_closest.cpp
-                                   isosurface_cubic.cpp isosurface_trace.cpp working_frame.cpp)
+add_library(podm_isosurface STATIC brick_distances.cpp brick_features.cpp feature_transform.cpp isosurface.cpp
+                                   isosurface_block.cpp isosurface_closest.cpp isosurface_cubic.cpp
+                                   isosurface_trace.cpp surface_masks.cpp surface_tree.cpp working_frame.cpp)
 target_link_libraries(podm_isosurface PUBLIC podm_geometry podm_runtime Threads::Threads PRIVATE podm_flags)
 
 podm_add_test(isosurface_tests

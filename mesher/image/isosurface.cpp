@@ -14,6 +14,9 @@ double square(double x) { return x * x; }
 // The number of [low, high] that is nearest to x; low if x is not a number.
 double clamped(double x, double low, double high) { return std::max(low, std::min(x, high)); }
 
+// More than 1 by more than roundings.
+constexpr double kSomewhatMore = 1 + 1e-9;
+
 }  // namespace
 
 template <class Reads>
@@ -22,7 +25,7 @@ Oracle<Reads>::Oracle(const LabelImage& image, std::shared_ptr<const FeatureTran
     : image_(&image),
       transform_(std::move(transform)),
       grid_(image, reads),
-      features_(transform_->words().data(), reads),
+      features_(*transform_, reads),
       from_voxels_(voxels_to_working(image)),
       to_voxels_(inverse(from_voxels_)),
       spacing_{image.spacing[0], image.spacing[1], image.spacing[2]},
@@ -31,8 +34,26 @@ Oracle<Reads>::Oracle(const LabelImage& image, std::shared_ptr<const FeatureTran
       half_diagonal_mm_(0.5 * std::sqrt(squared_length(spacing_))),
       shortest_side_mm_(std::min({spacing_.x, spacing_.y, spacing_.z})) {}
 
+// Which corners of u's block differ from v is known; where there are two labels their weights decide, and no
+// label of the block has to be read unless the other one wins.
 template <class Reads>
-LabelIndex Oracle<Reads>::label_on_surface_voxel(const Point& u) const {
+LabelIndex Oracle<Reads>::label_by_neighborhood(const Point& u, const Voxel& v, Brick brick,
+                                                LabelIndex own) const {
+  const Neighborhood around = features_.neighborhood(brick, v);
+  const Voxel block = block_of(u);
+  const CornerMask others = around.differing_corners(block.i - v.i, block.j - v.j, block.k - v.k);
+  if (own == Features<Reads>::kUntold || (others != 0 && !around.has_two_labels())) return label_by_block(u);
+  if (others == 0) return own;
+  const Point f = u - center(block);
+  const double of_own = weight(~others & kAllCorners, f), of_other = weight(others, f);
+  if (of_own > of_other) return own;
+  const auto c = std::countr_zero(others);
+  const LabelIndex other = grid_.label({block.i + (c & 1), block.j + (c >> 1 & 1), block.k + (c >> 2)});
+  return of_own == of_other ? std::min(own, other) : other;
+}
+
+template <class Reads>
+LabelIndex Oracle<Reads>::label_by_block(const Point& u) const {
   const Voxel block = block_of(u);
   return winner(grid_.block(block), u - center(block)).label;
 }
@@ -43,41 +64,53 @@ Point Oracle<Reads>::clamped_to_grid(const Point& u) const {
 }
 
 template <class Reads>
-double Oracle<Reads>::distance_lower_bound(const Point& p) const {
-  return std::max(clearance(to_voxels(p)), 0.0);
+double Oracle<Reads>::distance_lower_bound(const Point& p, double radius) const {
+  return std::max(clearance(to_voxels(p), radius), 0.0);
 }
 
 // The isosurface lies within half a voxel of the grid. p projects to p' on that convex box, and
 // |p - s|^2 >= |p - p'|^2 + |p' - s|^2 for any s in it.
 template <class Reads>
-double Oracle<Reads>::bound_from_outside(const Point& u) const {
+double Oracle<Reads>::bound_from_outside(const Point& u, double radius) const {
   const Point inside{clamped(u.x, -0.5, end_.x), clamped(u.y, -0.5, end_.y), clamped(u.z, -0.5, end_.z)};
-  const double bound = std::max(0.0, bound_by_feature(inside, nearest_voxel(clamped_to_grid(inside))));
+  const double bound =
+      std::max(0.0, bound_by_feature(inside, nearest_voxel(clamped_to_grid(inside)), radius));
   return std::sqrt(squared_length(to_mm(u - inside)) + square(bound));
 }
 
-// The lemma says that every isosurface point is within half a voxel diagonal of a surface voxel, and no
-// surface voxel is nearer to v than its feature. May be negative.
+// The lemma says that every isosurface point is within half a voxel of a surface voxel: within the bricks
+// that have some, and within half a diagonal of a surface voxel's centre, of which none is nearer to v's than
+// its feature.
 template <class Reads>
-double Oracle<Reads>::bound_by_feature(const Point& u, const Voxel& v) const {
-  const auto feature = features_.nearest(grid_.index(v));
-  if (feature == Features<Reads>::kNone) return std::numeric_limits<double>::infinity();
-  return length_mm(center(v) - center(grid_.voxel(feature))) - length_mm(u - center(v)) - half_diagonal_mm_;
+double Oracle<Reads>::bound_by_feature(const Point& u, const Voxel& v, double radius) const {
+  const Brick brick = features_.brick_of(v);
+  const std::optional<Voxel> offset = features_.offset_to_nearest(brick, v);
+  const double from_center = length_mm(u - center(v)) + half_diagonal_mm_;
+  if (offset) return length_mm(center(*offset)) - from_center;
+  const double bound =
+      brick.is_near() ? features_.reach_mm() - from_center : features_.distance_from_far(brick);
+  if (bound > radius || is_empty()) return bound;
+  const double reach = (radius + half_diagonal_mm_) * kSomewhatMore;
+  return features_.is_surface_within(u, reach) ? bound : reach - half_diagonal_mm_;
 }
 
 // Members are spread over files, each of which makes its own for both oracles.
 template Oracle<NoReads>::Oracle(const LabelImage&, std::shared_ptr<const FeatureTransform>, const NoReads&);
 template Oracle<CountedReads>::Oracle(const LabelImage&, std::shared_ptr<const FeatureTransform>,
                                       const CountedReads&);
-template LabelIndex Oracle<NoReads>::label_on_surface_voxel(const Point&) const;
-template LabelIndex Oracle<CountedReads>::label_on_surface_voxel(const Point&) const;
+template LabelIndex Oracle<NoReads>::label_by_neighborhood(const Point&, const Voxel&, Brick,
+                                                           LabelIndex) const;
+template LabelIndex Oracle<CountedReads>::label_by_neighborhood(const Point&, const Voxel&, Brick,
+                                                                LabelIndex) const;
+template LabelIndex Oracle<NoReads>::label_by_block(const Point&) const;
+template LabelIndex Oracle<CountedReads>::label_by_block(const Point&) const;
 template Point Oracle<NoReads>::clamped_to_grid(const Point&) const;
 template Point Oracle<CountedReads>::clamped_to_grid(const Point&) const;
-template double Oracle<NoReads>::distance_lower_bound(const Point&) const;
-template double Oracle<CountedReads>::distance_lower_bound(const Point&) const;
-template double Oracle<NoReads>::bound_from_outside(const Point&) const;
-template double Oracle<CountedReads>::bound_from_outside(const Point&) const;
-template double Oracle<NoReads>::bound_by_feature(const Point&, const Voxel&) const;
-template double Oracle<CountedReads>::bound_by_feature(const Point&, const Voxel&) const;
+template double Oracle<NoReads>::distance_lower_bound(const Point&, double) const;
+template double Oracle<CountedReads>::distance_lower_bound(const Point&, double) const;
+template double Oracle<NoReads>::bound_from_outside(const Point&, double) const;
+template double Oracle<CountedReads>::bound_from_outside(const Point&, double) const;
+template double Oracle<NoReads>::bound_by_feature(const Point&, const Voxel&, double) const;
+template double Oracle<CountedReads>::bound_by_feature(const Point&, const Voxel&, double) const;
 
 }  // namespace podm

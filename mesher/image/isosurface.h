@@ -47,13 +47,15 @@ class Oracle {
   void prefetch(const Point& p) const {
     const Point u = to_voxels(p);
     if (!is_inside(u)) return;
-    const std::size_t index = grid_.index(nearest_voxel(u));
-    features_.prefetch(index);
-    grid_.prefetch(index);
+    const Voxel v = nearest_voxel(u);
+    features_.prefetch(v);
+    grid_.prefetch(v);
   }
 
-  /// A lower bound of the distance from p to the isosurface, mm; 0 when p may lie on it. One look-up.
-  double distance_lower_bound(const Point& p) const;
+  /// A lower bound of the distance from p to the isosurface, mm; 0 when p may lie on it. A look-up,
+  /// and some more where only that can tell whether the distance is above `radius`. In the grid the bound is
+  /// above if the distance is, by two diagonals of a voxel.
+  double distance_lower_bound(const Point& p, double radius) const;
 
   /// The isosurface point nearest to p, as found by local search from the nearest surface voxels, if within
   /// `radius` of p. Among several bumps of voxel size the search may take the second nearest: on smooth
@@ -98,24 +100,28 @@ class Oracle {
     return {static_cast<int>(u.x + 0.5), static_cast<int>(u.y + 0.5), static_cast<int>(u.z + 0.5)};
   }
   LabelIndex label_at_voxels(const Point& u) const;
-  LabelIndex label_on_surface_voxel(const Point& u) const;
+  /// `v` is the surface voxel nearest to u, in `brick`.
+  LabelIndex label_by_neighborhood(const Point& u, const Voxel& v, Brick brick, LabelIndex own) const;
+  LabelIndex label_by_block(const Point& u) const;
   /// The nearest point of the box of all voxel centres; (0,0,0) for NaN.
   Point clamped_to_grid(const Point& u) const;
-  bool is_empty() const { return features_.nearest(0) == Features<Reads>::kNone; }
-  double clearance(const Point& u) const {
-    return is_inside(u) ? bound_by_feature(u, nearest_voxel(u)) : bound_from_outside(u);
+  bool is_empty() const { return features_.is_empty(); }
+  /// May be negative. Beyond the words of the transform it is searched for only where that can tell whether
+  /// the distance is above `radius`.
+  double clearance(const Point& u, double radius) const {
+    return is_inside(u) ? bound_by_feature(u, nearest_voxel(u), radius) : bound_from_outside(u, radius);
   }
-  double bound_from_outside(const Point& u) const;
-  double bound_by_feature(const Point& u, const Voxel& v) const;
+  double bound_from_outside(const Point& u, double radius) const;
+  double bound_by_feature(const Point& u, const Voxel& v, double radius) const;
   std::optional<LabelChange> first_change(const Point& u, const Vector& d, LabelIndex label) const;
   std::optional<LabelChange> change_in_block(const Point& from, const Vector& d, const Voxel& block,
                                              const BlockLabels& labels, LabelIndex label) const;
-  using EightIndices = std::array<typename Features<Reads>::VoxelIndex, 8>;
+  using EightVoxels = std::array<Voxel, 8>;
   struct Nearest;
   class Sheet;
-  EightIndices features_around(const Point& u) const;
-  Nearest nearest_midpoint(const EightIndices& surface_voxels, const Point& u) const;
-  Nearest nearest_start(const Point& u) const;
+  std::optional<EightVoxels> features_around(const Point& u) const;
+  Nearest nearest_midpoint(const EightVoxels& surface_voxels, const Point& u) const;
+  std::optional<Nearest> nearest_start(const Point& u, double radius) const;
   bool pull(Sheet& sheet, Point& z) const;
   std::optional<Vector> tangent_step(const Sheet& sheet, const Point& u, const Point& z,
                                      double negligible) const;
@@ -146,15 +152,15 @@ inline LabelIndex Oracle<Reads>::label_at_voxels(const Point& u) const {
   // Half a voxel outside the grid background has at least half the weight.
   if (!is_inside(u)) return kBackground;
   const Voxel v = nearest_voxel(u);
-  const std::size_t index = grid_.index(v);
-  if (features_.is_surface(index)) return label_on_surface_voxel(u);
+  const Brick brick = features_.brick_of(v);
+  if (const auto own = features_.label_if_surface(brick, v)) return label_by_neighborhood(u, v, brick, *own);
   // The lemma leaves only a tie at the block's centre to take the label from a voxel off the surface.
   constexpr double kNotCenter = 1.5 - 1e-9;
   const Vector offset = u - center(v);
   if (std::fabs(offset.x) + std::fabs(offset.y) + std::fabs(offset.z) > kNotCenter) {
-    return label_on_surface_voxel(u);
+    return label_by_block(u);
   }
-  return grid_.label(index);
+  return brick.label() == Brick::kMixed ? grid_.label_inside(v) : brick.label();
 }
 
 }  // namespace podm

@@ -11,18 +11,11 @@
 
 #include "geometry/point.h"
 #include "image/oracle_reads.h"
+#include "image/voxel.h"
 #include "podm/label_image.h"
 
 namespace podm {
 
-struct Voxel {
-  int i = 0, j = 0, k = 0;
-  friend bool operator==(const Voxel&, const Voxel&) = default;
-};
-
-inline Point center(const Voxel& v) {
-  return {static_cast<double>(v.i), static_cast<double>(v.j), static_cast<double>(v.k)};
-}
 inline double coordinate(const Vector& v, std::size_t axis) {
   return axis == 0 ? v.x : axis == 1 ? v.y : v.z;
 }
@@ -147,9 +140,7 @@ class LabelGrid {
         num_y_(image.size[1]),
         num_z_(image.size[2]),
         row_(static_cast<std::size_t>(num_x_)),
-        slice_(row_ * static_cast<std::size_t>(num_y_)),
-        inverse_row_(1 / static_cast<double>(row_)),
-        inverse_slice_(1 / static_cast<double>(slice_)) {}
+        slice_(row_ * static_cast<std::size_t>(num_y_)) {}
 
   int num_x() const { return num_x_; }
   int num_y() const { return num_y_; }
@@ -159,21 +150,10 @@ class LabelGrid {
     return is_in(v.i, num_x_) && is_in(v.j, num_y_) && is_in(v.k, num_z_);
   }
 
-  std::size_t index(const Voxel& v) const {
-    return static_cast<std::size_t>(v.k) * slice_ + static_cast<std::size_t>(v.j) * row_ +
-           static_cast<std::size_t>(v.i);
-  }
-  // Exact: (index + 0.5) / n is at least 0.5 / n from an integer, far more than it is rounded by.
-  Voxel voxel(std::uint32_t index) const {
-    const auto k = static_cast<std::uint32_t>((index + 0.5) * inverse_slice_);
-    const auto in_slice = static_cast<std::uint32_t>(index - k * slice_);
-    const auto j = static_cast<std::uint32_t>((in_slice + 0.5) * inverse_row_);
-    return {static_cast<int>(in_slice - j * row_), static_cast<int>(j), static_cast<int>(k)};
-  }
-
-  void prefetch(std::size_t index) const { __builtin_prefetch(voxels_ + index); }
-  LabelIndex label(std::size_t index) const { return *row_from(index); }
-  LabelIndex label(const Voxel& v) const { return contains(v) ? label(index(v)) : kBackground; }
+  /// `v` must be in the grid.
+  LabelIndex label_inside(const Voxel& v) const { return *row_from(index(v)); }
+  LabelIndex label(const Voxel& v) const { return contains(v) ? label_inside(v) : kBackground; }
+  void prefetch(const Voxel& v) const { __builtin_prefetch(voxels_ + index(v)); }
 
   BlockLabels block(const Voxel& b) const {
     BlockLabels labels;
@@ -193,6 +173,10 @@ class LabelGrid {
   }
 
  private:
+  std::size_t index(const Voxel& v) const {
+    return static_cast<std::size_t>(v.k) * slice_ + static_cast<std::size_t>(v.j) * row_ +
+           static_cast<std::size_t>(v.i);
+  }
   static bool is_in(int i, int n) { return static_cast<unsigned>(i) < static_cast<unsigned>(n); }
   const LabelIndex* row_from(std::size_t index) const {
     reads_.image(index);
@@ -203,7 +187,6 @@ class LabelGrid {
   const LabelIndex* voxels_;
   int num_x_, num_y_, num_z_;
   std::size_t row_, slice_;  // voxels
-  double inverse_row_, inverse_slice_;
 };
 
 extern template class LabelGrid<NoReads>;

@@ -41,7 +41,7 @@ constexpr std::size_t axis_of(unsigned edge) { return edge >> 1; }
 constexpr double half_of(unsigned edge) { return (edge & 1) != 0 ? 0.5 : -0.5; }
 
 // Surface voxels, of which some may be equal. A register holds a number of each.
-struct EightVoxels {
+struct EightInRegisters {
   static constexpr unsigned kNum = 8;
   using Ints [[gnu::vector_size(4 * kNum)]] = std::int32_t;
   using Floats [[gnu::vector_size(4 * kNum)]] = float;
@@ -58,9 +58,9 @@ struct EdgeOfEight {
 // The edge to a neighbour of another label whose midpoint is nearest to `from`, given in voxels from the
 // first of the eight. Single precision tells them apart, which leaves the last bits of a squared distance to
 // say whose it is.
-EdgeOfEight nearest_edge(const EightVoxels& voxels, const Vector& from, const Vector& spacing) {
-  using Ints = EightVoxels::Ints;
-  using Floats = EightVoxels::Floats;
+EdgeOfEight nearest_edge(const EightInRegisters& voxels, const Vector& from, const Vector& spacing) {
+  using Ints = EightInRegisters::Ints;
+  using Floats = EightInRegisters::Floats;
   constexpr std::int32_t kMostIds = 64, kNone = std::numeric_limits<std::int32_t>::max();
   constexpr Ints kFirstIds{0, 1, 2, 3, 4, 5, 6, 7};
   const std::array<float, 3> side{static_cast<float>(spacing.x), static_cast<float>(spacing.y),
@@ -77,16 +77,16 @@ EdgeOfEight nearest_edge(const EightVoxels& voxels, const Vector& from, const Ve
     const float half = static_cast<float>(half_of(edge)) * side[axis];
     const Floats to_midpoint = squared + half * (2 * d[axis] + half);
     const Floats not_negative = to_midpoint > 0 ? to_midpoint : Floats{};
-    const Ints ids = kFirstIds + static_cast<std::int32_t>(edge * EightVoxels::kNum);
+    const Ints ids = kFirstIds + static_cast<std::int32_t>(edge * EightInRegisters::kNum);
     const Ints keys = (reinterpret_cast<Ints>(not_negative) & -kMostIds) | ids;
     const Ints same = ((voxels.neighborhoods >> static_cast<int>(kNeighbors[edge])) & 1) - 1;  // all bits
     const Ints candidates = keys | (same & kNone);
     least = candidates < least ? candidates : least;
   }
   std::int32_t first = least[0];
-  for (unsigned c = 1; c < EightVoxels::kNum; ++c) first = std::min(first, least[c]);
+  for (unsigned c = 1; c < EightInRegisters::kNum; ++c) first = std::min(first, least[c]);
   const auto id = static_cast<unsigned>(first % kMostIds);
-  return {id % EightVoxels::kNum, id / EightVoxels::kNum};
+  return {id % EightInRegisters::kNum, id / EightInRegisters::kNum};
 }
 
 }  // namespace
@@ -104,9 +104,7 @@ template <class Reads>
 class Oracle<Reads>::Sheet {
  public:
   Sheet(const Oracle& oracle, const Voxel& surface_voxel)
-      : oracle_(oracle),
-        center_(surface_voxel),
-        around_(oracle.features_.neighborhood(oracle.grid_.index(surface_voxel))) {}
+      : oracle_(oracle), center_(surface_voxel), around_(oracle.features_.neighborhood(surface_voxel)) {}
 
   /// Goes to the sheet at u; false if no isosurface passes through its block, or none around u's nearest
   /// voxel.
@@ -140,8 +138,7 @@ class Oracle<Reads>::Sheet {
   bool recenter(const Point& u) {
     if (!oracle_.is_inside(u)) return false;
     const Voxel nearest = nearest_voxel(u);
-    const std::size_t index = oracle_.grid_.index(nearest);
-    const std::optional<Neighborhood> around = oracle_.features_.neighborhood_if_surface(index);
+    const std::optional<Neighborhood> around = oracle_.features_.neighborhood_if_surface(nearest);
     if (!around) return false;
     center_ = nearest;
     around_ = *around;
@@ -177,11 +174,11 @@ class Oracle<Reads>::Sheet {
 
 // The nearest of the midpoints beside the given surface voxels.
 template <class Reads>
-auto Oracle<Reads>::nearest_midpoint(const EightIndices& surface_voxels, const Point& u) const -> Nearest {
-  EightVoxels voxels;
-  for (unsigned c = 0; c < EightVoxels::kNum; ++c) {
+auto Oracle<Reads>::nearest_midpoint(const EightVoxels& surface_voxels, const Point& u) const -> Nearest {
+  EightInRegisters voxels;
+  for (unsigned c = 0; c < EightInRegisters::kNum; ++c) {
     voxels.neighborhoods[c] = static_cast<std::int32_t>(features_.neighborhood(surface_voxels[c]).bits());
-    const Voxel v = grid_.voxel(surface_voxels[c]);
+    const Voxel& v = surface_voxels[c];
     voxels.at[0][c] = v.i;
     voxels.at[1][c] = v.j;
     voxels.at[2][c] = v.k;
@@ -196,31 +193,43 @@ auto Oracle<Reads>::nearest_midpoint(const EightIndices& surface_voxels, const P
   return best;
 }
 
+// None if the words do not tell all: u is deep.
 template <class Reads>
-auto Oracle<Reads>::features_around(const Point& u) const -> EightIndices {
+auto Oracle<Reads>::features_around(const Point& u) const -> std::optional<EightVoxels> {
   const Point inside = clamped_to_grid(u);
   const Voxel low = block_of(inside);
   const Voxel high{std::min(low.i + 1, grid_.num_x() - 1), std::min(low.j + 1, grid_.num_y() - 1),
                    std::min(low.k + 1, grid_.num_z() - 1)};
-  EightIndices features;
+  EightVoxels features;
   for (unsigned c = 0; c < features.size(); ++c) {
-    features[c] = features_.nearest(
-        grid_.index({c & 1 ? high.i : low.i, c & 2 ? high.j : low.j, c & 4 ? high.k : low.k}));
+    const Voxel v{c & 1 ? high.i : low.i, c & 2 ? high.j : low.j, c & 4 ? high.k : low.k};
+    const std::optional<Voxel> offset = features_.offset_to_nearest(features_.brick_of(v), v);
+    if (!offset) return std::nullopt;
+    features[c] = {v.i + offset->i, v.j + offset->j, v.k + offset->k};
+    features_.prefetch_neighborhood(features[c]);
   }
   return features;
 }
 
-// From outside the grid the features around its nearest point are a start alone: go on from midpoint to
-// midpoint.
+// From outside the grid the features around its nearest point are a start alone, and so is the surface voxel
+// nearest to a deep point, with midpoints within half a side and the isosurface within half a diagonal of it:
+// go on from midpoint to midpoint.
 template <class Reads>
-auto Oracle<Reads>::nearest_start(const Point& u) const -> Nearest {
-  Nearest best = nearest_midpoint(features_around(u), u);
-  if (is_inside(u)) return best;
-  while (true) {
-    const Nearest next = nearest_midpoint(features_around(best.u), u);
-    if (!(next.squared_mm < best.squared_mm * (1 - 1e-12))) return best;
+auto Oracle<Reads>::nearest_start(const Point& u, double radius) const -> std::optional<Nearest> {
+  std::optional<EightVoxels> around = features_around(u);
+  const bool is_told = around && is_inside(u);
+  if (!around) {
+    const auto nearest = features_.nearest(u, radius + 2 * half_diagonal_mm_);
+    if (!nearest) return std::nullopt;
+    around.emplace().fill(*nearest);
+  }
+  Nearest best = nearest_midpoint(*around, u);
+  while (!is_told && (around = features_around(best.u))) {
+    const Nearest next = nearest_midpoint(*around, u);
+    if (!(next.squared_mm < best.squared_mm * (1 - 1e-12))) break;
     best = next;
   }
+  return best;
 }
 
 // One step of Newton from z along the gradient of the sheet, which has to be there.
@@ -286,7 +295,9 @@ template <class Reads>
 std::optional<NearPoint> Oracle<Reads>::near_point(const Point& p, double radius) const {
   if (is_empty()) return std::nullopt;
   const Point u = to_voxels(p);
-  Nearest best = nearest_start(u);
+  std::optional<Nearest> start = nearest_start(u, radius);
+  if (!start) return std::nullopt;
+  Nearest& best = *start;
   // Of a million descents on CT and MR images none gained more than 0.86 of half a voxel's diagonal.
   if (best.squared_mm > square(radius + half_diagonal_mm_)) return std::nullopt;
   const Point midpoint = best.u;
@@ -315,8 +326,8 @@ Point Oracle<Reads>::polished(const NearPoint& near, const Point& p) const {
     is_there = pull(sheet, z);
     if (is_there && is_on_isosurface) return from_voxels(z);
   }
-  EightIndices beside;
-  beside.fill(static_cast<typename Features<Reads>::VoxelIndex>(grid_.index(near.surface_voxel)));
+  EightVoxels beside;
+  beside.fill(near.surface_voxel);
   return from_voxels(nearest_midpoint(beside, u).u);
 }
 

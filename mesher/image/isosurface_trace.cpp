@@ -53,6 +53,7 @@ bool clip(double u, double d, double low, double high, double& begin, double& en
 }
 
 constexpr int kBlocksBetweenJumps = 3;
+constexpr double kAnyBound = -std::numeric_limits<double>::infinity();
 
 }  // namespace
 
@@ -95,7 +96,7 @@ auto Oracle<Reads>::first_change(const Point& u, const Vector& d, LabelIndex lab
       }
       blocks_to_jump = kBlocksBetweenJumps;
     } else if (blocks_to_jump-- == 0) {
-      const double jump = clearance(u + t * d) / length_mm(d);
+      const double jump = clearance(u + t * d, kAnyBound) / length_mm(d);
       blocks_to_jump = kBlocksBetweenJumps;
       if (t + jump > exit) {
         t += jump;

@@ -8,7 +8,7 @@
 
 namespace podm {
 
-/// Which nodes have the labels of the image and the words of the transform.
+/// Which nodes have the labels of the image and the words of the transform, its table and all.
 struct ImageOwners {
   MemoryOwners image, transform;
 
@@ -30,11 +30,12 @@ class CountedReads {
   CountedReads(const ImageOwners& owners, AccessTally& tally) : owners_(owners), tally_(tally) {}
   /// The label of a voxel, and of voxels after it in its row.
   void image(std::size_t voxel) const { add(AccessKind::kImageRead, owners_.image, voxel); }
-  void transform(std::size_t voxel) const { add(AccessKind::kTransformRead, owners_.transform, voxel); }
+  /// A position in FeatureTransform::words().
+  void transform(std::size_t word) const { add(AccessKind::kTransformRead, owners_.transform, word); }
 
  private:
-  void add(AccessKind kind, const MemoryOwners& owners, std::size_t voxel) const {
-    tally_.add(kind, owners.node_of(voxel), owners.address_of(voxel));
+  void add(AccessKind kind, const MemoryOwners& owners, std::size_t element) const {
+    tally_.add(kind, owners.node_of(element), owners.address_of(element));
   }
 
   const ImageOwners& owners_;

@@ -37,8 +37,8 @@ LabelIndex Rules::label_of(CellId c) const {
   return label;
 }
 
-double Rules::distance_lower_bound(const Point& p) const {
-  return ask([&](const auto& oracle) { return oracle.distance_lower_bound(p); });
+double Rules::distance_lower_bound(const Point& p, double radius) const {
+  return ask([&](const auto& oracle) { return oracle.distance_lower_bound(p, radius); });
 }
 
 // Below r = delta/2 a vertex of the cell on the isosurface, which is within 2r of z, silences R1, and R2 with
@@ -56,7 +56,7 @@ Examination Rules::examine(CellId c) const {
   if (std::isnan(t.squared_radius))
     t.squared_radius = squared_distance(center, mesh_.point(cell.vertices[0]));
   const double radius = std::sqrt(t.squared_radius);
-  t.isosurface_distance = distance_lower_bound(center);
+  t.isosurface_distance = distance_lower_bound(center, radius);
   if (t.isosurface_distance > radius || obeys_r1_and_r2(cell, t.squared_radius)) return t;
   t.nearest = ask([&](const auto& oracle) { return oracle.near_point(center, radius); });
   t.is_distance_proven = false;
@@ -157,7 +157,8 @@ std::optional<Rule> Rules::volume_rule(const Examination& t) const {
 
 bool Rules::is_large_in_shell(const Examination& t) const {
   return parameters_.shell_mm > 0 && t.squared_radius > square(parameters_.shell_radius_mm) &&
-         is_in(parameters_.clamp_box, t.center) && distance_lower_bound(t.center) < parameters_.shell_mm;
+         is_in(parameters_.clamp_box, t.center) &&
+         distance_lower_bound(t.center, parameters_.shell_mm) < parameters_.shell_mm;
 }
 
 bool Rules::r6_removes(VertexId v, const Point& z) const {

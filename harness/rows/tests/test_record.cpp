@@ -92,9 +92,9 @@ TEST_F(RowTest, SecondsOfTheTableAreThoseOfTheMeshAlone) {
   EXPECT_DOUBLE_EQ(meshing_seconds(phases_s), 2);
 }
 
-TEST_F(RowTest, MemoryPerCellLeavesOutLabelsAndTransform) {
-  // 1000 voxels of 2 + 4 bytes, 1000 cells.
-  EXPECT_DOUBLE_EQ(bytes_per_cell_beyond_image(good).value(), 100);
+TEST_F(RowTest, MemoryPerCellLeavesOutLabels) {
+  // 1000 voxels of 2 bytes, 1000 cells.
+  EXPECT_DOUBLE_EQ(bytes_per_cell_beyond_image(good).value(), 104);
   EXPECT_FALSE(bytes_per_cell_beyond_image(failed).has_value());
   good.mesh->cells = 0;
   EXPECT_FALSE(bytes_per_cell_beyond_image(good).has_value());

@@ -1,0 +1,53 @@
+// Voxels and the bricks of 4^3 that an image is cut into; both are numbered from the grid's corner.
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <cstdint>
+
+#include "geometry/point.h"
+
+namespace podm {
+
+struct Voxel {
+  int i = 0, j = 0, k = 0;
+  friend bool operator==(const Voxel&, const Voxel&) = default;
+};
+
+inline Point center(const Voxel& v) {
+  return {static_cast<double>(v.i), static_cast<double>(v.j), static_cast<double>(v.k)};
+}
+
+/// A voxel's place in its brick, 0 to 63, x fastest.
+constexpr unsigned place_in_brick(const Voxel& v) {
+  return static_cast<unsigned>((v.i & 3) | (v.j & 3) << 2 | (v.k & 3) << 4);
+}
+
+/// The bricks of a grid; those at its upper ends may reach beyond it.
+class BrickGrid {
+ public:
+  BrickGrid() = default;
+  /// `size`: voxels along each axis.
+  explicit BrickGrid(const std::array<int, 3>& size)
+      : size_{(size[0] + 3) / 4, (size[1] + 3) / 4, (size[2] + 3) / 4} {}
+
+  const std::array<int, 3>& size() const { return size_; }
+  std::size_t count() const { return index(0, 0, size_[2]); }
+  /// Of the brick that is (i,j,k) from the corner.
+  std::size_t index(int i, int j, int k) const {
+    return (static_cast<std::size_t>(k) * static_cast<std::size_t>(size_[1]) + static_cast<std::size_t>(j)) *
+               static_cast<std::size_t>(size_[0]) +
+           static_cast<std::size_t>(i);
+  }
+  std::size_t index_of_voxel(const Voxel& v) const { return index(v.i >> 2, v.j >> 2, v.k >> 2); }
+  bool contains(int i, int j, int k) const {
+    return is_in(i, size_[0]) && is_in(j, size_[1]) && is_in(k, size_[2]);
+  }
+
+ private:
+  static bool is_in(int i, int n) { return static_cast<unsigned>(i) < static_cast<unsigned>(n); }
+
+  std::array<int, 3> size_{};
+};
+
+}  // namespace podm
