@@ -23,10 +23,6 @@ Point point_of(const TetMesh& mesh, std::uint32_t v) {
   return {mesh.vertices[v][0], mesh.vertices[v][1], mesh.vertices[v][2]};
 }
 
-double angle_deg(const Vector& u, const Vector& v) {
-  return std::atan2(std::sqrt(squared_length(cross(u, v))), dot(u, v)) * kRadToDeg;
-}
-
 // The square of the angle's cotangent, with its sign: falls as the angle grows, and costs neither a root nor
 // an arc tangent, so that these are left for the extremes alone.
 double squared_cotangent(const Vector& u, const Vector& v) {
@@ -37,22 +33,89 @@ double angle_deg(double squared_cotangent) {
   return std::atan2(1, std::copysign(std::sqrt(std::abs(squared_cotangent)), squared_cotangent)) * kRadToDeg;
 }
 
-// What the items of a slice add up to. Any thread adds up a slice; slices are put together in their order, so
-// that sums are rounded alike on any number of threads.
+// What the items of a slice add up to, by add(tally, begin, end). Any thread adds up a slice; slices are put
+// together in their order, so that sums are rounded alike on any number of threads.
 template <class Tally, class Add>
 Tally tally_up(std::size_t num_items, std::size_t num_slices, int threads, const Tally& none,
                const Add& add) {
   const std::size_t length = (num_items + num_slices - 1) / num_slices;
   std::vector<Tally> slices(num_slices, none);
   parallel_for(num_slices, num_threads(threads), [&](std::size_t slice, std::size_t) {
-    const std::size_t end = std::min(num_items, (slice + 1) * length);
-    for (std::size_t i = slice * length; i < end; ++i) add(slices[slice], i);
+    const std::size_t begin = std::min(num_items, slice * length);
+    add(slices[slice], begin, std::min(num_items, begin + length));
   });
   for (std::size_t slice = 1; slice < num_slices; ++slice) slices[0] += slices[slice];
   return std::move(slices[0]);
 }
 
 constexpr std::size_t kMostSlices = 256;
+
+using Corners = std::array<Point, 4>;
+
+struct CellMeasures {
+  double determinant, squared_length;  // of the sphere
+  double squared_radius, shortest2, volume_mm3;
+  // The angles are those between facets' normals, which dihedral angles make up to 180 degrees.
+  double least_cotangent2, most_cotangent2;
+};
+
+inline double least(double a, double b) { return a < b ? a : b; }
+inline double most(double a, double b) { return a > b ? a : b; }
+
+// Has neither branch nor loop: a loop over it becomes vector code.
+inline CellMeasures measure_cell(const Point& a, const Point& b, const Point& c, const Point& d) {
+  const Vector da = a - d, db = b - d, dc = c - d, ab = b - a, ac = c - a, bc = c - b;
+  const double aa = squared_length(da), bb = squared_length(db), cc = squared_length(dc);
+  const RelativeSphere sphere = relative_sphere(da, db, dc, aa, bb, cc);
+  // Normals of the facets opposite a, b, c and d; the angle between two is at the edge of the other two.
+  const Vector na = cross(d - b, bc), nb = cross(ac, d - a), nc = cross(d - a, ab), nd = cross(ab, ac);
+  const double n_ab = squared_cotangent(na, nb), n_ac = squared_cotangent(na, nc),
+               n_ad = squared_cotangent(na, nd), n_bc = squared_cotangent(nb, nc),
+               n_bd = squared_cotangent(nb, nd), n_cd = squared_cotangent(nc, nd);
+  return {sphere.determinant,
+          sphere.squared_length,
+          squared_distance(d + sphere.center, d),
+          least(least(least(aa, bb), least(cc, squared_length(ab))),
+                least(squared_length(ac), squared_length(bc))),
+          dot(nd, d - a) / 6,
+          least(least(least(n_ab, n_ac), least(n_ad, n_bc)), least(n_bd, n_cd)),
+          most(most(most(n_ab, n_ac), most(n_ad, n_bc)), most(n_bd, n_cd))};
+}
+
+// Some cells side by side.
+class CellBlock {
+ public:
+  static constexpr std::size_t kSize = 16;
+
+  void set(std::size_t i, const Corners& p) {
+    for (unsigned v = 0; v < 4; ++v) x_[v][i] = p[v].x, y_[v][i] = p[v].y, z_[v][i] = p[v].z;
+  }
+  Corners corners(std::size_t i) const { return {point(0, i), point(1, i), point(2, i), point(3, i)}; }
+  void measure() {
+    for (std::size_t i = 0; i < kSize; ++i) {
+      const CellMeasures m = measure_cell(point(0, i), point(1, i), point(2, i), point(3, i));
+      determinant_[i] = m.determinant;
+      squared_length_[i] = m.squared_length;
+      squared_radius_[i] = m.squared_radius;
+      shortest2_[i] = m.shortest2;
+      volume_mm3_[i] = m.volume_mm3;
+      least_cotangent2_[i] = m.least_cotangent2;
+      most_cotangent2_[i] = m.most_cotangent2;
+    }
+  }
+  CellMeasures measures(std::size_t i) const {
+    return {determinant_[i], squared_length_[i],   squared_radius_[i], shortest2_[i],
+            volume_mm3_[i],  least_cotangent2_[i], most_cotangent2_[i]};
+  }
+
+ private:
+  Point point(unsigned v, std::size_t i) const { return {x_[v][i], y_[v][i], z_[v][i]}; }
+
+  using Doubles = std::array<double, kSize>;
+  std::array<Doubles, 4> x_, y_, z_;
+  Doubles determinant_, squared_length_, squared_radius_, shortest2_, volume_mm3_, least_cotangent2_,
+      most_cotangent2_;
+};
 
 struct alignas(64) CellTally {
   struct OfLabel {
@@ -61,47 +124,29 @@ struct alignas(64) CellTally {
   };
 
   double max_ratio2 = 0, max_radius2 = 0, shortest2 = kInfinity;
-  // The angles are those between facets' normals, which dihedral angles make up to 180 degrees.
   double least_cotangent2 = kInfinity, most_cotangent2 = -kInfinity;
   std::uint64_t bad_orientation = 0, bad_radius_edge = 0, bad_radius = 0;
   std::vector<OfLabel> labels;
 
-  void add(const std::array<Point, 4>& p, LabelIndex label, double squared_radius_bound) {
-    if (orientation(p[0], p[1], p[2], p[3]) <= 0) {
-      ++bad_orientation;
-      return;
+  void add(const Corners& p, CellMeasures m, LabelIndex label, double squared_radius_bound) {
+    // Else positive, and the radius good, by the error bounds in circumsphere.h.
+    if (m.determinant >= 0 || !is_well_conditioned(m.determinant, m.squared_length)) {
+      if (orientation(p[0], p[1], p[2], p[3]) <= 0) {
+        ++bad_orientation;
+        return;
+      }
+      m.squared_radius = circumsphere(p[0], p[1], p[2], p[3], 0).squared_radius;
     }
-    const Circumsphere sphere = circumsphere(p[0], p[1], p[2], p[3], 0);
-    double shortest_of_cell2 = kInfinity;
-    for (const auto& e : kEdgeVertices) {
-      const double length2 = squared_distance(p[static_cast<unsigned>(e[0])], p[static_cast<unsigned>(e[1])]);
-      shortest_of_cell2 = std::min(shortest_of_cell2, length2);
-    }
-    const double ratio2 = sphere.squared_radius / shortest_of_cell2;
+    const double ratio2 = m.squared_radius / m.shortest2;
     bad_radius_edge += ratio2 >= kRadiusEdgeBound * kRadiusEdgeBound;
-    bad_radius += sphere.squared_radius > squared_radius_bound;
+    bad_radius += m.squared_radius > squared_radius_bound;
     max_ratio2 = std::max(max_ratio2, ratio2);
-    max_radius2 = std::max(max_radius2, sphere.squared_radius);
-    shortest2 = std::min(shortest2, shortest_of_cell2);
-    add_dihedrals(p);
-    labels[label].volume_mm3 += dot(cross(p[1] - p[0], p[2] - p[0]), p[3] - p[0]) / 6;
+    max_radius2 = std::max(max_radius2, m.squared_radius);
+    shortest2 = std::min(shortest2, m.shortest2);
+    least_cotangent2 = std::min(least_cotangent2, m.least_cotangent2);
+    most_cotangent2 = std::max(most_cotangent2, m.most_cotangent2);
+    labels[label].volume_mm3 += m.volume_mm3;
     ++labels[label].cells;
-  }
-
-  // Dihedral angle at an edge: between the facets opposite its complement's ends.
-  void add_dihedrals(const std::array<Point, 4>& p) {
-    std::array<Vector, 4> inward;
-    for (unsigned i = 0; i < 4; ++i) {
-      const auto& k = kFacetVertices[i];
-      const Point& o = p[static_cast<unsigned>(k[0])];
-      inward[i] = cross(p[static_cast<unsigned>(k[1])] - o, p[static_cast<unsigned>(k[2])] - o);
-    }
-    for (const auto& pair : kEdgeVertices) {
-      const double outer =
-          squared_cotangent(inward[static_cast<unsigned>(pair[0])], inward[static_cast<unsigned>(pair[1])]);
-      least_cotangent2 = std::min(least_cotangent2, outer);
-      most_cotangent2 = std::max(most_cotangent2, outer);
-    }
   }
 
   void operator+=(const CellTally& b) {
@@ -120,18 +165,38 @@ struct alignas(64) CellTally {
   }
 };
 
+constexpr std::size_t kLookahead = 32;  // cells whose vertices are on their way to the cache
+
+void add_cells(const TetMesh& mesh, const SizeField& sizes, std::size_t begin, std::size_t end,
+               CellTally& tally) {
+  CellBlock block{};
+  for (std::size_t first = begin; first < end; first += CellBlock::kSize) {
+    const std::size_t count = std::min(CellBlock::kSize, end - first);
+    for (std::size_t i = 0; i < count; ++i) {
+      const auto& cell = mesh.cells[first + i];
+      const auto& later = mesh.cells[std::min(first + i + kLookahead, end - 1)];
+      for (const std::uint32_t v : later) __builtin_prefetch(&mesh.vertices[v]);
+      block.set(i, {point_of(mesh, cell[0]), point_of(mesh, cell[1]), point_of(mesh, cell[2]),
+                    point_of(mesh, cell[3])});
+    }
+    block.measure();
+    for (std::size_t i = 0; i < count; ++i) {
+      const LabelIndex label = mesh.cell_labels[first + i];
+      tally.add(block.corners(i), block.measures(i), label, sizes.squared_radius(label));
+    }
+  }
+}
+
 CellTally measure_cells(const TetMesh& mesh, const SizeField& sizes, int threads, MeshingReport& report) {
   CellTally none;
   none.labels.resize(mesh.labels.size());
   // No more than what lets the sums of all labels take 4 bytes a cell.
   const std::size_t num_slices =
       std::clamp<std::size_t>(mesh.cells.size() / (4 * mesh.labels.size()), 1, kMostSlices);
-  CellTally tally =
-      tally_up(mesh.cells.size(), num_slices, threads, none, [&](CellTally& slice, std::size_t c) {
-        std::array<Point, 4> p;
-        for (unsigned i = 0; i < 4; ++i) p[i] = point_of(mesh, mesh.cells[c][i]);
-        slice.add(p, mesh.cell_labels[c], sizes.squared_radius(mesh.cell_labels[c]));
-      });
+  CellTally tally = tally_up(mesh.cells.size(), num_slices, threads, none,
+                             [&](CellTally& slice, std::size_t begin, std::size_t end) {
+                               add_cells(mesh, sizes, begin, end, slice);
+                             });
   report.guarantees.orientation = tally.bad_orientation;
   report.guarantees.radius_edge = tally.bad_radius_edge;
   report.guarantees.radius = tally.bad_radius;
@@ -144,33 +209,39 @@ CellTally measure_cells(const TetMesh& mesh, const SizeField& sizes, int threads
 }
 
 struct alignas(64) FacetTally {
-  double smallest = 180, largest = 0;
+  double least_cotangent2 = kInfinity, most_cotangent2 = -kInfinity;
   std::uint64_t bad = 0;
 
   void add(const Point& a, const Point& b, const Point& c) {
-    const std::array<double, 3> angles{angle_deg(b - a, c - a), angle_deg(c - b, a - b),
-                                       angle_deg(a - c, b - c)};
-    const auto [least, most] = std::minmax_element(angles.begin(), angles.end());
-    bad += *least <= kFacetAngleBound;
-    smallest = std::min(smallest, *least);
-    largest = std::max(largest, *most);
+    const double at_a = squared_cotangent(b - a, c - a), at_b = squared_cotangent(c - b, a - b),
+                 at_c = squared_cotangent(a - c, b - c);
+    const double sharpest = std::max(at_a, std::max(at_b, at_c));
+    bad += !(sharpest < kBadCotangent2);  // NaN, of vertices that coincide, too
+    most_cotangent2 = std::max(most_cotangent2, sharpest);
+    least_cotangent2 = std::min(least_cotangent2, std::min(at_a, std::min(at_b, at_c)));
   }
   void operator+=(const FacetTally& b) {
-    smallest = std::min(smallest, b.smallest);
-    largest = std::max(largest, b.largest);
+    least_cotangent2 = std::min(least_cotangent2, b.least_cotangent2);
+    most_cotangent2 = std::max(most_cotangent2, b.most_cotangent2);
     bad += b.bad;
   }
+
+ private:
+  static_assert(kFacetAngleBound == 30);
+  static constexpr double kBadCotangent2 = 3;
 };
 
 void measure_facets(const TetMesh& mesh, int threads, MeshingReport& report) {
-  const auto add = [&](FacetTally& slice, std::size_t f) {
-    const auto& facet = mesh.facets[f];
-    slice.add(point_of(mesh, facet[0]), point_of(mesh, facet[1]), point_of(mesh, facet[2]));
+  const auto add = [&](FacetTally& slice, std::size_t begin, std::size_t end) {
+    for (std::size_t f = begin; f < end; ++f) {
+      const auto& facet = mesh.facets[f];
+      slice.add(point_of(mesh, facet[0]), point_of(mesh, facet[1]), point_of(mesh, facet[2]));
+    }
   };
   const FacetTally tally = tally_up(mesh.facets.size(), kMostSlices, threads, FacetTally{}, add);
   report.guarantees.facet_angle = tally.bad;
-  report.quality.min_facet_angle_deg = tally.smallest;
-  report.quality.max_facet_angle_deg = tally.largest;
+  report.quality.min_facet_angle_deg = angle_deg(tally.most_cotangent2);
+  report.quality.max_facet_angle_deg = angle_deg(tally.least_cotangent2);
 }
 
 }  // namespace

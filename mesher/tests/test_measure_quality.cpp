@@ -10,6 +10,7 @@
 #include <tuple>
 
 #include "geometry/point.h"
+#include "geometry/predicates.h"
 #include "tests/images.h"
 
 namespace podm::test {
@@ -157,6 +158,22 @@ TEST_F(MeasureQuality, IsTheSameToTheBitOnAnyNumberOfThreads) {
   const auto one = numbers_of(measure(1));
   for (const int threads : {2, 3, 8, 0})
     for (int repeat = 0; repeat < 5; ++repeat) EXPECT_EQ(numbers_of(measure(threads)), one) << threads;
+}
+
+// Grid points on a plane that doubles do not hold: the sign of a volume is that of what rounding left of it.
+TEST_F(MeasureQuality, SeesExactlyWhichFlatCellsArePositive) {
+  for (auto& [x, y, z] : mesh_.vertices) {
+    x = static_cast<double>(random_() % 8) / 10;
+    y = static_cast<double>(random_() % 8) / 10;
+    z = 0.3 * x + 0.7 * y;
+  }
+  std::uint64_t negative = 0, positive = 0;
+  for (std::size_t c = 0; c < mesh_.cells.size(); ++c) {
+    const Corners p = corners(c);
+    (orientation(p[0], p[1], p[2], p[3]) <= 0 ? negative : positive) += 1;
+  }
+  EXPECT_GT(positive, 100u);
+  EXPECT_EQ(measure(2).guarantees.orientation, negative);
 }
 
 TEST_F(MeasureQuality, OfFewCellsOrNone) {
