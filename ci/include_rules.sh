@@ -14,7 +14,7 @@ may_include() {
     mesher/delaunay) echo mesher/geometry mesher/runtime mesher/include ;;
     mesher/refine) echo mesher/delaunay mesher/image mesher/geometry mesher/runtime mesher/include ;;
     mesher/workers) echo mesher/refine mesher/delaunay mesher/runtime mesher/include ;;
-    mesher/io) echo mesher/files mesher/include ;;
+    mesher/io) echo mesher/files mesher/runtime mesher/include ;;
     mesher/algorithms) echo mesher/workers mesher/refine mesher/delaunay mesher/octree mesher/image mesher/geometry \
       mesher/runtime mesher/include podm ;;
     podm) echo mesher/include ;;

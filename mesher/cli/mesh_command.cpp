@@ -102,7 +102,7 @@ int run(const MeshCommand& command) {
   if (!run.crossover.warning.empty()) warnings.push_back(run.crossover.warning);
   warnings.insert(warnings.end(), image.warnings.begin(), image.warnings.end());
   run.write_s = timed([&] {
-    canonicalize(run.result.mesh);
+    canonicalize(run.result.mesh, loop_threads(command.meshing.team));
     run.mesh_sha256 = mesh_sha256(run.result.mesh);
     write_outputs(command, run.result.mesh);
     if (log) finish_log(*log, run);

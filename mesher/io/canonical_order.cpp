@@ -1,9 +1,12 @@
-// The canonical order of a mesh, in time linear in its cells and with little memory beside it.
+// The canonical order of a mesh, in time linear in its cells, on all threads: vertices by buckets of x, cells
+// and facets by buckets of their first vertex, each bucket small enough for a cache and sorted there.
 #include <algorithm>
 #include <bit>
 #include <cmath>
+#include <limits>
 #include <numeric>
 
+#include "io/buckets.h"
 #include "podm/errors.h"
 #include "podm/mesh_io.h"
 
@@ -12,142 +15,217 @@ namespace {
 
 using VertexId = std::uint32_t;
 
-// Sorts the vertices by (x, y, z) and returns the new position of each.
-std::vector<VertexId> sort_vertices(std::vector<std::array<double, 3>>& vertices) {
-  struct Key {
-    double x;  // beside the id, so that nearly every comparison stays in the sorted array
-    VertexId id;
-  };
-  std::vector<Key> order(vertices.size());
-  for (std::size_t v = 0; v < vertices.size(); ++v) {
-    for (double& coordinate : vertices[v]) {
+// -0 becomes 0: equal coordinates have equal bytes. Returns the bounds of x.
+std::array<double, 2> normalize(std::vector<std::array<double, 3>>& vertices) {
+  double low = std::numeric_limits<double>::infinity(), high = -low;
+  for (auto& vertex : vertices) {
+    for (double& coordinate : vertex) {
       if (!std::isfinite(coordinate))
         throw InternalError("a mesh vertex has a coordinate that is not finite");
-      coordinate += 0.0;  // -0 becomes 0: equal coordinates have equal bytes
+      coordinate += 0.0;
     }
-    order[v] = {vertices[v][0], static_cast<VertexId>(v)};
+    low = std::min(low, vertex[0]);
+    high = std::max(high, vertex[0]);
   }
-  std::sort(order.begin(), order.end(), [&](const Key& a, const Key& b) {
-    if (a.x != b.x) return a.x < b.x;
-    return vertices[a.id] < vertices[b.id];
-  });
+  return {low, high};
+}
+
+// Sorts the vertices by (x, y, z) and returns the new position of each.
+std::vector<VertexId> sort_vertices(std::vector<std::array<double, 3>>& vertices, std::size_t threads) {
+  struct Key {
+    double x;  // beside the id, so that nearly every comparison stays in the bucket
+    VertexId id;
+  };
+  constexpr std::size_t kVerticesABucket = 32, kMostBuckets = 1 << 14;
+  const auto [low, high] = normalize(vertices);
+  const std::size_t num_buckets = std::min(kMostBuckets, vertices.size() / kVerticesABucket + 1);
+  // Rounding keeps the order: of two numbers the larger is not in the lower bucket.
+  const double width = high - low;
+  const double scale = width > 0 ? std::min(1e300, static_cast<double>(num_buckets - 1) / width) : 0;
+  const auto bucket_of = [&, low = low](double x) { return static_cast<std::size_t>((x - low) * scale); };
+  Buckets<Key> buckets(
+      vertices.size(), num_buckets, threads, [&](std::size_t v) { return bucket_of(vertices[v][0]); },
+      [&](std::size_t v) {
+        return Key{vertices[v][0], static_cast<VertexId>(v)};
+      },
+      [&](const Key& key) { return bucket_of(key.x); });
 
   std::vector<std::array<double, 3>> sorted(vertices.size());
   std::vector<VertexId> position(vertices.size());
-  for (std::size_t v = 0; v < vertices.size(); ++v) {
-    sorted[v] = vertices[order[v].id];
-    position[order[v].id] = static_cast<VertexId>(v);
-  }
+  parallel_for(num_buckets, threads, [&](std::size_t b, std::size_t) {
+    const auto keys = buckets[b];
+    std::sort(keys.begin(), keys.end(), [&](const Key& a, const Key& c) {
+      if (a.x != c.x) return a.x < c.x;
+      return vertices[a.id] < vertices[c.id];
+    });
+    std::size_t at = buckets.begin(b);
+    for (const Key& key : keys) {
+      sorted[at] = vertices[key.id];
+      position[key.id] = static_cast<VertexId>(at++);
+    }
+  });
   vertices.swap(sorted);
   return position;
+}
+
+// The larger of two goes to the back; returns whether they changed places. Without a branch: which is larger
+// nobody can foresee.
+std::uint32_t put_in_order(VertexId& a, VertexId& b) {
+  const std::uint32_t is_swapped = a > b;
+  const VertexId change = (a ^ b) & (0u - is_swapped);
+  a ^= change;
+  b ^= change;
+  return is_swapped;
 }
 
 // The even permutations of four vertices fall into two classes; the representative is ascending, or
 // ascending with its last two swapped.
 void permute_evenly(std::array<VertexId, 4>& cell) {
-  bool odd = false;
-  const auto order = [&](int i, int j) {
-    if (cell[i] > cell[j]) {
-      std::swap(cell[i], cell[j]);
-      odd = !odd;
-    }
-  };
-  order(0, 1), order(2, 3), order(0, 2), order(1, 3), order(1, 2);
-  if (odd) std::swap(cell[2], cell[3]);
+  auto [a, b, c, d] = cell;
+  std::uint32_t swaps = put_in_order(a, b);
+  swaps ^= put_in_order(c, d);
+  swaps ^= put_in_order(a, c);
+  swaps ^= put_in_order(b, d);
+  swaps ^= put_in_order(b, c);
+  const VertexId change = (c ^ d) & (0u - swaps);
+  cell = {a, b, c ^ change, d ^ change};
 }
 
 void permute_evenly(std::array<VertexId, 3>& facet) {
   std::rotate(facet.begin(), std::min_element(facet.begin(), facet.end()), facet.end());
 }
 
-// Sorts simplices and their labels in place: an American flag pass (McIlroy, Bostic, McIlroy, "Engineering
-// radix sort", 1993) on the leading bits of the first vertex, then each bucket, small enough for the cache,
-// by counting its first vertices and sorting the few simplices that share one.
+// What orders simplices of one first vertex: the others, then the label. As one number, since comparing it
+// takes no branch.
+using Key = unsigned __int128;
+
+LabelIndex label_bits(LabelIndex label) { return label; }
+std::uint32_t label_bits(const std::array<LabelIndex, 2>& pair) {
+  return std::uint32_t{pair[0]} << 16 | pair[1];
+}
+void set_label(LabelIndex& label, std::uint32_t bits) { label = static_cast<LabelIndex>(bits); }
+void set_label(std::array<LabelIndex, 2>& pair, std::uint32_t bits) {
+  pair = {static_cast<LabelIndex>(bits >> 16), static_cast<LabelIndex>(bits)};
+}
+
+// Few keys: each finds its place by counting the smaller ones, which no branch has to foresee.
+void sort_few(std::span<const Key> keys, Key* sorted) {
+  for (std::size_t i = 0; i < keys.size(); ++i) {
+    std::size_t place = 0;
+    for (std::size_t j = 0; j < i; ++j) place += keys[j] <= keys[i];
+    for (std::size_t j = i + 1; j < keys.size(); ++j) place += keys[j] < keys[i];
+    sorted[place] = keys[i];
+  }
+}
+
+// Sorts simplices and their labels. Buckets are those of the leading bits of the first vertex.
 template <std::size_t N, class SimplexLabel>
 class SimplexSorter {
  public:
   SimplexSorter(std::vector<std::array<VertexId, N>>& simplices, std::vector<SimplexLabel>& labels,
-                std::size_t num_vertices)
+                const std::vector<VertexId>& position, std::size_t threads)
       : simplices_(simplices),
         labels_(labels),
-        bucket_bits_(std::max(0, static_cast<int>(std::bit_width(num_vertices)) - kLeadingBits)),
-        bucket_begin_((num_vertices >> bucket_bits_) + 2) {}
+        position_(position),
+        threads_(threads),
+        bucket_bits_(std::max(0, static_cast<int>(std::bit_width(position.size())) - kLeadingBits)) {}
 
   void sort() {
-    distribute();
-    for (std::size_t b = 0; b + 1 < bucket_begin_.size(); ++b) sort_bucket(b);
+    Buckets<Record> buckets(
+        simplices_.size(), (position_.size() >> bucket_bits_) + 1, threads_,
+        [&](std::size_t i) {
+          for (const VertexId v : simplices_[std::min(i + kLookahead, simplices_.size() - 1)])
+            __builtin_prefetch(&position_[v]);
+          return renumber(simplices_[i]) >> bucket_bits_;
+        },
+        [&](std::size_t i) {
+          return Record{simplices_[i], label_bits(labels_[i])};
+        },
+        [&](const Record& record) { return record.simplex[0] >> bucket_bits_; });
+    const Workspace empty{std::vector<std::size_t>((std::size_t{1} << bucket_bits_) + 1),
+                          std::vector<Key>(buckets.largest()),
+                          {}};
+    std::vector<Workspace> workspaces(threads_, empty);
+    parallel_for(buckets.size(), threads_, [&](std::size_t b, std::size_t thread) {
+      sort_bucket(buckets[b], static_cast<VertexId>(b << bucket_bits_), buckets.begin(b), workspaces[thread]);
+    });
   }
 
  private:
   static constexpr int kLeadingBits = 10;
+  static constexpr std::size_t kLookahead = 16;  // simplices whose vertices' positions are on their way
+  static constexpr std::size_t kFew = 40;        // simplices of one first vertex
   struct Record {
     std::array<VertexId, N> simplex;
-    SimplexLabel label;
-    auto operator<=>(const Record&) const = default;
+    std::uint32_t label;
+  };
+  struct Workspace {
+    std::vector<std::size_t> run_end;  // one a vertex of the bucket
+    std::vector<Key> keys;
+    std::array<Key, kFew> few;
   };
 
-  std::size_t bucket_of(const std::array<VertexId, N>& simplex) const { return simplex[0] >> bucket_bits_; }
+  // Gives it its new vertices, the first of which is returned.
+  VertexId renumber(std::array<VertexId, N>& simplex) const {
+    for (VertexId& vertex : simplex) vertex = position_[vertex];
+    permute_evenly(simplex);
+    return simplex[0];
+  }
 
-  void distribute() {
-    for (const auto& simplex : simplices_) ++bucket_begin_[bucket_of(simplex) + 1];
-    std::partial_sum(bucket_begin_.begin(), bucket_begin_.end(), bucket_begin_.begin());
-    std::vector<std::size_t> next = bucket_begin_;
-    for (std::size_t b = 0; b + 1 < bucket_begin_.size(); ++b) {
-      while (next[b] < bucket_begin_[b + 1]) {
-        const std::size_t home = bucket_of(simplices_[next[b]]);
-        if (home != b) {
-          std::swap(simplices_[next[b]], simplices_[next[home]]);
-          std::swap(labels_[next[b]], labels_[next[home]]);
-        }
-        ++next[home];
-      }
+  static Key key_of(const Record& record) {
+    Key key = 0;
+    for (std::size_t i = 1; i < N; ++i) key = key << 32 | record.simplex[i];
+    return key << 32 | record.label;
+  }
+
+  // Counts the simplices by first vertex, then sorts those that share one.
+  void sort_bucket(std::span<const Record> records, VertexId first_vertex, std::size_t begin,
+                   Workspace& work) {
+    std::fill(work.run_end.begin(), work.run_end.end(), 0);
+    for (const Record& record : records) ++work.run_end[record.simplex[0] - first_vertex + 1];
+    std::partial_sum(work.run_end.begin(), work.run_end.end(), work.run_end.begin());
+    for (const Record& record : records)  // moves each run's begin to its end
+      work.keys[work.run_end[record.simplex[0] - first_vertex]++] = key_of(record);
+    std::size_t at = 0;
+    for (std::size_t v = 0; at < records.size(); ++v) {
+      const std::span<Key> run(work.keys.data() + at, work.run_end[v] - at);
+      write(static_cast<VertexId>(first_vertex + v), sorted(run, work), begin + at);
+      at = work.run_end[v];
     }
   }
 
-  void sort_bucket(std::size_t bucket) {
-    const std::size_t begin = bucket_begin_[bucket], size = bucket_begin_[bucket + 1] - begin;
-    const VertexId first_vertex = static_cast<VertexId>(bucket << bucket_bits_);
-    run_begin_.assign((std::size_t{1} << bucket_bits_) + 1, 0);
-    records_.resize(size);
-    for (std::size_t i = begin; i < begin + size; ++i) ++run_begin_[simplices_[i][0] - first_vertex + 1];
-    std::partial_sum(run_begin_.begin(), run_begin_.end(), run_begin_.begin());
-    for (std::size_t i = begin; i < begin + size; ++i)  // leaves run_begin_ one run ahead
-      records_[run_begin_[simplices_[i][0] - first_vertex]++] = {simplices_[i], labels_[i]};
-    std::size_t run = 0;
-    for (const std::size_t run_end : run_begin_) {
-      std::sort(records_.begin() + run, records_.begin() + run_end);
-      run = run_end;
+  static std::span<const Key> sorted(std::span<Key> run, Workspace& work) {
+    if (run.size() > kFew) {
+      std::sort(run.begin(), run.end());
+      return run;
     }
-    for (std::size_t i = 0; i < size; ++i) {
-      simplices_[begin + i] = records_[i].simplex;
-      labels_[begin + i] = records_[i].label;
+    sort_few(run, work.few.data());
+    return {work.few.data(), run.size()};
+  }
+
+  void write(VertexId first_vertex, std::span<const Key> run, std::size_t at) {
+    for (const Key key : run) {
+      auto& simplex = simplices_[at];
+      simplex[0] = first_vertex;
+      for (std::size_t i = 1; i < N; ++i) simplex[i] = static_cast<VertexId>(key >> (32 * (N - i)));
+      set_label(labels_[at++], static_cast<std::uint32_t>(key));
     }
   }
 
   std::vector<std::array<VertexId, N>>& simplices_;
   std::vector<SimplexLabel>& labels_;
-  int bucket_bits_;                        // of the first vertex that tell simplices of one bucket apart
-  std::vector<std::size_t> bucket_begin_;  // one more than buckets
-  std::vector<std::size_t> run_begin_;     // scratch: simplices of a bucket by first vertex
-  std::vector<Record> records_;            // scratch: one bucket
+  const std::vector<VertexId>& position_;
+  std::size_t threads_;
+  int bucket_bits_;  // of the first vertex that tell simplices of one bucket apart
 };
-
-template <std::size_t N, class SimplexLabel>
-void sort_simplices(std::vector<std::array<VertexId, N>>& simplices, std::vector<SimplexLabel>& labels,
-                    const std::vector<VertexId>& position) {
-  for (auto& simplex : simplices) {
-    for (VertexId& vertex : simplex) vertex = position[vertex];
-    permute_evenly(simplex);
-  }
-  SimplexSorter<N, SimplexLabel>(simplices, labels, position.size()).sort();
-}
 
 }  // namespace
 
-void canonicalize(TetMesh& mesh) {
-  const std::vector<VertexId> position = sort_vertices(mesh.vertices);
-  sort_simplices(mesh.cells, mesh.cell_labels, position);
-  sort_simplices(mesh.facets, mesh.facet_labels, position);
+void canonicalize(TetMesh& mesh, int threads) {
+  const std::size_t used = num_threads(threads);
+  const std::vector<VertexId> position = sort_vertices(mesh.vertices, used);
+  SimplexSorter(mesh.cells, mesh.cell_labels, position, used).sort();
+  SimplexSorter(mesh.facets, mesh.facet_labels, position, used).sort();
 }
 
 }  // namespace podm
