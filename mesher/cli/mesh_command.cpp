@@ -3,6 +3,7 @@
 
 #include <chrono>
 #include <cstdio>
+#include <future>
 #include <optional>
 
 #include "algorithms/team_size.h"
@@ -102,9 +103,13 @@ int run(const MeshCommand& command) {
   if (!run.crossover.warning.empty()) warnings.push_back(run.crossover.warning);
   warnings.insert(warnings.end(), image.warnings.begin(), image.warnings.end());
   run.write_s = timed([&] {
-    canonicalize(run.result.mesh, loop_threads(command.meshing.team));
-    run.mesh_sha256 = mesh_sha256(run.result.mesh);
+    const int threads = loop_threads(command.meshing.team);
+    canonicalize(run.result.mesh, threads);
+    // Beside the writing where there are threads for both.
+    std::future<std::string> hash = std::async(threads == 1 ? std::launch::deferred : std::launch::async,
+                                               [&] { return mesh_sha256(run.result.mesh); });
     write_outputs(command, run.result.mesh);
+    run.mesh_sha256 = hash.get();
     if (log) finish_log(*log, run);
     if (!command.schedule_path.empty()) write_schedule(run, command.schedule_path);
   });

@@ -28,18 +28,35 @@ struct VtuArray {
   std::function<void(AtomicFile&)> write;
 };
 
+std::string declaration(const std::string& type, const std::string& name, int components) {
+  return fmt::format(R"(type="{}" Name="{}" NumberOfComponents="{}")", type, name, components);
+}
+
 // `value_at(i)` for i in [0, count), as the C++ type Value; VTK sees `components` numbers of type `type` in
 // it.
 template <class Value, class ValueAt>
 VtuArray make_array(const std::string& type, const std::string& name, std::size_t count, ValueAt value_at,
                     int components = 1) {
-  return {fmt::format(R"(type="{}" Name="{}" NumberOfComponents="{}")", type, name, components),
-          count * sizeof(Value), [count, value_at](AtomicFile& file) {
-            for (std::size_t i = 0; i < count; ++i) file.put(static_cast<Value>(value_at(i)));
+  return {declaration(type, name, components), count * sizeof(Value), [count, value_at](AtomicFile& file) {
+            std::array<Value, 4096> block;
+            for (std::size_t begin = 0; begin < count; begin += block.size()) {
+              const std::size_t size = std::min(block.size(), count - begin);
+              for (std::size_t i = 0; i < size; ++i) block[i] = static_cast<Value>(value_at(begin + i));
+              file.write(block.data(), size * sizeof(Value));
+            }
           }};
 }
 
+// Values that lie in memory as VTK wants them.
+template <class Value>
+VtuArray make_array_of(const std::string& type, const std::string& name, const std::vector<Value>& values,
+                       int components = 1) {
+  return {declaration(type, name, components), values.size() * sizeof(Value),
+          [&values](AtomicFile& file) { file.write(values.data(), values.size() * sizeof(Value)); }};
+}
+
 // Ids as Int32, half the file, unless some do not fit.
+bool is_wide(std::size_t largest) { return largest > std::numeric_limits<std::int32_t>::max(); }
 template <class ValueAt>
 VtuArray make_id_array(const std::string& name, std::size_t count, bool wide, ValueAt value_at) {
   return wide ? make_array<std::int64_t>("Int64", name, count, value_at)
@@ -51,20 +68,15 @@ struct VtuGrid {
   std::vector<VtuArray> point_data, cell_data, points, cells;  // the sections, in the file's order
 };
 
-template <class PointAt, class VertexAt>
-VtuGrid make_grid(std::size_t num_points, std::size_t num_cells, int vertices_a_cell, int cell_type,
-                  PointAt point_at, VertexAt vertex_at) {
-  VtuGrid grid{num_points, num_cells, {}, {}, {}, {}};
-  const std::size_t num_corners = num_cells * static_cast<std::size_t>(vertices_a_cell);
-  const bool wide = std::max(num_points, num_corners) > std::numeric_limits<std::int32_t>::max();
-  grid.points.push_back(make_array<std::array<double, 3>>("Float64", "Points", num_points, point_at, 3));
-  grid.cells.push_back(make_id_array("connectivity", num_corners, wide, vertex_at));
-  grid.cells.push_back(make_id_array("offsets", num_cells, wide, [vertices_a_cell](std::size_t i) {
+void add_cells(std::size_t count, int vertices_a_cell, int cell_type, bool wide, VtuArray connectivity,
+               VtuGrid& grid) {
+  grid.num_cells = count;
+  grid.cells.push_back(std::move(connectivity));
+  grid.cells.push_back(make_id_array("offsets", count, wide, [vertices_a_cell](std::size_t i) {
     return (i + 1) * static_cast<std::size_t>(vertices_a_cell);
   }));
   grid.cells.push_back(
-      make_array<std::uint8_t>("UInt8", "types", num_cells, [cell_type](std::size_t) { return cell_type; }));
-  return grid;
+      make_array<std::uint8_t>("UInt8", "types", count, [cell_type](std::size_t) { return cell_type; }));
 }
 
 std::string xml_escaped(const std::string& text) {  // LabelNames leaves no quotes
@@ -130,10 +142,16 @@ void write_grid(AtomicFile& file, const VtuGrid& grid, const std::string& field_
 }
 
 VtuGrid cell_grid(const TetMesh& mesh) {
-  VtuGrid grid = make_grid(
-      mesh.vertices.size(), mesh.cells.size(), 4, kVtkTetrahedron,
-      [&mesh](std::size_t i) { return mesh.vertices[i]; },
-      [&mesh](std::size_t i) { return mesh.cells[i / 4][i % 4]; });
+  const std::size_t num_corners = 4 * mesh.cells.size();
+  const bool wide = is_wide(std::max(mesh.vertices.size(), num_corners));
+  VtuGrid grid;
+  grid.num_points = mesh.vertices.size();
+  grid.points.push_back(make_array_of("Float64", "Points", mesh.vertices, 3));
+  add_cells(mesh.cells.size(), 4, kVtkTetrahedron, wide,
+            wide ? make_array<std::int64_t>("Int64", "connectivity", num_corners,
+                                            [&mesh](std::size_t i) { return mesh.cells[i / 4][i % 4]; })
+                 : make_array_of("Int32", "connectivity", mesh.cells),
+            grid);
   grid.cell_data.push_back(
       make_array<std::uint32_t>("UInt32", "label", mesh.cells.size(),
                                 [&mesh](std::size_t i) { return mesh.labels[mesh.cell_labels[i]].value; }));
@@ -141,13 +159,19 @@ VtuGrid cell_grid(const TetMesh& mesh) {
 }
 
 VtuGrid facet_grid(const TetMesh& mesh, const VertexSubset& subset) {
-  VtuGrid grid = make_grid(
-      subset.vertices().size(), mesh.facets.size(), 3, kVtkTriangle,
-      [&mesh, &subset](std::size_t i) { return mesh.vertices[subset.vertices()[i]]; },
-      [&mesh, &subset](std::size_t i) { return subset.position(mesh.facets[i / 3][i % 3]); });
-  grid.point_data.push_back(
-      make_array<std::uint32_t>("UInt32", "vertex", subset.vertices().size(),
-                                [&subset](std::size_t i) { return subset.vertices()[i]; }));
+  const std::size_t num_corners = 3 * mesh.facets.size();
+  const bool wide = is_wide(std::max(subset.vertices().size(), num_corners));
+  VtuGrid grid;
+  grid.num_points = subset.vertices().size();
+  grid.points.push_back(make_array<std::array<double, 3>>(
+      "Float64", "Points", grid.num_points,
+      [&mesh, &subset](std::size_t i) { return mesh.vertices[subset.vertices()[i]]; }, 3));
+  add_cells(
+      mesh.facets.size(), 3, kVtkTriangle, wide,
+      make_id_array("connectivity", num_corners, wide,
+                    [&mesh, &subset](std::size_t i) { return subset.position(mesh.facets[i / 3][i % 3]); }),
+      grid);
+  grid.point_data.push_back(make_array_of("UInt32", "vertex", subset.vertices()));
   for (const int side : {0, 1}) {
     grid.cell_data.push_back(make_array<std::uint32_t>(
         "UInt32", side == 0 ? "label_a" : "label_b", mesh.facets.size(),
