@@ -2,11 +2,13 @@
 
 #include <algorithm>
 #include <atomic>
+#include <new>
 #include <numeric>
 #include <utility>
 #include <vector>
 
 #include "image/working_frame.h"
+#include "runtime/huge_array.h"
 #include "runtime/parallel_for.h"
 #include "runtime/parallel_resize.h"
 
@@ -36,55 +38,69 @@ void for_each_slice(std::uint32_t num_ids, const Work& work) {
     work(begin, begin + std::min(length, num_ids - begin));
 }
 
-// How many a chunk adds to the output; summed up, where in the output they begin.
-struct Share {
-  std::size_t vertices = 0, cells = 0, facets = 0;
-  Share operator+(const Share& b) const {
-    return {vertices + b.vertices, cells + b.cells, facets + b.facets};
-  }
-};
-
-// One share a chunk, and the total.
-class Shares {
+// One number a chunk: how many it adds to the output; summed up, where in the output they begin.
+class Starts {
  public:
-  explicit Shares(std::uint32_t num_ids) : shares_(num_chunks(num_ids) + 1) {}
-  Share& operator[](std::size_t chunk) { return shares_[chunk]; }
-  /// The share of all chunks before the id, where one ends.
-  const Share& before(std::uint32_t id) const { return shares_[num_chunks(id)]; }
-  void sum_up() { std::exclusive_scan(shares_.begin(), shares_.end(), shares_.begin(), Share{}); }
-  const Share& total() const { return shares_.back(); }
+  explicit Starts(std::uint32_t num_ids) : starts_(num_chunks(num_ids) + 1) {}
+  std::size_t& operator[](std::size_t chunk) { return starts_[chunk]; }
+  /// That of all chunks before the id, where one ends.
+  std::size_t before(std::uint32_t id) const { return starts_[num_chunks(id)]; }
+  void sum_up() { std::exclusive_scan(starts_.begin(), starts_.end(), starts_.begin(), std::size_t{0}); }
+  std::size_t total() const { return starts_.back(); }
 
  private:
-  std::vector<Share> shares_;
+  std::vector<std::size_t> starts_;
 };
 
-// The labels of the mesh are known. Each thread counts what its chunks add, then knows where to write.
+// Asks the image where nobody has; dead cells are background.
+LabelIndex label_of(Mesh& mesh, const Isosurface& isosurface, CellId c) {
+  LabelIndex& label = mesh.label(c);
+  if (label == kUnknownLabel)
+    label = mesh.cell(c).is_alive() ? isosurface.label_at(mesh.cell(c).sphere.center) : kBackground;
+  return label;
+}
+
+// A facet on its way out: vertices by their ids in the store.
+struct BoundaryFacet {
+  std::array<VertexId, 3> vertices;
+  std::array<LabelIndex, 2> labels;
+};
+
+// A pass over the cells gives them labels and counts them. A second writes cells, with vertices by their ids
+// in the store, finds facets and which vertices are in use, and sets the store's memory free behind it. Then
+// vertices get numbers, in the order of their ids, and cells and facets learn them.
 class Extractor {
  public:
-  Extractor(Mesh& mesh, const Affine& to_world, std::size_t threads, TetMesh& out)
+  Extractor(Mesh& mesh, const Isosurface& isosurface, std::size_t threads, TetMesh& out)
       : mesh_(mesh),
-        to_world_(to_world),
+        isosurface_(isosurface),
+        to_world_(working_to_world(isosurface.image())),
         threads_(threads),
         out_(out),
-        out_ids_(mesh.vertex_bound(), kNoVertex) {}
+        labels_(mesh.cell_bound()),
+        out_ids_(mesh.vertex_bound(), kNoVertex),
+        facets_(num_chunks(mesh.cell_bound())) {}
 
   std::uint64_t operator()() {
-    Shares shares(mesh_.cell_bound());
+    Starts cells(mesh_.cell_bound());
     for_each_chunk(0, mesh_.cell_bound(), threads_, [&](std::size_t chunk, CellId begin, CellId end) {
-      shares[chunk] = count_cells(begin, end);
+      cells[chunk] = label_cells(begin, end);
     });
-    shares.sum_up();
-    write_vertices();
-    reserve(shares.total());
-    std::atomic<std::uint64_t> facets_off_isosurface = 0;
+    cells.sum_up();
+    out_.cells.reserve(cells.total());
+    out_.cell_labels.reserve(cells.total());
     for_each_slice(mesh_.cell_bound(), [&](CellId first, CellId last) {
-      resize(shares.before(last));
+      parallel_resize(out_.cells, cells.before(last), threads_);
+      parallel_resize(out_.cell_labels, cells.before(last), threads_);
       for_each_chunk(first, last, threads_, [&](std::size_t chunk, CellId begin, CellId end) {
-        facets_off_isosurface += write_cells(begin, end, shares[chunk]);
+        write_cells(begin, end, cells[chunk], facets_[chunk]);
       });
       mesh_.release_cells(first, last);
     });
-    return facets_off_isosurface;
+    if (is_out_of_memory_) throw std::bad_alloc();
+    write_vertices();
+    number_vertices_of_cells();
+    return write_facets();
   }
 
  private:
@@ -95,64 +111,73 @@ class Extractor {
   std::uint32_t out_id(VertexId v) const { return out_ids_[v] & ~kOffIsosurface; }
   bool is_off_isosurface(VertexId v) const { return (out_ids_[v] & kOffIsosurface) != 0; }
 
+  // How many of them are in the mesh.
+  std::size_t label_cells(CellId begin, CellId end) {
+    std::size_t count = 0;
+    for (CellId c = begin; c < end; ++c) {
+      labels_[c] = label_of(mesh_, isosurface_, c);
+      count += labels_[c] != kBackground;
+    }
+    return count;
+  }
+
   // What a cell needs besides its own line, early.
   static constexpr CellId kLookahead = 32;
   void prefetch_around(CellId c) const {
-    if (c >= mesh_.cell_bound() || mesh_.label(c) == kBackground) return;
+    if (c >= mesh_.cell_bound() || labels_[c] == kBackground) return;
     for (const FacetId mirror : mesh_.cell(c).mirrors) {
-      if (mirror != kNoFacet) mesh_.prefetch_label(cell_of(mirror));
+      if (mirror != kNoFacet) __builtin_prefetch(&labels_[cell_of(mirror)]);
     }
     for (const VertexId v : mesh_.cell(c).vertices) __builtin_prefetch(&out_ids_[v]);
   }
 
-  LabelIndex label_across(CellId c, unsigned k) const {
-    const FacetId mirror = mesh_.cell(c).mirrors[k];
-    return mirror == kNoFacet ? kBackground : mesh_.label(cell_of(mirror));
-  }
-  // The cell of the larger label writes the facet.
-  bool is_written_here(CellId c, unsigned k) const { return label_across(c, k) < mesh_.label(c); }
-
-  // Addresses; memory comes with resize().
-  void reserve(const Share& total) {
-    out_.cells.reserve(total.cells);
-    out_.cell_labels.reserve(total.cells);
-    out_.facets.reserve(total.facets);
-    out_.facet_labels.reserve(total.facets);
-  }
-  void resize(const Share& share) {
-    parallel_resize(out_.cells, share.cells, threads_);
-    parallel_resize(out_.cell_labels, share.cells, threads_);
-    parallel_resize(out_.facets, share.facets, threads_);
-    parallel_resize(out_.facet_labels, share.facets, threads_);
-  }
-
-  // Marks their vertices as used.
-  Share count_cells(CellId begin, CellId end) {
-    Share share;
+  void write_cells(CellId begin, CellId end, std::size_t at, std::vector<BoundaryFacet>& facets) {
     for (CellId c = begin; c < end; ++c) {
       prefetch_around(c + kLookahead);
-      if (mesh_.label(c) == kBackground) continue;
-      ++share.cells;
-      for (unsigned k = 0; k < 4; ++k) share.facets += is_written_here(c, k);
-      for (const VertexId v : mesh_.cell(c).vertices) {
+      const LabelIndex label = labels_[c];
+      if (label == kBackground) continue;
+      const Cell& cell = mesh_.cell(c);
+      for (const VertexId v : cell.vertices) {
         if (load(out_ids_[v], std::memory_order_relaxed) != kUsed)
           store(out_ids_[v], kUsed, std::memory_order_relaxed);
       }
+      for (unsigned k = 0; k < 4; ++k) {
+        const LabelIndex across =
+            cell.mirrors[k] == kNoFacet ? kBackground : labels_[cell_of(cell.mirrors[k])];
+        if (across < label) add_facet(cell, k, {across, label}, facets);  // once, by the larger label
+      }
+      out_.cells[at] = cell.vertices;
+      if (is_mirrored_) std::swap(out_.cells[at][2], out_.cells[at][3]);
+      out_.cell_labels[at++] = label;
     }
-    return share;
+  }
+
+  void add_facet(const Cell& cell, unsigned k, const std::array<LabelIndex, 2>& labels,
+                 std::vector<BoundaryFacet>& facets) {
+    // kFacetVertices turns towards the cell; outwards is the other way round.
+    const auto vertex = [&](std::size_t i) {
+      return cell.vertices[static_cast<unsigned>(kFacetVertices[k][2 - i])];
+    };
+    std::array<VertexId, 3> vertices{vertex(0), vertex(1), vertex(2)};
+    if (is_mirrored_) std::swap(vertices[1], vertices[2]);
+    try {
+      facets.push_back({vertices, labels});
+    } catch (const std::bad_alloc&) {  // not to leave the thread
+      is_out_of_memory_ = true;
+    }
   }
 
   void write_vertices() {
-    Shares shares(mesh_.vertex_bound());
+    Starts vertices(mesh_.vertex_bound());
     for_each_chunk(0, mesh_.vertex_bound(), threads_, [&](std::size_t chunk, VertexId begin, VertexId end) {
-      for (VertexId v = begin; v < end; ++v) shares[chunk].vertices += out_ids_[v] == kUsed;
+      for (VertexId v = begin; v < end; ++v) vertices[chunk] += out_ids_[v] == kUsed;
     });
-    shares.sum_up();
-    out_.vertices.reserve(shares.total().vertices);
+    vertices.sum_up();
+    out_.vertices.reserve(vertices.total());
     for_each_slice(mesh_.vertex_bound(), [&](VertexId first, VertexId last) {
-      parallel_resize(out_.vertices, shares.before(last).vertices, threads_);
+      parallel_resize(out_.vertices, vertices.before(last), threads_);
       for_each_chunk(first, last, threads_, [&](std::size_t chunk, VertexId begin, VertexId end) {
-        write_vertices(begin, end, shares[chunk].vertices);
+        write_vertices(begin, end, vertices[chunk]);
       });
       mesh_.release_vertices(first, last);
     });
@@ -168,46 +193,50 @@ class Extractor {
     }
   }
 
-  // Returns how many facets have a vertex off the isosurface.
-  std::uint64_t write_cells(CellId begin, CellId end, Share at) {
-    std::uint64_t facets_off_isosurface = 0;
-    for (CellId c = begin; c < end; ++c) {
-      prefetch_around(c + kLookahead);
-      const LabelIndex label = mesh_.label(c);
-      if (label == kBackground) continue;
-      auto& cell = out_.cells[at.cells];
-      for (unsigned i = 0; i < 4; ++i) cell[i] = out_id(mesh_.cell(c).vertices[i]);
-      if (is_mirrored_) std::swap(cell[2], cell[3]);
-      out_.cell_labels[at.cells++] = label;
-      for (unsigned k = 0; k < 4; ++k) {
-        if (is_written_here(c, k)) facets_off_isosurface += write_facet(c, k, at.facets++);
-      }
-    }
-    return facets_off_isosurface;
+  void number_vertices_of_cells() {
+    parallel_for_ranges(out_.cells.size(), kChunk, threads_,
+                        [&](std::size_t begin, std::size_t end, std::size_t) {
+                          for (std::size_t c = begin; c < end; ++c) {
+                            for (const VertexId v : out_.cells[std::min(c + kLookahead, end - 1)])
+                              __builtin_prefetch(&out_ids_[v]);
+                            for (std::uint32_t& v : out_.cells[c]) v = out_id(v);
+                          }
+                        });
   }
 
-  // Returns whether a vertex is off the isosurface.
-  bool write_facet(CellId c, unsigned k, std::size_t at) {
-    bool is_off = false;
-    auto& facet = out_.facets[at];
-    for (unsigned i = 0; i < 3; ++i) {
-      // kFacetVertices turns towards the cell; outwards is the other way round.
-      const VertexId v = mesh_.cell(c).vertices[static_cast<unsigned>(kFacetVertices[k][2 - i])];
-      facet[i] = out_id(v);
-      is_off = is_off || is_off_isosurface(v);
-    }
-    if (is_mirrored_) std::swap(facet[1], facet[2]);
-    out_.facet_labels[at] = {label_across(c, k), mesh_.label(c)};
-    return is_off;
+  // Returns how many have a vertex off the isosurface.
+  std::uint64_t write_facets() {
+    std::vector<std::size_t> begin(facets_.size() + 1);
+    for (std::size_t chunk = 0; chunk < facets_.size(); ++chunk)
+      begin[chunk + 1] = begin[chunk] + facets_[chunk].size();
+    parallel_resize(out_.facets, begin.back(), threads_);
+    parallel_resize(out_.facet_labels, begin.back(), threads_);
+    std::atomic<std::uint64_t> off_isosurface = 0;
+    parallel_for(facets_.size(), threads_, [&](std::size_t chunk, std::size_t) {
+      std::size_t at = begin[chunk];
+      std::uint64_t count = 0;
+      for (const auto& [vertices, labels] : facets_[chunk]) {
+        out_.facets[at] = {out_id(vertices[0]), out_id(vertices[1]), out_id(vertices[2])};
+        out_.facet_labels[at++] = labels;
+        count +=
+            std::any_of(vertices.begin(), vertices.end(), [&](VertexId v) { return is_off_isosurface(v); });
+      }
+      off_isosurface += count;
+    });
+    return off_isosurface;
   }
 
   Mesh& mesh_;
+  const Isosurface& isosurface_;
   const Affine to_world_;
   const bool is_mirrored_ = determinant(to_world_) < 0;  // swapping two vertices of a cell turns it back
   std::size_t threads_;
   TetMesh& out_;
   const double flip_ = out_.space == Space::kLps ? -1 : 1;
+  HugeArray<LabelIndex> labels_;        // those of the store's cells: they outlive the cells, and lie closer
   std::vector<std::uint32_t> out_ids_;  // by id in the store: used or not, then the position in the output
+  std::vector<std::vector<BoundaryFacet>> facets_;  // by chunk of cells
+  std::atomic<bool> is_out_of_memory_ = false;
 };
 
 }  // namespace
@@ -216,12 +245,7 @@ std::uint64_t label_cells(Mesh& mesh, const Isosurface& isosurface, int threads)
   std::atomic<std::uint64_t> labelled = 0;
   for_each_chunk(0, mesh.cell_bound(), num_threads(threads), [&](std::size_t, CellId begin, CellId end) {
     std::uint64_t count = 0;
-    for (CellId c = begin; c < end; ++c) {
-      LabelIndex& label = mesh.label(c);
-      if (label == kUnknownLabel)
-        label = mesh.cell(c).is_alive() ? isosurface.label_at(mesh.cell(c).sphere.center) : kBackground;
-      count += label != kBackground;
-    }
+    for (CellId c = begin; c < end; ++c) count += label_of(mesh, isosurface, c) != kBackground;
     labelled += count;
   });
   return labelled;
@@ -232,8 +256,7 @@ TetMesh extract_mesh(Mesh& mesh, const Isosurface& isosurface, Space space, int 
   TetMesh out;
   out.labels = isosurface.image().labels;
   out.space = space;
-  label_cells(mesh, isosurface, threads);
-  facets_off_isosurface = Extractor(mesh, working_to_world(isosurface.image()), num_threads(threads), out)();
+  facets_off_isosurface = Extractor(mesh, isosurface, num_threads(threads), out)();
   return out;
 }
 
