@@ -7,6 +7,7 @@
 
 #include "image/input_file.h"
 #include "image/read_formats.h"
+#include "runtime/parallel_resize.h"
 
 namespace podm {
 
@@ -88,7 +89,7 @@ RawImage read_inr(const std::string& path, std::uint64_t most_bytes) {
   raw.type = voxel_type(path, header);
   const std::size_t needed = checked_num_bytes(raw, most_bytes);
   file.expect_room_for(needed);
-  raw.bytes.resize(needed);
+  parallel_resize(raw.bytes, needed, 1);
   file.read(raw.bytes.data(), needed);
   file.expect_end();
   if (is_big_endian(path, header)) swap_bytes(raw.bytes, bytes_of(raw.type));

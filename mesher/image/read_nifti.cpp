@@ -7,6 +7,7 @@
 
 #include "image/input_file.h"
 #include "image/read_formats.h"
+#include "runtime/parallel_resize.h"
 
 namespace podm {
 
@@ -122,7 +123,7 @@ RawImage read_nifti(const std::string& path, std::uint64_t most_bytes) {
   const std::size_t needed = checked_num_bytes(raw, most_bytes);
   file.expect_room_for(needed);
   file.skip(voxel_offset(header, path) - sizeof header);
-  raw.bytes.resize(needed);
+  parallel_resize(raw.bytes, needed, 1);
   file.read(raw.bytes.data(), needed);
   file.expect_end();
   if (is_swapped && bytes_of(raw.type) > 1)
