@@ -8,6 +8,7 @@
 #include <set>
 #include <unordered_set>
 
+#include "image/stretches.h"
 #include "runtime/parallel_for.h"
 #include "runtime/parallel_resize.h"
 
@@ -55,6 +56,24 @@ template <class Voxel>
 class VoxelSet {
  public:
   void add(const RawImage& raw, std::size_t begin, std::size_t end) {
+    for_each_stretch(raw.bytes.data(), sizeof(Voxel), begin, end,
+                     [&](std::size_t from, std::size_t to, bool is_uniform) {
+                       if (!has_other_) add_all(raw, from, is_uniform ? from + 1 : to);
+                     });
+  }
+
+  /// Whether a large voxel was met that is no label; what comes after it is not looked at.
+  bool has_other() const { return has_other_; }
+
+  template <class Use>
+  void for_each(const Use& use) const {
+    for (std::size_t i = 0; i < is_met_.size(); ++i)
+      if (is_met_[i]) use(static_cast<Voxel>(i));
+    for (const Voxel voxel : met_) use(voxel);
+  }
+
+ private:
+  void add_all(const RawImage& raw, std::size_t begin, std::size_t end) {
     char* const is_met = is_met_.data();  // a char may alias the pointer in the vector
     for (std::size_t i = begin; i < end; ++i) {
       const auto voxel = voxel_at<Voxel>(raw, i);
@@ -71,17 +90,6 @@ class VoxelSet {
     }
   }
 
-  /// Whether a large voxel was met that is no label; the rest of its range is not looked at.
-  bool has_other() const { return has_other_; }
-
-  template <class Use>
-  void for_each(const Use& use) const {
-    for (std::size_t i = 0; i < is_met_.size(); ++i)
-      if (is_met_[i]) use(static_cast<Voxel>(i));
-    for (const Voxel voxel : met_) use(voxel);
-  }
-
- private:
   std::vector<char> is_met_ = std::vector<char>(kIsSmall<Voxel> ? kNumSmall : 0);
   std::optional<Voxel> last_;
   std::unordered_set<Voxel> met_;
@@ -139,6 +147,19 @@ std::vector<std::uint32_t> different_values(const RawImage& raw, std::size_t thr
 }
 
 template <class Voxel>
+void index_range(const RawImage& raw, std::size_t begin, std::size_t end, Positions<Voxel>& position,
+                 LabelIndex* voxels) {
+  for_each_stretch(raw.bytes.data(), sizeof(Voxel), begin, end,
+                   [&](std::size_t from, std::size_t to, bool is_uniform) {
+                     if (is_uniform) {
+                       std::fill(voxels + from, voxels + to, position(voxel_at<Voxel>(raw, from)));
+                     } else {
+                       for (std::size_t i = from; i < to; ++i) voxels[i] = position(voxel_at<Voxel>(raw, i));
+                     }
+                   });
+}
+
+template <class Voxel>
 void index(const RawImage& raw, std::size_t threads, LabelImage& image) {
   const std::vector<std::uint32_t> values = different_values<Voxel>(raw, threads);
   for (const std::uint32_t value : values) image.labels.push_back({value, {}});
@@ -146,8 +167,7 @@ void index(const RawImage& raw, std::size_t threads, LabelImage& image) {
   parallel_resize(image.voxels, image.num_voxels(), threads);
   parallel_for_ranges(image.voxels.size(), kChunk, threads,
                       [&](std::size_t begin, std::size_t end, std::size_t thread) {
-                        for (std::size_t i = begin; i < end; ++i)
-                          image.voxels[i] = positions[thread](voxel_at<Voxel>(raw, i));
+                        index_range(raw, begin, end, positions[thread], image.voxels.data());
                       });
 }
 

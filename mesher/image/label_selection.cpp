@@ -7,6 +7,7 @@
 #include <string_view>
 
 #include "image/raw_image.h"
+#include "image/stretches.h"
 #include "podm/errors.h"
 #include "runtime/parallel_for.h"
 
@@ -47,7 +48,12 @@ std::set<std::uint32_t> values_with_voxels(const LabelImage& image, std::size_t 
   parallel_for_ranges(image.voxels.size(), kChunk, threads,
                       [&](std::size_t begin, std::size_t end, std::size_t thread) {
                         char* const used = is_used[thread].data();
-                        for (std::size_t i = begin; i < end; ++i) used[image.voxels[i]] = true;
+                        const LabelIndex* const voxels = image.voxels.data();
+                        for_each_stretch(voxels, sizeof(LabelIndex), begin, end,
+                                         [&](std::size_t from, std::size_t to, bool is_uniform) {
+                                           const std::size_t last = is_uniform ? from + 1 : to;
+                                           for (std::size_t i = from; i < last; ++i) used[voxels[i]] = true;
+                                         });
                       });
   std::set<std::uint32_t> values;
   for (const std::vector<char>& used : is_used)
