@@ -56,7 +56,7 @@ class Starts {
 LabelIndex label_of(Mesh& mesh, const Isosurface& isosurface, CellId c) {
   LabelIndex& label = mesh.label(c);
   if (label == kUnknownLabel)
-    label = mesh.cell(c).is_alive() ? isosurface.label_at(mesh.cell(c).sphere.center) : kBackground;
+    label = mesh.cell(c).is_alive() ? isosurface.label_at(mesh.cell(c).center) : kBackground;
   return label;
 }
 

@@ -137,7 +137,7 @@ class Rows(unittest.TestCase):
             self.assertFalse(VALIDATOR.is_valid(self.made[0] | {key: value}), key)
         by_hops = {kind: [5, 1] for kind in ("mesh_reads", "mesh_writes", "image_reads", "transform_reads")}
         of_array = {"as_claimed": 9, "elsewhere": 0, "untouched": 1}
-        pages = dict.fromkeys(("cells", "cell_states", "vertices"), of_array) | {"accesses_by_hops": [5, 1]}
+        pages = dict.fromkeys(("cells", "vertices"), of_array) | {"accesses_by_hops": [5, 1]}
         for key, good, bad in (("hops", [5, 1], [5]), ("hops", "unavailable: w", 0), ("hops_by_kind", by_hops, {}),
                                ("hops_by_kind", by_hops | {"image_reads": "unavailable: w"}, "none"),
                                ("pages", {"refine": pages}, {"refine": pages | {"cells": {}}}), ("pages", {}, 0)):

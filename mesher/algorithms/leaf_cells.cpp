@@ -11,7 +11,7 @@ void LeafCells::add(const Entries& cells, RefinementQueue& queue, const std::sto
   for (const auto& entry : cells) {
     if (stop.stop_requested()) return;
     if (mesh_.stamp(entry.cell) != entry.stamp) continue;
-    const LeafId leaf = octree_.leaf_at(mesh_.cell(entry.cell).sphere.center);
+    const LeafId leaf = octree_.leaf_at(mesh_.cell(entry.cell).center);
     (leaf == kNoLeaf ? leftover_ : cells_of_leaf_[leaf]).push_back(entry);
     if (leaf != kNoLeaf) ++num_new[leaf];
   }

@@ -30,8 +30,7 @@ inline constexpr double kTransformBytesPerVoxel = 1;
 inline constexpr std::uint64_t kBytesOfOutput = 6 << 20;
 /// A cell of a store that is full takes itself, a quarter of a vertex at most, an entry of a list that may
 /// just have doubled, and what extraction takes more.
-inline constexpr std::uint64_t kBytesPerStoredCell =
-    sizeof(Cell) + sizeof(CellState) + sizeof(Vertex) / 4 + 28;
+inline constexpr std::uint64_t kBytesPerStoredCell = sizeof(Cell) + sizeof(Vertex) / 4 + 28;
 /// A cube of the octree takes the first, leaf or gap, and a leaf the second more: its place in the queue, its
 /// list of cells with some entries. While the octree is built each cube takes less than both together.
 inline constexpr std::uint64_t kBytesPerCube = 32, kBytesPerLeaf = 160;

@@ -79,8 +79,6 @@ void PageSampler::sample(const std::string& phase, const Mesh& mesh,
   question.add(
       "cells", mesh.cell_bound(), [&](std::size_t c) { return &mesh.cell(id(c)); }, node_of_cell);
   question.add(
-      "cell_states", mesh.cell_bound(), [&](std::size_t c) { return &mesh.state(id(c)); }, node_of_cell);
-  question.add(
       "vertices", mesh.vertex_bound(), [&](std::size_t v) { return &mesh.vertex(id(v)); },
       [&](std::size_t v) { return mesh.node_of_vertex(id(v)); });
   if (owners_.unavailable().empty()) {

@@ -22,9 +22,9 @@ class UniformRefinement {
       const auto [c, stamp] = poor_.back();
       poor_.pop_back();
       if (mesh.stamp(c) != stamp) continue;
-      const Circumsphere& sphere = mesh.cell(c).sphere;
-      if (sphere.squared_radius <= squared_radius_) continue;
-      const Point p = moved_off_the_hull(sphere.center);
+      const Cell& cell = mesh.cell(c);
+      if (cell.squared_radius <= squared_radius_) continue;
+      const Point p = moved_off_the_hull(cell.center);
       if (operation.plan_insertion(p, c) != StepResult::kDone ||
           operation.commit_insertion(p, VertexKind::kCircumcenter, min_distance_) != StepResult::kDone) {
         operation.rollback();

@@ -37,7 +37,6 @@ Mesh::Mesh(const Box& box, std::size_t cell_capacity, int num_nodes)
     : box_(box),
       extent_(largest_coordinate(box)),
       cells_(cell_capacity),
-      states_(cell_capacity),
       vertices_(vertex_capacity_for(cell_capacity)),
       cell_ids_(cells_.capacity(), num_nodes, run_bits_for(cell_capacity, num_nodes, kCellRunBits)),
       vertex_ids_(vertices_.capacity(), num_nodes,
@@ -65,14 +64,13 @@ Mesh::Mesh(const Box& box, std::size_t cell_capacity, int num_nodes)
 }
 
 void Mesh::refresh_sphere(CellId c) {
-  assert_may_write_mirrors(*this, c);
   const auto& v = cells_[c].vertices;
-  cells_[c].sphere = circumsphere(point(v[0]), point(v[1]), point(v[2]), point(v[3]), extent_);
+  set_sphere(c, circumsphere(point(v[0]), point(v[1]), point(v[2]), point(v[3]), extent_));
 }
 
 bool Mesh::is_in_conflict(CellId c, const Point& p) const {
   assert_may_read(*this, c);
-  const Side side = side_of(cells_[c].sphere, p);
+  const Side side = side_of(cells_[c].center, cells_[c].squared_radius, p);
   if (side != Side::kUndecided) return side == Side::kInside;
   const auto& v = cells_[c].vertices;
   return in_circumsphere(point(v[0]), point(v[1]), point(v[2]), point(v[3]), p);

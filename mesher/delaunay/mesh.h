@@ -63,23 +63,20 @@ inline void place(Vertex& v, const Point& p, VertexKind kind) {
   v.kind = kind;
 }
 
-/// Everything a conflict test, a walk and a gluing read: 64 bytes, one cache line.
+inline constexpr LabelIndex kUnknownLabel = 0xffff;
+
+/// Everything that is read of a cell, its state too: 64 bytes, one cache line.
 struct alignas(64) Cell {
-  Circumsphere sphere;
+  Point center;                      // the circumcentre
+  float squared_radius = 0;          // rounded, or NaN: circumsphere.h
+  std::uint16_t stamp_and_mark = 0;  // Mesh::stamp and Mesh::is_marked
+  LabelIndex label = kUnknownLabel;  // the image's at the circumcentre, once asked for
   std::array<VertexId, 4> vertices{kNoVertex, kNoVertex, kNoVertex, kNoVertex};
   std::array<FacetId, 4> mirrors{};  // the facet on the other side of each of ours
   // A cell has four vertices; memory that nobody has touched has none, nor has a cell that died.
   bool is_alive() const { return vertices[0] != vertices[1]; }
 };
 static_assert(sizeof(Cell) == 64);
-
-inline constexpr LabelIndex kUnknownLabel = 0xffff;
-
-struct CellState {
-  std::uint16_t stamp_and_mark = 0;  // Mesh::stamp and Mesh::is_marked
-  LabelIndex label = kUnknownLabel;  // the image's at the circumcentre, once asked for
-};
-static_assert(sizeof(CellState) == 4);
 
 class Mesh {
  public:
@@ -89,11 +86,10 @@ class Mesh {
 
   // Builds that check the lock protocol do it here: step.h, lock_contract.h.
   const Cell& cell(CellId c) const { return note_read(c), assert_may_read(*this, c), cells_[c]; }
-  /// A cell whose sphere and mirrors are not set yet, for its maker to do so.
+  /// A cell whose mirrors are not set yet, for its maker to do so.
   Cell& new_cell(CellId c) { return step(), assert_may_write_mirrors(*this, c), cells_[c]; }
-  const CellState& state(CellId c) const { return assert_may_read(*this, c), states_[c]; }
-  LabelIndex& label(CellId c) { return step(), assert_may_read(*this, c), states_[c].label; }
-  LabelIndex label(CellId c) const { return assert_may_read(*this, c), states_[c].label; }
+  LabelIndex& label(CellId c) { return step(), assert_may_read(*this, c), cells_[c].label; }
+  LabelIndex label(CellId c) const { return assert_may_read(*this, c), cells_[c].label; }
   Vertex& vertex(VertexId v) { return step(), vertices_[v]; }
   const Vertex& vertex(VertexId v) const { return step(), vertices_[v]; }
   const Point& point(VertexId v) const { return step(), vertices_[v].point; }
@@ -102,7 +98,7 @@ class Mesh {
   /// guess.
   std::uint16_t stamp(CellId c) const {
     step();
-    return load(states_[c].stamp_and_mark, std::memory_order_relaxed) & kStampBits;
+    return load(cells_[c].stamp_and_mark, std::memory_order_relaxed) & kStampBits;
   }
   /// Two vertices as someone without locks sees them. Acquire, and release in renew(): who sees a vertex of
   /// the new cell sees the new stamp too.
@@ -121,36 +117,49 @@ class Mesh {
     const std::array<VertexId, 4> v = peek_vertices(c);
     return v[0] != v[1];
   }
-  const Point& peek_center(CellId c) const { return cells_[c].sphere.center; }
+  Point peek_center(CellId c) const {
+    const auto peek = [](const double& coordinate) { return load(coordinate, std::memory_order_relaxed); };
+    const Point& center = cells_[c].center;
+    return {peek(center.x), peek(center.y), peek(center.z)};
+  }
   /// The address of a cell's slot, whatever is in it.
   const void* address(CellId c) const { return &cells_[c]; }
   /// Scratch of the operation that holds the locks: the cell is in its region.
   bool is_marked(CellId c) const {
     step();
     assert_may_read(*this, c);
-    return (states_[c].stamp_and_mark & kMark) != 0;
+    return (cells_[c].stamp_and_mark & kMark) != 0;
   }
   void mark(CellId c, bool is_marked) {
     step();
     assert_may_replace(*this, c);
-    const auto stamp = static_cast<std::uint16_t>(states_[c].stamp_and_mark & kStampBits);
-    store(states_[c].stamp_and_mark, static_cast<std::uint16_t>(is_marked ? stamp | kMark : stamp),
+    const auto stamp = static_cast<std::uint16_t>(cells_[c].stamp_and_mark & kStampBits);
+    store(cells_[c].stamp_and_mark, static_cast<std::uint16_t>(is_marked ? stamp | kMark : stamp),
           std::memory_order_relaxed);
   }
   /// Puts a new cell in the slot c, or none (vertices kNoVertex). Its sphere and mirrors are the caller's to
   /// set.
   void renew(CellId c, const std::array<VertexId, 4>& vertices) {
-    CellState& state = states_[c];
+    Cell& cell = cells_[c];
     note_replaced(c);
     assert_may_replace(*this, c);
     step();
-    store(state.stamp_and_mark, static_cast<std::uint16_t>((state.stamp_and_mark + 1) & kStampBits),
+    store(cell.stamp_and_mark, static_cast<std::uint16_t>((cell.stamp_and_mark + 1) & kStampBits),
           std::memory_order_relaxed);
-    state.label = kUnknownLabel;
+    cell.label = kUnknownLabel;
     for (unsigned i = 0; i < 4; ++i) {
       step();
-      store(cells_[c].vertices[i], vertices[i], std::memory_order_release);
+      store(cell.vertices[i], vertices[i], std::memory_order_release);
     }
+  }
+  /// The sphere of a cell just renewed. Relaxed: who peeks at the centre may see some of the old one.
+  void set_sphere(CellId c, const Circumsphere& sphere) {
+    assert_may_write_mirrors(*this, c);
+    Cell& cell = cells_[c];
+    store(cell.center.x, sphere.center.x, std::memory_order_relaxed);
+    store(cell.center.y, sphere.center.y, std::memory_order_relaxed);
+    store(cell.center.z, sphere.center.z, std::memory_order_relaxed);
+    cell.squared_radius = stored_squared_radius(sphere.squared_radius);
   }
   /// Tells the facet `of` that `mirror` lies on its other side. Nothing is beyond the box.
   void set_mirror(FacetId of, FacetId mirror) {
@@ -160,12 +169,8 @@ class Mesh {
     cells_[cell_of(of)].mirrors[static_cast<unsigned>(index_in_cell(of))] = mirror;
   }
 
-  /// Asks for a cell's cache lines before they are needed.
-  void prefetch(CellId c) const {
-    __builtin_prefetch(&cells_[c]);
-    __builtin_prefetch(&states_[c]);
-  }
-  void prefetch_label(CellId c) const { __builtin_prefetch(&states_[c]); }
+  /// Asks for a cell's cache line before it is needed.
+  void prefetch(CellId c) const { __builtin_prefetch(&cells_[c]); }
 
   /// Ids below these have been handed out; some may be free again.
   CellId cell_bound() const { return cell_ids_.bound(); }
@@ -178,8 +183,7 @@ class Mesh {
   bool is_in_conflict(CellId c, const Point& p) const;  // exact, unique by perturbation
   std::uint64_t num_cells() const;
 
-  /// Give memory back while a finished mesh is taken apart: cells but for their labels, vertices. What is
-  /// released is not to be asked for any more.
+  /// Give memory back while a finished mesh is taken apart. What is released is not to be asked for any more.
   void release_cells(CellId begin, CellId end) { cells_.release(begin, end); }
   void release_vertices(VertexId begin, VertexId end) { vertices_.release(begin, end); }
 
@@ -206,7 +210,6 @@ class Mesh {
   Box box_;
   double extent_;
   HugeArray<Cell> cells_;
-  HugeArray<CellState> states_;
   HugeArray<Vertex> vertices_;
   static constexpr std::uint16_t kStampBits = 0x7fff, kMark = 0x8000;
   IdArena cell_ids_, vertex_ids_;

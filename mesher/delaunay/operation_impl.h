@@ -64,7 +64,8 @@ template <class Locks>
 inline bool Operation<Locks>::is_in_conflict(CellId c, const Point& p) {
   ++counters_.conflict_tests;
   count(AccessKind::kMeshRead, c);
-  const Side side = side_of(mesh_.cell(c).sphere, p);
+  const Cell& cell = mesh_.cell(c);
+  const Side side = side_of(cell.center, cell.squared_radius, p);
   if (side != Side::kUndecided) return side == Side::kInside;
   ++counters_.exact_decisions;
   return mesh_.is_in_conflict(c, p);

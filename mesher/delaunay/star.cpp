@@ -65,9 +65,8 @@ void StarFiller::fill(Mesh& mesh, Pool& pool, Region& region, VertexId apex) {
     const Facet& facet = facets_[f];
     const CellId id = region.created[f];
     mesh.renew(id, {facet.vertices[0], facet.vertices[1], facet.vertices[2], apex});
-    Cell& cell = mesh.new_cell(id);
-    cell.sphere = {{spheres_[0][f], spheres_[1][f], spheres_[2][f]}, spheres_[3][f]};
-    cell.mirrors[3] = facet.mirror;
+    mesh.set_sphere(id, {{spheres_[0][f], spheres_[1][f], spheres_[2][f]}, spheres_[3][f]});
+    mesh.new_cell(id).mirrors[3] = facet.mirror;
     mesh.set_mirror(facet.mirror, 4 * id + 3);
     const unsigned a = facet.local[0], b = facet.local[1], c = facet.local[2];
     facet_at_edge_[(b << row_bits_) + c] = 4 * id + 0;

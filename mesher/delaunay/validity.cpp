@@ -41,7 +41,7 @@ const char* fault_of_cell(const Mesh& mesh, CellId c) {
   }
   if (mesh.is_marked(c)) return "left marked by an operation";
   for (const VertexId id : v) {
-    const Side side = side_of(mesh.cell(c).sphere, mesh.point(id));
+    const Side side = side_of(mesh.cell(c).center, mesh.cell(c).squared_radius, mesh.point(id));
     if (side != Side::kUndecided) return "circumsphere misses its vertex";
   }
   for (unsigned i = 0; i < 4; ++i) {

@@ -10,6 +10,11 @@
 // With tau = 2^-20 this holds when L^3 <= 1e7 |det| and M <= 1e8 r: the sphere is *certified*. Other cells
 // (about one in 10^5) get the exact centre, rounded once (delta <= sqrt(3) u (M + r)). What even that cannot
 // certify has a squared radius of NaN, which leaves every test undecided, hence exact.
+//
+// The store keeps r^2 as a float f = r^2 (1 + e), |e| <= 2^-24, where that is a normal number; elsewhere it
+// is not certified. With tau' = tau + 2^-23 for tau, f does what r^2 does: f (1 - tau') <= r^2 (1 - tau) and
+// f (1 + tau') >= r^2 (1 + tau), the rounding of the product, 2^-53, included. So either proves its side, and
+// what lies between them, an eighth more than before, is left to the exact predicate.
 #pragma once
 
 #include <algorithm>
@@ -21,7 +26,8 @@
 
 namespace podm {
 
-inline constexpr double kSphereTolerance = 1.0 / (1 << 20);  // tau
+inline constexpr double kSphereTolerance = 1.0 / (1 << 20);                           // tau
+inline constexpr double kStoredSphereTolerance = kSphereTolerance + 1.0 / (1 << 23);  // tau'
 
 struct Circumsphere {
   Point center;
@@ -35,6 +41,20 @@ inline Side side_of(const Circumsphere& s, const Point& p) {
   if (d < s.squared_radius * (1 - kSphereTolerance)) return Side::kInside;
   if (d > s.squared_radius * (1 + kSphereTolerance)) return Side::kOutside;
   return Side::kUndecided;
+}
+/// The same of a sphere as the store keeps it.
+inline Side side_of(const Point& center, float squared_radius, const Point& p) {
+  const double d = squared_distance(center, p), r2 = squared_radius;
+  if (d < r2 * (1 - kStoredSphereTolerance)) return Side::kInside;
+  if (d > r2 * (1 + kStoredSphereTolerance)) return Side::kOutside;
+  return Side::kUndecided;
+}
+
+/// The squared radius for the store: NaN unless it is certified and a normal float.
+inline float stored_squared_radius(double squared_radius) {
+  using Float = std::numeric_limits<float>;
+  const bool is_normal = squared_radius >= Float::min() && squared_radius <= Float::max();
+  return is_normal ? static_cast<float>(squared_radius) : Float::quiet_NaN();
 }
 
 /// The rounded formula relative to the origin p, without certificate: centre - p and |det|, L^2.

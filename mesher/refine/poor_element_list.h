@@ -30,7 +30,12 @@ class PoorElementList {
   /// Most entries at the bottom are stale. Dropping them whenever the list has doubled keeps it short.
   bool is_due_for_cleaning() const { return entries_.size() >= next_cleaning_; }
   void drop_stale(const Mesh& mesh) {
-    std::erase_if(entries_, [&](const Entry& e) { return mesh.stamp(e.cell) != e.stamp; });
+    std::size_t kept = 0;
+    for (std::size_t i = 0; i < entries_.size(); ++i) {
+      mesh.prefetch(entries_[std::min(i + kLookahead, entries_.size() - 1)].cell);
+      if (mesh.stamp(entries_[i].cell) == entries_[i].stamp) entries_[kept++] = entries_[i];
+    }
+    entries_.resize(kept);
     next_cleaning_ = std::max(first_cleaning_, 2 * entries_.size());
   }
   /// Removes the older half, of which the live entries are returned, at most `max`.
@@ -57,6 +62,7 @@ class PoorElementList {
 
  private:
   // A list that is not due for its first cleaning is short, in a small store too.
+  static constexpr std::size_t kLookahead = 16;  // in a scan, whose cells lie anywhere
   static constexpr std::size_t kFirstCleaning = 1 << 16, kCellsAnEntry = 64;
   std::size_t first_cleaning_;
   std::vector<Entry> entries_;

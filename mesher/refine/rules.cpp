@@ -31,7 +31,7 @@ Rules::Rules(Mesh& mesh, const Isosurface& isosurface, const Parameters& paramet
 LabelIndex Rules::label_of(CellId c) const {
   LabelIndex label = load(mesh_.label(c), std::memory_order_relaxed);
   if (label == kUnknownLabel) {
-    label = ask([&](const auto& oracle) { return oracle.label_at(mesh_.cell(c).sphere.center); });
+    label = ask([&](const auto& oracle) { return oracle.label_at(mesh_.cell(c).center); });
     store(mesh_.label(c), label, std::memory_order_relaxed);
   }
   return label;
@@ -51,10 +51,8 @@ bool Rules::obeys_r1_and_r2(const Cell& cell, double squared_radius) const {
 
 Examination Rules::examine(CellId c) const {
   const Cell& cell = mesh_.cell(c);
-  const Point& center = cell.sphere.center;
-  Examination t{c, center, cell.sphere.squared_radius, label_of(c), 0, true, {}};
-  if (std::isnan(t.squared_radius))
-    t.squared_radius = squared_distance(center, mesh_.point(cell.vertices[0]));
+  const Point& center = cell.center;
+  Examination t{c, center, squared_distance(center, mesh_.point(cell.vertices[3])), label_of(c), 0, true, {}};
   const double radius = std::sqrt(t.squared_radius);
   t.isosurface_distance = distance_lower_bound(center, radius);
   if (t.isosurface_distance > radius || obeys_r1_and_r2(cell, t.squared_radius)) return t;
@@ -114,8 +112,7 @@ bool Rules::needs_sample(CellId c, unsigned facet) const {
 // Whether the facet's dual edge may meet the isosurface: only if it is longer than the distance to it. Labels
 // that differ show it where that distance is not proven.
 bool Rules::may_be_restricted(const Examination& t, CellId neighbor) const {
-  if (square(t.isosurface_distance) < squared_distance(t.center, mesh_.cell(neighbor).sphere.center))
-    return true;
+  if (square(t.isosurface_distance) < squared_distance(t.center, mesh_.cell(neighbor).center)) return true;
   return !t.is_distance_proven && label_of(neighbor) != t.label;
 }
 
@@ -126,7 +123,7 @@ std::optional<SurfaceCenter> Rules::r3_surface_center(const Examination& t) cons
     const CellId neighbor = cell_of(mirror);
     if (!may_be_restricted(t, neighbor) || !needs_sample(t.cell, k)) continue;
     // The search goes from the smaller centre to the larger: the same point whichever cell asks.
-    const Point *from = &t.center, *to = &mesh_.cell(neighbor).sphere.center;
+    const Point *from = &t.center, *to = &mesh_.cell(neighbor).center;
     if (lexicographically_less(*to, *from)) std::swap(from, to);
     const std::optional<Point> z =
         ask([&](const auto& oracle) { return oracle.segment_intersection(*from, *to); });

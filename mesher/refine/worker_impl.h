@@ -163,7 +163,7 @@ template <class Locks>
 void Worker<Locks>::list_created() {
   for (const CellId c : operation_.created()) {
     if constexpr (requires(Locks & locks) { locks.region(); }) {
-      if (!operation_.locks().region().owns(mesh_.cell(c).sphere.center)) {
+      if (!operation_.locks().region().owns(mesh_.cell(c).center)) {
         foreign_.push_back({c, mesh_.stamp(c)});
         continue;
       }

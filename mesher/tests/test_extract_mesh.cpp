@@ -37,7 +37,7 @@ class ExtractMesh : public testing::Test {
     image.voxel_to_ras = affines()[2].affine;
     return image;
   }
-  LabelIndex label_of(CellId c) const { return isosurface_.label_at(mesh_->cell(c).sphere.center); }
+  LabelIndex label_of(CellId c) const { return isosurface_.label_at(mesh_->cell(c).center); }
   TetMesh extract(int threads) {
     return extract_mesh(*mesh_, isosurface_, Space::kRas, threads, facets_off_isosurface_);
   }

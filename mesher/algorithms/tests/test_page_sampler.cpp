@@ -52,7 +52,7 @@ TEST(Pages, AreSampledOfTheWholeStoreAtTheEndOfEachPhase) {
         EXPECT_EQ(pages.untouched, 0u);
         EXPECT_LE(pages.as_claimed + pages.elsewhere, 2000u);
       }
-      EXPECT_EQ(arrays, (std::vector<std::string>{"cells", "cell_states", "vertices", "image", "transform"}));
+      EXPECT_EQ(arrays, (std::vector<std::string>{"cells", "vertices", "image", "transform"}));
       EXPECT_EQ(of_array(at, "image").elsewhere + of_array(at, "transform").elsewhere, 0u)
           << "their owners are who had them before";
       EXPECT_GT(of_array(at, "cells").elsewhere, 0u) << "the fake knows no pools";
@@ -72,8 +72,7 @@ TEST(Pages, AreJudgedAgainstTheirOwnersAndAccessors) {
   const Refinement refinement = run(Algorithm::kPodm, Executor::kVirtual, fake_pages(run));
   const Mesh& mesh = *refinement.mesh;
   std::map<const void*, int> owner;
-  for (CellId c = 0; c < mesh.cell_bound(); ++c)
-    owner[&mesh.cell(c)] = owner[&mesh.state(c)] = mesh.node_of_cell(c);
+  for (CellId c = 0; c < mesh.cell_bound(); ++c) owner[&mesh.cell(c)] = mesh.node_of_cell(c);
   for (VertexId v = 0; v < mesh.vertex_bound(); ++v) owner[&mesh.vertex(v)] = mesh.node_of_vertex(v);
 
   std::vector<SampledAccesses> accesses;  // each node's worker reads a cell of each node
@@ -97,7 +96,7 @@ TEST(Pages, AreJudgedAgainstTheirOwnersAndAccessors) {
   const auto in_place = sample([](int node) { return node; }),
              moved = sample([](int node) { return (node + 1) % 4; }),
              nowhere = sample([](int) { return PageNodes::kNowhere; });
-  for (const char* array : {"cells", "cell_states", "vertices"}) {
+  for (const char* array : {"cells", "vertices"}) {
     EXPECT_GT(of_array(in_place, array).as_claimed, 0u);
     EXPECT_EQ(of_array(in_place, array).elsewhere, 0u);
     EXPECT_EQ(of_array(moved, array).elsewhere, of_array(in_place, array).as_claimed);

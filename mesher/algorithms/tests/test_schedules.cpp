@@ -188,7 +188,7 @@ class Schedules : public testing::Test {
   static bool remembers_right_labels(const Mesh& mesh, const Isosurface& isosurface) {
     for (CellId c = 0; c < mesh.cell_bound(); ++c) {
       if (!mesh.cell(c).is_alive() || mesh.label(c) == kUnknownLabel) continue;
-      if (mesh.label(c) != isosurface.label_at(mesh.cell(c).sphere.center)) return false;
+      if (mesh.label(c) != isosurface.label_at(mesh.cell(c).center)) return false;
     }
     return true;
   }

@@ -48,7 +48,7 @@ struct PageSamples {
   /// Pages are compared with the node that owns the memory: the one whose worker made the cells, states and
   /// vertices, and the one that had image and transform first.
   struct OfArray {
-    std::string array;  ///< cells, cell_states, vertices, image, transform
+    std::string array;  ///< cells, vertices, image, transform
     std::uint64_t as_claimed = 0, elsewhere = 0;
     std::uint64_t untouched = 0;  ///< they are in nobody's memory yet
   };
