@@ -71,7 +71,7 @@ class Rules {
         const std::optional<CountedReads>& reads = {});
 
   Examination examine(CellId c) const;
-  /// Asks for what examine(c) will read, the cell itself apart.
+  /// Asks for what examine(c) will read, the cell itself apart. Without locks it is a guess.
   void prefetch(CellId c) const { isosurface_.prefetch(mesh_.peek_center(c)); }
 
   /// R1's point, unless a vertex of the cell itself or of a neighbour already covers it. The caller must

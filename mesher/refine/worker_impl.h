@@ -49,8 +49,7 @@ template <class Locks>
 Outcome Worker<Locks>::attempt_next() {
   if (unlogged_.operations.size() >= kOperationsToFlush) flush_log();
   mesh_.prefetch(poor_.upcoming(4));
-  if constexpr (!Locks::kIsShared)
-    rules_.prefetch(poor_.upcoming(2));  // reads the cell, which takes its locks
+  rules_.prefetch(poor_.upcoming(2));
   const PoorElementList::Entry entry = poor_.pop();
   const Outcome outcome = try_entry(entry);
   if (outcome == Outcome::kLockConflict) {
