@@ -6,7 +6,6 @@
 #include <bit>
 
 #include "image/feature_transform.h"
-#include "refine/poor_element_list.h"
 
 namespace podm {
 

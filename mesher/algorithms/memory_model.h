@@ -8,6 +8,7 @@
 #include "podm/choices.h"
 #include "podm/label_image.h"
 #include "podm/limits.h"
+#include "refine/poor_element_list.h"
 
 namespace podm {
 
@@ -28,9 +29,10 @@ inline constexpr double kTransformBytesPerVoxel = 1;
 
 /// Buffers of files, the record, code not yet touched.
 inline constexpr std::uint64_t kBytesOfOutput = 6 << 20;
-/// A cell of a store that is full takes itself, a quarter of a vertex at most, an entry of a list that may
-/// just have doubled, and what extraction takes more.
-inline constexpr std::uint64_t kBytesPerStoredCell = sizeof(Cell) + sizeof(Vertex) / 4 + 28;
+/// A cell of a store that is full takes itself, a quarter of a vertex at most, the entries of a list that is
+/// due for cleaning, and what extraction takes more.
+inline constexpr std::uint64_t kBytesPerStoredCell =
+    sizeof(Cell) + sizeof(Vertex) / 4 + PoorElementList::kGrowth * sizeof(PoorElementList::Entry) + 4;
 /// A cube of the octree takes the first, leaf or gap, and a leaf the second more: its place in the queue, its
 /// list of cells with some entries. While the octree is built each cube takes less than both together.
 inline constexpr std::uint64_t kBytesPerCube = 32, kBytesPerLeaf = 160;

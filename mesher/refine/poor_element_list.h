@@ -1,6 +1,9 @@
 // The poor element list (PEL): cells that may break a rule, last in first out. Entries are classified only
 // when their turn comes; by then most have died, which their stamp shows. Last-in-first-out keeps the work
 // where the cache is warm.
+//
+// In the middle of a run the list is as long as the store, at its end it is empty. So it is in pieces, which
+// are given back as it shrinks: the store grows into what the list had.
 #pragma once
 
 #include <algorithm>
@@ -8,6 +11,7 @@
 #include <vector>
 
 #include "delaunay/mesh.h"
+#include "runtime/mapped_chunk.h"
 
 namespace podm {
 
@@ -17,55 +21,90 @@ class PoorElementList {
     CellId cell;
     std::uint16_t stamp;
   };
+  /// It is cleaned when it has grown so many times since.
+  static constexpr std::size_t kGrowth = 3;
   /// It is a worker's, on a store of so many cells.
   explicit PoorElementList(std::size_t cell_capacity)
       : first_cleaning_(std::min(kFirstCleaning, cell_capacity / kCellsAnEntry)) {}
-  /// Bytes that the lists of so many workers take at most beside entries of live cells: they hold stale ones
-  /// too.
+  /// Bytes that the lists of so many workers take at most beside kGrowth entries a live cell.
   static std::size_t stale_bytes(std::size_t cell_capacity, std::size_t num_workers) {
     return num_workers * 2 * sizeof(Entry) * std::min(kFirstCleaning, cell_capacity / kCellsAnEntry);
   }
 
-  void push(CellId cell, std::uint16_t stamp) { entries_.push_back({cell, stamp}); }
-  /// Most entries at the bottom are stale. Dropping them whenever the list has doubled keeps it short.
-  bool is_due_for_cleaning() const { return entries_.size() >= next_cleaning_; }
-  void drop_stale(const Mesh& mesh) {
-    std::size_t kept = 0;
-    for (std::size_t i = 0; i < entries_.size(); ++i) {
-      mesh.prefetch(entries_[std::min(i + kLookahead, entries_.size() - 1)].cell);
-      if (mesh.stamp(entries_[i].cell) == entries_[i].stamp) entries_[kept++] = entries_[i];
+  /// Throws std::bad_alloc.
+  void push(CellId cell, std::uint16_t stamp) {
+    if (end_ % kChunk == 0) {
+      if (end_ == chunks_.size() << kChunkBits) chunks_.emplace_back();
+      top_ = &at(end_);
     }
-    entries_.resize(kept);
-    next_cleaning_ = std::max(first_cleaning_, 2 * entries_.size());
+    top_[end_++ % kChunk] = {cell, stamp};
+  }
+  /// Many entries are stale; dropping them keeps the list short.
+  bool is_due_for_cleaning() const { return size() >= next_cleaning_; }
+  void drop_stale(const Mesh& mesh) {
+    std::size_t kept = begin_;
+    for (std::size_t i = begin_; i < end_;) {
+      const std::size_t chunk_end = std::min(end_, (i | (kChunk - 1)) + 1);
+      const Entry* entry = &at(i);
+      const Entry* const last = entry + (chunk_end - i) - 1;
+      for (; i < chunk_end; ++i, ++entry) {
+        mesh.prefetch(std::min(entry + kLookahead, last)->cell);
+        if (mesh.stamp(entry->cell) == entry->stamp) at(kept++) = *entry;
+      }
+    }
+    end_ = kept;
+    give_back();
+    next_cleaning_ = std::max(first_cleaning_, kGrowth * size());
   }
   /// Removes the older half, of which the live entries are returned, at most `max`.
   std::vector<Entry> take_oldest(std::size_t max, const Mesh& mesh) {
     std::vector<Entry> taken;
-    std::size_t scanned = 0;
-    for (; scanned < entries_.size() / 2 && taken.size() < max; ++scanned) {
-      if (mesh.stamp(entries_[scanned].cell) == entries_[scanned].stamp) taken.push_back(entries_[scanned]);
-    }
-    entries_.erase(entries_.begin(), entries_.begin() + static_cast<std::ptrdiff_t>(scanned));
+    for (const std::size_t half = begin_ + size() / 2; begin_ < half && taken.size() < max; ++begin_)
+      if (mesh.stamp(at(begin_).cell) == at(begin_).stamp) taken.push_back(at(begin_));
+    give_back();
     return taken;
   }
-  bool is_empty() const { return entries_.empty(); }
-  std::size_t size() const { return entries_.size(); }
-  /// The cell whose turn comes `turns` from now, to be prefetched; the list must not be empty.
+  bool is_empty() const { return begin_ == end_; }
+  std::size_t size() const { return end_ - begin_; }
+  /// The cell whose turn comes `turns` from now, or as late as any, to be prefetched; the list must not be
+  /// empty.
   CellId upcoming(std::size_t turns) const {
-    return entries_[entries_.size() > turns ? entries_.size() - 1 - turns : 0].cell;
+    const std::size_t in_top = end_ % kChunk;
+    if (size() > turns && in_top > turns) return top_[in_top - 1 - turns].cell;
+    return at(size() > turns ? end_ - 1 - turns : begin_).cell;
   }
   Entry pop() {
-    const Entry last = entries_.back();
-    entries_.pop_back();
-    return last;
+    if (end_ % kChunk == 0) {
+      top_ = &at(end_ - kChunk);
+      give_back();
+    }
+    return top_[--end_ % kChunk];
   }
 
  private:
   // A list that is not due for its first cleaning is short, in a small store too.
-  static constexpr std::size_t kLookahead = 16;  // in a scan, whose cells lie anywhere
   static constexpr std::size_t kFirstCleaning = 1 << 16, kCellsAnEntry = 64;
+  static constexpr std::size_t kLookahead = 16;  // in a scan, whose cells lie anywhere
+  static constexpr std::size_t kChunkBits = 13, kChunk = 1 << kChunkBits;
+  using Chunk = MappedChunk<Entry, kChunk>;
+
+  Entry& at(std::size_t i) { return chunks_[i >> kChunkBits][i % kChunk]; }
+  const Entry& at(std::size_t i) const { return chunks_[i >> kChunkBits][i % kChunk]; }
+  // One chunk beyond the last entry's is kept: it may soon be wanted.
+  void give_back() {
+    const auto unused = static_cast<std::ptrdiff_t>(begin_ >> kChunkBits),
+               used = static_cast<std::ptrdiff_t>((end_ + kChunk - 1) >> kChunkBits) + 1;
+    if (used < std::ssize(chunks_)) chunks_.erase(chunks_.begin() + used, chunks_.end());
+    chunks_.erase(chunks_.begin(), chunks_.begin() + unused);
+    begin_ %= kChunk;
+    end_ -= static_cast<std::size_t>(unused) << kChunkBits;
+    if (end_ % kChunk != 0) top_ = &at(end_ - end_ % kChunk);
+  }
+
   std::size_t first_cleaning_;
-  std::vector<Entry> entries_;
+  std::vector<Chunk> chunks_;
+  std::size_t begin_ = 0, end_ = 0;  // places in the chunks, the oldest entry's and the next one's
+  Entry* top_ = nullptr;             // the chunk in which end_ is, unless that is where a chunk begins
   std::size_t next_cleaning_ = first_cleaning_;
 };
 
