@@ -1,5 +1,6 @@
 #include "delaunay/star.h"
 
+#include <algorithm>
 #include <bit>
 #include <limits>
 
@@ -39,22 +40,49 @@ bool StarFiller::prepare(Mesh& mesh, const Region& region, const Point& p) {
   return true;
 }
 
+void StarFiller::collect_offsets() {
+  // The last facet again in what is left of the last lanes.
+  for (unsigned lane = 0; lane < (num_facets_ + Lanes::kSize - 1) / Lanes::kSize * Lanes::kSize; ++lane) {
+    Lanes& lanes = lanes_[lane / Lanes::kSize];
+    const Facet& facet = facets_[std::min(lane, num_facets_ - 1)];
+    for (unsigned i = 0; i < 3; ++i) {
+      for (unsigned k = 0; k < 4; ++k)
+        lanes.offsets[4 * i + k][lane % Lanes::kSize] = offsets_[facet.local[i]][k];
+    }
+  }
+}
+
+// By the formula of circumsphere.h, to the bit. False: some sphere is not certified by it.
+bool StarFiller::Lanes::compute_spheres(Point p, double extent) {
+  const auto& e = offsets;
+  unsigned num_certified = 0;
+  for (unsigned i = 0; i < kSize; ++i) {
+    const RelativeSphere s = relative_sphere({e[0][i], e[1][i], e[2][i]}, {e[4][i], e[5][i], e[6][i]},
+                                             {e[8][i], e[9][i], e[10][i]}, e[3][i], e[7][i], e[11][i]);
+    const Point center = p + s.center;
+    const double r2 = podm::squared_distance(center, p);
+    spheres[0][i] = center.x;
+    spheres[1][i] = center.y;
+    spheres[2][i] = center.z;
+    spheres[3][i] = r2;
+    num_certified += static_cast<unsigned>(is_well_conditioned(s.determinant, s.squared_length)) &
+                     static_cast<unsigned>(is_certified(r2, extent));
+  }
+  return num_certified == kSize;
+}
+
 void StarFiller::compute_spheres(const Mesh& mesh, const Point& p) {
-  for (unsigned f = 0; f < num_facets_; ++f) {
-    const auto& a = offsets_[facets_[f].local[0]];
-    const auto& b = offsets_[facets_[f].local[1]];
-    const auto& c = offsets_[facets_[f].local[2]];
-    const RelativeSphere s =
-        relative_sphere({a[0], a[1], a[2]}, {b[0], b[1], b[2]}, {c[0], c[1], c[2]}, a[3], b[3], c[3]);
-    const Point center =
-        is_well_conditioned(s.determinant, s.squared_length)
-            ? p + s.center
-            : exact_circumcenter(mesh.point(facets_[f].vertices[0]), mesh.point(facets_[f].vertices[1]),
-                                 mesh.point(facets_[f].vertices[2]), p);
-    spheres_[0][f] = center.x;
-    spheres_[1][f] = center.y;
-    spheres_[2][f] = center.z;
-    spheres_[3][f] = certified_squared_radius(center, p, mesh.extent());
+  collect_offsets();
+  for (unsigned first = 0; first < num_facets_; first += Lanes::kSize) {
+    Lanes& lanes = lanes_[first / Lanes::kSize];
+    if (lanes.compute_spheres(p, mesh.extent())) continue;
+    for (unsigned f = first; f < std::min(first + Lanes::kSize, num_facets_); ++f) {
+      const auto& v = facets_[f].vertices;
+      const Circumsphere s =
+          circumsphere(mesh.point(v[0]), mesh.point(v[1]), mesh.point(v[2]), p, mesh.extent());
+      const std::array<double, 4> words{s.center.x, s.center.y, s.center.z, s.squared_radius};
+      for (unsigned k = 0; k < 4; ++k) lanes.spheres[k][f - first] = words[k];
+    }
   }
 }
 
@@ -65,7 +93,9 @@ void StarFiller::fill(Mesh& mesh, Pool& pool, Region& region, VertexId apex) {
     const Facet& facet = facets_[f];
     const CellId id = region.created[f];
     mesh.renew(id, {facet.vertices[0], facet.vertices[1], facet.vertices[2], apex});
-    mesh.set_sphere(id, {{spheres_[0][f], spheres_[1][f], spheres_[2][f]}, spheres_[3][f]});
+    const auto& spheres = lanes_[f / Lanes::kSize].spheres;
+    const unsigned lane = f % Lanes::kSize;
+    mesh.set_sphere(id, {{spheres[0][lane], spheres[1][lane], spheres[2][lane]}, spheres[3][lane]});
     mesh.new_cell(id).mirrors[3] = facet.mirror;
     mesh.set_mirror(facet.mirror, 4 * id + 3);
     const unsigned a = facet.local[0], b = facet.local[1], c = facet.local[2];

@@ -31,14 +31,23 @@ class StarFiller {
     std::array<std::uint16_t, 3> local;
     FacetId mirror;
   };
+  // Some facets side by side, in the loops that compilers turn into vector instructions.
+  struct alignas(64) Lanes {
+    static constexpr unsigned kSize = 8;
+    using Row = std::array<double, kSize>;
+    std::array<Row, 12> offsets;  // of the three vertices
+    std::array<Row, 4> spheres;   // of the new cells: centre, squared radius
+    bool compute_spheres(Point p, double extent);
+  };
   void compute_spheres(const Mesh& mesh, const Point& p);
+  void collect_offsets();
 
   unsigned num_vertices_ = 0, num_facets_ = 0;
   double squared_distance_ = 0;
   std::array<VertexId, kMaxVertices> ids_;
   alignas(64) std::array<std::array<double, 4>, kMaxVertices> offsets_;  // x-p and |x-p|^2
   std::array<Facet, kMaxFacets> facets_;
-  alignas(64) std::array<std::array<double, kMaxFacets>, 4> spheres_;  // centre - p, squared radius
+  std::array<Lanes, kMaxFacets / Lanes::kSize> lanes_;
   // facet_at_edge_[(a << row_bits_) + b]: the new facet over the directed boundary edge (a,b). Rows are as
   // short as the number of vertices allows, so that the usual table lies in the first-level cache.
   std::vector<FacetId> facet_at_edge_;

@@ -67,19 +67,23 @@ inline RelativeSphere relative_sphere(const Vector& e1, const Vector& e2, const 
   const Vector x1 = cross(e2, e3), x2 = cross(e3, e1), x3 = cross(e1, e2);
   const double det = dot(e1, x1);
   const double scale = 0.5 / det;
+  const double longest = s2 < s3 ? s3 : s2;  // no std::max: its references keep loops from vectors
   return {{scale * (s1 * x1.x + s2 * x2.x + s3 * x3.x), scale * (s1 * x1.y + s2 * x2.y + s3 * x3.y),
            scale * (s1 * x1.z + s2 * x2.z + s3 * x3.z)},
           det,
-          std::max(s1, std::max(s2, s3))};
+          longest < s1 ? s1 : longest};
 }
 inline bool is_well_conditioned(double det, double squared_length) {
   return squared_length * squared_length * squared_length <= 1e14 * det * det;
 }
 
 /// `extent` is M, the largest coordinate in play.
+inline bool is_certified(double squared_radius, double extent) {
+  return squared_radius * 1e16 >= extent * extent;
+}
 inline double certified_squared_radius(const Point& center, const Point& p, double extent) {
   const double r2 = squared_distance(center, p);
-  return r2 * 1e16 >= extent * extent ? r2 : std::numeric_limits<double>::quiet_NaN();
+  return is_certified(r2, extent) ? r2 : std::numeric_limits<double>::quiet_NaN();
 }
 
 /// Circumsphere of the positive cell (a,b,c,p).

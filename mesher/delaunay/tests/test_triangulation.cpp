@@ -1,6 +1,7 @@
 // Properties of the kernel alone: validity, uniqueness, and that a removal undoes an insertion.
 #include <gtest/gtest.h>
 
+#include <cmath>
 #include <set>
 
 #include "delaunay/hole.h"
@@ -59,6 +60,21 @@ TEST_P(Triangulation, CombinedOperationEqualsItsParts) {
   std::string fault;
   EXPECT_TRUE(is_valid(combined.mesh, &fault)) << fault;
   EXPECT_EQ(combined.cells(), expected.cells());
+}
+
+// Spheres are computed side by side; the reference computes one.
+TEST_P(Triangulation, SpheresAreThoseOfTheFormulaToTheBit) {
+  Triangulator t(kBox);
+  for (const Point& p : shuffled(GetParam().make(), 6)) t.insert(p);
+  for (CellId c = 0; c < t.mesh.cell_bound(); ++c) {
+    const Cell& cell = t.mesh.cell(c);
+    if (!cell.is_alive()) continue;
+    const auto point = [&](unsigned i) { return t.mesh.point(cell.vertices[i]); };
+    const Circumsphere sphere = circumsphere(point(0), point(1), point(2), point(3), t.mesh.extent());
+    EXPECT_EQ(cell.center, sphere.center);
+    const float stored = stored_squared_radius(sphere.squared_radius);
+    EXPECT_TRUE(cell.squared_radius == stored || (std::isnan(cell.squared_radius) && std::isnan(stored)));
+  }
 }
 
 INSTANTIATE_TEST_SUITE_P(PointSets, Triangulation, testing::ValuesIn(point_sets()),
