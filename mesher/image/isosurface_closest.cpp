@@ -13,6 +13,7 @@ namespace podm {
 
 namespace {
 
+constexpr double kFar = 2;            // shortest voxel sides
 constexpr int kMaxSteps = 8;          // tried, taken or not
 constexpr double kShorter = 0.35;     // what is left of a step that leads no nearer
 constexpr double kNegligible = 0.01;  // voxel sides: twice the least gain in distance of a step
@@ -211,9 +212,10 @@ auto Oracle<Reads>::features_around(const Point& u) const -> std::optional<Eight
   return features;
 }
 
-// From outside the grid the features around its nearest point are a start alone, and so is the surface voxel
-// nearest to a deep point, with midpoints within half a side and the isosurface within half a diagonal of it:
-// go on from midpoint to midpoint.
+// From kFar on the eight features may all miss the surface voxel that has the nearest midpoint; from outside
+// the grid the features around its nearest point are a start alone; and so is the surface voxel nearest to a
+// deep point, with midpoints within half a side and the isosurface within half a diagonal of it. Go on from
+// midpoint to midpoint then.
 template <class Reads>
 auto Oracle<Reads>::nearest_start(const Point& u, double radius) const -> std::optional<Nearest> {
   std::optional<EightVoxels> around = features_around(u);
@@ -224,7 +226,8 @@ auto Oracle<Reads>::nearest_start(const Point& u, double radius) const -> std::o
     around.emplace().fill(*nearest);
   }
   Nearest best = nearest_midpoint(*around, u);
-  while (!is_told && (around = features_around(best.u))) {
+  if (is_told && best.squared_mm < square(kFar * shortest_side_mm_)) return best;
+  while ((around = features_around(best.u))) {
     const Nearest next = nearest_midpoint(*around, u);
     if (!(next.squared_mm < best.squared_mm * (1 - 1e-12))) break;
     best = next;

@@ -234,16 +234,16 @@ TEST(ClosestPoint, IsNearestOnSmoothPhantoms) {
     const double side = shortest_voxel_side(phantom.image);
     Random random(8);
     std::vector<double> excess;
-    for (int n = 0; n < 1000; ++n) {
+    for (int n = 0; n < 10'000; ++n) {
       const Point p = random_point(random, phantom.image, 1);
       const auto z = closest_point(isosurface, p, 1e9);
       ASSERT_TRUE(z);
       excess.push_back((distance(p, *z) - distance_to_nearest(surface, p)) / side);
     }
     std::sort(excess.begin(), excess.end());
-    EXPECT_LE(excess[500], kMedianExcess);
-    EXPECT_LE(excess[990], k99PercentExcess);
-    EXPECT_LE(excess[999], kGreatestExcess);
+    EXPECT_LE(excess[5000], kMedianExcess);
+    EXPECT_LE(excess[9900], k99PercentExcess);
+    EXPECT_LE(excess[9999], kGreatestExcess);
   }
 }
 
@@ -274,13 +274,13 @@ TEST(ClosestPoint, IsSeldomMissedOnSmoothPhantoms) {
     const double side = shortest_voxel_side(phantom.image);
     Random random(9);
     int num_missed = 0;
-    for (int n = 0; n < 1000; ++n) {
+    for (int n = 0; n < 10'000; ++n) {
       const Point p = random_point(random, phantom.image, 1);
       const double nearest = distance_to_nearest(surface, p);
       num_missed += !closest_point(isosurface, p, nearest / 0.95);
       EXPECT_TRUE(closest_point(isosurface, p, nearest + kGreatestExcess * side)) << nearest;
     }
-    EXPECT_LE(num_missed, 10);
+    EXPECT_LE(num_missed, 100);
   }
 }
 
