@@ -22,8 +22,11 @@ class FeatureOffset {
 
   /// No surface voxel of the bricks around is certain to be the nearest.
   constexpr bool is_beyond() const { return bits_ == 0; }
-  constexpr Voxel offset() const {
-    return {(bits_ & 31) - kZero, (bits_ >> 5 & 31) - kZero, (bits_ >> 10 & 31) - kZero};
+  constexpr Voxel offset() const { return {along<0>(+bits_), along<1>(+bits_), along<2>(+bits_)}; }
+  /// Of one offset, or of many in a register.
+  template <int axis, class Bits>
+  static constexpr Bits along(const Bits& bits) {
+    return (bits >> (5 * axis) & 31) - kZero;
   }
   constexpr std::uint16_t bits() const { return bits_; }
 

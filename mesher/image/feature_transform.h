@@ -29,6 +29,7 @@
 #include <span>
 
 #include "image/brick_features.h"
+#include "image/eight_voxels.h"
 #include "image/neighborhood.h"
 #include "image/oracle_reads.h"
 #include "image/surface_tree.h"
@@ -133,10 +134,41 @@ class Features {
   /// `v` lies in `brick`; none where the words do not tell.
   std::optional<Voxel> offset_to_nearest(Brick brick, const Voxel& v) const {
     if (!brick.is_near()) return std::nullopt;
-    const std::uint16_t word = word_of(brick, v);
+    const std::uint16_t word = word_at(brick, place_in_brick(v));
     if ((word & kSurface) != 0) return Voxel{};
     const FeatureOffset offset(word);
     return offset.is_beyond() ? std::nullopt : std::optional(offset.offset());
+  }
+  /// The surface voxels nearest to eight voxels; none where the words do not tell all. Asks for what
+  /// neighborhoods() reads of them.
+  std::optional<EightVoxels> nearest(const EightVoxels& voxels) const {
+    const auto bricks = voxels.bricks(bricks_), places = voxels.places_in_bricks();
+    EightVoxels::Ints words;
+    for (unsigned c = 0; c < EightVoxels::kNum; ++c) {
+      const Brick at = brick(bricks[c]);
+      if (!at.is_near()) return std::nullopt;
+      const std::uint16_t word = word_at(at, places[c]);
+      if (FeatureOffset(word).is_beyond()) return std::nullopt;
+      words[c] = word;
+    }
+    const EightVoxels::Ints is_elsewhere = (words & kSurface) == 0;
+    const EightVoxels features{voxels.i + (is_elsewhere & FeatureOffset::along<0>(words)),
+                               voxels.j + (is_elsewhere & FeatureOffset::along<1>(words)),
+                               voxels.k + (is_elsewhere & FeatureOffset::along<2>(words))};
+    for (const std::uint32_t index : features.bricks(bricks_)) {
+      __builtin_prefetch(bytes() + byte_of_mask(Brick(words_[index])));
+    }
+    return features;
+  }
+  /// What is around eight surface voxels.
+  EightVoxels::Numbers neighborhoods(const EightVoxels& surface_voxels) const {
+    const auto bricks = surface_voxels.bricks(bricks_), places = surface_voxels.places_in_bricks();
+    EightVoxels::Numbers bits;
+    for (unsigned c = 0; c < EightVoxels::kNum; ++c) {
+      const Brick at = brick(bricks[c]);
+      bits[c] = neighborhood_at(at, surface_mask(at), places[c]).bits();
+    }
+    return bits;
   }
   /// A lower bound of the distance from the points nearest to voxels of a far brick to the isosurface, mm.
   double distance_from_far(Brick brick) const { return brick.steps() * transform_->step_mm(); }
@@ -147,7 +179,7 @@ class Features {
   /// The label of v, which lies in `brick`, if v is a surface voxel; kUntold where words have no room for it.
   std::optional<LabelIndex> label_if_surface(Brick brick, const Voxel& v) const {
     if (brick.label() != Brick::kMixed) return std::nullopt;
-    const std::uint16_t word = word_of(brick, v);
+    const std::uint16_t word = word_at(brick, place_in_brick(v));
     return (word & kSurface) != 0 ? std::optional<LabelIndex>(word & kUntold) : std::nullopt;
   }
   static constexpr LabelIndex kUntold = 0x7fff;
@@ -157,23 +189,20 @@ class Features {
     const Brick brick = brick_of(v);
     if (brick.label() != Brick::kMixed) return std::nullopt;
     const std::uint64_t mask = surface_mask(brick);
-    return (mask >> place_in_brick(v) & 1) != 0 ? std::optional(neighborhood(brick, mask, v)) : std::nullopt;
+    const unsigned place = place_in_brick(v);
+    return (mask >> place & 1) != 0 ? std::optional(neighborhood_at(brick, mask, place)) : std::nullopt;
   }
   /// `v`, in `brick`, must be a surface voxel.
   Neighborhood neighborhood(Brick brick, const Voxel& v) const {
-    return neighborhood(brick, surface_mask(brick), v);
+    return neighborhood_at(brick, surface_mask(brick), place_in_brick(v));
   }
   /// `v` must be a surface voxel.
   Neighborhood neighborhood(const Voxel& v) const { return neighborhood(brick_of(v), v); }
 
-  /// Asks for the line of v's word, or of the first neighborhoods of its brick; both read the table.
+  /// Asks for the line of v's word; reads the table.
   void prefetch(const Voxel& v) const {
     const Brick brick(words_[bricks_.index_of_voxel(v)]);
-    __builtin_prefetch(bytes() + byte_of_word(brick, v));
-  }
-  void prefetch_neighborhood(const Voxel& v) const {
-    const Brick brick(words_[bricks_.index_of_voxel(v)]);
-    __builtin_prefetch(bytes() + byte_of_mask(brick));
+    __builtin_prefetch(bytes() + byte_of_word(brick, place_in_brick(v)));
   }
 
  private:
@@ -190,17 +219,16 @@ class Features {
     return value;
   }
   Brick brick(std::size_t index) const { return Brick(read<std::uint64_t>(index * sizeof(std::uint64_t))); }
-  static std::size_t byte_of_word(Brick brick, const Voxel& v) {
-    return brick.line() * kLineBytes + sizeof(std::uint16_t) * place_in_brick(v);
+  static std::size_t byte_of_word(Brick brick, unsigned place) {
+    return brick.line() * kLineBytes + sizeof(std::uint16_t) * place;
   }
-  std::uint16_t word_of(Brick brick, const Voxel& v) const {
-    return read<std::uint16_t>(byte_of_word(brick, v));
+  std::uint16_t word_at(Brick brick, unsigned place) const {
+    return read<std::uint16_t>(byte_of_word(brick, place));
   }
   static std::size_t byte_of_mask(Brick brick) { return brick.line() * kLineBytes + kBytesOfWords; }
   std::uint64_t surface_mask(Brick brick) const { return read<std::uint64_t>(byte_of_mask(brick)); }
-  Neighborhood neighborhood(Brick brick, std::uint64_t mask, const Voxel& v) const {
-    const auto num_before =
-        static_cast<std::size_t>(std::popcount(mask & ((std::uint64_t{1} << place_in_brick(v)) - 1)));
+  Neighborhood neighborhood_at(Brick brick, std::uint64_t mask, unsigned place) const {
+    const auto num_before = static_cast<std::size_t>(std::popcount(mask & ((std::uint64_t{1} << place) - 1)));
     return Neighborhood(
         read<std::uint32_t>(byte_of_mask(brick) + sizeof mask + sizeof(std::uint32_t) * num_before));
   }

@@ -116,7 +116,6 @@ class Oracle {
   std::optional<LabelChange> first_change(const Point& u, const Vector& d, LabelIndex label) const;
   std::optional<LabelChange> change_in_block(const Point& from, const Vector& d, const Voxel& block,
                                              const BlockLabels& labels, LabelIndex label) const;
-  using EightVoxels = std::array<Voxel, 8>;
   struct Nearest;
   class Sheet;
   std::optional<EightVoxels> features_around(const Point& u) const;

@@ -41,17 +41,6 @@ constexpr std::array<unsigned, kNumEdges> kNeighbors{
 constexpr std::size_t axis_of(unsigned edge) { return edge >> 1; }
 constexpr double half_of(unsigned edge) { return (edge & 1) != 0 ? 0.5 : -0.5; }
 
-// Surface voxels, of which some may be equal. A register holds a number of each.
-struct EightInRegisters {
-  static constexpr unsigned kNum = 8;
-  using Ints [[gnu::vector_size(4 * kNum)]] = std::int32_t;
-  using Floats [[gnu::vector_size(4 * kNum)]] = float;
-  std::array<Ints, 3> at;
-  Ints neighborhoods;
-
-  Voxel voxel(unsigned c) const { return {at[0][c], at[1][c], at[2][c]}; }
-};
-
 struct EdgeOfEight {
   unsigned voxel, edge;
 };
@@ -59,18 +48,21 @@ struct EdgeOfEight {
 // The edge to a neighbour of another label whose midpoint is nearest to `from`, given in voxels from the
 // first of the eight. Single precision tells them apart, which leaves the last bits of a squared distance to
 // say whose it is.
-EdgeOfEight nearest_edge(const EightInRegisters& voxels, const Vector& from, const Vector& spacing) {
-  using Ints = EightInRegisters::Ints;
-  using Floats = EightInRegisters::Floats;
+EdgeOfEight nearest_edge(const EightVoxels& voxels, const EightVoxels::Numbers& neighborhoods,
+                         const Vector& from, const Vector& spacing) {
+  using Ints = EightVoxels::Ints;
+  using Floats [[gnu::vector_size(sizeof(Ints))]] = float;
   constexpr std::int32_t kMostIds = 64, kNone = std::numeric_limits<std::int32_t>::max();
   constexpr Ints kFirstIds{0, 1, 2, 3, 4, 5, 6, 7};
   const std::array<float, 3> side{static_cast<float>(spacing.x), static_cast<float>(spacing.y),
                                   static_cast<float>(spacing.z)};
   const std::array<float, 3> start{static_cast<float>(from.x), static_cast<float>(from.y),
                                    static_cast<float>(from.z)};
-  std::array<Floats, 3> d;
-  for (std::size_t a = 0; a < 3; ++a)
-    d[a] = (__builtin_convertvector(voxels.at[a] - voxels.at[a][0], Floats) - start[a]) * side[a];
+  const auto along = [&](const Ints& at, std::size_t a) {
+    return (__builtin_convertvector(at - at[0], Floats) - start[a]) * side[a];
+  };
+  const std::array<Floats, 3> d{along(voxels.i, 0), along(voxels.j, 1), along(voxels.k, 2)};
+  const auto differing = std::bit_cast<Ints>(neighborhoods);
   const Floats squared = d[0] * d[0] + d[1] * d[1] + d[2] * d[2];
   Ints least = Ints{} + kNone;
   for (unsigned edge = 0; edge < kNumEdges; ++edge) {
@@ -78,16 +70,16 @@ EdgeOfEight nearest_edge(const EightInRegisters& voxels, const Vector& from, con
     const float half = static_cast<float>(half_of(edge)) * side[axis];
     const Floats to_midpoint = squared + half * (2 * d[axis] + half);
     const Floats not_negative = to_midpoint > 0 ? to_midpoint : Floats{};
-    const Ints ids = kFirstIds + static_cast<std::int32_t>(edge * EightInRegisters::kNum);
+    const Ints ids = kFirstIds + static_cast<std::int32_t>(edge * EightVoxels::kNum);
     const Ints keys = (reinterpret_cast<Ints>(not_negative) & -kMostIds) | ids;
-    const Ints same = ((voxels.neighborhoods >> static_cast<int>(kNeighbors[edge])) & 1) - 1;  // all bits
+    const Ints same = ((differing >> static_cast<int>(kNeighbors[edge])) & 1) - 1;  // all bits
     const Ints candidates = keys | (same & kNone);
     least = candidates < least ? candidates : least;
   }
   std::int32_t first = least[0];
-  for (unsigned c = 1; c < EightInRegisters::kNum; ++c) first = std::min(first, least[c]);
+  for (unsigned c = 1; c < EightVoxels::kNum; ++c) first = std::min(first, least[c]);
   const auto id = static_cast<unsigned>(first % kMostIds);
-  return {id % EightInRegisters::kNum, id / EightInRegisters::kNum};
+  return {id % EightVoxels::kNum, id / EightVoxels::kNum};
 }
 
 }  // namespace
@@ -176,16 +168,9 @@ class Oracle<Reads>::Sheet {
 // The nearest of the midpoints beside the given surface voxels.
 template <class Reads>
 auto Oracle<Reads>::nearest_midpoint(const EightVoxels& surface_voxels, const Point& u) const -> Nearest {
-  EightInRegisters voxels;
-  for (unsigned c = 0; c < EightInRegisters::kNum; ++c) {
-    voxels.neighborhoods[c] = static_cast<std::int32_t>(features_.neighborhood(surface_voxels[c]).bits());
-    const Voxel& v = surface_voxels[c];
-    voxels.at[0][c] = v.i;
-    voxels.at[1][c] = v.j;
-    voxels.at[2][c] = v.k;
-  }
-  const auto [voxel, edge] = nearest_edge(voxels, u - center(voxels.voxel(0)), spacing_);
-  Nearest best{voxels.voxel(voxel)};
+  const auto [voxel, edge] = nearest_edge(surface_voxels, features_.neighborhoods(surface_voxels),
+                                          u - center(surface_voxels[0]), spacing_);
+  Nearest best{surface_voxels[voxel]};
   const std::size_t axis = axis_of(edge);
   const double half = half_of(edge);
   best.u =
@@ -201,15 +186,7 @@ auto Oracle<Reads>::features_around(const Point& u) const -> std::optional<Eight
   const Voxel low = block_of(inside);
   const Voxel high{std::min(low.i + 1, grid_.num_x() - 1), std::min(low.j + 1, grid_.num_y() - 1),
                    std::min(low.k + 1, grid_.num_z() - 1)};
-  EightVoxels features;
-  for (unsigned c = 0; c < features.size(); ++c) {
-    const Voxel v{c & 1 ? high.i : low.i, c & 2 ? high.j : low.j, c & 4 ? high.k : low.k};
-    const std::optional<Voxel> offset = features_.offset_to_nearest(features_.brick_of(v), v);
-    if (!offset) return std::nullopt;
-    features[c] = {v.i + offset->i, v.j + offset->j, v.k + offset->k};
-    features_.prefetch_neighborhood(features[c]);
-  }
-  return features;
+  return features_.nearest(EightVoxels::corners(low, high));
 }
 
 // From kFar on the eight features may all miss the surface voxel that has the nearest midpoint; from outside
@@ -223,7 +200,7 @@ auto Oracle<Reads>::nearest_start(const Point& u, double radius) const -> std::o
   if (!around) {
     const auto nearest = features_.nearest(u, radius + 2 * half_diagonal_mm_);
     if (!nearest) return std::nullopt;
-    around.emplace().fill(*nearest);
+    around = EightVoxels::all(*nearest);
   }
   Nearest best = nearest_midpoint(*around, u);
   if (is_told && best.squared_mm < square(kFar * shortest_side_mm_)) return best;
@@ -329,9 +306,7 @@ Point Oracle<Reads>::polished(const NearPoint& near, const Point& p) const {
     is_there = pull(sheet, z);
     if (is_there && is_on_isosurface) return from_voxels(z);
   }
-  EightVoxels beside;
-  beside.fill(near.surface_voxel);
-  return from_voxels(nearest_midpoint(beside, u).u);
+  return from_voxels(nearest_midpoint(EightVoxels::all(near.surface_voxel), u).u);
 }
 
 template std::optional<NearPoint> Oracle<NoReads>::near_point(const Point&, double) const;

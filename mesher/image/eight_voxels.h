@@ -1,0 +1,37 @@
+// The voxels at a block's corners, or the features of those, all at a time.
+#pragma once
+
+#include <array>
+#include <bit>
+#include <cstdint>
+
+#include "image/voxel.h"
+
+namespace podm {
+
+/// Eight voxels, of which some may be equal. A register holds a number of each.
+struct EightVoxels {
+  static constexpr unsigned kNum = 8;
+  using Ints [[gnu::vector_size(4 * kNum)]] = std::int32_t;
+  using Numbers = std::array<std::uint32_t, kNum>;  // a register's, none negative
+
+  Ints i, j, k;
+
+  static EightVoxels all(const Voxel& v) { return {Ints{} + v.i, Ints{} + v.j, Ints{} + v.k}; }
+  /// The corners of the box from `low` to `high`: corner a + 2 b + 4 c.
+  static EightVoxels corners(const Voxel& low, const Voxel& high) {
+    const auto along = [](int l, int h, const Ints& is_high) { return l + (is_high & (h - l)); };
+    constexpr Ints kOdd{0, -1, 0, -1, 0, -1, 0, -1}, kUneven{0, 0, -1, -1, 0, 0, -1, -1},
+        kUpper{0, 0, 0, 0, -1, -1, -1, -1};
+    return {along(low.i, high.i, kOdd), along(low.j, high.j, kUneven), along(low.k, high.k, kUpper)};
+  }
+
+  Voxel operator[](unsigned c) const { return {i[c], j[c], k[c]}; }
+  Numbers bricks(const BrickGrid& grid) const {
+    const auto& size = grid.size();
+    return std::bit_cast<Numbers>(((k >> 2) * size[1] + (j >> 2)) * size[0] + (i >> 2));
+  }
+  Numbers places_in_bricks() const { return std::bit_cast<Numbers>((i & 3) | (j & 3) << 2 | (k & 3) << 4); }
+};
+
+}  // namespace podm
