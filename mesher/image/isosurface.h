@@ -12,6 +12,8 @@
 // the block's centre, as near to all corners, and some corner is a surface voxel.
 #pragma once
 
+#include <algorithm>
+#include <array>
 #include <cstdint>
 #include <memory>
 #include <optional>
@@ -29,6 +31,18 @@ struct NearPoint {
   Point point;  // to about a hundredth of a voxel
   Voxel surface_voxel;
   bool is_midpoint;  // of two neighbouring voxels
+};
+
+/// Up to four balls of one radius, in which no isosurface point is searched for any further.
+struct Cover {
+  std::array<Point, 4> centers;
+  unsigned num_balls = 0;
+  double squared_radius = 0;
+
+  bool contains(const Point& z) const {
+    return std::any_of(centers.begin(), centers.begin() + num_balls,
+                       [&](const Point& c) { return squared_distance(c, z) < squared_radius; });
+  }
 };
 
 /// `Reads` is told of every read of the image and of its transform.
@@ -60,8 +74,8 @@ class Oracle {
   /// The isosurface point nearest to p, as found by local search from the nearest surface voxels, if within
   /// `radius` of p. Among several bumps of voxel size the search may take the second nearest: on smooth
   /// shapes it exceeds the nearest distance typically by nothing, in 1 % of cases by more than 0.25 and never
-  /// by more than 1 of a voxel's shortest side.
-  std::optional<NearPoint> near_point(const Point& p, double radius) const;
+  /// by more than 1 of a voxel's shortest side. One of the first points found will do if `cover` contains it.
+  std::optional<NearPoint> near_point(const Point& p, double radius, const Cover& cover = {}) const;
   /// p's near point, brought to less than 1e-6 voxel from the isosurface. May be a little beyond `radius`.
   Point polished(const NearPoint& near, const Point& p) const;
 
@@ -120,12 +134,13 @@ class Oracle {
   class Sheet;
   std::optional<EightVoxels> features_around(const Point& u) const;
   Nearest nearest_midpoint(const EightVoxels& surface_voxels, const Point& u) const;
-  std::optional<Nearest> nearest_start(const Point& u, double radius) const;
+  bool find_nearer_midpoint(const Point& u, Nearest& best) const;
   bool pull(Sheet& sheet, Point& z) const;
   std::optional<Vector> tangent_step(const Sheet& sheet, const Point& u, const Point& z,
                                      double negligible) const;
   double negligible_gain(const Nearest& best) const;
   void descend(Sheet& sheet, const Point& u, Nearest& best) const;
+  std::optional<NearPoint> foot(const Nearest& midpoint, const Point& u, double radius) const;
 
   LabelGrid<Reads> grid_;
   Features<Reads> features_;

@@ -189,27 +189,17 @@ auto Oracle<Reads>::features_around(const Point& u) const -> std::optional<Eight
   return features_.nearest(EightVoxels::corners(low, high));
 }
 
-// From kFar on the eight features may all miss the surface voxel that has the nearest midpoint; from outside
-// the grid the features around its nearest point are a start alone; and so is the surface voxel nearest to a
-// deep point, with midpoints within half a side and the isosurface within half a diagonal of it. Go on from
-// midpoint to midpoint then.
+// Goes on from midpoint to midpoint, each the nearest to u beside the features around the one before.
 template <class Reads>
-auto Oracle<Reads>::nearest_start(const Point& u, double radius) const -> std::optional<Nearest> {
-  std::optional<EightVoxels> around = features_around(u);
-  const bool is_told = around && is_inside(u);
-  if (!around) {
-    const auto nearest = features_.nearest(u, radius + 2 * half_diagonal_mm_);
-    if (!nearest) return std::nullopt;
-    around = EightVoxels::all(*nearest);
-  }
-  Nearest best = nearest_midpoint(*around, u);
-  if (is_told && best.squared_mm < square(kFar * shortest_side_mm_)) return best;
-  while ((around = features_around(best.u))) {
+bool Oracle<Reads>::find_nearer_midpoint(const Point& u, Nearest& best) const {
+  bool is_found = false;
+  while (const auto around = features_around(best.u)) {
     const Nearest next = nearest_midpoint(*around, u);
     if (!(next.squared_mm < best.squared_mm * (1 - 1e-12))) break;
     best = next;
+    is_found = true;
   }
-  return best;
+  return is_found;
 }
 
 // One step of Newton from z along the gradient of the sheet, which has to be there.
@@ -271,20 +261,42 @@ void Oracle<Reads>::descend(Sheet& sheet, const Point& u, Nearest& best) const {
   }
 }
 
+// The isosurface point that a descent from `midpoint` finds, if within `radius` of u.
 template <class Reads>
-std::optional<NearPoint> Oracle<Reads>::near_point(const Point& p, double radius) const {
-  if (is_empty()) return std::nullopt;
-  const Point u = to_voxels(p);
-  std::optional<Nearest> start = nearest_start(u, radius);
-  if (!start) return std::nullopt;
-  Nearest& best = *start;
+std::optional<NearPoint> Oracle<Reads>::foot(const Nearest& midpoint, const Point& u, double radius) const {
   // Of a million descents on CT and MR images none gained more than 0.86 of half a voxel's diagonal.
-  if (best.squared_mm > square(radius + half_diagonal_mm_)) return std::nullopt;
-  const Point midpoint = best.u;
+  if (midpoint.squared_mm > square(radius + half_diagonal_mm_)) return std::nullopt;
+  Nearest best = midpoint;
   Sheet sheet(*this, best.surface_voxel);
   descend(sheet, u, best);
   if (!(best.squared_mm <= square(radius))) return std::nullopt;
-  return NearPoint{from_voxels(best.u), sheet.center(), best.u == midpoint};
+  return NearPoint{from_voxels(best.u), sheet.center(), best.u == midpoint.u};
+}
+
+// From kFar on the eight features may all miss the surface voxel that has the nearest midpoint; from outside
+// the grid the features around its nearest point are a start alone; and so is the surface voxel nearest to a
+// deep point, with midpoints within half a side and the isosurface within half a diagonal of it.
+template <class Reads>
+std::optional<NearPoint> Oracle<Reads>::near_point(const Point& p, double radius, const Cover& cover) const {
+  if (is_empty()) return std::nullopt;
+  const Point u = to_voxels(p);
+  std::optional<EightVoxels> around = features_around(u);
+  const bool is_told = around && is_inside(u);
+  if (!around) {
+    const auto nearest = features_.nearest(u, radius + 2 * half_diagonal_mm_);
+    if (!nearest) return std::nullopt;
+    around = EightVoxels::all(*nearest);
+  }
+  Nearest midpoint = nearest_midpoint(*around, u);
+  if (is_told) {
+    const std::optional<NearPoint> near = foot(midpoint, u, radius);
+    const bool is_enough =
+        midpoint.squared_mm < square(kFar * shortest_side_mm_) || (near && cover.contains(near->point));
+    if (is_enough || !find_nearer_midpoint(u, midpoint)) return near;
+  } else {
+    find_nearer_midpoint(u, midpoint);
+  }
+  return foot(midpoint, u, radius);
 }
 
 // Midpoints lie on a lattice, and vertices of a lattice make flat cells that rounding can turn inside out:
@@ -309,8 +321,8 @@ Point Oracle<Reads>::polished(const NearPoint& near, const Point& p) const {
   return from_voxels(nearest_midpoint(EightVoxels::all(near.surface_voxel), u).u);
 }
 
-template std::optional<NearPoint> Oracle<NoReads>::near_point(const Point&, double) const;
-template std::optional<NearPoint> Oracle<CountedReads>::near_point(const Point&, double) const;
+template std::optional<NearPoint> Oracle<NoReads>::near_point(const Point&, double, const Cover&) const;
+template std::optional<NearPoint> Oracle<CountedReads>::near_point(const Point&, double, const Cover&) const;
 template Point Oracle<NoReads>::polished(const NearPoint&, const Point&) const;
 template Point Oracle<CountedReads>::polished(const NearPoint&, const Point&) const;
 

@@ -56,10 +56,20 @@ Examination Rules::examine(CellId c) const {
   const double radius = std::sqrt(t.squared_radius);
   t.isosurface_distance = distance_lower_bound(center, radius);
   if (t.isosurface_distance > radius || obeys_r1_and_r2(cell, t.squared_radius)) return t;
-  t.nearest = ask([&](const auto& oracle) { return oracle.near_point(center, radius); });
+  const Cover cover = covered_by(cell);
+  t.nearest = ask([&](const auto& oracle) { return oracle.near_point(center, radius, cover); });
   t.is_distance_proven = false;
   t.isosurface_distance = kNearestTrust * (t.nearest ? distance(center, t.nearest->point) : radius);
   return t;
+}
+
+// R1 asks for nothing in it.
+Cover Rules::covered_by(const Cell& cell) const {
+  Cover cover{{}, 0, squared_delta_};
+  for (const VertexId v : cell.vertices) {
+    if (mesh_.vertex(v).kind == VertexKind::kIsosurface) cover.centers[cover.num_balls++] = mesh_.point(v);
+  }
+  return cover;
 }
 
 bool Rules::is_covered(const Point& z, VertexId by) const {
@@ -69,9 +79,7 @@ bool Rules::is_covered(const Point& z, VertexId by) const {
 
 std::optional<Point> Rules::r1_sample(const Examination& t) const {
   if (!t.nearest) return std::nullopt;
-  for (const VertexId v : mesh_.cell(t.cell).vertices) {
-    if (is_covered(t.nearest->point, v)) return std::nullopt;
-  }
+  if (covered_by(mesh_.cell(t.cell)).contains(t.nearest->point)) return std::nullopt;
   const Point z = ask([&](const auto& oracle) { return oracle.polished(*t.nearest, t.center); });
   return is_covered_beside(t.cell, z) ? std::nullopt : std::optional(z);
 }

@@ -98,6 +98,7 @@ class Rules {
     return question(isosurface_);
   }
   double distance_lower_bound(const Point& p, double radius) const;
+  Cover covered_by(const Cell& cell) const;
   bool is_covered_beside(CellId c, const Point& z) const;
   bool has_poor_ratio(CellId c, double squared_radius) const;
   bool may_be_restricted(const Examination& t, CellId neighbor) const;
