@@ -83,6 +83,8 @@ class Oracle {
   /// If the labels at a and b differ one is always found. Double crossings are found down to 1e-6 of the
   /// segment's part in a block.
   std::optional<Point> segment_intersection(const Point& a, const Point& b) const;
+  /// Whether the same search finds a change along ab, at whose ends the label is `label`.
+  bool is_crossed(const Point& a, const Point& b, LabelIndex label) const;
 
  protected:
   const LabelImage* image_;

@@ -121,7 +121,15 @@ std::optional<Point> Oracle<Reads>::segment_intersection(const Point& a, const P
   return b;  // a change too close to b for the roundings above
 }
 
+template <class Reads>
+bool Oracle<Reads>::is_crossed(const Point& a, const Point& b, LabelIndex label) const {
+  const Point u = to_voxels(a);
+  return first_change(u, to_voxels(b) - u, label).has_value();
+}
+
 template std::optional<Point> Oracle<NoReads>::segment_intersection(const Point&, const Point&) const;
 template std::optional<Point> Oracle<CountedReads>::segment_intersection(const Point&, const Point&) const;
+template bool Oracle<NoReads>::is_crossed(const Point&, const Point&, LabelIndex) const;
+template bool Oracle<CountedReads>::is_crossed(const Point&, const Point&, LabelIndex) const;
 
 }  // namespace podm

@@ -124,12 +124,22 @@ bool Rules::may_be_restricted(const Examination& t, CellId neighbor) const {
   return !t.is_distance_proven && label_of(neighbor) != t.label;
 }
 
+// Whether the isosurface meets the facet's dual edge, of which the ball around the cell's centre that holds
+// none of it need not be searched.
+bool Rules::is_restricted(const Examination& t, CellId neighbor) const {
+  if (label_of(neighbor) != t.label) return true;
+  const Point& end = mesh_.cell(neighbor).center;
+  const double clear = t.isosurface_distance / distance(t.center, end);
+  const Point start = t.center + clear * (end - t.center);
+  return ask([&](const auto& oracle) { return oracle.is_crossed(start, end, t.label); });
+}
+
 std::optional<SurfaceCenter> Rules::r3_surface_center(const Examination& t) const {
   for (unsigned k = 0; k < 4; ++k) {
     const FacetId mirror = mesh_.cell(t.cell).mirrors[k];
     if (mirror == kNoFacet) continue;
     const CellId neighbor = cell_of(mirror);
-    if (!may_be_restricted(t, neighbor) || !needs_sample(t.cell, k)) continue;
+    if (!may_be_restricted(t, neighbor) || !needs_sample(t.cell, k) || !is_restricted(t, neighbor)) continue;
     // The search goes from the smaller centre to the larger: the same point whichever cell asks.
     const Point *from = &t.center, *to = &mesh_.cell(neighbor).center;
     if (lexicographically_less(*to, *from)) std::swap(from, to);

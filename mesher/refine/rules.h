@@ -102,6 +102,7 @@ class Rules {
   bool is_covered_beside(CellId c, const Point& z) const;
   bool has_poor_ratio(CellId c, double squared_radius) const;
   bool may_be_restricted(const Examination& t, CellId neighbor) const;
+  bool is_restricted(const Examination& t, CellId neighbor) const;
   bool obeys_r1_and_r2(const Cell& cell, double squared_radius) const;
   bool needs_sample(CellId c, unsigned facet) const;
   bool is_large_in_shell(const Examination& t) const;

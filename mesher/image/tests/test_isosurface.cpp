@@ -309,6 +309,22 @@ TEST(SegmentIntersection, IsTheFirstChangeWhereLabelsDiffer) {
   }
 }
 
+TEST(SegmentIntersection, IsThereIfTheSegmentIsCrossed) {
+  Random random(14);
+  for (const LabelImage& image : noisy_images()) {
+    const Isosurface isosurface(image, 1);
+    int num_asked = 0;
+    for (int n = 0; n < 20'000 && num_asked < 1000; ++n) {
+      const Point a = random_point(random, image, 1), b = random_point(random, image, 1);
+      const LabelIndex label = isosurface.label_at(a);
+      if (isosurface.label_at(b) != label) continue;
+      ASSERT_EQ(isosurface.is_crossed(a, b, label), isosurface.segment_intersection(a, b).has_value());
+      ++num_asked;
+    }
+    ASSERT_GT(num_asked, 100);
+  }
+}
+
 TEST(SegmentIntersection, FindsDoubleCrossings) {
   LabelImage image = empty_image({9, 9, 9}, {1, 1, 1});
   image.voxels[image.index(4, 4, 4)] = 1;
