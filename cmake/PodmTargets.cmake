@@ -4,7 +4,8 @@ find_package(Threads REQUIRED)
 
 add_library(podm_flags INTERFACE)
 target_compile_options(podm_flags INTERFACE -march=${PODM_MARCH} -ffp-contract=off -fno-math-errno -Wall -Wextra
-                                            -Wshadow -Werror)
+                                            -Wshadow -Werror
+                                            -Wno-psabi)  # vectors are passed inside of a file alone
 target_compile_definitions(podm_flags INTERFACE CGAL_LICENSE_ERROR=1)  # no GPL part of CGAL slips in
 if(PODM_INTERLEAVING)
   add_compile_definitions(PODM_INTERLEAVING)

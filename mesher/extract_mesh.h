@@ -15,7 +15,7 @@ namespace podm {
 std::uint64_t label_cells(Mesh& mesh, const Isosurface& isosurface, int threads);
 
 /// Uses the store up: it gives its memory back as the mesh grows, so that both together take 4 bytes a
-/// vertex, 2 a cell of the store, 16 a boundary facet and a sixteenth of the mesh more than the store.
+/// vertex, 2 a cell of the store, 32 a boundary facet and a sixteenth of the mesh more than the store.
 /// `space` is kRas or kLps. `facets_off_isosurface` counts boundary facets with a vertex elsewhere. Vertices
 /// and cells keep the order of their ids.
 TetMesh extract_mesh(Mesh& mesh, const Isosurface& isosurface, Space space, int threads,

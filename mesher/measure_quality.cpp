@@ -24,10 +24,10 @@ Point point_of(const TetMesh& mesh, std::uint32_t v) {
 }
 
 // The square of the angle's cotangent, with its sign: falls as the angle grows, and costs neither a root nor
-// an arc tangent, so that these are left for the extremes alone.
+// an arc tangent, so that these are left for the extremes alone. No direction makes an angle of 0 with any.
 double squared_cotangent(const Vector& u, const Vector& v) {
-  const double along = dot(u, v);
-  return along * std::abs(along) / squared_length(cross(u, v));
+  const double along = dot(u, v), squared = along * std::abs(along) / squared_length(cross(u, v));
+  return squared == squared ? squared : kInfinity;
 }
 double angle_deg(double squared_cotangent) {
   return std::atan2(1, std::copysign(std::sqrt(std::abs(squared_cotangent)), squared_cotangent)) * kRadToDeg;
@@ -216,7 +216,7 @@ struct alignas(64) FacetTally {
     const double at_a = squared_cotangent(b - a, c - a), at_b = squared_cotangent(c - b, a - b),
                  at_c = squared_cotangent(a - c, b - c);
     const double sharpest = std::max(at_a, std::max(at_b, at_c));
-    bad += !(sharpest < kBadCotangent2);  // NaN, of vertices that coincide, too
+    bad += sharpest >= kBadCotangent2;
     most_cotangent2 = std::max(most_cotangent2, sharpest);
     least_cotangent2 = std::min(least_cotangent2, std::min(at_a, std::min(at_b, at_c)));
   }

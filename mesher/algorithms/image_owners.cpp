@@ -8,10 +8,10 @@ ImageOwners owners_of_image(const LabelImage& image, const FeatureTransform& tra
   if (placement.is_real)
     return {MemoryOwners::ask(labels, placement.machine, query),
             MemoryOwners::ask(transform.words(), placement.machine, query)};
-  constexpr unsigned kLabelPiece = 20, kHugePage = 21;  // log2 of bytes, see parallel_resize.h and HugeArray
+  constexpr unsigned kHugePage = 21;  // log2 of bytes, see parallel_resize.h and huge_array.h
   std::vector<NodeIndex> nodes;
   for (const Place& place : placement.places) nodes.push_back(static_cast<NodeIndex>(place.node));
-  return {MemoryOwners::deal(labels, kLabelPiece, nodes, seed),
+  return {MemoryOwners::deal(labels, kHugePage, nodes, seed),
           MemoryOwners::deal(transform.words(), kHugePage, nodes, seed + 1)};
 }
 

@@ -8,7 +8,7 @@
 namespace podm {
 
 /// Asks `query` for the owners where the run is on this machine's threads. For other runs it draws a worker
-/// for each piece, of the size that one thread touches first: 1 MiB of labels, a huge page of the transform.
+/// for each piece, of the size that one thread touches first: a huge page.
 ImageOwners owners_of_image(const LabelImage& image, const FeatureTransform& transform,
                             const PlacementOfTeam& placement, std::uint64_t seed, const PageQuery& query);
 

@@ -120,6 +120,7 @@ class Mesh {
   Point peek_center(CellId c) const {
     const auto peek = [](const double& coordinate) { return load(coordinate, std::memory_order_relaxed); };
     const Point& center = cells_[c].center;
+    step();
     return {peek(center.x), peek(center.y), peek(center.z)};
   }
   /// The address of a cell's slot, whatever is in it.
@@ -156,6 +157,7 @@ class Mesh {
   void set_sphere(CellId c, const Circumsphere& sphere) {
     assert_may_write_mirrors(*this, c);
     Cell& cell = cells_[c];
+    step();
     store(cell.center.x, sphere.center.x, std::memory_order_relaxed);
     store(cell.center.y, sphere.center.y, std::memory_order_relaxed);
     store(cell.center.z, sphere.center.z, std::memory_order_relaxed);

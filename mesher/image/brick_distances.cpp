@@ -1,6 +1,7 @@
 #include "image/brick_distances.h"
 
 #include <algorithm>
+#include <bit>
 #include <limits>
 #include <vector>
 
@@ -18,16 +19,17 @@ class Line {
   explicit Line(std::size_t most) : sites_(most) {}
 
   /// Costs of the line of `length` bricks, `stride` apart, become its lower envelope.
-  void transform(double* first, std::size_t length, std::size_t stride, double side) {
+  void transform(std::uint64_t* first, std::size_t length, std::size_t stride, double side) {
     squared_side_ = square(side);
     count_ = 0;
-    for (std::size_t i = 0; i < length; ++i)
-      if (first[i * stride] != std::numeric_limits<double>::infinity())
-        add({static_cast<double>(i), first[i * stride]});
+    for (std::size_t i = 0; i < length; ++i) {
+      const auto cost = std::bit_cast<double>(first[i * stride]);
+      if (cost != std::numeric_limits<double>::infinity()) add({static_cast<double>(i), cost});
+    }
     if (count_ == 0) return;
     for (std::size_t i = 0, s = 0; i < length; ++i) {
       while (s + 1 < count_ && height(sites_[s + 1], i) < height(sites_[s], i)) ++s;
-      first[i * stride] = height(sites_[s], i);
+      first[i * stride] = std::bit_cast<std::uint64_t>(height(sites_[s], i));
     }
   }
 
@@ -57,12 +59,12 @@ class Line {
 }  // namespace
 
 void find_squared_distances(const BrickGrid& bricks, const std::array<double, 3>& side, std::size_t threads,
-                            std::span<double> squared) {
+                            std::span<std::uint64_t> squared) {
   const auto nx = static_cast<std::size_t>(bricks.size()[0]), ny = static_cast<std::size_t>(bricks.size()[1]),
              nz = static_cast<std::size_t>(bricks.size()[2]);
   std::vector<Line> lines(threads, Line(std::max({nx, ny, nz})));
   parallel_for(nz, threads, [&](std::size_t k, std::size_t thread) {
-    double* const slice = &squared[k * nx * ny];
+    std::uint64_t* const slice = &squared[k * nx * ny];
     for (std::size_t j = 0; j < ny; ++j) lines[thread].transform(slice + j * nx, nx, 1, side[0]);
     for (std::size_t i = 0; i < nx; ++i) lines[thread].transform(slice + i, ny, nx, side[1]);
   });

@@ -73,7 +73,7 @@ constexpr std::int64_t kBitsAlongY = 1 << 5, kBitsAlongZ = 1 << 10;
 Surroundings::Surroundings(const LabelImage& image) : reach_mm_(kInfinity) {
   const double shortest = std::min({image.spacing[0], image.spacing[1], image.spacing[2]});
   for (std::size_t a = 0; a < 3; ++a) {
-    num_bricks_[a] = 5 * image.spacing[a] < 8 * shortest ? 2 : 1;
+    num_bricks_[a] = 5 * image.spacing[a] < 8 * shortest ? kMostBricks : 1;
     // Even from the brick's end.
     reach_mm_ = std::min(reach_mm_, (4 * num_bricks_[a] + 1) * image.spacing[a]);
   }
@@ -120,7 +120,6 @@ BrickFeatures::BrickFeatures(const LabelImage& image, const BrickGrid& bricks, c
   for (std::size_t a = 0; a < 3; ++a) {
     for (int d = -kMostOffset; d <= kMostOffset; ++d)
       squared_[a][static_cast<std::size_t>(d + kMostOffset)] = square(image.spacing[a] * d);
-    squared_[a].back() = kInfinity;
   }
 }
 

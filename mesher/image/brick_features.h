@@ -36,9 +36,11 @@ class FeatureOffset {
 };
 
 /// How many bricks on each side of one, along each axis, are looked at for features: two of short voxels, so
-/// that the features of at least eight of the shortest sides are told, one of those that are longer by half.
+/// that the features of at least eight of the shortest sides are told, one of those that are longer by 1.6.
 class Surroundings {
  public:
+  static constexpr int kMostBricks = 2;
+
   explicit Surroundings(const LabelImage& image);
   const std::array<int, 3>& num_bricks() const { return num_bricks_; }
   /// Surface voxels elsewhere are not nearer to any voxel of the brick, by centres.

@@ -49,6 +49,14 @@ std::uint64_t bytes_of(const BrickGrid& bricks, std::size_t lines) {
 // Makes the table and the words, a row of bricks at a time.
 class FeatureWriter {
  public:
+  using Layout = Features<NoReads>;
+  static_assert(kWordsOfLine * sizeof(std::uint64_t) == Layout::kLineBytes &&
+                kMaskAt * sizeof(std::uint64_t) == Layout::kBytesOfWords);
+  /// A thread's, by brick of a row.
+  struct Scratch {
+    std::vector<std::uint64_t> any, around;
+  };
+
   FeatureWriter(const LabelImage& image, const BrickGrid& bricks, const SurfaceMasks& masks,
                 const Surroundings& surroundings)
       : image_(image),
@@ -59,9 +67,14 @@ class FeatureWriter {
         row_(static_cast<std::size_t>(bricks.size()[0])) {}
 
   std::size_t num_rows() const { return bricks_.count() / row_; }
+  std::vector<Scratch> scratch_for(std::size_t threads) const {
+    const std::size_t most_around = row_ + 2 * static_cast<std::size_t>(Surroundings::kMostBricks);
+    return std::vector<Scratch>(threads,
+                                {std::vector<std::uint64_t>(most_around), std::vector<std::uint64_t>(row_)});
+  }
 
-  std::size_t count_lines(std::size_t row) const {
-    const std::vector<std::uint64_t> around = surface_around(row, surroundings_.num_bricks());
+  std::size_t count_lines(std::size_t row, Scratch& scratch) const {
+    const std::vector<std::uint64_t>& around = surface_around(row, surroundings_.num_bricks(), scratch);
     std::size_t lines = 0;
     for (std::size_t i = 0; i < row_; ++i)
       if (around[i] != 0) lines += lines_of(masks_[row * row_ + i]);
@@ -69,15 +82,16 @@ class FeatureWriter {
   }
 
   // The table gets 0 for bricks beside those with surface voxels, infinity for others, as numbers.
-  void mark_beside_surface(std::size_t row, HugeArray<std::uint64_t>& words) const {
-    const std::vector<std::uint64_t> beside = surface_around(row, {1, 1, 1});
+  void mark_beside_surface(std::size_t row, HugeArray<std::uint64_t>& words, Scratch& scratch) const {
+    const std::vector<std::uint64_t>& beside = surface_around(row, {1, 1, 1}, scratch);
     for (std::size_t i = 0; i < row_; ++i)
       words[row * row_ + i] = std::bit_cast<std::uint64_t>(beside[i] != 0 ? 0.0 : kInfinity);
   }
 
   // The table has squared distances, and gets what it is for; words of this row's bricks begin at `line`.
-  void write(std::size_t row, std::size_t line, double step_mm, HugeArray<std::uint64_t>& words) const {
-    const std::vector<std::uint64_t> around = surface_around(row, surroundings_.num_bricks());
+  void write(std::size_t row, std::size_t line, double step_mm, HugeArray<std::uint64_t>& words,
+             Scratch& scratch) const {
+    const std::vector<std::uint64_t>& around = surface_around(row, surroundings_.num_bricks(), scratch);
     for (std::size_t i = 0; i < row_; ++i) {
       const Voxel brick = at(row, static_cast<int>(i));
       const std::uint64_t mask = masks_[row * row_ + i];
@@ -104,10 +118,13 @@ class FeatureWriter {
   }
 
   // Not 0 for the bricks of a row that have surface voxels in so many bricks on each side.
-  std::vector<std::uint64_t> surface_around(std::size_t row, const std::array<int, 3>& num_bricks) const {
+  const std::vector<std::uint64_t>& surface_around(std::size_t row, const std::array<int, 3>& num_bricks,
+                                                   Scratch& scratch) const {
     const auto [x, y, z] = num_bricks;
     const Voxel first = at(row, 0);
-    std::vector<std::uint64_t> any(row_ + 2 * static_cast<std::size_t>(x)), around(row_);
+    auto& [any, around] = scratch;
+    std::fill(any.begin(), any.end(), 0);
+    std::fill(around.begin(), around.end(), 0);
     for (int k = std::max(0, first.k - z); k <= std::min(bricks_.size()[2] - 1, first.k + z); ++k)
       for (int j = std::max(0, first.j - y); j <= std::min(bricks_.size()[1] - 1, first.j + y); ++j) {
         const std::uint64_t* const masks = &masks_[bricks_.index(0, j, k)];
@@ -129,8 +146,7 @@ class FeatureWriter {
       for (std::uint64_t rest = mask; rest != 0; rest &= rest - 1) {
         const auto p = static_cast<unsigned>(std::countr_zero(rest));
         bits[count++] = neighborhoods.around(p).bits();
-        of_voxels[p] =
-            Features<NoReads>::kSurface | std::min(neighborhoods.label(p), Features<NoReads>::kUntold);
+        of_voxels[p] = Layout::kSurface | std::min(neighborhoods.label(p), Layout::kUntold);
       }
       to[kMaskAt] = mask;
       std::memcpy(to + kMaskAt + 1, bits.data(), count * sizeof bits[0]);
@@ -157,10 +173,11 @@ FeatureTransform::FeatureTransform(const LabelImage& image, int threads)
   const Surroundings surroundings(image);
   reach_mm_ = surroundings.reach_mm();
   const FeatureWriter writer(image, bricks_, masks, surroundings);
+  std::vector<FeatureWriter::Scratch> scratch = writer.scratch_for(used);
   std::vector<std::size_t> line_of_row(writer.num_rows() + 1, 0);
-  parallel_for(writer.num_rows(), used, [&](std::size_t row, std::size_t) {
-    line_of_row[row + 1] = writer.count_lines(row);
-    writer.mark_beside_surface(row, words_);
+  parallel_for(writer.num_rows(), used, [&](std::size_t row, std::size_t thread) {
+    line_of_row[row + 1] = writer.count_lines(row, scratch[thread]);
+    writer.mark_beside_surface(row, words_, scratch[thread]);
   });
   line_of_row[0] = in_lines(num_bricks);
   for (std::size_t row = 0; row < writer.num_rows(); ++row) line_of_row[row + 1] += line_of_row[row];
@@ -169,11 +186,10 @@ FeatureTransform::FeatureTransform(const LabelImage& image, int threads)
   const auto& [x, y, z] = image.spacing;
   const auto& [nx, ny, nz] = bricks_.size();
   step_mm_ = tree_.is_empty() ? kInfinity : 4 * std::hypot(x * nx, y * ny, z * nz) / (Brick::kMostSteps - 1);
-  static_assert(sizeof(double) == sizeof(std::uint64_t));
-  find_squared_distances(bricks_, {4 * x, 4 * y, 4 * z}, used,
-                         {reinterpret_cast<double*>(&words_[0]), num_bricks});
-  parallel_for(writer.num_rows(), used,
-               [&](std::size_t row, std::size_t) { writer.write(row, line_of_row[row], step_mm_, words_); });
+  find_squared_distances(bricks_, {4 * x, 4 * y, 4 * z}, used, {&words_[0], num_bricks});
+  parallel_for(writer.num_rows(), used, [&](std::size_t row, std::size_t thread) {
+    writer.write(row, line_of_row[row], step_mm_, words_, scratch[thread]);
+  });
 }
 
 std::uint64_t FeatureTransform::num_bytes(const LabelImage& image, int threads) {
@@ -183,9 +199,11 @@ std::uint64_t FeatureTransform::num_bytes(const LabelImage& image, int threads) 
   mark_surface(image, bricks, used, masks);
   const Surroundings surroundings(image);
   const FeatureWriter writer(image, bricks, masks, surroundings);
+  std::vector<FeatureWriter::Scratch> scratch = writer.scratch_for(used);
   std::atomic<std::size_t> lines{0};
-  parallel_for(writer.num_rows(), used,
-               [&](std::size_t row, std::size_t) { lines += writer.count_lines(row); });
+  parallel_for(writer.num_rows(), used, [&](std::size_t row, std::size_t thread) {
+    lines += writer.count_lines(row, scratch[thread]);
+  });
   return bytes_of(bricks, lines);
 }
 

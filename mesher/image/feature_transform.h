@@ -113,7 +113,7 @@ class Features {
         u, squared_reach,
         [&](const Voxel& at) { return surface_mask(brick(bricks_.index(at.i, at.j, at.k))); }, take);
   }
-  /// The surface voxel whose centre is nearest to u, if within `reach_mm`: a search of about a microsecond.
+  /// The surface voxel whose centre is nearest to u, if within `reach_mm`: a search of some microseconds.
   std::optional<Voxel> nearest(const Point& u, double reach_mm) const {
     std::optional<Voxel> nearest;
     double squared_reach = reach_mm * reach_mm;

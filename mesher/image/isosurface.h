@@ -74,7 +74,9 @@ class Oracle {
   /// The isosurface point nearest to p, as found by local search from the nearest surface voxels, if within
   /// `radius` of p. Among several bumps of voxel size the search may take the second nearest: on smooth
   /// shapes it exceeds the nearest distance typically by nothing, in 1 % of cases by more than 0.25 and never
-  /// by more than 1 of a voxel's shortest side. One of the first points found will do if `cover` contains it.
+  /// by more than 1 of a voxel's shortest side, as long as no side is much longer; of sides of 1, 1 and 5
+  /// by more than 0.55 and never by more than 0.75 of the longest. From far outside of the grid it may exceed
+  /// by 4 sides. One of the first points found will do if `cover` contains it.
   std::optional<NearPoint> near_point(const Point& p, double radius, const Cover& cover = {}) const;
   /// p's near point, brought to less than 1e-6 voxel from the isosurface. May be a little beyond `radius`.
   Point polished(const NearPoint& near, const Point& p) const;
@@ -109,7 +111,10 @@ class Oracle {
 
   // All below take points in voxels; bounds and normals are mm.
   bool is_inside(const Point& u) const {
-    return u.x > -0.5 && u.x < end_.x && u.y > -0.5 && u.y < end_.y && u.z > -0.5 && u.z < end_.z;
+    const auto is_in = [](double x, double end) {
+      return x > -0.5 && x + 0.5 < end + 0.5;
+    };  // as rounded below
+    return is_in(u.x, end_.x) && is_in(u.y, end_.y) && is_in(u.z, end_.z);
   }
   /// `u` must be inside.
   static Voxel nearest_voxel(const Point& u) {

@@ -16,9 +16,6 @@
 
 namespace podm {
 
-inline double coordinate(const Vector& v, std::size_t axis) {
-  return axis == 0 ? v.x : axis == 1 ? v.y : v.z;
-}
 /// The block that holds u.
 inline Voxel block_of(const Point& u) {
   return {static_cast<int>(std::floor(u.x)), static_cast<int>(std::floor(u.y)),

@@ -125,7 +125,9 @@ class Oracle<Reads>::Sheet {
  private:
   const Trilinear& lead() const { return lead_ != nullptr ? *lead_ : lead_here_; }
   bool is_beside_center(const Voxel& block) const {
-    const auto is_beside = [](int b, int c) { return static_cast<unsigned>(c - b) <= 1; };
+    const auto is_beside = [](int b, int c) {
+      return static_cast<unsigned>(c) - static_cast<unsigned>(b) <= 1;
+    };
     return is_beside(block.i, center_.i) && is_beside(block.j, center_.j) && is_beside(block.k, center_.k);
   }
   bool recenter(const Point& u) {
@@ -250,8 +252,7 @@ void Oracle<Reads>::descend(Sheet& sheet, const Point& u, Nearest& best) const {
     const bool is_on_isosurface = sheet.move_to(z) && pull(sheet, z);
     const double squared = squared_length(to_mm(z - u));
     if (is_on_isosurface && squared < best.squared_mm - 0.1 * negligible) {
-      best.u = z;
-      best.squared_mm = squared;
+      best = {sheet.center(), z, squared};
       negligible = negligible_gain(best);
       step = tangent_step(sheet, u, z, negligible);
     } else {
@@ -270,7 +271,7 @@ std::optional<NearPoint> Oracle<Reads>::foot(const Nearest& midpoint, const Poin
   Sheet sheet(*this, best.surface_voxel);
   descend(sheet, u, best);
   if (!(best.squared_mm <= square(radius))) return std::nullopt;
-  return NearPoint{from_voxels(best.u), sheet.center(), best.u == midpoint.u};
+  return NearPoint{from_voxels(best.u), best.surface_voxel, best.u == midpoint.u};
 }
 
 // From kFar on the eight features may all miss the surface voxel that has the nearest midpoint; from outside
@@ -288,15 +289,19 @@ std::optional<NearPoint> Oracle<Reads>::near_point(const Point& p, double radius
     around = EightVoxels::all(*nearest);
   }
   Nearest midpoint = nearest_midpoint(*around, u);
+  std::optional<NearPoint> near;
   if (is_told) {
-    const std::optional<NearPoint> near = foot(midpoint, u, radius);
+    near = foot(midpoint, u, radius);
     const bool is_enough =
         midpoint.squared_mm < square(kFar * shortest_side_mm_) || (near && cover.contains(near->point));
     if (is_enough || !find_nearer_midpoint(u, midpoint)) return near;
   } else {
     find_nearer_midpoint(u, midpoint);
   }
-  return foot(midpoint, u, radius);
+  const std::optional<NearPoint> other = foot(midpoint, u, radius);
+  const bool is_nearer =
+      other && (!near || squared_distance(other->point, p) < squared_distance(near->point, p));
+  return is_nearer ? other : near;
 }
 
 // Midpoints lie on a lattice, and vertices of a lattice make flat cells that rounding can turn inside out:

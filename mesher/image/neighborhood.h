@@ -14,7 +14,6 @@ class Neighborhood {
   static constexpr unsigned position(int i, int j, int k) {
     return static_cast<unsigned>(13 + i + 3 * j + 9 * k);
   }
-  constexpr bool differs(unsigned position) const { return (bits_ >> position & 1) != 0; }
   /// A bit at each position.
   constexpr std::uint32_t bits() const { return bits_; }
   /// The eight corners of the block whose lowest corner is (i,j,k) away, each -1 or 0: a bit for each that

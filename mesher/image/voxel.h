@@ -29,7 +29,7 @@ class BrickGrid {
   BrickGrid() = default;
   /// `size`: voxels along each axis.
   explicit BrickGrid(const std::array<int, 3>& size)
-      : size_{(size[0] + 3) / 4, (size[1] + 3) / 4, (size[2] + 3) / 4} {}
+      : size_{num_bricks(size[0]), num_bricks(size[1]), num_bricks(size[2])} {}
 
   const std::array<int, 3>& size() const { return size_; }
   std::size_t count() const { return index(0, 0, size_[2]); }
@@ -45,6 +45,7 @@ class BrickGrid {
   }
 
  private:
+  static int num_bricks(int voxels) { return voxels / 4 + (voxels % 4 != 0); }
   static bool is_in(int i, int n) { return static_cast<unsigned>(i) < static_cast<unsigned>(n); }
 
   std::array<int, 3> size_{};

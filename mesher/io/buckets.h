@@ -16,8 +16,8 @@ namespace podm {
 template <class Item>
 class Buckets {
  public:
-  /// Item i < num_items goes to bucket_of(i) < num_buckets, which is asked once and before item_at(i).
-  /// `bucket_of_item` must agree.
+  /// Item i < num_items goes to bucket_of(i, end) < num_buckets, which is asked once and before item_at(i),
+  /// in order by the thread that has the items up to `end`. `bucket_of_item` must agree.
   template <class BucketOf, class ItemAt, class BucketOfItem>
   Buckets(std::size_t num_items, std::size_t num_buckets, std::size_t threads, const BucketOf& bucket_of,
           const ItemAt& item_at, const BucketOfItem& bucket_of_item)
@@ -30,7 +30,7 @@ class Buckets {
     std::vector<std::vector<std::size_t>> places(num_chunks, std::vector<std::size_t>(num_buckets));
     parallel_for_ranges(num_items, length, threads, [&](std::size_t begin, std::size_t end, std::size_t) {
       std::vector<std::size_t>& counts = places[begin / length];
-      for (std::size_t i = begin; i < end; ++i) ++counts[bucket_of(i)];
+      for (std::size_t i = begin; i < end; ++i) ++counts[bucket_of(i, end)];
     });
     sum_up(places);
     parallel_for_ranges(num_items, length, threads, [&](std::size_t begin, std::size_t end, std::size_t) {

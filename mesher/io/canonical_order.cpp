@@ -1,5 +1,5 @@
-// The canonical order of a mesh, in time linear in its cells, on all threads: vertices by buckets of x, cells
-// and facets by buckets of their first vertex, each bucket small enough for a cache and sorted there.
+// The canonical order of a mesh, in time nearly linear in its cells, on all threads: vertices by buckets of
+// x, cells and facets by buckets of their first vertex, each bucket sorted in a cache.
 #include <algorithm>
 #include <bit>
 #include <cmath>
@@ -40,11 +40,14 @@ std::vector<VertexId> sort_vertices(std::vector<std::array<double, 3>>& vertices
   const auto [low, high] = normalize(vertices);
   const std::size_t num_buckets = std::min(kMostBuckets, vertices.size() / kVerticesABucket + 1);
   // Rounding keeps the order: of two numbers the larger is not in the lower bucket.
-  const double width = high - low;
+  const double width = 0.5 * high - 0.5 * low;
   const double scale = width > 0 ? std::min(1e300, static_cast<double>(num_buckets - 1) / width) : 0;
-  const auto bucket_of = [&, low = low](double x) { return static_cast<std::size_t>((x - low) * scale); };
+  const auto bucket_of = [&, low = low](double x) {
+    return static_cast<std::size_t>((0.5 * x - 0.5 * low) * scale);
+  };
   Buckets<Key> buckets(
-      vertices.size(), num_buckets, threads, [&](std::size_t v) { return bucket_of(vertices[v][0]); },
+      vertices.size(), num_buckets, threads,
+      [&](std::size_t v, std::size_t) { return bucket_of(vertices[v][0]); },
       [&](std::size_t v) {
         return Key{vertices[v][0], static_cast<VertexId>(v)};
       },
@@ -133,8 +136,8 @@ class SimplexSorter {
   void sort() {
     Buckets<Record> buckets(
         simplices_.size(), (position_.size() >> bucket_bits_) + 1, threads_,
-        [&](std::size_t i) {
-          for (const VertexId v : simplices_[std::min(i + kLookahead, simplices_.size() - 1)])
+        [&](std::size_t i, std::size_t end) {  // another thread renumbers those from `end` on
+          for (const VertexId v : simplices_[std::min(i + kLookahead, end - 1)])
             __builtin_prefetch(&position_[v]);
           return renumber(simplices_[i]) >> bucket_bits_;
         },

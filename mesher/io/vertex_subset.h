@@ -21,7 +21,7 @@ class VertexSubset {
 
  private:
   static constexpr std::uint32_t kUnused = ~std::uint32_t{0};
-  static constexpr std::size_t kFew = 16;  // one vertex of the mesh in so many
+  static constexpr std::size_t kSparse = 16;  // fewer than one vertex of the mesh in so many
   std::vector<std::uint32_t> vertices_;
   std::vector<std::uint32_t> position_;  // one a mesh vertex
 };

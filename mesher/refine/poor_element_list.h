@@ -26,7 +26,7 @@ class PoorElementList {
   /// It is a worker's, on a store of so many cells.
   explicit PoorElementList(std::size_t cell_capacity)
       : first_cleaning_(std::min(kFirstCleaning, cell_capacity / kCellsAnEntry)) {}
-  /// Bytes that the lists of so many workers take at most beside kGrowth entries a live cell.
+  /// Bytes that the lists of so many workers take at most beside kGrowth entries a live cell and two chunks.
   static std::size_t stale_bytes(std::size_t cell_capacity, std::size_t num_workers) {
     return num_workers * 2 * sizeof(Entry) * std::min(kFirstCleaning, cell_capacity / kCellsAnEntry);
   }
@@ -48,7 +48,7 @@ class PoorElementList {
       const Entry* entry = &at(i);
       const Entry* const last = entry + (chunk_end - i) - 1;
       for (; i < chunk_end; ++i, ++entry) {
-        mesh.prefetch(std::min(entry + kLookahead, last)->cell);
+        mesh.prefetch(entry[std::min(kLookahead, last - entry)].cell);
         if (mesh.stamp(entry->cell) == entry->stamp) at(kept++) = *entry;
       }
     }
@@ -84,7 +84,7 @@ class PoorElementList {
  private:
   // A list that is not due for its first cleaning is short, in a small store too.
   static constexpr std::size_t kFirstCleaning = 1 << 16, kCellsAnEntry = 64;
-  static constexpr std::size_t kLookahead = 16;  // in a scan, whose cells lie anywhere
+  static constexpr std::ptrdiff_t kLookahead = 16;  // in a scan, whose cells lie anywhere
   static constexpr std::size_t kChunkBits = 13, kChunk = 1 << kChunkBits;
   using Chunk = MappedChunk<Entry, kChunk>;
 

@@ -124,12 +124,12 @@ bool Rules::may_be_restricted(const Examination& t, CellId neighbor) const {
   return !t.is_distance_proven && label_of(neighbor) != t.label;
 }
 
-// Whether the isosurface meets the facet's dual edge, of which the ball around the cell's centre that holds
-// none of it need not be searched.
+// Whether the isosurface meets the facet's dual edge. The part in a ball that is proven to hold none of it
+// need not be walked.
 bool Rules::is_restricted(const Examination& t, CellId neighbor) const {
   if (label_of(neighbor) != t.label) return true;
   const Point& end = mesh_.cell(neighbor).center;
-  const double clear = t.isosurface_distance / distance(t.center, end);
+  const double clear = t.is_distance_proven ? t.isosurface_distance / distance(t.center, end) : 0;
   const Point start = t.center + clear * (end - t.center);
   return ask([&](const auto& oracle) { return oracle.is_crossed(start, end, t.label); });
 }

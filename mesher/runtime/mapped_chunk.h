@@ -1,5 +1,6 @@
 // Pieces of lists that grow and shrink a lot. Each is a mapping of its own, so that its memory goes back to
-// the system with it: what the heap is given back it may keep, under what is still in use.
+// the system with it: what the heap is given back it may keep, under what is still in use. Too small for the
+// huge pages of huge_array.h.
 #pragma once
 
 #include <sys/mman.h>

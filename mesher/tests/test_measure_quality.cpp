@@ -194,5 +194,17 @@ TEST_F(MeasureQuality, OfFewCellsOrNone) {
   }
 }
 
+// Whichever of its vertices are the same.
+TEST_F(MeasureQuality, FacetsWithoutAreaHaveAnAngleOfZero) {
+  const auto [a, b, c] = draw<3>();
+  for (const auto& facet : {std::array{a, a, b}, {a, b, a}, {b, a, a}, {c, c, c}}) {
+    SCOPED_TRACE(testing::PrintToString(facet));
+    mesh_.facets.assign({{a, b, c}, facet});
+    const MeshingReport report = measure(1);
+    EXPECT_EQ(report.quality.min_facet_angle_deg, 0);
+    EXPECT_GE(report.guarantees.facet_angle, 1u);
+  }
+}
+
 }  // namespace
 }  // namespace podm::test

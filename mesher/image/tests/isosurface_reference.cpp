@@ -84,6 +84,12 @@ std::vector<Phantom> smooth_phantoms() {
   };
 }
 
+Phantom sphere_of_long_voxels() {
+  return {"sphere of long voxels", voxelised({26, 26, 7}, {1, 1, 5}, [&](const Point& p) {
+            return LabelIndex(std::sqrt(squared_length(p)) < 10.1);
+          })};
+}
+
 Point random_point(Random& random, const LabelImage& image, double margin) {
   const auto along = [&](std::size_t a) {
     return uniform(random, -0.5 - margin, image.size[a] - 0.5 + margin) * image.spacing[a];

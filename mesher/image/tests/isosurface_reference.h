@@ -28,6 +28,7 @@ struct Phantom {
 };
 /// A sphere, a slab, a torus, two halves of a sphere and a sphere cut by the border, voxelised.
 std::vector<Phantom> smooth_phantoms();
+Phantom sphere_of_long_voxels();
 
 /// Uniform in the grid grown by `margin` voxels.
 Point random_point(Random& random, const LabelImage& image, double margin);

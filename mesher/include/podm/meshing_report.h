@@ -45,7 +45,7 @@ struct WorkerReport {
 
 /// Pages that the system was asked about, at the ends of phases.
 struct PageSamples {
-  /// Pages are compared with the node that owns the memory: the one whose worker made the cells, states and
+  /// Pages are compared with the node that owns the memory: the one whose worker made the cells and
   /// vertices, and the one that had image and transform first.
   struct OfArray {
     std::string array;  ///< cells, vertices, image, transform

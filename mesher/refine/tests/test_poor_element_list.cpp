@@ -73,9 +73,9 @@ TEST_F(PoorElements, ComeLastInFirstOutWhateverIsDroppedOrTaken) {
   EXPECT_TRUE(list_.is_empty());
 }
 
-TEST_F(PoorElements, AreCleanedSoOftenThatFewAreStale) {
+TEST_F(PoorElements, AreCleanedSoOftenThatAtMostTwoThirdsAreStale) {
   std::size_t num_live = 0;
-  for (int i = 0; i < 1 << 20; ++i) {
+  for (int i = 0; i < 4 << 20; ++i) {
     replace(some_cell());
     push();
     if (!list_.is_due_for_cleaning()) continue;
@@ -103,10 +103,11 @@ TEST_F(PoorElements, GiveTheirMemoryBackAsTheyBecomeFewer) {
   replace(0);
   EXPECT_TRUE(list_.take_oldest(kEntries, mesh_).empty()) << "all are stale";
   const std::size_t quarter_list = resident_bytes();
-  EXPECT_NEAR(static_cast<double>(long_list - half_list), kBytes / 2., kBytes / 32.);
-  EXPECT_NEAR(static_cast<double>(half_list - quarter_list), kBytes / 4., kBytes / 32.);
+  // A sanitizer gives shadow memory back, too.
+  EXPECT_GE(static_cast<double>(long_list - half_list), kBytes / 2. - kBytes / 32.);
+  EXPECT_GE(static_cast<double>(half_list - quarter_list), kBytes / 4. - kBytes / 32.);
   list_.drop_stale(mesh_);
-  EXPECT_NEAR(static_cast<double>(quarter_list - resident_bytes()), kBytes / 4., kBytes / 32.);
+  EXPECT_GE(static_cast<double>(quarter_list - resident_bytes()), kBytes / 4. - kBytes / 32.);
 }
 
 }  // namespace
