@@ -78,12 +78,15 @@ void expect_nrrd_line(const std::string& path, const std::string& line, int numb
 }
 
 // ITK copies names and some values into 255 bytes, whatever their length, and takes the value of a name
-// without '=' from the next line, beyond the last one too.
+// without '=' from the next line, beyond the last one too. A carriage return that ends no line is part of a
+// value to it, and leaks what opens the file of that name.
 void expect_meta_line(const std::string& path, const std::string& line, int number) {
   constexpr std::size_t kLongestLine = 254;
   const std::string place = "wrong magic or header (line " + std::to_string(number);
   if (line.size() > kLongestLine)
     refuse(path, place + " is longer than " + std::to_string(kLongestLine) + " bytes)");
+  if (const std::size_t at = line.find('\r'); at != std::string::npos && at + 1 < line.size())
+    refuse(path, place + " has a carriage return in it)");
   const std::size_t at = line.find_first_of("=:");
   if (!trimmed(line).empty() && (at == std::string::npos || line[at] != '='))
     refuse(path, place + " is not of the form 'name = value')");

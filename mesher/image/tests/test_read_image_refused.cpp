@@ -274,6 +274,8 @@ std::vector<BadFile> bad_other_files() {
        "truncated"},
       {"MhaUnknownLocal", "a.mha",
        [] { return mha_header(kMhaFields) + "ElementDataFile = LOCaL\n" + kVoxels; }, "LOCaL"},
+      {"MhaReturnInAValue", "a.mha",
+       [] { return mha_header(kMhaFields) + "ElementDataFile = \r\r LOCAL\n" + kVoxels; }, "carriage return"},
       {"MhaNoSize", "a.mha", [] { return replaced(kMha, "DimSize = 2 3 4\n", "") + kVoxels; }, "dimsize"},
       {"MhaShortZlib", "a.mha", [] { return compressed_mha(deflated(cut(kVoxels, 1), 15)); }, "truncated"},
       {"MhaHuge", "a.mha", [] { return replaced(kMha, "2 3 4", "1200 1200 1200") + kVoxels; }, "truncated"},
