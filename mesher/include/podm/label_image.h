@@ -13,7 +13,7 @@ namespace podm {
 using LabelIndex = std::uint16_t;
 inline constexpr LabelIndex kBackground = 0;
 inline constexpr std::size_t kMaxLabels = 65534;       ///< background included
-inline constexpr std::size_t kMaxVoxels = 0x7fffffff;  ///< they are numbered in 31 bits
+inline constexpr std::size_t kMaxVoxels = 0x7fffffff;  ///< their bricks are numbered in 31 bits
 
 struct Label {
   std::uint32_t value = 0;  ///< as stored in the image file
