@@ -86,8 +86,6 @@ class Mesh {
 
   // Builds that check the lock protocol do it here: step.h, lock_contract.h.
   const Cell& cell(CellId c) const { return note_read(c), assert_may_read(*this, c), cells_[c]; }
-  /// A cell whose mirrors are not set yet, for its maker to do so.
-  Cell& new_cell(CellId c) { return step(), assert_may_write_mirrors(*this, c), cells_[c]; }
   LabelIndex& label(CellId c) { return step(), assert_may_read(*this, c), cells_[c].label; }
   LabelIndex label(CellId c) const { return assert_may_read(*this, c), cells_[c].label; }
   Vertex& vertex(VertexId v) { return step(), vertices_[v]; }
@@ -163,16 +161,30 @@ class Mesh {
     store(cell.center.z, sphere.center.z, std::memory_order_relaxed);
     cell.squared_radius = stored_squared_radius(sphere.squared_radius);
   }
+  /// Those of a cell just renewed.
+  void set_mirrors(CellId c, const std::array<FacetId, 4>& mirrors) {
+    step();
+    assert_may_write_mirrors(*this, c);
+    for (unsigned i = 0; i < 4; ++i) store(cells_[c].mirrors[i], mirrors[i], std::memory_order_relaxed);
+  }
   /// Tells the facet `of` that `mirror` lies on its other side. Nothing is beyond the box.
   void set_mirror(FacetId of, FacetId mirror) {
     step();
     if (of == kNoFacet) return;
     assert_may_write_mirrors(*this, cell_of(of));
-    cells_[cell_of(of)].mirrors[static_cast<unsigned>(index_in_cell(of))] = mirror;
+    store(cells_[cell_of(of)].mirrors[static_cast<unsigned>(index_in_cell(of))], mirror,
+          std::memory_order_relaxed);
   }
 
-  /// Asks for a cell's cache line before it is needed.
+  /// Ask for cache lines before they are needed: of a cell, of a vertex, of a cell's vertices and neighbours.
   void prefetch(CellId c) const { __builtin_prefetch(&cells_[c]); }
+  void prefetch_vertex(VertexId v) const { __builtin_prefetch(&vertices_[v]); }
+  void prefetch_surroundings(CellId c) const {
+    for (const VertexId v : peek_vertices(c))
+      if (v != kNoVertex) prefetch_vertex(v);
+    for (const FacetId mirror : peek_mirrors(c))
+      if (mirror != kNoFacet) prefetch(cell_of(mirror));
+  }
 
   /// Ids below these have been handed out; some may be free again.
   CellId cell_bound() const { return cell_ids_.bound(); }

@@ -42,12 +42,15 @@ StepResult Operation<Locks>::lock_cell(CellId c) {
   return StepResult::kDone;
 }
 
-// Locks the cell that `facet` belongs to; the facet's own vertices are held.
+// Locks the cell that `facet` belongs to; the facet's own vertices are held. Who needs no lock on its other
+// vertex asks for it: the star's filling will read it.
 template <class Locks>
 StepResult Operation<Locks>::lock_beyond(FacetId facet) {
-  if (locks_taken().to_replace < 4) return StepResult::kDone;
   const auto& vertices = mesh_.cell(cell_of(facet)).vertices;
-  return lock(vertices[static_cast<unsigned>(index_in_cell(facet))]);
+  const VertexId apex = vertices[static_cast<unsigned>(index_in_cell(facet))];
+  if (Locks::kIsShared && locks_taken().to_replace == 4) return lock(apex);
+  mesh_.prefetch_vertex(apex);
+  return StepResult::kDone;
 }
 
 template <class Locks>

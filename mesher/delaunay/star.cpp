@@ -96,7 +96,6 @@ void StarFiller::fill(Mesh& mesh, Pool& pool, Region& region, VertexId apex) {
     const auto& spheres = lanes_[f / Lanes::kSize].spheres;
     const unsigned lane = f % Lanes::kSize;
     mesh.set_sphere(id, {{spheres[0][lane], spheres[1][lane], spheres[2][lane]}, spheres[3][lane]});
-    mesh.new_cell(id).mirrors[3] = facet.mirror;
     mesh.set_mirror(facet.mirror, 4 * id + 3);
     const unsigned a = facet.local[0], b = facet.local[1], c = facet.local[2];
     facet_at_edge_[(b << row_bits_) + c] = 4 * id + 0;
@@ -105,10 +104,9 @@ void StarFiller::fill(Mesh& mesh, Pool& pool, Region& region, VertexId apex) {
   }
   for (unsigned f = 0; f < num_facets_; ++f) {
     const unsigned a = facets_[f].local[0], b = facets_[f].local[1], c = facets_[f].local[2];
-    auto& mirrors = mesh.new_cell(region.created[f]).mirrors;
-    mirrors[0] = facet_at_edge_[(c << row_bits_) + b];
-    mirrors[1] = facet_at_edge_[(a << row_bits_) + c];
-    mirrors[2] = facet_at_edge_[(b << row_bits_) + a];
+    mesh.set_mirrors(region.created[f],
+                     {facet_at_edge_[(c << row_bits_) + b], facet_at_edge_[(a << row_bits_) + c],
+                      facet_at_edge_[(b << row_bits_) + a], facets_[f].mirror});
   }
 }
 

@@ -66,12 +66,12 @@ class PoorElementList {
   }
   bool is_empty() const { return begin_ == end_; }
   std::size_t size() const { return end_ - begin_; }
-  /// The cell whose turn comes `turns` from now, or as late as any, to be prefetched; the list must not be
+  /// The entry whose turn comes `turns` from now, or as late as any, to be prefetched; the list must not be
   /// empty.
-  CellId upcoming(std::size_t turns) const {
+  Entry upcoming(std::size_t turns) const {
     const std::size_t in_top = end_ % kChunk;
-    if (size() > turns && in_top > turns) return top_[in_top - 1 - turns].cell;
-    return at(size() > turns ? end_ - 1 - turns : begin_).cell;
+    if (size() > turns && in_top > turns) return top_[in_top - 1 - turns];
+    return at(size() > turns ? end_ - 1 - turns : begin_);
   }
   Entry pop() {
     if (end_ % kChunk == 0) {
@@ -84,7 +84,7 @@ class PoorElementList {
  private:
   // A list that is not due for its first cleaning is short, in a small store too.
   static constexpr std::size_t kFirstCleaning = 1 << 16, kCellsAnEntry = 64;
-  static constexpr std::ptrdiff_t kLookahead = 16;  // in a scan, whose cells lie anywhere
+  static constexpr std::ptrdiff_t kLookahead = 64;  // in a scan, whose cells lie anywhere
   static constexpr std::size_t kChunkBits = 13, kChunk = 1 << kChunkBits;
   using Chunk = MappedChunk<Entry, kChunk>;
 

@@ -65,12 +65,15 @@ class Worker {
   // whatever the image.
   static constexpr double kSpacingFloor = 0.1;
   static constexpr std::size_t kOperationsToFlush = 4096;
+  // Attempts between the look ahead for a cell, for what lies around it, and its turn.
+  static constexpr std::size_t kTurnsToCell = 24, kTurnsToSurroundings = 8;
   // A clock costs 2 % when every attempt reads it; one in so many stands for the others.
   static constexpr std::uint64_t kAttemptsForOneTimed = 16;
 
   static std::optional<AccessTally> tally_for(const Mesh& mesh);
   static std::optional<CountedReads> reads_for(std::optional<AccessTally>& tally, const ImageOwners* owners);
   Outcome attempt_next();
+  void look_ahead();
   Outcome try_entry(const PoorElementList::Entry& entry);
   Outcome apply_first_rule(CellId c);
   Outcome insert_on_isosurface(const Point& z, CellId start, Rule rule);

@@ -48,8 +48,7 @@ Outcome Worker<Locks>::attempt() try {
 template <class Locks>
 Outcome Worker<Locks>::attempt_next() {
   if (unlogged_.operations.size() >= kOperationsToFlush) flush_log();
-  mesh_.prefetch(poor_.upcoming(4));
-  rules_.prefetch(poor_.upcoming(2));
+  look_ahead();
   const PoorElementList::Entry entry = poor_.pop();
   const Outcome outcome = try_entry(entry);
   if (outcome == Outcome::kLockConflict) {
@@ -62,6 +61,17 @@ Outcome Worker<Locks>::attempt_next() {
     deferred_.push_back(entry);
   }
   return outcome;
+}
+
+// Two entries of three are stale, and their turns take no time: so it looks far, and asks for what a cell
+// needs beyond its own line only if the cell still lives.
+template <class Locks>
+void Worker<Locks>::look_ahead() {
+  mesh_.prefetch(poor_.upcoming(kTurnsToCell).cell);
+  const PoorElementList::Entry entry = poor_.upcoming(kTurnsToSurroundings);
+  if (mesh_.stamp(entry.cell) != entry.stamp) return;
+  mesh_.prefetch_surroundings(entry.cell);
+  rules_.prefetch(entry.cell);
 }
 
 template <class Locks>

@@ -69,7 +69,7 @@ TEST_F(LockContractDeathTest, LetsWriteMirrorsUnderThreeLocks) {
 
 TEST_F(LockContractDeathTest, LetsFinishANewCellUnderThreeLocks) {
   const auto finish = [&] {
-    attempt([&] { t_.mesh.new_cell(cell_).mirrors = t_.mesh.peek_mirrors(cell_); });
+    attempt([&] { t_.mesh.set_mirrors(cell_, t_.mesh.peek_mirrors(cell_)); });
   };
   hold(cell_, 3);
   finish();
@@ -107,6 +107,7 @@ TEST_F(LockContractDeathTest, BindsNobodyOutsideOfAnAttempt) {
 TEST_F(LockContractDeathTest, LetsPeekAndPrefetchWithoutLocks) {
   attempt([&] {
     t_.mesh.prefetch(cell_);
+    t_.mesh.prefetch_surroundings(cell_);
     t_.mesh.peek_two_vertices(cell_);
     t_.mesh.peek_center(cell_);
     t_.mesh.stamp(cell_);

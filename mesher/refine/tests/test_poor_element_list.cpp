@@ -30,9 +30,9 @@ class PoorElements : public testing::Test {
   void expect_same_order() {
     ASSERT_EQ(list_.size(), reference_.size());
     for (std::size_t turns = 0; turns < reference_.size(); turns += 1 + reference_.size() / 100)
-      ASSERT_EQ(list_.upcoming(turns), reference_[reference_.size() - 1 - turns].cell);
+      ASSERT_EQ(list_.upcoming(turns).cell, reference_[reference_.size() - 1 - turns].cell);
     if (!reference_.empty()) {
-      ASSERT_EQ(list_.upcoming(reference_.size() + 5), reference_.front().cell);
+      ASSERT_EQ(list_.upcoming(reference_.size() + 5).cell, reference_.front().cell);
     }
   }
   // What take_oldest() is to do with the reference.
