@@ -11,8 +11,6 @@ namespace podm {
 
 namespace {
 
-constexpr unsigned kNoApex = 0xffffffffu;
-
 std::uint64_t key_of(std::array<std::uint16_t, 3> local) {
   if (local[0] > local[1]) std::swap(local[0], local[1]);
   if (local[1] > local[2]) std::swap(local[1], local[2]);
@@ -53,7 +51,7 @@ bool HoleFiller::collect(Mesh& mesh, const Region& region, const Point* added) {
     }
     if (ids_.size() >= max_vertices_) return false;  // one more is added
   }
-  if (added != nullptr) add_local(kNoVertex, *added);
+  added_ = added != nullptr ? add_local(kNoVertex, *added) : kNoApex;
   for (const FacetId f : region.boundary) {
     const Cell& cell = mesh.cell(cell_of(f));
     const auto k = static_cast<unsigned>(index_in_cell(f));
@@ -136,9 +134,14 @@ void HoleFiller::rebuild_table(std::size_t size) {
   used_slots_ = 0;
 }
 
+bool HoleFiller::is_inner(const OpenFacet& facet, std::size_t i) const {
+  const auto& [a, b, c] = facet.local;
+  return i != a && i != b && i != c && orientation(points_[a], points_[b], points_[c], points_[i]) > 0;
+}
+
 // Finds, by rounded arithmetic, the candidate on the inner side whose sphere with the facet has its centre
-// lowest along the facet's axis. It marks the inner side exactly.
-unsigned HoleFiller::nearest_apex(const OpenFacet& facet) {
+// lowest along the facet's axis.
+unsigned HoleFiller::nearest_apex(const OpenFacet& facet) const {
   const Point& a = points_[facet.local[0]];
   const Vector ab = points_[facet.local[1]] - a, ac = points_[facet.local[2]] - a;
   const Vector normal = cross(ab, ac);
@@ -150,7 +153,6 @@ unsigned HoleFiller::nearest_apex(const OpenFacet& facet) {
   const double bound = 16 * 0x1p-53 * std::sqrt(squared_length(ab) * squared_length(ac));
   unsigned best = kNoApex;
   double best_height = std::numeric_limits<double>::infinity();
-  is_inner_.assign(points_.size(), 0);
   for (unsigned i = 0; i < points_.size(); ++i) {
     if (i == facet.local[0] || i == facet.local[1] || i == facet.local[2]) continue;
     const Vector x = points_[i] - a;
@@ -161,7 +163,6 @@ unsigned HoleFiller::nearest_apex(const OpenFacet& facet) {
     } else if (side < 0) {
       continue;
     }
-    is_inner_[i] = 1;
     const double height = (s - 2 * dot(foot, x)) / side;
     if (best == kNoApex || height < best_height) {
       best = i;
@@ -172,7 +173,8 @@ unsigned HoleFiller::nearest_apex(const OpenFacet& facet) {
 }
 
 HoleFiller::Local HoleFiller::apex_of(const Mesh& mesh, const OpenFacet& facet) {
-  unsigned best = nearest_apex(facet);
+  // Most cells of the hole have the added vertex: on all facets that have it not, it is tried first.
+  unsigned best = added_ != kNoApex && is_inner(facet, added_) ? added_ : nearest_apex(facet);
   if (best == kNoApex) throw InternalError("no vertex on the inner side of a hole's facet");
   const Point &a = points_[facet.local[0]], &b = points_[facet.local[1]], &c = points_[facet.local[2]];
   // The guess is now proved, or moved to a vertex inside its sphere. Spheres through the facet are nested on
@@ -180,9 +182,8 @@ HoleFiller::Local HoleFiller::apex_of(const Mesh& mesh, const OpenFacet& facet) 
   // end it.
   Circumsphere sphere = circumsphere(a, b, c, points_[best], mesh.extent());
   for (unsigned checked = 0, i = 0; checked < points_.size(); ++checked, i = (i + 1) % points_.size()) {
-    if (!is_inner_[i] || i == best) continue;
     const Side side = side_of(sphere, points_[i]);
-    if (side == Side::kOutside) continue;
+    if (side == Side::kOutside || i == best || !is_inner(facet, i)) continue;
     if (side == Side::kUndecided && !in_circumsphere(a, b, c, points_[best], points_[i])) continue;
     best = i;
     sphere = circumsphere(a, b, c, points_[best], mesh.extent());

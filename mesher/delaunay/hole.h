@@ -47,15 +47,18 @@ class HoleFiller {
   Local local_of(Mesh& mesh, VertexId v);
   Local add_local(VertexId v, const Point& p);
   Local apex_of(const Mesh& mesh, const OpenFacet& facet);
-  unsigned nearest_apex(const OpenFacet& facet);
+  bool is_inner(const OpenFacet& facet, std::size_t i) const;
+  unsigned nearest_apex(const OpenFacet& facet) const;
   void add_or_match(const OpenFacet& facet);
   Slot& slot_of(std::uint64_t key);
   void rebuild_table(std::size_t size);
 
+  static constexpr unsigned kNoApex = 0xffffffffu;
+
   std::size_t max_vertices_;
   std::vector<VertexId> ids_;  // kNoVertex: the added one
   std::vector<Point> points_;
-  std::vector<std::uint8_t> is_inner_;  // candidate on the inner side of the facet at hand
+  unsigned added_ = kNoApex;  // the added one's place among them
   std::vector<OpenFacet> open_;
   std::vector<std::uint8_t> is_closed_;
   std::vector<Slot> table_;  // open addressing, power of two
