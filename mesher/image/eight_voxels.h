@@ -31,7 +31,7 @@ struct EightVoxels {
     const auto& size = grid.size();
     return std::bit_cast<Numbers>(((k >> 2) * size[1] + (j >> 2)) * size[0] + (i >> 2));
   }
-  Numbers places_in_bricks() const { return std::bit_cast<Numbers>((i & 3) | (j & 3) << 2 | (k & 3) << 4); }
+  Numbers places_in_bricks() const { return std::bit_cast<Numbers>(place_in_brick(i, j, k)); }
 };
 
 }  // namespace podm

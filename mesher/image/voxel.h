@@ -18,9 +18,13 @@ inline Point center(const Voxel& v) {
   return {static_cast<double>(v.i), static_cast<double>(v.j), static_cast<double>(v.k)};
 }
 
-/// A voxel's place in its brick, 0 to 63, x fastest.
+/// A voxel's place in its brick, 0 to 63, x fastest. A Number is an integer, or a register of several.
+template <class Number>
+constexpr Number place_in_brick(const Number& i, const Number& j, const Number& k) {
+  return (i & 3) | (j & 3) << 2 | (k & 3) << 4;
+}
 constexpr unsigned place_in_brick(const Voxel& v) {
-  return static_cast<unsigned>((v.i & 3) | (v.j & 3) << 2 | (v.k & 3) << 4);
+  return static_cast<unsigned>(place_in_brick(v.i, v.j, v.k));
 }
 
 /// The bricks of a grid; those at its upper ends may reach beyond it.

@@ -52,18 +52,19 @@ bool Rules::obeys_r1_and_r2(const Cell& cell, double squared_radius) const {
 Examination Rules::examine(CellId c) const {
   const Cell& cell = mesh_.cell(c);
   const Point& center = cell.center;
-  Examination t{c, center, squared_distance(center, mesh_.point(cell.vertices[3])), label_of(c), 0, true, {}};
+  Examination t{c, center, squared_distance(center, mesh_.point(cell.vertices[3])), label_of(c), 0, true, {}, false};
   const double radius = std::sqrt(t.squared_radius);
   t.isosurface_distance = distance_lower_bound(center, radius);
   if (t.isosurface_distance > radius || obeys_r1_and_r2(cell, t.squared_radius)) return t;
   const Cover cover = covered_by(cell);
   t.nearest = ask([&](const auto& oracle) { return oracle.near_point(center, radius, cover); });
+  t.is_covered = t.nearest && cover.contains(t.nearest->point);
   t.is_distance_proven = false;
   t.isosurface_distance = kNearestTrust * (t.nearest ? distance(center, t.nearest->point) : radius);
   return t;
 }
 
-// R1 asks for nothing in it.
+// The balls of the cell's own vertices.
 Cover Rules::covered_by(const Cell& cell) const {
   Cover cover{{}, 0, squared_delta_};
   for (const VertexId v : cell.vertices) {
@@ -78,8 +79,7 @@ bool Rules::is_covered(const Point& z, VertexId by) const {
 }
 
 std::optional<Point> Rules::r1_sample(const Examination& t) const {
-  if (!t.nearest) return std::nullopt;
-  if (covered_by(mesh_.cell(t.cell)).contains(t.nearest->point)) return std::nullopt;
+  if (!t.nearest || t.is_covered) return std::nullopt;
   const Point z = ask([&](const auto& oracle) { return oracle.polished(*t.nearest, t.center); });
   return is_covered_beside(t.cell, z) ? std::nullopt : std::optional(z);
 }
