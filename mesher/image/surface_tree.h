@@ -2,10 +2,10 @@
 // the 64 children that hold a surface voxel. For points too deep for the words of the feature transform.
 #pragma once
 
-#include <algorithm>
+#include <array>
 #include <bit>
+#include <cstddef>
 #include <cstdint>
-#include <limits>
 #include <span>
 #include <vector>
 
@@ -54,40 +54,43 @@ struct SurfaceTree::Search {
   // A node of level 0 is a brick, its children are voxels.
   void visit(std::size_t level, const Voxel& node) {
     const std::uint64_t mask = level == 0 ? mask_of(node) : tree.levels_[level - 1].mask(node);
-    const std::array<double, 4> x2 = along(0, from.x, node.i, level), y2 = along(1, from.y, node.j, level),
-                                z2 = along(2, from.z, node.k, level);
-    std::array<double, 64> squared;
-    double nearest2 = std::numeric_limits<double>::infinity();
-    std::size_t nearest = 64;
-    std::uint64_t rest = 0;
-    for (std::uint64_t all = mask; all != 0; all &= all - 1) {
-      const auto c = static_cast<std::size_t>(std::countr_zero(all));
-      squared[c] = x2[c & 3] + y2[c >> 2 & 3] + z2[c >> 4];
-      if (squared[c] <= squared_reach) rest |= all & -all;
-      if (squared[c] >= nearest2) continue;
-      nearest2 = squared[c];
-      nearest = c;
+    const Four x2 = along(0, from.x, node.i, level), y2 = along(1, from.y, node.j, level),
+               z2 = along(2, from.z, node.k, level);
+    std::array<Four, 16> squared;
+    FourMasks in_reach{};
+    for (unsigned row = 0; row < squared.size(); ++row) {
+      squared[row] = x2 + y2[row & 3] + z2[row >> 2];
+      in_reach |= (squared[row] <= squared_reach) & (kFirstRow << 4 * row);
     }
+    const auto at = [&](std::size_t c) { return squared[c >> 2][c & 3]; };
+    std::uint64_t rest =
+        mask & static_cast<std::uint64_t>(in_reach[0] | in_reach[1] | in_reach[2] | in_reach[3]);
     if (rest == 0) return;
-    enter(level, node, nearest, nearest2);
+    auto nearest = static_cast<std::size_t>(std::countr_zero(rest));
+    for (std::uint64_t others = rest & (rest - 1); others != 0; others &= others - 1) {
+      const auto c = static_cast<std::size_t>(std::countr_zero(others));
+      nearest = at(c) < at(nearest) ? c : nearest;
+    }
+    enter(level, node, nearest, at(nearest));
     for (rest &= ~(std::uint64_t{1} << nearest); rest != 0; rest &= rest - 1) {
       const auto c = static_cast<std::size_t>(std::countr_zero(rest));
-      enter(level, node, c, squared[c]);
+      enter(level, node, c, at(c));
     }
   }
 
  private:
+  // Of the four children in a row along x.
+  using Four [[gnu::vector_size(32)]] = double;
+  using FourMasks [[gnu::vector_size(32)]] = std::int64_t;
+  static constexpr FourMasks kFirstRow{1, 2, 4, 8};  // each child's own bit
+
   /// Squared distances to the children of a node along one axis; they are 4^level voxels long.
-  std::array<double, 4> along(std::size_t axis, double at, int node, std::size_t level) const {
-    std::array<double, 4> squared;
+  Four along(std::size_t axis, double at, int node, std::size_t level) const {
     const double side = static_cast<double>(std::int64_t{1} << (2 * level));
-    double low = 4 * side * node;
-    for (double& s : squared) {
-      const double d = tree.spacing_[axis] * std::max({0.0, low - at, at - (low + side - 1)});
-      s = d * d;
-      low += side;
-    }
-    return squared;
+    const Four low = side * (4.0 * node + Four{0, 1, 2, 3});
+    const Four below = low - at, above = at - (low + (side - 1)), outside = below > above ? below : above;
+    const Four distance = tree.spacing_[axis] * (outside > 0 ? outside : Four{});
+    return distance * distance;
   }
 
   void enter(std::size_t level, const Voxel& node, std::size_t c, double squared) {
