@@ -23,26 +23,26 @@ class RowMarker {
   const std::vector<std::uint8_t>& operator()(int y, int z) {
     const LabelIndex* row = &image_.voxels[image_.index(0, y, z)];
     std::fill(is_surface_.begin(), is_surface_.end(), std::uint8_t{0});
-    mark_differing(row, y > 0 ? row - row_ : nullptr);
-    mark_differing(row, y + 1 < image_.size[1] ? row + row_ : nullptr);
-    mark_differing(row, z > 0 ? row - slice_ : nullptr);
-    mark_differing(row, z + 1 < image_.size[2] ? row + slice_ : nullptr);
-    std::uint8_t* const is_surface = is_surface_.data();
-    for (std::size_t x = 0; x + 1 < row_; ++x) is_surface[x] |= row[x] != row[x + 1];
-    for (std::size_t x = 1; x < row_; ++x) is_surface[x] |= row[x] != row[x - 1];
-    is_surface[0] |= row[0] != kBackground;
-    is_surface[row_ - 1] |= row[row_ - 1] != kBackground;
+    mark_differing(row, y > 0 ? row - row_ : nullptr, 0, row_);
+    mark_differing(row, y + 1 < image_.size[1] ? row + row_ : nullptr, 0, row_);
+    mark_differing(row, z > 0 ? row - slice_ : nullptr, 0, row_);
+    mark_differing(row, z + 1 < image_.size[2] ? row + slice_ : nullptr, 0, row_);
+    mark_differing(row, row + 1, 0, row_ - 1);
+    mark_differing(row, row - 1, 1, row_);
+    mark_differing(row, nullptr, 0, 1);
+    mark_differing(row, nullptr, row_ - 1, row_);
     return is_surface_;
   }
 
  private:
-  // `other` null: outside the grid.
-  void mark_differing(const LabelIndex* row, const LabelIndex* other) {
+  // The voxels from `begin` to `end`; `other` null: outside the grid. Locals all: bytes may alias members,
+  // and the loops would not be vectorised.
+  void mark_differing(const LabelIndex* row, const LabelIndex* other, std::size_t begin, std::size_t end) {
     std::uint8_t* const is_surface = is_surface_.data();
     if (other == nullptr) {
-      for (std::size_t x = 0; x < row_; ++x) is_surface[x] |= row[x] != kBackground;
+      for (std::size_t x = begin; x < end; ++x) is_surface[x] |= row[x] != kBackground;
     } else {
-      for (std::size_t x = 0; x < row_; ++x) is_surface[x] |= row[x] != other[x];
+      for (std::size_t x = begin; x < end; ++x) is_surface[x] |= row[x] != other[x];
     }
   }
 
