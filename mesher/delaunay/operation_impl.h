@@ -43,7 +43,7 @@ StepResult Operation<Locks>::lock_cell(CellId c) {
 }
 
 // Locks the cell that `facet` belongs to; the facet's own vertices are held. Who needs no lock on its other
-// vertex asks for it: the star's filling will read it.
+// vertex asks for its line: who fills the hole will read it.
 template <class Locks>
 StepResult Operation<Locks>::lock_beyond(FacetId facet) {
   const auto& vertices = mesh_.cell(cell_of(facet)).vertices;

@@ -52,7 +52,14 @@ bool Rules::obeys_r1_and_r2(const Cell& cell, double squared_radius) const {
 Examination Rules::examine(CellId c) const {
   const Cell& cell = mesh_.cell(c);
   const Point& center = cell.center;
-  Examination t{c, center, squared_distance(center, mesh_.point(cell.vertices[3])), label_of(c), 0, true, {}, false};
+  Examination t{.cell = c,
+                .center = center,
+                .squared_radius = squared_distance(center, mesh_.point(cell.vertices[3])),
+                .label = label_of(c),
+                .isosurface_distance = 0,
+                .is_distance_proven = true,
+                .nearest = {},
+                .is_covered = false};
   const double radius = std::sqrt(t.squared_radius);
   t.isosurface_distance = distance_lower_bound(center, radius);
   if (t.isosurface_distance > radius || obeys_r1_and_r2(cell, t.squared_radius)) return t;

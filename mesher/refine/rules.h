@@ -57,7 +57,7 @@ struct Examination {
   bool is_distance_proven;     // else it rests on the nearest point found
   // z, if the circumball meets the isosurface and R1 or R2 may care
   std::optional<NearPoint> nearest;
-  bool is_covered = false;  // z, by a vertex of the cell: R1 asks for nothing
+  bool is_covered;  // z, by a vertex of the cell: R1 asks for nothing
 };
 
 struct SurfaceCenter {

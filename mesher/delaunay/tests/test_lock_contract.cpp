@@ -68,9 +68,7 @@ TEST_F(LockContractDeathTest, LetsWriteMirrorsUnderThreeLocks) {
 }
 
 TEST_F(LockContractDeathTest, LetsFinishANewCellUnderThreeLocks) {
-  const auto finish = [&] {
-    attempt([&] { t_.mesh.set_mirrors(cell_, t_.mesh.peek_mirrors(cell_)); });
-  };
+  const auto finish = [&] { attempt([&] { t_.mesh.set_mirrors(cell_, t_.mesh.peek_mirrors(cell_)); }); };
   hold(cell_, 3);
   finish();
   hold(cell_, 2);
