@@ -4,5 +4,6 @@ add_library(podm_isosurface STATIC brick_distances.cpp brick_features.cpp featur
 target_link_libraries(podm_isosurface PUBLIC podm_geometry podm_runtime Threads::Threads PRIVATE podm_flags)
 
 podm_add_test(isosurface_tests
-              SOURCES tests/test_feature_transform.cpp tests/test_isosurface.cpp tests/isosurface_reference.cpp
+              SOURCES tests/test_feature_transform.cpp tests/test_isosurface.cpp tests/test_surface_tree.cpp
+                      tests/isosurface_reference.cpp
               LIBS podm_isosurface)
