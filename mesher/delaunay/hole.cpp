@@ -159,7 +159,7 @@ unsigned HoleFiller::nearest_apex(const OpenFacet& facet) const {
     const double side = dot(normal, x);
     const double s = squared_length(x);
     if (side * side <= bound * bound * s) {
-      if (orientation(a, points_[facet.local[1]], points_[facet.local[2]], points_[i]) <= 0) continue;
+      if (!is_inner(facet, i)) continue;
     } else if (side < 0) {
       continue;
     }
