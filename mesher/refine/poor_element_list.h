@@ -84,7 +84,7 @@ class PoorElementList {
  private:
   // A list that is not due for its first cleaning is short, in a small store too.
   static constexpr std::size_t kFirstCleaning = 1 << 16, kCellsAnEntry = 64;
-  static constexpr std::ptrdiff_t kLookahead = 64;  // in a scan, whose cells lie anywhere
+  static constexpr std::ptrdiff_t kLookahead = 16;  // in a scan, whose cells lie anywhere
   static constexpr std::size_t kChunkBits = 13, kChunk = 1 << kChunkBits;
   using Chunk = MappedChunk<Entry, kChunk>;
 
