@@ -17,7 +17,7 @@ constexpr std::int64_t kMostCores = 1 << 20;
 
 // The index of the text at `key` among the words; the first where the key is absent and may be.
 template <std::size_t size>
-std::size_t read_word(Section& section, const char* key, const std::array<const char*, size>& words,
+std::size_t read_word(TomlSection& section, const char* key, const std::array<const char*, size>& words,
                       bool is_needed = true) {
   const std::string text = is_needed ? section.text(key) : section.text(key, words[0]);
   const auto found = std::find(words.begin(), words.end(), text);
@@ -26,14 +26,14 @@ std::size_t read_word(Section& section, const char* key, const std::array<const 
   return static_cast<std::size_t>(found - words.begin());
 }
 
-std::vector<std::string> read_texts(Section& section, const char* key) {
+std::vector<std::string> read_texts(TomlSection& section, const char* key) {
   std::vector<std::string> texts;
   for (const toml::node* node : section.values(key)) texts.push_back(section.text_of(*node, key));
   return texts;
 }
 
 // The trials that a claim is about, so that a pattern without any is seen.
-Trials trials_of(const Section& section, const std::vector<std::string>& patterns, const Trials& all) {
+Trials trials_of(const TomlSection& section, const std::vector<std::string>& patterns, const Trials& all) {
   if (patterns.empty()) return all;
   Trials chosen;
   for (const std::string& pattern : patterns) {
@@ -46,7 +46,7 @@ Trials trials_of(const Section& section, const std::vector<std::string>& pattern
   return chosen;
 }
 
-Json json_of(const Section& section, const toml::node& node, const std::string& key) {
+Json json_of(const TomlSection& section, const toml::node& node, const std::string& key) {
   if (const auto text = node.value_exact<std::string>()) return *text;
   if (const auto integer = node.value_exact<std::int64_t>()) return *integer;
   if (const auto flag = node.value_exact<bool>()) return *flag;
@@ -56,24 +56,24 @@ Json json_of(const Section& section, const toml::node& node, const std::string& 
 // How many threads there are is up to the machine; any other value has to stand in the file.
 bool depends_on_machine(const std::string& key) { return key.ends_with("threads") || key == "copies"; }
 
-void refuse_unknown(const Section& section, const toml::node& node, const std::string& key, const Json& value,
-                    const Trials& trials) {
+void refuse_unknown(const TomlSection& section, const toml::node& node, const std::string& key,
+                    const Json& value, const Trials& trials) {
   const auto asks = [&](const ClaimedTrial& trial) { return option(trial.options, key) == value; };
   if ((depends_on_machine(key) && value.is_number()) || std::any_of(trials.begin(), trials.end(), asks))
     return;
   section.fail(node.source(), fmt::format("no trial of the claim has {}", describe(key, value)));
 }
 
-void refuse_unknown_key(const Section& section, const toml::source_region& place, const std::string& key,
+void refuse_unknown_key(const TomlSection& section, const toml::source_region& place, const std::string& key,
                         const Trials& trials) {
   const auto has = [&](const ClaimedTrial& trial) { return trial.options.contains(key); };
   if (std::none_of(trials.begin(), trials.end(), has))
     section.fail(place, fmt::format("no trial of the claim has the option '{}'", key));
 }
 
-Condition read_range(Section& options, const std::string& key) {
+Condition read_range(TomlSection& options, const std::string& key) {
   Condition condition{key, {}, {}, {}};
-  Section range = options.table(key);
+  TomlSection range = options.table(key);
   condition.at_least = range.number("at_least");
   condition.at_most = range.number("at_most");
   if (!condition.at_least && !condition.at_most)
@@ -83,10 +83,10 @@ Condition read_range(Section& options, const std::string& key) {
 }
 
 // The table at `key`; nothing where there is none.
-Filter read_filter(Section& section, const char* key, const Trials& trials) {
+Filter read_filter(TomlSection& section, const char* key, const Trials& trials) {
   Filter filter;
   if (!section.has(key)) return filter;
-  Section options = section.table(key);
+  TomlSection options = section.table(key);
   for (const std::string& name : options.keys()) {
     refuse_unknown_key(options, options.place(name), name, trials);
     if (options.is_table(name)) {
@@ -104,7 +104,7 @@ Filter read_filter(Section& section, const char* key, const Trials& trials) {
   return filter;
 }
 
-void read_bounds(Section& section, Claim& claim) {
+void read_bounds(TomlSection& section, Claim& claim) {
   claim.at_least = section.number("at_least");
   claim.at_most = section.number("at_most");
   if (!claim.at_least && !claim.at_most)
@@ -114,7 +114,7 @@ void read_bounds(Section& section, Claim& claim) {
 }
 
 // The series of a ratio or an order, under the names that the kind has for them.
-void read_series(Section& section, const Trials& trials, const char* of, const char* over, Claim& claim) {
+void read_series(TomlSection& section, const Trials& trials, const char* of, const char* over, Claim& claim) {
   if (!section.has(of)) section.text(of);  // refuses that there is none
   claim.of = read_filter(section, of, trials);
   if (section.is_table(over)) {
@@ -126,20 +126,20 @@ void read_series(Section& section, const Trials& trials, const char* of, const c
   claim.over_best = true;
 }
 
-void read_across(Section& section, const Trials& trials, Claim& claim) {
+void read_across(TomlSection& section, const Trials& trials, Claim& claim) {
   claim.across = read_texts(section, "across");
   for (const std::string& key : claim.across)
     if (key != kInput) refuse_unknown_key(section, section.place("across"), key, trials);
 }
 
-void read_trend(Section& section, const Trials& trials, Claim& claim) {
+void read_trend(TomlSection& section, const Trials& trials, Claim& claim) {
   claim.along = section.text("along");
   refuse_unknown_key(section, section.place("along"), claim.along, trials);
   claim.grows = read_word(section, "direction", std::array{"falls", "grows"}) == 1;
   claim.factor_per_doubling = section.positive("factor_per_doubling", 0);
 }
 
-void read_share(Section& section, Claim& claim) {
+void read_share(TomlSection& section, Claim& claim) {
   claim.at_least = section.positive("at_least", 0);
   if (!section.has("at_least") || *claim.at_least > 1)
     section.fail(section.has("at_least") ? section.place("at_least") : section.place(),
@@ -148,7 +148,7 @@ void read_share(Section& section, Claim& claim) {
     section.fail(section.place("value"), fmt::format("{} is not 0 or 1 in each row", claim.value->name));
 }
 
-const Measure* read_measure(Section& section, Basis basis) {
+const Measure* read_measure(TomlSection& section, Basis basis) {
   const Measure* measure = find_measure(section.text("value"));
   if (measure == nullptr) {
     std::vector<const char*> names;
@@ -162,7 +162,7 @@ const Measure* read_measure(Section& section, Basis basis) {
   return measure;
 }
 
-void read_kind(Section& section, const Trials& trials, Claim& claim) {
+void read_kind(TomlSection& section, const Trials& trials, Claim& claim) {
   claim.kind = static_cast<ClaimKind>(
       read_word(section, "kind", std::array{"bound", "ratio", "order", "trend", "share"}));
   switch (claim.kind) {
@@ -185,7 +185,7 @@ void read_kind(Section& section, const Trials& trials, Claim& claim) {
 
 }  // namespace
 
-Claim read_claim(Section& section, const Trials& all_trials) {
+Claim read_claim(TomlSection& section, const Trials& all_trials) {
   Claim claim;
   claim.name = section.text("name");
   claim.statement = section.text("statement");

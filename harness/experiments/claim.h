@@ -5,9 +5,9 @@
 #include <string>
 #include <vector>
 
-#include "experiments/toml_section.h"
 #include "rows/measure.h"
 #include "rows/row_filter.h"
+#include "runtime/toml_section.h"
 
 namespace podm::bench {
 
@@ -54,7 +54,7 @@ struct ClaimedTrial {
 
 /// Reads one [[claims]]. Throws InputError "file:line:column: fault" on anything that is not exactly the
 /// format, or that no row of these trials could ever match.
-Claim read_claim(Section& section, const std::vector<ClaimedTrial>& trials);
+Claim read_claim(TomlSection& section, const std::vector<ClaimedTrial>& trials);
 
 /// "at least 0.9 and at most 1.1", "above", "falls by at least 1.4 a doubling".
 std::string describe_bound(const Claim& claim);

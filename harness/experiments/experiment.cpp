@@ -11,7 +11,7 @@
 #include <set>
 
 #include "experiments/option_matrix.h"
-#include "experiments/toml_section.h"
+#include "runtime/toml_section.h"
 
 namespace podm::bench {
 namespace {
@@ -33,7 +33,7 @@ std::string resolve_image(const std::string& image, const fs::path& folder) {
   return is_phantom(image) ? image : (folder / image).lexically_normal().string();
 }
 
-Inputs read_inputs(Section& file, const fs::path& folder) {
+Inputs read_inputs(TomlSection& file, const fs::path& folder) {
   Inputs inputs;
   if (!file.has("inputs")) return inputs;  // then no trial may name one
   for (auto& [name, section] : file.tables("inputs")) {
@@ -43,7 +43,7 @@ Inputs read_inputs(Section& file, const fs::path& folder) {
   return inputs;
 }
 
-Tier read_tier(Section& section, Tier otherwise) {
+Tier read_tier(TomlSection& section, Tier otherwise) {
   const std::string text = section.text("tier", to_string(otherwise));
   try {
     return parse_tier(text);
@@ -53,7 +53,7 @@ Tier read_tier(Section& section, Tier otherwise) {
 }
 
 // What the head of the file and each trial may set; the trial's own wins.
-void read_conduct(Section& section, Trial& trial) {
+void read_conduct(TomlSection& section, Trial& trial) {
   trial.timeout_s = section.positive("timeout_s", trial.timeout_s);
   trial.memory_limit_gib = section.positive("memory_limit_gib", trial.memory_limit_gib);
   trial.repeats = static_cast<int>(section.count("repeats", trial.repeats, 1, kMaxRepeats));
@@ -62,7 +62,7 @@ void read_conduct(Section& section, Trial& trial) {
 }
 
 // Names of trials become parts of file names.
-std::string read_name(Section& section) {
+std::string read_name(TomlSection& section) {
   const std::string name = section.text("name");
   if (name.front() == '.' || in_name(name) != name)
     section.fail(section.place("name"), "a trial's name may have letters, digits and . _ - only");
@@ -70,7 +70,7 @@ std::string read_name(Section& section) {
 }
 
 // One empty name where the trial needs no input.
-std::vector<std::string> read_input_names(Section& section, const Inputs& inputs) {
+std::vector<std::string> read_input_names(TomlSection& section, const Inputs& inputs) {
   if (section.has(kMeasure)) {
     if (section.has("input")) section.fail(section.place("input"), "input is an option of meshers");
     return {""};
@@ -92,7 +92,7 @@ struct NamedInput {
 };
 
 // Inputs are those of the file, or the images in their place.
-std::vector<NamedInput> inputs_of_trials(Section& section, const Inputs& inputs,
+std::vector<NamedInput> inputs_of_trials(TomlSection& section, const Inputs& inputs,
                                          const std::vector<std::string>& images) {
   std::vector<NamedInput> named;
   const auto add = [&named](bool in_suffix, const std::string& name, Input input) {
@@ -108,7 +108,7 @@ std::vector<NamedInput> inputs_of_trials(Section& section, const Inputs& inputs,
 }
 
 // The voxels of a thread stay the same. An image that a person gives in place of a phantom stays as it is.
-void grow(const Section& section, bool is_given, Trial& trial) {
+void grow(const TomlSection& section, bool is_given, Trial& trial) {
   if (!trial.options.value(kImageGrows, false)) return;
   const auto image = grown(trial.image, trial.options["threads"].get<double>());
   if (image) trial.image = *image;
@@ -119,7 +119,7 @@ void grow(const Section& section, bool is_given, Trial& trial) {
 }
 
 // The matrix of one [[trials]].
-std::vector<Trial> read_trials(Section& section, const Inputs& inputs, const Trial& head,
+std::vector<Trial> read_trials(TomlSection& section, const Inputs& inputs, const Trial& head,
                                const std::string& folder, const std::vector<std::string>& images) {
   Trial common = head;
   common.name = read_name(section);
@@ -142,12 +142,12 @@ std::vector<Trial> read_trials(Section& section, const Inputs& inputs, const Tri
   return trials;
 }
 
-std::vector<Claim> read_claims(Section& file, const std::vector<Trial>& trials) {
+std::vector<Claim> read_claims(TomlSection& file, const std::vector<Trial>& trials) {
   std::vector<ClaimedTrial> claimed;
   for (const Trial& trial : trials) claimed.push_back({stem_of(trial.name), complete_options(trial.options)});
   std::vector<Claim> claims;
   std::set<std::string> names;
-  for (Section& section : file.table_array("claims")) {
+  for (TomlSection& section : file.table_array("claims")) {
     claims.push_back(read_claim(section, claimed));
     if (!names.insert(claims.back().name).second)
       section.fail(section.place("name"), fmt::format("a second claim '{}'", claims.back().name));
@@ -172,9 +172,9 @@ std::size_t Experiment::num_turns() const {
   return turns;
 }
 
-Experiment read_experiment(const std::string& path, const std::vector<std::string>& images) {
+Experiment read_experiment(const std::string& path, const std::vector<std::string>& images) try {
   const toml::table table = parse_toml(path);
-  Section file(path, table, "an experiment");
+  TomlSection file(path, table, "an experiment");
   const std::string folder = fs::path(path).parent_path().string();
   Experiment experiment;
   experiment.name = fs::path(path).stem().string();
@@ -189,7 +189,7 @@ Experiment read_experiment(const std::string& path, const std::vector<std::strin
   experiment.tier = head.tier;
   const Inputs inputs = read_inputs(file, folder);
   std::set<std::string> names;
-  for (Section& section : file.table_array("trials"))
+  for (TomlSection& section : file.table_array("trials"))
     for (Trial& trial : read_trials(section, inputs, head, folder, images)) {
       if (!names.insert(trial.name).second)
         section.fail(section.place("name"), fmt::format("a second trial '{}'", trial.name));
@@ -198,6 +198,8 @@ Experiment read_experiment(const std::string& path, const std::vector<std::strin
   experiment.claims = read_claims(file, experiment.trials);
   file.done();
   return experiment;
+} catch (const TomlError& fault) {
+  throw InputError(fault.what());
 }
 
 std::vector<std::string> experiment_files(const std::string& folder) {

@@ -85,7 +85,7 @@ constexpr MesherOption kMesherOptions[] = {
 };
 
 // "all" is the number of usable processors, "1..all" the powers of two up to it and itself.
-std::vector<Json> thread_counts(const Section& section, const toml::node& node, std::string_view key) {
+std::vector<Json> thread_counts(const TomlSection& section, const toml::node& node, std::string_view key) {
   if (!node.is_string()) return {section.count_of(node, key, 1, kMaxThreads)};
   const std::int64_t all = usable_processors();
   const std::string text = section.text_of(node, key);
@@ -98,14 +98,14 @@ std::vector<Json> thread_counts(const Section& section, const toml::node& node, 
   return counts;
 }
 
-Json switch_value(const Section& section, const toml::node& node, std::string_view key) {
+Json switch_value(const TomlSection& section, const toml::node& node, std::string_view key) {
   if (const auto value = node.value_exact<bool>()) return *value;
   if (const auto value = node.value_exact<std::int64_t>()) return *value;
   return section.text_of(node, key);
 }
 
 // Groups are files: a name has no folder in it.
-std::string counters_value(const Section& section, const toml::node& node, std::string_view key) {
+std::string counters_value(const TomlSection& section, const toml::node& node, std::string_view key) {
   const std::string choice = section.text_of(node, key);
   const bool is_group = choice.starts_with(kLikwid) && choice.size() > std::strlen(kLikwid) &&
                         choice.find('/') == std::string::npos;
@@ -115,13 +115,13 @@ std::string counters_value(const Section& section, const toml::node& node, std::
   return choice;
 }
 
-std::string measure_value(const Section& section, const toml::node& node, std::string_view key) {
+std::string measure_value(const TomlSection& section, const toml::node& node, std::string_view key) {
   if (section.text_of(node, key) != kMemoryLatency)
     section.fail(node.source(), fmt::format("{} must be \"{}\"", key, kMemoryLatency));
   return kMemoryLatency;
 }
 
-std::vector<Json> read_value(const Section& section, const toml::node& node, const MesherOption& option,
+std::vector<Json> read_value(const TomlSection& section, const toml::node& node, const MesherOption& option,
                              const std::string& folder) {
   const std::string key = option.key;
   switch (option.kind) {
@@ -164,7 +164,7 @@ void multiply(std::vector<Variant>& variants, const std::string& key, const std:
 }
 
 // Different ones: where there are two processors, [1, 2, "all"] is 1, 2.
-std::vector<Json> read_values(Section& section, const MesherOption& option, const std::string& folder) {
+std::vector<Json> read_values(TomlSection& section, const MesherOption& option, const std::string& folder) {
   std::vector<Json> values;
   for (const toml::node* node : section.values(option.key))
     for (Json& value : read_value(section, *node, option, folder))
@@ -172,7 +172,7 @@ std::vector<Json> read_values(Section& section, const MesherOption& option, cons
   return values;
 }
 
-void refuse_second_size(const Section& section) {
+void refuse_second_size(const TomlSection& section) {
   std::vector<const char*> given;
   for (const char* key : {"radius_mm", kTargetElements, kPerThread})
     if (section.has(key)) given.push_back(key);
@@ -181,14 +181,14 @@ void refuse_second_size(const Section& section) {
                  fmt::format("{} exclude each other", fmt::join(given, " and ")));
 }
 
-void refuse_options_of_podm(const Section& section, const Json& options) {
+void refuse_options_of_podm(const TomlSection& section, const Json& options) {
   if (options.value(kMesher, kPodm) == kPodm) return;
   for (const auto& [key, value] : options.items())
     if (!is_among(kOfAll, key))
       section.fail(section.place(key), fmt::format("{} is an option of podm alone", key));
 }
 
-void refuse_options_of_meshers(const Section& section, const Json& options) {
+void refuse_options_of_meshers(const TomlSection& section, const Json& options) {
   if (!options.contains(kMeasure)) return;
   for (const MesherOption& option : kMesherOptions)
     if (option.kind != Kind::kMeasure && section.has(option.key))
@@ -196,7 +196,7 @@ void refuse_options_of_meshers(const Section& section, const Json& options) {
 }
 
 // A copy has one processor, and the kernel counts all copies together.
-void refuse_crowded_copies(const Section& section, const Json& options) {
+void refuse_crowded_copies(const TomlSection& section, const Json& options) {
   if (!options.contains(kCopies)) return;
   if (options["threads"] != 1) section.fail(section.place(kCopies), "copies need threads = 1");
   for (const char* key : {"pin", kCounters})
@@ -204,7 +204,7 @@ void refuse_crowded_copies(const Section& section, const Json& options) {
       section.fail(section.place(key), fmt::format("{} and {} exclude each other", kCopies, key));
 }
 
-void scale_by_threads(const Section& section, Json& options) {
+void scale_by_threads(const TomlSection& section, Json& options) {
   if (!options.contains(kPerThread)) return;
   const std::int64_t elements =
       options[kPerThread].get<std::int64_t>() * options["threads"].get<std::int64_t>();
@@ -226,7 +226,7 @@ std::string in_name(const Json& value) {
   return text;
 }
 
-std::vector<Variant> read_matrix(Section& section, const std::string& folder) {
+std::vector<Variant> read_matrix(TomlSection& section, const std::string& folder) {
   refuse_second_size(section);
   std::vector<Variant> variants{{"", {{"threads", 1}}}};
   for (const MesherOption& option : kMesherOptions) {

@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-#include "experiments/toml_section.h"
+#include "runtime/toml_section.h"
 
 namespace podm::bench {
 
@@ -33,7 +33,7 @@ struct Variant {
 
 /// The product of the options in `section`, the first of the table in experiments/README.md slowest. A
 /// topology is a file relative to `folder`.
-std::vector<Variant> read_matrix(Section& section, const std::string& folder);
+std::vector<Variant> read_matrix(TomlSection& section, const std::string& folder);
 
 /// Options are written as `podm mesh` takes them: radius_mm = 2 is "--radius", "2"; true is the bare option,
 /// false none. Without those that are the harness's business: the keys above but the last, and kCounters.

@@ -77,7 +77,7 @@ inline Claim read_claim_of(const std::string& lines) {
           {stem, complete_options({{"leaf_size", size}, {"threads", 1}, {"target_elements", 5}})});
     trials.push_back({stem, complete_options({{"mesher", "other"}, {"threads", 1}})});
   }
-  Section section("claim.toml", table, "[[claims]]");
+  TomlSection section("claim.toml", table, "[[claims]]");
   return read_claim(section, trials);
 }
 

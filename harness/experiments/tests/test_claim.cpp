@@ -118,7 +118,7 @@ TEST(Claim, FaultsNameThePlace) {
     std::string what = "none";
     try {
       read_claim_of(lines);
-    } catch (const InputError& error) {
+    } catch (const TomlError& error) {
       what = error.what();
     }
     EXPECT_TRUE(what.starts_with(place)) << what << "\nfor\n" << lines;

@@ -6,21 +6,26 @@
 #include <cstdint>
 #include <optional>
 #include <set>
+#include <stdexcept>
 #include <string>
 #include <utility>
 #include <vector>
 
-#include "errors.h"
+namespace podm {
 
-namespace podm::bench {
+/// A TOML file that is not as asked for; what() is "file:line:column: fault".
+class TomlError : public std::runtime_error {
+ public:
+  using std::runtime_error::runtime_error;
+};
 
-/// Throws InputError when the file is not there or no TOML.
+/// Throws TomlError when the file is not there or no TOML.
 toml::table parse_toml(const std::string& path);
 
-/// Every member throws InputError "file:line:column: fault". The table outlives the section.
-class Section {
+/// Every member throws TomlError "file:line:column: fault". The table outlives the section.
+class TomlSection {
  public:
-  Section(std::string path, const toml::table& table, std::string name)
+  TomlSection(std::string path, const toml::table& table, std::string name)
       : path_(std::move(path)), table_(&table), name_(std::move(name)) {}
 
   [[noreturn]] void fail(const toml::source_region& place, const std::string& fault) const;
@@ -38,31 +43,38 @@ class Section {
   std::string text(std::string_view key, const std::string& otherwise);
   bool flag(std::string_view key);
   double positive(std::string_view key, double otherwise);
+  /// From `least` to `most`; the second: `otherwise` when the key is absent.
+  double number(std::string_view key, double least, double most);
+  double number(std::string_view key, double otherwise, double least, double most);
   /// Any number; nothing when the key is absent.
   std::optional<double> number(std::string_view key);
+  std::int64_t count(std::string_view key, std::int64_t least, std::int64_t most);
   std::int64_t count(std::string_view key, std::int64_t otherwise, std::int64_t least, std::int64_t most);
   /// The members of an array, or the one value; none when the key is absent. An empty array is refused.
   std::vector<const toml::node*> values(std::string_view key);
   /// The table at `key`, which is there.
-  Section table(std::string_view key);
+  TomlSection table(std::string_view key);
+  /// The table at `key`; an empty one where it is absent.
+  TomlSection optional_table(std::string_view key);
   /// The keys in the order of the file; each counts as asked for.
   std::vector<std::string> keys();
   /// The tables [key.NAME], by name.
-  std::vector<std::pair<std::string, Section>> tables(std::string_view key);
+  std::vector<std::pair<std::string, TomlSection>> tables(std::string_view key);
   /// The tables [[key]], in the order of the file.
-  std::vector<Section> table_array(std::string_view key);
+  std::vector<TomlSection> table_array(std::string_view key);
   /// Refuses the keys that nobody asked for.
   void done() const;
 
   std::string text_of(const toml::node& node, std::string_view key) const;
   bool flag_of(const toml::node& node, std::string_view key) const;
   double number_of(const toml::node& node, std::string_view key) const;
+  double number_of(const toml::node& node, std::string_view key, double least, double most) const;
   double positive_of(const toml::node& node, std::string_view key) const;
   std::int64_t count_of(const toml::node& node, std::string_view key, std::int64_t least,
                         std::int64_t most) const;
 
  private:
-  Section member(std::string_view key, std::string_view name, const toml::node& node) const;
+  TomlSection member(std::string_view key, std::string_view name, const toml::node& node) const;
   const toml::node* find(std::string_view key);
   const toml::node& required(std::string_view key);
 
@@ -72,4 +84,4 @@ class Section {
   std::set<std::string, std::less<>> asked_;
 };
 
-}  // namespace podm::bench
+}  // namespace podm
