@@ -31,15 +31,25 @@ WorkerGroups groups_of(const std::vector<Place>& places) {
   return groups;
 }
 
+std::optional<MachineModel> read_model(const std::string& path) {
+  if (!path.ends_with(".toml")) return std::nullopt;
+  return MachineModel::from_file(path);
+}
+
+Topology read_topology(const std::string& path, const std::optional<MachineModel>& model) {
+  if (model) return model->topology;
+  return path.empty() ? Topology::of_this_machine() : Topology::from_file(path);
+}
+
 }  // namespace
 
 PlacementOfTeam place_team(const TeamOptions& options) try {
-  const std::string& described = options.topology_path;
-  PlacementOfTeam placement{
-      .machine = described.empty() ? Topology::of_this_machine() : Topology::from_file(described),
-      .places = {},
-      .groups = {},
-      .is_real = is_of_this_machine(options)};
+  const std::optional<MachineModel> model = read_model(options.topology_path);
+  PlacementOfTeam placement{.machine = read_topology(options.topology_path, model),
+                            .places = {},
+                            .groups = {},
+                            .model = model,
+                            .is_real = is_of_this_machine(options)};
   placement.places = place_workers(placement.machine, PinPlan::parse(options.pin), num_workers(options),
                                    options.oversubscribe || !placement.is_real);
   if (!placement.is_real) {

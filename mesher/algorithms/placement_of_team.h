@@ -1,9 +1,11 @@
 // The places of a run's workers in a machine.
 #pragma once
 
+#include <optional>
 #include <vector>
 
 #include "podm/meshing_options.h"
+#include "runtime/machine_model.h"
 #include "runtime/placement.h"
 #include "runtime/topology.h"
 #include "workers/begging_list.h"
@@ -13,7 +15,8 @@ namespace podm {
 struct PlacementOfTeam {
   Topology machine;  // this one, or the one described
   std::vector<Place> places;
-  WorkerGroups groups;  // as the begging list needs them
+  WorkerGroups groups;                     // as the begging list needs them
+  std::optional<MachineModel> model = {};  // of the described machine, where its description tells costs
   bool is_real = true;  // threads of this machine, neither virtual workers nor those of a described one
 };
 

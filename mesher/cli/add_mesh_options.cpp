@@ -98,7 +98,8 @@ void add_run_options(CLI::App& app, MeshCommand& command) {
   add_flag(app, "--oversubscribe", meshing.team.oversubscribe,
            "allow more threads than processors [default: refused]");
   add_one(app, "--topology", "FILE",
-          "hwloc XML of a machine that the threads stand for [default: this machine]",
+          "machine that the threads stand for: hwloc XML, or TOML that tells its costs, too\n"
+          "(NAME.toml, see experiments/machines) [default: this machine]",
           into(meshing.team.topology_path));
   add_one(app, "--executor", "EXECUTOR",
           "threads, or virtual: one core plays any number of threads in virtual time,\n"

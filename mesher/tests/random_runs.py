@@ -10,7 +10,7 @@ import numpy
 import random_images
 
 MANAGERS = ["aggressive", "random", "global", "local"]
-TOPOLOGY = pathlib.Path(__file__).resolve().parents[2] / "experiments/machines/blacklight_256.xml"
+TOPOLOGY = pathlib.Path(__file__).resolve().parents[2] / "experiments/machines/blacklight.toml"
 SHARE_ON_THREADS = 1 / 6
 MOST_THREADS = {"virtual": 256, "threads": 16}
 VOLUME_CELLS, SURFACE_CELLS = 4.82, 1.57  # of mesher/cost_model.h

@@ -7,7 +7,7 @@ import unittest
 from podm_process import PodmTestCase, run_podm
 
 IMAGE = "phantom:abdomen@40"
-BLACKLIGHT = os.path.join(os.path.dirname(__file__), "../../experiments/machines/blacklight_256.xml")
+BLACKLIGHT = os.path.join(os.path.dirname(__file__), "../../experiments/machines/blacklight.toml")
 KINDS = "mesh_reads", "mesh_writes", "image_reads", "transform_reads"
 
 

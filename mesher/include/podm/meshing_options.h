@@ -44,9 +44,11 @@ struct TeamOptions {
   int initial_threads = 0;  ///< threads of the initial mesh of kPdr and kPdrPodm; default: all
   Contention contention = Contention::kLocal;
   Begging begging = Begging::kHierarchical;
-  std::string pin = "none";        ///< compact, scatter, none, or processors: runtime/placement.h
-  bool oversubscribe = false;      ///< else more threads than processors are refused
-  std::string topology_path = {};  ///< hwloc XML of the machine that the workers stand for; empty: this one
+  std::string pin = "none";    ///< compact, scatter, none, or processors: runtime/placement.h
+  bool oversubscribe = false;  ///< else more threads than processors are refused
+  /// The machine that the workers stand for, as hwloc XML or, with what it costs, as TOML (NAME.toml:
+  /// runtime/machine_model.h). Empty: this one.
+  std::string topology_path = {};
   Executor executor = Executor::kThreads;
   VirtualCost virtual_cost = VirtualCost::kMeasured;
   std::uint64_t seed = 1;  ///< decides pauses of Contention::kRandom, and virtual time

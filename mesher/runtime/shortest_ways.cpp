@@ -1,0 +1,52 @@
+#include "runtime/shortest_ways.h"
+
+#include <algorithm>
+
+namespace podm {
+
+namespace {
+
+// Backwards from `to`: `links` are those from the start, and `load` the ways that lead through each vertex.
+std::vector<int> way_to(const Neighbours& neighbours, const std::vector<int>& links, int to,
+                        std::vector<int>& load) {
+  std::vector<int> way = {to};
+  while (links[way.back()] > 0) {
+    const auto cost = [&](int vertex) { return std::pair(links[vertex], load[vertex]); };
+    const std::vector<int>& before = neighbours[way.back()];
+    way.push_back(
+        *std::min_element(before.begin(), before.end(), [&](int a, int b) { return cost(a) < cost(b); }));
+    ++load[way.back()];
+  }
+  --load[way.back()];  // the start is on all of its ways
+  std::reverse(way.begin(), way.end());
+  return way;
+}
+
+}  // namespace
+
+std::vector<int> links_from(const Neighbours& neighbours, int start) {
+  std::vector<int> links(neighbours.size(), -1), reached = {start};
+  links[start] = 0;
+  for (std::size_t next = 0; next < reached.size(); ++next) {
+    const int vertex = reached[next];
+    for (const int neighbour : neighbours[vertex]) {
+      if (links[neighbour] >= 0) continue;
+      links[neighbour] = links[vertex] + 1;
+      reached.push_back(neighbour);
+    }
+  }
+  return links;
+}
+
+std::vector<std::vector<int>> shortest_ways(const Neighbours& neighbours, int num_ends) {
+  std::vector<std::vector<int>> ways;
+  std::vector<int> load(neighbours.size());
+  for (int from = 0; from < num_ends; ++from) {
+    const std::vector<int> links = links_from(neighbours, from);
+    for (int to = 0; to < num_ends; ++to)
+      ways.push_back(from == to ? std::vector<int>() : way_to(neighbours, links, to, load));
+  }
+  return ways;
+}
+
+}  // namespace podm
