@@ -169,7 +169,7 @@ Topology topology_of(const Processors& processors, const Memory& memory, int num
 }  // namespace
 
 MachineModel MachineModel::from_file(const std::filesystem::path& path) try {
-  const toml::table table = parse_toml(path.string());
+  const toml::table table = parse_ascii_toml(path.string());
   TomlSection file(path.string(), table, "a machine");
   const std::string name = file.text("name");
   const std::vector<std::string> sources = read_sources(file);

@@ -5,18 +5,51 @@
 #include <algorithm>
 #include <cmath>
 #include <filesystem>
+#include <fstream>
+#include <iterator>
 #include <limits>
+#include <sstream>
 
 namespace podm {
 
-toml::table parse_toml(const std::string& path) {
+namespace {
+
+void refuse_missing(const std::string& path) {
   if (!std::filesystem::is_regular_file(path)) throw TomlError(path + ": no such file");
-  try {
-    return toml::parse_file(path);
-  } catch (const toml::parse_error& error) {
-    const toml::source_position& place = error.source().begin;
-    throw TomlError(fmt::format("{}:{}:{}: {}", path, place.line, place.column, error.description()));
-  }
+}
+
+void refuse_other_letters(const std::string& text, const std::string& path) {
+  const auto is_other = [](char letter) { return static_cast<unsigned char>(letter) >= 0x80; };
+  const auto other = std::find_if(text.begin(), text.end(), is_other);
+  if (other == text.end()) return;
+  const auto line_start = std::find(std::reverse_iterator(other), text.rend(), '\n').base();
+  throw TomlError(fmt::format("{}:{}:{}: a letter that is not ASCII's", path,
+                              1 + std::count(text.begin(), other, '\n'), 1 + (other - line_start)));
+}
+
+template <class Parse>
+toml::table parsed(const std::string& path, const Parse& parse) try {
+  return parse();
+} catch (const toml::parse_error& error) {
+  const toml::source_position& place = error.source().begin;
+  throw TomlError(fmt::format("{}:{}:{}: {}", path, place.line, place.column, error.description()));
+}
+
+}  // namespace
+
+toml::table parse_toml(const std::string& path) {
+  refuse_missing(path);
+  return parsed(path, [&] { return toml::parse_file(path); });
+}
+
+toml::table parse_ascii_toml(const std::string& path) {
+  refuse_missing(path);
+  std::ifstream file(path, std::ios::binary);
+  std::ostringstream text;
+  text << file.rdbuf();
+  if (!file.is_open()) throw TomlError(path + ": cannot be opened");
+  refuse_other_letters(text.str(), path);
+  return parsed(path, [&] { return toml::parse(text.str(), path); });
 }
 
 void TomlSection::fail(const toml::source_region& place, const std::string& fault) const {

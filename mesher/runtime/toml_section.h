@@ -21,6 +21,8 @@ class TomlError : public std::runtime_error {
 
 /// Throws TomlError when the file is not there or no TOML.
 toml::table parse_toml(const std::string& path);
+/// Refuses other letters than ASCII's as well: in keys they lead toml++ 3.3 into undefined behaviour.
+toml::table parse_ascii_toml(const std::string& path);
 
 /// Every member throws TomlError "file:line:column: fault". The table outlives the section.
 class TomlSection {

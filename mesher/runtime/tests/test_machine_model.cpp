@@ -173,6 +173,7 @@ INSTANTIATE_TEST_SUITE_P(
         Fault{"name = \"one\"", "name = 1", "1", "name must be a non-empty string"},
         Fault{"name = \"one\"", "colour = 'red'\nname = 'a'", "1", "no key 'colour'"},
         Fault{"name = \"one\"", "name = 'a", "1", ""},
+        Fault{"core_speed", "cor\xC3\xA9_speed", "6:4", "ASCII"},
         Fault{"sockets_per_node = 2\n", "", "2", "needs the key 'sockets_per_node'"},
         Fault{"sockets_per_node = 2", "sockets_per_node = 2.0", "3", "must be an integer"},
         Fault{"cores_per_socket = 4", "cores_per_socket = 0", "4", "from 1 to"},
