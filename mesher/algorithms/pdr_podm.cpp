@@ -9,6 +9,7 @@
 //   regions have no point in common (octree/octree.h). What would lock a vertex outside waits for the end,
 //   when all workers refine what is left anywhere, with PODM. That ends the run with the same guarantees as
 //   PODM's, whatever leaves there were (octree/leaf_region.h).
+#include <atomic>
 #include <deque>
 #include <mutex>
 
@@ -80,6 +81,20 @@ CoordinationOptions coordination_of_node(const Team& team) {
   return options;
 }
 
+// 5, 6, by all workers: the last to end shares out what they listed.
+template <class Time>
+void distribute(LeafCells& cells, RefinementQueue& queue, int num_workers, Time& time,
+                const std::stop_token& over) {
+  std::atomic<std::size_t> next_slice = 0;
+  std::atomic<int> num_at_work = num_workers;
+  time.run([&](WorkerId) {
+    for (std::size_t slice = next_slice++; slice < cells.num_slices() && !time.is_over();
+         slice = next_slice++)
+      cells.distribute(slice);
+    if (--num_at_work == 0) cells.share_out(queue, over);
+  });
+}
+
 template <class Locks, class Time>
 Construction::Entries refine_leaves_with(Construction& construction, const Parameters& parameters,
                                          const Octree& octree, const LeafOptions& options, Time& time) {
@@ -95,9 +110,6 @@ Construction::Entries refine_leaves_with(Construction& construction, const Param
   LeafCells cells(construction.mesh(), octree);
   RefinementQueue queue(octree, num_nodes, LeafOrder::kHome,
                         [&](unsigned node) { resume(static_cast<WorkerId>(node * per_node)); });
-  cells.add(construction.all_cells(), queue, over);  // 5, 6
-  queue.share_out(over);
-
   std::deque<ComputingNode<Locks>> nodes;  // 8
   for (unsigned node = 0; node < num_nodes; ++node)
     nodes.emplace_back(node, std::span(workers).subspan(node * per_node, per_node),
@@ -108,7 +120,8 @@ Construction::Entries refine_leaves_with(Construction& construction, const Param
                              .time = time,
                              .over = over,
                              .with_schedule = options.with_schedule};
-  time.run([&](WorkerId self) {  // 7
+  distribute(cells, queue, num_workers, time, over);  // 5, 6
+  time.run([&](WorkerId self) {                       // 7
     ComputingNode<Locks>& node = nodes[self / per_node];
     if (self % per_node == 0) {
       leaves.refine_one_by_one(node);

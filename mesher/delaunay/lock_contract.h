@@ -8,7 +8,8 @@
 // Vertices go unchecked: whoever may read a cell may read its vertices, those that locks are tried on are
 // peeked at, and what is written of one is its maker's, or its cavity's owner's. The contract binds attempts.
 // Whoever uses the store outside of one has it alone: before workers run, after they have ended, and where
-// the master of a computing node ends a leaf. Peeks and prefetches are bound by nothing.
+// the master of a computing node ends a leaf; or all read it and none writes, where cells are distributed to
+// leaves. Peeks and prefetches are bound by nothing.
 #pragma once
 
 #include <cstdint>

@@ -22,7 +22,7 @@ void RealTime::run(const std::function<void(WorkerId)>& work) {
     } catch (...) {  // a thread was not to be had: those that run already end now
       fail();
     }
-    start_s_ = seconds_since(start);
+    start_s_ += seconds_since(start);
     work_on_thread(work, 0);
   }
   if (failure_) std::rethrow_exception(failure_);

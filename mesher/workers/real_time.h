@@ -23,8 +23,8 @@ class RealTime {
   RealTime(StopControl& stop, std::size_t num_workers, std::vector<Place> places);
 
   /// Calls work(self) for each worker on a thread of its own, worker 0's on the calling one, and returns when
-  /// all have returned. What one throws ends the run and is thrown again here, but for std::bad_alloc, which
-  /// ends it as a limit does.
+  /// all have returned; then it may be called again. What one throws ends the run and is thrown again here,
+  /// but for std::bad_alloc, which ends it as a limit does.
   void run(const std::function<void(WorkerId)>& work);
 
   /// Makes an attempt, after which nothing is locked.

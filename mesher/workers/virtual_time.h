@@ -27,8 +27,9 @@ class VirtualTime {
  public:
   VirtualTime(StopControl& stop, std::size_t num_workers, VirtualCost cost, std::uint64_t seed);
 
-  /// Calls work(self) for each worker, on a fibre of its own, and returns when all have returned. What one
-  /// throws ends the run and is thrown again here, but for std::bad_alloc, which ends it as a limit does.
+  /// Calls work(self) for each worker, on a fibre of its own, and returns when all have returned; then it may
+  /// be called again, and time goes on. What one throws ends the run and is thrown again here, but for
+  /// std::bad_alloc, which ends it as a limit does.
   void run(const std::function<void(WorkerId)>& work);
 
   /// Makes an attempt, after whose virtual end nothing is locked.

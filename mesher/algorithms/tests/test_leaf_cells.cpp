@@ -2,9 +2,16 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
+#include <numeric>
 #include <set>
 
+#include "algorithms/podm.h"
+#include "cost_model.h"
 #include "octree/tests/refinement_queue_state.h"
+#include "refine/virtual_box.h"
+#include "runtime/parallel_for.h"
+#include "tests/images.h"
 
 namespace podm::test {
 namespace {
@@ -59,6 +66,159 @@ TEST_F(OneLeaf, WhatIsDeferredIsLeftOver) {
   std::multiset<CellId> left;
   for (const auto& entry : cells_.take_leftover()) left.insert(entry.cell);
   EXPECT_EQ(left, (std::multiset<CellId>{1, 2}));
+}
+
+// The mesh of a ball, several slices of it, on leaves around a gap: the ball's middle and all but a part of
+// its surface. Cells have died in every slice.
+class Distribution : public testing::Test {
+ protected:
+  Distribution() {
+    refine_anywhere(construction_, "initial", parameters_for(problem_, 1, clamp_), construction_.all_cells(),
+                    1);
+    for (CellId c = 0; c < mesh_.cell_bound(); ++c) {
+      if (!mesh_.cell(c).is_alive()) continue;
+      const LeafId leaf = octree_.leaf_at(mesh_.cell(c).center);
+      (leaf == kNoLeaf ? outside_ : of_leaf_[leaf]).push_back(c);
+    }
+  }
+
+  std::vector<std::size_t> slices(const LeafCells& cells) const {
+    std::vector<std::size_t> all(cells.num_slices());
+    std::iota(all.begin(), all.end(), 0);
+    return all;
+  }
+  static std::vector<CellId> ids(const LeafCells::Entries& entries) {
+    std::vector<CellId> cells;
+    for (const auto& entry : entries) cells.push_back(entry.cell);
+    return cells;
+  }
+  bool are_up_to_date(const LeafCells::Entries& entries) const {
+    return std::all_of(entries.begin(), entries.end(),
+                       [&](const auto& entry) { return mesh_.stamp(entry.cell) == entry.stamp; });
+  }
+  // Every living cell is in the leaf that has its centre, once, or in none, by ascending id.
+  void expect_all_by_id(LeafCells& cells) const {
+    for (LeafId leaf = 0; leaf < octree_.num_leaves(); ++leaf) {
+      const LeafCells::Entries taken = cells.take(leaf);
+      EXPECT_TRUE(are_up_to_date(taken));
+      EXPECT_EQ(ids(taken), of_leaf_[leaf]) << "leaf " << leaf;
+      EXPECT_TRUE(cells.take(leaf).empty());
+    }
+    const LeafCells::Entries left = cells.take_leftover();
+    EXPECT_TRUE(are_up_to_date(left));
+    EXPECT_EQ(ids(left), outside_);
+  }
+
+  LabelImage image_ = ball(24, 9);
+  Isosurface isosurface_{image_, 1};
+  Box clamp_ = clamp_box(foreground_bounds(image_), 1);
+  Problem problem_{.isosurface = isosurface_,
+                   .object = foreground_bounds(image_),
+                   .delta_mm = 1,
+                   .sizes = SizeField(std::vector<double>(2, 1)),
+                   .cell_capacity = 1 << 20};
+  Team team_;
+  StopControl stop_{{}, {}, [](std::uint64_t) {}};
+  Construction construction_{problem_, clamp_, team_, stop_};
+  const Mesh& mesh_ = construction_.mesh();
+  Octree octree_{clamp_.low, clamp_.high, 4, [](const Point&, const Point&) { return 4.0; },
+                 [this](const Point& low, const Point& high) {
+                   const Point middle = 0.5 * (clamp_.low + clamp_.high);
+                   return distance(0.5 * (low + high), middle) > 5;
+                 }};
+  std::vector<std::vector<CellId>> of_leaf_ = std::vector<std::vector<CellId>>(octree_.num_leaves());
+  std::vector<CellId> outside_;
+};
+
+TEST_F(Distribution, ListsEveryLivingCellOnceWhateverTheOrderOfSlices) {
+  LeafCells cells(mesh_, octree_);
+  ASSERT_GE(cells.num_slices(), 4u);
+  ASSERT_GT(octree_.num_leaves(), 50u);
+  ASSERT_GT(outside_.size(), 100u);
+  std::vector<std::size_t> order = slices(cells);
+  std::reverse(order.begin(), order.end());
+  std::uint64_t num_cells = 0;
+  for (const std::size_t slice : order) num_cells += cells.distribute(slice);
+  EXPECT_EQ(num_cells, mesh_.num_cells());
+  expect_all_by_id(cells);
+}
+
+TEST_F(Distribution, ListsEveryLivingCellOnceOnAnyNumberOfThreads) {
+  for (const std::size_t threads : {1, 2, 8}) {
+    LeafCells cells(mesh_, octree_);
+    parallel_for(cells.num_slices(), threads,
+                 [&](std::size_t slice, std::size_t) { cells.distribute(slice); });
+    expect_all_by_id(cells);
+  }
+}
+
+TEST_F(Distribution, TellsTheQueueOfEveryLeafThatHasCells) {
+  LeafCells cells(mesh_, octree_);
+  RefinementQueue queue(octree_, 2);
+  for (const std::size_t slice : slices(cells)) cells.distribute(slice);
+  cells.share_out(queue, {});
+  std::set<LeafId> told;
+  while (const auto leaf = pop(queue, 0)) {
+    EXPECT_TRUE(told.insert(*leaf).second);
+    queue.finish(*leaf);
+  }
+  for (LeafId leaf = 0; leaf < octree_.num_leaves(); ++leaf)
+    EXPECT_EQ(told.count(leaf) == 1, !of_leaf_[leaf].empty()) << "leaf " << leaf;
+}
+
+TEST_F(Distribution, TellsTheQueueNothingWhenTheRunIsOver) {
+  LeafCells cells(mesh_, octree_);
+  RefinementQueue queue(octree_, 2);
+  for (const std::size_t slice : slices(cells)) cells.distribute(slice);
+  std::stop_source over;
+  over.request_stop();
+  cells.share_out(queue, over.get_token());
+  EXPECT_EQ(RefinementQueueState(queue).counts().pending, 0u);
+}
+
+// Refined leaves hand cells over to a leaf that still has those that were distributed.
+TEST_F(Distribution, CellsAddedComeAfterThoseDistributedAsTheyWereAdded) {
+  LeafCells cells(mesh_, octree_);
+  RefinementQueue queue(octree_, 2);
+  for (const std::size_t slice : slices(cells)) cells.distribute(slice);
+  const auto leaf =
+      static_cast<LeafId>(std::max_element(of_leaf_.begin(), of_leaf_.end(),
+                                           [](const auto& a, const auto& b) { return a.size() < b.size(); }) -
+                          of_leaf_.begin());
+  std::vector<CellId> expected = of_leaf_[leaf];
+  LeafCells::Entries added;
+  for (auto c = of_leaf_[leaf].rbegin(); c != of_leaf_[leaf].rend(); ++c) {
+    added.push_back({*c, mesh_.stamp(*c)});
+    expected.push_back(*c);
+  }
+  cells.add(added, queue, {});
+  EXPECT_EQ(ids(cells.take(leaf)), expected);
+}
+
+// As many nodes as there are threads end leaves at the same time, whose cells belong to all leaves.
+TEST_F(Distribution, CellsThatNodesAddAtTheSameTimeAreTakenOnce) {
+  constexpr std::size_t kNodes = 8;
+  LeafCells cells(mesh_, octree_);
+  RefinementQueue queue(octree_, kNodes);
+  const LeafCells::Entries all = construction_.all_cells();
+  parallel_for(kNodes, kNodes, [&](std::size_t node, std::size_t) {
+    for (std::size_t i = node; i < all.size(); i += 64 * kNodes) {
+      LeafCells::Entries some;
+      for (std::size_t j = i; j < std::min(all.size(), i + 64 * kNodes); j += kNodes) some.push_back(all[j]);
+      cells.add(some, queue, {});
+    }
+  });
+  std::size_t num_pending = 0;
+  for (LeafId leaf = 0; leaf < octree_.num_leaves(); ++leaf) {
+    std::vector<CellId> taken = ids(cells.take(leaf));
+    std::sort(taken.begin(), taken.end());
+    EXPECT_EQ(taken, of_leaf_[leaf]) << "leaf " << leaf;
+    num_pending += !taken.empty();
+  }
+  std::vector<CellId> left = ids(cells.take_leftover());
+  std::sort(left.begin(), left.end());
+  EXPECT_EQ(left, outside_);
+  EXPECT_EQ(RefinementQueueState(queue).counts().pending, num_pending);
 }
 
 }  // namespace

@@ -37,6 +37,25 @@ TYPED_TEST(Times, LetEveryWorkerWorkOnce) {
   for (const auto& of_worker : calls) EXPECT_EQ(of_worker, 1);
 }
 
+// Who works in the second run sees what all did in the first, and time goes on.
+TYPED_TEST(Times, RunAgain) {
+  auto time = TypeParam::make(this->stop_);
+  std::array<std::atomic<int>, kNumWorkers> calls{};
+  time.run([&](WorkerId self) {
+    ++calls[self];
+    time.pause(self, 0.001);
+  });
+  const double between_s = time.now_s();
+  time.run([&](WorkerId self) {
+    EXPECT_GE(time.now_s(), between_s);
+    for (const auto& of_worker : calls) EXPECT_GE(of_worker, 1);
+    time.pause(self, 0.001);
+    ++calls[self];
+  });
+  EXPECT_GT(time.now_s(), between_s);
+  for (const auto& of_worker : calls) EXPECT_EQ(of_worker, 2);
+}
+
 // Worker 0 is resumed before it blocks, or while it does; the others when it has been.
 TYPED_TEST(Times, ResumeWhoBlocks) {
   auto time = TypeParam::make(this->stop_);
