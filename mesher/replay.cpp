@@ -53,6 +53,11 @@ class Replay {
       to_remove_.push_back(found->second);
       vertex_of_.erase(found);
     }
+    if (logged.kind == kMovedVertex) {
+      check(to_remove_.size() == 1, "moves other than one vertex");
+      check(vertex_of_.emplace(logged.vertex, to_remove_.front()).second, "its vertex is there already");
+      return;
+    }
     CellId& start = last_cell_[logged.worker];
     check(operation_.plan_insertion(p, walk(start, p)) == StepResult::kDone,
           "its point conflicts with no cell");

@@ -67,6 +67,24 @@ void Construction::sample_pages(const std::string& phase) {
   for (SampledAccesses& of_worker : accesses_) of_worker.addresses.clear();
 }
 
+// Before the team goes on, so that operations on vertices come after their moves.
+void Construction::log(const Relocation& relocation) {
+  OperationBatch moves;
+  for (VertexId v = 0; v < relocation.vertex_bound(); ++v) {
+    const VertexId now = relocation.vertex_now(v);
+    if (now == v) continue;
+    const Point& p = mesh().point(now);
+    moves.operations.push_back({.sequence = team_.log->next_sequence(),
+                                .point = {p.x, p.y, p.z},
+                                .vertex = now,
+                                .worker = 0,
+                                .kind = kMovedVertex,
+                                .num_removed = 1});
+    moves.removed.push_back(v);
+  }
+  team_.log->append(moves);
+}
+
 // Memory may be left where there are no more numbers for cells.
 Refinement Construction::finish() {
   result_.stop_reason = stop_.reason();

@@ -5,10 +5,12 @@
 #include <limits>
 #include <map>
 #include <memory>
+#include <optional>
 #include <string>
 #include <vector>
 
 #include "algorithms/page_sampler.h"
+#include "delaunay/relocation.h"
 #include "podm/limits.h"
 #include "podm/meshing_report.h"
 #include "podm/operation_log.h"
@@ -111,6 +113,25 @@ class Construction {
       for (WorkerId id = 0; id < count; ++id) result_.workers[id].bound_to = time.processor(id).bound_to;
     }
   }
+  /// Moves the mesh between operations: what is at a point goes to the NUMA node of worker_of(point), and
+  /// stays where that is kNoWorker. All of the team move it, in their time. Nothing: the run is over, and
+  /// all is where it was.
+  template <class Time, class WorkerOf>
+  std::optional<Relocation> relocate(Time& time, const WorkerOf& worker_of) {
+    std::vector<NodeIndex> nodes;
+    for (const WorkerReport& worker : result_.workers) nodes.push_back(static_cast<NodeIndex>(worker.node));
+    std::optional<Relocation> relocation(std::in_place, *result_.mesh, nodes);
+    const auto node_of = [&](const Point& p) {
+      const WorkerId worker = worker_of(p);
+      return worker == kNoWorker ? Relocation::kStay : nodes[worker];
+    };
+    time.run([&](WorkerId self) { relocation->look(self, node_of); });
+    time.run([&](WorkerId self) { relocation->rename(self, *pools_[self]); });
+    if (time.is_over()) return std::nullopt;
+    time.run([&](WorkerId self) { relocation->move(self, *pools_[self]); });
+    if (team_.log != nullptr) log(*relocation);
+    return relocation;
+  }
   /// What workers did in a phase that has ended.
   template <class Locks, class Time>
   void account(const Workers<Locks>& workers, const Time& time) {
@@ -132,6 +153,7 @@ class Construction {
   std::vector<Place> places_of_first(std::size_t count) const;
   template <class Locks>
   void add_counters(const Worker<Locks>& worker, const Overhead& overhead);
+  void log(const Relocation& relocation);
   void charge(const std::string& phase, double seconds) {
     result_.phases_s[phase] += seconds;
     charged_s_ += seconds;

@@ -57,6 +57,18 @@ void LeafCells::add(const Entries& cells, RefinementQueue& queue, const std::sto
   });
 }
 
+void LeafCells::rename(const Relocation& relocation) {
+  const auto rename = [&](Entries& cells) {
+    for (auto& entry : cells) {
+      entry.cell = relocation.cell_now(entry.cell);
+      entry.stamp = mesh_.stamp(entry.cell);
+    }
+  };
+  for (List& list : list_of_leaf_) rename(list.entries);
+  for (Entries& cells : outside_) rename(cells);
+  rename(leftover_);
+}
+
 void LeafCells::defer(const Entries& cells) {
   const std::scoped_lock lock(leftover_mutex_);
   leftover_.insert(leftover_.end(), cells.begin(), cells.end());

@@ -17,6 +17,7 @@
 #include <stop_token>
 #include <vector>
 
+#include "delaunay/relocation.h"
 #include "octree/refinement_queue.h"
 #include "refine/poor_element_list.h"
 
@@ -42,6 +43,8 @@ class LeafCells {
   /// Lists cells with their leaves, and tells the queue. Nobody may change them meanwhile. After a stop
   /// request it lists no more.
   void add(const Entries& cells, RefinementQueue& queue, const std::stop_token& stop);
+  /// Follows cells that have moved. Nobody else may call anything meanwhile.
+  void rename(const Relocation& relocation);
   /// Lists cells that no leaf can refine.
   void defer(const Entries& cells);
   /// Those distributed come first, by their ids.

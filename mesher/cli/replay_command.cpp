@@ -1,6 +1,7 @@
 // podm replay: a run's operations carried out in their order on one thread, and the mesh compared.
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cstdio>
 
 #include "cli/commands.h"
@@ -31,8 +32,11 @@ int run(const ReplayCommand& command) {
   TetMesh mesh = replay_log(command.log_path, image, log, space);
   canonicalize(mesh);
   const std::string sha256 = mesh_sha256(mesh);
+  const auto num_operations =
+      std::count_if(log.all.operations.begin(), log.all.operations.end(),
+                    [](const LoggedOperation& logged) { return logged.kind != kMovedVertex; });
   fmt::print(stderr, "{}: {} operations, {} cells\nsha256 of the log    {}\nsha256 of the replay {}\n",
-             command.log_path, log.all.operations.size(), mesh.cells.size(), log.head.mesh_sha256, sha256);
+             command.log_path, num_operations, mesh.cells.size(), log.head.mesh_sha256, sha256);
   const bool is_same = sha256 == log.head.mesh_sha256;
   fmt::print(stderr, "{}\n",
              is_same ? "the run equals its replay" : "podm: the run does not equal its replay");

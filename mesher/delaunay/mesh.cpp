@@ -68,6 +68,16 @@ void Mesh::refresh_sphere(CellId c) {
   set_sphere(c, circumsphere(point(v[0]), point(v[1]), point(v[2]), point(v[3]), extent_));
 }
 
+void Mesh::move_cell(CellId from, CellId to, const std::array<VertexId, 4>& vertices,
+                     const std::array<FacetId, 4>& mirrors) {
+  const Cell old = cells_[from];
+  if (to != from) renew(from, {kNoVertex, kNoVertex, kNoVertex, kNoVertex});
+  renew(to, vertices);
+  set_mirrors(to, mirrors);
+  set_sphere(to, {old.center, old.squared_radius});
+  cells_[to].label = old.label;
+}
+
 bool Mesh::is_in_conflict(CellId c, const Point& p) const {
   assert_may_read(*this, c);
   const Side side = side_of(cells_[c].center, cells_[c].squared_radius, p);

@@ -167,6 +167,10 @@ class Mesh {
     assert_may_write_mirrors(*this, c);
     for (unsigned i = 0; i < 4; ++i) store(cells_[c].mirrors[i], mirrors[i], std::memory_order_relaxed);
   }
+  /// Puts the cell `from` in the slot `to`, its own or one without a cell, under other names of what it
+  /// refers to. Nobody else may use either.
+  void move_cell(CellId from, CellId to, const std::array<VertexId, 4>& vertices,
+                 const std::array<FacetId, 4>& mirrors);
   /// Tells the facet `of` that `mirror` lies on its other side. Nothing is beyond the box.
   void set_mirror(FacetId of, FacetId mirror) {
     step();

@@ -43,6 +43,13 @@ class Pool {
   void reserve(const std::vector<CellId>& dying, std::size_t created, std::size_t removed);
   /// Ids for `count` cells in place of the dying. Those among them that are warm, and near, come first.
   void replace(const std::vector<CellId>& dying, std::size_t count, std::vector<CellId>& created);
+  /// Makes room to take so many cells and vertices, and to release as many.
+  void reserve_moves(std::size_t cells, std::size_t vertices) {
+    cells_.reserve(cells, cells);
+    vertices_.reserve(vertices, vertices);
+  }
+  CellId take_cell() { return cells_.take(); }
+  void release_cell(CellId c) { cells_.release(c); }
   VertexId take_vertex() { return vertices_.take(); }
   void release_vertex(VertexId v);
 

@@ -41,6 +41,9 @@ class RefinementQueue {
   /// unequal.
   void share_out(const std::stop_token& stop = {});
 
+  /// The node that the leaf is home to, or taken over by. Nobody else may call anything meanwhile.
+  std::size_t home_of(LeafId leaf) const { return share_of_[leaf]; }
+
   /// The leaf has `num_poor` more poor cells. Leaves that never had any are not handed out. Nodes that wait
   /// are told at the next finish().
   void push(LeafId leaf, std::uint64_t num_poor);

@@ -1,11 +1,13 @@
 """podm mesh --log and podm replay: a run of many workers equals the serial run of its operations."""
 
 import json
+import pathlib
 import unittest
 
 from podm_process import PodmTestCase, run_podm
 
 IMAGE = "phantom:abdomen@40"
+BLACKLIGHT = pathlib.Path(__file__).resolve().parents[2] / "experiments/machines/blacklight_256.xml"
 
 
 class Replay(PodmTestCase):
@@ -25,6 +27,10 @@ class Replay(PodmTestCase):
         for arguments in ([], ["--threads", 2], ["--threads", 9, "--contention", "global"],
                           ["--executor", "virtual", "--threads", 64, "--seed", 5],
                           ["--executor", "virtual", "--threads", 3, "--contention", "aggressive"],
+                          # The initial mesh moves to the nodes of its leaves.
+                          ["--algorithm", "pdr-podm", "--threads", 32, "--cores-per-node", 16, "--pin", "compact",
+                           "--topology", BLACKLIGHT, "--executor", "virtual"],
+                          ["--algorithm", "pdr", "--threads", 4, "--pin", "scatter", "--topology", BLACKLIGHT],
                           ["--threads", 3, "--space", "voxel"], ["--threads", 2, "--labels", "2-5", "--space", "LPS"]):
             with self.subTest(arguments=arguments):
                 record = self.mesh(*arguments)

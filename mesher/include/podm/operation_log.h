@@ -18,13 +18,17 @@
 
 namespace podm {
 
-/// An isosurface point or circumcentre inserted, together with the removal of vertices.
+/// The kind of an entry that is no operation: a vertex got another id.
+inline constexpr std::uint32_t kMovedVertex = 0;
+
+/// An isosurface point or circumcentre inserted, together with the removal of vertices. Or a vertex that gets
+/// another id: the one removed is called `vertex` from now on.
 struct LoggedOperation {
   std::uint64_t sequence = 0;     ///< order of the commits of a run; gaps are allowed
   std::array<double, 3> point{};  ///< mm, working frame
   std::uint32_t vertex = 0;       ///< id of the inserted vertex; ids of removed vertices are used again
   std::uint32_t worker = 0;
-  std::uint32_t kind = 0;  ///< a VertexKind
+  std::uint32_t kind = 0;  ///< a VertexKind, or kMovedVertex
   std::uint32_t num_removed = 0;
 };
 static_assert(sizeof(LoggedOperation) == 48);

@@ -1,0 +1,81 @@
+// The move of a mesh to the memory of those who go on with it: cells and vertices get ids of other NUMA
+// nodes.
+//
+//   In three steps, each by all workers, none before all have ended the one before. Workers meet nowhere: in
+//   the first, each looks at a part of the ids; then each has the cells and vertices that it moves to its own
+//   node, and nobody else touches their old slots or their new ones. What it needs of others, their new
+//   names, is known before the last step.
+#pragma once
+
+#include <array>
+#include <vector>
+
+#include "delaunay/mesh.h"
+#include "delaunay/pool.h"
+#include "runtime/worker_id.h"
+
+namespace podm {
+
+class Relocation {
+ public:
+  static constexpr NodeIndex kStay = 0xffff;
+
+  /// Worker i of nodes.size() is on nodes[i]. Nobody carries out operations until the move is over.
+  Relocation(Mesh& mesh, const std::vector<NodeIndex>& nodes);
+
+  /// Step 1: where cells with that circumcentre and vertices at that point are to lie is node_of(point), a
+  /// worker's node or kStay. Throws std::bad_alloc.
+  template <class NodeOf>
+  void look(WorkerId self, const NodeOf& node_of) {
+    for_part(cells_now_, self, [&](CellId c) {
+      if (mesh_.cell(c).is_alive())
+        found_at(node_of(mesh_.cell(c).center), mesh_.node_of_cell(c), self).cells.push_back(c);
+    });
+    for_part(vertices_now_, self, [&](VertexId v) {
+      if (mesh_.vertex(v).kind != VertexKind::kUnused)
+        found_at(node_of(mesh_.point(v)), mesh_.node_of_vertex(v), self).vertices.push_back(v);
+    });
+  }
+  /// Step 2: takes ids from the worker's pool. Throws std::bad_alloc; then nothing may be moved.
+  void rename(WorkerId self, Pool& pool);
+  /// Step 3: what the worker moves has its new names, and the old ones are in its pool. Returns how many
+  /// cells it has rewritten.
+  std::size_t move(WorkerId self, Pool& pool);
+
+  /// What it is called since: the same, if it stayed.
+  CellId cell_now(CellId c) const { return cells_now_[c]; }
+  VertexId vertex_now(VertexId v) const { return vertices_now_[v]; }
+  /// The old ids are below it.
+  VertexId vertex_bound() const { return static_cast<VertexId>(vertices_now_.size()); }
+
+ private:
+  using Ids = std::vector<std::uint32_t>;
+  // What one worker found that is to lie on one node.
+  struct Found {
+    Ids cells, vertices;
+  };
+
+  template <class Visit>
+  void for_part(Ids& now, WorkerId self, const Visit& visit) {
+    const std::size_t begin = now.size() * self / found_.size(),
+                      end = now.size() * (self + 1) / found_.size();
+    for (std::size_t id = begin; id < end; ++id) {
+      now[id] = static_cast<std::uint32_t>(id);
+      visit(now[id]);
+    }
+  }
+  Found& found_at(NodeIndex node, NodeIndex current, WorkerId self) {
+    return found_[self][node == kStay ? current : node];
+  }
+  template <class Visit>
+  void for_each_found(WorkerId mover, const Visit& visit) const;
+  FacetId facet_now(FacetId f) const { return f == kNoFacet ? f : 4 * cells_now_[cell_of(f)] + (f & 3u); }
+  void move_cell(CellId c);
+
+  Mesh& mesh_;
+  std::vector<std::vector<WorkerId>> movers_;  // indexed by node
+  std::vector<std::vector<Found>> found_;      // indexed by the worker that looked, and node
+  Ids cells_now_, vertices_now_;               // indexed by the old id
+};
+
+}  // namespace podm
