@@ -1,6 +1,7 @@
 #include "octree/refinement_queue.h"
 
 #include <algorithm>
+#include <bit>
 #include <limits>
 #include <numeric>
 #include <utility>
@@ -17,6 +18,7 @@ RefinementQueue::RefinementQueue(const Octree& octree, unsigned num_nodes, LeafO
       num_poor_(octree.num_leaves()),
       num_active_near_(octree.num_leaves()),
       share_of_(octree.num_leaves()),
+      num_rivals_(octree.num_leaves()),
       num_poor_of_share_(order == LeafOrder::kHome ? num_nodes : 1),
       ready_(num_poor_of_share_.size()),
       resume_at_(num_nodes) {
@@ -30,6 +32,7 @@ void RefinementQueue::share_out(const std::stop_token& stop) {
   std::vector<LeafId> leaves(octree_.num_leaves());
   std::iota(leaves.begin(), leaves.end(), 0);
   divide(leaves, 0, ready_.size(), stop);
+  count_rivals(stop);
 }
 
 // Divides the leaves into shares of equal work by recursive bisection. (Berger, Bokhari, IEEE Trans. Comput.
@@ -84,6 +87,17 @@ void RefinementQueue::move(LeafId leaf, std::size_t to) {
   if (is_ready(leaf)) ready_of(leaf).insert(key(leaf));
 }
 
+// A leaf that is taken over keeps its number.
+void RefinementQueue::count_rivals(const std::stop_token& stop) {
+  for (LeafId leaf = 0; leaf < octree_.num_leaves() && !stop.stop_requested(); ++leaf) {
+    const std::vector<LeafId> zones = buffer_zones(leaf);
+    const auto is_rival = [&](LeafId near) { return share_of_[near] != share_of_[leaf]; };
+    if (is_ready(leaf)) ready_of(leaf).erase(key(leaf));
+    num_rivals_[leaf] = static_cast<std::uint32_t>(std::count_if(zones.begin(), zones.end(), is_rival));
+    if (is_ready(leaf)) ready_of(leaf).insert(key(leaf));
+  }
+}
+
 // Half of the share that has most poor cells, if the node's own has none. Waiting nodes come here at every
 // change, so that leaves are looked through only when there is something to take.
 void RefinementQueue::take_over(unsigned node) {
@@ -136,10 +150,11 @@ void RefinementQueue::finish(LeafId leaf) {
   wake_all(node_of_active_[leaf] + 1);
 }
 
-const std::set<RefinementQueue::Key>& RefinementQueue::ready_for(unsigned node) const {
-  if (order_ == LeafOrder::kHome && !ready_[node].empty()) return ready_[node];
-  return *std::max_element(ready_.begin(), ready_.end(),
-                           [](const auto& a, const auto& b) { return a.size() < b.size(); });
+std::uint64_t RefinementQueue::home_rank(LeafId leaf) const {
+  constexpr std::uint64_t kMostDigits = 64, kMostRivals = 1023;  // in uniform trees there are 124 at most
+  const auto num_digits = static_cast<std::uint64_t>(std::bit_width(num_poor_[leaf]));
+  return (kMostDigits - num_digits) * (kMostRivals + 1) +
+         (kMostRivals - std::min<std::uint64_t>(num_rivals_[leaf], kMostRivals));
 }
 
 RefinementQueue::Key RefinementQueue::key(LeafId leaf) const {
@@ -152,6 +167,7 @@ RefinementQueue::Key RefinementQueue::key(LeafId leaf) const {
       case LeafOrder::kColoring:
         return position(0) + 3 * position(1) + 9 * position(2);
       case LeafOrder::kHome:
+        return home_rank(leaf);
       case LeafOrder::kMostWork:
         break;
     }
@@ -181,8 +197,9 @@ void RefinementQueue::set_active(const std::vector<LeafId>& zones, bool is_activ
 }
 
 std::optional<LeafId> RefinementQueue::take(unsigned node) {
-  if (order_ == LeafOrder::kHome && ready_[node].empty()) take_over(node);
-  const std::set<Key>& ready = ready_for(node);
+  const bool is_home = order_ == LeafOrder::kHome;
+  if (is_home && ready_[node].empty()) take_over(node);
+  const std::set<Key>& ready = ready_[is_home ? node : 0];
   if (ready.empty()) return std::nullopt;
   Key& resume_at = resume_at_[order_ == LeafOrder::kMorton ? node : 0];
   const auto next = ready.lower_bound(resume_at);

@@ -3,9 +3,11 @@
 // A leaf that is handed out is *active* until it is finished. Meanwhile no leaf within two rings of it (B1
 // and B2, see octree.h) is handed out: they are out of the queue, though they may be given poor cells. So the
 // regions of active leaves are disjoint. Orders in which leaves are handed out:
-//   home       most poor cells first, of the node's own share of space, so that a node works where it has
-//              worked; if none of it is ready, of the share that has most leaves ready. A node that is
-//              through with its share takes over half of the one that has most poor cells
+//   home       of the node's own share of space alone, so that it works where it has worked; while none of it
+//              is ready the node waits. One that is through with its share takes over half of the one that
+//              has most poor cells. Most poor cells first, to a factor of two; among such the leaf that has
+//              most leaves of others' shares within two rings, which keep it waiting if it is left to the
+//              end. Leaves in the middle of a share are ready whenever its node asks
 //   most work  most poor cells first
 //   Morton     each node goes along the curve from its last leaf; nodes start evenly spread
 //   coloring   by position modulo 3, colour by colour: leaves of one of the 27 do not keep each other waiting
@@ -41,7 +43,7 @@ class RefinementQueue {
   /// unequal.
   void share_out(const std::stop_token& stop = {});
 
-  /// The node that the leaf is home to, or taken over by. Nobody else may call anything meanwhile.
+  /// The node whose share has the leaf; 0 where there are no shares. Nobody else may call anything meanwhile.
   std::size_t home_of(LeafId leaf) const { return share_of_[leaf]; }
 
   /// The leaf has `num_poor` more poor cells. Leaves that never had any are not handed out. Nodes that wait
@@ -75,7 +77,7 @@ class RefinementQueue {
   void wake_all(unsigned first);
   Key key(LeafId leaf) const;
   std::set<Key>& ready_of(LeafId leaf) { return ready_[share_of_[leaf]]; }
-  const std::set<Key>& ready_for(unsigned node) const;
+  std::uint64_t home_rank(LeafId leaf) const;
   bool is_ready(LeafId leaf) const { return num_poor_[leaf] > 0 && num_active_near_[leaf] == 0; }
   std::vector<LeafId> buffer_zones(LeafId leaf) const;
   void set_active(const std::vector<LeafId>& zones, bool is_active);
@@ -84,6 +86,7 @@ class RefinementQueue {
   void divide(std::span<LeafId> leaves, std::size_t first_share, std::size_t num_shares,
               const std::stop_token& stop);
   std::size_t bisect(std::span<LeafId> leaves, double share) const;
+  void count_rivals(const std::stop_token& stop);
   void take_over(unsigned node);
 
   const Octree& octree_;
@@ -95,6 +98,7 @@ class RefinementQueue {
   std::vector<std::uint64_t> num_poor_;
   std::vector<std::uint32_t> num_active_near_;  // active leaves within two rings, the leaf itself included
   std::vector<std::size_t> share_of_;           // indexed by leaf; there is one a node for home, else one
+  std::vector<std::uint32_t> num_rivals_;       // leaves within two rings that were shared out to others
   std::vector<std::uint64_t> num_poor_of_share_;
   std::vector<std::set<Key>> ready_;  // indexed by share
   std::vector<Key> resume_at_;        // indexed by node: where in the order its next leaf is looked for

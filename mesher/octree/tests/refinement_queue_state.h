@@ -22,11 +22,6 @@ class RefinementQueueState {
     for (const auto& ready : queue_.ready_) num_ready += ready.size();
     return {queue_.num_pending_, num_ready, queue_.num_active_, queue_.num_waiting_};
   }
-  /// The node whose share has the leaf; 0 where there are no shares.
-  std::size_t home_of(LeafId leaf) const {
-    const std::scoped_lock lock(queue_.mutex_);
-    return queue_.share_of_[leaf];
-  }
 
   /// A leaf for the node; nothing if it would have to wait for one.
   std::optional<LeafId> pop(unsigned node) {

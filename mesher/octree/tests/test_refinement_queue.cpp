@@ -74,8 +74,13 @@ TEST_P(Queue, HandsOutEveryPendingLeafAwayFromActiveOnes) {
       queue.finish(active.back());
       active.pop_back();
     } else if (active.size() < kNumNodes) {
-      const std::optional<LeafId> leaf = pop(queue, static_cast<unsigned>(seeded.random() % kNumNodes));
-      ASSERT_EQ(leaf.has_value(), std::any_of(pending.begin(), pending.end(), is_free));
+      const auto node = static_cast<unsigned>(seeded.random() % kNumNodes);
+      const std::optional<LeafId> leaf = pop(queue, node);
+      const auto is_for_node = [&](LeafId pending_leaf) {
+        return is_free(pending_leaf) && (order != LeafOrder::kHome || queue.home_of(pending_leaf) == node);
+      };
+      ASSERT_EQ(leaf.has_value(), std::any_of(pending.begin(), pending.end(), is_for_node));
+      ASSERT_TRUE(leaf || pending.empty() || !active.empty()) << "all wait, for nobody";
       if (!leaf) return;
       EXPECT_TRUE(is_free(*leaf));
       EXPECT_EQ(pending.erase(*leaf), 1u);
@@ -178,14 +183,14 @@ TEST_P(Shares, HaveEqualWorkAndGoToTheirNodes) {
   }
   queue.share_out();
   for (LeafId leaf = 0; leaf < octree.num_leaves(); ++leaf)
-    work_of_node[RefinementQueueState(queue).home_of(leaf)] += work_of_leaf[leaf] + 1;
+    work_of_node[queue.home_of(leaf)] += work_of_leaf[leaf] + 1;
   const double mean = std::reduce(work_of_node.begin(), work_of_node.end()) / kNumNodes;
   for (unsigned node = 0; node < kNumNodes; ++node) {
     EXPECT_NEAR(work_of_node[node], mean, 2 * (kMost + 1));
     if (work_of_node[node] == 0) continue;
     const std::optional<LeafId> leaf = pop(queue, node);
     ASSERT_TRUE(leaf);
-    EXPECT_EQ(RefinementQueueState(queue).home_of(*leaf), node);
+    EXPECT_EQ(queue.home_of(*leaf), node);
     queue.finish(*leaf);
   }
 }
@@ -196,13 +201,42 @@ TEST(Share, OfWhoHasMostIsHalvedForWhoHasNone) {
   RefinementQueue queue(octree, 2);
   queue.share_out();
   for (LeafId leaf = 0; leaf < 16; ++leaf) queue.push(leaf, 10);
-  ASSERT_EQ(RefinementQueueState(queue).home_of(15), 0u);
+  ASSERT_EQ(queue.home_of(15), 0u);
   const std::optional<LeafId> taken = pop(queue, 1);
   ASSERT_TRUE(taken);
   unsigned num_taken_over = 0;
-  for (LeafId leaf = 0; leaf < 16; ++leaf) num_taken_over += RefinementQueueState(queue).home_of(leaf) == 1;
+  for (LeafId leaf = 0; leaf < 16; ++leaf) num_taken_over += queue.home_of(leaf) == 1;
   EXPECT_EQ(num_taken_over, 8u);
-  EXPECT_EQ(RefinementQueueState(queue).home_of(*taken), 1u);
+  EXPECT_EQ(queue.home_of(*taken), 1u);
+}
+
+// Of a row of two shares the leaves beside the cut are the rivals of the other's.
+TEST(Share, IsRefinedFromItsContendedLeavesInwards) {
+  const Octree octree = row_of(32);
+  RefinementQueue queue(octree, 2);
+  for (LeafId leaf = 0; leaf < 32; ++leaf) queue.push(leaf, 16 + (leaf % 16) % 5);
+  queue.share_out();
+  EXPECT_EQ(pop(queue, 0), LeafId{15}) << "leaves of the same number of digits";
+  EXPECT_GT(pop(queue, 1), LeafId{17});
+  queue.push(3, 100);
+  queue.finish(15);
+  queue.push(15, 2);
+  EXPECT_EQ(pop(queue, 0), LeafId{3}) << "most poor cells first";
+}
+
+// Node 0's leaves are near an active one, node 1 has leaves to spare.
+TEST(Share, IsNotLeftWhileItHasPoorCells) {
+  const Octree octree = row_of(32);
+  RefinementQueue queue(octree, 2);
+  queue.share_out();
+  queue.push(16, 1);
+  ASSERT_EQ(pop(queue, 1), LeafId{16});
+  queue.push(15, 1);
+  for (LeafId leaf = 20; leaf < 32; ++leaf) queue.push(leaf, 100);
+  EXPECT_EQ(pop(queue, 0), std::nullopt);
+  queue.finish(16);
+  EXPECT_EQ(pop(queue, 0), LeafId{15});
+  EXPECT_GT(pop(queue, 0), LeafId{16}) << "it is through with it";
 }
 
 TEST(Share, OfTheFirstNodeIsAllUntilItIsSharedOutWithoutAStopRequest) {
@@ -210,8 +244,7 @@ TEST(Share, OfTheFirstNodeIsAllUntilItIsSharedOutWithoutAStopRequest) {
   RefinementQueue queue(octree, 4);
   const auto shares = [&] {
     std::vector<int> leaves(4);
-    for (LeafId leaf = 0; leaf < octree.num_leaves(); ++leaf)
-      ++leaves[RefinementQueueState(queue).home_of(leaf)];
+    for (LeafId leaf = 0; leaf < octree.num_leaves(); ++leaf) ++leaves[queue.home_of(leaf)];
     return leaves;
   };
   EXPECT_EQ(shares(), (std::vector{32, 0, 0, 0}));
