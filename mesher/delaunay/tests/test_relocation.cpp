@@ -36,13 +36,13 @@ class Relocated : public testing::Test {
   static NodeIndex node_of(const Point& p) {
     return p.x < -5 ? 0 : p.x < 0 ? 1 : p.x < 5 ? 3 : Relocation::kStay;
   }
-  std::unique_ptr<Relocation> relocate(std::size_t threads) {
+  std::unique_ptr<Relocation> relocate(std::size_t threads, double sign = 1) {
     auto relocation = std::make_unique<Relocation>(mesh_, kNodes);
     const auto by_all = [&](const auto& step) {
       parallel_for(kNodes.size(), threads,
                    [&](std::size_t i, std::size_t) { step(static_cast<WorkerId>(i)); });
     };
-    by_all([&](WorkerId self) { relocation->look(self, node_of); });
+    by_all([&](WorkerId self) { relocation->look(self, [&](const Point& p) { return node_of(sign * p); }); });
     by_all([&](WorkerId self) { relocation->rename(self, pools_[self]); });
     by_all([&](WorkerId self) { relocation->move(self, pools_[self]); });
     return relocation;
@@ -96,6 +96,16 @@ TEST_F(Relocated, IsGoneOnWith) {
   std::string fault;
   EXPECT_TRUE(is_valid(mesh_, &fault)) << fault;
   EXPECT_EQ(mesh_.cell_bound(), bound);
+}
+
+// From side to side, again and again: the old ids are used again.
+TEST_F(Relocated, TakesNoMoreRoomInTheEnd) {
+  for (int i = 0; i < 4; ++i) relocate(1, i % 2 == 0 ? -1 : 1);
+  const CellId cells = mesh_.cell_bound();
+  const VertexId vertices = mesh_.vertex_bound();
+  for (int i = 0; i < 60; ++i) relocate(1, i % 2 == 0 ? -1 : 1);
+  EXPECT_LE(mesh_.cell_bound(), 2 * cells);
+  EXPECT_LE(mesh_.vertex_bound(), 2 * vertices);
 }
 
 // An entry of a list from before finds another stamp, or no cell.
