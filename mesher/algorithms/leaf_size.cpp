@@ -83,9 +83,9 @@ std::uint64_t checked_bytes_of_leaves(const Problem& problem, const LeafOptions&
       told, leaves * kMostBytesPerLeaf / kBytesPerGib, most_bytes / kBytesPerGib, enough_mm));
 }
 
-// A leaf that several workers share is so much longer that each has as much as one has of a leaf of its own:
-// 256 simulated cores, 16 a node, were 1.46 times faster, and 16 % instead of 27 % of their operations rolled
-// back.
+// Leaves are as large as they may be for each node to find enough that are two rings from all others at work:
+// what is remote, deferred, handed over or in the way of a leaf's other workers lies along its sides. Where
+// the initial mesh is too coarse for that they are as short as it allows.
 std::unique_ptr<const Octree> make_octree(const Problem& problem, const Radii& radii, const Box& box,
                                           const LeafOptions& options, const Team& team,
                                           const std::stop_token& stop) {
@@ -96,11 +96,12 @@ std::unique_ptr<const Octree> make_octree(const Problem& problem, const Radii& r
     return std::make_unique<Octree>(octree_of_sides(problem, radii, box, ratio, asked_mm, asked_mm, stop));
   const double finest_mm = kLeafSizeOverRadius * ratio * radii.least;
   double coarsest_mm = kLeafSizeOverRadius * ratio * radii.most;
-  double growth = std::cbrt(team.coordination.num_workers / team.num_nodes);
+  const LeafId wanted = kLeavesPerNode * static_cast<LeafId>(team.num_nodes);
+  const Vector extent = box.high - box.low;
+  double growth = std::max(1.0, std::cbrt(extent.x * extent.y * extent.z / wanted) / finest_mm);
   for (;;) {
     auto octree = std::make_unique<Octree>(
         octree_of_sides(problem, radii, box, ratio, growth * finest_mm, growth * coarsest_mm, stop));
-    const LeafId wanted = kLeavesPerNode * static_cast<LeafId>(team.num_nodes);
     const bool is_finest = growth == 1 && coarsest_mm <= finest_mm;
     if (octree->num_leaves() >= wanted || is_finest || stop.stop_requested()) return octree;
     if (growth > 1) {
