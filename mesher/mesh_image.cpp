@@ -17,6 +17,7 @@
 #include "measure_quality.h"
 #include "podm/operation_log.h"
 #include "replay.h"
+#include "workers/work_cost.h"
 
 namespace podm {
 
@@ -109,10 +110,30 @@ class Run {
     report.store_cells = refinement.mesh->num_cells();
     const auto& [low, high] = refinement.mesh->box();
     report.virtual_box = {low.x, low.y, low.z, high.x, high.y, high.z};
-    report.virtual_phases_s = refinement.virtual_phases_s;
+    if (options_.team.executor == Executor::kVirtual) simulate(refinement, report);
     report.num_leaves = refinement.num_leaves;
     report.schedule = std::move(refinement.schedule);
     team_.report_to(report, std::move(refinement.pages));
+  }
+
+  // Phases whose loops run on this machine's threads take virtual time by their counted work.
+  void simulate(const Refinement& refinement, MeshingReport& report) const {
+    const Team team = team_.team();
+    const auto voxels = static_cast<double>(image_.voxels.size());
+    const auto cells = static_cast<double>(refinement.mesh->num_cells());
+    const int num_workers = team.coordination.num_workers;
+    report.virtual_phases_s = refinement.virtual_phases_s;
+    report.virtual_phases_s["read"] = virtual_seconds(team, kVoxelRead * voxels);
+    report.virtual_phases_s["transform"] = virtual_seconds(team, kVoxelTransformed * voxels, num_workers);
+    report.virtual_phases_s["extract"] = virtual_seconds(team, kCellExtracted * cells, num_workers);
+    const VirtualSpending& spending = refinement.virtual_spending;
+    report.virtual_worker_s = {{"compute", spending.work_s},
+                               {"memory_remote", spending.remote_memory_s},
+                               {"network_queue", spending.network_s},
+                               {"between_attempts", spending.between_s},
+                               {"locks", spending.queueing_s}};
+    for (const Cause& cause : kCauses)
+      report.virtual_worker_s[cause.name] = refinement.counters.overhead.*cause.member;
   }
 
   void extract(const Isosurface& isosurface, Refinement& refinement, MeshingResult& result) {

@@ -37,6 +37,13 @@ LeafSchedule::Activation ComputingNode<Locks>::end(LeafCells& cells, RefinementQ
 }
 
 template <class Locks>
+std::size_t ComputingNode<Locks>::num_foreign() const {
+  std::size_t num_foreign = 0;
+  for (const auto& worker : workers_) num_foreign += worker->num_foreign();
+  return num_foreign;
+}
+
+template <class Locks>
 std::uint64_t ComputingNode<Locks>::num_committed() const {
   std::uint64_t committed = 0;
   for (const auto& worker : workers_) committed += worker->counters().num_insertions();

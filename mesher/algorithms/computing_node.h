@@ -23,6 +23,7 @@ class ComputingNode {
       : number_(number), workers_(workers), group_(options, std::move(resume), workers.front()->id()) {}
 
   unsigned number() const { return number_; }
+  std::size_t num_workers() const { return workers_.size(); }
   Worker<Locks>& master() const { return *workers_.front(); }
   Coordination& group() { return group_; }
 
@@ -32,6 +33,8 @@ class ComputingNode {
   /// Returns what happened meanwhile, but for the time, which the caller takes when nobody works there any
   /// more.
   LeafSchedule::Activation end(LeafCells& cells, RefinementQueue& queue, const std::stop_token& stop);
+  /// New cells of other leaves that end() will hand over.
+  std::size_t num_foreign() const;
   /// Whether a leaf has begun that has not ended.
   bool has_leaf() const { return region_.has_value(); }
   LeafId leaf() const { return region_->leaf(); }

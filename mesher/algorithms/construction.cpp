@@ -4,6 +4,7 @@
 #include "algorithms/memory_model.h"
 #include "algorithms/report_on_workers.h"
 #include "refine/virtual_box.h"
+#include "workers/work_cost.h"
 
 namespace podm {
 
@@ -24,6 +25,7 @@ Construction::Construction(const Problem& problem, const Box& clamp_box, const T
       accesses_.push_back({.node = place.node, .addresses = {}});
     }
   });
+  charge_virtual(kAllocate, kThreadStarted * (num_workers() - 1));
 }
 
 Construction::Entries Construction::all_cells() const {
@@ -52,6 +54,13 @@ Construction::Workers<Locks> Construction::make_workers(const Parameters& parame
 std::vector<Place> Construction::places_of_first(std::size_t count) const {
   if (team_.places.empty()) return {};
   return {team_.places.begin(), team_.places.begin() + static_cast<std::ptrdiff_t>(count)};
+}
+
+std::vector<NodeIndex> Construction::nodes_of_first(std::size_t count) const {
+  std::vector<NodeIndex> nodes;
+  for (WorkerId worker = 0; worker < count; ++worker)
+    nodes.push_back(static_cast<NodeIndex>(place_of(worker).node));
+  return nodes;
 }
 
 template <class Locks>

@@ -20,6 +20,7 @@
 #include "workers/coordination.h"
 #include "workers/real_time.h"
 #include "workers/virtual_time.h"
+#include "workers/work_cost.h"
 
 namespace podm {
 
@@ -42,12 +43,20 @@ struct Team {
   int num_nodes = 1;        // computing nodes of PDR and PDR.PODM, which divide the workers evenly
   int initial_workers = 1;  // so many make their initial mesh
   VirtualCost cost = VirtualCost::kMeasured;
+  const MachineModel* model = nullptr;  // what `machine` costs virtual workers; none: nothing but their work
   OperationLogWriter* log = nullptr;
   const Topology* machine = nullptr;    // the places name its nodes; none: all are on one
   std::vector<Place> places = {};       // the workers' places; none: anywhere
   const ImageOwners* owners = nullptr;  // nodes that own image and transform; none: these are not counted
   const PageSampler* pages = nullptr;   // asked at the end of each phase, if any
 };
+
+/// Virtual seconds of work that takes so many on the reference core, where `num_working` share it.
+inline double virtual_seconds(const Team& team, double reference_s, int num_working = 1) {
+  const auto count = static_cast<std::size_t>(num_working);
+  const double speed = team.model != nullptr ? team.model->speed_of_one_of(count) : 1;
+  return reference_s / speed / num_working;
+}
 
 struct Refinement {
   std::unique_ptr<Mesh> mesh;
@@ -56,6 +65,7 @@ struct Refinement {
   std::vector<WorkerReport> workers;
   std::map<std::string, double> phases_s;          // allocate, initial, octree, refine, closing
   std::map<std::string, double> virtual_phases_s;  // some of these phases, if the executor is virtual
+  VirtualSpending virtual_spending;
   std::uint64_t num_leaves = 0;
   std::optional<LeafSchedule> schedule;
   PageSamples pages;
@@ -103,15 +113,21 @@ class Construction {
   void in_time(const std::string& phase, int num_workers, Action&& action) {
     const auto count = static_cast<std::size_t>(num_workers);
     if (team_.executor == Executor::kVirtual) {
-      VirtualTime time(stop_, count, team_.cost, team_.coordination.seed);
+      VirtualTime time(stop_, count, team_.cost, team_.coordination.seed, team_.model, nodes_of_first(count));
       action(time);
       result_.virtual_phases_s[phase] += time.now_s();
+      result_.virtual_spending += time.spending();
     } else {
       RealTime time(stop_, count, places_of_first(count));
       action(time);
       charge(kAllocate, time.start_s());
       for (WorkerId id = 0; id < count; ++id) result_.workers[id].bound_to = time.processor(id).bound_to;
     }
+  }
+  /// Charges the virtual phase with work that no virtual worker did.
+  void charge_virtual(const std::string& phase, double reference_s) {
+    if (team_.executor != Executor::kVirtual) return;
+    result_.virtual_phases_s[phase] += virtual_seconds(team_, reference_s);
   }
   /// Moves the mesh between operations: what is at a point goes to the NUMA node of worker_of(point), and
   /// stays where that is kNoWorker. All of the team move it, in their time. Nothing: the run is over, and
@@ -125,10 +141,15 @@ class Construction {
       const WorkerId worker = worker_of(p);
       return worker == kNoWorker ? Relocation::kStay : nodes[worker];
     };
-    time.run([&](WorkerId self) { relocation->look(self, node_of); });
+    time.run([&](WorkerId self) {
+      relocation->look(self, node_of);
+      time.spend(self, kEntryToLeaf * static_cast<double>(mesh().cell_bound()) / num_workers());
+    });
     time.run([&](WorkerId self) { relocation->rename(self, *pools_[self]); });
     if (time.is_over()) return std::nullopt;
-    time.run([&](WorkerId self) { relocation->move(self, *pools_[self]); });
+    time.run([&](WorkerId self) {
+      time.spend(self, kCellMoved * static_cast<double>(relocation->move(self, *pools_[self])));
+    });
     if (team_.log != nullptr) log(*relocation);
     return relocation;
   }
@@ -151,6 +172,7 @@ class Construction {
  private:
   Place place_of(WorkerId worker) const { return team_.places.empty() ? Place{} : team_.places[worker]; }
   std::vector<Place> places_of_first(std::size_t count) const;
+  std::vector<NodeIndex> nodes_of_first(std::size_t count) const;
   template <class Locks>
   void add_counters(const Worker<Locks>& worker, const Overhead& overhead);
   void log(const Relocation& relocation);

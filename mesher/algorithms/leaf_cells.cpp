@@ -57,16 +57,19 @@ void LeafCells::add(const Entries& cells, RefinementQueue& queue, const std::sto
   });
 }
 
-void LeafCells::rename(const Relocation& relocation) {
+std::size_t LeafCells::rename(const Relocation& relocation, std::size_t part, std::size_t num_parts) {
+  std::size_t num_cells = 0;
   const auto rename = [&](Entries& cells) {
+    num_cells += cells.size();
     for (auto& entry : cells) {
       entry.cell = relocation.cell_now(entry.cell);
       entry.stamp = mesh_.stamp(entry.cell);
     }
   };
-  for (List& list : list_of_leaf_) rename(list.entries);
-  for (Entries& cells : outside_) rename(cells);
-  rename(leftover_);
+  for (std::size_t leaf = part; leaf < list_of_leaf_.size(); leaf += num_parts)
+    rename(list_of_leaf_[leaf].entries);
+  for (std::size_t slice = part; slice < outside_.size(); slice += num_parts) rename(outside_[slice]);
+  return num_cells;
 }
 
 void LeafCells::defer(const Entries& cells) {

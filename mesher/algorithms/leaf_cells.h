@@ -43,8 +43,9 @@ class LeafCells {
   /// Lists cells with their leaves, and tells the queue. Nobody may change them meanwhile. After a stop
   /// request it lists no more.
   void add(const Entries& cells, RefinementQueue& queue, const std::stop_token& stop);
-  /// Follows cells that have moved. Nobody else may call anything meanwhile.
-  void rename(const Relocation& relocation);
+  /// Follows cells that have moved since they were distributed, and returns how many it looked at: one of
+  /// `num_parts` parts of them, each to be followed by one worker. No leaf has begun.
+  std::size_t rename(const Relocation& relocation, std::size_t part, std::size_t num_parts);
   /// Lists cells that no leaf can refine.
   void defer(const Entries& cells);
   /// Those distributed come first, by their ids.

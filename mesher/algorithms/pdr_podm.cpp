@@ -9,6 +9,7 @@
 //   regions have no point in common (octree/octree.h). What would lock a vertex outside waits for the end,
 //   when all workers refine what is left anywhere, with PODM. That ends the run with the same guarantees as
 //   PODM's, whatever leaves there were (octree/leaf_region.h).
+#include <algorithm>
 #include <atomic>
 #include <deque>
 #include <mutex>
@@ -18,6 +19,7 @@
 #include "algorithms/memory_model.h"
 #include "algorithms/podm.h"
 #include "refine/virtual_box.h"
+#include "workers/work_cost.h"
 
 namespace podm {
 
@@ -39,9 +41,15 @@ struct Leaves {
   void refine_one_by_one(ComputingNode<Locks>& node) {
     Worker<Locks>& master = node.master();
     const auto wait = [&] { time.block(master.id(), &Overhead::begging_s); };
-    while (const auto leaf = queue.wait_and_pop(node.number(), wait, over)) {  // 9, 10: with B1 and B2
+    const auto pop = [&] {
+      time.spend_in(&queue, master.id(), kLeafHandedOut);
+      return queue.wait_and_pop(node.number(), wait, over);
+    };
+    while (const auto leaf = pop()) {  // 9, 10: with B1 and B2
       node.begin(octree, *leaf, time.now_s());
-      master.give(cells.take(*leaf));                   // 11
+      const LeafCells::Entries poor = cells.take(*leaf);
+      time.spend(master.id(), kEntryGiven * static_cast<double>(poor.size()));
+      master.give(poor);                                // 11
       if (!refine(master, node.group(), time)) return;  // 12 to 24, on all workers of the node
       end_leaf(node);                                   // 21, 25 to 27
     }
@@ -51,12 +59,15 @@ struct Leaves {
   // New cells go to the leaves that have them, and so does this leaf, if they are its own, back to the queue.
   void end_leaf(ComputingNode<Locks>& node) {
     const LeafId leaf = node.leaf();
+    const std::size_t num_moved = node.num_foreign();
     LeafSchedule::Activation activation = node.end(cells, queue, over);
+    time.spend(node.master().id(), kEntryToLeaf * static_cast<double>(num_moved));
     if (with_schedule) {
       const std::scoped_lock lock(mutex);
       activation.end_s = time.now_s();  // under the lock: they are listed by their ends
       schedule.push_back(std::move(activation));
     }
+    time.spend_in(&queue, node.master().id(), kLeafHandedOut);
     queue.finish(leaf);
   }
 };
@@ -83,15 +94,17 @@ CoordinationOptions coordination_of_node(const Team& team) {
 
 // 5, 6, by all workers: the last to end shares out what they listed.
 template <class Time>
-void distribute(LeafCells& cells, RefinementQueue& queue, int num_workers, Time& time,
+void distribute(LeafCells& cells, RefinementQueue& queue, LeafId num_leaves, int num_workers, Time& time,
                 const std::stop_token& over) {
   std::atomic<std::size_t> next_slice = 0;
   std::atomic<int> num_at_work = num_workers;
-  time.run([&](WorkerId) {
+  time.run([&](WorkerId self) {
     for (std::size_t slice = next_slice++; slice < cells.num_slices() && !time.is_over();
          slice = next_slice++)
-      cells.distribute(slice);
-    if (--num_at_work == 0) cells.share_out(queue, over);
+      time.spend(self, kEntryToLeaf * static_cast<double>(cells.distribute(slice)));
+    if (--num_at_work > 0) return;
+    cells.share_out(queue, over);
+    time.spend(self, kLeafSharedOut * num_leaves);
   });
 }
 
@@ -105,7 +118,11 @@ void settle(Construction& construction, const Octree& octree, const RefinementQu
     const LeafId leaf = octree.leaf_at(p);
     return leaf == kNoLeaf ? kNoWorker : static_cast<WorkerId>(queue.home_of(leaf) * workers_per_node);
   });
-  if (relocation) cells.rename(*relocation);
+  if (!relocation) return;
+  const auto num_workers = static_cast<std::size_t>(construction.num_workers());
+  time.run([&](WorkerId self) {
+    time.spend(self, kEntryGiven * static_cast<double>(cells.rename(*relocation, self, num_workers)));
+  });
 }
 
 template <class Locks, class Time>
@@ -133,9 +150,9 @@ Construction::Entries refine_leaves_with(Construction& construction, const Param
                              .time = time,
                              .over = over,
                              .with_schedule = options.with_schedule};
-  distribute(cells, queue, num_workers, time, over);  // 5, 6
+  distribute(cells, queue, octree.num_leaves(), num_workers, time, over);  // 5, 6
   if (construction.mesh().num_nodes() > 1) settle(construction, octree, queue, per_node, cells, time);
-  time.run([&](WorkerId self) {                       // 7
+  time.run([&](WorkerId self) {  // 7
     ComputingNode<Locks>& node = nodes[self / per_node];
     if (self % per_node == 0) {
       leaves.refine_one_by_one(node);
@@ -197,6 +214,7 @@ Refinement refine_by_leaves(const Problem& problem, const Team& team, const Leaf
   construction.timed("octree", [&] {  // 2, 3: after 4, which makes no difference to leaves
     octree = make_octree(problem, radii, clamp, options, team, stop.over());
   });
+  construction.charge_virtual("octree", kCubeMade * static_cast<double>(octree->num_cubes()));
   construction.withhold(octree->num_cubes() * kBytesPerCube + octree->num_leaves() * kBytesPerLeaf);
   const auto left = refine_leaves<Locks>(construction, final, *octree, options);  // 5 to 29
   refine_anywhere(construction, "closing", final, left, construction.num_workers());

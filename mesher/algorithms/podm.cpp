@@ -17,6 +17,7 @@
 
 #include "algorithms/leaf_locks.h"
 #include "refine/virtual_box.h"
+#include "workers/work_cost.h"
 
 namespace podm {
 
@@ -26,13 +27,19 @@ bool refine(Worker<Locks>& worker, Coordination& group, Time& time) {
   while (!time.is_over()) {
     if (worker.has_work()) {
       const Outcome outcome = time.attempt(worker);  // take a cell, lock, plan, commit or roll back, unlock
+      const std::size_t num_listed = worker.num_listed();
       const auto [answer, pause_s] = group.after(outcome, self, worker);
+      if (const std::size_t given = num_listed - worker.num_listed(); given > 0)
+        time.spend_in(&group, self, kBegging + kEntryGiven * static_cast<double>(given));
       if (answer == ContentionManager::Answer::kWait) time.block(self, &Overhead::contention_s);
       if (answer == ContentionManager::Answer::kPause) time.pause(self, pause_s);
     } else {
+      time.spend_in(&group, self, kBegging);
       if (!group.beg(self)) break;
       time.block(self, &Overhead::begging_s);
-      worker.give(group.take_gift(self));
+      const Construction::Entries gift = group.take_gift(self);
+      worker.give(gift);
+      time.spend(self, kEntryGiven * static_cast<double>(gift.size()));
     }
   }
   const bool is_done = !time.is_over();

@@ -38,11 +38,14 @@ class Digest {
 }  // namespace
 
 std::string input_sha256(const std::string& path, const LabelImage& image) {
+  if (!path.starts_with("phantom:")) return file_sha256(path);
   Digest digest;
-  if (path.starts_with("phantom:")) {
-    digest.update(image.voxels.data(), image.voxels.size() * sizeof(LabelIndex));
-    return digest.hexadecimal();
-  }
+  digest.update(image.voxels.data(), image.voxels.size() * sizeof(LabelIndex));
+  return digest.hexadecimal();
+}
+
+std::string file_sha256(const std::string& path) {
+  Digest digest;
   std::ifstream file(path, std::ios::binary);
   std::vector<char> block(1 << 20);
   do {

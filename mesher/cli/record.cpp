@@ -132,14 +132,28 @@ Json workers_of(const MeshingReport& report) {
   return workers;
 }
 
+Json simulated_machine_of(const MeshRun& run) {
+  const auto& machine = run.result.report.simulated_machine;
+  if (!machine) return nullptr;
+  const std::string& path = run.options.team.topology_path;
+  return {{"name", machine->name},
+          {"path", path},
+          {"sha256", file_sha256(path)},
+          {"constants", machine->constants}};
+}
+
 // What a virtual executor says of time is simulated: it stands apart from what was measured.
 Json virtual_of(const MeshRun& run) {
   if (run.options.team.executor != Executor::kVirtual) return nullptr;
   double refine_s = 0;
-  for (const auto& [phase, seconds] : run.result.report.virtual_phases_s) refine_s += seconds;
+  const std::map<std::string, double>& phases_s = run.result.report.virtual_phases_s;
+  for (const char* phase : {"initial", "refine", "closing"})
+    if (const auto found = phases_s.find(phase); found != phases_s.end()) refine_s += found->second;
   return {{"cost", to_string(run.options.team.virtual_cost)},
           {"refine_s", refine_s},
-          {"phases_s", run.result.report.virtual_phases_s}};
+          {"phases_s", phases_s},
+          {"worker_s", run.result.report.virtual_worker_s},
+          {"machine", simulated_machine_of(run)}};
 }
 
 Json calibration_of(const MeshingReport& report) {

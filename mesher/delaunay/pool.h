@@ -16,6 +16,7 @@ class FreeIds {
   /// the end.
   FreeIds(IdArena& arena, NodeIndex node, std::size_t num_workers)
       : arena_(arena), node_(node), block_(arena.block_for(num_workers)) {}
+  NodeIndex node() const { return node_; }
   bool is_own(std::uint32_t id) const { return arena_.node_of(id) == node_; }
   /// Makes room: `wanted` take() and `released` release() then allocate nothing. Throws std::bad_alloc.
   void reserve(std::size_t wanted, std::size_t released);
@@ -38,6 +39,7 @@ class Pool {
       : mesh_(mesh),
         cells_(mesh.cell_ids(), node, num_workers),
         vertices_(mesh.vertex_ids(), node, num_workers) {}
+  NodeIndex node() const { return cells_.node(); }
   /// Makes room: an operation that replaces `dying` by `created` cells, adds a vertex and removes `removed`
   /// then allocates nothing. Throws std::bad_alloc.
   void reserve(const std::vector<CellId>& dying, std::size_t created, std::size_t removed);

@@ -45,6 +45,7 @@ class Worker {
   /// Confined to the region of the leaf that the next attempts are for; new cells whose circumcentre is
   /// elsewhere are kept apart.
   Locks& locks() { return operation_.locks(); }
+  std::size_t num_foreign() const { return foreign_.size(); }
   std::vector<PoorElementList::Entry> take_foreign() { return std::exchange(foreign_, {}); }
   /// Cells of the leaf that need vertices outside its region.
   std::vector<PoorElementList::Entry> take_deferred() { return std::exchange(deferred_, {}); }
@@ -71,7 +72,8 @@ class Worker {
   static constexpr std::uint64_t kAttemptsForOneTimed = 16;
 
   static std::optional<AccessTally> tally_for(const Mesh& mesh);
-  static std::optional<CountedReads> reads_for(std::optional<AccessTally>& tally, const ImageOwners* owners);
+  static std::optional<CountedReads> reads_for(std::optional<AccessTally>& tally, const ImageOwners* owners,
+                                               NodeIndex node);
   Outcome attempt_next();
   void look_ahead();
   Outcome try_entry(const PoorElementList::Entry& entry);

@@ -15,9 +15,9 @@ std::optional<AccessTally> Worker<Locks>::tally_for(const Mesh& mesh) {
 
 template <class Locks>
 std::optional<CountedReads> Worker<Locks>::reads_for(std::optional<AccessTally>& tally,
-                                                     const ImageOwners* owners) {
+                                                     const ImageOwners* owners, NodeIndex node) {
   if (!tally || owners == nullptr || !owners->unavailable().empty()) return std::nullopt;
-  return CountedReads(*owners, *tally);
+  return CountedReads(*owners, *tally, node);
 }
 
 template <class Locks>
@@ -25,7 +25,7 @@ Worker<Locks>::Worker(Mesh& mesh, const Isosurface& isosurface, const Parameters
                       Pool& pool, OperationLogWriter* log, const ImageOwners* owners)
     : mesh_(mesh),
       accesses_(tally_for(mesh)),
-      rules_(mesh, isosurface, parameters, reads_for(accesses_, owners)),
+      rules_(mesh, isosurface, parameters, reads_for(accesses_, owners, pool.node())),
       operation_(mesh, pool, self, accesses_ ? &*accesses_ : nullptr),
       poor_(mesh.cell_capacity()),
       min_distance_(kSpacingFloor * parameters.spacing_mm),
@@ -94,6 +94,7 @@ Outcome Worker<Locks>::try_entry(const PoorElementList::Entry& entry) {
 template <class Locks>
 Outcome Worker<Locks>::apply_first_rule(CellId c) {
   const Examination t = rules_.examine(c);
+  if (!t.is_distance_proven) ++operation_.counters().oracle_searches;
   if (const auto z = rules_.r1_sample(t)) {
     const Outcome sampled = insert_on_isosurface(*z, c, Rule::kR1);
     if (sampled != Outcome::kRejected) return sampled;

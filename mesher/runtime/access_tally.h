@@ -16,8 +16,9 @@ enum class AccessKind : std::uint8_t {
   kMeshWrite,      // a cell made, emptied or glued to, a vertex placed or taken away
   kImageRead,      // labels of voxels beside each other
   kTransformRead,  // a word of the feature transform
+  kFirstRead,      // one of these two, of a line that nobody on the node has read; in virtual time alone
 };
-inline constexpr std::size_t kNumAccessKinds = 4;
+inline constexpr std::size_t kNumAccessKinds = 5;
 
 class AccessTally {
  public:

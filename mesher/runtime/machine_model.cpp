@@ -30,7 +30,7 @@ std::vector<std::string> read_sources(TomlSection& file) {
 
 struct Processors {
   std::int64_t sockets = 1, cores_per_socket = 1;  // of a node
-  double clock_hz = 0, core_speed = 1;
+  double clock_hz = 0, core_speed = 1, speed_when_full = 1;
   std::vector<MachineModel::Cache> caches;
 };
 
@@ -54,6 +54,7 @@ Processors read_processors(TomlSection section) {
   processors.cores_per_socket = section.count("cores_per_socket", 1, kMostCores);
   processors.clock_hz = 1e9 * section.number("clock_ghz", 1e-3, 1e3);
   processors.core_speed = section.number("core_speed", 1e-3, 1e3);
+  processors.speed_when_full = section.number("speed_when_full", 1, kLeast, 1);
   for (TomlSection& cache : section.table_array("caches")) read_cache(cache, processors);
   section.done();
   return processors;
@@ -189,6 +190,7 @@ MachineModel MachineModel::from_file(const std::filesystem::path& path) try {
           .topology = topology_of(processors, memory, network.num_nodes, routes),
           .clock_ghz = processors.clock_hz / 1e9,
           .core_speed = processors.core_speed,
+          .speed_when_full = processors.speed_when_full,
           .caches = processors.caches,
           .local_latency_s = memory.local_latency_s,
           .hop_latency_s = memory.hop_latency_s,

@@ -2,6 +2,8 @@
 // nobody has at hand. Descriptions and their keys: experiments/machines.
 #pragma once
 
+#include <algorithm>
+#include <cstddef>
 #include <filesystem>
 #include <string>
 #include <vector>
@@ -25,21 +27,28 @@ struct MachineModel {
   };
 
   std::string name;
-  std::vector<std::string> sources;  ///< where the figures are from
-  Topology topology;                 ///< latencies between nodes, and so the ranks of hops, are those below
+  std::vector<std::string> sources = {};  ///< where the figures are from
+  Topology topology;  ///< latencies between nodes, and so the ranks of hops, are those below
   double clock_ghz = 0;
-  double core_speed = 1;          ///< of one core, over the core that costs of work were measured on
-  std::vector<Cache> caches;      ///< by level
-  double local_latency_s = 0;     ///< of an access that no cache answers, to the node's own memory
-  double hop_latency_s = 0;       ///< what each link on the way adds
-  double miss_share = 0;          ///< of counted accesses to other nodes' memory: those that no cache answers
-  std::vector<Station> stations;  ///< the hubs by node, then the routers
-  std::vector<std::vector<int>> routes;  ///< in rows, by node and owner's node
+  double core_speed = 1;           ///< of one core, over the core that costs of work were measured on
+  double speed_when_full = 1;      ///< of each core while all are at work, over one that works alone
+  std::vector<Cache> caches = {};  ///< by level
+  double local_latency_s = 0;      ///< of an access that no cache answers, to the node's own memory
+  double hop_latency_s = 0;        ///< what each link on the way adds
+  double miss_share = 0;  ///< of counted accesses to other nodes' memory: those that no cache answers
+  std::vector<Station> stations = {};         ///< the hubs by node, then the routers
+  std::vector<std::vector<int>> routes = {};  ///< in rows, by node and owner's node
   double retries = 0;  ///< an access that waits at a station lengthens service there by this share of itself
   double wake_s = 0;   ///< until a thread that sleeps runs again
   double lock_s = 0;   ///< taking and giving back a mutex that nobody holds
 
   int num_nodes() const { return topology.num_nodes(); }
+  /// Of one of so many cores at work: what they share slows them down in step with their number.
+  double speed_of_one_of(std::size_t num_working) const {
+    const double most_others = std::max(1, topology.num_cores() - 1);
+    const double others = std::min(static_cast<double>(num_working) - 1, most_others);
+    return core_speed * (1 - (1 - speed_when_full) * others / most_others);
+  }
   /// The stations that an access from a node to another one's memory passes, both hubs included; none to its
   /// own.
   const std::vector<int>& route(int from, int to) const { return routes.at(from * num_nodes() + to); }

@@ -37,7 +37,9 @@ class MemoryOwners {
   const std::string& unavailable() const { return unavailable_; }
   /// The node of an element of the array.
   NodeIndex node_of(std::size_t element) const { return node_of_piece_[element >> piece_bits_]; }
-  const void* address_of(std::size_t element) const { return array_.data() + element * element_bytes_; }
+  const void* address_of(std::size_t element) const { return array_.data() + byte_of(element); }
+  std::size_t byte_of(std::size_t element) const { return element * element_bytes_; }
+  std::size_t num_bytes() const { return array_.size(); }
   std::size_t size() const { return array_.size() / element_bytes_; }
 
  private:

@@ -38,6 +38,9 @@ class RealTime {
     if (++states_[worker.id()].attempts % StopControl::kAttemptsBetweenChecks == 0) check_limits(worker);
     return outcome;
   }
+  /// Virtual time charges these; here they take what they take.
+  static void spend(WorkerId, double) {}
+  static void spend_in(const void*, WorkerId, double) {}
   /// Ends the run if a limit is passed, as is looked at now and then, and when a worker has nothing to do.
   template <class Worker>
   void check_limits(const Worker& worker) {

@@ -10,15 +10,28 @@ namespace podm {
 
 namespace {
 
-// kMeasured: seconds of each kind of work, from a profile of the liver at 3 M cells on one core of an AMD
-// EPYC (Zen 5). A constant error changes the speed, not who meets whom.
-constexpr double kListed = 0.03e-6, kClassified = 1.2e-6, kTested = 0.035e-6, kCreated = 0.09e-6;
 constexpr double kUnit = 1e-6;
 
 }  // namespace
 
-VirtualTime::VirtualTime(StopControl& stop, std::size_t num_workers, VirtualCost cost, std::uint64_t seed)
-    : stop_(stop), cost_(cost), random_(seed), states_(num_workers) {}
+VirtualTime::VirtualTime(StopControl& stop, std::size_t num_workers, VirtualCost cost, std::uint64_t seed,
+                         const MachineModel* machine, std::vector<NodeIndex> nodes)
+    : stop_(stop), cost_(cost), random_(seed), states_(num_workers) {
+  if (machine == nullptr) return;
+  speed_ = machine->speed_of_one_of(num_workers);
+  wake_s_ = machine->wake_s;
+  lock_s_ = machine->lock_s;
+  if (machine->topology.num_nodes() > 1) remote_.emplace(*machine, std::move(nodes));
+}
+
+VirtualSpending& VirtualSpending::operator+=(const VirtualSpending& b) {
+  work_s += b.work_s;
+  remote_memory_s += b.remote_memory_s;
+  network_s += b.network_s;
+  between_s += b.between_s;
+  queueing_s += b.queueing_s;
+  return *this;
+}
 
 void VirtualTime::run(const std::function<void(WorkerId)>& work) try {
   for (WorkerId self = 0; self < states_.size(); ++self) {
@@ -87,21 +100,49 @@ void VirtualTime::begin_attempt(WorkerId self) {
   allow_part(state);
 }
 
-void VirtualTime::end_attempt(WorkerId self, const Work& work, Outcome outcome) {
+void VirtualTime::end_attempt(WorkerId self, const Work& work, const std::optional<AccessTally>& accesses,
+                              Outcome outcome) {
   WorkerState& state = states_[self];
   state.most_steps = 0;
   state.fibre->allow(Fibre::kUnlimited);
   // Seeded perturbation: attempts of equal work do not end together.
   const double stretch = std::uniform_real_distribution(0.5, 1.5)(random_);
-  schedule(self, kIsInParts ? 0 : stretch * seconds(work));
+  const double work_s = stretch * reference_seconds(work) / speed_;
+  RemoteMemory::Delay remote;
+  if (remote_ && accesses) remote = remote_->delay(self, *accesses, state.since_s);
+  schedule(self, kIsInParts ? 0 : work_s + remote.latency_s + remote.network_s);
   if (!is_over()) state.fibre->suspend();
-  if (outcome == Outcome::kLockConflict) state.overhead.rollback_s += now_s_ - state.since_s;
+  if (outcome == Outcome::kLockConflict) {
+    state.overhead.rollback_s += now_s_ - state.since_s;
+  } else {
+    spending_.work_s += work_s;
+    spending_.remote_memory_s += remote.latency_s;
+    spending_.network_s += remote.network_s;
+  }
 }
 
-double VirtualTime::seconds(const Work& work) const {
-  if (cost_ == VirtualCost::kUnit) return kUnit;
-  return kListed + kClassified * static_cast<double>(work.classified) +
-         kTested * static_cast<double>(work.tests) + kCreated * static_cast<double>(work.created);
+double VirtualTime::reference_seconds(const Work& work) const {
+  return cost_ == VirtualCost::kUnit ? kUnit : attempt_seconds(work, states_.size() > 1);
+}
+
+void VirtualTime::pass(WorkerId self, double seconds) {
+  schedule(self, seconds);
+  if (!is_over()) states_[self].fibre->suspend();
+}
+
+void VirtualTime::spend(WorkerId self, double reference_s) {
+  spending_.between_s += reference_s / speed_;
+  pass(self, reference_s / speed_);
+}
+
+void VirtualTime::spend_in(const void* section, WorkerId self, double reference_s) {
+  double& free_at_s = free_at_[section];
+  const double wait_s = std::max(0.0, free_at_s - now_s_);
+  const double inside_s = lock_s_ + reference_s / speed_;
+  spending_.queueing_s += wait_s;
+  spending_.between_s += inside_s;
+  free_at_s = now_s_ + wait_s + inside_s;
+  pass(self, free_at_s - now_s_);
 }
 
 void VirtualTime::schedule(WorkerId worker, double delay_s) {
@@ -116,8 +157,7 @@ void VirtualTime::block(WorkerId self, double Overhead::*cause) {
 
 void VirtualTime::pause(WorkerId self, double seconds) {
   states_[self].overhead.contention_s += seconds;
-  schedule(self, seconds);
-  if (!is_over()) states_[self].fibre->suspend();
+  pass(self, seconds);
 }
 
 }  // namespace podm

@@ -32,6 +32,7 @@ struct Counters {
   std::uint64_t rejected = 0;
   std::uint64_t stale_cells = 0;  ///< poor element list entries that had died
   std::uint64_t classified_cells = 0;
+  std::uint64_t oracle_searches = 0;  ///< for the isosurface point nearest to a cell's circumcentre
   std::uint64_t conflict_tests = 0;
   std::uint64_t exact_decisions = 0;  ///< conflict tests that the cached sphere left undecided
   std::uint64_t cells_created = 0;
@@ -62,6 +63,7 @@ inline constexpr std::array kCounts{
     Count{"out_of_leaf", &Counters::out_of_leaf, Count::kOutcome, false},
     Count{"removals", &Counters::removals, Count::kWork, false},
     Count{"classified_cells", &Counters::classified_cells, Count::kWork, false},
+    Count{"oracle_searches", &Counters::oracle_searches, Count::kWork, false},
     Count{"conflict_tests", &Counters::conflict_tests, Count::kWork, true},
     Count{"exact_decisions", &Counters::exact_decisions, Count::kWork, false},
     Count{"cells_created", &Counters::cells_created, Count::kWork, false},

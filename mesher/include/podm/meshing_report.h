@@ -118,8 +118,16 @@ struct MeshingReport {
   std::map<std::uint32_t, double> volume_of_label_mm3;    ///< the mesh's, by label value
   std::uint64_t store_cells = 0;                          ///< cells of the whole virtual box
   std::array<double, 6> virtual_box{};                    ///< its low and high corner, mm, working frame
-  /// Executor::kVirtual simulates seconds of initial, refine and closing.
+  /// Simulated seconds by phase under Executor::kVirtual, "read" among them; else none.
   std::map<std::string, double> virtual_phases_s;
+  /// Simulated seconds of all workers together while they refine, by what they went into.
+  std::map<std::string, double> virtual_worker_s;
+  /// The described machine whose costs virtual time charged, if any, and its constants that nobody measures.
+  struct SimulatedMachine {
+    std::string name;
+    std::map<std::string, double> constants;
+  };
+  std::optional<SimulatedMachine> simulated_machine;
   std::vector<std::string> warnings;
 };
 

@@ -128,6 +128,16 @@ TEST(MachineModel, EqualWaysShareTheLoad) {
   EXPECT_EQ(*std::max_element(around.begin(), around.end()), 1);
 }
 
+TEST(MachineModel, CoresSlowEachOtherDown) {
+  const MachineModel alone = model_of(kOneNode),
+                     model = model_of(
+                         replaced(kOneNode, "core_speed = 0.5", "core_speed = 0.5\nspeed_when_full = 0.8"));
+  EXPECT_DOUBLE_EQ(alone.speed_of_one_of(8), 0.5);
+  EXPECT_DOUBLE_EQ(model.speed_of_one_of(1), 0.5);
+  EXPECT_DOUBLE_EQ(model.speed_of_one_of(8), 0.4);
+  EXPECT_DOUBLE_EQ(model.speed_of_one_of(100), 0.4) << "more workers than cores";
+}
+
 TEST(MachineModel, UnitsBecomeSeconds) {
   const MachineModel model = model_of(kRing);
   expect_consistent(model);

@@ -48,6 +48,7 @@ class Player {
   WorkerId conflicting_worker() const { return holder_; }
   // They stay 0: virtual time charges all attempts alike.
   const Counters& counters() const { return counters_; }
+  const std::optional<AccessTally>& accesses() const { return accesses_; }
   std::int64_t net_cells() const { return 0; }
 
  private:
@@ -55,6 +56,7 @@ class Player {
   std::atomic<int>&num_left_to_make_, &num_used_;
   std::mt19937 random_;
   Coordination::Entries cells_;
+  std::optional<AccessTally> accesses_;
   Counters counters_;
 };
 

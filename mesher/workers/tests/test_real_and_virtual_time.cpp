@@ -128,6 +128,81 @@ TEST(VirtualTime, ThatStandsStillIsAnError) {
   EXPECT_THROW(time.run([&](WorkerId self) { time.block(self, &Overhead::begging_s); }), InternalError);
 }
 
+MachineModel slow_machine(double core_speed, double wake_s) {
+  MachineModel machine{.name = "slow", .topology = Topology::synthetic("core:4 pu:1")};
+  machine.core_speed = core_speed;
+  machine.wake_s = wake_s;
+  return machine;
+}
+
+TEST(VirtualTime, OfSlowCoresTakesLonger) {
+  StopControl stop({}, {}, [](std::uint64_t) {});
+  const MachineModel machine = slow_machine(0.25, 0);
+  VirtualTime time(stop, kNumWorkers, VirtualCost::kMeasured, 1, &machine);
+  time.run([&](WorkerId self) { time.spend(self, 1.0); });
+  EXPECT_DOUBLE_EQ(time.now_s(), 4);
+  EXPECT_DOUBLE_EQ(time.spending().between_s, 4 * kNumWorkers);
+}
+
+TEST(VirtualTime, WakesALittleLater) {
+  StopControl stop({}, {}, [](std::uint64_t) {});
+  const MachineModel machine = slow_machine(1, 0.125);
+  VirtualTime time(stop, kNumWorkers, VirtualCost::kMeasured, 1, &machine);
+  time.run([&](WorkerId self) {
+    if (self == 0) time.block(self, &Overhead::begging_s);
+    if (self == 1) time.resume(0);
+  });
+  EXPECT_DOUBLE_EQ(time.now_s(), 0.125);
+}
+
+TEST(VirtualTime, LetsOneWorkerAtATimeIntoASection) {
+  StopControl stop({}, {}, [](std::uint64_t) {});
+  VirtualTime time(stop, kNumWorkers, VirtualCost::kMeasured, 1);
+  const int one = 0, another = 0;
+  std::array<double, kNumWorkers> left_at{};
+  time.run([&](WorkerId self) {
+    time.spend_in(self == 2 ? &another : &one, self, 1.0);
+    left_at[self] = time.now_s();
+  });
+  EXPECT_DOUBLE_EQ(left_at[0], 1);
+  EXPECT_DOUBLE_EQ(left_at[1], 2);
+  EXPECT_DOUBLE_EQ(left_at[2], 1);
+  EXPECT_DOUBLE_EQ(time.spending().queueing_s, 1);
+}
+
+// A worker whose attempts fail, and what it holds meanwhile.
+struct Failing {
+  WorkerId id() const { return 0; }
+  Outcome attempt() {
+    holds = true;
+    ++counts.classified_cells;
+    return Outcome::kLockConflict;
+  }
+  void release() { holds = false; }
+  std::int64_t net_cells() const { return 0; }
+  const Counters& counters() const { return counts; }
+  const std::optional<AccessTally>& accesses() const { return tally; }
+
+  bool holds = false;
+  Counters counts;
+  std::optional<AccessTally> tally;
+};
+
+TEST(VirtualTime, KeepsTheLocksOfAFailingAttemptToItsEnd) {
+  StopControl stop({}, {}, [](std::uint64_t) {});
+  VirtualTime time(stop, 2, VirtualCost::kMeasured, 1);
+  Failing worker;
+  bool held_meanwhile = false;
+  time.run([&](WorkerId self) {
+    if (self == 0) time.attempt(worker);
+    if (self == 1) held_meanwhile = worker.holds;
+  });
+  EXPECT_TRUE(held_meanwhile);
+  EXPECT_FALSE(worker.holds);
+  EXPECT_GT(time.overhead(worker).rollback_s, 0);
+  EXPECT_EQ(time.spending().work_s, 0) << "what is rolled back is no work";
+}
+
 // The making of leaves asks for no reasons, and looks at this.
 TEST(StopControl, IsOverAsSoonAsAStopIsRequested) {
   std::stop_source source;
