@@ -35,6 +35,9 @@ class ComputingNode {
   LeafSchedule::Activation end(LeafCells& cells, RefinementQueue& queue, const std::stop_token& stop);
   /// New cells of other leaves that end() will hand over.
   std::size_t num_foreign() const;
+  /// Whether each worker is to hand its foreign cells over before it begs. Set while the others beg.
+  bool hands_over() const { return hands_over_; }
+  void set_hands_over(bool hands_over) { hands_over_ = hands_over; }
   /// Whether a leaf has begun that has not ended.
   bool has_leaf() const { return region_.has_value(); }
   LeafId leaf() const { return region_->leaf(); }
@@ -46,6 +49,7 @@ class ComputingNode {
   Workers workers_;
   Coordination group_;
   std::optional<LeafRegion> region_;
+  bool hands_over_ = false;
   LeafSchedule::Activation activation_{};
 };
 

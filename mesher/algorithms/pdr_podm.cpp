@@ -34,6 +34,9 @@ struct Leaves {
   Time& time;
   std::stop_token over;
   bool with_schedule;
+  // New cells of other leaves, by worker, for which it pays to wake the others of the node: these take ten
+  // times as long as a thread to wake.
+  static constexpr std::size_t kForeignToShare = 1000;
   std::mutex mutex = {};  // guards the schedule
   std::vector<LeafSchedule::Activation> schedule = {};
 
@@ -49,19 +52,42 @@ struct Leaves {
       node.begin(octree, *leaf, time.now_s());
       const LeafCells::Entries poor = cells.take(*leaf);
       time.spend(master.id(), kEntryGiven * static_cast<double>(poor.size()));
-      master.give(poor);                                // 11
-      if (!refine(master, node.group(), time)) return;  // 12 to 24, on all workers of the node
-      end_leaf(node);                                   // 21, 25 to 27
+      master.give(poor);                       // 11
+      if (!refine_leaf(node, master)) return;  // 12 to 24, on all workers of the node
+      if (!hand_over(node)) return;            // 21
+      end_leaf(node);                          // 25 to 27
     }
     if (!time.is_over()) node.group().dismiss();
   }
 
-  // New cells go to the leaves that have them, and so does this leaf, if they are its own, back to the queue.
+  bool refine_leaf(ComputingNode<Locks>& node, Worker<Locks>& worker) {
+    return refine(worker, node.group(), time, [&] {
+      if (node.hands_over()) hand_over_own(worker);
+    });
+  }
+
+  // New cells go to the leaves that have them. Where these are many each worker hands over those it made:
+  // one alone would keep the others of its node waiting. False: the run is over.
+  bool hand_over(ComputingNode<Locks>& node) {
+    if (node.num_foreign() < kForeignToShare * node.num_workers()) return true;
+    node.set_hands_over(true);
+    node.group().rouse(node.master().id());
+    const bool is_done = refine_leaf(node, node.master());
+    node.set_hands_over(false);
+    return is_done;
+  }
+
+  void hand_over_own(Worker<Locks>& worker) {
+    time.spend(worker.id(), kEntryToLeaf * static_cast<double>(worker.num_foreign()));
+    cells.add(worker.take_foreign(), queue, over);
+  }
+
+  // This leaf goes back to the queue, if others have listed cells of it.
   void end_leaf(ComputingNode<Locks>& node) {
     const LeafId leaf = node.leaf();
-    const std::size_t num_moved = node.num_foreign();
+    const double handing_over_s = kEntryToLeaf * static_cast<double>(node.num_foreign());
     LeafSchedule::Activation activation = node.end(cells, queue, over);
-    time.spend(node.master().id(), kEntryToLeaf * static_cast<double>(num_moved));
+    time.spend(node.master().id(), handing_over_s);
     if (with_schedule) {
       const std::scoped_lock lock(mutex);
       activation.end_s = time.now_s();  // under the lock: they are listed by their ends
@@ -157,7 +183,7 @@ Construction::Entries refine_leaves_with(Construction& construction, const Param
     if (self % per_node == 0) {
       leaves.refine_one_by_one(node);
     } else {
-      refine(*workers[self], node.group(), time);
+      leaves.refine_leaf(node, *workers[self]);
     }
   });
   for (auto& node : nodes)

@@ -22,7 +22,8 @@
 namespace podm {
 
 template <class Locks, class Time>
-bool refine(Worker<Locks>& worker, Coordination& group, Time& time) {
+bool refine(Worker<Locks>& worker, Coordination& group, Time& time,
+            const std::function<void()>& before_begging) {
   const WorkerId self = worker.id();
   while (!time.is_over()) {
     if (worker.has_work()) {
@@ -34,6 +35,7 @@ bool refine(Worker<Locks>& worker, Coordination& group, Time& time) {
       if (answer == ContentionManager::Answer::kWait) time.block(self, &Overhead::contention_s);
       if (answer == ContentionManager::Answer::kPause) time.pause(self, pause_s);
     } else {
+      if (before_begging) before_begging();
       time.spend_in(&group, self, kBegging);
       if (!group.beg(self)) break;
       time.block(self, &Overhead::begging_s);
@@ -106,12 +108,13 @@ Refinement podm(const Problem& problem, const Team& team, StopControl& stop) {
   return construction.finish();
 }
 
-template bool refine(Worker<NoLocks>&, Coordination&, RealTime&);
-template bool refine(Worker<VertexLocks>&, Coordination&, RealTime&);
-template bool refine(Worker<VertexLocks>&, Coordination&, VirtualTime&);
-template bool refine(Worker<LeafLocks<NoLocks>>&, Coordination&, RealTime&);
-template bool refine(Worker<LeafLocks<NoLocks>>&, Coordination&, VirtualTime&);
-template bool refine(Worker<LeafLocks<VertexLocks>>&, Coordination&, RealTime&);
-template bool refine(Worker<LeafLocks<VertexLocks>>&, Coordination&, VirtualTime&);
+template bool refine(Worker<NoLocks>&, Coordination&, RealTime&, const std::function<void()>&);
+template bool refine(Worker<VertexLocks>&, Coordination&, RealTime&, const std::function<void()>&);
+template bool refine(Worker<VertexLocks>&, Coordination&, VirtualTime&, const std::function<void()>&);
+template bool refine(Worker<LeafLocks<NoLocks>>&, Coordination&, RealTime&, const std::function<void()>&);
+template bool refine(Worker<LeafLocks<NoLocks>>&, Coordination&, VirtualTime&, const std::function<void()>&);
+template bool refine(Worker<LeafLocks<VertexLocks>>&, Coordination&, RealTime&, const std::function<void()>&);
+template bool refine(Worker<LeafLocks<VertexLocks>>&, Coordination&, VirtualTime&,
+                     const std::function<void()>&);
 
 }  // namespace podm

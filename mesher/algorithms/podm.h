@@ -16,9 +16,11 @@ Refinement pdr(const Problem& problem, const Team& team, const LeafOptions& opti
 Refinement pdr_podm(const Problem& problem, const Team& team, const LeafOptions& options, StopControl& stop);
 
 /// PODM's loop, for one worker of a group. True: all cells that the group had are refined, as its master is
-/// told, or the worker was dismissed. False: the run is over.
+/// told, or the worker was dismissed. False: the run is over. `before_begging`, if given, is called each time
+/// that the worker has no cells left.
 template <class Locks, class Time>
-bool refine(Worker<Locks>& worker, Coordination& group, Time& time);
+bool refine(Worker<Locks>& worker, Coordination& group, Time& time,
+            const std::function<void()>& before_begging = {});
 
 /// PODM as a phase: the first `num_workers` of the team refine these cells, with locks unless there is only
 /// one.

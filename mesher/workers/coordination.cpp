@@ -59,6 +59,15 @@ Coordination::Entries Coordination::take_gift(WorkerId self) {
   return std::exchange(member.gift, {});
 }
 
+// Who begs again meanwhile may be roused twice, but not for ever.
+void Coordination::rouse(WorkerId self) {
+  for (std::size_t others = members_.size() - 1; others > 0; --others) {
+    const BeggingList::Beggar beggar = begging_.take_first_for(self - first_id_);
+    if (beggar.worker == kNoWorker) return;
+    give(beggar.worker, {});
+  }
+}
+
 void Coordination::dismiss() {
   for (const WorkerId beggar : begging_.close()) end_begging(beggar);
 }

@@ -61,6 +61,8 @@ class Coordination {
   /// worker has any, and it is the master; or the master has dismissed it.
   bool beg(WorkerId self);
   Entries take_gift(WorkerId self);
+  /// Gives an empty gift to each who begs. `self` does not.
+  void rouse(WorkerId self);
   /// Called by the master, when beg() has told it that no worker has cells, and there will be no more.
   void dismiss();
 
