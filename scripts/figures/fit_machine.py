@@ -1,0 +1,197 @@
+"""Fits the constants of the paper's machine that nobody measures to PODM's speed-ups in the paper's Table 1.
+
+Playing 256 workers takes minutes, a fit hundreds of trials: so the fit plays their queueing alone. Each of the workers
+computes for as long as its rows say that an attempt's work and way to other memory take, then asks both routers for as
+many accesses as they say that an insertion makes; routers serve as in mesher/workers/remote_memory.h. Those who lose
+their time to each other, in contention and begging, are left out, as many as in the row. So rows should be of constants
+that are near: a second fit to rows of the first one's. Played in full they tell how good the surrogate was: scripts/report
+shows them beside the paper's.
+
+Nothing of PDR.PODM, of efficiencies or of Table 2 is looked at.
+"""
+import argparse
+import heapq
+import json
+import random
+import sys
+import tomllib
+from collections import deque
+from dataclasses import dataclass
+from pathlib import Path
+
+import numpy
+from scipy.optimize import minimize
+
+from . import paper, style
+from .load import RecordError, load
+
+CELLS_PER_INSERTION = 22  # made by one, of which 16 take the place of others
+CONSTANTS = ("miss_share", "router_accesses_per_s", "retries")
+STARTS = ((0.04, 4e6, 0.0125), (0.02, 2e6, 0.02), (0.1, 1e7, 0.004))
+SIMPLEX = (1.5, 1.4, 1.6)  # first steps, factors
+ATTEMPTS_PER_WORKER, MOST_ATTEMPTS = 120, 60_000
+
+
+@dataclass(frozen=True)
+class Run:
+    """What a row of PODM says of `cores` workers: seconds of computing on the reference core, remote accesses and the
+    links on their ways, insertions, and how much longer all took than attempts alone."""
+
+    cores: int
+    cells: float
+    reference_s: float
+    links: float
+    routed: float
+    insertions: float
+    loss: float
+
+
+def runs_of(frame):
+    """The newest row of PODM for each number of cores, by it. Raises RecordError without one of a single core."""
+    rows = frame[(frame["algorithm"] == "podm") & (frame["basis"] == "simulated")] if len(frame) else frame
+    runs = {int(row["threads.used"]): _run(row) for _, row in rows.iterrows()}
+    if 1 not in runs:
+        raise RecordError("no simulated row of podm on one core")
+    return {cores: run for cores, run in sorted(runs.items()) if cores in paper.table1().loc["podm"].index}
+
+
+def _run(row):
+    hops = numpy.zeros(16)
+    for kind in ("hops_by_kind.mesh_reads", "hops_by_kind.mesh_writes"):
+        if isinstance(row[kind], list):
+            hops[: len(row[kind])] += row[kind]
+    seconds = {name: row["virtual.worker_s." + name] for name in ("compute", "memory_remote", "network_queue")}
+    cores = int(row["threads.used"])
+    return Run(cores=cores, cells=row["cells"],
+               reference_s=seconds["compute"] * row["virtual.machine.constants.core_speed"],
+               links=float(hops @ numpy.arange(len(hops))), routed=float(hops[2:].sum()),
+               insertions=row["counters.cells_created"] / CELLS_PER_INSERTION,
+               loss=cores * row["virtual.refine_s"] / sum(seconds.values()))
+
+
+def refining_seconds(run, machine, constants):
+    """Simulated seconds that PODM refines, by the surrogate. `constants`: by name."""
+    link_s = machine["memory"]["cycles_per_hop"] / machine["processor"]["clock_ghz"] / 1e9
+    busy_s = run.reference_s / machine["processor"]["core_speed"] + constants["miss_share"] * run.links * link_s
+    accesses = constants["miss_share"] * run.routed / run.insertions
+    if accesses == 0:
+        return busy_s * run.loss / run.cores
+    num_attempting = max(1, round(run.cores / run.loss))  # the others wait for each other
+    return run.insertions * _seconds_between_attempts(num_attempting, busy_s / run.insertions, accesses, constants)
+
+
+def _seconds_between_attempts(num_workers, busy_s, accesses, constants):
+    """Of all workers, once they have got into step."""
+    draw = random.Random(1)
+    service_s = 1 / constants["router_accesses_per_s"]
+    ready = [(busy_s * draw.random(), worker) for worker in range(num_workers)]
+    heapq.heapify(ready)
+    queues, num_waiting = (deque(), deque()), [0.0, 0.0]
+    attempts = min(MOST_ATTEMPTS, ATTEMPTS_PER_WORKER * num_workers)
+    first, began_s = attempts // 3, 0.0
+    for attempt in range(attempts):
+        now_s, worker = heapq.heappop(ready)
+        began_s = now_s if attempt == first else began_s
+        waits_s = 0.0
+        for router, queue in enumerate(queues):
+            while queue and queue[0][0] <= now_s:
+                num_waiting[router] -= queue.popleft()[1]
+            asked = accesses / 2 * draw.expovariate(1)
+            served_s = queue[-1][0] if queue else now_s
+            waits_s += asked * (served_s - now_s)
+            queue.append((served_s + asked * service_s * (1 + constants["retries"] * num_waiting[router]), asked))
+            num_waiting[router] += asked
+        heapq.heappush(ready, (now_s + waits_s + busy_s * draw.uniform(0.5, 1.5), worker))
+    return (now_s - began_s) / (attempts - first)
+
+
+def speedups(runs, machine, constants):
+    """By number of cores, over one core."""
+    rates = {cores: run.cells / refining_seconds(run, machine, constants) for cores, run in runs.items()}
+    return {cores: rate / rates[1] for cores, rate in rates.items()}
+
+
+def deviations(runs, machine, constants):
+    """Ours over the paper's, less 1, by number of cores above one."""
+    published = paper.corrected_table1().loc["podm"]["speedup"]
+    return {cores: ours / published[cores] - 1 for cores, ours in speedups(runs, machine, constants).items()
+            if cores > 1}
+
+
+def fit(runs, machine):
+    """The constants with the least mean absolute deviation, and that."""
+    def mean(logarithms):
+        constants = dict(zip(CONSTANTS, numpy.exp(logarithms)))
+        if constants["miss_share"] > 1:
+            return 10.0
+        return float(numpy.mean(numpy.abs(list(deviations(runs, machine, constants).values()))))
+
+    found = []
+    for start in STARTS:
+        steps = numpy.ones((4, 3)) + numpy.vstack([numpy.zeros(3), numpy.diag(numpy.array(SIMPLEX) - 1)])
+        found.append(minimize(mean, numpy.log(start), method="Nelder-Mead",
+                              options={"maxfev": 90, "xatol": 0.02, "fatol": 0.001,
+                                       "initial_simplex": numpy.log(numpy.array(start) * steps)}))
+    best = min(found, key=lambda one: one.fun)
+    return dict(zip(CONSTANTS, map(float, numpy.exp(best.x)))), float(best.fun)
+
+
+def leaving_one_out(runs, machine):
+    """By number of cores: its deviation by constants that were fitted to the others."""
+    missed = {}
+    for cores in [cores for cores in runs if cores > 1]:
+        constants, _ = fit({other: run for other, run in runs.items() if other != cores}, machine)
+        missed[cores] = deviations({1: runs[1], cores: runs[cores]}, machine, constants)[cores]
+        print(f"without {cores} cores: {100 * missed[cores]:+.1f} %", file=sys.stderr)
+    return missed
+
+
+def sensitivity_figure(runs, machine, constants):
+    """PODM's speed-ups with each constant halved and doubled, a panel each."""
+    published = paper.corrected_table1().loc["podm"]["speedup"]
+    shown = ("core_speed", *CONSTANTS)
+    drawn, panels = style.new_figure(columns=len(shown), width=14.0, height=3.6)
+    for axes, name in zip(panels, shown):
+        axes.plot(published.index, published, "s", color=style.INK, label="published (PODM)")
+        for factor, line in ((0.5, ":"), (1, "-"), (2, "--")):
+            changed, of_machine = dict(constants), {**machine, "processor": dict(machine["processor"])}
+            if name == "core_speed":
+                of_machine["processor"][name] *= factor
+            else:
+                changed[name] *= factor
+            ours = speedups(runs, of_machine, changed)
+            axes.plot(list(ours), list(ours.values()), line, color="#d1495b", label=f"surrogate, {factor:g} times")
+        axes.set(title=name, xlabel="simulated cores", ylabel="speed-up")
+    style.legend(panels[-1])
+    style.finish(drawn, "PODM's speed-up when one constant of the machine changes; all else as fitted")
+    return drawn
+
+
+def main(arguments=None):
+    parser = argparse.ArgumentParser(description=__doc__.split("\n", maxsplit=1)[0])
+    parser.add_argument("records", nargs="+", type=Path,
+                        help="rows of podm on the machine, all of one size: JSON lines")
+    parser.add_argument("--machine", required=True, type=Path, help="its description (TOML)")
+    parser.add_argument("--leave-one-out", action="store_true", help="also fit without each point; some minutes")
+    parser.add_argument("-o", "--output", required=True, type=Path,
+                        help="folder for machine_fit.json and machine_fit.png")
+    asked = parser.parse_args(arguments)
+    try:
+        machine = tomllib.loads(asked.machine.read_text(encoding="utf-8"))
+        runs = runs_of(load(asked.records).frame)
+    except (RecordError, OSError, tomllib.TOMLDecodeError) as error:
+        print(f"fit_machine: {error}", file=sys.stderr)
+        return 2
+    constants, mean = fit(runs, machine)
+    told = {"schema": "podm-machine-fit/1", "machine": machine["name"],
+            "records": [str(path) for path in asked.records],
+            "core_speed": machine["processor"]["core_speed"], "constants": constants, "mean_absolute_deviation": mean,
+            "deviations": deviations(runs, machine, constants)}
+    if asked.leave_one_out:
+        told["leaving_one_out"] = leaving_one_out(runs, machine)
+    asked.output.mkdir(parents=True, exist_ok=True)
+    (asked.output / "machine_fit.json").write_text(json.dumps(told, indent=2) + "\n", encoding="utf-8")
+    sensitivity_figure(runs, machine, constants).savefig(asked.output / "machine_fit.png")
+    print(f"mean absolute deviation {100 * mean:.1f} %: " + ", ".join(f"{name} = {value:.3g}"
+                                                                     for name, value in constants.items()))
+    return 0
