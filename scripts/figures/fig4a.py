@@ -6,9 +6,9 @@ WHY_ABOVE = ("Equation 1 also counts reading and transforming one image, whose w
 
 
 def fig4a(series):
-    """The paper's curves and the first series of each basis; the efficiency of refining alone beside that of
-    equation 1."""
-    figure, (speedup, efficiency) = style.new_figure(columns=2, height=4.2)
+    """The paper's curves and the first series of each basis, what the simulated ones extrapolate to without a line; the
+    efficiency of refining alone beside that of equation 1."""
+    figure, (speedup, efficiency) = style.new_figure(columns=2, width=12.0, height=4.2)
     published = paper.table1()
     shown = scaling.shown_of(series)
     cores = scaling.core_counts([published, *(one.table for one in shown)])
@@ -20,15 +20,14 @@ def fig4a(series):
     for one in shown:
         if one.key["basis"] == "measured" and not one.grows:
             style.plot_series(efficiency, one, "refining_efficiency", 100, of=", refining alone", **style.REFINING)
-            style.legend_of(efficiency, ", refining alone", loc="lower left")
     speedup.set_yscale("log", base=2)
-    speedup.plot([1, max(cores)], [1, max(cores)], color=style.INK, linewidth=0.8, label="ideal")
+    speedup.plot([1, max(cores)], [1, max(cores)], color=style.INK, linewidth=0.8)
     ticks = [2**power for power in range(0, 9)]
     speedup.set_yticks(ticks, [str(tick) for tick in ticks])
     speedup.set(ylabel="speed-up over PODM on one core", title="weak-scaling speed-up, equation 1")
     efficiency.set(ylabel="efficiency, %", ylim=(0, max(115, 1.05 * efficiency.dataLim.y1)), title="efficiency")
-    efficiency.axhline(100, color=style.INK, linewidth=0.8)
-    style.legend(speedup, loc="upper left")
+    efficiency.axhline(100, color=style.INK, linewidth=0.8, label="ideal")
+    style.legend(efficiency, **style.BESIDE)
     style.finish(figure, f"{style.caption_of(shown)} {reading(series)}")
     return figure
 

@@ -1,4 +1,4 @@
-"""Figure 4 (b): seconds by phase, and elements per second, against cores."""
+"""Figure 4 (b): seconds by phase, and elements per second, against cores. Simulated seconds have axes of their own."""
 import numpy
 from matplotlib.patches import Patch
 
@@ -8,38 +8,48 @@ WIDTH = 0.36
 
 
 def fig4b(series):
-    """Bars: the median seconds of each phase, virtual ones of simulated rows; beside them the paper's totals, whose
-    parts are not printed."""
-    figure, (seconds, rate) = style.new_figure(columns=2, height=4.2)
+    """Bars: the median seconds of each phase, virtual ones of simulated rows; beside the measured the paper's totals,
+    whose parts are not printed."""
+    measured, simulated = scaling.first_of(series, "measured"), scaling.first_of(series, "simulated")
+    figure, axes = style.new_figure(columns=2, rows=2 if simulated else 1, width=11.0, height=8.0 if simulated else 4.2)
+    seconds, rate, beside_rate = (axes[0], axes[2], axes[3]) if simulated else (*axes, axes[1])
     published = paper.table1()
     shown = scaling.shown_of(series)
-    cores = scaling.core_counts([published, *(one.table for one in shown)])
-    _ghost_bars(seconds, published, cores)
-    stacked = [one for one in shown if not one.grows]
-    for place, one in enumerate(stacked):
-        _stack(seconds, one, cores, place - (len(stacked) - 1) / 2, 0.85 * WIDTH / max(1, len(stacked)))
-    seconds.set_ylim(0, 1.05 * seconds.dataLim.y1)
-    seconds.set_xticks(range(len(cores)), [str(count) for count in cores])
-    seconds.set(xlabel="cores", ylabel="seconds of equation 1", title="time: PDR.PODM left, PODM right of each pair")
-    style.legend(seconds, handles=_handles(stacked), loc="upper left", ncols=2)
+    _bars(seconds, measured, scaling.core_counts([published, *([measured.table] if measured else [])]), published)
+    seconds.set(ylabel="seconds of equation 1", title="time: PDR.PODM left, PODM right of each pair")
+    if simulated:
+        _bars(axes[1], simulated, scaling.core_counts([simulated.table]))
+        axes[1].set(ylabel="simulated seconds of equation 1", title=f"time, {simulated.kind()}")
+        axes[3].set_axis_off()
     style.ghost(rate, published, "rate", 1e-6)
     for one in shown:
         style.plot_series(rate, one, "rate", 1e-6)
-    style.cores_axis(rate, cores)
+    style.cores_axis(rate, scaling.core_counts([published, *(one.table for one in shown)]))
     rate.set_yscale("log")
     rate.yaxis.set_major_formatter("{x:g}")
     rate.set(ylabel="million elements per second", title="elements per second")
-    style.legend(rate, loc="upper left")
-    has_simulated = scaling.first_of(series, "simulated") is not None
+    handles, labels = rate.get_legend_handles_labels()
+    place = {"loc": "upper left"} if simulated else style.BESIDE
+    style.legend(beside_rate, handles=handles, labels=labels, **place)
     style.finish(figure, style.caption_of(shown)
-                 + (" Simulated bars are hatched: virtual seconds of the phases." if has_simulated else ""))
+                 + (" Simulated bars are hatched: virtual seconds of the phases, of fewer cells than the paper's."
+                    if simulated else ""))
     return figure
 
 
-def _handles(stacked):
-    made = [Patch(color=colour, label=style.PHASE_NAMES.get(phase, phase))
-            for phase, colour in style.PHASE_COLOURS.items() if any((one.table[phase] > 0).any() for one in stacked)]
-    return [*made, Patch(facecolor="none", edgecolor=style.GHOST, linestyle="--", label="paper, total")]
+def _bars(axes, series, cores, published=None):
+    """Stacks of a series, if there is one, before the paper's totals, if they are given."""
+    handles = [Patch(color=colour, label=style.PHASE_NAMES.get(phase, phase))
+               for phase, colour in style.PHASE_COLOURS.items() if series and (series.table[phase] > 0).any()]
+    if published is not None:
+        _ghost_bars(axes, published, cores)
+        handles.append(Patch(facecolor="none", edgecolor=style.GHOST, linestyle="--", label="paper, total"))
+    if series:
+        _stack(axes, series, cores)
+    axes.set_ylim(0, 1.25 * axes.dataLim.y1)
+    axes.set_xticks(range(len(cores)), [str(count) for count in cores])
+    axes.set_xlabel("cores")
+    style.legend(axes, handles=handles, loc="upper left", ncols=3)
 
 
 def _side(algorithm):
@@ -52,14 +62,13 @@ def _ghost_bars(axes, published, cores):
                  edgecolor=style.GHOST, linestyle="--", linewidth=0.9)
 
 
-def _stack(axes, series, cores, place, width):
-    """`place`: of this basis beside the others, in bars from the middle."""
+def _stack(axes, series, cores):
     is_simulated = series.key["basis"] == "simulated"
     for (algorithm, count), row in series.table.iterrows():
         if algorithm not in style.NAMES:
             continue
         parts = row[scaling.PHASES].to_numpy(dtype=float)
         bottoms = numpy.concatenate([[0], numpy.cumsum(parts)[:-1]])
-        axes.bar(cores.index(count) + _side(algorithm) + place * width, parts, width, bottom=bottoms,
+        axes.bar(cores.index(count) + _side(algorithm), parts, 0.85 * WIDTH, bottom=bottoms,
                  hatch="////" if is_simulated else None, edgecolor=style.INK, linewidth=0.4,
                  color=[style.PHASE_COLOURS[phase] for phase in scaling.PHASES])

@@ -1,5 +1,6 @@
 """Reads rows of trials (results/README.md) into one table."""
 import json
+import re
 from dataclasses import dataclass
 from pathlib import Path
 
@@ -17,6 +18,7 @@ REFINING = ("octree", "initial", "refine", "closing")
 # What a series varies; any other choice in a trial's name makes another series.
 VARIED = ("algorithm", "threads", "seed", "mesher", "input")
 GROWING = "-growing"  # ends the name of trials whose image grows with the cores
+ON_CORES = re.compile(r"-on-\d+$")  # ends the names of trials of one series, each with a radius for its cores
 
 
 class RecordError(Exception):
@@ -48,7 +50,7 @@ def derived(row):
     return {
         "basis": row["basis"],
         "mesher": mesher_of(row),
-        "machine": row.get("environment", {}).get("cpu", "unknown machine"),
+        "machine": machine_of(row),
         "usable_cores": usable_cores(row.get("environment", {})),
         "build": build_of(row),
         "cores": row.get("threads", {}).get("used"),
@@ -85,11 +87,18 @@ def mesher_of(row):
     return (row.get("programs", {}).get("peer") or {}).get("name", "podm")
 
 
+def machine_of(row):
+    """The processor; in virtual time the described machine, if one is, which two descriptions never share."""
+    described = (row.get("virtual") or {}).get("machine")
+    if not described:
+        return row.get("environment", {}).get("cpu", "unknown machine")
+    return f"{described.get('name', 'unnamed')} as described ({described.get('sha256', '')[:8]})"
+
+
 def setting_of(row):
     """The trial's name without the choices that a series varies."""
     base, *choices = row.get("trial", "").split(",")
-    if is_growing(row):
-        base = base.partition(GROWING)[0] + GROWING
+    base = base.partition(GROWING)[0] + GROWING if is_growing(row) else ON_CORES.sub("", base)
     return ",".join([base, *(one for one in choices if one.partition("=")[0] not in VARIED)])
 
 

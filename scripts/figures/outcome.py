@@ -3,8 +3,8 @@ from dataclasses import dataclass, field
 
 import pandas
 
-from . import (cache, experiment_verdicts, fig1, fig2b, fig4a, fig4b, guarantees, peers, scaling, simulated, table1,
-               table2, table3, verdicts)
+from . import (cache, deviation, experiment_verdicts, fig1, fig2b, fig4a, fig4b, guarantees, lost, machine, peers,
+               scaling, simulated, table1, table2, table3, validation, verdicts)
 
 
 @dataclass(frozen=True)
@@ -30,17 +30,22 @@ def make(frame, report=None, schedule=None, mesh=None, experiments=None):
 
 
 def _tables(frame, series, hops):
-    """Simulated values have tables of their own. The paper's tables are there always, others where rows fill them."""
-    is_simulated = hops["basis"] == "simulated"
-    always = {"table1": (table1.table1(series), table1), "table2": (hops[~is_simulated], table2),
+    """The paper's tables are there always, others where rows fill them."""
+    always = {"table1": (table1.table1(series), table1), "table2": (hops, table2),
               "table3": (table3.table3(frame), table3)}
-    others = {"table1_simulated": (table1.table1_simulated(series), table1),
-              "table2_simulated": (hops[is_simulated], table2), "simulated": (simulated.simulated(frame), simulated),
+    others = {"simulated": (simulated.simulated(frame), simulated), "machine": (machine.machine(frame), machine),
+              "deviation": (deviation.deviation(series), deviation), "lost": (lost.lost(frame, series), lost),
+              "validation": (validation.validation(frame), validation),
               "peers": (peers.peers(frame), peers), "cache": (cache.cache(frame), cache),
               "guarantees": (guarantees.ours(frame), guarantees),
               "guarantees_of_others": (guarantees.of_others(frame), guarantees)}
     made = {**always, **{name: entry for name, entry in others.items() if len(entry[0])}}
-    return {name: (data, module.readable(data)) for name, (data, module) in made.items()}
+    tables = {name: (data, module.readable(data)) for name, (data, module) in made.items()}
+    if "deviation" in tables:
+        for name, table in (("deviation_means", deviation.means(tables["deviation"][0])),
+                            ("efficiency_and_hops", deviation.efficiency_and_hops(series, hops))):
+            tables[name] = (table, table)
+    return tables
 
 
 def _figures(frame, series, report, schedule, mesh):
@@ -49,10 +54,14 @@ def _figures(frame, series, report, schedule, mesh):
         "fig2b": fig2b.fig2b(schedule, mesh) if schedule and mesh else None,
         "fig4a": fig4a.fig4a(series),
         "fig4b": fig4b.fig4b(series),
+        "deviation": deviation.figure(series),
+        "lost": lost.figure(frame, series),
     }
     why = {"fig1": "no report of podm-verify and no verified row with its quality",
            "fig2b": "no two leaves of different nodes were active at one time" if schedule and mesh
-           else "needs --schedule and --mesh of a run of pdr or pdr-podm"}
+           else "needs --schedule and --mesh of a run of pdr or pdr-podm",
+           "deviation": "no verified simulated rows of weak scaling on more than one core",
+           "lost": "no simulated rows of weak scaling tell what their workers lost (virtual.worker_s)"}
     missing = {name: why[name] for name, figure in drawn.items() if figure is None}
     return {name: figure for name, figure in drawn.items() if figure is not None}, missing
 

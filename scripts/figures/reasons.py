@@ -6,6 +6,8 @@ from . import table2
 
 def why_missing(frame, series, basis, algorithm, cores, needs_hops=False):
     """The machine, the lack of a run, or runs that did not verify."""
+    if basis == "extrapolated":
+        return f"{algorithm} was simulated on {cores} cores at fewer than two sizes"
     wanted = frame
     for column, value in (("basis", basis), ("algorithm", algorithm), ("cores", cores)):
         wanted = wanted[wanted[column] == value] if column in wanted else wanted.iloc[:0]
@@ -24,7 +26,7 @@ def why_missing(frame, series, basis, algorithm, cores, needs_hops=False):
 def lack_of_cores(frame, basis, cores):
     """"needs 32 cores, has 2" where no machine of the rows has as many; empty otherwise. Simulations need none."""
     usable = frame["usable_cores"].dropna() if "usable_cores" in frame else pandas.Series(dtype=float)
-    if basis == "simulated" or usable.empty or usable.max() >= cores:
+    if basis != "measured" or usable.empty or usable.max() >= cores:
         return ""
     return f"needs {cores} cores, has {int(usable.max())}"
 

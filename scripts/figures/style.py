@@ -12,7 +12,13 @@ PHASE_COLOURS = {"allocate": "#4c6a5b", "read": "#c9b458", "transform": "#8fb996
                  "initial": "#e8a33d", "refine": "#d1495b", "closing": "#8f575c", "extract": "#6d9dc5",
                  "other": "#b0b0b0"}
 PHASE_NAMES = {"allocate": "allocation", "initial": "initial mesh", "refine": "refinement"}
-LINES = {"measured": {"linestyle": "-"}, "simulated": {"linestyle": ":", "markerfacecolor": "none"}}
+LINES = {"measured": {"linestyle": "-"},
+         "simulated": {"linestyle": (0, (4, 2)), "linewidth": 1.2, "markersize": 5, "markerfacecolor": "none"},
+         "extrapolated": {"linestyle": "none", "marker": "D", "markersize": 4, "markerfacecolor": "none"}}
+EXTRAPOLATED = ("Extrapolated: at the paper's 3 million cells a core by a line in (cells a core)^(-1/3) through the "
+                "sizes simulated; bars: its range when any one of three or more is left out")
+# Of a legend on the right of its axes, where it hides no lines.
+BESIDE = {"loc": "upper left", "bbox_to_anchor": (1, 1)}
 GROWING = {"linewidth": 1.0, "markersize": 4}
 REFINING = {"linestyle": "-.", "linewidth": 1.0, "markersize": 4}
 
@@ -61,28 +67,24 @@ def ghost(axes, table, column, scale=1.0):
 
 
 def plot_series(axes, series, column, scale=1.0, of="", **options):
-    """Our medians with their intervals; measured filled and solid, simulated hollow and dotted, thin where the image
-    grows. `of` ends the words of the legend, `options` change the line."""
-    options = {"linewidth": 1.8, "markersize": 6, **LINES[series.key["basis"]], **(GROWING if series.grows else {}),
-               **options}
+    """Our medians with their intervals; measured filled and solid, simulated hollow and dashed, extrapolated hollow and
+    on no line, thin where the image grows. `of` ends the words of the legend, `options` change the line."""
+    options = {"linewidth": 1.8, "markersize": 6, "capsize": 3, **LINES[series.key["basis"]],
+               **(GROWING if series.grows else {}), **options}
     for algorithm, part in by_algorithm(series.table):
+        part = part[part[column].notna()]
         middle = part[column] * scale
         spread = numpy.nan_to_num([middle - part[column + "_low"] * scale, part[column + "_high"] * scale - middle])
-        axes.errorbar(part.index.get_level_values("cores"), middle, yerr=numpy.clip(spread, 0, None), capsize=3,
-                      color=COLOURS[algorithm], marker=MARKERS[algorithm], zorder=3,
-                      label=f"{NAMES[algorithm]}, {series.kind()}{of}", **options)
+        bars = numpy.clip(spread, 0, None) if part[column + "_low"].notna().any() else None
+        axes.errorbar(part.index.get_level_values("cores"), middle, yerr=bars,
+                      color=COLOURS[algorithm], zorder=3, label=f"{NAMES[algorithm]}, {series.kind()}{of}",
+                      **{"marker": MARKERS[algorithm], **options})
 
 
 def legend(axes, **options):
     made = axes.legend(frameon=False, fontsize=8, **options)
     for text in made.get_texts():
         text.set_color(INK)
-
-
-def legend_of(axes, ending, **options):
-    """A legend of the lines alone whose words end so."""
-    chosen = [pair for pair in zip(*axes.get_legend_handles_labels()) if pair[1].endswith(ending)]
-    legend(axes, handles=[handle for handle, _ in chosen], labels=[label for _, label in chosen], **options)
 
 
 def finish(figure, caption):
@@ -99,11 +101,14 @@ def caption_of(series, has_paper=True):
     parts = []
     for one in series:
         counts = sorted(set(one.table["n"].astype(int)))
-        n = f"n\N{NO-BREAK SPACE}=\N{NO-BREAK SPACE}{counts[0]}" + (f" to {counts[-1]}" if len(counts) > 1 else "")
-        parts.append(f"{one.kind()}: {one.label()}, {n}")
+        what = "sizes" if one.sizes else "n"
+        n = f"{what}\N{NO-BREAK SPACE}=\N{NO-BREAK SPACE}{counts[0]}" + (f" to {counts[-1]}" if len(counts) > 1 else "")
+        parts.append(f"{one.key['basis']}{', image grows' if one.grows else ''}: {one.label()}, {n}")
     text = "; ".join(parts) if parts else "no verified weak-scaling rows"
     if not has_paper:
         return text + "."
-    if any((one.table["n"] > 1).any() for one in series):
+    if any((one.table["n"] > 1).any() for one in series if not one.sizes):
         text += ". Medians; bars: bootstrap 95 % interval"
+    if any(one.sizes for one in series):
+        text += f". {EXTRAPOLATED}"
     return text + ". Grey, dashed: the paper, Blacklight."

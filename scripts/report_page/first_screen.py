@@ -192,7 +192,7 @@ def _open_cells(outcome):
 def _cells_said(outcome):
     """"Cells of Tables 1 and 2: measured 4 agree, 0 differ; simulated ..."."""
     parts = []
-    for basis in ("measured", "simulated"):
+    for basis in scaling.BASES:
         verdicts = [one["verdict"] for one in outcome.verdicts["cells"] if one["basis"] == basis]
         agree, differ = verdicts.count("agrees"), verdicts.count("differs")
         if agree or differ:

@@ -4,6 +4,8 @@ from html import escape
 
 import pandas
 
+from figures.table1 import MARKS
+
 
 @dataclass(frozen=True)
 class Bar:
@@ -78,5 +80,6 @@ def _cell(name, value, is_first):
     if name == "verdict":
         return f"<td>{verdict_span(value)}</td>"
     text = text_of(value)
-    kind = ' class="words"' if len(text) > 30 else ' class="number"' if text[:1].isdigit() else ""
+    is_number = text.lstrip("".join(MARKS.values()))[:1].isdigit()
+    kind = ' class="words"' if len(text) > 30 else ' class="number"' if is_number else ""
     return f"<td{kind}>{escape(text)}</td>"

@@ -9,38 +9,47 @@ from figures.write import svg_of
 
 from .first_screen import first_screen
 from .html import box, fold, table_html, text_of
+from .limits import limits
 
 HERE = Path(__file__).parent
 DOI = "https://doi.org/10.1016/j.proeng.2015.10.119"
-SECTIONS = {"claims": "Claims", "guarantees": "Guarantees", "tables": "Tables", "figures": "Figures", "mesh": "Mesh",
-            "environment": "Environment"}
+SECTIONS = {"claims": "Claims", "guarantees": "Guarantees", "tables": "Tables", "figures": "Figures",
+            "simulated": "Simulated machine", "mesh": "Mesh", "environment": "Environment"}
 FIGURE_TITLES = {"fig1": "Figure 1: quality of the cells",
                  "fig2b": "Figure 2 (b): two active leaves and their rings",
                  "fig4a": "Figure 4 (a): speed-up and efficiency",
-                 "fig4b": "Figure 4 (b): time and elements per second"}
+                 "fig4b": "Figure 4 (b): time and elements per second",
+                 "deviation": "Simulated speed-ups beside the paper's",
+                 "lost": "Where the time of simulated cores goes"}
 TABLE_TITLES = {"table1": "Table 1: weak scaling", "table2": "Table 2: accesses by hops",
                 "table3": "Table 3: memory levels", "peers": "Beside other meshers, one core",
-                "table1_simulated": "Table 1, simulated: weak scaling",
-                "table2_simulated": "Table 2, simulated: accesses by hops",
                 "simulated": "Simulated: every trial of virtual workers", "cache": "Cache behaviour"}
 FOLDED_TABLES = ("simulated", "cache")
 NOTES = {
     "table1": "Refining: octree, initial mesh, refinement and closing alone; its efficiency is the median of ratios "
               "within rounds.",
     "table2": "All kinds: with writes of the mesh and reads of the image and its transform, which the other columns "
-              "leave out.",
+              "leave out. In brackets: the range when one of the sizes extrapolated from is left out.",
     "simulated": "Seconds, losses and hops are of virtual workers. The wall time is what playing them took here, and "
                  "no time of theirs.",
     "peers": "Each mesher has the image and bounds of PODM. One that tells no seconds of reading has no rate by "
              "equation 1.",
 }
-NOTES["table2_simulated"] = NOTES["table2"]
+# In the order of the section: what was fitted, what is left of it, then what is predicted.
+MACHINE_TABLES = {"machine": "Machines described, and their constants",
+                  "validation": "Simulated beside measured, the same meshes",
+                  "deviation_means": "Speed-ups: mean absolute deviation from the paper's",
+                  "deviation": "Speed-ups (efficiencies) and their deviation from the paper's",
+                  "efficiency_and_hops": "Efficiencies and zero-hop shares, %",
+                  "lost": "Worker microseconds a cell, by cause"}
+MACHINE_FIGURES = ("deviation", "lost")
 
 
 def page(records, outcome, mesh=None, mesh_fault=""):
     """`mesh`: of viewer.pack; without one, `mesh_fault` says why."""
     parts = {"claims": _claims(outcome), "guarantees": _guarantees(outcome), "tables": _tables(outcome),
-             "figures": _figures(outcome), "mesh": _viewer(mesh, mesh_fault), "environment": _environment(records)}
+             "figures": _figures(outcome, [name for name in FIGURE_TITLES if name not in MACHINE_FIGURES]),
+             "simulated": _machine(outcome), "mesh": _viewer(mesh, mesh_fault), "environment": _environment(records)}
     body = "\n".join(_section(name, title, parts[name]) for name, title in SECTIONS.items())
     links = " ".join(f'<a href="#{name}">{title}</a>' for name, title in SECTIONS.items())
     script = f"<script>{(HERE / 'viewer.js').read_text()}</script>" if mesh else ""
@@ -126,24 +135,33 @@ def _tables(outcome):
         if name not in outcome.tables:
             continue
         data, shown = outcome.tables[name]
-        classes = list(shown["basis"]) if "basis" in shown else None
+        classes = [basis.split()[0].strip(",") for basis in shown["basis"]] if "basis" in shown else None
         series = "; ".join(data["series"].dropna().unique()) + "." if "series" in data else ""
-        brackets = "In brackets: bootstrap 95 % interval." if name in ("table1", "table1_simulated", "peers") else ""
+        brackets = "In brackets: bootstrap 95 % interval." if name in ("table1", "peers") else ""
         note = " ".join(part for part in (series, brackets, NOTES.get(name, "")) if part)
         content = table_html(shown, title, classes) + (f'\n<p class="faint">{escape(note)}</p>' if note else "")
         made.append(fold(title, content, name not in FOLDED_TABLES))
     return "\n".join(made)
 
 
-def _figures(outcome):
+def _figures(outcome, names):
     made = []
-    for name, figure in outcome.figures.items():
+    for name in names:
         title = FIGURE_TITLES[name]
+        if name in outcome.missing:
+            made.append(f'<p class="faint">{title}: not drawn, {escape(outcome.missing[name])}.</p>')
+            continue
+        figure = outcome.figures[name]
         picture = box(title, _responsive(svg_of(figure, name), title))
         made.append(f"<figure><h3>{title}</h3>{picture}<figcaption>{escape(figure.get_label())}</figcaption></figure>")
-    for name, reason in outcome.missing.items():
-        made.append(f'<p class="faint">{FIGURE_TITLES[name]}: not drawn, {escape(reason)}.</p>')
     return "\n".join(made)
+
+
+def _machine(outcome):
+    """The limits of the model come first, before any number of it."""
+    tables = [fold(title, table_html(outcome.tables[name][1], title), name != "lost")
+              for name, title in MACHINE_TABLES.items() if name in outcome.tables]
+    return "\n".join([limits(), *tables, _figures(outcome, MACHINE_FIGURES)])
 
 
 def _responsive(svg, title):

@@ -60,6 +60,29 @@ def with_hops(rows, shares):
         yield one
 
 
+def simulated_size(cells_per_core, speedup_of, counts=(1, 32, 256), zero_hops=None, **changes):
+    """Rows of one size of a simulated weak scaling: 0.1 M cells/s on one core, beyond it the speed-ups that
+    `speedup_of` tells of (algorithm, cores)."""
+    name = f"{cells_per_core // 1000}k"
+    for algorithm, cores in itertools.product(("podm", "pdr-podm"), counts):
+        speedup = 1 if cores == 1 else speedup_of(algorithm, cores)
+        seconds = cells_per_core * cores / (1e5 * speedup)
+        made = row(algorithm, cores, experiment="simulated_weak", executor="virtual", cells=cells_per_core * cores,
+                   trial=f"{name}-on-{cores},algorithm={algorithm}", input={"name": f"phantom:made-up@{name}"},
+                   phases_s={"refine": seconds}, **changes)
+        if zero_hops is not None and cores > 16:
+            made.update(hops=[int(1e9 * zero_hops), int(1e9 * (1 - zero_hops))], leaves={"nodes": cores // 16})
+        yield made
+
+
+def with_losses(rows, **shares):
+    """Worker seconds by cause for each row in virtual time: these shares of all its cores' seconds."""
+    for one in rows:
+        whole = sum(one["virtual"]["phases_s"].values()) * one["threads"]["used"]
+        one["virtual"]["worker_s"] = {cause: share * whole for cause, share in shares.items()}
+        yield one
+
+
 def with_levels(cycles):
     """A row that measured memory levels: caches, the own node's memory, another node's."""
     modules = ["L1 cache", "L2 cache", "L3 cache", "memory of the own node 0", "memory of another node 1"]

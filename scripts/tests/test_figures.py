@@ -49,8 +49,9 @@ class Scaling(unittest.TestCase):
         rows = [synthetic.row(), synthetic.row(executor="virtual"), synthetic.row(cores=64, executor="virtual")]
         series = scaling.weak_series(frame_of(rows))
         self.assertEqual({one.key["basis"]: len(one.table) for one in series}, {"measured": 1, "simulated": 2})
-        self.assertEqual(set(table1.table1(series)["basis"]), {"published", "measured"})
-        self.assertEqual(set(table1.table1_simulated(series)["basis"]), {"simulated"})
+        table = table1.table1(series)
+        self.assertEqual([len(table[table["basis"] == basis]) for basis in ("measured", "simulated")], [1, 2])
+        self.assertFalse(table.duplicated(["basis", "algorithm", "cores"]).any())
 
     def test_machines_programs_and_inputs_are_kept_apart(self):
         other = synthetic.row()["environment"] | {"cpu": "Another"}
@@ -170,16 +171,16 @@ class Simulated(unittest.TestCase):
         self.assertTrue(all("simulated" in head for head in heads), heads)
         self.assertFalse([head for head in shown if "time" in head and "wall" not in head])
 
-    def test_measured_rows_are_in_no_table_of_simulated_ones(self):
-        made = outcome.make(frame_of([synthetic.row(), synthetic.row("pdr-podm", hops=[3, 1])])).tables
-        self.assertFalse([name for name in made if "simulated" in name])
-        made = outcome.make(frame_of([self.row(), synthetic.row(executor="virtual")])).tables
-        for name in ("simulated", "table1_simulated", "table2_simulated"):
-            data, shown = made[name]
-            self.assertEqual(set(data["basis"]), {"simulated"})
-            self.assertTrue([head for head in shown if "simulated" in head])
-        for name in ("table1", "table2"):
-            self.assertNotIn("simulated", set(made[name][0]["basis"]))
+    def test_simulated_numbers_are_marked_and_named_and_no_others(self):
+        rows = [synthetic.row(), synthetic.row("pdr-podm", hops=[3, 1]), self.row(), synthetic.row(executor="virtual")]
+        for name, number in (("table1", "seconds"), ("table2", "0 hops")):
+            shown = outcome.make(frame_of(rows)).tables[name][1]
+            is_simulated = shown["basis"].str.startswith("simulated, 3\N{NO-BREAK SPACE}M cells a core")
+            self.assertTrue(is_simulated.any() and not is_simulated.all(), shown)
+            is_marked = shown[number].str.startswith(table1.MARKS["simulated"])
+            self.assertEqual(list(is_marked), list(is_simulated))
+        made = outcome.make(frame_of(rows[:2])).tables
+        self.assertFalse([name for name in made if name in ("simulated", "machine", "deviation", "lost", "validation")])
 
     def test_what_was_not_counted_is_a_reason(self):
         why = "unavailable: one NUMA node"
@@ -299,7 +300,8 @@ class Drawing(unittest.TestCase):
             figure = draw(series)
             legends = [axes.get_legend() for axes in figure.axes if axes.get_legend()]
             words = {text.get_text() for legend in legends for text in legend.get_texts()}
-            self.assertTrue({"PODM, paper", "PODM, measured", "PODM, simulated", "PDR.PODM, simulated"} <= words, words)
+            size = "simulated, 3\N{NO-BREAK SPACE}M cells a core"
+            self.assertTrue({"PODM, paper", "PODM, measured", f"PODM, {size}", f"PDR.PODM, {size}"} <= words, words)
             self.assertNotIn("PDR.PODM, measured", words)
             self.assertIn("bootstrap 95 %", figure.get_label())
 
@@ -307,7 +309,7 @@ class Drawing(unittest.TestCase):
         made = outcome.make(frame_of([]))
         self.assertEqual(set(made.figures), {"fig4a", "fig4b"})
         self.assertIn("no verified", made.figures["fig4a"].get_label())
-        self.assertEqual(set(made.missing), {"fig1", "fig2b"})
+        self.assertEqual(set(made.missing), {"fig1", "fig2b", "deviation", "lost"})
 
     def test_quality(self):
         self.assertEqual(len(fig1.fig1(synthetic.report()).axes), 3)

@@ -9,7 +9,8 @@ from test_figures import frame_of
 POWERS_OF_TWO = (1, 16, 32, 64, 128, 256)
 CYCLES = [4, 11, 40, 200, 1500]
 CLAIMS = ["crossover", "efficiency of podm", "efficiency of pdr-podm", "speed-up of podm beyond 128 cores",
-          "speed-up of pdr-podm beyond 128 cores", "zero-hop share", "latency within a node", "latency beyond a node"]
+          "speed-up of pdr-podm beyond 128 cores", "zero-hop share", "latency within a node", "latency beyond a node",
+          "deviation of podm", "deviation of pdr-podm"]
 
 
 def judged(rows):

@@ -246,10 +246,8 @@ TEST(ExperimentClaims, TurnEitherWayOrAreLeftOpen) {
 // What is published as failed is claimed, so that a verdict says so.
 TEST(ExperimentClaims, StateWhatFailedWithItsReason) {
   const std::pair<const char*, const char*> published[] = {
-      {"contention", "local-loses-least-simulated"},
-      {"crossover", "pdr-podm-ahead-on-256-simulated-cores"},
-      {"crossover", "auto-takes-the-faster-simulated"},
-      {"numa_hops", "pdr-podm-on-several-blades"},
+      {"contention", "local-loses-least"},
+      {"simulated_weak", "pdr-podm-on-several-blades"},
       {"initial_mesh", "ratio-4"},
   };
   for (const auto& [name, claimed] : published) {

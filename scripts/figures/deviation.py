@@ -1,0 +1,105 @@
+"""Simulated speed-ups, efficiencies and zero-hop shares beside the paper's: what the constants of the machine were
+fitted to, PODM's column, and what they predict, PDR.PODM's and Table 2."""
+import pandas
+
+from . import paper, scaling, style
+from .claims import DEVIATIONS, deviations
+from .table1 import with_bounds
+
+ROLES = {"podm": "fitted", "pdr-podm": "predicted"}
+
+
+def deviation(series):
+    """One line an algorithm, number of cores beyond one, and size simulated, or basis `extrapolated`: speed-up and
+    efficiency beside the paper's, and the `deviation` of the speed-up, ours over the paper's less 1."""
+    published = paper.corrected_table1()
+    lines = []
+    for algorithm in paper.ALGORITHMS:
+        for one in _shown(series):
+            for cores, deviates in deviations(one.table, algorithm).items():
+                ours, theirs = one.table.loc[algorithm, cores], published.loc[algorithm, cores]
+                lines.append({"algorithm": algorithm, "role": ROLES[algorithm], "cores": cores,
+                              "basis": one.key["basis"], "kind": one.kind(), "cells_per_core": one.cells_per_core,
+                              "published_speedup": theirs["speedup"], "published_efficiency": theirs["efficiency"],
+                              **{name: ours[name] for name in ("speedup", "speedup_low", "speedup_high", "efficiency")},
+                              "deviation": deviates})
+    return pandas.DataFrame(lines)
+
+
+def readable(table):
+    """Numbers of cores downwards within an algorithm, the one fitted to first; sizes across."""
+    lines = []
+    for (algorithm, cores), group in table.groupby(["algorithm", "cores"], sort=False):
+        first = group.iloc[0]
+        line = {"algorithm": algorithm, "speed-up was": first["role"], "cores": cores,
+                "published": f"{first['published_speedup']:.1f} ({100 * first['published_efficiency']:.0f} %)"}
+        for _, one in group.iterrows():
+            bounds = with_bounds(one["speedup"], one["speedup_low"], one["speedup_high"], 1)
+            line[one["kind"]] = f"{bounds} ({100 * one['efficiency']:.0f} %): {100 * one['deviation']:+.0f} %"
+        lines.append(line)
+    return pandas.DataFrame(lines).fillna("")
+
+
+def means(table):
+    """One line an algorithm and size, the mean absolute deviation over its `n` numbers of cores beside what was asked
+    for."""
+    lines = [{"algorithm": algorithm, "speed-up was": group["role"].iloc[0], "basis": kind,
+              "mean absolute deviation %": f"{100 * group['deviation'].abs().mean():.1f}",
+              "numbers of cores": len(group), "asked %": f"below {100 * DEVIATIONS[algorithm]:.0f}"}
+             for (algorithm, kind), group in table.groupby(["algorithm", "kind"], sort=False)]
+    return pandas.DataFrame(lines)
+
+
+def figure(series):
+    """Deviations of speed-ups against cores, a panel an algorithm; None without simulated ones."""
+    shown = _shown(series)
+    if deviation(series).empty:
+        return None
+    drawn, panels = style.new_figure(columns=2, width=12.0, height=3.8)
+    cores = [count for count in scaling.core_counts([one.table for one in shown]) if count > 1]
+    for axes, (algorithm, name) in zip(panels, style.NAMES.items()):
+        for place, one in enumerate(shown):
+            found = 100 * deviations(one.table, algorithm)
+            axes.plot(found.index, found, color=style.COLOURS[algorithm], alpha=(place + 1) / len(shown),
+                      label=one.kind(), **{"marker": style.MARKERS[algorithm], **style.LINES[one.key["basis"]]})
+        most = 100 * DEVIATIONS[algorithm]
+        axes.axhspan(-most, most, color=style.GHOST, alpha=0.15, label="asked of the mean")
+        axes.axhline(0, color=style.INK, linewidth=0.8)
+        axes.set(xlabel="cores", title=f"{name}, {ROLES[algorithm]}", ylabel="speed-up over the paper's, less 1, %")
+        axes.set_xticks(cores, [str(count) for count in cores], rotation=45)
+    style.legend(panels[-1], **style.BESIDE)
+    style.finish(drawn, f"What is left of the fit, and the prediction. {style.caption_of(shown, has_paper=False)}")
+    return drawn
+
+
+def efficiency_and_hops(series, hops):
+    """One line a number of cores: both algorithms' efficiency and PDR.PODM's zero-hop share, published, simulated and
+    extrapolated, as text."""
+    published = paper.corrected_table1()["efficiency"]
+    zero = hops[(hops["algorithm"] == "pdr-podm") & (hops["hops"] == 0)].set_index(["basis", "cores"])
+    lines = []
+    for cores in sorted({*published.index.get_level_values("cores"), *paper.table2().columns}):
+        line = {"cores": cores}
+        for algorithm, name in style.NAMES.items():
+            line[f"{name}, efficiency, published"] = _percent(published.get((algorithm, cores)))
+            for one in map(lambda basis: scaling.first_of(series, basis), scaling.BASES[1:]):
+                if one and (algorithm, cores) in one.table.index:
+                    row = one.table.loc[algorithm, cores]
+                    line[f"{name}, {one.kind()}"] = _percent(*row[["efficiency", "efficiency_low", "efficiency_high"]])
+        for basis in ("published", *scaling.BASES[1:]):
+            if (basis, cores) in zero.index:
+                row = zero.loc[basis, cores]
+                share = _percent(*row[["share", "share_low", "share_high"]], digits=2)
+                line[f"PDR.PODM, 0 hops, {row['kind']}"] = share
+        lines.append(line)
+    return pandas.DataFrame(lines).fillna("")
+
+
+def _shown(series):
+    """All sizes, then what they extrapolate to."""
+    last = scaling.first_of(series, "extrapolated")
+    return scaling.simulated_sizes(series) + ([last] if last else [])
+
+
+def _percent(value, low=float("nan"), high=float("nan"), digits=1):
+    return "" if value is None else with_bounds(100 * value, 100 * low, 100 * high, digits)

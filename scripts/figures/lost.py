@@ -1,0 +1,78 @@
+"""Where the time of simulated workers goes: worker seconds by cause, against cores, for each cell made. Were nothing
+lost to others, all bars would be as high as that of one core."""
+import pandas
+
+from . import scaling, style
+
+PREFIX = "virtual.worker_s."
+# From work to what others cost, in the order of the stack; causes of other names stand before the last.
+CAUSES = {"compute": "computing", "memory_remote": "memory of other nodes", "network_queue": "queueing in the network",
+          "between_attempts": "lists, gifts, leaves", "locks": "waiting for locks",
+          "contention": "waiting after conflicts", "rollback": "rolling back", "begging": "begging, waiting for leaves",
+          "outside": "outside refinement, or idle"}
+COLOURS = dict(zip(CAUSES, ["#8fb996", "#e8a33d", "#d1495b", "#c9b458", "#7a6c9d", "#8f575c", "#3d3d6b", "#6d9dc5",
+                            style.GHOST]))
+OTHER_COLOUR = "#e6d5e8"
+COLUMNS = ["basis", "kind", "algorithm", "cores", "n"]
+
+
+def lost(frame, series):
+    """One line an algorithm and number of cores of the simulated series to show: worker microseconds a cell by cause,
+    medians. `outside`: what the causes leave of all cores for all of equation 1. Empty where rows tell no causes."""
+    shown = scaling.first_of(series, "simulated")
+    told = sorted((name.removeprefix(PREFIX) for name in frame if name.startswith(PREFIX)),
+                  key=lambda cause: list(CAUSES).index(cause) if cause in CAUSES else len(CAUSES))
+    if shown is None or not told:
+        return pandas.DataFrame(columns=COLUMNS)
+    rows = scaling.headline_rows(frame)
+    rows = rows[(rows[list(shown.key)] == pandas.Series(shown.key)).all(axis=1)].dropna(subset=PREFIX + told[0])
+    rows = rows[abs(rows["cells"] / rows["cores"] / shown.cells_per_core - 1) <= scaling.SIZE_TOLERANCE]
+    lines = []
+    for (algorithm, cores), group in rows.groupby(["algorithm", "cores"]):
+        by_cause = group[[PREFIX + cause for cause in told]].div(group["cells"], axis=0)
+        whole = group["seconds"] * cores / group["cells"]
+        outside = (whole - by_cause.sum(axis=1)).clip(lower=0)
+        seconds = {**dict(zip(told, by_cause.median())), "outside": outside.median()}  # of a cell
+        lines.append({"basis": "simulated", "kind": shown.kind(), "algorithm": algorithm, "cores": cores,
+                      "n": len(group), **{cause: 1e6 * one for cause, one in seconds.items()}})
+    return pandas.DataFrame(lines)
+
+
+def _causes(table):
+    """(cause, what people call it) in the order of the stack."""
+    return [(cause, CAUSES.get(cause, cause.replace("_", " "))) for cause in table.columns[len(COLUMNS):]]
+
+
+def readable(table):
+    """Worker microseconds a cell, three digits."""
+    shown = table[["algorithm", "cores", "kind"]].rename(columns={"kind": "basis"})
+    for cause, words in _causes(table):
+        shown[words] = ["" if pandas.isna(value) else f"{value:.3g}" for value in table[cause]]
+    return shown
+
+
+def figure(frame, series):
+    """Stacked bars, a panel an algorithm with one scale; None where rows tell no causes."""
+    table = lost(frame, series)
+    if table.empty:
+        return None
+    drawn, panels = style.new_figure(columns=2, width=10.5, height=4.2)
+    cores = sorted(set(table["cores"]))
+    for axes, (algorithm, name) in zip(panels, style.NAMES.items()):
+        part = table[table["algorithm"] == algorithm]
+        places, bottoms = [cores.index(count) for count in part["cores"]], 0 * part["cores"].astype(float)
+        for cause, words in _causes(table):
+            heights = part[cause].fillna(0)
+            axes.bar(places, heights, 0.7, bottom=bottoms, color=COLOURS.get(cause, OTHER_COLOUR), label=words,
+                     edgecolor=style.INK, linewidth=0.3)
+            bottoms = bottoms + heights
+        axes.set_xticks(range(len(cores)), [str(count) for count in cores])
+        axes.set(xlabel="simulated cores", title=name, ylabel="simulated worker microseconds a cell")
+    top = 1.05 * max(axes.dataLim.y1 for axes in panels)
+    for axes in panels:
+        axes.set_ylim(0, top)
+    handles, labels = panels[-1].get_legend_handles_labels()
+    style.legend(panels[-1], handles=handles[::-1], labels=labels[::-1], **style.BESIDE)
+    shown = scaling.first_of(series, "simulated")
+    style.finish(drawn, f"Where the time goes: {style.caption_of([shown], has_paper=False)}")
+    return drawn

@@ -1,0 +1,95 @@
+"""scripts/whatif with a podm-bench that makes up its rows: what it asks for, what it answers, what it refuses."""
+import tempfile
+import tomllib
+import unittest
+from pathlib import Path
+
+import paths  # noqa: F401
+from figures import whatif
+from test_programs import call
+
+MACHINE = "name = 'Made-up'\n[processor]\nsockets_per_node = 2\ncores_per_socket = 8\n[network]\nnodes = 16\n"
+# Of 256 cores: PDR.PODM keeps 70 %, PODM 90 % up to LAST cores and no more cells a second beyond.
+BENCH = """#!/usr/bin/python3
+import json, sys, tomllib
+sys.path.insert(0, "{tests}")
+import synthetic
+_, _, experiment, _, folder = sys.argv
+name = experiment.split("/")[-1].removesuffix(".toml")
+with open(experiment, "rb") as file:
+    trials = tomllib.load(file)["trials"]
+rows = [row for trial in trials for row in synthetic.simulated_size(
+    10_000, lambda algorithm, cores: 0.9 * min(cores, {last}) if algorithm == "podm" else 0.7 * cores,
+    counts=[trial["threads"]], status="{status}")]
+with open(folder + "/" + name + ".jsonl", "w") as file:
+    file.writelines(json.dumps(row | {{"experiment": name}}) + "\\n" for row in rows)
+print("progress")
+sys.exit({code})
+"""
+
+
+class WhatIf(unittest.TestCase):
+    def setUp(self):
+        folder = tempfile.TemporaryDirectory()
+        self.addCleanup(folder.cleanup)
+        self.folder = Path(folder.name)
+        self.machine = self.folder / "big.toml"
+        self.machine.write_text(MACHINE)
+
+    def ask(self, *arguments, last=128, status="ok", code=0):
+        bench = self.folder / "bench"
+        bench.write_text(BENCH.format(tests=Path(__file__).parent, last=last, status=status, code=code))
+        bench.chmod(0o755)
+        return call("whatif", self.machine, "--bench", bench, "-o", self.folder / "out", *arguments)
+
+    def test_says_which_algorithm_from_which_count_on_and_draws_it(self):
+        for last, words in ((128, "podm up to 160 cores, pdr-podm from 192 on"),
+                            (256, "podm on all numbers of cores up to 256"),
+                            (1, "podm on one core, pdr-podm from 32 on")):
+            with self.subTest(last=last):
+                done = self.ask(last=last)
+                self.assertEqual(done.returncode, 0, done.stderr)
+                self.assertIn(words, done.stdout)
+                self.assertIn("simulated", done.stdout)
+                self.assertIn("progress", done.stderr)
+                self.assertNotIn("progress", done.stdout)
+                self.assertGreater((self.folder / "out" / "whatif.png").stat().st_size, 10_000)
+
+    def test_trials_are_of_both_algorithms_on_one_to_all_cores(self):
+        self.ask()
+        (path,) = (self.folder / "out").glob("*.toml")
+        trials = tomllib.loads(path.read_text())["trials"]
+        self.assertEqual([trial["threads"] for trial in trials], [1, 32, 64, 96, 128, 160, 192, 224, 256])
+        for trial in trials:
+            self.assertEqual(trial["algorithm"], ["podm", "pdr-podm"])
+            self.assertEqual((trial["executor"], trial["topology"]), ("virtual", str(self.machine.resolve())))
+            self.assertEqual(trial.get("cores_per_node", 16), 16)
+
+    def test_nodes_are_full_or_alone(self):
+        self.assertEqual(whatif.core_counts(2, 64), [1, 16, 32, 48, 64, 128])
+        self.assertEqual(whatif.core_counts(1, 2), [1, 2])
+        self.assertEqual(whatif.core_counts(1, 1), [1])
+
+    def test_bad_input_is_named(self):
+        broken, small = self.folder / "broken.toml", self.folder / "small.toml"
+        broken.write_text("[processor\n")
+        small.write_text("[processor]\nsockets_per_node = 0\ncores_per_socket = 1\n")
+        for arguments, words in (([self.folder / "none.toml"], "none.toml: No such file"), ([broken], "broken.toml"),
+                                 ([small], "small.toml: processor.sockets_per_node must be a whole number"),
+                                 ([self.machine, "--cells-per-core", "5"], "must be 1000 or more"),
+                                 ([self.machine, "--bench", "/none/podm-bench"], "`make build` builds it"),
+                                 ([], "the following arguments are required")):
+            with self.subTest(words=words):
+                done = call("whatif", *arguments, "-o", self.folder / "out")
+                self.assertEqual(done.returncode, 2)
+                self.assertIn(words, done.stderr)
+
+    def test_trials_that_failed_are_no_answer(self):
+        for done in (self.ask(code=1), self.ask(status="failed")):
+            self.assertEqual(done.returncode, 2)
+            self.assertEqual(done.stdout, "")
+        self.assertIn("status failed", done.stderr)
+
+
+if __name__ == "__main__":
+    unittest.main()
