@@ -4,8 +4,8 @@ Playing 256 workers takes minutes, a fit hundreds of trials: so the fit plays th
 computes for as long as its rows say that an attempt's work and way to other memory take, then asks both routers for as
 many accesses as they say that an insertion makes; routers serve as in mesher/workers/remote_memory.h. Those who lose
 their time to each other, in contention and begging, are left out, as many as in the row. So rows should be of constants
-that are near: a second fit to rows of the first one's. Played in full they tell how good the surrogate was: scripts/report
-shows them beside the paper's.
+that are near: a second fit to rows of the first one's. Played in full they tell how good the surrogate was:
+scripts/report shows them beside the paper's.
 
 Nothing of PDR.PODM, of efficiencies or of Table 2 is looked at.
 """
