@@ -1,10 +1,12 @@
 // A mesh under construction: its store, the pools of those who refine it, and what each phase took.
 #pragma once
 
+#include <atomic>
 #include <chrono>
 #include <limits>
 #include <map>
 #include <memory>
+#include <new>
 #include <optional>
 #include <string>
 #include <vector>
@@ -147,9 +149,14 @@ class Construction {
     });
     time.run([&](WorkerId self) { relocation->rename(self, *pools_[self]); });
     if (time.is_over()) return std::nullopt;
+    std::atomic<int> num_moved = 0;
     time.run([&](WorkerId self) {
-      time.spend(self, kCellMoved * static_cast<double>(relocation->move(self, *pools_[self])));
+      const std::size_t num_cells = relocation->move(self, *pools_[self]);
+      ++num_moved;
+      time.spend(self, kCellMoved * static_cast<double>(num_cells));
     });
+    if (num_moved < num_workers())
+      throw std::bad_alloc();  // a thread or fibre lacked memory: no mesh is left
     if (team_.log != nullptr) log(*relocation);
     return relocation;
   }

@@ -32,7 +32,7 @@ class Relocation {
         found_at(node_of(mesh_.cell(c).center), mesh_.node_of_cell(c), self).cells.push_back(c);
     });
     for_part(vertices_now_, self, [&](VertexId v) {
-      if (mesh_.vertex(v).kind != VertexKind::kUnused)
+      if (mesh_.vertex(v).kind != VertexKind::kUnused && mesh_.vertex(v).kind != VertexKind::kBox)
         found_at(node_of(mesh_.point(v)), mesh_.node_of_vertex(v), self).vertices.push_back(v);
     });
   }

@@ -7,7 +7,7 @@ import unittest
 from podm_process import PodmTestCase, run_podm
 
 IMAGE = "phantom:abdomen@40"
-BLACKLIGHT = pathlib.Path(__file__).resolve().parents[2] / "experiments/machines/blacklight_256.xml"
+BLACKLIGHT = pathlib.Path(__file__).resolve().parents[2] / "experiments/machines/blacklight.toml"
 
 
 class Replay(PodmTestCase):

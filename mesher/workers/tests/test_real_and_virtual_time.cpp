@@ -188,7 +188,7 @@ struct Failing {
   std::optional<AccessTally> tally;
 };
 
-TEST(VirtualTime, KeepsTheLocksOfAFailingAttemptToItsEnd) {
+TEST(VirtualTime, ChargesAFailingAttemptForWhichItHoldsNothing) {
   StopControl stop({}, {}, [](std::uint64_t) {});
   VirtualTime time(stop, 2, VirtualCost::kMeasured, 1);
   Failing worker;
@@ -197,7 +197,7 @@ TEST(VirtualTime, KeepsTheLocksOfAFailingAttemptToItsEnd) {
     if (self == 0) time.attempt(worker);
     if (self == 1) held_meanwhile = worker.holds;
   });
-  EXPECT_TRUE(held_meanwhile);
+  EXPECT_FALSE(held_meanwhile);
   EXPECT_FALSE(worker.holds);
   EXPECT_GT(time.overhead(worker).rollback_s, 0);
   EXPECT_EQ(time.spending().work_s, 0) << "what is rolled back is no work";
