@@ -83,8 +83,10 @@ double accesses_a_second(double retries, WorkerId num_workers) {
 }
 
 TEST(RemoteMemory, BusyStationsBoundTheRate) {
-  EXPECT_NEAR(accesses_a_second(0, 16) * kService, 1, 0.05);
-  EXPECT_NEAR(accesses_a_second(0, 64) * kService, 1, 0.05);
+  EXPECT_LE(accesses_a_second(0, 16) * kService, 1.01);
+  EXPECT_GE(accesses_a_second(0, 16) * kService, 0.8);
+  EXPECT_LE(accesses_a_second(0, 64) * kService, 1.01);
+  EXPECT_GE(accesses_a_second(0, 64) * kService, 0.8);
   const double few = accesses_a_second(0.01, 16), many = accesses_a_second(0.01, 64);
   EXPECT_LT(few * kService, 0.9);
   EXPECT_LT(many, 0.9 * few);
