@@ -136,8 +136,7 @@ class Construction {
   /// all is where it was.
   template <class Time, class WorkerOf>
   std::optional<Relocation> relocate(Time& time, const WorkerOf& worker_of) {
-    std::vector<NodeIndex> nodes;
-    for (const WorkerReport& worker : result_.workers) nodes.push_back(static_cast<NodeIndex>(worker.node));
+    const std::vector<NodeIndex> nodes = nodes_of_first(static_cast<std::size_t>(num_workers()));
     std::optional<Relocation> relocation(std::in_place, *result_.mesh, nodes);
     const auto node_of = [&](const Point& p) {
       const WorkerId worker = worker_of(p);

@@ -8,6 +8,21 @@ from podm_process import PodmTestCase, run_podm
 
 IMAGE = "phantom:abdomen@40"
 BLACKLIGHT = os.path.join(os.path.dirname(__file__), "../../experiments/machines/blacklight.toml")
+TWO_NODES = """<topology version="2.0">
+  <object type="Machine" os_index="0" cpuset="0xf" complete_cpuset="0xf" nodeset="0x3" complete_nodeset="0x3">
+    <object type="Package" os_index="0" cpuset="0x3" complete_cpuset="0x3" nodeset="0x1" complete_nodeset="0x1">
+      <object type="NUMANode" os_index="0" cpuset="0x3" complete_cpuset="0x3" nodeset="0x1" complete_nodeset="0x1"/>
+      <object type="PU" os_index="0" cpuset="0x1" complete_cpuset="0x1" nodeset="0x1" complete_nodeset="0x1"/>
+      <object type="PU" os_index="1" cpuset="0x2" complete_cpuset="0x2" nodeset="0x1" complete_nodeset="0x1"/>
+    </object>
+    <object type="Package" os_index="1" cpuset="0xc" complete_cpuset="0xc" nodeset="0x2" complete_nodeset="0x2">
+      <object type="NUMANode" os_index="1" cpuset="0xc" complete_cpuset="0xc" nodeset="0x2" complete_nodeset="0x2"/>
+      <object type="PU" os_index="2" cpuset="0x4" complete_cpuset="0x4" nodeset="0x2" complete_nodeset="0x2"/>
+      <object type="PU" os_index="3" cpuset="0x8" complete_cpuset="0x8" nodeset="0x2" complete_nodeset="0x2"/>
+    </object>
+  </object>
+</topology>
+"""
 KINDS = "mesh_reads", "mesh_writes", "image_reads", "transform_reads"
 
 
@@ -41,6 +56,18 @@ class Hops(PodmTestCase):
         first, again, other = (self.mesh_on_blades("--seed", seed)["hops_by_kind"] for seed in (3, 3, 4))
         self.assertEqual(first, again)
         self.assertNotEqual(first, other)
+
+    def test_counting_changes_no_mesh(self):
+        # Memory of an hwloc machine costs virtual workers nothing. Those that beg at random act alike wherever they
+        # stand, counted or not.
+        machine = self.folder / "two_nodes.xml"
+        machine.write_text(TWO_NODES)
+        virtual = "--executor", "virtual", "--threads", 4, "--begging", "random"
+        uncounted = self.mesh(*virtual, "--pin", "none")
+        counted = self.mesh(*virtual, "--pin", "compact", "--topology", machine)
+        self.assertEqual(counted["mesh_sha256"], uncounted["mesh_sha256"])
+        self.assertEqual(len(counted["hops"]), 2)
+        self.assertGreater(counted["hops"][1], 0)
 
     def test_what_cannot_be_counted_says_why(self):
         record = self.mesh("--threads", 1)

@@ -72,7 +72,7 @@ double accesses_a_second(double retries, WorkerId num_workers) {
   RemoteMemory memory(machine, std::vector<NodeIndex>(num_workers, 0));
   std::vector<double> ready_at(num_workers, 0.0);
   std::vector<AccessTally> tallies(num_workers, AccessTally(3));
-  constexpr int kAttempts = 2000, kAccesses = 10;
+  constexpr int kAttempts = 20000, kAccesses = 1;
   for (int i = 0; i < kAttempts; ++i) {
     const auto first = std::min_element(ready_at.begin(), ready_at.end());
     const auto worker = static_cast<WorkerId>(first - ready_at.begin());
@@ -83,13 +83,11 @@ double accesses_a_second(double retries, WorkerId num_workers) {
 }
 
 TEST(RemoteMemory, BusyStationsBoundTheRate) {
-  EXPECT_LE(accesses_a_second(0, 16) * kService, 1.01);
-  EXPECT_GE(accesses_a_second(0, 16) * kService, 0.8);
-  EXPECT_LE(accesses_a_second(0, 64) * kService, 1.01);
-  EXPECT_GE(accesses_a_second(0, 64) * kService, 0.8);
-  const double few = accesses_a_second(0.01, 16), many = accesses_a_second(0.01, 64);
+  EXPECT_NEAR(accesses_a_second(0, 16) * kService, 1, 0.05);
+  EXPECT_NEAR(accesses_a_second(0, 64) * kService, 1, 0.05);
+  const double few = accesses_a_second(0.1, 16), many = accesses_a_second(0.1, 64);
   EXPECT_LT(few * kService, 0.9);
-  EXPECT_LT(many, 0.9 * few);
+  EXPECT_LT(many, 0.5 * few);
 }
 
 TEST(ReadLines, AreFirstOnceForEachNode) {
