@@ -95,6 +95,8 @@ class Run {
         return pdr(problem, team, options_.leaves, stop_control);
       case Algorithm::kPdrPodm:
         return pdr_podm(problem, team, options_.leaves, stop_control);
+      case Algorithm::kPodmHome:
+        return podm_home(problem, team, stop_control);
       default:
         return podm(problem, team, stop_control);
     }

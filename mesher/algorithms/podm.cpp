@@ -14,12 +14,29 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 #include "algorithms/leaf_locks.h"
 #include "refine/virtual_box.h"
 #include "workers/work_cost.h"
 
 namespace podm {
+
+// New cells of other homes go there when they are so many, or when the worker has no others.
+constexpr std::size_t kAwayToSend = 128;
+
+template <class Locks, class Time>
+void send_home(Worker<Locks>& worker, Coordination& group, Time& time) {
+  auto away = worker.take_away();
+  std::stable_sort(away.begin(), away.end(), [](const auto& a, const auto& b) { return a.home < b.home; });
+  Construction::Entries cells;
+  for (std::size_t i = 0; i < away.size(); ++i) {
+    cells.push_back(away[i].entry);
+    if (i + 1 < away.size() && away[i + 1].home == away[i].home) continue;
+    time.spend(worker.id(), kBegging + kEntryGiven * static_cast<double>(cells.size()));
+    group.send(away[i].home, std::exchange(cells, {}));
+  }
+}
 
 template <class Locks, class Time>
 bool refine(Worker<Locks>& worker, Coordination& group, Time& time,
@@ -32,13 +49,16 @@ bool refine(Worker<Locks>& worker, Coordination& group, Time& time,
       const auto [answer, pause_s] = group.after(outcome, self, worker);
       if (const std::size_t given = num_listed - worker.num_listed(); given > 0)
         time.spend_in(&group, self, kBegging + kEntryGiven * static_cast<double>(given));
+      if (worker.num_away() >= kAwayToSend) send_home(worker, group, time);
       if (answer == ContentionManager::Answer::kWait) time.block(self, &Overhead::contention_s);
       if (answer == ContentionManager::Answer::kPause) time.pause(self, pause_s);
     } else {
       if (before_begging) before_begging();
+      if (worker.num_away() > 0) send_home(worker, group, time);
       time.spend_in(&group, self, kBegging);
-      if (!group.beg(self)) break;
-      time.block(self, &Overhead::begging_s);
+      const Coordination::Begging begging = group.beg(self);
+      if (begging == Coordination::Begging::kOver) break;
+      if (begging == Coordination::Begging::kListed) time.block(self, &Overhead::begging_s);
       const Construction::Entries gift = group.take_gift(self);
       worker.give(gift);
       time.spend(self, kEntryGiven * static_cast<double>(gift.size()));
@@ -63,10 +83,15 @@ CoordinationOptions coordination_of_first(const Team& team, int num_workers) {
 // All workers start at once; those without cells beg until the first has some to share.
 template <class Locks, class Time>
 void refine_with(Construction& construction, const Parameters& parameters, const Construction::Entries& cells,
-                 int num_workers, Time& time) {
+                 int num_workers, const Homes* homes, Time& time) {
   auto workers = construction.make_workers<Locks>(parameters, num_workers);
-  Coordination group(coordination_of_first(construction.team(), num_workers),
-                     [&](WorkerId worker) { time.resume(worker); });
+  CoordinationOptions options = coordination_of_first(construction.team(), num_workers);
+  if (homes != nullptr) {
+    options.workers_per_home = num_workers / static_cast<int>(homes->number());
+    for (const auto& worker : workers)
+      worker->keep_to(*homes, worker->id() / static_cast<WorkerId>(options.workers_per_home));
+  }
+  Coordination group(options, [&](WorkerId worker) { time.resume(worker); });
   workers[0]->give(cells);
   time.run([&](WorkerId self) {
     const bool is_done = refine(*workers[self], group, time);
@@ -78,14 +103,14 @@ void refine_with(Construction& construction, const Parameters& parameters, const
 }  // namespace
 
 void refine_anywhere(Construction& construction, const std::string& phase, const Parameters& parameters,
-                     const Construction::Entries& cells, int num_workers) {
+                     const Construction::Entries& cells, int num_workers, const Homes* homes) {
   if (construction.stop().is_over()) return construction.timed(phase, [] {});  // every run has this phase
   construction.timed(phase, [&] {
     construction.in_time(phase, num_workers, [&](auto& time) {
       if (num_workers > 1 || construction.team().executor == Executor::kVirtual) {
-        refine_with<VertexLocks>(construction, parameters, cells, num_workers, time);
+        refine_with<VertexLocks>(construction, parameters, cells, num_workers, homes, time);
       } else {
-        refine_with<NoLocks>(construction, parameters, cells, num_workers, time);
+        refine_with<NoLocks>(construction, parameters, cells, num_workers, homes, time);
       }
     });
   });

@@ -10,6 +10,9 @@ namespace podm {
 /// without locks.
 Refinement podm(const Problem& problem, const Team& team, StopControl& stop);
 
+/// PODM whose computing nodes keep to their own blocks of space.
+Refinement podm_home(const Problem& problem, const Team& team, StopControl& stop);
+
 /// Parallel Delaunay refinement leaf by leaf, one worker a leaf, without locks.
 Refinement pdr(const Problem& problem, const Team& team, const LeafOptions& options, StopControl& stop);
 /// The same with several workers a leaf, which lock vertices against each other.
@@ -25,7 +28,7 @@ bool refine(Worker<Locks>& worker, Coordination& group, Time& time,
 /// PODM as a phase: the first `num_workers` of the team refine these cells, with locks unless there is only
 /// one.
 void refine_anywhere(Construction& construction, const std::string& phase, const Parameters& parameters,
-                     const Construction::Entries& cells, int num_workers);
+                     const Construction::Entries& cells, int num_workers, const Homes* homes = nullptr);
 
 /// Rules for the problem, with all bounds times `ratio`.
 Parameters parameters_for(const Problem& problem, double ratio, const Box& clamp_box);

@@ -169,7 +169,8 @@ Json calibration_of(const MeshingReport& report) {
 }
 
 Json leaves_of(const MeshRun& run) {
-  if (run.result.report.algorithm == Algorithm::kPodm) return nullptr;
+  const Algorithm algorithm = run.result.report.algorithm;
+  if (algorithm == Algorithm::kPodm || algorithm == Algorithm::kPodmHome) return nullptr;
   return {{"number", run.result.report.num_leaves},
           {"nodes", run.result.report.computing_nodes},
           {"initial_ratio", run.options.leaves.initial_ratio},

@@ -8,6 +8,7 @@
 
 #include "delaunay/operation.h"
 #include "podm/operation_log.h"
+#include "refine/homes.h"
 #include "refine/outcome.h"
 #include "refine/poor_element_list.h"
 #include "refine/rules.h"
@@ -33,6 +34,19 @@ class Worker {
   std::size_t num_listed() const { return poor_.size(); }
   /// Takes the oldest cells off the list, for another worker; about half of them, at most `max`.
   std::vector<PoorElementList::Entry> share(std::size_t max) { return poor_.take_oldest(max, mesh_); }
+
+  /// From now on new cells whose home is another are kept apart, for others to refine. The homes must outlive
+  /// this.
+  void keep_to(const Homes& homes, unsigned home) {
+    homes_ = &homes;
+    home_ = home;
+  }
+  struct Away {
+    unsigned home;
+    PoorElementList::Entry entry;
+  };
+  std::size_t num_away() const { return away_.size(); }
+  std::vector<Away> take_away() { return std::exchange(away_, {}); }
 
   /// Takes one entry of the poor element list and applies the first rule that its cell breaks.
   /// After a conflict conflicting_worker() tells with whom. Locks are held until release(), which must come
@@ -93,6 +107,9 @@ class Worker {
   Operation<Locks> operation_;
   PoorElementList poor_;
   std::vector<PoorElementList::Entry> foreign_, deferred_;
+  const Homes* homes_ = nullptr;  // none: all cells are at home
+  unsigned home_ = 0;
+  std::vector<Away> away_;
   double min_distance_;
   WorkerId self_;
   OperationLogWriter* log_;

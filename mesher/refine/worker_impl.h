@@ -178,7 +178,11 @@ void Worker<Locks>::list_created() {
         continue;
       }
     }
-    give(c);
+    if (const unsigned home = homes_ == nullptr ? home_ : homes_->of(mesh_.cell(c).center); home != home_) {
+      away_.push_back({home, {c, mesh_.stamp(c)}});
+    } else {
+      give(c);
+    }
   }
 }
 

@@ -1,5 +1,7 @@
 #include "workers/coordination.h"
 
+#include <algorithm>
+
 namespace podm {
 
 Coordination::Coordination(const CoordinationOptions& options, std::function<void(WorkerId)> resume,
@@ -7,6 +9,8 @@ Coordination::Coordination(const CoordinationOptions& options, std::function<voi
     : contention_(options.contention, options.num_workers, options.seed),
       begging_(options.num_workers, options.groups),
       members_(static_cast<std::size_t>(options.num_workers)),
+      workers_per_home_(static_cast<WorkerId>(options.workers_per_home)),
+      homes_(workers_per_home_ == 0 ? 0 : members_.size() / workers_per_home_),
       resume_(std::move(resume)),
       first_id_(first_id) {}
 
@@ -36,21 +40,61 @@ void Coordination::end_begging(WorkerId beggar) {
   resume(beggar);
 }
 
-bool Coordination::beg(WorkerId id) {
+void Coordination::send(unsigned home, const Entries& cells) {
+  Home& to = homes_[home];
+  {
+    const std::scoped_lock lock(to.mutex);
+    to.cells.insert(to.cells.end(), cells.begin(), cells.end());
+  }
+  for (WorkerId i = 0; i < workers_per_home_; ++i)
+    for (;;) {
+      const BeggingList::Beggar beggar = begging_.take_first_for(home * workers_per_home_ + i);
+      if (beggar.worker == kNoWorker) break;
+      Entries gift = take_from(to);
+      const bool is_empty = gift.empty();
+      give(beggar.worker, std::move(gift));
+      if (is_empty) return;  // others were quicker
+    }
+}
+
+Coordination::Entries Coordination::take_from(Home& home) {
+  const std::scoped_lock lock(home.mutex);
+  const auto count = static_cast<std::ptrdiff_t>(std::min(kMostToShare, home.cells.size()));
+  Entries taken(home.cells.end() - count, home.cells.end());
+  home.cells.erase(home.cells.end() - count, home.cells.end());
+  return taken;
+}
+
+Coordination::Begging Coordination::look_home_or_join(WorkerId self) {
+  const auto join = [&] { return begging_.add(self) ? Begging::kListed : Begging::kOver; };
+  if (homes_.empty()) return join();
+  Home& home = homes_[self / workers_per_home_];
+  const std::scoped_lock lock(home.mutex);
+  return home.cells.empty() ? join() : Begging::kHasGift;
+}
+
+Coordination::Begging Coordination::beg(WorkerId id) {
   const WorkerId self = id - first_id_;
   for (const WorkerId waiting : contention_.begin_to_beg(self)) resume(waiting);
-  if (!begging_.add(self)) return false;
+  const Begging answer = look_home_or_join(self);
+  if (answer == Begging::kHasGift) {
+    contention_.run_again(self);
+    Entries gift = take_from(homes_[self / workers_per_home_]);  // others may be quicker
+    const std::scoped_lock lock(members_[self].mutex);
+    members_[self].gift = std::move(gift);
+  }
+  if (answer != Begging::kListed) return answer;
   const bool is_last = ++num_begging_ == static_cast<int>(members_.size());
-  if (!is_last) return true;
+  if (!is_last) return answer;
   // None is left to take the master off the list but this worker.
   begging_.remove(kMaster);
   if (self == kMaster) {
     --num_begging_;
     contention_.run_again(kMaster);
-    return false;
+    return Begging::kOver;
   }
   end_begging(kMaster);  // it shall see that nobody has cells
-  return true;
+  return Begging::kListed;
 }
 
 Coordination::Entries Coordination::take_gift(WorkerId self) {

@@ -9,7 +9,13 @@
 // A worker counts for one from when it is on a begging list and has counted itself. Whoever takes it off the
 // list counts it down once its gift is there, and is not counted until then. So when all are counted, each is
 // on a list: none runs, none has a gift, and none waits, for whoever waits, waits for one that runs
-// (workers/contention_manager.h). No cells are left.
+// (workers/contention_manager.h).
+//
+// Cells that are sent to a home wait there. Who begs looks for them first, and goes on a list under the lock
+// of its home only if there are none. Who sends puts them there under that lock, and then serves those of the
+// home who beg, until none does or none are left. So whoever of the home was on a list before they came is
+// served, or served by another; whoever comes later finds them. When all are counted, and so nobody sends any
+// more, no home has cells. No cells are left.
 #pragma once
 
 #include <atomic>
@@ -30,6 +36,8 @@ struct CoordinationOptions {
   int num_workers = 1;
   Contention contention = Contention::kLocal;
   WorkerGroups groups = {};  // as the begging list needs them
+  int workers_per_home =
+      0;  // workers i with equal i / workers_per_home have a home together; 0: none has one
   std::uint64_t seed = 1;
 };
 
@@ -57,9 +65,15 @@ class Coordination {
     return {};
   }
 
-  /// `self` has no cells left. True: it must block, and then take its gift, which may be empty. False: no
-  /// worker has any, and it is the master; or the master has dismissed it.
-  bool beg(WorkerId self);
+  /// Cells for the workers of a home. The caller runs.
+  void send(unsigned home, const Entries& cells);
+  enum class Begging {
+    kListed,   // it must block, and then take its gift, which may be empty
+    kHasGift,  // it may take that at once
+    kOver      // no worker has cells, and it is the master; or the master has dismissed it
+  };
+  /// `self` has no cells left.
+  Begging beg(WorkerId self);
   Entries take_gift(WorkerId self);
   /// Gives an empty gift to each who begs. `self` does not.
   void rouse(WorkerId self);
@@ -76,6 +90,11 @@ class Coordination {
     int conflicts = 0, successes = 0;  // in a row, as the worker alone counts them
     std::mutex mutex;                  // guards the gift
     Entries gift;
+  };
+
+  struct alignas(128) Home {
+    std::mutex mutex;
+    Entries cells;
   };
 
   // All below number workers from 0 on.
@@ -102,6 +121,8 @@ class Coordination {
       give(beggar.worker, std::move(cells));
     }
   }
+  Begging look_home_or_join(WorkerId self);
+  Entries take_from(Home& home);
   void give(WorkerId beggar, Entries cells);
   void end_begging(WorkerId beggar);
   void resume(WorkerId worker) { resume_(first_id_ + worker); }
@@ -109,6 +130,8 @@ class Coordination {
   ContentionManager contention_;
   BeggingList begging_;
   std::vector<Member> members_;
+  WorkerId workers_per_home_;
+  std::vector<Home> homes_;
   std::atomic<int> num_begging_ = 0;
   std::function<void(WorkerId)> resume_;
   WorkerId first_id_;

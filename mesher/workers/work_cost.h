@@ -39,6 +39,8 @@ inline constexpr double kEntryGiven = 0.01e-6;
 inline constexpr double kEntryToLeaf = 0.055e-6;
 /// A cell of the initial mesh that moves to another node's memory.
 inline constexpr double kCellMoved = 0.1e-6;
+/// The label at a point of space.
+inline constexpr double kPlaceLookedUp = 0.1e-6;
 /// A leaf whose cells the queue is told of, and that is shared out.
 inline constexpr double kLeafSharedOut = 1.3e-6;
 /// A leaf is taken off the refinement queue or given back, with its buffer zones, under the queue's lock.

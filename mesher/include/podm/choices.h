@@ -31,12 +31,13 @@ std::string to_string(Choice choice) {
 /// How the work is divided among threads. kPodm: anywhere, with locks. kPdrPodm: an initial mesh by PODM,
 /// then leaf by leaf of an octree, each by a computing node of several threads. kPdr: leaf by leaf, one
 /// thread each, without locks. kAuto: kPodm on few threads, kPdrPodm on many.
-enum class Algorithm { kAuto, kPodm, kPdr, kPdrPodm };
+enum class Algorithm { kAuto, kPodm, kPdr, kPdrPodm, kPodmHome };
 template <>
 struct Names<Algorithm> {
   static constexpr std::array kAll{std::pair{Algorithm::kAuto, "auto"}, std::pair{Algorithm::kPodm, "podm"},
                                    std::pair{Algorithm::kPdr, "pdr"},
-                                   std::pair{Algorithm::kPdrPodm, "pdr-podm"}};
+                                   std::pair{Algorithm::kPdrPodm, "pdr-podm"},
+                                   std::pair{Algorithm::kPodmHome, "podm-home"}};
 };
 
 /// What a worker does that finds a vertex locked by another; see workers/contention_manager.h.

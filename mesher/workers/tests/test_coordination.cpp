@@ -105,7 +105,7 @@ class Coordinated : public testing::TestWithParam<std::tuple<Contention, bool>> 
         if (answer == ContentionManager::Answer::kWait) time.block(self, &Overhead::contention_s);
         if (answer == ContentionManager::Answer::kPause) time.pause(self, pause_s);
       } else {
-        if (!group.beg(self)) return;
+        if (group.beg(self) == Coordination::Begging::kOver) return;
         time.block(self, &Overhead::begging_s);
         player.give(group.take_gift(self));
       }
