@@ -1,8 +1,8 @@
 #!/bin/sh
 # Usage: ci/race.sh [FOLDER]
 # Builds podm in FOLDER/build-race (FOLDER: here) with the thread sanitizer and with threads that yield in the middle
-# of operations (mesher/delaunay/step.h). Then four threads mesh phantoms for RACE_SECONDS (120), by podm, pdr and
-# pdr-podm in turn: the first finding ends it with exit code 1, and so does a mesh that podm-verify rejects or that
+# of operations (mesher/delaunay/step.h). Then four threads mesh phantoms for RACE_SECONDS (120), by podm, pdr,
+# pdr-podm and podm-home in turn: the first finding ends it with exit code 1, and so does a mesh that podm-verify rejects or that
 # differs from the replay of its log. In the same program each planted fault of the lock protocol, one lock instead
 # of two or none to read a cell, and three instead of four to replace it, must be found within as many seconds; else it
 # would not see a broken protocol, and exits with 1.
@@ -24,17 +24,18 @@ seconds_since() { echo $(($(date +%s) - $1)); }
 mesh() {
   run=$1
   shift
-  case $((run % 3)) in
+  case $((run % 4)) in
     0) algorithm="podm" ;;
     1) algorithm="pdr" ;;
     2) algorithm="pdr-podm --nodes 2" ;;
+    3) algorithm="podm-home --nodes 2" ;;
   esac
-  case $((run / 3 % 3)) in
+  case $((run / 4 % 3)) in
     0) image=phantom:spheres@24 radius=7 ;;
     1) image=phantom:torus@24 radius=6 ;;
     2) image=phantom:abdomen@24 radius=22 ;;
   esac
-  case $((run / 9 % 4)) in
+  case $((run / 12 % 4)) in
     0) contention=local ;;
     1) contention=aggressive ;;
     2) contention=global ;;

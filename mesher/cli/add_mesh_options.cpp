@@ -57,6 +57,7 @@ void add_algorithm_options(CLI::App& app, MeshCommand& command) {
   add_one(app, "--algorithm", "NAME",
           "podm: threads anywhere, with locks; pdr-podm: leaf by leaf of an octree,\n"
           "by nodes of several threads; pdr: leaf by leaf, a thread each, no locks;\n"
+          "podm-home: podm by nodes of several threads, each in its own block of space;\n"
           "auto: podm on few threads, pdr-podm on many",
           into_choice(meshing.algorithm));
   add_one(app, "--crossover", "N|FILE",
@@ -64,7 +65,7 @@ void add_algorithm_options(CLI::App& app, MeshCommand& command) {
                       "what it measured here [default: the file named by {}, else {}]",
                       kCrossoverVariable, kDefaultCrossover),
           into(command.crossover));
-  add_one(app, "--nodes", "N", "computing nodes of pdr-podm [default: NUMA nodes in use]",
+  add_one(app, "--nodes", "N", "computing nodes of pdr-podm and podm-home [default: NUMA nodes in use]",
           into_threads(meshing.team.nodes));
   add_one(app, "--cores-per-node", "N", "threads of each computing node [default: threads over nodes]",
           into_threads(meshing.team.cores_per_node));

@@ -170,6 +170,12 @@ def draw(seed, phantoms):
     options += executor_options(rng, executor)
     options += ["--contention", pick(rng, MANAGERS), "--begging", pick(rng, ["random", "hierarchical"])]
     options += ["--oversubscribe", "--seed", seed % (1 << 32), *drawn_space(rng, image)]
-    return Run(seed, image, pick(rng, ["image.nii", "image.nii", "image.nii.gz"]),
-               pick(rng, ["out.vtu", "out.vtu", "out.mesh", "out.msh"]), algorithm, executor,
+    files = (pick(rng, ["image.nii", "image.nii", "image.nii.gz"]),
+             pick(rng, ["out.vtu", "out.vtu", "out.mesh", "out.msh"]))
+    if algorithm == "podm" and chance(rng, 0.5):
+        algorithm = "podm-home"
+        threads = options[options.index("--threads") + 1]
+        options[options.index("--algorithm") + 1] = algorithm
+        options += ["--nodes", divisor(rng, threads)]
+    return Run(seed, image, *files, algorithm, executor,
                [str(option) for option in selection], [str(option) for option in options], limits)

@@ -107,18 +107,31 @@ void VirtualTime::end_attempt(WorkerId self, const Work& work, const std::option
   state.fibre->allow(Fibre::kUnlimited);
   // Seeded perturbation: attempts of equal work do not end together.
   const double stretch = std::uniform_real_distribution(0.5, 1.5)(random_);
-  const double work_s = stretch * reference_seconds(work) / speed_;
+  const double whole_s = stretch * reference_seconds(work) / speed_;
+  const bool has_failed = outcome == Outcome::kLockConflict;
+  const double work_s = has_failed ? std::max(0.0, whole_s - unlocked_seconds()) : whole_s;
   RemoteMemory::Delay remote;
   if (remote_ && accesses) remote = remote_->delay(self, *accesses, state.since_s);
   schedule(self, kIsInParts ? 0 : work_s + remote.latency_s + remote.network_s);
   if (!is_over()) state.fibre->suspend();
-  if (outcome == Outcome::kLockConflict) {
+  if (has_failed) {
     state.overhead.rollback_s += now_s_ - state.since_s;
   } else {
     spending_.work_s += work_s;
     spending_.remote_memory_s += remote.latency_s;
     spending_.network_s += remote.network_s;
   }
+}
+
+// The part of a failed attempt in which a real one has no locks yet.
+void VirtualTime::pass_unlocked(WorkerId self) {
+  const double since_s = now_s_;
+  pass(self, unlocked_seconds());
+  states_[self].overhead.rollback_s += now_s_ - since_s;
+}
+
+double VirtualTime::unlocked_seconds() const {
+  return (cost_ == VirtualCost::kUnit ? kUnit / 10 : kListLookedUp) / speed_;
 }
 
 double VirtualTime::reference_seconds(const Work& work) const {

@@ -1,10 +1,9 @@
 // Any number of workers on one core, in virtual time: each works on a fibre, and an attempt is carried out at
 // once at its beginning, but its locks are held to its virtual end, so that workers conflict as they would on
-// as many cores. Only the locks of an attempt that fails fall at once: its time is charged, but that attempts
-// make each other fail for ever, as they may under Contention::kAggressive, does not show. (Held from the
-// beginning, where real ones are taken late, they make any two aggressive workers fail for ever.) The same
-// seed gives the same run to the bit. This serves tests of interleavings, and studies of machines that nobody
-// has at hand; times are simulated, not measured.
+// as many cores. An attempt that fails holds its locks as long, but for the while in which a real one looks
+// up its list before it takes any. So attempts may make each other fail again and again, as they may under
+// Contention::kAggressive, but not for ever. The same seed gives the same run to the bit. This serves tests
+// of interleavings, and studies of machines that nobody has at hand; times are simulated, not measured.
 //
 // A worker's time goes on by what it does: attempts by their counted work (workers/work_cost.h) and, on a
 // described machine, by the memory of other nodes that they touch (workers/remote_memory.h); what it does
@@ -62,9 +61,10 @@ class VirtualTime {
     const Work before = work_of(worker.counters());
     const Outcome outcome = worker.attempt();
     states_[self].meter.report(worker, stop_);
-    if (kIsInParts || outcome == Outcome::kLockConflict) worker.release();
+    if (kIsInParts) worker.release();
     end_attempt(self, work_of(worker.counters()) - before, worker.accesses(), outcome);
     worker.release();
+    if (outcome == Outcome::kLockConflict) pass_unlocked(self);
     return outcome;
   }
   /// The worker does something else, which takes so long on the reference core. It holds no locks, and no
@@ -118,6 +118,8 @@ class VirtualTime {
   void begin_attempt(WorkerId self);
   void end_attempt(WorkerId self, const Work& work, const std::optional<AccessTally>& accesses,
                    Outcome outcome);
+  void pass_unlocked(WorkerId self);
+  double unlocked_seconds() const;
   void pass(WorkerId self, double seconds);
   void allow_part(WorkerState& state);
   void schedule(WorkerId worker, double delay_s);

@@ -26,6 +26,8 @@ inline Work work_of(const Counters& counters) {
           counters.cells_created};
 }
 
+/// Of an attempt, for the entry that it takes off the list; where that is stale, all of it.
+inline constexpr double kListLookedUp = 0.011e-6;
 /// Seconds of an attempt with that work. Where others may want the same vertices it takes locks.
 double attempt_seconds(const Work& work, bool takes_locks);
 

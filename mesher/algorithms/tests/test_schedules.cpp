@@ -112,7 +112,7 @@ class Schedules : public testing::Test {
                            std::size_t capacity = 1 << 18) {
     std::mt19937_64 random(seed);
     const auto draw = [&](int low, int high) { return std::uniform_int_distribution(low, high)(random); };
-    const auto algorithm = static_cast<Algorithm>(draw(1, 3));
+    const auto algorithm = static_cast<Algorithm>(draw(1, 4));
     const int num_nodes = draw(1, 4);
     const LeafOptions leaves{.initial_ratio = 1.0 * draw(1, 3)};
     const int num_workers = num_nodes * (algorithm == Algorithm::kPdr ? 1 : draw(1, 4));
@@ -129,6 +129,7 @@ class Schedules : public testing::Test {
                           .sizes = scene.sizes,
                           .cell_capacity = capacity};
     if (algorithm == Algorithm::kPodm) return crowded_podm(problem, team, stop);
+    if (algorithm == Algorithm::kPodmHome) return podm_home(problem, team, stop);
     return algorithm == Algorithm::kPdr ? pdr(problem, team, leaves, stop)
                                         : pdr_podm(problem, team, leaves, stop);
   }

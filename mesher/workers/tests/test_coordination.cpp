@@ -1,5 +1,5 @@
 // Workers of all kinds of coordination, who use up cells that are numbers: every cell is used once, and the
-// master learns that none is left, whoever met, waited for or begged from whom.
+// master learns that none is left, whoever met, waited for, begged from or sent cells home to whom.
 #include <gtest/gtest.h>
 
 #include <atomic>
@@ -12,7 +12,7 @@
 namespace podm::test {
 namespace {
 
-constexpr int kNumWorkers = 12;
+constexpr int kNumWorkers = 12, kNumHomes = 4;
 // Two nodes of two sockets of three workers.
 const WorkerGroups kNested{{0, 0, 0, 1, 1, 1, 2, 2, 2, 3, 3, 3}, {0, 0, 0, 0, 0, 0, 1, 1, 1, 1, 1, 1}};
 
@@ -41,10 +41,14 @@ class Player {
     }
     cells_.pop_back();
     ++num_used_;
-    for (int made = 0; made < 3 && num_left_to_make_.fetch_sub(1) > 0; ++made) cells_.push_back({});
+    for (int made = 0; made < 3 && num_left_to_make_.fetch_sub(1) > 0; ++made)
+      (random_() % 3 == 0 ? away_ : cells_).push_back({});
     return Outcome::kCommitted;
   }
   void release() {}
+  // Cells that are to be refined elsewhere.
+  Coordination::Entries take_away() { return std::exchange(away_, {}); }
+  unsigned any_home() { return random_() % kNumHomes; }
   WorkerId conflicting_worker() const { return holder_; }
   // They stay 0: virtual time charges all attempts alike.
   const Counters& counters() const { return counters_; }
@@ -55,18 +59,18 @@ class Player {
   WorkerId self_, holder_ = 0;
   std::atomic<int>&num_left_to_make_, &num_used_;
   std::mt19937 random_;
-  Coordination::Entries cells_;
+  Coordination::Entries cells_, away_;
   std::optional<AccessTally> accesses_;
   Counters counters_;
 };
 
-class Coordinated : public testing::TestWithParam<std::tuple<Contention, bool>> {
+class Coordinated : public testing::TestWithParam<std::tuple<Contention, bool, bool>> {
  protected:
   // Players do what PODM's loop does, round after round of the master, as for one leaf after the other.
   template <class Time>
   void play(Time& time) {
     constexpr int kRounds = 50, kCells = 3000;
-    const auto [contention, is_nested] = GetParam();
+    const auto [contention, is_nested, has_homes] = GetParam();
     std::atomic<int> num_left_to_make = 0, num_used = 0;
     std::vector<Player> players;
     for (WorkerId self = 0; self < kNumWorkers; ++self)
@@ -74,6 +78,7 @@ class Coordinated : public testing::TestWithParam<std::tuple<Contention, bool>> 
     Coordination group({.num_workers = kNumWorkers,
                         .contention = contention,
                         .groups = is_nested ? kNested : WorkerGroups{},
+                        .workers_per_home = has_homes ? kNumWorkers / kNumHomes : 0,
                         .seed = 5},
                        [&](WorkerId worker) { time.resume(worker); });
     time.run([&](WorkerId self) {
@@ -102,11 +107,17 @@ class Coordinated : public testing::TestWithParam<std::tuple<Contention, bool>> 
       if (player.has_work()) {
         const Outcome outcome = time.attempt(player);
         const auto [answer, pause_s] = group.after(outcome, self, player);
+        if (const Coordination::Entries away = player.take_away(); !std::get<2>(GetParam())) {
+          player.give(away);
+        } else if (!away.empty()) {
+          group.send(player.any_home(), away);
+        }
         if (answer == ContentionManager::Answer::kWait) time.block(self, &Overhead::contention_s);
         if (answer == ContentionManager::Answer::kPause) time.pause(self, pause_s);
       } else {
-        if (group.beg(self) == Coordination::Begging::kOver) return;
-        time.block(self, &Overhead::begging_s);
+        const Coordination::Begging begging = group.beg(self);
+        if (begging == Coordination::Begging::kOver) return;
+        if (begging == Coordination::Begging::kListed) time.block(self, &Overhead::begging_s);
         player.give(group.take_gift(self));
       }
     }
@@ -126,9 +137,10 @@ TEST_P(Coordinated, UsesUpAllCellsInVirtualTime) {
 INSTANTIATE_TEST_SUITE_P(Managers, Coordinated,
                          testing::Combine(testing::Values(Contention::kAggressive, Contention::kRandom,
                                                           Contention::kGlobal, Contention::kLocal),
-                                          testing::Bool()),
+                                          testing::Bool(), testing::Bool()),
                          [](const auto& of) {
-                           return to_string(std::get<0>(of.param)) + (std::get<1>(of.param) ? "Nested" : "");
+                           return to_string(std::get<0>(of.param)) + (std::get<1>(of.param) ? "Nested" : "") +
+                                  (std::get<2>(of.param) ? "AtHome" : "");
                          });
 
 }  // namespace

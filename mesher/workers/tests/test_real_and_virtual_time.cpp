@@ -188,16 +188,24 @@ struct Failing {
   std::optional<AccessTally> tally;
 };
 
-TEST(VirtualTime, ChargesAFailingAttemptForWhichItHoldsNothing) {
+TEST(VirtualTime, AFailingAttemptHoldsItsLocksButForAWhile) {
   StopControl stop({}, {}, [](std::uint64_t) {});
   VirtualTime time(stop, 2, VirtualCost::kMeasured, 1);
   Failing worker;
-  bool held_meanwhile = false;
+  bool was_held = false, was_free_after = false, has_ended = false;
   time.run([&](WorkerId self) {
-    if (self == 0) time.attempt(worker);
-    if (self == 1) held_meanwhile = worker.holds;
+    if (self == 0) {
+      time.attempt(worker);
+      has_ended = true;
+    }
+    while (self == 1 && !has_ended) {
+      was_free_after = was_free_after || (was_held && !worker.holds);
+      was_held = was_held || worker.holds;
+      time.spend(self, 1e-9);
+    }
   });
-  EXPECT_FALSE(held_meanwhile);
+  EXPECT_TRUE(was_held);
+  EXPECT_TRUE(was_free_after) << "others have their turn";
   EXPECT_FALSE(worker.holds);
   EXPECT_GT(time.overhead(worker).rollback_s, 0);
   EXPECT_EQ(time.spending().work_s, 0) << "what is rolled back is no work";
