@@ -42,7 +42,7 @@ struct Problem {
 struct Team {
   Executor executor = Executor::kThreads;
   CoordinationOptions coordination;
-  int num_nodes = 1;        // computing nodes of PDR and PDR.PODM, which divide the workers evenly
+  int num_nodes = 1;        // computing nodes, which divide the workers evenly; PODM has one
   int initial_workers = 1;  // so many make their initial mesh
   VirtualCost cost = VirtualCost::kMeasured;
   const MachineModel* model = nullptr;  // what `machine` costs virtual workers; none: nothing but their work

@@ -11,6 +11,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "algorithms/leaf_size.h"
 #include "algorithms/podm.h"
 #include "refine/virtual_box.h"
 #include "workers/work_cost.h"
@@ -21,6 +22,7 @@ namespace {
 
 // Cells are expected where the object is, as many in a volume as its bound makes.
 std::vector<Homes::Work> expected_work(const Problem& problem, std::size_t num_samples) {
+  const Radii radii = radii_of(problem);
   const Point& low = problem.object.low;
   const Vector extent = problem.object.high - low;
   const double step = std::cbrt(extent.x * extent.y * extent.z / static_cast<double>(num_samples));
@@ -34,9 +36,8 @@ std::vector<Homes::Work> expected_work(const Problem& problem, std::size_t num_s
             low + Vector{extent.x * (i + 0.5) / nx, extent.y * (j + 0.5) / ny, extent.z * (k + 0.5) / nz};
         const LabelIndex label = problem.isosurface.label_at(p);
         if (label == kBackground) continue;
-        const double squared =
-            std::min(problem.sizes.squared_radius(label), 4 * problem.delta_mm * problem.delta_mm);
-        work.push_back({p, 1 / (squared * std::sqrt(squared))});
+        const double radius = radii.of_label[label - 1u];
+        work.push_back({p, 1 / (radius * radius * radius)});
       }
   return work;
 }

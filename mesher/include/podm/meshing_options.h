@@ -39,8 +39,9 @@ struct TeamOptions {
   /// guarantees. Default: nodes times cores per node, where these are given, else one for refinement; all
   /// cores for the other phases.
   int threads = 0;
-  int nodes = 0;           ///< computing nodes of kPdrPodm; default: NUMA nodes in use, for kPdr one a thread
-  int cores_per_node = 0;  ///< threads of each computing node; default: threads over nodes
+  /// Computing nodes of kPdrPodm and kPodmHome; default: NUMA nodes in use, for kPdr one a thread.
+  int nodes = 0;
+  int cores_per_node = 0;   ///< threads of each computing node; default: threads over nodes
   int initial_threads = 0;  ///< threads of the initial mesh of kPdr and kPdrPodm; default: all
   Contention contention = Contention::kLocal;
   Begging begging = Begging::kHierarchical;
