@@ -61,6 +61,22 @@ Octree octree_of_sides(const Problem& problem, const Radii& radii, const Box& bo
   return Octree(box.low, box.high, finest_mm, largest_side, is_needed, stop);
 }
 
+// Cubes of that side that fill the box.
+double num_cubes(const Box& box, double side_mm) {
+  const auto along = [&](double length_mm) { return std::max(1.0, std::ceil(length_mm / side_mm)); };
+  const Vector extent = box.high - box.low;
+  return along(extent.x) * along(extent.y) * along(extent.z);
+}
+
+// The longest side, but for a step, of which so many cubes fill the box. One that is thinner than the cubes
+// has one of them across, and they are longer than their share of its volume.
+double side_for(const Box& box, double num_wanted, double step) {
+  const Vector extent = box.high - box.low;
+  double side_mm = std::cbrt(extent.x * extent.y * extent.z / num_wanted);
+  while (num_cubes(box, step * side_mm) >= num_wanted) side_mm *= step;
+  return side_mm;
+}
+
 }  // namespace
 
 std::uint64_t checked_bytes_of_leaves(const Problem& problem, const LeafOptions& options, const Box& box) {
@@ -68,9 +84,7 @@ std::uint64_t checked_bytes_of_leaves(const Problem& problem, const LeafOptions&
   if (asked_mm == 0) return 0;
   constexpr double kMostLeaves = 1 << 21, kBytesPerGib = 1 << 30;
   constexpr double kMostBytesPerLeaf = kBytesPerCube + kBytesPerLeaf;
-  const auto along = [&](double length_mm) { return std::max(1.0, std::ceil(length_mm / asked_mm)); };
-  const Vector extent = box.high - box.low;
-  const double leaves = along(extent.x) * along(extent.y) * along(extent.z);
+  const double leaves = num_cubes(box, asked_mm);
   const double most_bytes = kMostMemoryOfLeaves * static_cast<double>(problem.memory_bytes);
   const double most = std::min(kMostLeaves, most_bytes / kMostBytesPerLeaf);
   if (leaves <= most) return static_cast<std::uint64_t>(leaves * kMostBytesPerLeaf);
@@ -97,8 +111,7 @@ std::unique_ptr<const Octree> make_octree(const Problem& problem, const Radii& r
   const double finest_mm = kLeafSizeOverRadius * ratio * radii.least;
   double coarsest_mm = kLeafSizeOverRadius * ratio * radii.most;
   const LeafId wanted = kLeavesPerNode * static_cast<LeafId>(team.num_nodes);
-  const Vector extent = box.high - box.low;
-  double growth = std::max(1.0, std::cbrt(extent.x * extent.y * extent.z / wanted) / finest_mm);
+  double growth = std::max(1.0, side_for(box, wanted, kStep) / finest_mm);
   for (;;) {
     auto octree = std::make_unique<Octree>(
         octree_of_sides(problem, radii, box, ratio, growth * finest_mm, growth * coarsest_mm, stop));
