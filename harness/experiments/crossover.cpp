@@ -11,11 +11,11 @@
 namespace podm::bench {
 namespace {
 
-constexpr const char* kSchema = "podm-crossover/1";
+constexpr const char* kSchema = "podm-crossover/2";
 
 // Cells a second of the repeats.
 struct Rates {
-  std::vector<double> podm, pdr_podm;
+  std::vector<double> podm, podm_home;
 };
 
 // The trials of one [[trials]] on one image.
@@ -26,7 +26,7 @@ struct Series {
 
   bool has_both() const {
     return std::any_of(by_threads.begin(), by_threads.end(), [](const auto& entry) {
-      return !entry.second.podm.empty() && !entry.second.pdr_podm.empty();
+      return !entry.second.podm.empty() && !entry.second.podm_home.empty();
     });
   }
 };
@@ -39,7 +39,7 @@ bool is_measured(const Row& row) {
 
 void add(const Row& row, std::map<std::string, Series>& all) {
   const std::string algorithm = row.asked.value("algorithm", "");
-  if (!is_measured(row) || (algorithm != "podm" && algorithm != "pdr-podm")) return;
+  if (!is_measured(row) || (algorithm != "podm" && algorithm != "podm-home")) return;
   const int threads = row.asked.value("threads", 1);
   const auto cells = static_cast<double>(row.mesh->cells);
   // Keys of a matrix follow the name; those that matter here are algorithm and threads.
@@ -47,7 +47,7 @@ void add(const Row& row, std::map<std::string, Series>& all) {
   series.row = &row;
   series.cells_per_thread = std::max(series.cells_per_thread, cells / threads);
   Rates& rates = series.by_threads[threads];
-  (algorithm == "podm" ? rates.podm : rates.pdr_podm).push_back(cells / meshing_seconds(row.mesh->phases_s));
+  (algorithm == "podm" ? rates.podm : rates.podm_home).push_back(cells / meshing_seconds(row.mesh->phases_s));
 }
 
 Crossover crossover_of(const Series& series) {
@@ -63,17 +63,17 @@ Crossover crossover_of(const Series& series) {
   bool is_ahead = true;
   for (auto entry = series.by_threads.rbegin(); entry != series.by_threads.rend(); ++entry) {
     const auto& [threads, rates] = *entry;
-    if (rates.podm.empty() || rates.pdr_podm.empty()) continue;
-    const Ratio ratio = ratio_of_medians(rates.pdr_podm, rates.podm, Sampling::kIndependent);
+    if (rates.podm.empty() || rates.podm_home.empty()) continue;
+    const Ratio ratio = ratio_of_medians(rates.podm_home, rates.podm, Sampling::kIndependent);
     is_ahead = is_ahead && ratio.low > 1;
     if (is_ahead) crossover.threads = threads;
     crossover.measured_up_to = std::max(crossover.measured_up_to, threads);
     crossover.measurements.push_back({threads,
                                       median(rates.podm),
-                                      median(rates.pdr_podm),
+                                      median(rates.podm_home),
                                       ratio.value,
                                       {ratio.low, ratio.high},
-                                      {rates.podm.size(), rates.pdr_podm.size()}});
+                                      {rates.podm.size(), rates.podm_home.size()}});
   }
   std::reverse(crossover.measurements.begin(), crossover.measurements.end());
   return crossover;
@@ -94,9 +94,9 @@ std::optional<Crossover> crossover_of(const std::vector<std::vector<Row>>& rows_
 
 std::string tell_crossover(const Crossover& crossover) {
   if (!crossover.threads)
-    return fmt::format("pdr-podm overtook podm on no number of threads up to {} (trial {})",
+    return fmt::format("podm-home overtook podm on no number of threads up to {} (trial {})",
                        crossover.measured_up_to, crossover.trial);
-  return fmt::format("pdr-podm overtook podm from {} threads on (trial {})", *crossover.threads,
+  return fmt::format("podm-home overtook podm from {} threads on (trial {})", *crossover.threads,
                      crossover.trial);
 }
 

@@ -1,5 +1,5 @@
-// The crossover is the number of threads from which on PDR.PODM outruns PODM on this machine, by the rows of
-// an experiment. `podm mesh --algorithm auto` reads what is stored of it.
+// The crossover is the number of threads from which on PODM at home outruns PODM on this machine, by the rows
+// of an experiment. `podm mesh --algorithm auto` reads what is stored of it.
 #pragma once
 
 #include <array>
@@ -14,15 +14,15 @@ namespace podm::bench {
 /// Both algorithms on one number of threads.
 struct CrossoverMeasurement {
   int threads = 0;
-  double podm_cells_per_second = 0, pdr_podm_cells_per_second = 0;  ///< medians
-  double ratio = 1;                                                 ///< cells a second of pdr-podm over podm
-  std::array<double, 2> ratio_interval{};                           ///< that holds it with 95 %
-  std::array<std::uint64_t, 2> rows{};                              ///< how many of podm and pdr-podm
+  double podm_cells_per_second = 0, podm_home_cells_per_second = 0;  ///< medians
+  double ratio = 1;                        ///< cells a second of podm-home over podm
+  std::array<double, 2> ratio_interval{};  ///< that holds it with 95 %
+  std::array<std::uint64_t, 2> rows{};     ///< how many of podm and podm-home
   static constexpr auto fields() {
     using C = CrossoverMeasurement;
     return std::tuple{field("threads", &C::threads),
                       field("podm_cells_per_second", &C::podm_cells_per_second),
-                      field("pdr_podm_cells_per_second", &C::pdr_podm_cells_per_second),
+                      field("podm_home_cells_per_second", &C::podm_home_cells_per_second),
                       field("ratio", &C::ratio),
                       field("ratio_interval", &C::ratio_interval),
                       field("rows", &C::rows)};
@@ -32,7 +32,7 @@ struct CrossoverMeasurement {
 /// What is stored in crossover.json.
 struct Crossover {
   std::string schema;
-  std::optional<int> threads;  ///< the least number from which on pdr-podm is ahead; nothing: none is
+  std::optional<int> threads;  ///< the least number from which on podm-home is ahead; nothing: none is
   int measured_up_to = 0;
   MachineRecord machine;
   ProgramRecord podm;
@@ -52,10 +52,10 @@ struct Crossover {
   }
 };
 
-/// What rows say, by trial, all of one machine and one mesher. PDR.PODM is ahead where it makes more cells a
-/// second than PODM, with evidence (95 % interval of the ratio of medians), on every number of threads
-/// measured from there on. Only what really ran decides, never virtual time, described machines or more
-/// threads than processors. The trial of the most cells a thread decides. There is none where no trial
+/// What rows say, by trial, all of one machine and one mesher. PODM at home is ahead where it makes more
+/// cells a second than PODM, with evidence (95 % interval of the ratio of medians), on every number of
+/// threads measured from there on. Only what really ran decides, never virtual time, described machines or
+/// more threads than processors. The trial of the most cells a thread decides. There is none where no trial
 /// has both algorithms at one number of threads.
 std::optional<Crossover> crossover_of(const std::vector<std::vector<Row>>& rows_of_trials);
 

@@ -188,7 +188,7 @@ class ExperimentRun {
   void store_crossover() const {
     const auto crossover = crossover_of(rows_);
     if (!crossover) {
-      fmt::print("No crossover stored: podm and pdr-podm did not both run on this machine's own cores\n");
+      fmt::print("No crossover stored: podm and podm-home did not both run on this machine's own cores\n");
       return;
     }
     const std::string path = fmt::format("{}/crossover.json", session_.command.results_folder);

@@ -172,7 +172,7 @@ class Rows(unittest.TestCase):
         with tempfile.TemporaryDirectory() as folder:
             path = pathlib.Path(folder, "exp.toml")
             path.write_text("stores_crossover = true" + EXPERIMENT +
-                            'algorithm = ["podm", "pdr-podm"]\nradius_mm = 12\n' + CLAIM)
+                            'algorithm = ["podm", "podm-home"]\nradius_mm = 12\n' + CLAIM)
             subprocess.run([os.environ["PODM_BENCH"], "run", path, "--results", folder, "--podm", os.environ["PODM"],
                             "--verifier", "none"], check=True, capture_output=True, timeout=200)
             stored = path.with_name("crossover.json")

@@ -9,15 +9,25 @@ namespace podm {
 
 namespace {
 
+int num_numa_nodes(const std::vector<Place>& places) {
+  std::set<int> used;
+  for (const Place& place : places) used.insert(place.node);
+  return static_cast<int>(used.size());
+}
+
+// On one NUMA node kPodmHome is kPodm.
+Algorithm automatic(const MeshingOptions& options, int workers, const std::vector<Place>& places) {
+  const bool is_home = options.crossover > 0 ? workers >= options.crossover : num_numa_nodes(places) > 1;
+  return is_home ? Algorithm::kPodmHome : Algorithm::kPodm;
+}
+
 int num_computing_nodes(const TeamOptions& options, Algorithm algorithm, const std::vector<Place>& places) {
   const int workers = num_workers(options);
   if (algorithm == Algorithm::kPodm) return 1;
   if (algorithm == Algorithm::kPdr) return workers;
   if (options.nodes > 0) return options.nodes;
   if (options.cores_per_node > 0) return workers / options.cores_per_node;
-  std::set<int> used;
-  for (const Place& place : places) used.insert(place.node);
-  const int nodes = static_cast<int>(used.size());
+  const int nodes = num_numa_nodes(places);
   return workers % nodes == 0 ? nodes : 1;
 }
 
@@ -50,8 +60,8 @@ int num_workers(const TeamOptions& options) {
 
 TeamSize team_size(const MeshingOptions& options, const std::vector<Place>& places) {
   const int workers = num_workers(options.team);
-  const Algorithm by_crossover = workers < options.crossover ? Algorithm::kPodm : Algorithm::kPdrPodm;
-  const Algorithm algorithm = options.algorithm == Algorithm::kAuto ? by_crossover : options.algorithm;
+  const bool is_auto = options.algorithm == Algorithm::kAuto;
+  const Algorithm algorithm = is_auto ? automatic(options, workers, places) : options.algorithm;
   return {.algorithm = algorithm,
           .num_workers = workers,
           .num_nodes = num_computing_nodes(options.team, algorithm, places),

@@ -58,12 +58,12 @@ void add_algorithm_options(CLI::App& app, MeshCommand& command) {
           "podm: threads anywhere, with locks; pdr-podm: leaf by leaf of an octree,\n"
           "by nodes of several threads; pdr: leaf by leaf, a thread each, no locks;\n"
           "podm-home: podm by nodes of several threads, each in its own block of space;\n"
-          "auto: podm on few threads, pdr-podm on many",
+          "auto: podm on one NUMA node, podm-home on several",
           into_choice(meshing.algorithm));
   add_one(app, "--crossover", "N|FILE",
-          fmt::format("threads from which on auto is pdr-podm, or the file in which podm-bench stored\n"
-                      "what it measured here [default: the file named by {}, else {}]",
-                      kCrossoverVariable, kDefaultCrossover),
+          fmt::format("threads from which on auto is podm-home, or the file in which podm-bench stored\n"
+                      "what it measured here [default: the file named by {}, if any]",
+                      kCrossoverVariable),
           into(command.crossover));
   add_one(app, "--nodes", "N", "computing nodes of pdr-podm and podm-home [default: NUMA nodes in use]",
           into_threads(meshing.team.nodes));

@@ -15,7 +15,7 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
-constexpr const char* kSchema = "podm-crossover/1";
+constexpr const char* kSchema = "podm-crossover/2";
 
 std::string this_cpu() {
   std::ifstream file("/proc/cpuinfo");
@@ -42,7 +42,7 @@ std::string fault_of(const Json& file) {
   return {};
 }
 
-// Where PDR.PODM was not seen ahead, the default counts beyond what was measured.
+// Where PODM at home was not seen ahead, it is PODM on as many threads as were measured.
 Crossover read_crossover(const std::string& path) {
   std::ifstream stream(path);
   if (!stream) throw InputError(fmt::format("{}: cannot be read as a crossover of podm-bench", path));
@@ -52,8 +52,7 @@ Crossover read_crossover(const std::string& path) {
         fmt::format("{}: {}; podm-bench run experiments/crossover.toml writes one", path, fault));
   const Json measured = file["threads"], up_to = file["measured_up_to"], machine = file["machine"];
   Crossover result;
-  result.threads =
-      measured.is_null() ? std::max(kDefaultCrossover, up_to.get<int>() + 1) : measured.get<int>();
+  result.threads = measured.is_null() ? up_to.get<int>() + 1 : measured.get<int>();
   result.source = {{"source", "file"},
                    {"path", path},
                    {"measured", measured},
@@ -75,7 +74,7 @@ Crossover find_crossover(const MeshCommand& command) {
     const bool is_used =
         command.meshing.algorithm == Algorithm::kAuto && is_of_this_machine(command.meshing.team);
     if (!is_used || stored == nullptr || *stored == 0)
-      return {.threads = kDefaultCrossover, .source = {{"source", "default"}}, .warning = {}};
+      return {.threads = 0, .source = {{"source", "default"}}, .warning = {}};
     return read_crossover(stored);
   }
   if (!is_number(asked)) return read_crossover(asked);
@@ -87,7 +86,7 @@ Crossover find_crossover(const MeshCommand& command) {
 
 Crossover choose_crossover(const MeshCommand& command) {
   Crossover found = find_crossover(command);
-  found.source["threads"] = found.threads;
+  found.source["threads"] = found.threads > 0 ? Json(found.threads) : Json();
   return found;
 }
 

@@ -7,8 +7,8 @@ import unittest
 from podm_process import PodmTestCase, run_podm
 
 IMAGE = "phantom:abdomen@40"
-STORED = {"schema": "podm-crossover/1", "threads": 3, "measured_up_to": 8, "machine": {"cpu": "none such"}}
-DEFAULT = 144
+STORED = {"schema": "podm-crossover/2", "threads": 3, "measured_up_to": 8, "machine": {"cpu": "none such"}}
+BLACKLIGHT = os.path.join(os.path.dirname(__file__), "../../experiments/machines/blacklight.toml")
 
 
 class Auto(PodmTestCase):
@@ -29,15 +29,15 @@ class Auto(PodmTestCase):
         self.assert_exit(process, 0)
         return json.loads(runs.read_text().splitlines()[-1])
 
-    def test_is_podm_below_the_crossover_and_pdr_podm_from_it_on(self):
+    def test_is_podm_below_the_crossover_and_podm_home_from_it_on(self):
         for option in 3, self.stored:
-            for threads, algorithm in (2, "podm"), (3, "pdr-podm"):
+            for threads, algorithm in (2, "podm"), (3, "podm-home"):
                 record = self.mesh("--algorithm", "auto", "--threads", threads, "--crossover", option)
                 self.assertEqual(record["algorithm"], algorithm)
                 self.assertEqual(record["auto"]["threads"], 3)
 
     def test_the_option_goes_before_the_variable_and_that_before_the_default(self):
-        for arguments, stored, expected in (((), "", {"source": "default", "threads": DEFAULT}),
+        for arguments, stored, expected in (((), "", {"source": "default", "threads": None}),
                                             (("--crossover", 5), self.stored, {"source": "option", "threads": 5}),
                                             ((), self.stored, {"source": "file", "threads": 3, "measured": 3,
                                                                "measured_up_to": 8, "path": str(self.stored),
@@ -48,10 +48,15 @@ class Auto(PodmTestCase):
         record = self.mesh("--algorithm", "auto", stored=self.stored)
         self.assertTrue(any("none such" in warning for warning in record["warnings"]), record["warnings"])
 
-    def test_pdr_podm_never_ahead_is_podm_as_far_as_measured_and_the_default_beyond(self):
-        for up_to, threads in (2, DEFAULT), (DEFAULT + 50, DEFAULT + 51):
-            self.store(STORED | {"threads": None, "measured_up_to": up_to})
-            self.assertEqual(self.mesh("--algorithm", "auto", stored=self.stored)["auto"]["threads"], threads)
+    def test_podm_home_never_ahead_is_podm_as_far_as_measured(self):
+        self.store(STORED | {"threads": None, "measured_up_to": 8})
+        self.assertEqual(self.mesh("--algorithm", "auto", stored=self.stored)["auto"]["threads"], 9)
+
+    def test_is_podm_home_on_several_numa_nodes(self):
+        for threads, algorithm in (16, "podm"), (17, "podm-home"):
+            record = self.mesh("--algorithm", "auto", "--executor", "virtual", "--topology", BLACKLIGHT, "--pin",
+                               "compact", "--threads", threads)
+            self.assertEqual(record["algorithm"], algorithm)
 
     def test_the_variable_is_not_for_virtual_time_nor_for_an_algorithm_that_is_named(self):
         self.store("broken")

@@ -19,14 +19,14 @@ Row row(const std::string& algorithm, int threads, double rate, const std::strin
   return made;
 }
 
-using Rates = std::vector<std::array<double, 2>>;  // of podm and pdr-podm at 1, 2, 4, ... threads
+using Rates = std::vector<std::array<double, 2>>;  // of podm and podm-home at 1, 2, 4, ... threads
 
 std::vector<std::vector<Row>> rows(const Rates& rates) {
   std::vector<std::vector<Row>> rows;
   int threads = 1;
-  for (const auto& [podm, pdr_podm] : rates) {
+  for (const auto& [podm, podm_home] : rates) {
     rows.push_back({row("podm", threads, podm)});
-    rows.push_back({row("pdr-podm", threads, pdr_podm)});
+    rows.push_back({row("podm-home", threads, podm_home)});
     threads *= 2;
   }
   return rows;
@@ -34,7 +34,7 @@ std::vector<std::vector<Row>> rows(const Rates& rates) {
 
 std::optional<int> threads_of(const Rates& rates) { return crossover_of(rows(rates)).value().threads; }
 
-TEST(Crossover, IsTheLeastNumberFromWhichOnPdrPodmStaysAhead) {
+TEST(Crossover, IsTheLeastNumberFromWhichOnPodmHomeStaysAhead) {
   EXPECT_EQ(threads_of({{1, 0.9}, {2, 1.9}, {3, 3.1}, {4, 5}}), 4);
   EXPECT_EQ(threads_of({{1, 1.1}, {2, 1.9}, {3, 3.1}}), 4) << "ahead once and behind again counts not";
   EXPECT_EQ(threads_of({{1, 1.1}, {2, 2.1}}), 1);
@@ -52,7 +52,7 @@ TEST(Crossover, RepeatsThatOverlapAreNoEvidence) {
   auto repeats = rows({{1, 0.9}, {2, 2.1}});
   EXPECT_EQ(crossover_of(repeats).value().threads, 2);
   for (const double podm : {2.2, 1.9}) repeats.push_back({row("podm", 2, podm)});
-  for (const double pdr_podm : {1.9, 2.2}) repeats.push_back({row("pdr-podm", 2, pdr_podm)});
+  for (const double podm_home : {1.9, 2.2}) repeats.push_back({row("podm-home", 2, podm_home)});
   EXPECT_FALSE(crossover_of(repeats).value().threads);
 }
 
@@ -68,12 +68,12 @@ TEST(Crossover, OnlyWhatRanOnThisMachineDecides) {
   unmet[1].front().status = Status::kUnmet;
   EXPECT_FALSE(crossover_of(warmup));
   EXPECT_FALSE(crossover_of(unmet));
-  EXPECT_FALSE(crossover_of({{row("podm", 1, 1)}, {row("auto", 1, 2)}, {row("pdr-podm", 2, 2)}}));
+  EXPECT_FALSE(crossover_of({{row("podm", 1, 1)}, {row("auto", 1, 2)}, {row("podm-home", 2, 2)}}));
 }
 
 TEST(Crossover, TheTrialOfTheMostCellsAThreadDecides) {
   auto all = rows({{1, 2}, {2, 3}});
-  for (const char* algorithm : {"podm", "pdr-podm"}) {
+  for (const char* algorithm : {"podm", "podm-home"}) {
     Row larger = row(algorithm, 2, std::string(algorithm) == "podm" ? 2 : 1, "9M");
     mesh_of(larger).cells *= 9;
     all.push_back({larger});
@@ -89,7 +89,7 @@ TEST(Crossover, NamesItsMachineWithoutItsMood) {
   EXPECT_FALSE(to_json(machine).contains("load_average"));
 }
 
-// An experiment whose fake mesher takes 1 s, pdr-podm half of it.
+// An experiment whose fake mesher takes 1 s, podm-home half of it.
 TEST(CrossoverExperiment, StoresItsResultOnceAllHasRun) {
   const TemporaryFolder folder;
   const std::string experiment = folder.write("exp.toml", R"(title = "T"
@@ -100,12 +100,12 @@ image = "phantom:torus"
 [[trials]]
 name = "some"
 input = "a"
-algorithm = ["podm", "pdr-podm"]
+algorithm = ["podm", "podm-home"]
 )" + kClaim);
   std::string faster = kGoodRecord;
   faster.replace(faster.find("\"read\":0.5"), 10, "\"read\":0.1");
   const std::string podm =
-      fake_mesher(folder, "case \"$(cat \"$(dirname \"$0\")/arguments\")\" in *pdr-podm*) echo '" + faster +
+      fake_mesher(folder, "case \"$(cat \"$(dirname \"$0\")/arguments\")\" in *podm-home*) echo '" + faster +
                               "';; *) echo '" + kGoodRecord + "';; esac > \"$record\"\n");
   const int exit_code = run_process({.arguments = {PODM_BENCH, "run", experiment, "--podm", podm, "--results",
                                                    folder / "results", "--verifier", "none"},

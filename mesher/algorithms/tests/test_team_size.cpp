@@ -8,13 +8,14 @@
 namespace podm::test {
 namespace {
 
-TeamSize size_of(Algorithm algorithm, const TeamOptions& team, const std::vector<int>& nodes_of_workers) {
+TeamSize size_of(Algorithm algorithm, const TeamOptions& team, const std::vector<int>& nodes_of_workers,
+                 int crossover = 4) {
   std::vector<Place> places;
   for (const int node : nodes_of_workers) places.push_back({.processor = {}, .node = node});
   EXPECT_EQ(places.size(), static_cast<std::size_t>(num_workers(team)));
   MeshingOptions options;
   options.algorithm = algorithm;
-  options.crossover = 4;
+  options.crossover = crossover;
   options.team = team;
   return team_size(options, places);
 }
@@ -35,8 +36,15 @@ TEST(TeamSize, OtherPhasesHaveTheThreadsThatWereAskedForUnlessTimeIsVirtual) {
 
 TEST(TeamSize, AutoIsPodmBelowTheCrossover) {
   EXPECT_EQ(size_of(Algorithm::kAuto, {.threads = 3}, {0, 0, 0}).algorithm, Algorithm::kPodm);
-  EXPECT_EQ(size_of(Algorithm::kAuto, {.threads = 4}, {0, 0, 0, 0}).algorithm, Algorithm::kPdrPodm);
+  EXPECT_EQ(size_of(Algorithm::kAuto, {.threads = 4}, {0, 0, 0, 0}).algorithm, Algorithm::kPodmHome);
   EXPECT_EQ(size_of(Algorithm::kPdr, {.threads = 4}, {0, 0, 0, 0}).algorithm, Algorithm::kPdr);
+}
+
+TEST(TeamSize, AutoWithoutACrossoverIsPodmOnOneNumaNode) {
+  EXPECT_EQ(size_of(Algorithm::kAuto, {.threads = 4}, {5, 5, 5, 5}, 0).algorithm, Algorithm::kPodm);
+  const TeamSize of_two = size_of(Algorithm::kAuto, {.threads = 4}, {0, 0, 5, 5}, 0);
+  EXPECT_EQ(of_two.algorithm, Algorithm::kPodmHome);
+  EXPECT_EQ(of_two.num_nodes, 2);
 }
 
 TEST(TeamSize, ComputingNodesAreTheNumaNodesInUseWhereTheseDivideTheWorkers) {

@@ -12,11 +12,6 @@
 
 namespace podm {
 
-/// kAuto is kPdrPodm from this number of threads on, unless told otherwise: the crossover of the published
-/// runs lies between 128 and 160 cores (Feng et al., IMR 2015, Table 1). An experiment measures it for the
-/// machine at hand.
-inline constexpr int kDefaultCrossover = 144;
-
 class OperationLogWriter;
 
 /// How large cells are.
@@ -66,7 +61,9 @@ struct MeshingOptions {
   SizeOptions sizes = {};
   Space space = Space::kRas;
   Algorithm algorithm = Algorithm::kPodm;
-  int crossover = kDefaultCrossover;  ///< threads from which on kAuto is kPdrPodm
+  /// Threads from which on kAuto is kPodmHome. 0: it is where they are on several NUMA nodes; in simulation
+  /// that is faster on any number of these (experiments/simulated_weak.toml).
+  int crossover = 0;
   TeamOptions team = {};
   LeafOptions leaves = {};
   Limits limits = {};
