@@ -1,5 +1,7 @@
 """Simulated speed-ups, efficiencies and zero-hop shares beside the paper's: what the constants of the machine were
 fitted to, PODM's column, and what they predict, PDR.PODM's and Table 2."""
+import itertools
+
 import pandas
 
 from . import paper, scaling, style
@@ -57,7 +59,7 @@ def figure(series):
         return None
     drawn, panels = style.new_figure(columns=2, width=12.0, height=3.8)
     cores = [count for count in scaling.core_counts([one.table for one in shown]) if count > 1]
-    for axes, (algorithm, name) in zip(panels, style.NAMES.items()):
+    for axes, algorithm in zip(panels, paper.ALGORITHMS):
         for place, one in enumerate(shown):
             found = 100 * deviations(one.table, algorithm)
             axes.plot(found.index, found, color=style.COLOURS[algorithm], alpha=(place + 1) / len(shown),
@@ -65,7 +67,8 @@ def figure(series):
         most = 100 * DEVIATIONS[algorithm]
         axes.axhspan(-most, most, color=style.GHOST, alpha=0.15, label="asked of the mean")
         axes.axhline(0, color=style.INK, linewidth=0.8)
-        axes.set(xlabel="cores", title=f"{name}, {ROLES[algorithm]}", ylabel="speed-up over the paper's, less 1, %")
+        axes.set(xlabel="cores", title=f"{style.NAMES[algorithm]}, {ROLES[algorithm]}",
+                 ylabel="speed-up over the paper's, less 1, %")
         axes.set_xticks(cores, [str(count) for count in cores], rotation=45)
     style.legend(panels[-1], **style.BESIDE)
     style.finish(drawn, f"What is left of the fit, and the prediction. {style.caption_of(shown, has_paper=False)}")
@@ -73,24 +76,25 @@ def figure(series):
 
 
 def efficiency_and_hops(series, hops):
-    """One line a number of cores: both algorithms' efficiency and PDR.PODM's zero-hop share, published, simulated and
-    extrapolated, as text."""
+    """One line a number of cores of the paper's tables: each algorithm's efficiency, and the zero-hop share of all but
+    PODM, as in Table 2; published, simulated and extrapolated, as text."""
     published = paper.corrected_table1()["efficiency"]
-    zero = hops[(hops["algorithm"] == "pdr-podm") & (hops["hops"] == 0)].set_index(["basis", "cores"])
+    zero = hops[hops["hops"] == 0].set_index(["algorithm", "basis", "cores"])
     lines = []
     for cores in sorted({*published.index.get_level_values("cores"), *paper.table2().columns}):
         line = {"cores": cores}
         for algorithm, name in style.NAMES.items():
-            line[f"{name}, efficiency, published"] = _percent(published.get((algorithm, cores)))
+            if algorithm in paper.ALGORITHMS:
+                line[f"{name}, efficiency, published"] = _percent(published.get((algorithm, cores)))
             for one in map(lambda basis: scaling.first_of(series, basis), scaling.BASES[1:]):
                 if one and (algorithm, cores) in one.table.index:
                     row = one.table.loc[algorithm, cores]
                     line[f"{name}, {one.kind()}"] = _percent(*row[["efficiency", "efficiency_low", "efficiency_high"]])
-        for basis in ("published", *scaling.BASES[1:]):
-            if (basis, cores) in zero.index:
-                row = zero.loc[basis, cores]
+        for algorithm, basis in itertools.product(list(style.NAMES)[1:], ("published", *scaling.BASES[1:])):
+            if (algorithm, basis, cores) in zero.index:
+                row = zero.loc[algorithm, basis, cores]
                 share = _percent(*row[["share", "share_low", "share_high"]], digits=2)
-                line[f"PDR.PODM, 0 hops, {row['kind']}"] = share
+                line[f"{style.NAMES[algorithm]}, 0 hops, {row['kind']}"] = share
         lines.append(line)
     return pandas.DataFrame(lines).fillna("")
 

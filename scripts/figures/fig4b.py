@@ -4,7 +4,7 @@ from matplotlib.patches import Patch
 
 from . import paper, scaling, style
 
-WIDTH = 0.36
+SIDES = ["pdr-podm", "podm", "podm-home"]  # of the bars of one number of cores, from left to right
 
 
 def fig4b(series):
@@ -16,7 +16,7 @@ def fig4b(series):
     published = paper.table1()
     shown = scaling.shown_of(series)
     _bars(seconds, measured, scaling.core_counts([published, *([measured.table] if measured else [])]), published)
-    seconds.set(ylabel="seconds of equation 1", title="time: PDR.PODM left, PODM right of each pair")
+    seconds.set(ylabel="seconds of equation 1", title="time")
     if simulated:
         _bars(axes[1], simulated, scaling.core_counts([simulated.table]))
         axes[1].set(ylabel="simulated seconds of equation 1", title=f"time, {simulated.kind()}")
@@ -42,33 +42,44 @@ def _bars(axes, series, cores, published=None):
     handles = [Patch(color=colour, label=style.PHASE_NAMES.get(phase, phase))
                for phase, colour in style.PHASE_COLOURS.items() if series and (series.table[phase] > 0).any()]
     if published is not None:
-        _ghost_bars(axes, published, cores)
+        _ghost_bars(axes, published, cores, _sides(series))
         handles.append(Patch(facecolor="none", edgecolor=style.GHOST, linestyle="--", label="paper, total"))
     if series:
         _stack(axes, series, cores)
     axes.set_ylim(0, 1.25 * axes.dataLim.y1)
     axes.set_xticks(range(len(cores)), [str(count) for count in cores])
-    axes.set_xlabel("cores")
+    axes.set_xlabel(f"cores (bars, from left: {', '.join(style.NAMES[one] for one in _sides(series))})")
     style.legend(axes, handles=handles, loc="upper left", ncols=3)
 
 
-def _side(algorithm):
-    return -WIDTH / 2 if algorithm == "pdr-podm" else WIDTH / 2
+def _sides(series):
+    """The algorithms of a group of bars: the paper's two, and what else the series has."""
+    beyond = SIDES[len(paper.ALGORITHMS):]
+    return SIDES[:len(paper.ALGORITHMS)] + [one for one in beyond if series and one in series.table.index]
 
 
-def _ghost_bars(axes, published, cores):
+def _place(algorithm, sides):
+    """(middle from that of the group, width)."""
+    width = 0.72 / len(sides)
+    return (sides.index(algorithm) - (len(sides) - 1) / 2) * width, width
+
+
+def _ghost_bars(axes, published, cores, sides):
     for (algorithm, count), row in published.iterrows():
-        axes.bar(cores.index(count) + _side(algorithm), row["seconds"], WIDTH, facecolor="none",
-                 edgecolor=style.GHOST, linestyle="--", linewidth=0.9)
+        middle, width = _place(algorithm, sides)
+        axes.bar(cores.index(count) + middle, row["seconds"], width, facecolor="none", edgecolor=style.GHOST,
+                 linestyle="--", linewidth=0.9)
 
 
 def _stack(axes, series, cores):
     is_simulated = series.key["basis"] == "simulated"
+    sides = _sides(series)
     for (algorithm, count), row in series.table.iterrows():
-        if algorithm not in style.NAMES:
+        if algorithm not in sides:
             continue
+        middle, width = _place(algorithm, sides)
         parts = row[scaling.PHASES].to_numpy(dtype=float)
         bottoms = numpy.concatenate([[0], numpy.cumsum(parts)[:-1]])
-        axes.bar(cores.index(count) + _side(algorithm), parts, 0.85 * WIDTH, bottom=bottoms,
+        axes.bar(cores.index(count) + middle, parts, 0.85 * width, bottom=bottoms,
                  hatch="////" if is_simulated else None, edgecolor=style.INK, linewidth=0.4,
                  color=[style.PHASE_COLOURS[phase] for phase in scaling.PHASES])

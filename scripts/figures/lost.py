@@ -24,9 +24,7 @@ def lost(frame, series):
                   key=lambda cause: list(CAUSES).index(cause) if cause in CAUSES else len(CAUSES))
     if shown is None or not told:
         return pandas.DataFrame(columns=COLUMNS)
-    rows = scaling.headline_rows(frame)
-    rows = rows[(rows[list(shown.key)] == pandas.Series(shown.key)).all(axis=1)].dropna(subset=PREFIX + told[0])
-    rows = rows[abs(rows["cells"] / rows["cores"] / shown.cells_per_core - 1) <= scaling.SIZE_TOLERANCE]
+    rows = scaling.rows_of(frame, shown).dropna(subset=PREFIX + told[0])
     lines = []
     for (algorithm, cores), group in rows.groupby(["algorithm", "cores"]):
         by_cause = group[[PREFIX + cause for cause in told]].div(group["cells"], axis=0)
@@ -56,10 +54,10 @@ def figure(frame, series):
     table = lost(frame, series)
     if table.empty:
         return None
-    drawn, panels = style.new_figure(columns=2, width=10.5, height=4.2)
+    parts = style.by_algorithm(table.set_index("algorithm"))
+    drawn, panels = style.new_figure(columns=len(parts), width=2.5 + 4 * len(parts), height=4.2)
     cores = sorted(set(table["cores"]))
-    for axes, (algorithm, name) in zip(panels, style.NAMES.items()):
-        part = table[table["algorithm"] == algorithm]
+    for axes, (algorithm, part) in zip(panels, parts):
         places, bottoms = [cores.index(count) for count in part["cores"]], 0 * part["cores"].astype(float)
         for cause, words in _causes(table):
             heights = part[cause].fillna(0)
@@ -67,7 +65,8 @@ def figure(frame, series):
                      edgecolor=style.INK, linewidth=0.3)
             bottoms = bottoms + heights
         axes.set_xticks(range(len(cores)), [str(count) for count in cores])
-        axes.set(xlabel="simulated cores", title=name, ylabel="simulated worker microseconds a cell")
+        axes.set_xlim(-0.6, len(cores) - 0.4)
+        axes.set(xlabel="simulated cores", title=style.NAMES[algorithm], ylabel="simulated worker microseconds a cell")
     top = 1.05 * max(axes.dataLim.y1 for axes in panels)
     for axes in panels:
         axes.set_ylim(0, top)

@@ -94,6 +94,13 @@ def weak_series(frame):
     return series + _extrapolated(simulated_sizes(series))
 
 
+def rows_of(frame, series):
+    """The rows of a series that nothing extrapolated."""
+    rows = headline_rows(frame)
+    rows = rows[(rows[list(series.key)] == pandas.Series(series.key)).all(axis=1)]
+    return rows[abs(rows["cells"] / rows["cores"] / series.cells_per_core - 1) <= SIZE_TOLERANCE]
+
+
 def simulated_sizes(series):
     """The simulated series to show and those of its experiment and machine with other cells a core, fewest first."""
     shown = first_of(series, "simulated")

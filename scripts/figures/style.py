@@ -5,9 +5,11 @@ from matplotlib.figure import Figure
 # Text and axes are this colour and nothing else is: the report turns it into the page's own.
 INK = "#1f2430"
 GHOST = "#8c8c8c"
-COLOURS = {"podm": "#2b7bba", "pdr-podm": "#d1495b"}
-MARKERS = {"podm": "o", "pdr-podm": "s"}
-NAMES = {"podm": "PODM", "pdr-podm": "PDR.PODM"}
+# The paper's two algorithms, then what goes beyond it.
+NAMES = {"podm": "PODM", "pdr-podm": "PDR.PODM", "podm-home": "PODM at home"}
+COLOURS = {"podm": "#2b7bba", "pdr-podm": "#d1495b", "podm-home": "#3d8b5f"}
+MARKERS = {"podm": "o", "pdr-podm": "s", "podm-home": "^"}
+BEYOND = " PODM at home is a design of ours, which the paper does not have."
 PHASE_COLOURS = {"allocate": "#4c6a5b", "read": "#c9b458", "transform": "#8fb996", "octree": "#7a6c9d",
                  "initial": "#e8a33d", "refine": "#d1495b", "closing": "#8f575c", "extract": "#6d9dc5",
                  "other": "#b0b0b0"}
@@ -55,7 +57,7 @@ def cores_axis(axes, cores):
 
 
 def by_algorithm(table):
-    """The parts of a table that the paper compares, in its order."""
+    """The parts of a table by algorithm, in the order of NAMES; other meshers have none."""
     return [(name, table.loc[[name]]) for name in NAMES if name in table.index]
 
 
@@ -105,10 +107,11 @@ def caption_of(series, has_paper=True):
         n = f"{what}\N{NO-BREAK SPACE}=\N{NO-BREAK SPACE}{counts[0]}" + (f" to {counts[-1]}" if len(counts) > 1 else "")
         parts.append(f"{one.key['basis']}{', image grows' if one.grows else ''}: {one.label()}, {n}")
     text = "; ".join(parts) if parts else "no verified weak-scaling rows"
+    beyond = BEYOND if any("podm-home" in one.table.index for one in series) else ""
     if not has_paper:
-        return text + "."
+        return f"{text}.{beyond}"
     if any((one.table["n"] > 1).any() for one in series if not one.sizes):
         text += ". Medians; bars: bootstrap 95 % interval"
     if any(one.sizes for one in series):
         text += f". {EXTRAPOLATED}"
-    return text + ". Grey, dashed: the paper, Blacklight."
+    return f"{text}. Grey, dashed: the paper, Blacklight.{beyond}"

@@ -2,7 +2,7 @@
 of one table; numbers that no clock told carry a mark."""
 import pandas
 
-from . import paper, scaling
+from . import paper, scaling, style
 
 VALUES = ["cells", "seconds", "rate", "speedup", "efficiency", "refining_rate", "refining_efficiency"]
 BOUNDS = [f"{value}_{end}" for value in VALUES[1:] for end in ("low", "high")]
@@ -29,8 +29,8 @@ def table1(series):
 
 def in_order(table):
     """Rows are ordered by cores, then as people compare: PODM first, the published value before ours."""
-    peers = sorted(set(table["algorithm"]) - set(paper.ALGORITHMS))
-    ranks = {"basis": ["published", *scaling.BASES], "algorithm": [*paper.ALGORITHMS, *peers],
+    others = sorted(set(table["algorithm"]) - set(style.NAMES))
+    ranks = {"basis": ["published", *scaling.BASES], "algorithm": [*style.NAMES, *others],
              "images": ["one", "growing"]}
 
     def rank(column):

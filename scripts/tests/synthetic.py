@@ -60,11 +60,12 @@ def with_hops(rows, shares):
         yield one
 
 
-def simulated_size(cells_per_core, speedup_of, counts=(1, 32, 256), zero_hops=None, **changes):
+def simulated_size(cells_per_core, speedup_of, counts=(1, 32, 256), zero_hops=None, algorithms=("podm", "pdr-podm"),
+                   **changes):
     """Rows of one size of a simulated weak scaling: 0.1 M cells/s on one core, beyond it the speed-ups that
     `speedup_of` tells of (algorithm, cores)."""
     name = f"{cells_per_core // 1000}k"
-    for algorithm, cores in itertools.product(("podm", "pdr-podm"), counts):
+    for algorithm, cores in itertools.product(algorithms, counts):
         speedup = 1 if cores == 1 else speedup_of(algorithm, cores)
         seconds = cells_per_core * cores / (1e5 * speedup)
         made = row(algorithm, cores, experiment="simulated_weak", executor="virtual", cells=cells_per_core * cores,

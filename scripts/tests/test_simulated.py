@@ -5,7 +5,9 @@ import unittest
 
 import paths  # noqa: F401
 import synthetic
-from figures import deviation, extrapolation, lost, machine, outcome, paper, scaling, table1, table2, validation
+from figures import (deviation, extrapolation, lost, machine, outcome, paper, scaling, style, table1, table2,
+                     validation)
+from report_page.first_screen import scales
 from report_page.limits import limits
 from test_figures import frame_of
 
@@ -155,6 +157,72 @@ class Machine(unittest.TestCase):
         self.assertIn("never joined", text)
         self.assertNotIn("crossover of PODM", text, "the next section is not one of them")
         self.assertFalse(re.search(r"\*\*|\]\(", text))
+
+
+class AtHome(unittest.TestCase):
+    """PODM at home, which the paper does not have, beside its two."""
+    ALL = ("podm", "pdr-podm", "podm-home")
+    SPEEDUPS = {"podm": 0.2, "pdr-podm": 0.6, "podm-home": 0.8}
+
+    def made(self, algorithms):
+        rows = [row for size in SIZES for row in synthetic.simulated_size(
+            size, lambda algorithm, cores: self.SPEEDUPS[algorithm] * cores, zero_hops=0.9, algorithms=algorithms)
+            if row["algorithm"] != "podm-home" or row["threads"]["used"] > 1]
+        return outcome.make(frame_of(synthetic.with_losses(rows, compute=0.5, contention=0.25)))
+
+    def told(self, made):
+        """All that figures and tables say, by name; a name of both is the figure's."""
+        figures = {name: [one.get_label(), *(axes.get_title() + axes.get_xlabel() for axes in one.axes),
+                          *(text.get_text() for axes in one.axes if axes.get_legend()
+                            for text in axes.get_legend().get_texts())] for name, one in made.figures.items()}
+        tables = {name: [*shown, *shown.astype(str).to_numpy().ravel()] for name, (_, shown) in made.tables.items()}
+        return {name: "\n".join(words) for name, words in {**tables, **figures}.items()}
+
+    def test_it_is_a_series_of_its_own_in_each_simulated_block(self):
+        made = self.made(self.ALL)
+        told = self.told(made)
+        for name in ("fig4a", "fig4b", "lost"):
+            self.assertIn("PODM at home", told[name], name)
+        for name in ("fig4a", "fig4b"):
+            self.assertIn("PODM at home, simulated, 640\N{NO-BREAK SPACE}k", told[name])
+            self.assertIn("PODM at home, extrapolated", told[name])
+            self.assertIn(style.BEYOND, told[name])
+        lines = made.tables["table1"][0].query("algorithm == 'podm-home'")
+        self.assertEqual(list(zip(lines["basis"], lines["cores"])), [
+            (basis, cores) for cores in (32, 256) for basis in ("simulated", "extrapolated")])
+        self.assertTrue(all(abs(lines["efficiency"] - 0.8) < 1e-9))
+        order = made.tables["table1"][1].query("cores == 256")["algorithm"].drop_duplicates()
+        self.assertEqual(tuple(order), self.ALL)
+        self.assertEqual(set(made.tables["table2"][0].query("algorithm == 'podm-home'")["basis"]),
+                         {"simulated", "extrapolated"})
+        self.assertIn("podm-home", set(made.tables["lost"][0]["algorithm"]))
+        self.assertIn("PODM at home, 0 hops", told["efficiency_and_hops"])
+        self.assertNotIn("PODM at home, efficiency, published", told["efficiency_and_hops"])
+
+    def test_it_appears_nowhere_without_rows(self):
+        for name, words in self.told(self.made(self.ALL[:2])).items():
+            self.assertNotIn("home", words, name)
+
+    def test_it_changes_no_verdict_and_no_number_of_the_others(self):
+        made, without = self.made(self.ALL), self.made(self.ALL[:2])
+        self.assertEqual(made.verdicts, without.verdicts)
+        for name in ("table1", "deviation", "lost"):
+            others = made.tables[name][0].query("algorithm != 'podm-home'").reset_index(drop=True)
+            self.assertTrue(others.equals(without.tables[name][0]), name)
+
+    def test_bars_and_colours_are_apart(self):
+        for names in (style.COLOURS, style.MARKERS):
+            self.assertEqual(len(set(names.values())), 3)
+        axes = self.made(self.ALL).figures["fig4b"].axes[1]
+        self.assertIn("PDR.PODM, PODM, PODM at home", axes.get_xlabel())
+        bars = axes.patches
+        places = sorted({(round(bar.get_x(), 6), round(bar.get_x() + bar.get_width(), 6)) for bar in bars})
+        self.assertEqual(len(places), 2 * 3 + 2, "three of 32 and of 256 cores, two of one")
+        self.assertTrue(all(left[1] < right[0] for left, right in zip(places, places[1:])), places)
+
+    def test_the_first_screen_has_a_bar_of_a_measured_one(self):
+        rows = [synthetic.row(algorithm, cores) for algorithm in ("podm", "podm-home") for cores in (1, 2)]
+        self.assertIn("PODM at home, 2 cores", scales(outcome.make(frame_of(rows))))
 
 
 class Validation(unittest.TestCase):
