@@ -1,5 +1,5 @@
-"""Which algorithm to use on a machine that a file describes, and from how many cores on: runs both in virtual time on
-one to all of its cores, draws their rates and efficiencies, and prints the answer.
+"""Which algorithm to use on a machine that a file describes, and from how many cores on: runs PODM, PDR.PODM and PODM
+at home in virtual time on one to all of its cores, draws their rates and efficiencies, and prints the answer.
 
 The trials are an experiment of podm-bench, written beside the picture: meshes are verified, a second call goes on where
 the first ended, rows and radii stay in the output folder. Times are simulated; results/README.md tells the limits.
@@ -12,7 +12,7 @@ import sys
 import tomllib
 from pathlib import Path
 
-from . import claims, scaling, style
+from . import scaling, style
 from .load import RecordError, load
 from .write import write_figure, write_text
 
@@ -58,8 +58,8 @@ def answer(arguments):
     series = _of_size(scaling.weak_series(frame), arguments.cells_per_core)
     if series is None:
         doubts = sorted(set(frame["doubt"]) - {""}) if len(frame) else []
-        raise MachineError(f"no verified run of both algorithms on one core and on more{': ' if doubts else ''}"
-                           f"{'; '.join(doubts)}")
+        raise MachineError(f"no verified runs of two algorithms on equal cores, and of podm on one"
+                           f"{': ' if doubts else ''}{'; '.join(doubts)}")
     write_figure(picture(series, name), folder, "whatif")
     print(advice(series, name))
     print(f"whatif: {folder / 'whatif.png'}", file=sys.stderr)
@@ -92,17 +92,23 @@ def core_counts(num_nodes, cores_per_node):
 def experiment_text(arguments, counts, cores_per_node):
     """A trial each number of cores: a node in part has no number of cores of its own to ask for."""
     image = str(Path(arguments.image).resolve()) if Path(arguments.image).exists() else arguments.image
-    lines = [f'title = "What if: {arguments.machine.stem}"', 'claim = "Both algorithms run in virtual time."',
+    lines = [f'title = "What if: {arguments.machine.stem}"', 'claim = "All algorithms run in virtual time."',
              "timeout_s = 7200", "", "[inputs.image]", f"image = {_quoted(image)}"]
     for count in counts:
+        algorithms = ", ".join(map(_quoted, algorithms_on(count)))
         lines += ["", "[[trials]]", f'name = "{arguments.cells_per_core}-on-{count}"', 'input = "image"',
                   f"target_elements_per_thread = {arguments.cells_per_core}",
-                  'algorithm = ["podm", "pdr-podm"]', f"threads = {count}",
+                  f"algorithm = [{algorithms}]", f"threads = {count}",
                   *([f"cores_per_node = {cores_per_node}"] if count >= cores_per_node else []), 'executor = "virtual"',
                   f"topology = {_quoted(arguments.machine.resolve())}", 'pin = "compact"']
     lines += ["", "[[claims]]", 'name = "ended"', 'statement = "Every run ends."', 'basis = "simulated"',
               'kind = "share"', 'value = "ended"', "at_least = 1.0"]
     return "\n".join(lines) + "\n"
+
+
+def algorithms_on(count):
+    """Of one core PODM at home is PODM."""
+    return [name for name in style.NAMES if count > 1 or name != "podm-home"]
 
 
 def _quoted(text):
@@ -121,42 +127,79 @@ def run_trials(bench, experiment, folder):
 
 
 def _of_size(series, cells_per_core):
-    """The simulated series of those cells a core; None unless both algorithms ran on more than one core."""
+    """The simulated series of those cells a core; None unless two algorithms can be compared on some cores."""
     for one in series:
         is_near = abs(one.cells_per_core / cells_per_core - 1) <= scaling.SIZE_TOLERANCE
-        if one.key["basis"] == "simulated" and is_near and claims.crossover(one.table) != (0, None):
+        if one.key["basis"] == "simulated" and is_near and fastest(one.table):
             return one
     return None
 
 
+def fastest(table):
+    """(algorithm, fewest cores, most cores) of each stretch of numbers of cores on which it makes the most cells a
+    second, of equals the first of NAMES. Numbers on which fewer than two ran are left out."""
+    stretches = []
+    for cores, rates in table["rate"].unstack("algorithm").reindex(columns=list(style.NAMES)).iterrows():
+        rates = rates.dropna()
+        if len(rates) < 2:
+            continue
+        best = rates.idxmax()
+        if stretches and stretches[-1][0] == best:
+            stretches[-1] = (best, stretches[-1][1], cores)
+        else:
+            stretches.append((best, cores, cores))
+    return stretches
+
+
 def advice(series, name):
-    """Which algorithm, from which number of cores on, and how much the faster of the two keeps on all."""
-    behind, ahead = claims.crossover(series.table)
+    """Which algorithm is the fastest, from which number of cores on, what each makes on the most, and what lacks."""
     where = f"{name}, {scaling.short(series.cells_per_core)} cells a core, {series.key['image']}, simulated"
-    most = max(scaling.core_counts([series.table]))
-    if ahead is None:
-        text = f"podm on all numbers of cores up to {most}"
-    elif behind == 0:
-        text = f"pdr-podm on all numbers of cores up to {most}"
-    else:
-        text = f"podm {'on one core' if behind == 1 else f'up to {behind} cores'}, pdr-podm from {ahead} on"
-    best = "podm" if ahead is None else "pdr-podm"
-    line = series.table.loc[best, most]
-    return (f"{where}: {text}.\nOn {most} cores {best} makes {line['rate'] / 1e6:.3g} million cells a simulated "
-            f"second, {100 * line['efficiency']:.0f} % efficiency. Another number of cells a core may have another "
-            "answer: of few, leaves are few.")
+    counts = scaling.core_counts([series.table])
+    lines = [f"{where}: {_told(fastest(series.table), counts[-1])}."]
+    on_most = series.table.xs(counts[-1], level="cores").sort_values("rate", ascending=False)
+    made = [f"{algorithm} {line['rate'] / 1e6:.3g} ({100 * line['efficiency']:.0f} %)"
+            for algorithm, line in on_most.iterrows()]
+    lines.append(f"Million cells a simulated second (efficiency) on {_cores(counts[-1])}: {', '.join(made)}.")
+    for algorithm in style.NAMES:
+        lacking = [str(count) for count in counts
+                   if algorithm in algorithms_on(count) and (algorithm, count) not in series.table.index]
+        if lacking:
+            lines.append(f"No verified run of {algorithm} with as many cells a core on {', '.join(lacking)}: it is not "
+                         "compared there.")
+    lines.append("Another number of cells a core may have another answer: of few, leaves are few.")
+    return "\n".join(lines)
+
+
+def _told(stretches, most):
+    """"podm on one core, pdr-podm from 32 to 64 cores, podm-home from 96 cores on"."""
+    if len(stretches) == 1 and stretches[0][2] == most:
+        return f"{stretches[0][0]} on all numbers of cores up to {most}"
+    told = []
+    for place, (algorithm, first, last) in enumerate(stretches):
+        if place == len(stretches) - 1 and last == most:
+            told.append(f"{algorithm} from {first} on")
+        elif first == last:
+            told.append(f"{algorithm} on {_cores(first)}")
+        else:
+            told.append(f"{algorithm} {'up' if place == 0 else f'from {first}'} to {last} cores")
+    return ", ".join(told)
+
+
+def _cores(count):
+    return "one core" if count == 1 else f"{count} cores"
 
 
 def picture(series, name):
-    """Rate and efficiency of both algorithms, and where one overtakes the other."""
+    """Rate and efficiency of all algorithms, and where one overtakes the fastest."""
     figure, (rate, efficiency) = style.new_figure(columns=2, height=4.2)
-    behind, ahead = claims.crossover(series.table)
+    stretches = fastest(series.table)
     for axes, column, scale in ((rate, "rate", 1e-6), (efficiency, "efficiency", 100)):
         style.plot_series(axes, series, column, scale)
         axes.set_xlabel("simulated cores")
         axes.set_xlim(0, None)
-        if behind and ahead:
-            axes.axvspan(behind, ahead, color=style.GHOST, alpha=0.2, label=f"crossover, {behind} to {ahead} cores")
+        for (_, _, behind), (algorithm, ahead, _) in zip(stretches, stretches[1:]):
+            axes.axvspan(behind, ahead, color=style.COLOURS[algorithm], alpha=0.15,
+                         label=f"{style.NAMES[algorithm]} overtakes, {behind} to {ahead} cores")
     rate.set(ylabel="million cells a simulated second", title=f"{name}: rate", ylim=(0, None))
     efficiency.set(ylabel="efficiency, % of PODM on one core", title="efficiency", ylim=(0, None))
     style.legend(rate, loc="upper left")

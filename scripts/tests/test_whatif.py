@@ -9,7 +9,8 @@ from figures import whatif
 from test_programs import call
 
 MACHINE = "name = 'Made-up'\n[processor]\nsockets_per_node = 2\ncores_per_socket = 8\n[network]\nnodes = 16\n"
-# Of 256 cores: PDR.PODM keeps 70 %, PODM 90 % up to LAST cores and no more cells a second beyond.
+# Of 256 cores: PDR.PODM keeps 70 %, PODM 90 % up to LAST cores and no more cells a second beyond, PODM at home HOME of
+# them. LACKING, an (algorithm, cores), has no row.
 BENCH = """#!/usr/bin/python3
 import json, sys, tomllib
 sys.path.insert(0, "{tests}")
@@ -19,8 +20,10 @@ name = experiment.split("/")[-1].removesuffix(".toml")
 with open(experiment, "rb") as file:
     trials = tomllib.load(file)["trials"]
 rows = [row for trial in trials for row in synthetic.simulated_size(
-    10_000, lambda algorithm, cores: 0.9 * min(cores, {last}) if algorithm == "podm" else 0.7 * cores,
-    counts=[trial["threads"]], status="{status}")]
+    10_000, lambda algorithm, cores: {{"podm": 0.9 * min(cores, {last}), "pdr-podm": 0.7 * cores,
+                                      "podm-home": {home} * cores}}[algorithm],
+    counts=[trial["threads"]], algorithms=trial["algorithm"], status="{status}")]
+rows = [row for row in rows if (row["algorithm"], row["threads"]["used"]) != {lacking}]
 with open(folder + "/" + name + ".jsonl", "w") as file:
     file.writelines(json.dumps(row | {{"experiment": name}}) + "\\n" for row in rows)
 print("progress")
@@ -36,18 +39,21 @@ class WhatIf(unittest.TestCase):
         self.machine = self.folder / "big.toml"
         self.machine.write_text(MACHINE)
 
-    def ask(self, *arguments, last=128, status="ok", code=0):
+    def ask(self, *arguments, last=128, home=0.1, lacking=None, status="ok", code=0):
         bench = self.folder / "bench"
-        bench.write_text(BENCH.format(tests=Path(__file__).parent, last=last, status=status, code=code))
+        bench.write_text(BENCH.format(tests=Path(__file__).parent, last=last, home=home, lacking=lacking, status=status,
+                                      code=code))
         bench.chmod(0o755)
         return call("whatif", self.machine, "--bench", bench, "-o", self.folder / "out", *arguments)
 
     def test_says_which_algorithm_from_which_count_on_and_draws_it(self):
-        for last, words in ((128, "podm up to 160 cores, pdr-podm from 192 on"),
-                            (256, "podm on all numbers of cores up to 256"),
-                            (1, "podm on one core, pdr-podm from 32 on")):
-            with self.subTest(last=last):
-                done = self.ask(last=last)
+        for last, home, words in ((128, 0.1, "podm up to 160 cores, pdr-podm from 192 on"),
+                                  (256, 0.1, "podm on all numbers of cores up to 256"),
+                                  (1, 0.1, "podm on one core, pdr-podm from 32 on"),
+                                  (128, 0.8, "podm up to 128 cores, podm-home from 160 on"),
+                                  (1, 0.8, "podm on one core, podm-home from 32 on")):
+            with self.subTest(last=last, home=home):
+                done = self.ask(last=last, home=home)
                 self.assertEqual(done.returncode, 0, done.stderr)
                 self.assertIn(words, done.stdout)
                 self.assertIn("simulated", done.stdout)
@@ -55,13 +61,29 @@ class WhatIf(unittest.TestCase):
                 self.assertNotIn("progress", done.stdout)
                 self.assertGreater((self.folder / "out" / "whatif.png").stat().st_size, 10_000)
 
-    def test_trials_are_of_both_algorithms_on_one_to_all_cores(self):
+    def test_the_most_cores_tell_all_rates_the_greatest_first(self):
+        said = self.ask(home=0.8).stdout
+        self.assertIn("on 256 cores: podm-home 20.5 (80 %), pdr-podm 17.9 (70 %), podm 11.5 (45 %)", said)
+        self.assertNotIn("No verified run", said)
+
+    def test_an_algorithm_without_a_run_is_named_and_the_others_compared(self):
+        for lacking, words in ((("pdr-podm", 256), "pdr-podm from 192 to 224 cores, podm from 256 on"),
+                               (("podm", 256), "podm up to 160 cores, pdr-podm from 192 on"),
+                               (("podm", 64), "podm up to 32 cores, pdr-podm on 64 cores, podm from 96 to 160 cores")):
+            with self.subTest(lacking=lacking):
+                done = self.ask(lacking=lacking)
+                self.assertEqual(done.returncode, 0, done.stderr)
+                self.assertIn(words, done.stdout)
+                self.assertIn("No verified run of %s with as many cells a core on %d:" % lacking, done.stdout)
+
+    def test_trials_are_of_all_algorithms_on_one_to_all_cores(self):
         self.ask()
         (path,) = (self.folder / "out").glob("*.toml")
         trials = tomllib.loads(path.read_text())["trials"]
         self.assertEqual([trial["threads"] for trial in trials], [1, 32, 64, 96, 128, 160, 192, 224, 256])
         for trial in trials:
-            self.assertEqual(trial["algorithm"], ["podm", "pdr-podm"])
+            at_home = ["podm-home"] if trial["threads"] > 1 else []
+            self.assertEqual(trial["algorithm"], ["podm", "pdr-podm", *at_home])
             self.assertEqual((trial["executor"], trial["topology"]), ("virtual", str(self.machine.resolve())))
             self.assertEqual(trial.get("cores_per_node", 16), 16)
 
