@@ -22,7 +22,7 @@ from pathlib import Path
 import numpy
 from scipy.optimize import minimize
 
-from . import paper, style
+from . import paper, scaling, style
 from .load import RecordError, load
 
 CELLS_PER_INSERTION = 22  # made by one, of which 16 take the place of others
@@ -30,6 +30,10 @@ CONSTANTS = ("miss_share", "router_accesses_per_s", "retries")
 STARTS = ((0.04, 4e6, 0.0125), (0.02, 2e6, 0.02), (0.1, 1e7, 0.004))
 SIMPLEX = (1.5, 1.4, 1.6)  # first steps, factors
 ATTEMPTS_PER_WORKER, MOST_ATTEMPTS = 120, 60_000
+SECONDS = [f"virtual.worker_s.{name}" for name in ("compute", "memory_remote", "network_queue")]
+ACCESSES = ["hops_by_kind.mesh_reads", "hops_by_kind.mesh_writes"]
+# What a row has to tell beside its hops, of which there are none on one node.
+NEEDED = [*SECONDS, "virtual.refine_s", "virtual.machine.constants.core_speed", "counters.cells_created"]
 
 
 @dataclass(frozen=True)
@@ -47,26 +51,56 @@ class Run:
 
 
 def runs_of(frame):
-    """The newest row of PODM for each number of cores, by it. Raises RecordError without one of a single core."""
-    rows = frame[(frame["algorithm"] == "podm") & (frame["basis"] == "simulated")] if len(frame) else frame
-    runs = {int(row["threads.used"]): _run(row) for _, row in rows.iterrows()}
-    if 1 not in runs:
-        raise RecordError("no simulated row of podm on one core")
-    return {cores: run for cores, run in sorted(runs.items()) if cores in paper.table1().loc["podm"].index}
+    """(runs, series): the newest row of PODM for each number of cores of Table 1, by it, of the simulated series that
+    figures show first. Raises RecordError where they are too few for a fit, and says which rows lack."""
+    series = scaling.first_of(scaling.weak_series(frame), "simulated")
+    if series is None:
+        raise RecordError(f"no verified simulated row of podm on one core{_doubts(frame)}")
+    rows = scaling.rows_of(frame, series)
+    rows = rows[rows["algorithm"] == "podm"]
+    untold = [name for name in NEEDED if name not in rows or rows[name].isna().all()]
+    if untold:
+        raise RecordError(f"rows of {series.label()} do not tell {', '.join(untold)}: a newer mesher's do")
+    told = rows.dropna(subset=NEEDED)
+    runs = {cores: _run(row) for cores, row in told.set_index(told["cores"]).sort_index(kind="stable").iterrows()
+            if cores in _published()}
+    if 1 not in runs or len(runs) - 2 < len(CONSTANTS):
+        raise RecordError(f"{len(CONSTANTS)} constants need rows of podm on one core and {len(CONSTANTS) + 1} other "
+                          f"numbers; of {series.label()} there are none on {_words(missing(runs))}{_doubts(frame)}")
+    return runs, series
+
+
+def missing(runs):
+    """The numbers of cores of Table 1 without a run."""
+    return [cores for cores in _published() if cores not in runs]
+
+
+def _published():
+    return list(paper.table1().loc["podm"].index)
+
+
+def _words(counts):
+    return f"{', '.join(map(str, counts))} core{'' if counts == [1] else 's'}"
+
+
+def _doubts(frame):
+    """": why" of the simulated rows that count nowhere, a failed one tells no algorithm; empty without one."""
+    if frame.empty:
+        return ""
+    doubts = sorted(set(frame[(frame["basis"] == "simulated") & ~frame["headline"]]["doubt"]))
+    return f": {'; '.join(doubts)}" if doubts else ""
 
 
 def _run(row):
-    hops = numpy.zeros(16)
-    for kind in ("hops_by_kind.mesh_reads", "hops_by_kind.mesh_writes"):
-        if isinstance(row[kind], list):
-            hops[: len(row[kind])] += row[kind]
-    seconds = {name: row["virtual.worker_s." + name] for name in ("compute", "memory_remote", "network_queue")}
-    cores = int(row["threads.used"])
+    cores, seconds = int(row["cores"]), sum(row[name] for name in SECONDS)
+    hops = [(links, count) for kind in ACCESSES if isinstance(row.get(kind), list)
+            for links, count in enumerate(row[kind])]
     return Run(cores=cores, cells=row["cells"],
-               reference_s=seconds["compute"] * row["virtual.machine.constants.core_speed"],
-               links=float(hops @ numpy.arange(len(hops))), routed=float(hops[2:].sum()),
+               reference_s=row["virtual.worker_s.compute"] * row["virtual.machine.constants.core_speed"],
+               links=float(sum(links * count for links, count in hops)),
+               routed=float(sum(count for links, count in hops if links > 1)),
                insertions=row["counters.cells_created"] / CELLS_PER_INSERTION,
-               loss=cores * row["virtual.refine_s"] / sum(seconds.values()))
+               loss=cores * row["virtual.refine_s"] / seconds)
 
 
 def refining_seconds(run, machine, constants):
@@ -167,6 +201,19 @@ def sensitivity_figure(runs, machine, constants):
     return drawn
 
 
+def read_machine(path):
+    """The description, with all that the surrogate takes of it. Raises RecordError."""
+    try:
+        machine = tomllib.loads(path.read_text(encoding="utf-8"))
+    except (OSError, ValueError) as error:
+        raise RecordError(f"{path}: {getattr(error, 'strerror', None) or error}") from None
+    for section, key in (("memory", "cycles_per_hop"), ("processor", "clock_ghz"), ("processor", "core_speed")):
+        value = machine.get(section, {}).get(key)
+        if not isinstance(value, (int, float)) or value <= 0:
+            raise RecordError(f"{path}: {section}.{key} must be a number above 0")
+    return machine
+
+
 def main(arguments=None):
     parser = argparse.ArgumentParser(description=__doc__.split("\n", maxsplit=1)[0])
     parser.add_argument("records", nargs="+", type=Path,
@@ -177,13 +224,15 @@ def main(arguments=None):
                         help="folder for machine_fit.json and machine_fit.png")
     asked = parser.parse_args(arguments)
     try:
-        machine = tomllib.loads(asked.machine.read_text(encoding="utf-8"))
-        runs = runs_of(load(asked.records).frame)
-    except (RecordError, OSError, tomllib.TOMLDecodeError) as error:
+        machine = read_machine(asked.machine)
+        runs, series = runs_of(load(asked.records).frame)
+    except RecordError as error:
         print(f"fit_machine: {error}", file=sys.stderr)
         return 2
+    print(f"fit_machine: {series.label()}" + (f"; no row on {_words(missing(runs))}" if missing(runs) else ""),
+          file=sys.stderr)
     constants, mean = fit(runs, machine)
-    told = {"schema": "podm-machine-fit/1", "machine": machine["name"],
+    told = {"schema": "podm-machine-fit/1", "machine": machine.get("name", asked.machine.stem),
             "records": [str(path) for path in asked.records],
             "core_speed": machine["processor"]["core_speed"], "constants": constants, "mean_absolute_deviation": mean,
             "deviations": deviations(runs, machine, constants)}
