@@ -1,12 +1,10 @@
 // A mesh under construction: its store, the pools of those who refine it, and what each phase took.
 #pragma once
 
-#include <atomic>
 #include <chrono>
 #include <limits>
 #include <map>
 #include <memory>
-#include <new>
 #include <optional>
 #include <string>
 #include <vector>
@@ -133,7 +131,7 @@ class Construction {
   }
   /// Moves the mesh between operations: what is at a point goes to the NUMA node of worker_of(point), and
   /// stays where that is kNoWorker. All of the team move it, in their time. Nothing: the run is over, and
-  /// all is where it was.
+  /// all is where it was. A run that ends later has moved all.
   template <class Time, class WorkerOf>
   std::optional<Relocation> relocate(Time& time, const WorkerOf& worker_of) {
     const std::vector<NodeIndex> nodes = nodes_of_first(static_cast<std::size_t>(num_workers()));
@@ -148,14 +146,14 @@ class Construction {
     });
     time.run([&](WorkerId self) { relocation->rename(self, *pools_[self]); });
     if (time.is_over()) return std::nullopt;
-    std::atomic<int> num_moved = 0;
+    std::vector<char> has_moved(nodes.size(), 0);
     time.run([&](WorkerId self) {
       const std::size_t num_cells = relocation->move(self, *pools_[self]);
-      ++num_moved;
+      has_moved[self] = 1;
       time.spend(self, kCellMoved * static_cast<double>(num_cells));
     });
-    if (num_moved < num_workers())
-      throw std::bad_alloc();  // a thread or fibre lacked memory: no mesh is left
+    for (WorkerId self = 0; self < has_moved.size(); ++self)  // moves allocate nothing, starting workers does
+      if (has_moved[self] == 0) relocation->move(self, *pools_[self]);
     if (team_.log != nullptr) log(*relocation);
     return relocation;
   }

@@ -4,6 +4,7 @@
 #include <unistd.h>
 
 #include <new>
+#include <string>
 
 #include "algorithms/podm.h"
 #include "cost_model.h"
@@ -11,6 +12,7 @@
 #include "failing_threads.h"
 #include "podm/errors.h"
 #include "podm/operation_log.h"
+#include "refine/virtual_box.h"
 #include "tests/images.h"
 
 namespace podm::test {
@@ -20,19 +22,38 @@ struct Setup {
   Algorithm algorithm;
   Executor executor;
   int num_workers;
+  int numa_nodes = 1;
 };
 const std::vector<Setup> kSetups{
-    {Algorithm::kPodm, Executor::kThreads, 1},    {Algorithm::kPodm, Executor::kThreads, 4},
-    {Algorithm::kPodm, Executor::kVirtual, 6},    {Algorithm::kPdr, Executor::kThreads, 2},
-    {Algorithm::kPdr, Executor::kVirtual, 4},     {Algorithm::kPdrPodm, Executor::kThreads, 4},
-    {Algorithm::kPdrPodm, Executor::kVirtual, 6},
+    {Algorithm::kPodm, Executor::kThreads, 1},       {Algorithm::kPodm, Executor::kThreads, 4},
+    {Algorithm::kPodm, Executor::kVirtual, 6},       {Algorithm::kPdr, Executor::kThreads, 2},
+    {Algorithm::kPdr, Executor::kVirtual, 4},        {Algorithm::kPdrPodm, Executor::kThreads, 4},
+    {Algorithm::kPdrPodm, Executor::kVirtual, 6},    {Algorithm::kPdrPodm, Executor::kThreads, 4, 2},
+    {Algorithm::kPdrPodm, Executor::kVirtual, 6, 2},
 };
+
+Topology machine_of_nodes(int num_nodes) {
+  return Topology::synthetic("numa:" + std::to_string(num_nodes) + " core:3 pu:1");
+}
+
+// Workers node after node, bound to nothing.
+std::vector<Place> places_in(const Topology& machine, int num_workers) {
+  std::vector<Place> places = place_workers(machine, {}, num_workers, true);
+  for (Place& place : places) place.processor.reset();
+  return places;
+}
+
+void expect_valid(const Mesh& mesh) {
+  std::string fault;
+  EXPECT_TRUE(is_valid(mesh, &fault)) << fault;
+}
 
 class Faults : public testing::TestWithParam<Setup> {
  protected:
   Refinement refine(StopControl& stop, std::size_t cell_capacity = 1 << 20,
                     std::size_t most_numbered = 1 << 30, std::uint64_t memory_bytes = 1 << 30) {
-    const auto [algorithm, executor, num_workers] = GetParam();
+    const Algorithm algorithm = GetParam().algorithm;
+    const int num_workers = GetParam().num_workers;
     const Problem problem{.isosurface = isosurface_,
                           .object = foreground_bounds(image_),
                           .delta_mm = 1.2,
@@ -40,10 +61,12 @@ class Faults : public testing::TestWithParam<Setup> {
                           .cell_capacity = cell_capacity,
                           .memory_bytes = memory_bytes,
                           .most_numbered_cells = most_numbered};
-    const Team team{.executor = executor,
+    const Team team{.executor = GetParam().executor,
                     .coordination = {.num_workers = num_workers, .seed = 3},
                     .num_nodes = algorithm == Algorithm::kPdr ? num_workers : 2,
-                    .initial_workers = num_workers};
+                    .initial_workers = num_workers,
+                    .machine = &machine_,
+                    .places = places_};
     if (algorithm == Algorithm::kPodm) return podm(problem, team, stop);
     const LeafOptions leaves{.initial_ratio = 2, .size_mm = 4};
     return algorithm == Algorithm::kPdr ? pdr(problem, team, leaves, stop)
@@ -52,14 +75,12 @@ class Faults : public testing::TestWithParam<Setup> {
   static StopControl patient() {
     return {{}, {}, [](std::uint64_t) {}};
   }
-  static void expect_valid(const Refinement& refinement) {
-    std::string fault;
-    EXPECT_TRUE(is_valid(*refinement.mesh, &fault)) << fault;
-  }
 
   LabelImage image_ = ball(16, 6);
   Isosurface isosurface_{image_, 1};
   SizeField sizes_{std::vector<double>(2, 1.6)};
+  Topology machine_ = machine_of_nodes(GetParam().numa_nodes);
+  std::vector<Place> places_ = places_in(machine_, GetParam().num_workers);
 };
 
 // Each of the first, which are all of a run of podm on one thread; of the thousands of leaf by leaf some, at
@@ -77,7 +98,7 @@ TEST_P(Faults, AllocationsThatFailLeaveAValidMesh) {
           << left;
       num_ended += has_failed;
       num_complete += !has_failed;
-      expect_valid(refinement);
+      expect_valid(*refinement.mesh);
     } catch (const std::bad_alloc&) {  // before the run began
       allocations_left = -1;
     }
@@ -91,7 +112,7 @@ TEST_P(Faults, StoresThatFillUpLeaveAValidMesh) {
     StopControl stop = patient();
     const Refinement refinement = refine(stop, capacity);
     num_ended += refinement.stop_reason == StopReason::kMemoryLimit;
-    expect_valid(refinement);
+    expect_valid(*refinement.mesh);
   }
   EXPECT_GT(num_ended, 5);
 }
@@ -123,16 +144,64 @@ TEST_P(Faults, StopRequestsAndLimitsLeaveAValidMesh) {
     StopControl limited({.max_elements = cells}, {}, [](std::uint64_t) {});
     const Refinement refinement = refine(limited);
     EXPECT_EQ(refinement.stop_reason, StopReason::kElementLimit) << cells << " of " << all_cells;
-    expect_valid(refinement);
+    expect_valid(*refinement.mesh);
   }
   std::stop_source source;
   source.request_stop();
   StopControl stopped({}, source.get_token(), [](std::uint64_t) {});
   const Refinement refinement = refine(stopped);
   EXPECT_EQ(refinement.stop_reason, StopReason::kCancelled);
-  expect_valid(refinement);
+  expect_valid(*refinement.mesh);
   StopControl late({.max_seconds = 1e-9}, {}, [](std::uint64_t) {});
   EXPECT_EQ(refine(late).stop_reason, StopReason::kTimeLimit);
+}
+
+class RelocationFaults : public testing::TestWithParam<Executor> {};
+
+// Each allocation of the move alone: of its lists, and of the threads or fibres of its steps.
+TEST_P(RelocationFaults, AllocationsThatFailLeaveAValidMeshOrNone) {
+  constexpr int kWorkers = 4;
+  const LabelImage image = ball(16, 6);
+  const Isosurface isosurface(image, 1);
+  const Topology machine = machine_of_nodes(2);
+  const Problem problem{.isosurface = isosurface,
+                        .object = foreground_bounds(image),
+                        .delta_mm = 2,
+                        .sizes = SizeField({3, 3}),
+                        .cell_capacity = 1 << 16};
+  const Team team{.executor = GetParam(),
+                  .coordination = {.num_workers = kWorkers},
+                  .num_nodes = 2,
+                  .machine = &machine,
+                  .places = places_in(machine, kWorkers)};
+  const Box clamp = grown(problem.object, 4);
+  const Parameters parameters = parameters_for(problem, 1, clamp);
+  // The lower half goes to the second node, what the first worker made above it stays.
+  const auto worker_of = [&](const Point& p) { return p.z < 7.5 ? WorkerId{kWorkers - 1} : kNoWorker; };
+  int num_unmoved = 0, num_moved = 0;
+  bool has_failed = true;
+  for (std::int64_t left = 0; has_failed; ++left) {
+    StopControl stop({}, {}, [](std::uint64_t) {});
+    Construction construction(problem, clamp, team, stop);
+    refine_anywhere(construction, "initial", parameters, construction.all_cells(), 1);
+    bool is_moved = false;
+    try {
+      construction.in_time("refine", kWorkers, [&](auto& time) {
+        allocations_left = left;
+        is_moved = construction.relocate(time, worker_of).has_value();
+        has_failed = allocations_left.exchange(-1) < 0;
+      });
+    } catch (const std::bad_alloc&) {
+      allocations_left = -1;
+      continue;
+    }
+    EXPECT_EQ(stop.reason(), has_failed ? StopReason::kMemoryLimit : StopReason::kComplete) << left;
+    EXPECT_TRUE(is_moved || has_failed);
+    expect_valid(construction.mesh());
+    (is_moved ? num_moved : num_unmoved) += has_failed;
+  }
+  EXPECT_GT(num_unmoved, 3);
+  EXPECT_GT(num_moved, 0);
 }
 
 // Nodes whose masters run already end at once, instead of refining everything before anybody learns of it.
@@ -165,9 +234,12 @@ TEST(Threads, ThatCannotBeStartedEndTheRun) {
     EXPECT_LT(operations_of(threads), all / 2) << threads << " of 3 started";
 }
 
+INSTANTIATE_TEST_SUITE_P(Executors, RelocationFaults, testing::Values(Executor::kThreads, Executor::kVirtual),
+                         [](const auto& test) { return to_string(test.param); });
 INSTANTIATE_TEST_SUITE_P(Setups, Faults, testing::ValuesIn(kSetups), [](const auto& test) {
-  std::string name = to_string(test.param.algorithm) + to_string(test.param.executor) +
-                     std::to_string(test.param.num_workers);
+  const Setup& setup = test.param;
+  std::string name = to_string(setup.algorithm) + to_string(setup.executor) +
+                     std::to_string(setup.num_workers) + "on" + std::to_string(setup.numa_nodes);
   std::erase(name, '-');
   return name;
 });
