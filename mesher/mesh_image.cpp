@@ -80,6 +80,7 @@ class Run {
     };
     StopControl stop_control(options_.limits, stop_, observe, start_);
     if (options_.log != nullptr) options_.log->restart();
+    team_.forget_reads();
     announce("refine", 0, 0);
     const auto num_workers = static_cast<std::uint64_t>(team_.size().num_workers);
     const std::uint64_t bytes = memory_of_run(options_.limits);

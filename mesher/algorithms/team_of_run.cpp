@@ -23,9 +23,12 @@ TeamOfRun::TeamOfRun(const MeshingOptions& options)
 void TeamOfRun::locate_memory(const LabelImage& image, const FeatureTransform& transform) {
   if (placement_.machine.num_nodes() == 1) return;
   owners_ = owners_of_image(image, transform, placement_, options_.team.seed, nodes_of_pages);
-  if (options_.team.executor == Executor::kVirtual)
-    owners_->watch_first_reads(placement_.machine.num_nodes());
   if (placement_.is_real) pages_.emplace(placement_.machine, *owners_, nodes_of_pages);
+}
+
+void TeamOfRun::forget_reads() {
+  if (owners_ && options_.team.executor == Executor::kVirtual)
+    owners_->watch_first_reads(placement_.machine.num_nodes());
 }
 
 Team TeamOfRun::team() const {

@@ -22,6 +22,10 @@ class TeamOfRun {
   /// Finds out whose memory is what, unless all is on one node. The image must outlive the team.
   void locate_memory(const LabelImage& image, const FeatureTransform& transform);
 
+  /// A mesh begins: the caches of virtual workers' nodes have nothing of the image, whatever meshes of the
+  /// run were made before.
+  void forget_reads();
+
   const TeamSize& size() const { return size_; }
   /// The team as algorithms take it; it refers to this.
   Team team() const;

@@ -16,7 +16,7 @@ struct ImageOwners {
   /// What the nodes' caches have of them; none: nobody asks.
   std::unique_ptr<ReadLines> read_image = nullptr, read_transform = nullptr;
 
-  /// From now on first reads are told apart. All reads must come from one thread.
+  /// From now on first reads are told apart, and none was before. All reads must come from one thread.
   void watch_first_reads(int num_nodes) {
     read_image = std::make_unique<ReadLines>(image.num_bytes(), num_nodes);
     read_transform = std::make_unique<ReadLines>(transform.num_bytes(), num_nodes);

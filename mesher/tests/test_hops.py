@@ -27,16 +27,16 @@ KINDS = "mesh_reads", "mesh_writes", "image_reads", "transform_reads"
 
 
 class Hops(PodmTestCase):
-    def mesh(self, *arguments):
+    def mesh(self, *arguments, sizes=("--radius", 12)):
         runs = self.folder / "runs.jsonl"
-        process = run_podm("mesh", IMAGE, "--radius", 12, "-o", self.folder / "out.vtu", "--record", runs,
+        process = run_podm("mesh", IMAGE, *sizes, "-o", self.folder / "out.vtu", "--record", runs,
                            "--oversubscribe", *arguments)
         self.assert_exit(process, 0)
         return json.loads(runs.read_text().splitlines()[-1])
 
-    def mesh_on_blades(self, *arguments):
+    def mesh_on_blades(self, *arguments, **sizes):
         return self.mesh("--executor", "virtual", "--topology", BLACKLIGHT, "--pin", "compact", "--threads", 32,
-                         *arguments)
+                         *arguments, **sizes)
 
     def test_every_kind_is_counted_by_distance(self):
         for algorithm in "podm", "pdr", "pdr-podm":
@@ -56,6 +56,15 @@ class Hops(PodmTestCase):
         first, again, other = (self.mesh_on_blades("--seed", seed)["hops_by_kind"] for seed in (3, 3, 4))
         self.assertEqual(first, again)
         self.assertNotEqual(first, other)
+
+    def test_meshes_of_a_radius_search_leave_the_next_no_caches(self):
+        searched = self.mesh_on_blades(sizes=("--target-elements", 8000))
+        self.assertGreater(len(searched["calibration"]["meshes"]), 0, "a mesh missed the target before the last")
+        used = searched["used"]
+        alone = self.mesh_on_blades(sizes=("--radius", used["radius_mm"], "--delta", used["delta_mm"]))
+        for name in "mesh_sha256", "hops_by_kind":
+            self.assertEqual(searched[name], alone[name], name)
+        self.assertEqual(searched["virtual"]["refine_s"], alone["virtual"]["refine_s"])
 
     def test_counting_changes_no_mesh(self):
         # Memory of an hwloc machine costs virtual workers nothing. Those that beg at random act alike wherever they
