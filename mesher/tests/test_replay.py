@@ -30,6 +30,9 @@ class Replay(PodmTestCase):
                           # The initial mesh moves to the nodes of its leaves.
                           ["--algorithm", "pdr-podm", "--threads", 32, "--cores-per-node", 16, "--pin", "compact",
                            "--topology", BLACKLIGHT, "--executor", "virtual"],
+                          # A leaf of this size has a corner of the virtual box, which stays where it is.
+                          ["--algorithm", "pdr-podm", "--threads", 64, "--cores-per-node", 16, "--pin", "compact",
+                           "--topology", BLACKLIGHT, "--executor", "virtual", "--leaf-size", 425],
                           ["--algorithm", "pdr", "--threads", 4, "--pin", "scatter", "--topology", BLACKLIGHT],
                           ["--threads", 3, "--space", "voxel"], ["--threads", 2, "--labels", "2-5", "--space", "LPS"]):
             with self.subTest(arguments=arguments):
