@@ -13,6 +13,7 @@
 namespace podm {
 
 struct MachineModel {
+  /// For the reader: no cost uses it. The time of work that caches answer is in `core_speed`.
   struct Cache {
     int level = 1;
     double kib = 0;
