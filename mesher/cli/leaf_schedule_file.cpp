@@ -26,10 +26,7 @@ Affine mesh_to_grid(const MeshRun& run, const LeafSchedule& schedule) {
 }  // namespace
 
 void write_schedule(const MeshRun& run, const std::string& path) {
-  const bool is_complete = run.result.report.stop_reason == StopReason::kComplete;
-  if (!run.result.report.schedule && !is_complete) return;  // it ended before the leaves
-  if (!run.result.report.schedule)
-    throw InputError(path + ": no leaves were refined; use --algorithm pdr or pdr-podm");
+  if (!run.result.report.schedule) return;  // the run ended before the leaves
   const LeafSchedule& schedule = *run.result.report.schedule;
   Json leaves = Json::array();
   for (const auto& leaf : schedule.leaves)

@@ -40,9 +40,12 @@ void check_outputs(const MeshCommand& command) {
   check_mesh_path(command.mesh_path);
   if (!command.surface_path.empty()) check_surface_path(command.surface_path);
   const Algorithm algorithm = command.meshing.algorithm;
-  if (!command.schedule_path.empty() && algorithm == Algorithm::kPodm)
-    throw InputError(command.schedule_path + ": podm has no leaves; use --algorithm pdr or pdr-podm");
-  if (!command.schedule_path.empty()) const AtomicFile trial(command.schedule_path);
+  if (!command.schedule_path.empty()) {
+    if (algorithm != Algorithm::kPdr && algorithm != Algorithm::kPdrPodm)
+      throw InputError(fmt::format("{}: {} has no leaves; use --algorithm pdr or pdr-podm",
+                                   command.schedule_path, to_string(algorithm)));
+    const AtomicFile trial(command.schedule_path);
+  }
   if (command.verify) check_verifier();
 }
 

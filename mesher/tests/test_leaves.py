@@ -79,7 +79,9 @@ class Leaves(PodmTestCase):
                                 (["--algorithm", "pdr", "--initial-threads", "9"], "initial"),
                                 (["--algorithm", "pdr", "--leaf-size", "-1"], "--leaf-size"),
                                 (["--algorithm", "pdr", "--leaf-size", "0.5"], "leaf size of 0.5 mm makes"),
-                                (["--schedule", self.schedule], "leaves.jsonl"),
+                                (["--schedule", self.schedule], "podm has no leaves"),
+                                (["--algorithm", "podm-home", "--schedule", self.schedule], "podm-home has no leaves"),
+                                (["--algorithm", "auto", "--schedule", self.schedule], "auto has no leaves"),
                                 (["--algorithm", "tree"], "pdr-podm")):
             with self.subTest(arguments=arguments):
                 self.assert_refused(["mesh", IMAGE, "--oversubscribe", "-o", self.out, *arguments], word)
