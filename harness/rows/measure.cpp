@@ -85,7 +85,12 @@ Value side_by_side_refining_cells_per_second(const Row& row) {
 Value virtual_refining_seconds(const Row& row) {
   return of_mesh(row, &MeshRecord::virtual_time, &VirtualRecord::refine_s, "virtual/refine_s");
 }
-Value virtual_cells_per_second(const Row& row) { return quotient(cells(row), virtual_refining_seconds(row)); }
+Value virtual_seconds(const Row& row) {
+  const bool is_there = row.mesh && row.mesh->virtual_time && row.mesh->virtual_time->phases_s;
+  return is_there ? Value{meshing_seconds(*row.mesh->virtual_time->phases_s), ""}
+                  : absent("rows have no virtual/phases_s");
+}
+Value virtual_cells_per_second(const Row& row) { return quotient(cells(row), virtual_seconds(row)); }
 
 Value contention_seconds(const Row& row) {
   return of_mesh(row, &MeshRecord::overhead_s, &OverheadRecord::contention, "overhead_s/contention");

@@ -57,8 +57,12 @@ struct ThreadsRecord {
 /// Times of virtual workers.
 struct VirtualRecord {
   std::optional<double> refine_s;
+  std::optional<ByName<double>> phases_s;  ///< of equation 1
   Json as_written = Json::object();
-  static constexpr auto fields() { return std::tuple{field_if_any("refine_s", &VirtualRecord::refine_s)}; }
+  static constexpr auto fields() {
+    return std::tuple{field_if_any("refine_s", &VirtualRecord::refine_s),
+                      field_if_any("phases_s", &VirtualRecord::phases_s)};
+  }
 };
 
 /// Attempts at operations by what came of them.

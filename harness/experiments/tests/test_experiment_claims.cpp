@@ -70,7 +70,7 @@ const std::map<std::string, SetValue> kSetters = {
     {"virtual_cells_per_second",
      [](Row& row, double value) {
        mesh_of(row).cells = many(value);
-       mesh_of(row).virtual_time.emplace().refine_s = kMuch;
+       mesh_of(row).virtual_time.emplace().phases_s = {{"refine", kMuch}};
      }},
     {"lost_seconds", [](Row& row, double value) { set_overhead(row, value, 0, 0); }},
     {"contention_seconds", [](Row& row, double value) { set_overhead(row, value, 0, 0); }},
