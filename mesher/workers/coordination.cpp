@@ -46,15 +46,25 @@ void Coordination::send(unsigned home, const Entries& cells) {
     const std::scoped_lock lock(to.mutex);
     to.cells.insert(to.cells.end(), cells.begin(), cells.end());
   }
-  for (WorkerId i = 0; i < workers_per_home_; ++i)
-    for (;;) {
-      const BeggingList::Beggar beggar = begging_.take_first_for(home * workers_per_home_ + i);
-      if (beggar.worker == kNoWorker) break;
-      Entries gift = take_from(to);
-      const bool is_empty = gift.empty();
-      give(beggar.worker, std::move(gift));
-      if (is_empty) return;  // others were quicker
+  serve(home);
+}
+
+// Those of the home who beg get its cells, until none does or none are left. Of those who were listed before
+// the home's lock was had, hints tell.
+void Coordination::serve(unsigned home) {
+  Home& from = homes_[home];
+  for (WorkerId i = 0; i < workers_per_home_; ++i) {
+    const WorkerId worker = home * workers_per_home_ + i;
+    while (has_cells(from) && begging_.may_serve(worker)) {
+      const BeggingList::Beggar beggar = begging_.take_first_for(worker);
+      if (beggar.worker != kNoWorker) give(beggar.worker, take_from(from));
     }
+  }
+}
+
+bool Coordination::has_cells(Home& home) {
+  const std::scoped_lock lock(home.mutex);
+  return !home.cells.empty();
 }
 
 Coordination::Entries Coordination::take_from(Home& home) {

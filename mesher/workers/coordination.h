@@ -14,7 +14,8 @@
 // Cells that are sent to a home wait there. Who begs looks for them first, and goes on a list under the lock
 // of its home only if there are none. Who sends puts them there under that lock, and then serves those of the
 // home who beg, until none does or none are left. So whoever of the home was on a list before they came is
-// served, or served by another; whoever comes later finds them. When all are counted, and so nobody sends any
+// served, or served by another; whoever comes later finds them. Who takes a beggar off a list and puts it
+// back, serves its home then, as a sender may have missed it. When all are counted, and so nobody sends any
 // more, no home has cells. No cells are left.
 #pragma once
 
@@ -117,12 +118,15 @@ class Coordination {
     Entries cells = worker.share(kMostToShare);
     if (cells.empty()) {
       begging_.put_back(beggar);
+      if (!homes_.empty()) serve(beggar.worker / workers_per_home_);  // cells may have come meanwhile
     } else {
       give(beggar.worker, std::move(cells));
     }
   }
   Begging look_home_or_join(WorkerId self);
-  Entries take_from(Home& home);
+  void serve(unsigned home);
+  static bool has_cells(Home& home);
+  static Entries take_from(Home& home);
   void give(WorkerId beggar, Entries cells);
   void end_begging(WorkerId beggar);
   void resume(WorkerId worker) { resume_(first_id_ + worker); }

@@ -143,5 +143,35 @@ INSTANTIATE_TEST_SUITE_P(Managers, Coordinated,
                                   (std::get<2>(of.param) ? "AtHome" : "");
                          });
 
+// It finds nothing to share, so that a beggar is taken off its list and put back, while another sends cells
+// home.
+struct Dry {
+  Coordination& group;
+  std::size_t num_listed() const { return 64; }
+  Coordination::Entries share(std::size_t) {
+    group.send(2, {{}});
+    return {};
+  }
+  WorkerId conflicting_worker() const { return 0; }
+};
+
+TEST(Homes, CellsThatComeWhileABeggarIsOffItsListAreServed) {
+  std::vector<WorkerId> resumed;
+  Coordination group({.num_workers = 3, .workers_per_home = 1}, [&](WorkerId w) { resumed.push_back(w); });
+  ASSERT_EQ(group.beg(2), Coordination::Begging::kListed);
+  Dry giver{group};
+  group.after(Outcome::kSound, 0, giver);
+  EXPECT_EQ(resumed, std::vector<WorkerId>{2});
+  EXPECT_EQ(group.take_gift(2).size(), 1u);
+}
+
+TEST(Homes, ACellWakesOneBeggar) {
+  std::vector<WorkerId> resumed;
+  Coordination group({.num_workers = 4, .workers_per_home = 2}, [&](WorkerId w) { resumed.push_back(w); });
+  for (const WorkerId worker : {2u, 3u}) ASSERT_EQ(group.beg(worker), Coordination::Begging::kListed);
+  group.send(1, {{}});
+  EXPECT_EQ(resumed, std::vector<WorkerId>{2});
+}
+
 }  // namespace
 }  // namespace podm::test
