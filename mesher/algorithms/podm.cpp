@@ -7,9 +7,9 @@
 //
 //   Between any two operations the cells are the Delaunay triangulation of the vertices
 //   (delaunay/vertex_locks.h). Between any two operations vertices keep the distances I1 to I3
-//   (refine/rules.h), so that insertions end. Every cell that may break a rule is on a list, in a gift, or in
-//   an operation. So when all workers beg, no cell breaks a rule any more. Who waits, waits for one who runs
-//   (workers/contention_manager.h): the last to run never waits.
+//   (refine/rules.h), so that insertions end. Every cell that may break a rule is on a list, in a gift, on
+//   its way home (podm_home.cpp), or in an operation. So when all workers beg, no cell breaks a rule any
+//   more. Who waits, waits for one who runs (workers/contention_manager.h): the last to run never waits.
 #include "algorithms/podm.h"
 
 #include <algorithm>
@@ -21,6 +21,8 @@
 #include "workers/work_cost.h"
 
 namespace podm {
+
+namespace {
 
 // New cells of other homes go there when they are so many, or when the worker has no others.
 constexpr std::size_t kAwayToSend = 128;
@@ -38,6 +40,8 @@ void send_home(Worker<Locks>& worker, Coordination& group, Time& time) {
   }
 }
 
+}  // namespace
+
 template <class Locks, class Time>
 bool refine(Worker<Locks>& worker, Coordination& group, Time& time,
             const std::function<void()>& before_begging) {
@@ -46,10 +50,10 @@ bool refine(Worker<Locks>& worker, Coordination& group, Time& time,
     if (worker.has_work()) {
       const Outcome outcome = time.attempt(worker);  // take a cell, lock, plan, commit or roll back, unlock
       const std::size_t num_listed = worker.num_listed();
+      if (worker.num_away() >= kAwayToSend) send_home(worker, group, time);
       const auto [answer, pause_s] = group.after(outcome, self, worker);
       if (const std::size_t given = num_listed - worker.num_listed(); given > 0)
         time.spend_in(&group, self, kBegging + kEntryGiven * static_cast<double>(given));
-      if (worker.num_away() >= kAwayToSend) send_home(worker, group, time);
       if (answer == ContentionManager::Answer::kWait) time.block(self, &Overhead::contention_s);
       if (answer == ContentionManager::Answer::kPause) time.pause(self, pause_s);
     } else {

@@ -8,8 +8,9 @@
 // make.
 //
 //   Safety is PODM's, and so is the end of the run: see workers/coordination.h for cells on their way.
-#include <algorithm>
 #include <cmath>
+#include <optional>
+#include <vector>
 
 #include "algorithms/leaf_size.h"
 #include "algorithms/podm.h"
@@ -20,29 +21,29 @@ namespace podm {
 
 namespace {
 
-// Cells are expected where the object is, as many in a volume as its bound makes.
+constexpr std::size_t kSamplesPerHome = 256;
+
+// Cells are expected where the object is, as many in a volume as its bound makes. The samples are those of an
+// additive recurrence with the powers of g, g^4 = g + 1, which leave no large gaps and share no coordinate.
+// (M. Roberts, "The unreasonable effectiveness of quasirandom sequences", 2018.)
 std::vector<Homes::Work> expected_work(const Problem& problem, std::size_t num_samples) {
+  constexpr double kG = 1.2207440846057596;
   const Radii radii = radii_of(problem);
   const Point& low = problem.object.low;
   const Vector extent = problem.object.high - low;
-  const double step = std::cbrt(extent.x * extent.y * extent.z / static_cast<double>(num_samples));
-  const auto along = [&](double length) { return std::max(1, static_cast<int>(std::lround(length / step))); };
-  const int nx = along(extent.x), ny = along(extent.y), nz = along(extent.z);
+  const auto fraction = [](double x) { return x - std::floor(x); };
   std::vector<Homes::Work> work;
-  for (int k = 0; k < nz; ++k)
-    for (int j = 0; j < ny; ++j)
-      for (int i = 0; i < nx; ++i) {
-        const Point p =
-            low + Vector{extent.x * (i + 0.5) / nx, extent.y * (j + 0.5) / ny, extent.z * (k + 0.5) / nz};
-        const LabelIndex label = problem.isosurface.label_at(p);
-        if (label == kBackground) continue;
-        const double radius = radii.of_label[label - 1u];
-        work.push_back({p, 1 / (radius * radius * radius)});
-      }
+  for (std::size_t i = 0; i < num_samples; ++i) {
+    const auto n = static_cast<double>(i);
+    const Point p = low + Vector{extent.x * fraction(0.5 + n / kG), extent.y * fraction(0.5 + n / (kG * kG)),
+                                 extent.z * fraction(0.5 + n / (kG * kG * kG))};
+    const LabelIndex label = problem.isosurface.label_at(p);
+    if (label == kBackground) continue;
+    const double radius = radii.of_label[label - 1u];
+    work.push_back({p, 1 / (radius * radius * radius)});
+  }
   return work;
 }
-
-constexpr std::size_t kSamplesPerHome = 256;
 
 }  // namespace
 

@@ -15,9 +15,19 @@ int num_numa_nodes(const std::vector<Place>& places) {
   return static_cast<int>(used.size());
 }
 
-// On one NUMA node kPodmHome is kPodm.
+// A home is its computing node's, whose workers follow one another: it is of use where these are on one NUMA
+// node, and other computing nodes on others.
+bool homes_are_on_nodes(const std::vector<Place>& places) {
+  const auto nodes = static_cast<std::size_t>(num_numa_nodes(places));
+  if (nodes == 1 || places.size() % nodes != 0) return false;
+  const std::size_t per_node = places.size() / nodes;
+  for (std::size_t i = 0; i < places.size(); ++i)
+    if (places[i].node != places[i / per_node * per_node].node) return false;
+  return true;
+}
+
 Algorithm automatic(const MeshingOptions& options, int workers, const std::vector<Place>& places) {
-  const bool is_home = options.crossover > 0 ? workers >= options.crossover : num_numa_nodes(places) > 1;
+  const bool is_home = options.crossover > 0 ? workers >= options.crossover : homes_are_on_nodes(places);
   return is_home ? Algorithm::kPodmHome : Algorithm::kPodm;
 }
 

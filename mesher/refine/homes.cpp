@@ -31,13 +31,13 @@ void Homes::divide(std::span<Work> work, unsigned num_homes) {
 }
 
 unsigned Homes::longest_side(std::span<const Work> work) {
+  if (work.empty()) return 0;
   unsigned longest = 0;
   double length = -1;
   for (unsigned axis = 0; axis < 3; ++axis) {
     const auto before = [&](const Work& a, const Work& b) {
       return coordinate(a.at, axis) < coordinate(b.at, axis);
     };
-    if (work.empty()) return 0;
     const auto [low, high] = std::minmax_element(work.begin(), work.end(), before);
     if (const double side = coordinate(high->at, axis) - coordinate(low->at, axis); side > length)
       std::tie(longest, length) = std::pair(axis, side);

@@ -17,8 +17,9 @@ class Homes {
     double amount;
   };
 
-  /// Blocks that have equal shares of the work: as long as there are several homes for a block, it is cut
-  /// across its longest side. (Berger, Bokhari, IEEE Trans. Comput. C-36, 1987.)
+  /// Blocks that have equal shares of the work, by recursive coordinate bisection: as long as there are
+  /// several homes for a block, it is cut across its longest side. (Berger, Bokhari, IEEE Trans. Comput.
+  /// C-36, 1987.)
   Homes(std::vector<Work> work, unsigned num_homes);
 
   unsigned number() const { return number_; }

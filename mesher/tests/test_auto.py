@@ -53,9 +53,10 @@ class Auto(PodmTestCase):
         self.assertEqual(self.mesh("--algorithm", "auto", stored=self.stored)["auto"]["threads"], 9)
 
     def test_is_podm_home_on_several_numa_nodes(self):
-        for threads, algorithm in (16, "podm"), (17, "podm-home"):
-            record = self.mesh("--algorithm", "auto", "--executor", "virtual", "--topology", BLACKLIGHT, "--pin",
-                               "compact", "--threads", threads)
+        for threads, pin, algorithm in ((16, "compact", "podm"), (17, "compact", "podm"), (32, "none", "podm"),
+                                        (32, "compact", "podm-home")):
+            record = self.mesh("--algorithm", "auto", "--executor", "virtual", "--topology", BLACKLIGHT, "--pin", pin,
+                               "--threads", threads)
             self.assertEqual(record["algorithm"], algorithm)
 
     def test_the_variable_is_not_for_virtual_time_nor_for_an_algorithm_that_is_named(self):

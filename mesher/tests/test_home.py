@@ -44,8 +44,8 @@ class Home(PodmTestCase):
         self.assertGreater(zero_hops["podm-home"], 1.2 * zero_hops["podm"])
 
     def test_of_one_node_it_is_podm(self):
-        hashes = {self.mesh(algorithm, "--executor", "virtual", "--threads", 8)["mesh_sha256"]
-                  for algorithm in ("podm", "podm-home")}
+        hashes = {self.mesh(algorithm, "--executor", "virtual", "--threads", 8, *nodes)["mesh_sha256"]
+                  for algorithm, nodes in (("podm", []), ("podm-home", ["--nodes", 1]))}
         self.assertEqual(len(hashes), 1)
 
 

@@ -72,6 +72,7 @@ Coordination::Entries Coordination::take_from(Home& home) {
   const auto count = static_cast<std::ptrdiff_t>(std::min(kMostToShare, home.cells.size()));
   Entries taken(home.cells.end() - count, home.cells.end());
   home.cells.erase(home.cells.end() - count, home.cells.end());
+  if (home.cells.empty()) home.cells.shrink_to_fit();
   return taken;
 }
 

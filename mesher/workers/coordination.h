@@ -13,10 +13,10 @@
 //
 // Cells that are sent to a home wait there. Who begs looks for them first, and goes on a list under the lock
 // of its home only if there are none. Who sends puts them there under that lock, and then serves those of the
-// home who beg, until none does or none are left. So whoever of the home was on a list before they came is
-// served, or served by another; whoever comes later finds them. Who takes a beggar off a list and puts it
-// back, serves its home then, as a sender may have missed it. When all are counted, and so nobody sends any
-// more, no home has cells. No cells are left.
+// home who beg, and maybe others whom these lists hold, until none does or none are left. So whoever of the
+// home was on a list before they came is served, or served by another; whoever comes later finds them. Who
+// takes a beggar off a list and puts it back, serves its home then, as a sender may have missed it. When all
+// are counted, and so nobody sends any more, no home has cells. No cells are left.
 #pragma once
 
 #include <atomic>

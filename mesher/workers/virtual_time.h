@@ -1,9 +1,10 @@
 // Any number of workers on one core, in virtual time: each works on a fibre, and an attempt is carried out at
 // once at its beginning, but its locks are held to its virtual end, so that workers conflict as they would on
 // as many cores. An attempt that fails holds its locks as long, but for the while in which a real one looks
-// up its list before it takes any. So attempts may make each other fail again and again, as they may under
-// Contention::kAggressive, but not for ever. The same seed gives the same run to the bit. This serves tests
-// of interleavings, and studies of machines that nobody has at hand; times are simulated, not measured.
+// up its list before it takes any. So attempts may make each other fail for ever under
+// Contention::kAggressive, as they may on threads; more easily here, as real attempts take their locks one
+// after the other. The same seed gives the same run to the bit. This serves tests of interleavings, and
+// studies of machines that nobody has at hand; times are simulated, not measured.
 //
 // A worker's time goes on by what it does: attempts by their counted work (workers/work_cost.h) and, on a
 // described machine, by the memory of other nodes that they touch (workers/remote_memory.h); what it does

@@ -25,11 +25,12 @@ struct Setup {
   int numa_nodes = 1;
 };
 const std::vector<Setup> kSetups{
-    {Algorithm::kPodm, Executor::kThreads, 1},       {Algorithm::kPodm, Executor::kThreads, 4},
-    {Algorithm::kPodm, Executor::kVirtual, 6},       {Algorithm::kPdr, Executor::kThreads, 2},
-    {Algorithm::kPdr, Executor::kVirtual, 4},        {Algorithm::kPdrPodm, Executor::kThreads, 4},
-    {Algorithm::kPdrPodm, Executor::kVirtual, 6},    {Algorithm::kPdrPodm, Executor::kThreads, 4, 2},
-    {Algorithm::kPdrPodm, Executor::kVirtual, 6, 2},
+    {Algorithm::kPodm, Executor::kThreads, 1},        {Algorithm::kPodm, Executor::kThreads, 4},
+    {Algorithm::kPodm, Executor::kVirtual, 6},        {Algorithm::kPdr, Executor::kThreads, 2},
+    {Algorithm::kPdr, Executor::kVirtual, 4},         {Algorithm::kPdrPodm, Executor::kThreads, 4},
+    {Algorithm::kPdrPodm, Executor::kVirtual, 6},     {Algorithm::kPdrPodm, Executor::kThreads, 4, 2},
+    {Algorithm::kPdrPodm, Executor::kVirtual, 6, 2},  {Algorithm::kPodmHome, Executor::kThreads, 4, 2},
+    {Algorithm::kPodmHome, Executor::kVirtual, 6, 2},
 };
 
 Topology machine_of_nodes(int num_nodes) {
@@ -68,6 +69,7 @@ class Faults : public testing::TestWithParam<Setup> {
                     .machine = &machine_,
                     .places = places_};
     if (algorithm == Algorithm::kPodm) return podm(problem, team, stop);
+    if (algorithm == Algorithm::kPodmHome) return podm_home(problem, team, stop);
     const LeafOptions leaves{.initial_ratio = 2, .size_mm = 4};
     return algorithm == Algorithm::kPdr ? pdr(problem, team, leaves, stop)
                                         : pdr_podm(problem, team, leaves, stop);

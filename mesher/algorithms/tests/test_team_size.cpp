@@ -45,6 +45,9 @@ TEST(TeamSize, AutoWithoutACrossoverIsPodmOnOneNumaNode) {
   const TeamSize of_two = size_of(Algorithm::kAuto, {.threads = 4}, {0, 0, 5, 5}, 0);
   EXPECT_EQ(of_two.algorithm, Algorithm::kPodmHome);
   EXPECT_EQ(of_two.num_nodes, 2);
+  for (const std::vector<int>& nodes : {std::vector{0, 5, 0, 5}, {0, 0, 0, 5}})
+    EXPECT_EQ(size_of(Algorithm::kAuto, {.threads = 4}, nodes, 0).algorithm, Algorithm::kPodm);
+  EXPECT_EQ(size_of(Algorithm::kAuto, {.threads = 3}, {0, 0, 5}, 0).algorithm, Algorithm::kPodm);
 }
 
 TEST(TeamSize, ComputingNodesAreTheNumaNodesInUseWhereTheseDivideTheWorkers) {

@@ -31,7 +31,7 @@ std::string to_string(Choice choice) {
 /// How the work is divided among threads. kPodm: anywhere, with locks. kPdrPodm: an initial mesh by PODM,
 /// then leaf by leaf of an octree, each by a computing node of several threads. kPdr: leaf by leaf, one
 /// thread each, without locks. kPodmHome: with locks, each computing node in its own block of space. kAuto:
-/// kPodm on one NUMA node, kPodmHome on several.
+/// kPodm, or kPodmHome where threads are pinned to several NUMA nodes.
 enum class Algorithm { kAuto, kPodm, kPdr, kPdrPodm, kPodmHome };
 template <>
 struct Names<Algorithm> {

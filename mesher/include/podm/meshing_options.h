@@ -61,8 +61,9 @@ struct MeshingOptions {
   SizeOptions sizes = {};
   Space space = Space::kRas;
   Algorithm algorithm = Algorithm::kPodm;
-  /// Threads from which on kAuto is kPodmHome. 0: it is where they are on several NUMA nodes; in simulation
-  /// that is faster on any number of these (experiments/simulated_weak.toml).
+  /// Threads from which on kAuto is kPodmHome. 0: it is where pins make as many on each of several NUMA
+  /// nodes; in simulation that is faster for meshes that are worth the threads
+  /// (experiments/simulated_weak.toml).
   int crossover = 0;
   TeamOptions team = {};
   LeafOptions leaves = {};
