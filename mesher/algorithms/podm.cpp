@@ -14,6 +14,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <tuple>
 #include <utility>
 
 #include "algorithms/leaf_locks.h"
@@ -30,7 +31,9 @@ constexpr std::size_t kAwayToSend = 128;
 template <class Locks, class Time>
 void send_home(Worker<Locks>& worker, Coordination& group, Time& time) {
   auto away = worker.take_away();
-  std::stable_sort(away.begin(), away.end(), [](const auto& a, const auto& b) { return a.home < b.home; });
+  std::sort(away.begin(), away.end(), [](const auto& a, const auto& b) {
+    return std::tie(a.home, a.entry.cell) < std::tie(b.home, b.entry.cell);
+  });
   Construction::Entries cells;
   for (std::size_t i = 0; i < away.size(); ++i) {
     cells.push_back(away[i].entry);
