@@ -58,7 +58,7 @@ void add_algorithm_options(CLI::App& app, MeshCommand& command) {
           "podm: threads anywhere, with locks; pdr-podm: leaf by leaf of an octree,\n"
           "by nodes of several threads; pdr: leaf by leaf, a thread each, no locks;\n"
           "podm-home: podm by nodes of several threads, each in its own block of space;\n"
-          "auto: podm, but podm-home where threads are pinned to several nodes",
+          "auto: podm, or podm-home on threads pinned to several NUMA nodes",
           into_choice(meshing.algorithm));
   add_one(app, "--crossover", "N|FILE",
           fmt::format("threads from which on auto is podm-home, or the file in which podm-bench stored\n"
