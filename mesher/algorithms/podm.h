@@ -26,7 +26,7 @@ bool refine(Worker<Locks>& worker, Coordination& group, Time& time,
             const std::function<void()>& before_begging = {});
 
 /// PODM as a phase: the first `num_workers` of the team refine these cells, with locks unless there is only
-/// one.
+/// one. Homes, if given, divide the workers evenly, in their order.
 void refine_anywhere(Construction& construction, const std::string& phase, const Parameters& parameters,
                      const Construction::Entries& cells, int num_workers, const Homes* homes = nullptr);
 

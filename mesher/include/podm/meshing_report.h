@@ -96,8 +96,8 @@ struct LeafSchedule {
 
 struct MeshingReport {
   /// Seconds of the mesh that is returned. "transform"; "allocate": store, pools, workers and threads made
-  /// ready; "initial", "octree", "refine", "closing" (of kPodm "refine" alone); "extract"; "measure": quality
-  /// and guarantees. And "calibrate": all that finding the radius of a target cost.
+  /// ready; "initial", "octree", "refine", "closing" (of kPodm and kPodmHome "refine" alone); "extract";
+  /// "measure": quality and guarantees. And "calibrate": all that finding the radius of a target cost.
   std::map<std::string, double> phases_s;
   double radius_mm = 0;                    ///< the one used; 0 when unbounded
   double delta_mm = 0;                     ///< the one used
