@@ -2,6 +2,8 @@
 
 #include <algorithm>
 
+#include "podm/errors.h"
+
 namespace podm {
 
 Coordination::Coordination(const CoordinationOptions& options, std::function<void(WorkerId)> resume,
@@ -12,7 +14,10 @@ Coordination::Coordination(const CoordinationOptions& options, std::function<voi
       workers_per_home_(static_cast<WorkerId>(options.workers_per_home)),
       homes_(workers_per_home_ == 0 ? 0 : members_.size() / workers_per_home_),
       resume_(std::move(resume)),
-      first_id_(first_id) {}
+      first_id_(first_id) {
+  if (homes_.size() * workers_per_home_ != (homes_.empty() ? 0 : members_.size()))
+    throw InternalError("homes must divide the workers evenly");
+}
 
 Coordination::Answer Coordination::conflict(WorkerId self, WorkerId holder) {
   members_[self].successes = 0;

@@ -25,7 +25,7 @@ class PlantedFaultDeathTest : public testing::Test {
   }
   void TearDown() override { plant_fault({}); }
 
-  CoordinationOptions workers_{4, Contention::kLocal, {}, 3};
+  CoordinationOptions workers_{.num_workers = 4, .seed = 3};
   LabelImage image_ = ball(16, 6);
   Isosurface isosurface_{image_, 1};
   Problem problem_{isosurface_, foreground_bounds(image_), 1.2, SizeField(std::vector<double>(2, 1.6)),
