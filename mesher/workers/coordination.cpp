@@ -15,7 +15,7 @@ Coordination::Coordination(const CoordinationOptions& options, std::function<voi
       homes_(workers_per_home_ == 0 ? 0 : members_.size() / workers_per_home_),
       resume_(std::move(resume)),
       first_id_(first_id) {
-  if (homes_.size() * workers_per_home_ != (homes_.empty() ? 0 : members_.size()))
+  if (workers_per_home_ != 0 && members_.size() % workers_per_home_ != 0)
     throw InternalError("homes must divide the workers evenly");
 }
 
