@@ -37,8 +37,8 @@ struct CoordinationOptions {
   int num_workers = 1;
   Contention contention = Contention::kLocal;
   WorkerGroups groups = {};  // as the begging list needs them
-  int workers_per_home =
-      0;  // workers i with equal i / workers_per_home have a home together; 0: none has one
+  // Workers i with equal i / workers_per_home have a home together; 0: none has one.
+  int workers_per_home = 0;
   std::uint64_t seed = 1;
 };
 
