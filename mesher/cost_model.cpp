@@ -156,6 +156,13 @@ double CostModel::cells(const SizeOptions& sizes) const {
   return cells;
 }
 
+double CostModel::cells(double volume_mm3, double area_mm2, double radius_mm, double delta_mm) {
+  const double on_surface = kSurfaceCells * area_mm2 / (delta_mm * delta_mm);
+  if (radius_mm <= 0) return on_surface;
+  const double core_mm3 = std::max(0.0, volume_mm3 - kGradedOverRadius * radius_mm * area_mm2);
+  return on_surface + kVolumeCells * core_mm3 / (radius_mm * radius_mm * radius_mm);
+}
+
 Estimate estimate(const LabelImage& image, const MeshingOptions& options) {
   double cells = static_cast<double>(options.sizes.target_elements);
   if (options.sizes.target_elements == 0) {

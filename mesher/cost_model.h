@@ -35,6 +35,8 @@ class CostModel {
 
   /// The cells that these radii and this delta, which is not 0, make.
   double cells(const SizeOptions& sizes) const;
+  /// Of a part of a label, and of the interface at it, where the layer is thin. `radius_mm`: 0 if unbounded.
+  static double cells(double volume_mm3, double area_mm2, double radius_mm, double delta_mm);
 
  private:
   static constexpr double kVolumeCells = 4.82, kSurfaceCells = 1.57;

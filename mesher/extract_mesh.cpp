@@ -71,8 +71,10 @@ struct BoundaryFacet {
 // vertices get numbers, in the order of their ids, and cells and facets learn them.
 class Extractor {
  public:
-  Extractor(Mesh& mesh, const Isosurface& isosurface, std::size_t threads, TetMesh& out)
+  Extractor(Mesh& mesh, const Isosurface& isosurface, std::size_t threads, const CellFilter& is_wanted,
+            TetMesh& out)
       : mesh_(mesh),
+        is_wanted_(is_wanted),
         isosurface_(isosurface),
         to_world_(working_to_world(isosurface.image())),
         threads_(threads),
@@ -116,10 +118,12 @@ class Extractor {
     std::size_t count = 0;
     for (CellId c = begin; c < end; ++c) {
       labels_[c] = label_of(mesh_, isosurface_, c);
-      count += labels_[c] != kBackground;
+      count += is_wanted(c);
     }
     return count;
   }
+
+  bool is_wanted(CellId c) const { return labels_[c] != kBackground && (!is_wanted_ || is_wanted_(c)); }
 
   // What a cell needs besides its own line, early.
   static constexpr CellId kLookahead = 32;
@@ -134,8 +138,8 @@ class Extractor {
   void write_cells(CellId begin, CellId end, std::size_t at, std::vector<BoundaryFacet>& facets) {
     for (CellId c = begin; c < end; ++c) {
       prefetch_around(c + kLookahead);
+      if (!is_wanted(c)) continue;
       const LabelIndex label = labels_[c];
-      if (label == kBackground) continue;
       const Cell& cell = mesh_.cell(c);
       for (const VertexId v : cell.vertices) {
         if (load(out_ids_[v], std::memory_order_relaxed) != kUsed)
@@ -227,6 +231,7 @@ class Extractor {
   }
 
   Mesh& mesh_;
+  const CellFilter& is_wanted_;
   const Isosurface& isosurface_;
   const Affine to_world_;
   const bool is_mirrored_ = determinant(to_world_) < 0;  // swapping two vertices of a cell turns it back
@@ -252,11 +257,11 @@ std::uint64_t label_cells(Mesh& mesh, const Isosurface& isosurface, int threads)
 }
 
 TetMesh extract_mesh(Mesh& mesh, const Isosurface& isosurface, Space space, int threads,
-                     std::uint64_t& facets_off_isosurface) {
+                     std::uint64_t& facets_off_isosurface, const CellFilter& is_wanted) {
   TetMesh out;
   out.labels = isosurface.image().labels;
   out.space = space;
-  facets_off_isosurface = Extractor(mesh, isosurface, num_threads(threads), out)();
+  facets_off_isosurface = Extractor(mesh, isosurface, num_threads(threads), is_wanted, out)();
   return out;
 }
 

@@ -5,7 +5,7 @@
 #include <unordered_map>
 
 #include "delaunay/operation.h"
-#include "geometry/predicates.h"
+#include "delaunay/walk.h"
 #include "podm/errors.h"
 
 namespace podm {
@@ -76,28 +76,9 @@ class Replay {
     start = operation_.created().front();
   }
 
-  // Visibility walk to a cell that holds p, from a cell of the same worker's last operation: it is near. In a
-  // Delaunay triangulation such walks end. (Edelsbrunner, Combinatorica 10 (1990) 251-260.)
+  // From a cell of the same worker's last operation: it is near.
   CellId walk(CellId from, const Point& p) const {
-    if (!mesh_->cell(from).is_alive()) from = last_created_alive();
-    for (CellId previous = from;;) {
-      const CellId next = step(from, previous, p);
-      if (next == from) return from;
-      previous = from;
-      from = next;
-    }
-  }
-
-  CellId step(CellId c, CellId previous, const Point& p) const {
-    const Cell& cell = mesh_->cell(c);
-    for (unsigned k = 0; k < 4; ++k) {
-      if (cell.mirrors[k] == kNoFacet || cell_of(cell.mirrors[k]) == previous) continue;
-      const auto point = [&](unsigned i) {
-        return mesh_->point(cell.vertices[static_cast<unsigned>(kFacetVertices[k][i])]);
-      };
-      if (orientation(point(0), point(1), point(2), p) < 0) return cell_of(cell.mirrors[k]);
-    }
-    return c;
+    return cell_with(*mesh_, p, mesh_->cell(from).is_alive() ? from : last_created_alive());
   }
 
   CellId last_created_alive() const {

@@ -1,8 +1,6 @@
 #include "algorithms/construction.h"
 
-#include "algorithms/leaf_locks.h"
 #include "algorithms/memory_model.h"
-#include "algorithms/report_on_workers.h"
 #include "refine/virtual_box.h"
 #include "workers/work_cost.h"
 
@@ -40,17 +38,6 @@ void Construction::withhold(std::uint64_t bytes) {
   if (!result_.mesh->withhold(cells)) stop_.end(StopReason::kMemoryLimit);
 }
 
-template <class Locks>
-Construction::Workers<Locks> Construction::make_workers(const Parameters& parameters, int num_workers) {
-  Workers<Locks> workers;
-  timed(kAllocate, [&] {
-    for (WorkerId id = 0; id < static_cast<WorkerId>(num_workers); ++id)
-      workers.push_back(std::make_unique<Worker<Locks>>(*result_.mesh, problem_.isosurface, parameters, id,
-                                                        *pools_[id], team_.log, team_.owners));
-  });
-  return workers;
-}
-
 std::vector<Place> Construction::places_of_first(std::size_t count) const {
   if (team_.places.empty()) return {};
   return {team_.places.begin(), team_.places.begin() + static_cast<std::ptrdiff_t>(count)};
@@ -61,13 +48,6 @@ std::vector<NodeIndex> Construction::nodes_of_first(std::size_t count) const {
   for (WorkerId worker = 0; worker < count; ++worker)
     nodes.push_back(static_cast<NodeIndex>(place_of(worker).node));
   return nodes;
-}
-
-template <class Locks>
-void Construction::add_counters(const Worker<Locks>& worker, const Overhead& overhead) {
-  const WorkerId id = worker.id();
-  add(counters_of(worker, overhead, place_of(id), team_.machine), result_.workers[id].counters);
-  if (worker.accesses()) accesses_[id].addresses = worker.accesses()->samples();
 }
 
 void Construction::sample_pages(const std::string& phase) {
@@ -103,16 +83,5 @@ Refinement Construction::finish() {
   result_.counters = sum_of(result_.workers);
   return std::move(result_);
 }
-
-template Construction::Workers<NoLocks> Construction::make_workers<NoLocks>(const Parameters&, int);
-template Construction::Workers<VertexLocks> Construction::make_workers<VertexLocks>(const Parameters&, int);
-template Construction::Workers<LeafLocks<NoLocks>> Construction::make_workers<LeafLocks<NoLocks>>(
-    const Parameters&, int);
-template Construction::Workers<LeafLocks<VertexLocks>> Construction::make_workers<LeafLocks<VertexLocks>>(
-    const Parameters&, int);
-template void Construction::add_counters(const Worker<NoLocks>&, const Overhead&);
-template void Construction::add_counters(const Worker<VertexLocks>&, const Overhead&);
-template void Construction::add_counters(const Worker<LeafLocks<NoLocks>>&, const Overhead&);
-template void Construction::add_counters(const Worker<LeafLocks<VertexLocks>>&, const Overhead&);
 
 }  // namespace podm

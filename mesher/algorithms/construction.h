@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "algorithms/page_sampler.h"
+#include "algorithms/report_on_workers.h"
 #include "delaunay/relocation.h"
 #include "podm/limits.h"
 #include "podm/meshing_report.h"
@@ -84,6 +85,9 @@ class Construction {
   Construction(const Problem& problem, const Box& clamp_box, const Team& team, StopControl& stop);
 
   const Mesh& mesh() const { return *result_.mesh; }
+  /// Between phases.
+  Mesh& mesh() { return *result_.mesh; }
+  Pool& pool(WorkerId worker) { return *pools_[worker]; }
   const Problem& problem() const { return problem_; }
   const Team& team() const { return team_; }
   StopControl& stop() { return stop_; }
@@ -96,7 +100,15 @@ class Construction {
   void withhold(std::uint64_t bytes);
   /// The first so many of the team, with their pools. They keep a reference to the parameters.
   template <class Locks>
-  Workers<Locks> make_workers(const Parameters& parameters, int num_workers);
+  Workers<Locks> make_workers(const Parameters& parameters, int num_workers) {
+    Workers<Locks> workers;
+    timed(kAllocate, [&] {
+      for (WorkerId id = 0; id < static_cast<WorkerId>(num_workers); ++id)
+        workers.push_back(std::make_unique<Worker<Locks>>(*result_.mesh, problem_.isosurface, parameters, id,
+                                                          *pools_[id], team_.log, team_.owners));
+    });
+    return workers;
+  }
 
   /// Charges the phase with the action's seconds, but for those that were charged to others meanwhile.
   template <class Action>
@@ -178,7 +190,11 @@ class Construction {
   std::vector<Place> places_of_first(std::size_t count) const;
   std::vector<NodeIndex> nodes_of_first(std::size_t count) const;
   template <class Locks>
-  void add_counters(const Worker<Locks>& worker, const Overhead& overhead);
+  void add_counters(const Worker<Locks>& worker, const Overhead& overhead) {
+    const WorkerId id = worker.id();
+    add(counters_of(worker, overhead, place_of(id), team_.machine), result_.workers[id].counters);
+    if (worker.accesses()) accesses_[id].addresses = worker.accesses()->samples();
+  }
   void log(const Relocation& relocation);
   void charge(const std::string& phase, double seconds) {
     result_.phases_s[phase] += seconds;

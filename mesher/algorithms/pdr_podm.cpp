@@ -208,9 +208,6 @@ Construction::Entries refine_leaves(Construction& construction, const Parameters
   return left;
 }
 
-// Large balls outside reach over the shell to the object only if they are empty of its vertices.
-constexpr double kShellOverRadius = 2;
-
 // Every run has a phase of refinement. No octree is made for nothing: it may be one that cannot be.
 Refinement ended_early(Construction& construction) {
   construction.timed("refine", [] {});
@@ -220,30 +217,22 @@ Refinement ended_early(Construction& construction) {
 template <class Locks>
 Refinement refine_by_leaves(const Problem& problem, const Team& team, const LeafOptions& options,
                             StopControl& stop) {
-  const double ratio = options.initial_ratio;
   const Radii radii = radii_of(problem);
-  const double initial_radius_mm = ratio * radii.least;
-  const double shell_mm = kShellOverRadius * initial_radius_mm;
-  const Box clamp = grown(problem.object, std::max(2 * ratio * problem.delta_mm, shell_mm));
-  const std::uint64_t bytes_of_leaves = checked_bytes_of_leaves(problem, options, clamp);
+  const TwoLevels levels = two_levels(problem, options.initial_ratio);
+  const std::uint64_t bytes_of_leaves = checked_bytes_of_leaves(problem, options, levels.clamp);
 
-  Parameters initial = parameters_for(problem, ratio, clamp);
-  initial.shell_mm = shell_mm;
-  initial.shell_radius_mm = initial_radius_mm;
-  const Parameters final = parameters_for(problem, 1, clamp);
-
-  Construction construction(problem, clamp, team, stop);  // 1
+  Construction construction(problem, levels.clamp, team, stop);  // 1
   construction.withhold(bytes_of_leaves);
-  refine_anywhere(construction, "initial", initial, construction.all_cells(), team.initial_workers);  // 4
+  refine_anywhere(construction, "initial", levels.initial, construction.all_cells(), team.initial_workers);  // 4
   if (stop.is_over()) return ended_early(construction);
   std::unique_ptr<const Octree> octree;
   construction.timed("octree", [&] {  // 2, 3: after 4, which makes no difference to leaves
-    octree = make_octree(problem, radii, clamp, options, team, stop.over());
+    octree = make_octree(problem, radii, levels.clamp, options, team, stop.over());
   });
   construction.charge_virtual("octree", kCubeMade * static_cast<double>(octree->num_cubes()));
   construction.withhold(octree->num_cubes() * kBytesPerCube + octree->num_leaves() * kBytesPerLeaf);
-  const auto left = refine_leaves<Locks>(construction, final, *octree, options);  // 5 to 29
-  refine_anywhere(construction, "closing", final, left, construction.num_workers());
+  const auto left = refine_leaves<Locks>(construction, levels.final, *octree, options);  // 5 to 29
+  refine_anywhere(construction, "closing", levels.final, left, construction.num_workers());
   return construction.finish();  // 30
 }
 

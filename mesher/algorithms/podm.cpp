@@ -14,71 +14,14 @@
 
 #include <algorithm>
 #include <cmath>
-#include <tuple>
-#include <utility>
 
 #include "algorithms/leaf_locks.h"
+#include "algorithms/leaf_size.h"
+#include "algorithms/podm_impl.h"
 #include "refine/virtual_box.h"
-#include "workers/work_cost.h"
 
 namespace podm {
 
-namespace {
-
-// New cells of other homes go there when they are so many, or when the worker has no others.
-constexpr std::size_t kAwayToSend = 128;
-
-template <class Locks, class Time>
-void send_home(Worker<Locks>& worker, Coordination& group, Time& time) {
-  auto away = worker.take_away();
-  std::sort(away.begin(), away.end(), [](const auto& a, const auto& b) {
-    return std::tie(a.home, a.entry.cell) < std::tie(b.home, b.entry.cell);
-  });
-  Construction::Entries cells;
-  for (std::size_t i = 0; i < away.size(); ++i) {
-    cells.push_back(away[i].entry);
-    if (i + 1 < away.size() && away[i + 1].home == away[i].home) continue;
-    time.spend(worker.id(), kBegging + kEntryGiven * static_cast<double>(cells.size()));
-    group.send(away[i].home, std::exchange(cells, {}));
-  }
-}
-
-}  // namespace
-
-template <class Locks, class Time>
-bool refine(Worker<Locks>& worker, Coordination& group, Time& time,
-            const std::function<void()>& before_begging) {
-  const WorkerId self = worker.id();
-  while (!time.is_over()) {
-    if (worker.has_work()) {
-      const Outcome outcome = time.attempt(worker);  // take a cell, lock, plan, commit or roll back, unlock
-      const std::size_t num_listed = worker.num_listed();
-      if (worker.num_away() >= kAwayToSend) send_home(worker, group, time);
-      const auto [answer, pause_s] = group.after(outcome, self, worker);
-      if (const std::size_t given = num_listed - worker.num_listed(); given > 0)
-        time.spend_in(&group, self, kBegging + kEntryGiven * static_cast<double>(given));
-      if (answer == ContentionManager::Answer::kWait) time.block(self, &Overhead::contention_s);
-      if (answer == ContentionManager::Answer::kPause) time.pause(self, pause_s);
-    } else {
-      if (before_begging) before_begging();
-      if (worker.num_away() > 0) send_home(worker, group, time);
-      time.spend_in(&group, self, kBegging);
-      const Coordination::Begging begging = group.beg(self);
-      if (begging == Coordination::Begging::kOver) break;
-      if (begging == Coordination::Begging::kListed) time.block(self, &Overhead::begging_s);
-      const Construction::Entries gift = group.take_gift(self);
-      worker.give(gift);
-      time.spend(self, kEntryGiven * static_cast<double>(gift.size()));
-    }
-  }
-  const bool is_done = !time.is_over();
-  time.check_limits(worker);
-  return is_done;
-}
-
-namespace {
-
-// The groups of the first workers alone.
 CoordinationOptions coordination_of_first(const Team& team, int num_workers) {
   CoordinationOptions options = team.coordination;
   options.num_workers = num_workers;
@@ -87,24 +30,19 @@ CoordinationOptions coordination_of_first(const Team& team, int num_workers) {
   return options;
 }
 
-// All workers start at once; those without cells beg until the first has some to share.
+namespace {
+
 template <class Locks, class Time>
 void refine_with(Construction& construction, const Parameters& parameters, const Construction::Entries& cells,
                  int num_workers, const Homes* homes, Time& time) {
-  auto workers = construction.make_workers<Locks>(parameters, num_workers);
+  const auto workers = construction.make_workers<Locks>(parameters, num_workers);
   CoordinationOptions options = coordination_of_first(construction.team(), num_workers);
   if (homes != nullptr) {
     options.workers_per_home = num_workers / static_cast<int>(homes->number());
     for (const auto& worker : workers)
       worker->keep_to(*homes, worker->id() / static_cast<WorkerId>(options.workers_per_home));
   }
-  Coordination group(options, [&](WorkerId worker) { time.resume(worker); });
-  workers[0]->give(cells);
-  time.run([&](WorkerId self) {
-    const bool is_done = refine(*workers[self], group, time);
-    if (is_done && self == 0) group.dismiss();
-  });
-  construction.account(workers, time);
+  refine(construction, workers, options, cells, time);
 }
 
 }  // namespace
@@ -130,6 +68,16 @@ Parameters parameters_for(const Problem& problem, double ratio, const Box& clamp
   const double delta_mm = ratio * problem.delta_mm;
   const double spacing_mm = std::min(delta_mm, std::sqrt(sizes.smallest_squared_radius()) / k);
   return {.delta_mm = delta_mm, .sizes = sizes, .clamp_box = clamp, .spacing_mm = spacing_mm};
+}
+
+TwoLevels two_levels(const Problem& problem, double initial_ratio) {
+  constexpr double kShellOverRadius = 2;  // large balls outside reach over the shell only if they are empty
+  const double radius_mm = initial_ratio * radii_of(problem).least, shell_mm = kShellOverRadius * radius_mm;
+  const Box clamp = grown(problem.object, std::max(2 * initial_ratio * problem.delta_mm, shell_mm));
+  TwoLevels levels{clamp, parameters_for(problem, initial_ratio, clamp), parameters_for(problem, 1, clamp)};
+  levels.initial.shell_mm = shell_mm;
+  levels.initial.shell_radius_mm = radius_mm;
+  return levels;
 }
 
 Refinement podm(const Problem& problem, const Team& team, StopControl& stop) {

@@ -25,6 +25,9 @@ template <class Locks, class Time>
 bool refine(Worker<Locks>& worker, Coordination& group, Time& time,
             const std::function<void()>& before_begging = {});
 
+/// How the first workers of a team coordinate; the groups are theirs alone.
+CoordinationOptions coordination_of_first(const Team& team, int num_workers);
+
 /// PODM as a phase: the first `num_workers` of the team refine these cells, with locks unless there is only
 /// one. Homes, if given, divide the workers evenly, in their order.
 void refine_anywhere(Construction& construction, const std::string& phase, const Parameters& parameters,
@@ -32,5 +35,11 @@ void refine_anywhere(Construction& construction, const std::string& phase, const
 
 /// Rules for the problem, with all bounds times `ratio`.
 Parameters parameters_for(const Problem& problem, double ratio, const Box& clamp_box);
+/// Rules for a coarse mesh, which bounds cells around the object too, and for the mesh that refines it.
+struct TwoLevels {
+  Box clamp;
+  Parameters initial, final;
+};
+TwoLevels two_levels(const Problem& problem, double initial_ratio);
 
 }  // namespace podm

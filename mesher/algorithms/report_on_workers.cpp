@@ -1,7 +1,5 @@
 #include "algorithms/report_on_workers.h"
 
-#include "algorithms/leaf_locks.h"
-
 namespace podm {
 
 namespace {
@@ -26,23 +24,14 @@ std::vector<std::uint64_t> by_hops(const std::vector<std::uint64_t>& by_node, in
   return by_hops;
 }
 
+}  // namespace
+
 HopsByKind hops_of(const std::optional<AccessTally>& accesses, int own_node, const Topology* machine) {
   if (!accesses || machine == nullptr) return {};
   HopsByKind hops;
   for (const auto& [member, kind] : kHops)
     hops.*member = by_hops(accesses->by_node(kind), own_node, *machine);
   return hops;
-}
-
-}  // namespace
-
-template <class Locks>
-Counters counters_of(const Worker<Locks>& worker, const Overhead& overhead, const Place& place,
-                     const Topology* machine) {
-  Counters counters = worker.counters();
-  counters.overhead = overhead;
-  counters.hops = hops_of(worker.accesses(), place.node, machine);
-  return counters;
 }
 
 void add(const Counters& terms, Counters& sums) {
@@ -58,12 +47,5 @@ Counters sum_of(const std::vector<WorkerReport>& workers) {
   for (const WorkerReport& worker : workers) add(worker.counters, sum);
   return sum;
 }
-
-template Counters counters_of(const Worker<NoLocks>&, const Overhead&, const Place&, const Topology*);
-template Counters counters_of(const Worker<VertexLocks>&, const Overhead&, const Place&, const Topology*);
-template Counters counters_of(const Worker<LeafLocks<NoLocks>>&, const Overhead&, const Place&,
-                              const Topology*);
-template Counters counters_of(const Worker<LeafLocks<VertexLocks>>&, const Overhead&, const Place&,
-                              const Topology*);
 
 }  // namespace podm

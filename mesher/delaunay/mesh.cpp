@@ -68,6 +68,13 @@ void Mesh::refresh_sphere(CellId c) {
   set_sphere(c, circumsphere(point(v[0]), point(v[1]), point(v[2]), point(v[3]), extent_));
 }
 
+void Mesh::make_canonical(CellId c) {
+  const auto& v = cells_[c].vertices;
+  std::array<Point, 4> p{point(v[0]), point(v[1]), point(v[2]), point(v[3])};
+  std::sort(p.begin(), p.end(), lexicographically_less);
+  set_sphere(c, circumsphere(p[0], p[1], p[2], p[3], extent_));
+}
+
 void Mesh::move_cell(CellId from, CellId to, const std::array<VertexId, 4>& vertices,
                      const std::array<FacetId, 4>& mirrors) {
   const Cell old = cells_[from];

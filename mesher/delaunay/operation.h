@@ -12,6 +12,7 @@
 // or conflicts with the new one, so the region's boundary facets are facets of the new triangulation too.
 #pragma once
 
+#include <concepts>
 #include <cstdint>
 #include <vector>
 
@@ -23,6 +24,16 @@
 
 namespace podm {
 
+/// Locks of a worker whose store may differ from the whole triangulation beyond a horizon
+/// (distributed/zone.h): they tell which cells are of the whole, where a vertex may be inserted, and what
+/// centres other stores have too.
+template <class Locks>
+concept HasHorizon = requires(const Locks& locks, const Cell& cell, const Point& p) {
+  { locks.knows(cell) } -> std::same_as<bool>;
+  { locks.may_insert(p) } -> std::same_as<bool>;
+  { locks.is_shared(p) } -> std::same_as<bool>;
+};
+
 template <class Locks>
 class Operation {
  public:
@@ -32,7 +43,8 @@ class Operation {
       : mesh_(mesh), pool_(pool), locks_(self), tally_(tally) {}
 
   /// Locks two vertices of the cell c of that stamp, so that it and its neighbours may be read. kStaleCell:
-  /// it has died. kLockConflict: conflicting_worker() tells with whom. Unless done nothing is held.
+  /// it has died. kLockConflict: conflicting_worker() tells with whom. kOutOfReach: it or a neighbour is
+  /// beyond the horizon. Unless done nothing is held.
   StepResult reserve(CellId c, std::uint32_t stamp);
   void release() {
     forget_reads();
@@ -62,6 +74,8 @@ class Operation {
   /// kTooNear: a vertex that stays lies nearer to p than `min_distance` (mm), or the region has more
   /// vertices than HoleFiller numbers; nothing was written, roll back.
   StepResult commit_insertion(const Point& p, VertexKind kind, double min_distance);
+  /// The same of a plan that has removals alone.
+  StepResult commit_removals();
   /// Gives the plan up; nothing was written. Locks are kept until release().
   void rollback();
 
@@ -80,6 +94,8 @@ class Operation {
   StepResult lock_cell(CellId c);
   StepResult lock_beyond(FacetId facet);
   StepResult lock(VertexId v);
+  bool is_known(CellId c) const;
+  bool is_known_around(CellId c) const;
   void count(AccessKind kind, CellId c) {
     if (counts()) [[unlikely]]
       tally_->add(kind, mesh_.node_of_cell(c), mesh_.address(c));

@@ -24,8 +24,28 @@ StepResult Operation<Locks>::reserve(CellId c, std::uint32_t stamp) {
     }
   }
   if (mesh_.stamp(c) != stamp) result = StepResult::kStaleCell;
+  if (result == StepResult::kDone && !is_known_around(c)) result = StepResult::kOutOfReach;
   if (result != StepResult::kDone) locks_.unlock_all();
   return result;
+}
+
+template <class Locks>
+inline bool Operation<Locks>::is_known([[maybe_unused]] CellId c) const {
+  if constexpr (HasHorizon<Locks>) {
+    return locks_.knows(mesh_.cell(c));
+  } else {
+    return true;
+  }
+}
+
+template <class Locks>
+inline bool Operation<Locks>::is_known_around([[maybe_unused]] CellId c) const {
+  if constexpr (HasHorizon<Locks>) {
+    if (!is_known(c)) return false;
+    for (const FacetId mirror : mesh_.cell(c).mirrors)
+      if (mirror != kNoFacet && !is_known(cell_of(mirror))) return false;
+  }
+  return true;
 }
 
 template <class Locks>
@@ -77,6 +97,9 @@ inline bool Operation<Locks>::is_in_conflict(CellId c, const Point& p) {
 template <class Locks>
 StepResult Operation<Locks>::plan_insertion(const Point& p, CellId start) {
   is_cavity_ = true;
+  if constexpr (HasHorizon<Locks>) {
+    if (!locks_.may_insert(p)) return StepResult::kOutOfReach;
+  }
   if (!is_in_conflict(start, p)) return StepResult::kNotInConflict;
   if (const StepResult locked = lock_cell(start); locked != StepResult::kDone) return locked;
   add_to_region(start);
@@ -90,6 +113,7 @@ StepResult Operation<Locks>::plan_insertion(const Point& p, CellId start) {
       }
       const CellId neighbor = cell_of(mirrors[k]);
       if (mesh_.is_marked(neighbor)) continue;
+      if (!is_known(neighbor)) return StepResult::kOutOfReach;
       if (is_in_conflict(neighbor, p)) {
         if (const StepResult locked = lock_beyond(mirrors[k]); locked != StepResult::kDone) return locked;
         add_to_region(neighbor);
@@ -115,6 +139,7 @@ StepResult Operation<Locks>::plan_removal(VertexId v, CellId seed) {
       if (cell.vertices[k] == v || cell.mirrors[k] == kNoFacet) continue;
       const CellId neighbor = cell_of(cell.mirrors[k]);
       if (std::find(ball_.begin(), ball_.end(), neighbor) != ball_.end()) continue;
+      if (!is_known(neighbor)) return StepResult::kOutOfReach;
       if (const StepResult locked = lock_beyond(cell.mirrors[k]); locked != StepResult::kDone) return locked;
       if (!mesh_.is_marked(neighbor)) add_to_region(neighbor);
       ball_.push_back(neighbor);
@@ -179,6 +204,18 @@ StepResult Operation<Locks>::commit_insertion(const Point& p, VertexKind kind, d
   return StepResult::kDone;
 }
 
+template <class Locks>
+StepResult Operation<Locks>::commit_removals() {
+  collect_boundary();
+  if (!hole_.plan(mesh_, region_, nullptr)) return StepResult::kTooNear;
+  reserve_memory(hole_.num_cells());
+  count_gluing();
+  const std::size_t num_destroyed = region_.cells.size();
+  hole_.fill(mesh_, pool_, region_, kNoVertex);
+  finish(num_destroyed);
+  return StepResult::kDone;
+}
+
 // Called before the filling: it counts the cells beyond the boundary, each as often as a facet of it is
 // glued.
 template <class Locks>
@@ -203,6 +240,10 @@ void Operation<Locks>::count_filling() {
 template <class Locks>
 void Operation<Locks>::finish(std::size_t num_destroyed) {
   count_filling();
+  if constexpr (HasHorizon<Locks>) {
+    for (const CellId c : region_.created)
+      if (locks_.is_shared(mesh_.cell(c).center)) mesh_.make_canonical(c);
+  }
   counters_.cells_created += region_.created.size();
   net_cells_ += static_cast<std::int64_t>(region_.created.size()) - static_cast<std::int64_t>(num_destroyed);
   for (const VertexId v : region_.removed) pool_.release_vertex(v);

@@ -177,6 +177,11 @@ std::optional<Rule> Rules::volume_rule(const Examination& t) const {
   return std::nullopt;
 }
 
+bool Rules::is_sound(CellId c) const {
+  const Examination t = examine(c);
+  return !r1_sample(t) && !r2_center(t) && !r3_surface_center(t) && !volume_rule(t);
+}
+
 bool Rules::is_large_in_shell(const Examination& t) const {
   return parameters_.shell_mm > 0 && t.squared_radius > square(parameters_.shell_radius_mm) &&
          is_in(parameters_.clamp_box, t.center) &&

@@ -84,6 +84,8 @@ class Rules {
   std::optional<SurfaceCenter> r3_surface_center(const Examination& t) const;
   /// R4 and R5 insert the circumcentre.
   std::optional<Rule> volume_rule(const Examination& t) const;
+  /// Whether the cell asks for nothing. False may be said of one whose R1 sample is covered farther away.
+  bool is_sound(CellId c) const;
   /// Whether R6 removes v when z is inserted.
   bool r6_removes(VertexId v, const Point& z) const;
 

@@ -1,0 +1,77 @@
+// The definitions of PODM's loop, for those who bring locks of their own: they include this in one source. All
+// others include podm.h.
+#pragma once
+
+#include <algorithm>
+#include <tuple>
+#include <utility>
+
+#include "algorithms/podm.h"
+#include "workers/work_cost.h"
+
+namespace podm {
+
+// New cells of other homes go there when they are so many, or when the worker has no others.
+inline constexpr std::size_t kAwayToSend = 128;
+
+template <class Locks, class Time>
+void send_home(Worker<Locks>& worker, Coordination& group, Time& time) {
+  auto away = worker.take_away();
+  std::sort(away.begin(), away.end(), [](const auto& a, const auto& b) {
+    return std::tie(a.home, a.entry.cell) < std::tie(b.home, b.entry.cell);
+  });
+  Construction::Entries cells;
+  for (std::size_t i = 0; i < away.size(); ++i) {
+    cells.push_back(away[i].entry);
+    if (i + 1 < away.size() && away[i + 1].home == away[i].home) continue;
+    time.spend(worker.id(), kBegging + kEntryGiven * static_cast<double>(cells.size()));
+    group.send(away[i].home, std::exchange(cells, {}));
+  }
+}
+
+template <class Locks, class Time>
+bool refine(Worker<Locks>& worker, Coordination& group, Time& time,
+            const std::function<void()>& before_begging) {
+  const WorkerId self = worker.id();
+  while (!time.is_over()) {
+    if (worker.has_work()) {
+      const Outcome outcome = time.attempt(worker);  // take a cell, lock, plan, commit or roll back, unlock
+      const std::size_t num_listed = worker.num_listed();
+      if (worker.num_away() >= kAwayToSend) send_home(worker, group, time);
+      const auto [answer, pause_s] = group.after(outcome, self, worker);
+      if (const std::size_t given = num_listed - worker.num_listed(); given > 0)
+        time.spend_in(&group, self, kBegging + kEntryGiven * static_cast<double>(given));
+      if (answer == ContentionManager::Answer::kWait) time.block(self, &Overhead::contention_s);
+      if (answer == ContentionManager::Answer::kPause) time.pause(self, pause_s);
+    } else {
+      if (before_begging) before_begging();
+      if (worker.num_away() > 0) send_home(worker, group, time);
+      time.spend_in(&group, self, kBegging);
+      const Coordination::Begging begging = group.beg(self);
+      if (begging == Coordination::Begging::kOver) break;
+      if (begging == Coordination::Begging::kListed) time.block(self, &Overhead::begging_s);
+      const Construction::Entries gift = group.take_gift(self);
+      worker.give(gift);
+      time.spend(self, kEntryGiven * static_cast<double>(gift.size()));
+    }
+  }
+  const bool is_done = !time.is_over();
+  time.check_limits(worker);
+  return is_done;
+}
+
+/// The workers of a group refine these cells. All start at once; those without cells beg until the first has
+/// some to share.
+template <class Locks, class Time>
+void refine(Construction& construction, const Construction::Workers<Locks>& workers,
+            const CoordinationOptions& options, const Construction::Entries& cells, Time& time) {
+  Coordination group(options, [&](WorkerId worker) { time.resume(worker); });
+  workers[0]->give(cells);
+  time.run([&](WorkerId self) {
+    const bool is_done = refine(*workers[self], group, time);
+    if (is_done && self == 0) group.dismiss();
+  });
+  construction.account(workers, time);
+}
+
+}  // namespace podm

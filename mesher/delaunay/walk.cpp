@@ -1,0 +1,33 @@
+#include "delaunay/walk.h"
+
+#include "geometry/predicates.h"
+
+namespace podm {
+
+namespace {
+
+// The cell on the other side of a facet that p lies beyond, but for the one that the walk comes from; else c itself.
+CellId next_towards(const Mesh& mesh, const Point& p, CellId c, CellId previous) {
+  const Cell& cell = mesh.cell(c);
+  for (unsigned k = 0; k < 4; ++k) {
+    if (cell.mirrors[k] == kNoFacet || cell_of(cell.mirrors[k]) == previous) continue;
+    const auto point = [&](unsigned i) {
+      return mesh.point(cell.vertices[static_cast<unsigned>(kFacetVertices[k][i])]);
+    };
+    if (orientation(point(0), point(1), point(2), p) < 0) return cell_of(cell.mirrors[k]);
+  }
+  return c;
+}
+
+}  // namespace
+
+CellId cell_with(const Mesh& mesh, const Point& p, CellId from) {
+  for (CellId previous = from;;) {
+    const CellId next = next_towards(mesh, p, from, previous);
+    if (next == from) return from;
+    previous = from;
+    from = next;
+  }
+}
+
+}  // namespace podm

@@ -1,0 +1,87 @@
+#include "distributed/blocks.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace podm {
+
+// Cubes from `low` to before `high`, and the blocks that share them.
+struct Blocks::Part {
+  CubePlace low, high;
+  int first_block, num_blocks;
+};
+
+namespace {
+
+template <class Visit>
+void for_each_cube(const CubeGrid& grid, const CubePlace& low, const CubePlace& high, const Visit& visit) {
+  for (int z = low[2]; z < high[2]; ++z)
+    for (int y = low[1]; y < high[1]; ++y)
+      for (int x = low[0]; x < high[0]; ++x) visit(grid.id({x, y, z}), CubePlace{x, y, z});
+}
+
+}  // namespace
+
+Blocks::Blocks(const CubeGrid& grid, const std::vector<double>& weights, int num_blocks)
+    : grid_(grid), num_blocks_(num_blocks), block_of_(grid.num_cubes()) {
+  divide({{0, 0, 0}, grid.size(), 0, num_blocks}, weights);
+}
+
+// The least and the greatest block around a cube differ there: found along one axis after another.
+CubeSet Blocks::near_others(int rings) const {
+  std::vector<int> least = block_of_, greatest = block_of_;
+  for (std::size_t axis = 0; axis < 3; ++axis) {
+    const std::vector<int> least_before = least, greatest_before = greatest;
+    for_each_cube(grid_, {0, 0, 0}, grid_.size(), [&](CubeId cube, CubePlace at) {
+      const int middle = at[axis], last = std::min(grid_.size()[axis] - 1, middle + rings);
+      for (at[axis] = std::max(0, middle - rings); at[axis] <= last; ++at[axis]) {
+        least[cube] = std::min(least[cube], least_before[grid_.id(at)]);
+        greatest[cube] = std::max(greatest[cube], greatest_before[grid_.id(at)]);
+      }
+    });
+  }
+  CubeSet near(grid_);
+  for (CubeId cube = 0; cube < grid_.num_cubes(); ++cube)
+    if (least[cube] != greatest[cube]) near.insert(cube);
+  return near;
+}
+
+// Cuts are planes between cubes, across the axis along which what weighs anything is longest: at the one that
+// comes nearest to the share of the blocks on either side.
+void Blocks::divide(const Part& part, const std::vector<double>& weights) {
+  if (part.num_blocks == 1) {
+    for_each_cube(grid_, part.low, part.high,
+                  [&](CubeId cube, const CubePlace&) { block_of_[cube] = part.first_block; });
+    return;
+  }
+  CubePlace low = part.high, high = part.low;  // of what has weight
+  for_each_cube(grid_, part.low, part.high, [&](CubeId cube, const CubePlace& at) {
+    for (std::size_t axis = 0; axis < 3 && weights[cube] > 0; ++axis) {
+      low[axis] = std::min(low[axis], at[axis]);
+      high[axis] = std::max(high[axis], at[axis] + 1);
+    }
+  });
+  std::size_t axis = 0;
+  for (std::size_t other = 1; other < 3; ++other)
+    if (high[other] - low[other] > high[axis] - low[axis]) axis = other;
+  std::vector<double> weight_below(static_cast<std::size_t>(part.high[axis] - part.low[axis]) + 1);
+  for_each_cube(grid_, part.low, part.high, [&](CubeId cube, const CubePlace& at) {
+    weight_below[static_cast<std::size_t>(at[axis] - part.low[axis]) + 1] += weights[cube];
+  });
+  for (std::size_t i = 1; i < weight_below.size(); ++i) weight_below[i] += weight_below[i - 1];
+  const int below = part.num_blocks / 2;
+  const double wanted = weight_below.back() * below / part.num_blocks;
+  const auto is_nearer = [&](double a, double b) { return std::abs(a - wanted) < std::abs(b - wanted); };
+  const auto cut =
+      std::min_element(weight_below.begin(), weight_below.end(), is_nearer) - weight_below.begin();
+
+  Part lower = part, upper = part;
+  lower.high[axis] = upper.low[axis] = part.low[axis] + static_cast<int>(cut);
+  lower.num_blocks = below;
+  upper.first_block += below;
+  upper.num_blocks -= below;
+  divide(lower, weights);
+  divide(upper, weights);
+}
+
+}  // namespace podm

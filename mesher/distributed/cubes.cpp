@@ -1,0 +1,87 @@
+#include "distributed/cubes.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "podm/errors.h"
+
+namespace podm {
+
+CubeGrid::CubeGrid(const Box& box, double side_mm)
+    : origin_(box.low), side_mm_(side_mm), per_mm_(1 / side_mm) {
+  const Vector extent = box.high - box.low;
+  const auto along = [&](double length_mm) { return std::max(1.0, std::ceil(length_mm / side_mm)); };
+  const std::array<double, 3> size{along(extent.x), along(extent.y), along(extent.z)};
+  if (!(size[0] * size[1] * size[2] < CubeSet::kNone)) throw InputError("cells are too small for this image");
+  for (std::size_t axis = 0; axis < 3; ++axis) size_[axis] = static_cast<int>(size[axis]);
+  num_cubes_ = static_cast<CubeId>(size[0] * size[1] * size[2]);
+}
+
+CubePlace CubeGrid::place_of(CubeId cube) const {
+  const auto x = static_cast<CubeId>(size_[0]), y = static_cast<CubeId>(size_[1]);
+  return {static_cast<int>(cube % x), static_cast<int>(cube / x % y), static_cast<int>(cube / x / y)};
+}
+
+double CubeGrid::squared_distance(const CubePlace& at, const Point& p) const {
+  const auto along = [&](std::size_t axis, double offset_mm) {
+    const double low = at[axis] * side_mm_, high = low + side_mm_;
+    if (offset_mm < low && at[axis] > 0) return low - offset_mm;
+    if (offset_mm > high && at[axis] + 1 < size_[axis]) return offset_mm - high;
+    return 0.0;
+  };
+  const Vector offset = p - origin_;
+  return squared_length({along(0, offset.x), along(1, offset.y), along(2, offset.z)});
+}
+
+bool CubeSet::is_empty() const { return std::find(has_.begin(), has_.end(), 1) == has_.end(); }
+
+std::vector<CubeId> CubeSet::cubes() const {
+  std::vector<CubeId> cubes;
+  for (CubeId cube = 0; cube < has_.size(); ++cube)
+    if (has(cube)) cubes.push_back(cube);
+  return cubes;
+}
+
+// Along one axis after another: a cube then has each within a box around it.
+CubeSet CubeSet::grown(int rings) const {
+  CubeSet result = *this;
+  for (std::size_t axis = 0; axis < 3; ++axis) {
+    const CubeSet before = result;
+    for (const CubeId cube : before.cubes()) {
+      CubePlace at = grid_->place_of(cube);
+      const int middle = at[axis], last = std::min(grid_->size()[axis] - 1, middle + rings);
+      for (at[axis] = std::max(0, middle - rings); at[axis] <= last; ++at[axis]) result.insert(grid_->id(at));
+    }
+  }
+  return result;
+}
+
+std::vector<std::uint32_t> CubeSet::components() const {
+  std::vector<std::uint32_t> component(has_.size(), kNone);
+  std::uint32_t next = 0;
+  std::vector<CubeId> front;
+  for (const CubeId first : cubes()) {
+    if (component[first] != kNone) continue;
+    component[first] = next;
+    front.assign(1, first);
+    while (!front.empty()) {
+      const CubePlace at = grid_->place_of(front.back());
+      front.pop_back();
+      for (int i = 0; i < 27; ++i) {
+        const CubePlace beside{at[0] + i % 3 - 1, at[1] + i / 3 % 3 - 1, at[2] + i / 9 - 1};
+        bool is_inside = true;
+        for (std::size_t axis = 0; axis < 3; ++axis)
+          is_inside = is_inside && beside[axis] >= 0 && beside[axis] < grid_->size()[axis];
+        if (!is_inside) continue;
+        const CubeId cube = grid_->id(beside);
+        if (!has(cube) || component[cube] != kNone) continue;
+        component[cube] = next;
+        front.push_back(cube);
+      }
+    }
+    ++next;
+  }
+  return component;
+}
+
+}  // namespace podm

@@ -1,0 +1,96 @@
+// Space in cubes of one side, the grains in which ranks share it: a cube has one writer at a time, who knows all
+// vertices in it. What lies outside the grid belongs to the nearest cube, so cubes at its faces are endless.
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <vector>
+
+#include "geometry/box.h"
+
+namespace podm {
+
+using CubeId = std::uint32_t;
+using CubePlace = std::array<int, 3>;
+
+class CubeGrid {
+ public:
+  /// Cubes of that side, mm, as many as cover the box. Throws InputError where they are more than ids.
+  CubeGrid(const Box& box, double side_mm);
+
+  CubeId num_cubes() const { return num_cubes_; }
+  const CubePlace& size() const { return size_; }
+  double side_mm() const { return side_mm_; }
+  CubePlace place_of(const Point& p) const {
+    return {along(0, p.x - origin_.x), along(1, p.y - origin_.y), along(2, p.z - origin_.z)};
+  }
+  CubeId id(const CubePlace& at) const {
+    return static_cast<CubeId>((at[2] * std::int64_t{size_[1]} + at[1]) * size_[0] + at[0]);
+  }
+  CubePlace place_of(CubeId cube) const;
+  CubeId cube_at(const Point& p) const { return id(place_of(p)); }
+  /// From a point to the cube, mm^2, but for rounding.
+  double squared_distance(const CubePlace& at, const Point& p) const;
+
+ private:
+  // Grid coordinates are clamped as doubles: points may be anywhere.
+  int along(std::size_t axis, double offset_mm) const {
+    const double g = offset_mm * per_mm_;
+    return g <= 0 ? 0 : g >= size_[axis] ? size_[axis] - 1 : static_cast<int>(g);
+  }
+
+  Point origin_;
+  double side_mm_, per_mm_;
+  CubePlace size_;
+  CubeId num_cubes_;
+};
+
+/// Some cubes of a grid, which must outlive the set.
+class CubeSet {
+ public:
+  explicit CubeSet(const CubeGrid& grid) : grid_(&grid), has_(grid.num_cubes()) {}
+  const CubeGrid& grid() const { return *grid_; }
+  bool has(CubeId cube) const { return has_[cube] != 0; }
+  bool has(const Point& p) const { return has(grid_->cube_at(p)); }
+  void insert(CubeId cube) { has_[cube] = 1; }
+  void erase(CubeId cube) { has_[cube] = 0; }
+  bool is_empty() const;
+  std::vector<CubeId> cubes() const;
+  /// With all cubes within so many of one of these, along each axis.
+  CubeSet grown(int rings) const;
+  /// Those that have a face, an edge or a corner in common, directly or by others of the set, get the same number, from
+  /// 0 on in the order of their first cubes. Others have kNone.
+  static constexpr std::uint32_t kNone = 0xffffffffu;
+  std::vector<std::uint32_t> components() const;
+  /// Whether all cubes that a ball meets are in the set.
+  bool covers(const Point& center, double radius_mm) const {
+    bool is_covered = true;
+    for_each_near(center, radius_mm, [&](CubeId cube) { return is_covered = has(cube); });
+    return is_covered;
+  }
+  /// Adds all cubes that a ball meets.
+  void insert(const Point& center, double radius_mm) {
+    for_each_near(center, radius_mm, [&](CubeId cube) { return insert(cube), true; });
+  }
+
+ private:
+  // Until visit(cube) is false.
+  template <class Visit>
+  void for_each_near(const Point& center, double radius_mm, const Visit& visit) const;
+
+  const CubeGrid* grid_;
+  std::vector<std::uint8_t> has_;
+};
+
+template <class Visit>
+void CubeSet::for_each_near(const Point& center, double radius_mm, const Visit& visit) const {
+  const Vector reach{radius_mm, radius_mm, radius_mm};
+  const CubePlace from = grid_->place_of(center - reach), to = grid_->place_of(center + reach);
+  CubePlace at;
+  for (at[2] = from[2]; at[2] <= to[2]; ++at[2])
+    for (at[1] = from[1]; at[1] <= to[1]; ++at[1])
+      for (at[0] = from[0]; at[0] <= to[0]; ++at[0])
+        if (grid_->squared_distance(at, center) <= radius_mm * radius_mm && !visit(grid_->id(at))) return;
+}
+
+}  // namespace podm

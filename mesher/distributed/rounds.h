@@ -1,0 +1,45 @@
+// PODM on ranks that share no memory: rounds in which each rank refines in its zone, and tells others what
+// vertices it made and took away. (Feng, Chernikov, Chrisochoides, CAD 2018, have leaves as tasks and ship
+// sub-meshes; here zones tile space and vertices travel.)
+//
+//   1  All ranks make the same coarse mesh.
+//   2  Blocks divide space by predicted work. In round 0 a rank's zone is its block, and it refines what
+//   cells have their
+//      circumcentres there. A cell that needs vertices outside the zone is deferred.
+//   3  In later rounds zones are around what waits, along faces of blocks first, then along edges, then at
+//   corners
+//      (zones_of_round.h); those of cells that are deferred again grow. When one fills space its rank knows
+//      all and defers nothing: so rounds end.
+//   4  At the end each rank learns what others changed in its block, and around it.
+#pragma once
+
+#include "algorithms/podm.h"
+#include "distributed/blocks.h"
+#include "distributed/communication.h"
+#include "distributed/vertex_exchange.h"
+
+namespace podm {
+
+/// A round, on this rank unless it says otherwise.
+struct RoundReport {
+  std::uint64_t entries = 0;  ///< cells that it began with
+  std::uint64_t insertions = 0;
+  std::uint64_t deferred = 0;  ///< cells, on all ranks
+  std::uint64_t cubes = 0;     ///< of its zone
+  Update update;               ///< before it
+  double update_s = 0, refine_s = 0;
+};
+
+struct DistributedRefinement {
+  Refinement refinement;  ///< the mesh is right in this rank's block and around it
+  CubeGrid grid;
+  std::vector<int> rank_of_cube;  ///< by the blocks
+  std::vector<RoundReport> rounds;
+  Update last_update;
+};
+
+/// Collective. All ranks have the same problem and ratio, each a team of its own.
+DistributedRefinement podm_distributed(const Problem& problem, const Team& team, double initial_ratio,
+                                       Communication& ranks, StopControl& stop);
+
+}  // namespace podm

@@ -1,0 +1,150 @@
+// Ranks together make one Delaunay mesh in which no rule asks for anything: each has of it what it should.
+#include "distributed/rounds.h"
+
+#include <gtest/gtest.h>
+
+#include <mutex>
+
+#include "cost_model.h"
+#include "default_sizes.h"
+#include "delaunay/walk.h"
+#include "distributed/in_process_ranks.h"
+#include "distributed/pieces.h"
+#include "measure_quality.h"
+#include "podm/mesh_io.h"
+#include "tests/images.h"
+
+namespace podm::test {
+namespace {
+
+struct Case {
+  std::string name;
+  LabelImage image;
+  double radius_mm, delta_mm;
+  int num_ranks;
+  int threads = 1;
+  double initial_ratio = 4;
+};
+
+class Ranks {
+ public:
+  explicit Ranks(const Case& of, std::uint64_t seed = 1) : case_(of), isosurface_(of.image, 1) {
+    refined.resize(static_cast<std::size_t>(of.num_ranks));
+    pieces.resize(refined.size());
+    sizes_.radius_mm = of.radius_mm;
+    sizes_.delta_mm = of.delta_mm;
+    problem.emplace(Problem{.isosurface = isosurface_,
+                            .object = foreground_bounds(of.image),
+                            .delta_mm = delta_mm_for(of.image, sizes_),
+                            .sizes = size_field(of.image, sizes_),
+                            .cell_capacity = 1 << 22});
+    run_ranks({.num_ranks = of.num_ranks, .one_at_a_time = true, .seed = seed}, [&](Communication& ranks) {
+      const Team team{.coordination = {.num_workers = of.threads}};
+      StopControl stop({}, {}, [](std::uint64_t) {});
+      const auto rank = static_cast<std::size_t>(ranks.rank());
+      refined[rank].emplace(podm_distributed(*problem, team, of.initial_ratio, ranks, stop));
+    });
+  }
+
+  /// The mesh of all vertices that ranks have in their blocks, made anew.
+  std::unique_ptr<Mesh> whole() const {
+    auto mesh = std::make_unique<Mesh>(refined[0]->refinement.mesh->box(), 1 << 22);
+    Pool pool(*mesh);
+    Operation<NoLocks> operation(*mesh, pool, 0);
+    CellId near = 0;
+    for (int rank = 0; rank < case_.num_ranks; ++rank) {
+      const Mesh& part = *refined[static_cast<std::size_t>(rank)]->refinement.mesh;
+      for (VertexId v = 0; v < part.vertex_bound(); ++v) {
+        const Vertex& vertex = part.vertex(v);
+        if (vertex.kind == VertexKind::kUnused || vertex.kind == VertexKind::kBox) continue;
+        if (rank_of(vertex.point) != rank) continue;
+        near = cell_with(*mesh, vertex.point, near);
+        EXPECT_EQ(operation.plan_insertion(vertex.point, near), StepResult::kDone);
+        EXPECT_EQ(operation.commit_insertion(vertex.point, vertex.kind, 0), StepResult::kDone);
+        near = operation.created().front();
+      }
+    }
+    return mesh;
+  }
+
+  int rank_of(const Point& p) const { return refined[0]->rank_of_cube[refined[0]->grid.cube_at(p)]; }
+
+  /// Cells with a vertex in the rank's block, by their points.
+  std::vector<std::array<Point, 4>> cells_at_block(const Mesh& mesh, int rank) const {
+    std::vector<std::array<Point, 4>> cells;
+    for (CellId c = 0; c < mesh.cell_bound(); ++c) {
+      if (!mesh.cell(c).is_alive()) continue;
+      std::array<Point, 4> points;
+      bool is_at_block = false;
+      for (std::size_t i = 0; i < 4; ++i) {
+        points[i] = mesh.point(mesh.cell(c).vertices[i]);
+        is_at_block = is_at_block || rank_of(points[i]) == rank;
+      }
+      std::sort(points.begin(), points.end(), lexicographically_less);
+      if (is_at_block) cells.push_back(points);
+    }
+    std::sort(cells.begin(), cells.end(), [](const auto& a, const auto& b) {
+      return std::lexicographical_compare(a.begin(), a.end(), b.begin(), b.end(), lexicographically_less);
+    });
+    return cells;
+  }
+
+  /// What rules still ask for in a mesh.
+  std::uint64_t insertions_left(Mesh& mesh) const {
+    const TwoLevels levels = two_levels(*problem, case_.initial_ratio);
+    Pool pool(mesh);
+    Worker<NoLocks> worker(mesh, isosurface_, levels.final, 0, pool);
+    for (CellId c = 0; c < mesh.cell_bound(); ++c)
+      if (mesh.cell(c).is_alive()) worker.give(c);
+    std::uint64_t insertions = 0;
+    while (worker.has_work()) insertions += worker.attempt() == Outcome::kCommitted;
+    return insertions;
+  }
+
+  std::vector<std::optional<DistributedRefinement>> refined;  // by rank
+  std::vector<MeshPiece> pieces;
+  std::optional<Problem> problem;
+
+ private:
+  const Case& case_;
+  Isosurface isosurface_;
+  SizeOptions sizes_;
+};
+
+class Rounds : public testing::TestWithParam<Case> {};
+
+TEST_P(Rounds, EveryRankHasItsPartOfOneMeshThatIsDone) {
+  Ranks ranks(GetParam());
+  const std::unique_ptr<Mesh> whole = ranks.whole();
+  for (int rank = 0; rank < GetParam().num_ranks; ++rank) {
+    const Mesh& part = *ranks.refined[static_cast<std::size_t>(rank)]->refinement.mesh;
+    EXPECT_TRUE(is_valid(part));
+    EXPECT_EQ(ranks.cells_at_block(part, rank), ranks.cells_at_block(*whole, rank)) << "rank " << rank;
+  }
+  EXPECT_EQ(ranks.insertions_left(*whole), 0u);
+}
+
+LabelImage image_named(const std::string& name) {
+  for (const NamedImage& image : images())
+    if (name == image.name) return image.make();
+  throw std::runtime_error("no image " + name);
+}
+
+std::vector<Case> cases() {
+  std::vector<Case> cases;
+  for (const int num_ranks : {1, 2, 3, 5, 8})
+    cases.push_back({"ball_on_" + std::to_string(num_ranks), ball(24, 9), 1.2, 0, num_ranks});
+  cases.push_back({"surface_alone", image_named("three_labels_meeting"), 0, 1, 4});
+  cases.push_back({"three_labels", image_named("three_labels_meeting"), 1, 0, 6});
+  cases.push_back({"threads", image_named("three_labels_meeting"), 1, 0, 3, 2});
+  cases.push_back({"anisotropic", image_named("anisotropic_ball"), 0.9, 0, 4, 1, 2});
+  cases.push_back({"no_coarser_mesh", ball(24, 9), 1.2, 0, 4, 1, 1});
+  cases.push_back({"more_ranks_than_cells", ball(12, 4), 6, 3, 24});
+  return cases;
+}
+
+INSTANTIATE_TEST_SUITE_P(Ranks, Rounds, testing::ValuesIn(cases()),
+                         [](const auto& test) { return test.param.name; });
+
+}  // namespace
+}  // namespace podm::test

@@ -1,0 +1,175 @@
+#include "distributed/vertex_exchange.h"
+
+#include <algorithm>
+#include <unordered_map>
+
+#include "distributed/messages.h"
+
+#include "delaunay/walk.h"
+#include "octree/morton.h"
+#include "podm/errors.h"
+
+namespace podm {
+
+namespace {
+
+constexpr double kTouching = 0;  // mm: vertices come from a triangulation, so no two of them coincide
+
+bool is_shared(VertexKind kind) { return kind != VertexKind::kUnused && kind != VertexKind::kBox; }
+
+}  // namespace
+
+VertexExchange::VertexExchange(Communication& ranks, Mesh& mesh, Pool& pool, const CubeGrid& grid)
+    : ranks_(ranks), mesh_(mesh), grid_(grid), operation_(mesh, pool, 0), cubes_(grid.num_cubes()) {}
+
+void VertexExchange::note_writer(CubeId cube, int rank) {
+  cubes_[cube] = {.writer = rank, .is_up_to_date = rank == ranks_.rank()};
+}
+
+Update VertexExchange::update(const CubeSet& wanted) {
+  Update update;
+  std::vector<std::vector<CubeId>> asked(static_cast<std::size_t>(ranks_.size()));
+  for (const CubeId cube : wanted.cubes()) {
+    State& state = cubes_[cube];
+    if (state.is_up_to_date) continue;
+    asked[static_cast<std::size_t>(state.writer)].push_back(cube);
+    state.is_up_to_date = true;
+    ++update.cubes;
+  }
+  std::vector<Bytes> questions(asked.size());
+  for (std::size_t rank = 0; rank < asked.size(); ++rank)
+    if (!asked[rank].empty()) append(questions[rank], asked[rank]);
+  const std::vector<Bytes> told = ranks_.all_to_all(tell(ranks_.all_to_all(std::move(questions))));
+  std::vector<Change> changes = differences(told, update);
+  apply(changes);
+  return update;
+}
+
+// To each rank all vertices in the cubes that it asked for: the cubes, how many each has, and these.
+std::vector<Bytes> VertexExchange::tell(const std::vector<Bytes>& asked) const {
+  struct Answer {
+    std::size_t rank;
+    std::vector<CubeId> cubes;
+    std::vector<ToldVertex> vertices;
+  };
+  std::vector<Answer> answers;
+  std::unordered_multimap<CubeId, std::size_t> answers_of;  // by cube
+  for (std::size_t rank = 0; rank < asked.size(); ++rank) {
+    if (asked[rank].empty()) continue;
+    MessageReader question(asked[rank]);
+    answers.push_back({rank, question.read<CubeId>(), {}});
+    question.expect_end();
+    for (const CubeId cube : answers.back().cubes) answers_of.emplace(cube, answers.size() - 1);
+  }
+  for (VertexId v = 0; v < mesh_.vertex_bound() && !answers.empty(); ++v) {
+    const Vertex& vertex = mesh_.vertex(v);
+    if (!is_shared(vertex.kind)) continue;
+    const auto [first, last] = answers_of.equal_range(grid_.cube_at(vertex.point));
+    for (auto it = first; it != last; ++it)
+      answers[it->second].vertices.push_back({vertex.point, vertex.kind});
+  }
+  std::vector<Bytes> messages(asked.size());
+  for (const Answer& answer : answers) {
+    append(messages[answer.rank], answer.cubes);
+    append(messages[answer.rank], answer.vertices);
+  }
+  return messages;
+}
+
+// Both sides in order of their coordinates.
+std::vector<VertexExchange::Change> VertexExchange::differences(const std::vector<Bytes>& told,
+                                                                Update& update) const {
+  CubeSet cubes(grid_);
+  std::vector<Change> theirs, ours, changes;
+  for (const Bytes& message : told) {
+    if (message.empty()) continue;
+    MessageReader reader(message);
+    for (const CubeId cube : reader.read<CubeId>()) cubes.insert(cube);
+    for (const ToldVertex& vertex : reader.read<ToldVertex>()) theirs.push_back({vertex.point, vertex.kind});
+    reader.expect_end();
+  }
+  update.vertices_told = theirs.size();
+  for (VertexId v = 0; v < mesh_.vertex_bound(); ++v) {
+    const Vertex& vertex = mesh_.vertex(v);
+    if (is_shared(vertex.kind) && cubes.has(vertex.point))
+      ours.push_back({vertex.point, VertexKind::kUnused});
+  }
+  const auto less = [](const Change& a, const Change& b) { return lexicographically_less(a.point, b.point); };
+  std::sort(theirs.begin(), theirs.end(), less);
+  std::sort(ours.begin(), ours.end(), less);
+  std::set_difference(ours.begin(), ours.end(), theirs.begin(), theirs.end(), std::back_inserter(changes),
+                      less);
+  update.removed = changes.size();
+  std::set_difference(theirs.begin(), theirs.end(), ours.begin(), ours.end(), std::back_inserter(changes),
+                      less);
+  update.inserted = changes.size() - update.removed;
+  return changes;
+}
+
+// Along a curve, so that each is near the last.
+void VertexExchange::apply(std::vector<Change>& changes) {
+  constexpr double kPlacesASide = 16;  // of a cube, along the curve
+  const Point origin = mesh_.box().low;
+  const double per_mm = kPlacesASide / grid_.side_mm();
+  const auto code = [&](const Change& change) {
+    const Vector g = per_mm * (change.point - origin);
+    const auto along = [](double x) { return static_cast<std::uint32_t>(x) & ((1u << kMortonBits) - 1); };
+    return morton_code({along(g.x), along(g.y), along(g.z)});
+  };
+  std::vector<std::pair<MortonCode, std::size_t>> order;
+  for (std::size_t i = 0; i < changes.size(); ++i) order.emplace_back(code(changes[i]), i);
+  std::sort(order.begin(), order.end());
+  const auto check = [](StepResult result) {
+    if (result != StepResult::kDone) throw InternalError("what another rank tells does not fit in the mesh");
+  };
+  for (const auto& place : order) {
+    const auto& [point, kind] = changes[place.second];
+    if (kind == VertexKind::kUnused) {
+      const std::optional<Found> found = find_vertex(point);
+      if (!found) throw InternalError("a vertex to be taken away is not there");
+      check(operation_.plan_removal(found->vertex, found->cell));
+      check(operation_.commit_removals());
+    } else {
+      check(operation_.plan_insertion(point, walk_to(point)));
+      check(operation_.commit_insertion(point, kind, kTouching));
+    }
+    near_ = operation_.created().front();
+    for (const CellId c : operation_.created()) mesh_.make_canonical(c);
+  }
+}
+
+std::optional<VertexExchange::Found> VertexExchange::find_vertex(const Point& p) {
+  near_ = walk_to(p);
+  for (const VertexId v : mesh_.cell(near_).vertices)
+    if (mesh_.point(v) == p) return Found{near_, v};
+  return std::nullopt;
+}
+
+// Among the cells around the first.
+std::optional<CellId> VertexExchange::find_cell(const std::array<Point, 4>& vertices) {
+  const std::optional<Found> first = find_vertex(vertices[0]);
+  if (!first) return std::nullopt;
+  std::vector<CellId> around{first->cell};
+  for (std::size_t i = 0; i < around.size(); ++i) {
+    const Cell& cell = mesh_.cell(around[i]);
+    const auto has = [&](const Point& p) {
+      return std::any_of(cell.vertices.begin(), cell.vertices.end(),
+                         [&](VertexId v) { return mesh_.point(v) == p; });
+    };
+    if (std::all_of(vertices.begin(), vertices.end(), has)) return around[i];
+    for (unsigned k = 0; k < 4; ++k) {
+      if (cell.vertices[k] == first->vertex || cell.mirrors[k] == kNoFacet) continue;
+      const CellId beside = cell_of(cell.mirrors[k]);
+      if (std::find(around.begin(), around.end(), beside) == around.end()) around.push_back(beside);
+    }
+  }
+  return std::nullopt;
+}
+
+CellId VertexExchange::walk_to(const Point& p) {
+  while (near_ >= mesh_.cell_bound() || !mesh_.cell(near_).is_alive())
+    near_ = near_ + 1 < mesh_.cell_bound() ? near_ + 1 : 0;
+  return cell_with(mesh_, p, near_);
+}
+
+}  // namespace podm

@@ -1,0 +1,75 @@
+// Ranks tell each other vertices, not cells: a Delaunay triangulation whose ties are broken by coordinates is
+// a function of its vertices. Vertices of a cube are told by the rank that wrote it last, all of them; who
+// asks takes away and inserts what differs from its own. So nobody has to keep what it once told to whom.
+#pragma once
+
+#include <optional>
+
+#include "delaunay/operation.h"
+#include "distributed/communication.h"
+#include "distributed/cubes.h"
+
+namespace podm {
+
+/// What one update took.
+struct Update {
+  std::uint64_t cubes = 0;          // that came
+  std::uint64_t vertices_told = 0;  // that came in them
+  std::uint64_t inserted = 0, removed = 0;
+
+  Update& operator+=(const Update& b) {
+    cubes += b.cubes;
+    vertices_told += b.vertices_told;
+    inserted += b.inserted;
+    removed += b.removed;
+    return *this;
+  }
+};
+
+class VertexExchange {
+ public:
+  /// All ranks have the same mesh.
+  VertexExchange(Communication& ranks, Mesh& mesh, Pool& pool, const CubeGrid& grid);
+
+  /// In the round that has ended the cube's writer was that rank, whose copy is the right one.
+  void note_writer(CubeId cube, int rank);
+  /// Brings the vertices in these cubes up to date: collective, each rank names its own cubes.
+  Update update(const CubeSet& wanted);
+
+  /// The cell of the store that has these vertices, if there is one.
+  std::optional<CellId> find_cell(const std::array<Point, 4>& vertices);
+
+ private:
+  // A vertex, and a cell around it.
+  struct Found {
+    CellId cell;
+    VertexId vertex;
+  };
+  std::optional<Found> find_vertex(const Point& p);
+  struct ToldVertex {
+    Point point;
+    VertexKind kind;
+  };
+  struct Change {
+    Point point;
+    VertexKind kind;  // kUnused: removed
+  };
+
+  std::vector<Bytes> tell(const std::vector<Bytes>& asked) const;
+  std::vector<Change> differences(const std::vector<Bytes>& told, Update& update) const;
+  void apply(std::vector<Change>& changes);
+  CellId walk_to(const Point& p);
+
+  Communication& ranks_;
+  Mesh& mesh_;
+  const CubeGrid& grid_;
+  Operation<NoLocks> operation_;
+  CellId near_ = 0;  // where the next walk begins
+  struct State {
+    int writer = -1;            // none: all ranks have it as it was at first
+    bool is_up_to_date = true;  // this rank's copy
+  };
+  std::vector<State> cubes_;
+};
+
+}  // namespace podm

@@ -1,0 +1,79 @@
+// What a rank may change in a round, and what it knows: vertices of the cubes of its zone, and the cells
+// whose balls lie in cubes of which it has all vertices.
+//
+// Ranks lock nothing against each other. Zones of one round have no cube in common, an operation replaces
+// only cells whose four vertices are in its zone, and a cell that it looks at has a vertex there. That is the
+// proof of octree/leaf_region.h, if each rank's copy of what its operations look at is right:
+//   A store holds the Delaunay triangulation of what vertices it knows. A cell whose ball lies in known cubes
+//   has no vertex of the whole triangulation in its ball, and its own four are vertices of the whole, so it
+//   is a cell of the whole: by the symbolic perturbation, which goes by coordinates
+//   (geometry/predicates.cpp), there is but one. What is looked at and is not such a cell ends the operation,
+//   and waits for another round. Meanwhile others change the whole. None of their operations replaces a cell
+//   with a vertex in our zone; those that we look at have one. So they stay cells of the whole until we
+//   replace them.
+// The inserted vertex has to lie in the zone too, so that a cube's vertices have one writer a round.
+#pragma once
+
+#include <limits>
+
+#include "delaunay/operation.h"
+#include "distributed/cubes.h"
+#include "refine/worker.h"
+
+namespace podm {
+
+class Zone {
+ public:
+  /// All of space is known. `shared` are cubes that several ranks may know, and must outlive the zone.
+  Zone(CubeSet own, const CubeSet& shared) : own_(std::move(own)), shared_(&shared) {}
+  /// `known` holds all cubes within `rings` of own ones.
+  Zone(CubeSet own, const CubeSet& shared, const CubeSet& known, int rings);
+
+  bool has(const Point& p) const { return own_.has(p); }
+  bool is_shared(const Point& p) const { return shared_->has(p); }
+  /// Of a cell with a vertex in the zone.
+  bool knows(const Cell& cell) const {
+    return cell.squared_radius <= sure_squared_radius_ || is_ball_known(cell);
+  }
+  /// Of any cell.
+  bool is_ball_known(const Cell& cell) const;
+
+ private:
+  CubeSet own_;
+  const CubeSet* shared_;
+  std::optional<CubeSet> known_;                                        // none: all
+  float sure_squared_radius_ = std::numeric_limits<float>::infinity();  // mm^2: balls no larger are known
+};
+
+/// Locks confined to a zone; within it `Inner` locks.
+template <class Inner>
+class ZoneLocks {
+ public:
+  static constexpr bool kIsShared = true;
+  explicit ZoneLocks(WorkerId self) : inner_(self) {}
+
+  /// Nothing is held meanwhile. The zone must outlive the operations.
+  void confine(const Zone& zone) { zone_ = &zone; }
+
+  StepResult try_lock(Vertex& v) {
+    return zone_->has(peek_point(v)) ? inner_.try_lock(v) : StepResult::kOutOfReach;
+  }
+  bool holds(const Vertex& v) const { return zone_->has(peek_point(v)) && inner_.holds(v); }
+  void unlock_all() { inner_.unlock_all(); }
+  WorkerId conflicting_worker() const { return inner_.conflicting_worker(); }
+
+  bool knows(const Cell& cell) const { return zone_->knows(cell); }
+  bool may_insert(const Point& p) const { return zone_->has(p); }
+  bool is_shared(const Point& p) const { return zone_->is_shared(p); }
+
+ private:
+  Inner inner_;
+  const Zone* zone_ = nullptr;
+};
+
+extern template class Operation<ZoneLocks<NoLocks>>;
+extern template class Operation<ZoneLocks<VertexLocks>>;
+extern template class Worker<ZoneLocks<NoLocks>>;
+extern template class Worker<ZoneLocks<VertexLocks>>;
+
+}  // namespace podm

@@ -1,0 +1,27 @@
+// Which rank refines where in the rounds after the first.
+//
+// What waits lies along the faces of blocks. So in round 1 zones are the surroundings of faces, in round 2 of
+// edges, in round 3 of corners: a zone of round k is the cubes near which there are the same k + 1 blocks, or
+// fewer. What still waits then, or lies where blocks are thin, is in the connected parts of its surroundings:
+// these never touch, and grow together in the end. Each zone goes to a rank whose block is in it, so that
+// part of it need not travel.
+#pragma once
+
+#include <vector>
+
+#include "distributed/blocks.h"
+
+namespace podm {
+
+inline constexpr int kNobody = -1;
+
+/// How far from its circumcentre a deferred cell asks for a zone, over its circumradius. Most of those that
+/// wait for the first time need no more than the cubes around; what is deferred again gets more, and in the
+/// end all of space.
+double reach_over_radius(int round);
+
+/// The rank of every cube's zone, or kNobody. `waiting` are the cubes that deferred cells ask for, and those
+/// around.
+std::vector<int> zones_of_round(int round, const Blocks& blocks, const CubeSet& waiting);
+
+}  // namespace podm
