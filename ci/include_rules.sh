@@ -17,9 +17,13 @@ may_include() {
     mesher/io) echo mesher/files mesher/runtime mesher/include ;;
     mesher/algorithms) echo mesher/workers mesher/refine mesher/delaunay mesher/octree mesher/image mesher/geometry \
       mesher/runtime mesher/include podm ;;
+    mesher/distributed) echo mesher/algorithms mesher/workers mesher/refine mesher/delaunay mesher/octree mesher/image \
+      mesher/io mesher/files mesher/geometry mesher/runtime mesher/include podm ;;
     podm) echo mesher/include ;;
     examples/*) echo mesher/include podm ;;
-    mesher | mesher/*) echo "mesher mesher/* podm" ;;  # the phases of a run, the command line, whole-mesher tests
+    mesher) echo mesher/algorithms mesher/workers mesher/refine mesher/delaunay mesher/octree mesher/image mesher/io \
+      mesher/files mesher/geometry mesher/runtime mesher/include podm ;;  # the phases of a run
+    mesher/*) echo "mesher mesher/* podm" ;;  # the command line, whole-mesher tests
     harness) echo mesher/runtime ;;  # asks the system as the mesher does, whom it knows as a program and by its files
     verifiers) ;;                    # they know it by its files alone
   esac
@@ -30,6 +34,7 @@ part_of() {
   case $1 in
     mesher/include/podm/mesh_image.h | mesher/include/podm/meshing_*.h) echo podm ;;
     mesher/*/tests/*) echo mesher/tests ;;
+    mesher/main*.cpp) echo mesher/cli ;;
     mesher/*/*) echo "$1" | cut -d/ -f1-2 ;;
     examples/*) echo "$1" | cut -d/ -f1-2 ;;
     *) echo "${1%%/*}" ;;

@@ -3,12 +3,13 @@
 #include <sys/mman.h>
 
 #include <algorithm>
-#include <ctime>
 #include <fstream>
 #include <new>
 #include <random>
 #include <string>
 #include <utility>
+
+#include "runtime/processor_seconds.h"
 
 namespace podm::bench {
 namespace {
@@ -21,13 +22,6 @@ void* map(std::size_t bytes) {
   void* memory = mmap(nullptr, bytes, PROT_READ | PROT_WRITE, MAP_PRIVATE | MAP_ANONYMOUS, -1, 0);
   if (memory == MAP_FAILED) throw std::bad_alloc();
   return memory;
-}
-
-// The clock runs while this thread has its processor: what others take of it between does not count.
-double processor_seconds() {
-  timespec time{};
-  clock_gettime(CLOCK_THREAD_CPUTIME_ID, &time);
-  return static_cast<double>(time.tv_sec) + 1e-9 * static_cast<double>(time.tv_nsec);
 }
 
 // The compiler has to have the value here.

@@ -4,7 +4,6 @@
 
 #include <algorithm>
 #include <array>
-#include <ctime>
 #include <limits>
 #include <vector>
 
@@ -13,6 +12,7 @@
 #include "podm/image_io.h"
 #include "podm/mesh_image.h"
 #include "refine/virtual_box.h"
+#include "runtime/processor_seconds.h"
 
 namespace podm {
 namespace {
@@ -35,21 +35,14 @@ BENCHMARK(BM_mesh_phantom)->Arg(8)->Arg(5)->Unit(benchmark::kMillisecond);
 
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
 
-// This thread's processor time: what others do to the machine counts less than in time on the wall.
-double cpu_s() {
-  std::timespec t{};
-  clock_gettime(CLOCK_THREAD_CPUTIME_ID, &t);
-  return static_cast<double>(t.tv_sec) + 1e-9 * static_cast<double>(t.tv_nsec);
-}
-
 template <class Locks>
 double refine_s(Construction& construction, const Construction::Workers<Locks>& workers) {
   RealTime time(construction.stop(), 1, {});
   Coordination group({}, [](WorkerId) {});
   workers[0]->give(construction.all_cells());
-  const double start_s = cpu_s();
+  const double start_s = processor_seconds();
   refine(*workers[0], group, time);
-  return cpu_s() - start_s;
+  return processor_seconds() - start_s;
 }
 
 // The same worker with and without locks, one run of each an iteration, in turns the first. Compared are the

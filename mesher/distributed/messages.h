@@ -1,0 +1,67 @@
+// Values to and from the bytes of a message. Ranks run the same program on machines of one kind, so that
+// values travel as they lie in memory.
+#pragma once
+
+#include <fmt/format.h>
+
+#include <cstring>
+#include <span>
+#include <type_traits>
+#include <vector>
+
+#include "distributed/communication.h"
+
+namespace podm {
+
+/// Adds the number of the values, and the values.
+template <class T>
+void append(Bytes& message, std::span<const T> values) {
+  static_assert(std::is_trivially_copyable_v<T>);
+  const std::uint64_t count = values.size();
+  const auto count_bytes = std::as_bytes(std::span(&count, 1)), value_bytes = std::as_bytes(values);
+  message.insert(message.end(), count_bytes.begin(), count_bytes.end());
+  message.insert(message.end(), value_bytes.begin(), value_bytes.end());
+}
+
+template <class T>
+void append(Bytes& message, const std::vector<T>& values) {
+  append(message, std::span<const T>(values));
+}
+
+/// Reads the vectors of a message in the order in which they were added. The message must outlive it.
+class MessageReader {
+ public:
+  explicit MessageReader(std::span<const std::byte> message) : rest_(message) {}
+
+  /// Throws InternalError where the message ends before the values do.
+  template <class T>
+  std::vector<T> read() {
+    static_assert(std::is_trivially_copyable_v<T>);
+    std::uint64_t count = 0;
+    take(&count, 1, sizeof count);
+    if (count > rest_.size() / sizeof(T)) throw_short(count, sizeof(T));
+    std::vector<T> values(count);
+    take(values.data(), count, sizeof(T));
+    return values;
+  }
+  /// Throws InternalError unless all has been read.
+  void expect_end() const {
+    if (!rest_.empty()) throw InternalError(fmt::format("{} bytes of a message are left over", rest_.size()));
+  }
+
+ private:
+  [[noreturn]] void throw_short(std::uint64_t count, std::size_t value_bytes) const {
+    throw InternalError(fmt::format("a message ends after {} bytes of {} values of {} bytes", rest_.size(),
+                                    count, value_bytes));
+  }
+  void take(void* values, std::uint64_t count, std::size_t value_bytes) {
+    if (count > rest_.size() / value_bytes) throw_short(count, value_bytes);
+    if (count == 0) return;  // an empty vector may have no memory at all
+    std::memcpy(values, rest_.data(), count * value_bytes);
+    rest_ = rest_.subspan(count * value_bytes);
+  }
+
+  std::span<const std::byte> rest_;
+};
+
+}  // namespace podm

@@ -1,0 +1,156 @@
+#include "distributed/mpi_communication.h"
+
+#define OMPI_SKIP_MPICXX 1  // MPI's C++ bindings, which are no more
+#include <fmt/format.h>
+#include <mpi.h>
+
+#include <algorithm>
+#include <array>
+#include <cstdlib>
+#include <numeric>
+
+namespace podm {
+namespace {
+
+void check(int code, const char* call) {
+  if (code == MPI_SUCCESS) return;
+  std::array<char, MPI_MAX_ERROR_STRING> text{};
+  int length = 0;
+  MPI_Error_string(code, text.data(), &length);
+  throw std::runtime_error(fmt::format("{} failed: {}", call, text.data()));
+}
+
+class MpiCommunication final : public Communication {
+ public:
+  explicit MpiCommunication(std::size_t most_bytes) : most_bytes_(most_bytes) {
+    check(MPI_Comm_dup(MPI_COMM_WORLD, &all_), "MPI_Comm_dup");
+    check(MPI_Comm_set_errhandler(all_, MPI_ERRORS_RETURN), "MPI_Comm_set_errhandler");
+    check(MPI_Comm_rank(all_, &rank_), "MPI_Comm_rank");
+    check(MPI_Comm_size(all_, &size_), "MPI_Comm_size");
+  }
+  ~MpiCommunication() override { MPI_Comm_free(&all_); }
+  MpiCommunication(const MpiCommunication&) = delete;
+  MpiCommunication& operator=(const MpiCommunication&) = delete;
+
+  int rank() const override { return rank_; }
+  int size() const override { return size_; }
+  std::vector<Bytes> all_to_all(std::vector<Bytes> messages) override;
+  std::vector<Bytes> all_gather(Bytes message) override;
+  void sum(std::span<std::uint64_t> values) override { reduce(values, MPI_SUM); }
+  void maximum(std::span<std::uint64_t> values) override { reduce(values, MPI_MAX); }
+  void barrier() override { check(MPI_Barrier(all_), "MPI_Barrier"); }
+  double seconds() const override { return MPI_Wtime(); }
+
+ private:
+  void start_receiving(Bytes& message, int from, std::vector<MPI_Request>& requests);
+  void start_sending(const Bytes& message, int to, std::vector<MPI_Request>& requests);
+  void reduce(std::span<std::uint64_t> values, MPI_Op operation);
+  std::size_t num_ranks() const { return static_cast<std::size_t>(size_); }
+
+  std::size_t most_bytes_;
+  MPI_Comm all_ = MPI_COMM_NULL;
+  int rank_ = 0, size_ = 1;
+};
+
+// The messages are sent one by one, straight out of and into their own memory: MPI_Alltoallv would have all
+// of them copied into one array and back, of less than 2^31 bytes. Each rank begins with its neighbours, not
+// all with rank 0.
+std::vector<Bytes> MpiCommunication::all_to_all(std::vector<Bytes> messages) {
+  check_one_a_rank(messages);
+  std::vector<std::uint64_t> to_send(num_ranks()), to_receive(num_ranks());
+  for (std::size_t i = 0; i < num_ranks(); ++i) to_send[i] = messages[i].size();
+  check(MPI_Alltoall(to_send.data(), 1, MPI_UINT64_T, to_receive.data(), 1, MPI_UINT64_T, all_),
+        "MPI_Alltoall");
+
+  std::vector<Bytes> received(num_ranks());
+  received[static_cast<std::size_t>(rank_)] = std::move(messages[static_cast<std::size_t>(rank_)]);
+  std::vector<MPI_Request> requests;
+  for (int i = 1; i < size_; ++i) {
+    const int from = (rank_ - i + size_) % size_;
+    Bytes& message = received[static_cast<std::size_t>(from)];
+    message.resize(to_receive[static_cast<std::size_t>(from)]);
+    start_receiving(message, from, requests);
+  }
+  for (int i = 1; i < size_; ++i) {
+    const int to = (rank_ + i) % size_;
+    start_sending(messages[static_cast<std::size_t>(to)], to, requests);
+  }
+  check(MPI_Waitall(static_cast<int>(requests.size()), requests.data(), MPI_STATUSES_IGNORE), "MPI_Waitall");
+  return received;
+}
+
+// Pieces between the same two ranks arrive in the order in which they are sent: MPI's non-overtaking rule.
+void MpiCommunication::start_receiving(Bytes& message, int from, std::vector<MPI_Request>& requests) {
+  for (std::size_t begin = 0; begin < message.size(); begin += most_bytes_) {
+    const auto length = static_cast<int>(std::min(most_bytes_, message.size() - begin));
+    requests.push_back(MPI_REQUEST_NULL);
+    check(MPI_Irecv(message.data() + begin, length, MPI_BYTE, from, 0, all_, &requests.back()), "MPI_Irecv");
+  }
+}
+
+void MpiCommunication::start_sending(const Bytes& message, int to, std::vector<MPI_Request>& requests) {
+  for (std::size_t begin = 0; begin < message.size(); begin += most_bytes_) {
+    const auto length = static_cast<int>(std::min(most_bytes_, message.size() - begin));
+    requests.push_back(MPI_REQUEST_NULL);
+    check(MPI_Isend(message.data() + begin, length, MPI_BYTE, to, 0, all_, &requests.back()), "MPI_Isend");
+  }
+}
+
+// Pieces of all messages at a time, so that they fit one call together: one time when messages are short.
+std::vector<Bytes> MpiCommunication::all_gather(Bytes message) {
+  const std::uint64_t length = message.size();
+  std::vector<std::uint64_t> lengths(num_ranks());
+  check(MPI_Allgather(&length, 1, MPI_UINT64_T, lengths.data(), 1, MPI_UINT64_T, all_), "MPI_Allgather");
+
+  std::vector<Bytes> all(num_ranks());
+  for (std::size_t i = 0; i < num_ranks(); ++i) all[i].resize(lengths[i]);
+  const std::size_t most_of_each = std::max<std::size_t>(1, most_bytes_ / num_ranks());
+  const std::uint64_t longest = *std::max_element(lengths.begin(), lengths.end());
+  std::vector<int> counts(num_ranks()), places(num_ranks());
+  for (std::size_t begin = 0; begin < longest; begin += most_of_each) {
+    for (std::size_t i = 0; i < num_ranks(); ++i)
+      counts[i] = static_cast<int>(std::min(most_of_each, lengths[i] - std::min(begin, lengths[i])));
+    std::exclusive_scan(counts.begin(), counts.end(), places.begin(), 0);
+    Bytes pieces(static_cast<std::size_t>(places.back() + counts.back()));
+    const auto own = static_cast<std::size_t>(rank_);
+    check(MPI_Allgatherv(message.data() + std::min<std::size_t>(begin, length), counts[own], MPI_BYTE,
+                         pieces.data(), counts.data(), places.data(), MPI_BYTE, all_),
+          "MPI_Allgatherv");
+    for (std::size_t i = 0; i < num_ranks(); ++i)
+      std::copy_n(pieces.begin() + places[i], counts[i],
+                  all[i].begin() + static_cast<std::ptrdiff_t>(std::min(begin, lengths[i])));
+  }
+  return all;
+}
+
+void MpiCommunication::reduce(std::span<std::uint64_t> values, MPI_Op operation) {
+  const std::size_t most_values = most_bytes_ / sizeof(std::uint64_t);
+  for (std::size_t begin = 0; begin < values.size(); begin += most_values) {
+    const auto piece = values.subspan(begin, std::min(most_values, values.size() - begin));
+    check(MPI_Allreduce(MPI_IN_PLACE, piece.data(), static_cast<int>(piece.size()), MPI_UINT64_T, operation,
+                        all_),
+          "MPI_Allreduce");
+  }
+}
+
+}  // namespace
+
+MpiSession::MpiSession(int& argc, char**& argv) {
+  int provided = MPI_THREAD_SINGLE;
+  check(MPI_Init_thread(&argc, &argv, MPI_THREAD_FUNNELED, &provided), "MPI_Init_thread");
+  if (provided < MPI_THREAD_FUNNELED)
+    throw std::runtime_error("this MPI does not serve programs of several threads (MPI_THREAD_FUNNELED)");
+}
+
+MpiSession::~MpiSession() { MPI_Finalize(); }
+
+std::unique_ptr<Communication> mpi_communication(std::size_t most_bytes) {
+  return std::make_unique<MpiCommunication>(most_bytes);
+}
+
+void abort_all_ranks(int exit_code) {
+  MPI_Abort(MPI_COMM_WORLD, exit_code);
+  std::_Exit(exit_code);
+}
+
+}  // namespace podm

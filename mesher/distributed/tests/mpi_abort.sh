@@ -1,0 +1,9 @@
+#!/bin/sh
+# Usage: mpi_abort.sh MPIRUN PROGRAM
+# A rank that throws while others wait ends them all, by its exit code, and tells which rank it was.
+set -u
+output=$("$1" --oversubscribe -n 3 "$2" --throw-on-rank 1 2>&1)
+code=$?
+echo "$output"
+[ "$code" = 2 ] || { echo "exit code $code, not 2"; exit 1; }
+echo "$output" | grep -q "^rank 1 of 3: planted$"

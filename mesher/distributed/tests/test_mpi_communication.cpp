@@ -1,0 +1,72 @@
+// The cases over MPI, all on each process of a run. With `--throw-on-rank R` that rank throws instead, while
+// others wait.
+#include <fmt/format.h>
+#include <gtest/gtest.h>
+
+#include <string_view>
+
+#include "communication_cases.h"
+#include "distributed/mpi_communication.h"
+#include "distributed/rank_failure.h"
+
+namespace podm::test {
+namespace {
+
+TEST(MpiCommunication, CarriesRandomCollectives) {
+  const auto communication = mpi_communication();
+  for (std::uint64_t seed = 0; seed < 2; ++seed) expect_random_collectives(*communication, seed, 30);
+}
+
+TEST(MpiCommunication, CarriesWhatNoOneCallTakes) {
+  const auto tiny = mpi_communication(16), small = mpi_communication(1000);
+  expect_lengths(*tiny, 16);
+  expect_random_collectives(*small, 7, 20);
+}
+
+TEST(MpiCommunication, WantsOneMessageARank) { expect_one_message_a_rank(*mpi_communication()); }
+
+TEST(MpiCommunication, NoRankLeavesABarrierBeforeAllHaveCome) { expect_barrier(*mpi_communication()); }
+
+TEST(MpiCommunication, MessagesOfTwoCommunicationsDoNotMeet) {
+  const auto one = mpi_communication(), other = mpi_communication();
+  expect_random_collectives(*one, 1, 10);
+  expect_random_collectives(*other, 2, 10);
+  expect_random_collectives(*one, 3, 10);
+}
+
+TEST(MpiCommunication, ItsClockGoesOn) {
+  const auto communication = mpi_communication();
+  const double start_s = communication->seconds();
+  while (communication->seconds() == start_s) {
+  }
+  EXPECT_GT(communication->seconds(), start_s);
+}
+
+void throw_on_rank(int rank) {
+  const auto communication = mpi_communication();
+  if (communication->rank() == rank) throw InputError("planted");
+  communication->barrier();
+}
+
+}  // namespace
+}  // namespace podm::test
+
+int main(int argc, char** argv) {
+  testing::InitGoogleTest(&argc, argv);
+  testing::GTEST_FLAG(catch_exceptions) = false;  // others wait for this rank
+  const podm::MpiSession session(argc, argv);
+  const auto communication = podm::mpi_communication();
+  try {
+    if (argc == 3 && std::string_view(argv[1]) == "--throw-on-rank")
+      podm::test::throw_on_rank(std::stoi(argv[2]));
+    return RUN_ALL_TESTS();
+  } catch (...) {
+    try {
+      std::rethrow_exception(
+          podm::current_rank_failure(communication->rank(), communication->size()).exception);
+    } catch (const std::exception& error) {
+      fmt::print(stderr, "{}\n", error.what());
+      podm::abort_all_ranks(2);
+    }
+  }
+}
