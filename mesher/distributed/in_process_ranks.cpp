@@ -35,6 +35,13 @@ struct Part {
   std::span<std::uint64_t> values = {};
 };
 
+// What all ranks have to call, as the first to come does. After a failure its Part may be gone.
+struct Agreed {
+  int first = 0;
+  Collective collective = Collective::kBarrier;
+  std::size_t num_values = 0;
+};
+
 struct Traffic {
   std::uint64_t messages = 0, bytes = 0;
 
@@ -109,7 +116,7 @@ class MeetingPlace {
   std::size_t turn_ = 0;
   double num_steps_;  // of a tree over all ranks
   std::size_t num_waiting_ = 0;
-  int first_ = 0;             // of those that wait in a collective
+  Agreed agreed_;             // by those that wait, if any
   std::optional<int> ended_;  // a rank that returned
   std::optional<RankFailure> failure_;
 };
@@ -144,7 +151,7 @@ void MeetingPlace::take_part(int rank, Part& part) {
     check_agreement(part);
     self.part = &part;
     self.may_run = false;
-    if (num_waiting_++ == 0) first_ = rank;
+    if (num_waiting_++ == 0) agreed_ = {rank, part.collective, part.values.size()};
     if (num_waiting_ == ranks_.size()) {
       meet(part.collective);
     } else {
@@ -160,11 +167,10 @@ void MeetingPlace::take_part(int rank, Part& part) {
 void MeetingPlace::end(int rank) {
   state(rank).look_at_processor();
   const std::scoped_lock lock(mutex_);
-  if (failure_) return;  // those that waited may be gone, and their parts with them
   ended_ = rank;
   if (num_waiting_ > 0)
     throw InternalError(
-        fmt::format("it ended where rank {} called {}", first_, name_of(state(first_).part->collective)));
+        fmt::format("it ended where rank {} called {}", agreed_.first, name_of(agreed_.collective)));
   pass_turn();
 }
 
@@ -218,11 +224,10 @@ void MeetingPlace::check_agreement(const Part& part) {
   };
   if (ended_) fault(fmt::format("{} ended", *ended_));
   if (num_waiting_ == 0) return;
-  const Part& other = *state(first_).part;
-  if (part.collective != other.collective)
-    fault(fmt::format("{} called {}", first_, name_of(other.collective)));
-  if (part.values.size() != other.values.size())
-    fault(fmt::format("{} called it, of {} values and not {}", first_, other.values.size(),
+  if (part.collective != agreed_.collective)
+    fault(fmt::format("{} called {}", agreed_.first, name_of(agreed_.collective)));
+  if (part.values.size() != agreed_.num_values)
+    fault(fmt::format("{} called it, of {} values and not {}", agreed_.first, agreed_.num_values,
                       part.values.size()));
 }
 
@@ -291,7 +296,7 @@ double MeetingPlace::seconds_of_all_gather() {
 }
 
 double MeetingPlace::seconds_of_reduction() {
-  const auto bytes = static_cast<double>(state(first_).part->values.size_bytes());
+  const double bytes = 8 * static_cast<double>(agreed_.num_values);
   return num_steps_ * (options_.latency_s + bytes / options_.bytes_per_s);
 }
 

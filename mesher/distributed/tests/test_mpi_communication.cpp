@@ -27,13 +27,6 @@ TEST(MpiCommunication, WantsOneMessageARank) { expect_one_message_a_rank(*mpi_co
 
 TEST(MpiCommunication, NoRankLeavesABarrierBeforeAllHaveCome) { expect_barrier(*mpi_communication()); }
 
-TEST(MpiCommunication, MessagesOfTwoCommunicationsDoNotMeet) {
-  const auto one = mpi_communication(), other = mpi_communication();
-  expect_random_collectives(*one, 1, 10);
-  expect_random_collectives(*other, 2, 10);
-  expect_random_collectives(*one, 3, 10);
-}
-
 TEST(MpiCommunication, ItsClockGoesOn) {
   const auto communication = mpi_communication();
   const double start_s = communication->seconds();
