@@ -1,5 +1,6 @@
-// Space in cubes of one side, the grains in which ranks share it: a cube has one writer at a time, who knows all
-// vertices in it. What lies outside the grid belongs to the nearest cube, so cubes at its faces are endless.
+// Space in cubes of one side, the grains in which ranks share it: a cube has one writer at a time, who knows
+// all vertices in it. What lies outside the grid belongs to the nearest cube, so cubes at its faces are
+// endless.
 #pragma once
 
 #include <array>
@@ -58,8 +59,8 @@ class CubeSet {
   std::vector<CubeId> cubes() const;
   /// With all cubes within so many of one of these, along each axis.
   CubeSet grown(int rings) const;
-  /// Those that have a face, an edge or a corner in common, directly or by others of the set, get the same number, from
-  /// 0 on in the order of their first cubes. Others have kNone.
+  /// Those that have a face, an edge or a corner in common, directly or by others of the set, get the same
+  /// number, from 0 on in the order of their first cubes. Others have kNone.
   static constexpr std::uint32_t kNone = 0xffffffffu;
   std::vector<std::uint32_t> components() const;
   /// Whether all cubes that a ball meets are in the set.

@@ -196,44 +196,32 @@ class Rounds {
                   [&](const auto& entry) { return is_known(entry.cell) && rules.is_sound(entry.cell); });
   }
 
-  std::vector<CellId> refine_in(const Zone& zone, Construction::Entries entries, RoundReport& report) {
-    if (construction_.num_workers() > 1) return refine_with<VertexLocks>(zone, std::move(entries), report);
-    return refine_with<NoLocks>(zone, std::move(entries), report);
+  std::vector<CellId> refine_in(const Zone& zone, const Construction::Entries& entries, RoundReport& report) {
+    if (construction_.num_workers() > 1) return refine_with<VertexLocks>(zone, entries, report);
+    return refine_with<NoLocks>(zone, entries, report);
   }
 
-  // Returns those that need what lies outside. Cells that were large when they did may have become small: so
-  // they are tried again as long as that helps.
+  // Returns those that need what lies outside.
   template <class Inner>
-  std::vector<CellId> refine_with(const Zone& zone, Construction::Entries entries, RoundReport& report) {
+  std::vector<CellId> refine_with(const Zone& zone, const Construction::Entries& entries,
+                                  RoundReport& report) {
+    std::vector<CellId> deferred;
+    if (entries.empty() || stop_.is_over()) return deferred;
     const Mesh& mesh = construction_.mesh();
-    const auto insertions = [](const Counters& counters) {
-      std::uint64_t sum = 0;
-      for (const std::uint64_t count : counters.insertions_by_rule) sum += count;
-      return sum;
-    };
     construction_.timed("refine", [&] {
-      for (bool is_over = entries.empty() || stop_.is_over(); !is_over;) {
-        const auto workers =
-            construction_.make_workers<ZoneLocks<Inner>>(levels_.final, construction_.num_workers());
-        for (const auto& worker : workers) worker->locks().confine(zone);
-        construction_.in_time("refine", construction_.num_workers(), [&](auto& time) {
-          refine(construction_, workers, coordination_of_first(team_, construction_.num_workers()), entries,
-                 time);
-        });
-        entries.clear();
-        std::uint64_t done = 0;
-        for (const auto& worker : workers) {
-          const auto put_off = worker->take_deferred();
-          entries.insert(entries.end(), put_off.begin(), put_off.end());
-          done += insertions(worker->counters());
-        }
-        std::erase_if(entries, [&](const auto& entry) { return mesh.stamp(entry.cell) != entry.stamp; });
-        report.insertions += done;
-        is_over = done == 0 || entries.empty() || stop_.is_over();
+      const auto workers =
+          construction_.make_workers<ZoneLocks<Inner>>(levels_.final, construction_.num_workers());
+      for (const auto& worker : workers) worker->locks().confine(zone);
+      construction_.in_time("refine", construction_.num_workers(), [&](auto& time) {
+        refine(construction_, workers, coordination_of_first(team_, construction_.num_workers()), entries,
+               time);
+      });
+      for (const auto& worker : workers) {
+        for (const std::uint64_t count : worker->counters().insertions_by_rule) report.insertions += count;
+        for (const auto& entry : worker->take_deferred())
+          if (mesh.stamp(entry.cell) == entry.stamp) deferred.push_back(entry.cell);
       }
     });
-    std::vector<CellId> deferred;
-    for (const auto& entry : entries) deferred.push_back(entry.cell);
     return deferred;
   }
 

@@ -1,6 +1,7 @@
 #include "distributed/vertex_exchange.h"
 
 #include <algorithm>
+#include <bit>
 #include <unordered_map>
 
 #include "distributed/messages.h"
@@ -14,6 +15,13 @@ namespace podm {
 namespace {
 
 constexpr double kTouching = 0;  // mm: vertices come from a triangulation, so no two of them coincide
+
+std::uint64_t hash_of(const Point& p) {
+  std::uint64_t hash = 0;
+  for (const double x : {p.x, p.y, p.z})
+    hash = (hash ^ std::bit_cast<std::uint64_t>(x)) * 0x9e3779b97f4a7c15u;
+  return (hash ^ hash >> 29) * 0xbf58476d1ce4e5b9u;
+}
 
 bool is_shared(VertexKind kind) { return kind != VertexKind::kUnused && kind != VertexKind::kBox; }
 
@@ -106,24 +114,36 @@ std::vector<VertexExchange::Change> VertexExchange::differences(const std::vecto
   return changes;
 }
 
-// Along a curve, so that each is near the last.
+// In rounds of random points, each twice as many as the last, and along a curve within each: neighbours in
+// the order are near each other, and cavities no larger than those of points in random order. (Amenta, Choi,
+// Rote, SoCG 2003.)
 void VertexExchange::apply(std::vector<Change>& changes) {
+  struct Place {
+    int rounds_after;
+    MortonCode code;
+    std::size_t change;
+    bool operator<(const Place& b) const {
+      return rounds_after != b.rounds_after ? rounds_after > b.rounds_after : code < b.code;
+    }
+  };
+  constexpr int kMostRounds = 10;
   constexpr double kPlacesASide = 16;  // of a cube, along the curve
   const Point origin = mesh_.box().low;
   const double per_mm = kPlacesASide / grid_.side_mm();
-  const auto code = [&](const Change& change) {
-    const Vector g = per_mm * (change.point - origin);
-    const auto along = [](double x) { return static_cast<std::uint32_t>(x) & ((1u << kMortonBits) - 1); };
-    return morton_code({along(g.x), along(g.y), along(g.z)});
-  };
-  std::vector<std::pair<MortonCode, std::size_t>> order;
-  for (std::size_t i = 0; i < changes.size(); ++i) order.emplace_back(code(changes[i]), i);
+  const auto along = [](double x) { return static_cast<std::uint32_t>(x) & ((1u << kMortonBits) - 1); };
+  std::vector<Place> order;
+  for (std::size_t i = 0; i < changes.size(); ++i) {
+    const Vector g = per_mm * (changes[i].point - origin);
+    const auto rounds_after = std::countl_zero(hash_of(changes[i].point));
+    order.push_back(
+        {std::min(rounds_after, kMostRounds), morton_code({along(g.x), along(g.y), along(g.z)}), i});
+  }
   std::sort(order.begin(), order.end());
   const auto check = [](StepResult result) {
     if (result != StepResult::kDone) throw InternalError("what another rank tells does not fit in the mesh");
   };
   for (const auto& place : order) {
-    const auto& [point, kind] = changes[place.second];
+    const auto& [point, kind] = changes[place.change];
     if (kind == VertexKind::kUnused) {
       const std::optional<Found> found = find_vertex(point);
       if (!found) throw InternalError("a vertex to be taken away is not there");
