@@ -16,7 +16,7 @@ from podm_process import PROGRAM, TIMEOUT_S, PodmTestCase, run_podm
 
 BALL = small_images.ball_voxels(12)
 # Options that add an output to those of `podm mesh IMAGE`, and its name.
-OUTPUTS = [*((["-o", f"out.{extension}"], f"out.{extension}") for extension in ("vtu", "mesh", "msh")),
+OUTPUTS = [*((["-o", f"out.{extension}"], f"out.{extension}") for extension in ("vtu", "mesh", "msh", "xdmf")),
            *((["--surface", f"s.{extension}"], f"s_1.{extension}") for extension in ("stl", "ply")),
            (["--log", "run.log"], "run.log"),
            (["--algorithm", "pdr", "--leaf-size", "1", "--schedule", "leaves.jsonl"], "leaves.jsonl"),
