@@ -26,27 +26,31 @@ std::string last_fault() {
   return fault.substr(0, fault.find('\''));
 }
 
-Hdf5Handle open_file(const std::string& path, Hdf5File::Mode mode) {
-  H5Eset_auto2(H5E_DEFAULT, nullptr, nullptr);  // the library would print
+// To be called before any other call clears what the library remembers of the fault.
+hid_t check_result(hid_t result, const std::string& path) {
+  if (result < 0) throw InputError(fmt::format("cannot write {}: {}", path, last_fault()));
+  return result;
+}
+
+Hdf5Handle open_file(const std::string& path, const std::string& shown_path, Hdf5File::Mode mode) {
+  // When the program ends, the library would try again to write what a full disk did not take, and crash.
+  static const herr_t unwanted_cleanup = H5dont_atexit();
+  static_cast<void>(unwanted_cleanup);
+  H5Eset_auto2(H5E_DEFAULT, nullptr, nullptr);  // it would print
   const Hdf5Handle access(H5Pcreate(H5P_FILE_ACCESS), H5Pclose);
   H5Pset_file_locking(access, 0, 1);  // we hold a lock on it (files/temporary_name.cpp)
   const hid_t file = mode == Hdf5File::Mode::kMakeNew
                          ? H5Fcreate(path.c_str(), H5F_ACC_TRUNC, H5P_DEFAULT, access)
                          : H5Fopen(path.c_str(), H5F_ACC_RDWR, access);
-  return {file, H5Fclose};
+  return {check_result(file, shown_path), H5Fclose};
 }
 
 }  // namespace
 
 Hdf5File::Hdf5File(const std::string& path, const std::string& shown_path, Mode mode)
-    : path_(shown_path), file_(open_file(path, mode)) {
-  check(file_);
-}
+    : path_(shown_path), file_(open_file(path, shown_path, mode)) {}
 
-hid_t Hdf5File::check(hid_t result) const {
-  if (result < 0) throw InputError(fmt::format("cannot write {}: {}", path_, last_fault()));
-  return result;
-}
+hid_t Hdf5File::check(hid_t result) const { return check_result(result, path_); }
 
 void Hdf5File::close() { check(H5Fclose(file_.release())); }
 

@@ -1,4 +1,5 @@
-// Mesh files: VTU, medit .mesh, Gmsh .msh 4.1, XDMF; surfaces as STL or PLY. Files appear whole or not at all.
+// Mesh files: VTU, medit .mesh, Gmsh .msh 4.1, XDMF; surfaces as STL or PLY. Files appear whole or not at
+// all.
 #pragma once
 
 #include <string>
