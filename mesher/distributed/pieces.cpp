@@ -25,6 +25,12 @@ struct PointHash {
 template <class Value>
 using ByPoint = std::unordered_map<Point, Value, PointHash>;
 
+// A vertex in the whole mesh, and the rank whose piece counts it.
+struct Number {
+  std::uint64_t id;
+  std::int64_t owner;
+};
+
 class PieceOfMesh {
  public:
   PieceOfMesh(DistributedRefinement& refined, const Isosurface& isosurface, Space space, int threads,
@@ -77,23 +83,23 @@ class PieceOfMesh {
     }
   }
 
-  // Numbers of the vertices in use here, in the order of their ids. Everybody asks the rank in whose block
-  // they lie, by coordinates, itself too: what nobody asks for has no number.
-  std::vector<std::uint64_t> number_vertices() {
+  // Numbers the vertices in use here, in the order of their ids. Everybody asks the rank in whose block they
+  // lie, by coordinates, itself too: what nobody asks for has no number.
+  void number_vertices(MeshPiece& piece) {
     std::vector<std::vector<Point>> wanted(static_cast<std::size_t>(ranks_.size()));
     for_each_used([&](VertexId, const Point& p, std::size_t rank) { wanted[rank].push_back(p); });
     std::vector<Bytes> messages(wanted.size());
     for (std::size_t rank = 0; rank < wanted.size(); ++rank)
       if (!wanted[rank].empty()) append(messages[rank], wanted[rank]);
-    std::vector<std::vector<std::uint64_t>> numbers;
+    std::vector<std::vector<Number>> numbers;
     for (const Bytes& told : ranks_.all_to_all(answers(ranks_.all_to_all(std::move(messages)))))
-      numbers.push_back(told.empty() ? std::vector<std::uint64_t>()
-                                     : MessageReader(told).read<std::uint64_t>());
+      numbers.push_back(told.empty() ? std::vector<Number>() : MessageReader(told).read<Number>());
     std::vector<std::size_t> next(wanted.size());
-    std::vector<std::uint64_t> ids;
-    for_each_used(
-        [&](VertexId, const Point&, std::size_t rank) { ids.push_back(numbers[rank][next[rank]++]); });
-    return ids;
+    for_each_used([&](VertexId, const Point&, std::size_t rank) {
+      const Number& number = numbers[rank][next[rank]++];
+      piece.vertex_ids.push_back(number.id);
+      piece.owns_vertex.push_back(number.owner == ranks_.rank());
+    });
   }
 
   // Calls visit(id, point, rank it belongs to), in the order of ids.
@@ -103,33 +109,33 @@ class PieceOfMesh {
       if (is_used_[v] != 0) visit(v, mesh_.point(v), static_cast<std::size_t>(rank_of(mesh_.point(v))));
   }
 
-  // Numbers for the vertices that each rank asks for.
+  // Numbers for the vertices that each rank asks for. The first to ask owns the vertex.
   std::vector<Bytes> answers(const std::vector<Bytes>& asked) {
     std::vector<std::vector<Point>> points;
-    ByPoint<std::uint64_t> number_of;
-    for (const Bytes& message : asked) {
-      points.push_back(message.empty() ? std::vector<Point>() : MessageReader(message).read<Point>());
-      for (const Point& p : points.back()) number_of.emplace(p, kNoNumber);
+    ByPoint<Number> number_of;
+    for (std::size_t rank = 0; rank < asked.size(); ++rank) {
+      points.push_back(asked[rank].empty() ? std::vector<Point>() : MessageReader(asked[rank]).read<Point>());
+      for (const Point& p : points.back())
+        number_of.try_emplace(p, Number{0, static_cast<std::int64_t>(rank)});
     }
     const auto [first, total] = sums_of(number_of.size());
     total_vertices_ = total;
     std::uint64_t next = first;
     for (VertexId v = 0; v < mesh_.vertex_bound(); ++v) {
       if (mesh_.vertex(v).kind == VertexKind::kUnused) continue;
-      if (const auto found = number_of.find(mesh_.point(v)); found != number_of.end()) found->second = next++;
+      if (const auto found = number_of.find(mesh_.point(v)); found != number_of.end())
+        found->second.id = next++;
     }
     if (next != first + number_of.size())
       throw InternalError("another rank has a vertex of this block that is not here");
     std::vector<Bytes> messages(asked.size());
     for (std::size_t rank = 0; rank < asked.size(); ++rank) {
-      std::vector<std::uint64_t> numbers;
+      std::vector<Number> numbers;
       for (const Point& p : points[rank]) numbers.push_back(number_of.at(p));
       if (!numbers.empty()) append(messages[rank], numbers);
     }
     return messages;
   }
-
-  static constexpr std::uint64_t kNoNumber = ~std::uint64_t{0};
 
   DistributedRefinement& refined_;
   Mesh& mesh_;
