@@ -22,7 +22,7 @@ void for_each_cube(const CubeGrid& grid, const CubePlace& low, const CubePlace& 
 
 }  // namespace
 
-Blocks::Blocks(const CubeGrid& grid, const std::vector<double>& weights, int num_blocks)
+Blocks::Blocks(const CubeGrid& grid, const std::vector<std::uint64_t>& weights, int num_blocks)
     : grid_(grid), num_blocks_(num_blocks), block_of_(grid.num_cubes()) {
   divide({{0, 0, 0}, grid.size(), 0, num_blocks}, weights);
 }
@@ -48,7 +48,7 @@ CubeSet Blocks::near_others(int rings) const {
 
 // Cuts are planes between cubes, across the axis along which what weighs anything is longest: at the one that
 // comes nearest to the share of the blocks on either side.
-void Blocks::divide(const Part& part, const std::vector<double>& weights) {
+void Blocks::divide(const Part& part, const std::vector<std::uint64_t>& weights) {
   if (part.num_blocks == 1) {
     for_each_cube(grid_, part.low, part.high,
                   [&](CubeId cube, const CubePlace&) { block_of_[cube] = part.first_block; });
@@ -64,14 +64,15 @@ void Blocks::divide(const Part& part, const std::vector<double>& weights) {
   std::size_t axis = 0;
   for (std::size_t other = 1; other < 3; ++other)
     if (high[other] - low[other] > high[axis] - low[axis]) axis = other;
-  std::vector<double> weight_below(static_cast<std::size_t>(part.high[axis] - part.low[axis]) + 1);
+  std::vector<std::uint64_t> weight_below(static_cast<std::size_t>(part.high[axis] - part.low[axis]) + 1);
   for_each_cube(grid_, part.low, part.high, [&](CubeId cube, const CubePlace& at) {
     weight_below[static_cast<std::size_t>(at[axis] - part.low[axis]) + 1] += weights[cube];
   });
   for (std::size_t i = 1; i < weight_below.size(); ++i) weight_below[i] += weight_below[i - 1];
   const int below = part.num_blocks / 2;
-  const double wanted = weight_below.back() * below / part.num_blocks;
-  const auto is_nearer = [&](double a, double b) { return std::abs(a - wanted) < std::abs(b - wanted); };
+  const double wanted = static_cast<double>(weight_below.back()) * below / part.num_blocks;
+  const auto off = [&](std::uint64_t weight) { return std::abs(static_cast<double>(weight) - wanted); };
+  const auto is_nearer = [&](std::uint64_t a, std::uint64_t b) { return off(a) < off(b); };
   const auto cut =
       std::min_element(weight_below.begin(), weight_below.end(), is_nearer) - weight_below.begin();
 

@@ -12,17 +12,18 @@ namespace podm {
 class Blocks {
  public:
   /// `weights`: one a cube, not negative.
-  Blocks(const CubeGrid& grid, const std::vector<double>& weights, int num_blocks);
+  Blocks(const CubeGrid& grid, const std::vector<std::uint64_t>& weights, int num_blocks);
 
   const CubeGrid& grid() const { return grid_; }
   int of(CubeId cube) const { return block_of_[cube]; }
+  const std::vector<int>& ranks() const { return block_of_; }
   /// Cubes that have another block within so many cubes along each axis.
   CubeSet near_others(int rings) const;
   int number() const { return num_blocks_; }
 
  private:
   struct Part;
-  void divide(const Part& part, const std::vector<double>& weights);
+  void divide(const Part& part, const std::vector<std::uint64_t>& weights);
 
   const CubeGrid& grid_;
   int num_blocks_;

@@ -33,7 +33,7 @@ double CubeGrid::squared_distance(const CubePlace& at, const Point& p) const {
   return squared_length({along(0, offset.x), along(1, offset.y), along(2, offset.z)});
 }
 
-bool CubeSet::is_empty() const { return std::find(has_.begin(), has_.end(), 1) == has_.end(); }
+bool CubeSet::is_full() const { return std::find(has_.begin(), has_.end(), 0) == has_.end(); }
 
 std::vector<CubeId> CubeSet::cubes() const {
   std::vector<CubeId> cubes;
@@ -54,6 +54,29 @@ CubeSet CubeSet::grown(int rings) const {
     }
   }
   return result;
+}
+
+CubeCounts::CubeCounts(const CubeSet& set) {
+  const CubePlace& size = set.grid().size();
+  sizes_ = {static_cast<std::size_t>(size[0]) + 1, static_cast<std::size_t>(size[1]) + 1};
+  below_.assign(sizes_[0] * sizes_[1] * (static_cast<std::size_t>(size[2]) + 1), 0);
+  for (int z = 0; z < size[2]; ++z)
+    for (int y = 0; y < size[1]; ++y) {
+      std::uint32_t in_row = 0;
+      for (int x = 0; x < size[0]; ++x) {
+        in_row += set.has(set.grid().id({x, y, z}));
+        below(x + 1, y + 1, z + 1) =
+            in_row + below(x + 1, y, z + 1) + below(x + 1, y + 1, z) - below(x + 1, y, z);
+      }
+    }
+}
+
+bool CubeCounts::covers(const CubePlace& low, const CubePlace& high) const {
+  const auto [a, b, c] = low;
+  const int x = high[0] + 1, y = high[1] + 1, z = high[2] + 1;
+  const std::uint32_t count = below(x, y, z) - below(a, y, z) - below(x, b, z) - below(x, y, c) +
+                              below(a, b, z) + below(a, y, c) + below(x, b, c) - below(a, b, c);
+  return count == static_cast<std::uint32_t>((x - a) * (y - b) * (z - c));
 }
 
 std::vector<std::uint32_t> CubeSet::components() const {

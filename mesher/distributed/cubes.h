@@ -55,7 +55,7 @@ class CubeSet {
   bool has(const Point& p) const { return has(grid_->cube_at(p)); }
   void insert(CubeId cube) { has_[cube] = 1; }
   void erase(CubeId cube) { has_[cube] = 0; }
-  bool is_empty() const;
+  bool is_full() const;
   std::vector<CubeId> cubes() const;
   /// With all cubes within so many of one of these, along each axis.
   CubeSet grown(int rings) const;
@@ -63,7 +63,7 @@ class CubeSet {
   /// number, from 0 on in the order of their first cubes. Others have kNone.
   static constexpr std::uint32_t kNone = 0xffffffffu;
   std::vector<std::uint32_t> components() const;
-  /// Whether all cubes that a ball meets are in the set.
+  /// Whether all cubes that a ball meets are in the set, one by one.
   bool covers(const Point& center, double radius_mm) const {
     bool is_covered = true;
     for_each_near(center, radius_mm, [&](CubeId cube) { return is_covered = has(cube); });
@@ -81,6 +81,24 @@ class CubeSet {
 
   const CubeGrid* grid_;
   std::vector<std::uint8_t> has_;
+};
+
+/// How many cubes of a set any box has, at the price of eight numbers. (Crow, SIGGRAPH 1984.)
+class CubeCounts {
+ public:
+  explicit CubeCounts(const CubeSet& set);
+  /// Whether the set has all cubes from `low` to `high`.
+  bool covers(const CubePlace& low, const CubePlace& high) const;
+
+ private:
+  std::uint32_t& below(int x, int y, int z) {
+    return below_[(static_cast<std::size_t>(z) * sizes_[1] + static_cast<std::size_t>(y)) * sizes_[0] +
+                  static_cast<std::size_t>(x)];
+  }
+  std::uint32_t below(int x, int y, int z) const { return const_cast<CubeCounts*>(this)->below(x, y, z); }
+
+  std::array<std::size_t, 2> sizes_;
+  std::vector<std::uint32_t> below_;  // cubes of the set whose coordinates are all less
 };
 
 template <class Visit>

@@ -45,8 +45,10 @@ class PieceOfMesh {
   MeshPiece operator()(std::uint64_t& facets_off_isosurface) {
     label_cells(mesh_, isosurface_, threads_);
     choose_cells();
-    MeshPiece piece{
-        .rank = ranks_.rank(), .num_pieces = ranks_.size(), .mesh = {}, .vertex_ids = number_vertices()};
+    MeshPiece piece;
+    piece.rank = ranks_.rank();
+    piece.num_pieces = ranks_.size();
+    number_vertices(piece);
     piece.total_vertices = total_vertices_;
     const auto is_own = [this](CellId c) { return is_own_cell_[c] != 0; };
     piece.mesh = extract_mesh(mesh_, isosurface_, space_, threads_, facets_off_isosurface, is_own);

@@ -55,13 +55,16 @@ double area_of_facet(const Mesh& mesh, const Cell& cell, unsigned k) {
   return std::sqrt(squared_length(cross(point(1) - point(0), point(2) - point(0)))) / 2;
 }
 
-// What the coarse mesh says of the cells to come, by cube.
-std::vector<double> predicted_cells(const Mesh& mesh, const Problem& problem, const CubeGrid& grid) {
+// What the coarse mesh says of the cells to come, by cube, in millionths: whole numbers, whose sums are
+// exact.
+std::vector<std::uint64_t> predicted_cells(const Mesh& mesh, const Problem& problem, const CubeGrid& grid) {
+  constexpr double kParts = 1e6;
   const auto label_of = [&](CellId c) { return problem.isosurface.label_at(mesh.cell(c).center); };
-  std::vector<double> cells(grid.num_cubes());
+  std::vector<std::uint64_t> cells(grid.num_cubes());
   for (CellId c = 0; c < mesh.cell_bound(); ++c) {
     const Cell& cell = mesh.cell(c);
-    const LabelIndex label = cell.is_alive() ? label_of(c) : kBackground;
+    if (!cell.is_alive()) continue;
+    const LabelIndex label = label_of(c);
     if (label == kBackground) continue;
     double area_mm2 = 0;
     for (unsigned k = 0; k < 4; ++k)
@@ -69,8 +72,8 @@ std::vector<double> predicted_cells(const Mesh& mesh, const Problem& problem, co
         area_mm2 += area_of_facet(mesh, cell, k);
     const double squared_radius = problem.sizes.squared_radius(label);
     const double radius_mm = std::isinf(squared_radius) ? 0 : std::sqrt(squared_radius);
-    cells[grid.cube_at(cell.center)] +=
-        CostModel::cells(volume_of(mesh, cell), area_mm2, radius_mm, problem.delta_mm);
+    cells[grid.cube_at(cell.center)] += static_cast<std::uint64_t>(
+        kParts * CostModel::cells(volume_of(mesh, cell), area_mm2, radius_mm, problem.delta_mm));
   }
   return cells;
 }
@@ -93,87 +96,97 @@ class Rounds {
         ranks_(ranks),
         stop_(stop),
         levels_(two_levels(problem, initial_ratio)),
-        construction_(problem, levels_.clamp, team, stop) {}
+        construction_(problem, levels_.clamp, team, stop),
+        grid_(problem.object, cube_side_mm(radii_of(problem), problem.object, ranks.size())),
+        exchange_(ranks, construction_.mesh(), construction_.pool(0), grid_) {}
 
   DistributedRefinement operator()() {
     refine_anywhere(construction_, "initial", levels_.initial, construction_.all_cells(), 1);
-    const CubeGrid grid(problem_.object, cube_side_mm(radii_of(problem_), problem_.object, ranks_.size()));
-    const Blocks blocks(grid, predicted_cells(construction_.mesh(), problem_, grid), ranks_.size());
-    const CubeSet shared = blocks.near_others(kSharedRings);
     for (const auto& entry : construction_.all_cells()) construction_.mesh().make_canonical(entry.cell);
-    VertexExchange exchange(ranks_, construction_.mesh(), construction_.pool(0), grid);
-    DistributedRefinement result{
-        .refinement = {}, .grid = grid, .rank_of_cube = {}, .rounds = {}, .last_update = {}};
-    for (CubeId cube = 0; cube < grid.num_cubes(); ++cube) result.rank_of_cube.push_back(blocks.of(cube));
-
-    std::vector<int> zone_of(result.rank_of_cube);  // by cube: whose zone it is in, or nobody's
-    std::vector<CellName> deferred;                 // of the last round, here now
-    for (int round = 0;; ++round) {
-      RoundReport report;
-      const CubeSet own = cubes_of(ranks_.rank(), zone_of, grid);
-      report.cubes = own.cubes().size();
-      const auto start = processor_seconds();
-      const bool knows_all = round == 0;
-      CubeSet known = own.grown(kKnownRings);
-      for (const CellName& name : deferred) {
-        const Point center = sphere_of(name, construction_.mesh().extent()).center;
-        if (own.has(center)) known.insert(center, kKnownOverRadius * distance(center, name.vertices[0]));
-      }
-      const Zone zone = knows_all ? Zone(own, shared) : Zone(own, shared, known, kKnownRings);
-      Construction::Entries entries;
-      std::vector<CellName> left;
-      if (knows_all) {
-        entries = cells_in(own);
-      } else {
-        report.update = exchange.update(known);
-        entries = find(deferred, own, known, exchange, left);
-      }
-      drop_sound(entries, zone);
-      report.update_s = processor_seconds() - start;
-      report.entries = entries.size();
-      const auto middle = processor_seconds();
-      for (const CellId c : refine_in(zone, entries, report))
-        left.push_back(name_of(construction_.mesh(), c));
-      report.refine_s = processor_seconds() - middle;
-      for (CubeId cube = 0; cube < grid.num_cubes(); ++cube)
-        if (zone_of[cube] != kNobody) exchange.note_writer(cube, zone_of[cube]);
-      const bool is_last = plan_next(round, blocks, left, zone_of, deferred, report);
-      result.rounds.push_back(report);
-      if (is_last) break;
-    }
-    result.last_update = complete(exchange, result.rank_of_cube, grid);
-    result.refinement = construction_.finish();
-    return result;
+    blocks_.emplace(grid_, predicted_cells(construction_.mesh(), problem_, grid_), ranks_.size());
+    shared_.emplace(blocks_->near_others(kSharedRings));
+    refine_in_rounds();
+    const Update last_update = complete();
+    return {.refinement = construction_.finish(),
+            .grid = grid_,
+            .rank_of_cube = blocks_->ranks(),
+            .rounds = std::move(rounds_),
+            .last_update = last_update};
   }
 
  private:
-  static CubeSet cubes_of(int rank, const std::vector<int>& rank_of_cube, const CubeGrid& grid) {
-    CubeSet cubes(grid);
-    for (CubeId cube = 0; cube < grid.num_cubes(); ++cube)
+  // A cell is its rank's whose block has its least vertex.
+  bool is_own(const Cell& cell) const {
+    const Mesh& mesh = construction_.mesh();
+    Point least = mesh.point(cell.vertices[0]);
+    for (const VertexId v : cell.vertices)
+      if (lexicographically_less(mesh.point(v), least)) least = mesh.point(v);
+    return blocks_->of(grid_.cube_at(least)) == ranks_.rank();
+  }
+
+  // Until nothing waits, or the run is over.
+  void refine_in_rounds() {
+    zone_of_ = blocks_->ranks();
+    std::vector<CellName> here;  // what waits, and is to be refined here
+    do {
+      const auto round = static_cast<int>(rounds_.size());
+      RoundReport report;
+      const CubeSet own = cubes_of(ranks_.rank(), zone_of_);
+      report.cubes = own.cubes().size();
+      const double start_s = processor_seconds();
+      std::vector<CellName> left;
+      if (round > 0) report.update = exchange_.update(wanted(own, here));
+      const Zone zone(own, *shared_, exchange_.known(), kKnownRings);
+      Construction::Entries entries = round == 0 ? own_cells() : find(here, zone, left);
+      drop_sound(entries, zone);
+      report.entries = entries.size();
+      report.update_s = processor_seconds() - start_s;
+      for (const CellId c : refine_in(zone, entries, report))
+        left.push_back(name_of(construction_.mesh(), c));
+      report.refine_s = processor_seconds() - start_s - report.update_s;
+      for (CubeId cube = 0; cube < grid_.num_cubes(); ++cube)
+        if (zone_of_[cube] != kNobody) exchange_.note_writer(cube, zone_of_[cube]);
+      here = plan_next(round, left, report);
+      rounds_.push_back(report);
+    } while (rounds_.back().deferred > 0 && !is_over_);
+  }
+
+  CubeSet cubes_of(int rank, const std::vector<int>& rank_of_cube) const {
+    CubeSet cubes(grid_);
+    for (CubeId cube = 0; cube < grid_.num_cubes(); ++cube)
       if (rank_of_cube[cube] == rank) cubes.insert(cube);
     return cubes;
   }
 
-  Construction::Entries cells_in(const CubeSet& cubes) {
+  Construction::Entries own_cells() {
     Construction::Entries entries = construction_.all_cells();
-    std::erase_if(
-        entries, [&](const auto& entry) { return !cubes.has(construction_.mesh().cell(entry.cell).center); });
+    std::erase_if(entries, [&](const auto& entry) { return !is_own(construction_.mesh().cell(entry.cell)); });
     return entries;
+  }
+
+  // What has to be known of a zone in which these cells wait.
+  CubeSet wanted(const CubeSet& own, const std::vector<CellName>& names) const {
+    CubeSet wanted = own.grown(kKnownRings);
+    for (const CellName& name : names) {
+      const Point center = sphere_of(name, construction_.mesh().extent()).center;
+      if (own.has(center)) wanted.insert(center, kKnownOverRadius * distance(center, name.vertices[0]));
+    }
+    return wanted;
   }
 
   // The cells of these names in the zone. Those that are not in the mesh have died, if all is known that
   // could be in their balls; else they are `left` for another round, with those that are in nobody's zone.
-  Construction::Entries find(const std::vector<CellName>& names, const CubeSet& own, const CubeSet& known,
-                             VertexExchange& exchange, std::vector<CellName>& left) {
+  Construction::Entries find(const std::vector<CellName>& names, const Zone& zone,
+                             std::vector<CellName>& left) {
     const Mesh& mesh = construction_.mesh();
     Construction::Entries entries;
     for (const CellName& name : names) {
       const Point center = sphere_of(name, mesh.extent()).center;
-      if (!own.has(center)) {
+      if (!zone.has(center)) {
         left.push_back(name);
-      } else if (const auto cell = exchange.find_cell(name.vertices)) {
+      } else if (const auto cell = exchange_.find_cell(name.vertices)) {
         entries.push_back({*cell, mesh.stamp(*cell)});
-      } else if (!known.covers(center, distance(center, name.vertices[0]) * (1 + kMargin))) {
+      } else if (!zone.is_ball_known(center, distance(center, name.vertices[0]))) {
         left.push_back(name);
       }
     }
@@ -225,62 +238,65 @@ class Rounds {
     return deferred;
   }
 
-  // All ranks learn where cells were deferred, and get those of their next zones. True: there are none, or
-  // the run is over.
-  bool plan_next(int round, const Blocks& blocks, const std::vector<CellName>& left,
-                 std::vector<int>& zone_of, std::vector<CellName>& deferred, RoundReport& report) {
+  // All ranks learn where cells wait, divide space around them, and get those of their zones.
+  std::vector<CellName> plan_next(int round, const std::vector<CellName>& left, RoundReport& report) {
     std::array<std::uint64_t, 2> sums{left.size(), stop_.is_over() ? 1u : 0u};
     ranks_.sum(sums);
     report.deferred = sums[0];
-    if (sums[0] == 0 || sums[1] > 0) return true;
-    const CubeGrid& grid = blocks.grid();
+    is_over_ = sums[1] > 0;
+    if (report.deferred == 0 || is_over_) return {};
     std::vector<CubeId> cube_of_left;
-    CubeSet here(grid), active(grid);
+    CubeSet around(grid_), waiting(grid_);
     for (const CellName& name : left) {
       const Point center = sphere_of(name, construction_.mesh().extent()).center;
-      cube_of_left.push_back(grid.cube_at(center));
-      here.insert(center, reach_over_radius(round + 1) * distance(center, name.vertices[0]));
+      cube_of_left.push_back(grid_.cube_at(center));
+      around.insert(center, reach_over_radius(round + 1) * distance(center, name.vertices[0]));
     }
     Bytes message;
-    append(message, here.cubes());
+    append(message, around.cubes());
     for (const Bytes& told : ranks_.all_gather(std::move(message)))
-      for (const CubeId cube : MessageReader(told).read<CubeId>()) active.insert(cube);
-    zone_of = zones_of_round(round + 1, blocks, active.grown(1));
+      for (const CubeId cube : MessageReader(told).read<CubeId>()) waiting.insert(cube);
+    zone_of_ = zones_of_round(round + 1, *blocks_, waiting.grown(1));
     std::vector<std::vector<CellName>> names(static_cast<std::size_t>(ranks_.size()));
     for (std::size_t i = 0; i < left.size(); ++i) {
-      const int rank = zone_of[cube_of_left[i]];  // nobody's wait here
+      const int rank = zone_of_[cube_of_left[i]];
       names[static_cast<std::size_t>(rank == kNobody ? ranks_.rank() : rank)].push_back(left[i]);
     }
+    return exchanged(names);
+  }
+
+  std::vector<CellName> exchanged(const std::vector<std::vector<CellName>>& names) {
     std::vector<Bytes> messages(names.size());
     for (std::size_t rank = 0; rank < names.size(); ++rank)
       if (!names[rank].empty()) append(messages[rank], names[rank]);
-    deferred.clear();
+    std::vector<CellName> here;
     for (const Bytes& told : ranks_.all_to_all(std::move(messages))) {
       if (told.empty()) continue;
       const auto more = MessageReader(told).read<CellName>();
-      deferred.insert(deferred.end(), more.begin(), more.end());
+      here.insert(here.end(), more.begin(), more.end());
     }
-    return false;
+    return here;
   }
 
   // Learns what others have changed until every cell with a vertex in the block is one of the whole.
-  Update complete(VertexExchange& exchange, const std::vector<int>& rank_of_cube, const CubeGrid& grid) {
+  Update complete() {
     const Mesh& mesh = construction_.mesh();
-    const CubeSet block = cubes_of(ranks_.rank(), rank_of_cube, grid);
-    CubeSet known = block.is_empty() ? block : block.grown(kKnownRings);
+    const CubeSet block = cubes_of(ranks_.rank(), blocks_->ranks());
+    CubeSet wanted = block.grown(kKnownRings);
     Update sum;
     for (;;) {
-      sum += exchange.update(known);
-      const std::size_t num_known = known.cubes().size();
-      for (CellId c = 0; c < mesh.cell_bound() && num_known > 0; ++c) {
+      sum += exchange_.update(wanted);
+      const Zone zone(block, *shared_, exchange_.known(), kKnownRings);
+      std::array<std::uint64_t, 1> more{0};
+      for (CellId c = 0; c < mesh.cell_bound(); ++c) {
         const Cell& cell = mesh.cell(c);
-        if (!cell.is_alive()) continue;
+        if (!cell.is_alive() || zone.knows(cell)) continue;
         if (std::none_of(cell.vertices.begin(), cell.vertices.end(),
                          [&](VertexId v) { return block.has(mesh.point(v)); }))
           continue;
-        known.insert(cell.center, distance(cell.center, mesh.point(cell.vertices[0])) * (1 + kMargin));
+        wanted.insert(cell.center, distance(cell.center, mesh.point(cell.vertices[0])) * (1 + kMargin));
+        ++more[0];
       }
-      std::array<std::uint64_t, 1> more{known.cubes().size() - num_known};
       ranks_.sum(more);
       if (more[0] == 0) return sum;
     }
@@ -292,6 +308,13 @@ class Rounds {
   StopControl& stop_;
   const TwoLevels levels_;
   Construction construction_;
+  const CubeGrid grid_;
+  VertexExchange exchange_;
+  std::optional<Blocks> blocks_;
+  std::optional<CubeSet> shared_;
+  std::vector<int> zone_of_;  // by cube: the rank of the zone that it is in, or kNobody
+  std::vector<RoundReport> rounds_;
+  bool is_over_ = false;  // on all ranks
 };
 
 }  // namespace

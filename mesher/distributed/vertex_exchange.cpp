@@ -34,6 +34,13 @@ void VertexExchange::note_writer(CubeId cube, int rank) {
   cubes_[cube] = {.writer = rank, .is_up_to_date = rank == ranks_.rank()};
 }
 
+CubeSet VertexExchange::known() const {
+  CubeSet known(grid_);
+  for (CubeId cube = 0; cube < cubes_.size(); ++cube)
+    if (cubes_[cube].is_up_to_date) known.insert(cube);
+  return known;
+}
+
 Update VertexExchange::update(const CubeSet& wanted) {
   Update update;
   std::vector<std::vector<CubeId>> asked(static_cast<std::size_t>(ranks_.size()));

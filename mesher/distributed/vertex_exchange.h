@@ -33,6 +33,8 @@ class VertexExchange {
 
   /// In the round that has ended the cube's writer was that rank, whose copy is the right one.
   void note_writer(CubeId cube, int rank);
+  /// Cubes of which this rank has all vertices as they are.
+  CubeSet known() const;
   /// Brings the vertices in these cubes up to date: collective, each rank names its own cubes.
   Update update(const CubeSet& wanted);
 

@@ -7,24 +7,27 @@
 
 namespace podm {
 
-namespace {
-
-constexpr double kRounding = 1e-6;  // more than a stored squared radius or a centre is off
-
-}  // namespace
-
-// A ball of radius r through a vertex of the zone lies within 2r of it.
-Zone::Zone(CubeSet own, const CubeSet& shared, const CubeSet& known, int rings)
-    : own_(std::move(own)), shared_(&shared), known_(known) {
-  const double sure_radius_mm = (1 - kRounding) * rings * known.grid().side_mm() / 2;
-  sure_squared_radius_ = static_cast<float>(sure_radius_mm * sure_radius_mm * (1 - kRounding));
+// A ball of radius r through a vertex of the zone lies within 2r of it. Stored radii are off by more than
+// centres.
+Zone::Zone(CubeSet own, const CubeSet& shared, CubeSet known, int rings)
+    : own_(std::move(own)), shared_(&shared), known_(std::move(known)), known_counts_(known_) {
+  const double sure_radius_mm = (1 - kStoredSphereTolerance) * rings * known_.grid().side_mm() / 2;
+  sure_squared_radius_ = static_cast<float>(sure_radius_mm * sure_radius_mm * (1 - kStoredSphereTolerance));
 }
 
-// Of one whose radius is not certified nothing is known.
 bool Zone::is_ball_known(const Cell& cell) const {
-  if (!known_) return true;
-  if (std::isnan(cell.squared_radius)) return false;
-  return known_->covers(cell.center, (1 + kRounding) * std::sqrt(static_cast<double>(cell.squared_radius)));
+  if (std::isnan(cell.squared_radius)) return known_.is_full();
+  return is_ball_known(cell.center,
+                       std::sqrt((1 + kStoredSphereTolerance) * static_cast<double>(cell.squared_radius)));
+}
+
+// Mostly the box around the ball is known, too.
+bool Zone::is_ball_known(const Point& center, double radius_mm) const {
+  const double r = radius_mm * (1 + kMargin);
+  const CubeGrid& grid = known_.grid();
+  return known_counts_.covers(grid.place_of(center - Vector{r, r, r}),
+                              grid.place_of(center + Vector{r, r, r})) ||
+         known_.covers(center, r);
 }
 
 template class Operation<ZoneLocks<NoLocks>>;

@@ -14,9 +14,8 @@
 // The inserted vertex has to lie in the zone too, so that a cube's vertices have one writer a round.
 #pragma once
 
-#include <limits>
-
 #include "delaunay/operation.h"
+
 #include "distributed/cubes.h"
 #include "refine/worker.h"
 
@@ -24,10 +23,9 @@ namespace podm {
 
 class Zone {
  public:
-  /// All of space is known. `shared` are cubes that several ranks may know, and must outlive the zone.
-  Zone(CubeSet own, const CubeSet& shared) : own_(std::move(own)), shared_(&shared) {}
-  /// `known` holds all cubes within `rings` of own ones.
-  Zone(CubeSet own, const CubeSet& shared, const CubeSet& known, int rings);
+  /// `known` holds all cubes within `rings` of own ones. `shared` are cubes that several ranks may know, and
+  /// must outlive the zone.
+  Zone(CubeSet own, const CubeSet& shared, CubeSet known, int rings);
 
   bool has(const Point& p) const { return own_.has(p); }
   bool is_shared(const Point& p) const { return shared_->has(p); }
@@ -37,12 +35,14 @@ class Zone {
   }
   /// Of any cell.
   bool is_ball_known(const Cell& cell) const;
+  bool is_ball_known(const Point& center, double radius_mm) const;
 
  private:
   CubeSet own_;
   const CubeSet* shared_;
-  std::optional<CubeSet> known_;                                        // none: all
-  float sure_squared_radius_ = std::numeric_limits<float>::infinity();  // mm^2: balls no larger are known
+  CubeSet known_;
+  CubeCounts known_counts_;
+  float sure_squared_radius_;  // mm^2: balls no larger are known
 };
 
 /// Locks confined to a zone; within it `Inner` locks.
