@@ -2,7 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
-#include <unordered_set>
+#include <map>
 
 #include "algorithms/leaf_size.h"
 #include "algorithms/podm_impl.h"
@@ -24,6 +24,11 @@ constexpr int kSharedRings = 8;
 constexpr double kKnownOverRadius = 2;
 // Cubes are so many bounds of a circumradius long.
 constexpr double kCubeOverRadius = 2;
+
+struct CubeCount {
+  CubeId cube;
+  std::uint32_t cells;
+};
 
 // A cell as other ranks know it.
 struct CellName {
@@ -109,7 +114,7 @@ class Rounds {
     const Update last_update = complete();
     return {.refinement = construction_.finish(),
             .grid = grid_,
-            .rank_of_cube = blocks_->ranks(),
+            .rank_of_cube = exchange_.writers(),
             .rounds = std::move(rounds_),
             .last_update = last_update};
   }
@@ -127,6 +132,7 @@ class Rounds {
   // Until nothing waits, or the run is over.
   void refine_in_rounds() {
     zone_of_ = blocks_->ranks();
+    load_.assign(static_cast<std::size_t>(ranks_.size()), 0);
     std::vector<CellName> here;  // what waits, and is to be refined here
     do {
       const auto round = static_cast<int>(rounds_.size());
@@ -168,7 +174,7 @@ class Rounds {
   CubeSet wanted(const CubeSet& own, const std::vector<CellName>& names) const {
     CubeSet wanted = own.grown(kKnownRings);
     for (const CellName& name : names) {
-      const Point center = sphere_of(name, construction_.mesh().extent()).center;
+      const Point center = center_of(name);
       if (own.has(center)) wanted.insert(center, kKnownOverRadius * distance(center, name.vertices[0]));
     }
     return wanted;
@@ -181,7 +187,7 @@ class Rounds {
     const Mesh& mesh = construction_.mesh();
     Construction::Entries entries;
     for (const CellName& name : names) {
-      const Point center = sphere_of(name, mesh.extent()).center;
+      const Point center = center_of(name);
       if (!zone.has(center)) {
         left.push_back(name);
       } else if (const auto cell = exchange_.find_cell(name.vertices)) {
@@ -245,24 +251,41 @@ class Rounds {
     report.deferred = sums[0];
     is_over_ = sums[1] > 0;
     if (report.deferred == 0 || is_over_) return {};
-    std::vector<CubeId> cube_of_left;
-    CubeSet around(grid_), waiting(grid_);
-    for (const CellName& name : left) {
-      const Point center = sphere_of(name, construction_.mesh().extent()).center;
-      cube_of_left.push_back(grid_.cube_at(center));
-      around.insert(center, reach_over_radius(round + 1) * distance(center, name.vertices[0]));
-    }
-    Bytes message;
-    append(message, around.cubes());
-    for (const Bytes& told : ranks_.all_gather(std::move(message)))
-      for (const CubeId cube : MessageReader(told).read<CubeId>()) waiting.insert(cube);
-    zone_of_ = zones_of_round(round + 1, *blocks_, waiting.grown(1));
+    const CubeSet waiting = share_waiting(round + 1, left);
+    zone_of_ = zones_of_round(round + 1, *blocks_, waiting.grown(1), num_waiting_, load_);
     std::vector<std::vector<CellName>> names(static_cast<std::size_t>(ranks_.size()));
     for (std::size_t i = 0; i < left.size(); ++i) {
-      const int rank = zone_of_[cube_of_left[i]];
+      const int rank = zone_of_[grid_.cube_at(center_of(left[i]))];
       names[static_cast<std::size_t>(rank == kNobody ? ranks_.rank() : rank)].push_back(left[i]);
     }
     return exchanged(names);
+  }
+
+  // The cubes for which cells of all ranks ask; num_waiting_ are the cells with their centres there.
+  CubeSet share_waiting(int round, const std::vector<CellName>& left) {
+    std::map<CubeId, std::uint32_t> here;  // cells by cube
+    CubeSet around(grid_), waiting(grid_);
+    for (const CellName& name : left) {
+      const Point center = center_of(name);
+      ++here[grid_.cube_at(center)];
+      around.insert(center, reach_over_radius(round) * distance(center, name.vertices[0]));
+    }
+    Bytes message;
+    std::vector<CubeCount> counts;
+    for (const auto& [cube, cells] : here) counts.push_back({cube, cells});
+    append(message, around.cubes());
+    append(message, counts);
+    num_waiting_.assign(grid_.num_cubes(), 0);
+    for (const Bytes& told : ranks_.all_gather(std::move(message))) {
+      MessageReader reader(told);
+      for (const CubeId cube : reader.read<CubeId>()) waiting.insert(cube);
+      for (const auto& [cube, cells] : reader.read<CubeCount>()) num_waiting_[cube] += cells;
+    }
+    return waiting;
+  }
+
+  Point center_of(const CellName& name) const {
+    return sphere_of(name, construction_.mesh().extent()).center;
   }
 
   std::vector<CellName> exchanged(const std::vector<std::vector<CellName>>& names) {
@@ -278,21 +301,22 @@ class Rounds {
     return here;
   }
 
-  // Learns what others have changed until every cell with a vertex in the block is one of the whole.
+  // Learns what others have changed until every cell with a vertex in what this rank wrote last is one of the
+  // whole.
   Update complete() {
     const Mesh& mesh = construction_.mesh();
-    const CubeSet block = cubes_of(ranks_.rank(), blocks_->ranks());
-    CubeSet wanted = block.grown(kKnownRings);
+    const CubeSet own = cubes_of(ranks_.rank(), exchange_.writers());
+    CubeSet wanted = own.grown(kKnownRings);
     Update sum;
     for (;;) {
       sum += exchange_.update(wanted);
-      const Zone zone(block, *shared_, exchange_.known(), kKnownRings);
+      const Zone zone(own, *shared_, exchange_.known(), kKnownRings);
       std::array<std::uint64_t, 1> more{0};
       for (CellId c = 0; c < mesh.cell_bound(); ++c) {
         const Cell& cell = mesh.cell(c);
         if (!cell.is_alive() || zone.knows(cell)) continue;
         if (std::none_of(cell.vertices.begin(), cell.vertices.end(),
-                         [&](VertexId v) { return block.has(mesh.point(v)); }))
+                         [&](VertexId v) { return own.has(mesh.point(v)); }))
           continue;
         wanted.insert(cell.center, distance(cell.center, mesh.point(cell.vertices[0])) * (1 + kMargin));
         ++more[0];
@@ -312,7 +336,9 @@ class Rounds {
   VertexExchange exchange_;
   std::optional<Blocks> blocks_;
   std::optional<CubeSet> shared_;
-  std::vector<int> zone_of_;  // by cube: the rank of the zone that it is in, or kNobody
+  std::vector<int> zone_of_;                // by cube: the rank of the zone that it is in, or kNobody
+  std::vector<std::uint32_t> num_waiting_;  // by cube: cells, on all ranks, before the round
+  std::vector<std::uint64_t> load_;         // by rank: cells that waited for it
   std::vector<RoundReport> rounds_;
   bool is_over_ = false;  // on all ranks
 };

@@ -31,8 +31,11 @@ class VertexExchange {
   /// All ranks have the same mesh.
   VertexExchange(Communication& ranks, Mesh& mesh, Pool& pool, const CubeGrid& grid);
 
-  /// In the round that has ended the cube's writer was that rank, whose copy is the right one.
+  /// From now on that rank has the cube's vertices as they are; all ranks have, until the first writer
+  /// changes them.
   void note_writer(CubeId cube, int rank);
+  /// By cube.
+  std::vector<int> writers() const;
   /// Cubes of which this rank has all vertices as they are.
   CubeSet known() const;
   /// Brings the vertices in these cubes up to date: collective, each rank names its own cubes.

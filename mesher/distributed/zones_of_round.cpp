@@ -60,30 +60,40 @@ std::vector<std::size_t> zones_of_edges(const Blocks& blocks, const CubeSet& wai
 
 struct ZoneSize {
   std::map<int, std::size_t> cubes_of_block;
-  std::size_t cubes = 0;
+  std::size_t cubes = 0, cells = 0;
 };
 
-// The largest zone first, each to the rank whose block is in it that has the least by then, but not to one
-// that has little of it.
-std::vector<int> ranks_of(const std::vector<ZoneSize>& zones, int num_ranks) {
+// Blocks that have their part of a zone; if none has, the first in it.
+std::vector<int> candidates(const ZoneSize& zone) {
   constexpr double kLeastShare = 0.2;
-  std::vector<std::size_t> order(zones.size());
-  for (std::size_t i = 0; i < order.size(); ++i) order[i] = i;
-  std::stable_sort(order.begin(), order.end(),
-                   [&](std::size_t a, std::size_t b) { return zones[a].cubes > zones[b].cubes; });
-  std::vector<int> rank_of(zones.size(), kNobody);
-  std::vector<std::size_t> load(static_cast<std::size_t>(num_ranks));
-  for (const std::size_t i : order) {
-    const ZoneSize& zone = zones[i];
-    int& rank = rank_of[i];
-    for (const auto& [block, cubes] : zone.cubes_of_block) {
-      const double share = static_cast<double>(cubes) / static_cast<double>(zone.cubes);
-      const bool has_least =
-          rank == kNobody || load[static_cast<std::size_t>(block)] < load[static_cast<std::size_t>(rank)];
-      if (share >= kLeastShare && has_least) rank = block;
+  std::vector<int> blocks;
+  for (const auto& [block, cubes] : zone.cubes_of_block)
+    if (static_cast<double>(cubes) >= kLeastShare * static_cast<double>(zone.cubes)) blocks.push_back(block);
+  if (blocks.empty()) blocks.push_back(zone.cubes_of_block.begin()->first);
+  return blocks;
+}
+
+// Zones move to ranks that would then have less than theirs has now, as long as there are such: each move
+// lessens the sum of squares of what ranks have. `load` is what they had before, in cells, and becomes what
+// they have.
+std::vector<int> ranks_of(const std::vector<ZoneSize>& zones, std::vector<std::uint64_t>& load) {
+  const auto of = [&](int rank) -> std::uint64_t& { return load[static_cast<std::size_t>(rank)]; };
+  std::vector<int> rank_of;
+  for (const ZoneSize& zone : zones) {
+    rank_of.push_back(candidates(zone).front());
+    of(rank_of.back()) += zone.cells;
+  }
+  for (bool has_moved = true; has_moved;) {
+    has_moved = false;
+    for (std::size_t i = 0; i < zones.size(); ++i) {
+      for (const int rank : candidates(zones[i])) {
+        if (of(rank) + zones[i].cells >= of(rank_of[i])) continue;
+        of(rank_of[i]) -= zones[i].cells;
+        of(rank) += zones[i].cells;
+        rank_of[i] = rank;
+        has_moved = true;
+      }
     }
-    if (rank == kNobody) rank = zone.cubes_of_block.begin()->first;
-    load[static_cast<std::size_t>(rank)] += zone.cubes;
   }
   return rank_of;
 }
@@ -92,7 +102,9 @@ std::vector<int> ranks_of(const std::vector<ZoneSize>& zones, int num_ranks) {
 
 double reach_over_radius(int round) { return round < 2 ? 0 : std::exp2(round - 2); }
 
-std::vector<int> zones_of_round(int round, const Blocks& blocks, const CubeSet& waiting) {
+std::vector<int> zones_of_round(int round, const Blocks& blocks, const CubeSet& waiting,
+                                const std::vector<std::uint32_t>& num_cells,
+                                std::vector<std::uint64_t>& load) {
   const std::vector<std::size_t> zone_of = round == 1   ? zones_near_two(blocks, waiting)
                                            : round == 2 ? zones_of_edges(blocks, waiting)
                                                         : connected_zones(waiting);
@@ -102,8 +114,9 @@ std::vector<int> zones_of_round(int round, const Blocks& blocks, const CubeSet& 
     zones.resize(std::max(zones.size(), zone_of[cube] + 1));
     ++zones[zone_of[cube]].cubes_of_block[blocks.of(cube)];
     ++zones[zone_of[cube]].cubes;
+    zones[zone_of[cube]].cells += num_cells[cube];
   }
-  const std::vector<int> rank_of = ranks_of(zones, blocks.number());
+  const std::vector<int> rank_of = ranks_of(zones, load);
   std::vector<int> rank_of_cube;
   for (const std::size_t zone : zone_of) rank_of_cube.push_back(zone == kNoZone ? kNobody : rank_of[zone]);
   return rank_of_cube;

@@ -21,7 +21,10 @@ inline constexpr int kNobody = -1;
 double reach_over_radius(int round);
 
 /// The rank of every cube's zone, or kNobody. `waiting` are the cubes that deferred cells ask for, and those
-/// around.
-std::vector<int> zones_of_round(int round, const Blocks& blocks, const CubeSet& waiting);
+/// around; `num_cells`, by cube, how many there are. `load`: the cells that each rank had in earlier rounds;
+/// this one's are added.
+std::vector<int> zones_of_round(int round, const Blocks& blocks, const CubeSet& waiting,
+                                const std::vector<std::uint32_t>& num_cells,
+                                std::vector<std::uint64_t>& load);
 
 }  // namespace podm
