@@ -107,6 +107,7 @@ class Rounds {
 
   DistributedRefinement operator()() {
     refine_anywhere(construction_, "initial", levels_.initial, construction_.all_cells(), 1);
+    if (is_over_anywhere()) return all_of_first_rank();
     for (const auto& entry : construction_.all_cells()) construction_.mesh().make_canonical(entry.cell);
     blocks_.emplace(grid_, predicted_cells(construction_.mesh(), problem_, grid_), ranks_.size());
     shared_.emplace(blocks_->near_others(kSharedRings));
@@ -120,6 +121,21 @@ class Rounds {
   }
 
  private:
+  bool is_over_anywhere() {
+    std::array<std::uint64_t, 1> num_over{stop_.is_over() ? 1u : 0u};
+    ranks_.sum(num_over);
+    return num_over[0] > 0;
+  }
+
+  // Coarse meshes that were not finished differ.
+  DistributedRefinement all_of_first_rank() {
+    return {.refinement = construction_.finish(),
+            .grid = grid_,
+            .rank_of_cube = std::vector<int>(grid_.num_cubes(), 0),
+            .rounds = {},
+            .last_update = {}};
+  }
+
   // A cell is its rank's whose block has its least vertex.
   bool is_own(const Cell& cell) const {
     const Mesh& mesh = construction_.mesh();
@@ -246,10 +262,10 @@ class Rounds {
 
   // All ranks learn where cells wait, divide space around them, and get those of their zones.
   std::vector<CellName> plan_next(int round, const std::vector<CellName>& left, RoundReport& report) {
-    std::array<std::uint64_t, 2> sums{left.size(), stop_.is_over() ? 1u : 0u};
-    ranks_.sum(sums);
-    report.deferred = sums[0];
-    is_over_ = sums[1] > 0;
+    std::array<std::uint64_t, 1> num_left{left.size()};
+    ranks_.sum(num_left);
+    report.deferred = num_left[0];
+    is_over_ = is_over_anywhere();
     if (report.deferred == 0 || is_over_) return {};
     const CubeSet waiting = share_waiting(round + 1, left);
     zone_of_ = zones_of_round(round + 1, *blocks_, waiting.grown(1), num_waiting_, load_);

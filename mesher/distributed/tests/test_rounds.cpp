@@ -28,7 +28,8 @@ struct Case {
 
 class Ranks {
  public:
-  explicit Ranks(const Case& of, std::uint64_t seed = 1) : case_(of), isosurface_(of.image, 1) {
+  explicit Ranks(const Case& of, std::uint64_t seed = 1, const Limits& limits = {})
+      : case_(of), isosurface_(of.image, 1) {
     refined.resize(static_cast<std::size_t>(of.num_ranks));
     pieces.resize(refined.size());
     sizes_.radius_mm = of.radius_mm;
@@ -40,7 +41,7 @@ class Ranks {
                             .cell_capacity = 1 << 22});
     run_ranks({.num_ranks = of.num_ranks, .one_at_a_time = true, .seed = seed}, [&](Communication& ranks) {
       const Team team{.coordination = {.num_workers = of.threads}};
-      StopControl stop({}, {}, [](std::uint64_t) {});
+      StopControl stop(limits, {}, [](std::uint64_t) {});
       const auto rank = static_cast<std::size_t>(ranks.rank());
       refined[rank].emplace(podm_distributed(*problem, team, of.initial_ratio, ranks, stop));
     });
@@ -122,6 +123,24 @@ TEST_P(Rounds, EveryRankHasItsPartOfOneMeshThatIsDone) {
     EXPECT_EQ(ranks.cells_at_block(part, rank), ranks.cells_at_block(*whole, rank)) << "rank " << rank;
   }
   EXPECT_EQ(ranks.insertions_left(*whole), 0u);
+}
+
+TEST(RoundsThatStop, LeaveAMeshAllTheSame) {
+  const Case of{"", ball(24, 9), 1.2, 0, 3};
+  for (const std::uint64_t most_cells : {1000u, 4000u}) {  // in the coarse mesh, and in the first round
+    Ranks ranks(of, 1, {.max_elements = most_cells});
+    std::uint64_t insertions = 0;
+    for (int rank = 0; rank < 3; ++rank) {
+      const auto& refined = *ranks.refined[static_cast<std::size_t>(rank)];
+      EXPECT_TRUE(is_valid(*refined.refinement.mesh));
+      insertions += refined.refinement.counters.cells_created;
+    }
+    const std::unique_ptr<Mesh> whole = ranks.whole();
+    EXPECT_TRUE(is_valid(*whole));
+    EXPECT_GT(whole->num_cells(), 6u);
+    EXPECT_GT(insertions, 0u);
+    EXPECT_GT(ranks.insertions_left(*whole), 0u);
+  }
 }
 
 LabelImage image_named(const std::string& name) {
