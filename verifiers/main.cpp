@@ -53,7 +53,7 @@ CLI::Validator angle() {
 
 void declare_inputs(CLI::App& app, Command& command) {
   Options& options = command.options;
-  app.add_option("MESH", options.mesh_path, "VTU, legacy VTK, Medit, Gmsh 2.2 or 4.1, TetGen; also .gz")
+  app.add_option("MESH", options.mesh_path, "VTU, PVTU, legacy VTK, Medit, Gmsh 2.2 or 4.1, TetGen; also .gz")
       ->option_text(" ")
       ->required();
   app.option_defaults()->group("Inputs");

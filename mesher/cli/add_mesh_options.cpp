@@ -125,7 +125,8 @@ void add_mesh_command(CLI::App& program, MeshCommand& command) {
   add_sizing_options(app, command);
   add_limit_options(app, command);
   begin_group(app, "Output");
-  require(add_one(app, "-o,--output", "MESH", "mesh file: .vtu, .mesh (medit) or .msh (Gmsh 4.1) [required]",
+  require(add_one(app, "-o,--output", "MESH",
+                  "mesh file: .vtu, .mesh (medit), .msh (Gmsh 4.1) or .xdmf [required]",
                   into(command.mesh_path)));
   add_one(app, "--surface", "FILE", "also the closed surface of each label: .stl or .ply [default: none]",
           into(command.surface_path));

@@ -46,7 +46,7 @@ void check_outputs(const MeshCommand& command) {
                                    command.schedule_path, to_string(algorithm)));
     const AtomicFile trial(command.schedule_path);
   }
-  if (command.verify) check_verifier();
+  if (command.verify) check_verifier(command.mesh_path);
 }
 
 // Once refinement has begun there is a mesh to keep.

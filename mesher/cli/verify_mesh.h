@@ -10,7 +10,7 @@
 namespace podm::cli {
 
 /// Throws InputError where there is no podm-verify that can be run.
-void check_verifier();
+void check_verifier(const std::string& mesh_path);
 
 /// Runs the podm-verify beside this program on the mesh that `run` wrote: all claims but fidelity, which is
 /// promised only for cells about as small as voxels. The image goes with it as it is in its file, with the

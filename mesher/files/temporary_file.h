@@ -23,6 +23,8 @@ class TemporaryFile {
   TemporaryFile& operator=(const TemporaryFile&) = delete;
 
   int descriptor() const { return temporary_.descriptor; }
+  /// Where the bytes are until publish(), for a writer that wants a name.
+  const std::string& temporary_path() const { return temporary_.path; }
   void write(const char* bytes, std::size_t size);
   /// Brings the bytes to the disk. Nothing may be written afterwards.
   void finish();

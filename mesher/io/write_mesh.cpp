@@ -18,15 +18,15 @@ struct MeshFormat {
   void (*write)(const TetMesh&, const std::string&);
 };
 
-const std::array<MeshFormat, 3> kMeshFormats{
-    {{".vtu", write_vtu}, {".mesh", write_medit}, {".msh", write_gmsh}}};
+const std::array<MeshFormat, 4> kMeshFormats{
+    {{".vtu", write_vtu}, {".mesh", write_medit}, {".msh", write_gmsh}, {".xdmf", write_xdmf}}};
 
 const MeshFormat& mesh_format_of(const std::string& path) {
   const std::string extension = std::filesystem::path(path).extension().string();
   for (const MeshFormat& format : kMeshFormats)
     if (extension == format.extension) return format;
-  throw InputError(fmt::format("cannot write {}: unknown mesh extension '{}', expected .vtu, .mesh or .msh",
-                               path, extension));
+  throw InputError(fmt::format(
+      "cannot write {}: unknown mesh extension '{}', expected .vtu, .mesh, .msh or .xdmf", path, extension));
 }
 
 }  // namespace

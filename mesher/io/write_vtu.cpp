@@ -14,6 +14,8 @@
 #include "io/label_table.h"
 #include "io/mesh_formats.h"
 #include "io/vertex_subset.h"
+#include "io/write_vtu.h"
+#include "io/xml_text.h"
 
 namespace podm {
 namespace {
@@ -65,6 +67,7 @@ VtuArray make_id_array(const std::string& name, std::size_t count, bool wide, Va
 
 struct VtuGrid {
   std::size_t num_points = 0, num_cells = 0;
+  std::string point_attributes;                                // what VTK shall know of arrays of the points
   std::vector<VtuArray> point_data, cell_data, points, cells;  // the sections, in the file's order
 };
 
@@ -77,21 +80,6 @@ void add_cells(std::size_t count, int vertices_a_cell, int cell_type, bool wide,
   }));
   grid.cells.push_back(
       make_array<std::uint8_t>("UInt8", "types", count, [cell_type](std::size_t) { return cell_type; }));
-}
-
-std::string xml_escaped(const std::string& text) {  // LabelNames leaves no quotes
-  std::string escaped;
-  for (const char c : text) {
-    if (c == '&')
-      escaped += "&amp;";
-    else if (c == '<')
-      escaped += "&lt;";
-    else if (c == '>')  // VTK takes a bare one for the end of the element
-      escaped += "&gt;";
-    else
-      escaped += c;
-  }
-  return escaped;
 }
 
 // One number an array, the text in its name: string arrays, which VTK knows, make meshio refuse the file.
@@ -118,8 +106,9 @@ void write_grid(AtomicFile& file, const VtuGrid& grid, const std::string& field_
   file.write(
       fmt::format("<Piece NumberOfPoints=\"{}\" NumberOfCells=\"{}\">\n", grid.num_points, grid.num_cells));
   std::uint64_t offset = 0;
-  const auto declare = [&](const std::string& section, const std::vector<VtuArray>& arrays) {
-    file.write("<" + section + ">\n");
+  const auto declare = [&](const std::string& section, const std::vector<VtuArray>& arrays,
+                           const std::string& attributes = {}) {
+    file.write("<" + section + attributes + ">\n");
     for (const VtuArray& array : arrays) {
       file.write(
           fmt::format("<DataArray {} format=\"appended\" offset=\"{}\"/>\n", array.declaration, offset));
@@ -127,7 +116,7 @@ void write_grid(AtomicFile& file, const VtuGrid& grid, const std::string& field_
     }
     file.write("</" + section + ">\n");
   };
-  declare("PointData", grid.point_data);
+  declare("PointData", grid.point_data, grid.point_attributes);
   declare("CellData", grid.cell_data);
   declare("Points", grid.points);
   declare("Cells", grid.cells);
@@ -180,20 +169,46 @@ VtuGrid facet_grid(const TetMesh& mesh, const VertexSubset& subset) {
   return grid;
 }
 
+// The number of each point in the whole mesh, as VTK's filters know it.
+template <class IdAt>
+void add_global_ids(std::size_t num_points, IdAt id_at, VtuGrid& grid) {
+  grid.point_attributes = fmt::format(" GlobalIds=\"{}\"", kGlobalIds);
+  grid.point_data.push_back(make_array<std::int64_t>("Int64", kGlobalIds, num_points, id_at));
+}
+
 }  // namespace
 
-void write_vtu(const TetMesh& mesh, const std::string& path) {
-  const std::filesystem::path cells_path(path);
-  const auto facets_path = cells_path.parent_path() / (cells_path.stem().string() + "_facets.vtu");
+std::string facets_path_of(const std::string& path) {
+  const std::filesystem::path cells(path);
+  return (cells.parent_path() / (cells.stem().string() + "_facets" + cells.extension().string())).string();
+}
+
+std::deque<AtomicFile> write_vtu_aside(const TetMesh& mesh, const std::vector<std::uint64_t>* vertex_ids,
+                                       const std::string& path) {
   std::deque<AtomicFile> files;
   files.emplace_back(path);
-  files.emplace_back(facets_path.string());
-
+  files.emplace_back(facets_path_of(path));
   const std::string labels_and_space = field_data(mesh);
-  write_grid(files[0], cell_grid(mesh), labels_and_space);
+
+  VtuGrid cells = cell_grid(mesh);
+  if (vertex_ids)
+    add_global_ids(
+        cells.num_points, [=](std::size_t i) { return (*vertex_ids)[i]; }, cells);
+  write_grid(files[0], cells, labels_and_space);
+
   VertexSubset subset(mesh.vertices.size());
   subset.assign(mesh.facets);
-  write_grid(files[1], facet_grid(mesh, subset), labels_and_space);
+  VtuGrid facets = facet_grid(mesh, subset);
+  if (vertex_ids) {
+    const auto id_at = [&](std::size_t i) { return (*vertex_ids)[subset.vertices()[i]]; };
+    add_global_ids(facets.num_points, id_at, facets);
+  }
+  write_grid(files[1], facets, labels_and_space);
+  return files;
+}
+
+void write_vtu(const TetMesh& mesh, const std::string& path) {
+  std::deque<AtomicFile> files = write_vtu_aside(mesh, nullptr, path);
   publish_together(files);
 }
 

@@ -17,6 +17,7 @@ from podm_process import PROGRAM, TIMEOUT_S, PodmTestCase, run_podm
 BALL = small_images.ball_voxels(12)
 # Options that add an output to those of `podm mesh IMAGE`, and its name.
 OUTPUTS = [*((["-o", f"out.{extension}"], f"out.{extension}") for extension in ("vtu", "mesh", "msh")),
+           (["-o", "out.xdmf"], "out.h5"),
            *((["--surface", f"s.{extension}"], f"s_1.{extension}") for extension in ("stl", "ply")),
            (["--log", "run.log"], "run.log"),
            (["--algorithm", "pdr", "--leaf-size", "1", "--schedule", "leaves.jsonl"], "leaves.jsonl"),
@@ -109,7 +110,7 @@ class SmallDisk(PodmTestCase):
     def test_every_output_keeps_the_older_file(self):
         for options, name in OUTPUTS:
             mesh = [] if "-o" in options else ["-o", self.folder / "mesh.vtu"]
-            names = ["out.vtu", "out_facets.vtu"] if name == "out.vtu" else [name]
+            names = {"out.vtu": ["out.vtu", "out_facets.vtu"], "out.h5": ["out.xdmf", "out.h5"]}.get(name, [name])
             for room in 0, 4096:
                 if room > 0 and name == "runs.jsonl":
                     continue  # a line is shorter

@@ -10,6 +10,9 @@ Mesh read_vtu(const MeshFile& file);
 /// Adds to `mesh` the facets of the file that our mesher writes beside the one of the cells: triangles of
 /// points of its own, the point array "vertex" telling which vertex of the mesh each is.
 void read_vtu_facets(const MeshFile& file, Mesh& mesh);
+/// A mesh in pieces; both read the VTU files that the index names.
+Mesh read_pvtu(const MeshFile& index);
+void read_pvtu_facets(const MeshFile& index, Mesh& mesh);
 Mesh read_legacy_vtk(const MeshFile& file);
 Mesh read_medit(const MeshFile& file);
 Mesh read_medit_binary(const MeshFile& file);

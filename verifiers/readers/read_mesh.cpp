@@ -55,6 +55,14 @@ Mesh read_vtu_with_facets(const MeshPath& path, const MeshFile& file) {
   return mesh;
 }
 
+Mesh read_pvtu_with_facets(const MeshPath& path, const MeshFile& index) {
+  Mesh mesh = read_pvtu(index);
+  mesh.path = index.path();
+  if (const auto facets = path.beside("_facets.pvtu"); facets && mesh.facets.empty())
+    read_pvtu_facets(MeshFile(*facets), mesh);
+  return mesh;
+}
+
 Mesh read_tetgen_files(const MeshPath& path, const MeshFile& file) {
   const bool is_nodes = path.extension == ".node";
   const std::string missing = is_nodes ? ".ele" : ".node";
@@ -69,6 +77,7 @@ Mesh read_tetgen_files(const MeshPath& path, const MeshFile& file) {
 
 Mesh read_format(const MeshPath& path, const MeshFile& file) {
   if (path.extension == ".vtu") return read_vtu_with_facets(path, file);
+  if (path.extension == ".pvtu") return read_pvtu_with_facets(path, file);
   if (path.extension == ".vtk") return read_legacy_vtk(file);
   if (path.extension == ".mesh") return read_medit(file);
   if (path.extension == ".meshb") return read_medit_binary(file);
@@ -77,10 +86,10 @@ Mesh read_format(const MeshPath& path, const MeshFile& file) {
 }
 
 void check_extension(const std::string& path, const std::string& extension) {
-  for (const char* known : {".vtu", ".vtk", ".mesh", ".meshb", ".msh", ".node", ".ele"})
+  for (const char* known : {".vtu", ".pvtu", ".vtk", ".mesh", ".meshb", ".msh", ".node", ".ele"})
     if (extension == known) return;
   throw InputError(
-      fmt::format("{}: no mesh format is called '{}'; known: .vtu, .vtk, .mesh, .meshb, .msh, "
+      fmt::format("{}: no mesh format is called '{}'; known: .vtu, .pvtu, .vtk, .mesh, .meshb, .msh, "
                   ".node, .ele, and each with .gz",
                   path, extension));
 }

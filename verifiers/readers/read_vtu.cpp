@@ -9,6 +9,7 @@
 #include "readers/mesh_parts.h"
 #include "readers/vtk_cells.h"
 #include "readers/vtu_document.h"
+#include "readers/vtu_grid.h"
 
 namespace podm::verify {
 namespace {
@@ -84,50 +85,102 @@ void assemble(const MeshFile& file, VtuDocument& document, Mesh& mesh) {
     assembler.append(load_piece(file, document, piece), document.pieces.size() == 1);
 }
 
-// The vertices of the mesh that the facets' own points are; one that is elsewhere shows that the two files do
-// not belong together.
-std::vector<VertexId> match_points(const MeshFile& file, VtuDocument& document,
-                                   const std::vector<Point>& points, const Mesh& mesh) {
-  std::vector<VertexId> vertices;
+// Of every piece in the file's order, as the assembler appends their points.
+void read_point_ids(const MeshFile& file, VtuDocument& document, const char* name, VtuGrid& grid) {
   for (const VtuPiece& piece : document.pieces) {
     if (piece.num_points == 0) continue;
-    const VtuArray& array = need_array(file, piece, piece.point_data, "vertex");
+    const VtuArray& array = need_array(file, piece, piece.point_data, name);
     const NumberArray ids = load_vtu_array(file, document, array, piece.num_points);
-    for (std::size_t i = 0; i < ids.size(); ++i) {
-      const VertexId vertex = vertex_id(ids.integer(i));
-      using Bits = std::array<std::uint64_t, 3>;  // equal even where coordinates are NaN
-      if (vertex >= mesh.vertices.size() ||
-          std::bit_cast<Bits>(mesh.vertices[vertex]) != std::bit_cast<Bits>(points[vertices.size()])) {
-        file.refuse(array.place(),
-                    fmt::format("point {} is not at a vertex of {}: the files do not belong together",
-                                vertices.size(), mesh.path));
-      }
-      vertices.push_back(vertex);
-    }
+    make_room(grid.point_ids, ids.size());
+    for (std::size_t i = 0; i < ids.size(); ++i) grid.point_ids.push_back(vertex_id(ids.integer(i)));
+    grid.ids_place = array.place();
   }
-  return vertices;
+}
+
+template <std::size_t N>
+void append_corners(const std::vector<std::array<VertexId, N>>& corners,
+                    const std::vector<VertexId>& vertex_of, std::vector<std::array<VertexId, N>>& all) {
+  make_room(all, corners.size());
+  for (std::array<VertexId, N> ids : corners) {
+    for (VertexId& id : ids) id = id < vertex_of.size() ? vertex_of[id] : kNone;
+    all.push_back(ids);
+  }
+}
+
+template <class Label>
+void append_labels(const std::vector<Label>& labels, std::vector<Label>& all) {
+  make_room(all, labels.size());
+  all.insert(all.end(), labels.begin(), labels.end());
 }
 
 }  // namespace
 
-Mesh read_vtu(const MeshFile& file) {
+VtuGrid read_vtu_grid(const MeshFile& file, const char* id_array) {
   VtuDocument document = parse_vtu(file);
-  Mesh mesh;
-  mesh.format = describe(document);
-  read_field_data(file, document, mesh);
-  assemble(file, document, mesh);
-  return mesh;
+  VtuGrid grid;
+  grid.mesh.format = describe(document);
+  read_field_data(file, document, grid.mesh);
+  assemble(file, document, grid.mesh);
+  if (id_array != nullptr) read_point_ids(file, document, id_array, grid);
+  return grid;
 }
 
-void read_vtu_facets(const MeshFile& file, Mesh& mesh) {
+std::uint64_t count_vtu_points(const MeshFile& file) {
   VtuDocument document = parse_vtu(file);
-  Mesh surface;
-  assemble(file, document, surface);
-  const std::vector<VertexId> vertices = match_points(file, document, surface.vertices, mesh);
-  mesh.facets = std::move(surface.facets);
-  for (auto& facet : mesh.facets)
-    for (VertexId& vertex : facet) vertex = vertex < vertices.size() ? vertices[vertex] : kNone;
-  mesh.facet_labels = std::move(surface.facet_labels);
+  std::uint64_t count = 0;
+  for (const VtuPiece& piece : document.pieces) {
+    check_counts(file, piece_place(piece), piece.num_points, piece.num_cells);
+    if (piece.points.empty()) continue;
+    load_vtu_array(file, document, piece.points.front(), 3 * piece.num_points);
+    count += piece.num_points;
+  }
+  return count;
+}
+
+bool is_same_point(const Point& a, const Point& b) {
+  using Bits = std::array<std::uint64_t, 3>;
+  return std::bit_cast<Bits>(a) == std::bit_cast<Bits>(b);
+}
+
+void check_points(const MeshFile& file, const VtuGrid& grid, const Mesh& mesh) {
+  for (std::size_t i = 0; i < grid.point_ids.size(); ++i) {
+    const VertexId vertex = grid.point_ids[i];
+    if (vertex < mesh.vertices.size() && is_same_point(mesh.vertices[vertex], grid.mesh.vertices[i]))
+      continue;
+    file.refuse(
+        grid.ids_place,
+        fmt::format("point {} is not at a vertex of {}: the files do not belong together", i, mesh.path));
+  }
+}
+
+void append_cells(const MeshFile& file, const VtuGrid& grid, const std::vector<VertexId>& vertex_of,
+                  Mesh& mesh) {
+  if (grid.mesh.cells.empty()) return;
+  check_counts(file, "CellData", mesh.vertices.size(), mesh.cells.size() + grid.mesh.cells.size());
+  if (mesh.cells.empty()) mesh.cell_label_array = grid.mesh.cell_label_array;
+  if (grid.mesh.cell_label_array != mesh.cell_label_array) {
+    file.refuse("CellData", fmt::format("cell labels in array '{}', in the pieces before in '{}'",
+                                        grid.mesh.cell_label_array, mesh.cell_label_array));
+  }
+  append_corners(grid.mesh.cells, vertex_of, mesh.cells);
+  append_labels(grid.mesh.cell_labels, mesh.cell_labels);
+}
+
+void append_facets(const MeshFile& file, const VtuGrid& grid, const std::vector<VertexId>& vertex_of,
+                   Mesh& mesh) {
+  if (grid.mesh.facets.empty()) return;
+  if (!mesh.facets.empty() && mesh.facet_labels.empty() != grid.mesh.facet_labels.empty())
+    file.refuse("CellData", "label_a and label_b are not in all pieces that have triangles");
+  append_corners(grid.mesh.facets, vertex_of, mesh.facets);
+  append_labels(grid.mesh.facet_labels, mesh.facet_labels);
+}
+
+Mesh read_vtu(const MeshFile& file) { return read_vtu_grid(file, nullptr).mesh; }
+
+void read_vtu_facets(const MeshFile& file, Mesh& mesh) {
+  VtuGrid surface = read_vtu_grid(file, "vertex");
+  check_points(file, surface, mesh);
+  append_facets(file, surface, surface.point_ids, mesh);
 }
 
 }  // namespace podm::verify

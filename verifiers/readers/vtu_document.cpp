@@ -151,7 +151,7 @@ class VtuParser {
     if (section == "Points") return &piece.points;
     if (section == "Cells") return &piece.cells;
     if (section == "CellData") return is_facet_or_cell_label(name) ? &piece.cell_data : nullptr;
-    if (section == "PointData") return name == "vertex" ? &piece.point_data : nullptr;
+    if (section == "PointData") return name == "vertex" || name == kGlobalIds ? &piece.point_data : nullptr;
     return nullptr;
   }
 

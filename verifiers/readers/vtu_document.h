@@ -12,6 +12,9 @@
 
 namespace podm::verify {
 
+/// The point array that numbers a piece's points in the whole mesh, as VTK's filters call it.
+inline constexpr const char* kGlobalIds = "GlobalNodeIds";
+
 struct VtuArray {
   std::string name;
   NumberType type = NumberType::kUInt8;

@@ -15,7 +15,7 @@ from mutants import OPERATORS, Workshop
 
 def run(verifier, case, claim, folder):
     """Exit code and verdict of the claim (None without a report), and its warnings."""
-    mesh, report = folder / "case.mesh", folder / "report.json"
+    mesh, report = folder / f"case{getattr(case.mesh, 'extension', '.mesh')}", folder / "report.json"
     report.unlink(missing_ok=True)
     if isinstance(case.mesh, str):
         mesh.write_text(case.mesh)

@@ -12,6 +12,7 @@ import subprocess
 import numpy as np
 
 from medit_mesh import MeditMesh, kuhn_cubes, read_medit, signed_volumes
+from pvtu_mesh import MeshInPieces
 
 OPERATORS = []
 
@@ -27,7 +28,7 @@ def operator(claim, exit_code=1):
 @dataclasses.dataclass
 class Case:
     """What podm-verify is run on."""
-    mesh: object  # a MeditMesh, or text
+    mesh: object  # a MeditMesh, a MeshInPieces, or text
     options: list = dataclasses.field(default_factory=list)
     digits: int = 17
     warnings: int = 0  # that the claim must report
@@ -573,3 +574,53 @@ def truncated_file(shop):
     shop.base.write(path)
     text = path.read_text()
     return Mutant(Case(text[:2 * len(text) // 3]), Case(shop.base))
+
+
+@operator("structure")
+def cell_in_two_pieces(shop):
+    """a cell in two of three pieces of a mesh; harmless: in one"""
+    mesh, apart = MeshInPieces(shop.base, 3), MeshInPieces(shop.base, 3)
+    first, second = mesh.pieces[:2]
+    known = set(second.ids)
+    cell = next(cell for cell in first.cells if sum(first.ids[v] in known for v in cell[:4]) >= 3)
+    for vertex in cell[:4]:
+        if first.ids[vertex] not in known:
+            second.ids = np.append(second.ids, first.ids[vertex])
+            second.points = np.append(second.points, first.points[vertex:vertex + 1], axis=0)
+    twin = [np.flatnonzero(second.ids == first.ids[vertex])[0] for vertex in cell[:4]]
+    second.cells = np.append(second.cells, [[*twin, cell[4]]], axis=0)
+    return Mutant(Case(mesh), Case(apart))
+
+
+@operator("surface")
+def cell_missing_between_pieces(shop):
+    """a cell at the border of two pieces in neither; harmless: in one, its cells in another order"""
+    mesh, moved = MeshInPieces(shop.base, 3), MeshInPieces(shop.base, 3)
+    first, shared = mesh.pieces[0], set(mesh.pieces[1].ids)
+    border = [c for c, cell in enumerate(first.cells) if sum(first.ids[v] in shared for v in cell[:4]) == 3]
+    mesh.pieces[0].cells = np.delete(first.cells, border[0], axis=0)
+    moved.pieces[0].cells = np.roll(moved.pieces[0].cells, 1, axis=0)
+    return Mutant(Case(mesh), Case(moved))
+
+
+@operator("conformity")
+def border_cut_otherwise(shop):
+    """two points for one vertex on either side of a border; harmless: one point, whose number is the greatest"""
+    mesh, renumbered = MeshInPieces(shop.base, 2), MeshInPieces(shop.base, 2)
+    shared, greatest = mesh.shared_id(), max(piece.ids.max() for piece in mesh.pieces)
+    second = mesh.pieces[1]
+    second.ids[second.ids == shared] = greatest + 1
+    for piece in renumbered.pieces:
+        here = [piece.ids == shared, piece.ids == greatest]
+        piece.ids = np.select(here, [greatest, shared], piece.ids)
+    return Mutant(Case(mesh), Case(renumbered))
+
+
+@operator(None, exit_code=2)
+def vertex_moved_in_one_piece(shop):
+    """a shared vertex of one piece an ulp away; harmless: in both pieces"""
+    mesh, both = MeshInPieces(shop.base, 2), MeshInPieces(shop.base, 2)
+    shared = mesh.shared_id()
+    for piece in [mesh.pieces[1], *both.pieces]:
+        piece.points[piece.ids == shared] = np.nextafter(piece.points[piece.ids == shared], np.inf)
+    return Mutant(Case(mesh), Case(both))

@@ -1,4 +1,5 @@
-// Mesh files: VTU, medit .mesh, Gmsh .msh 4.1; surfaces as STL or PLY. Files appear whole or not at all.
+// Mesh files: VTU, medit .mesh, Gmsh .msh 4.1, XDMF; surfaces as STL or PLY. Files appear whole or not at
+// all.
 #pragma once
 
 #include <string>
@@ -24,7 +25,7 @@ void canonicalize(TetMesh& mesh, int threads = 0);
 /// Label names and the space have no part in it.
 std::string mesh_sha256(const TetMesh& mesh);
 
-/// Throws InputError if `path` has no known mesh extension (.vtu .mesh .msh) or cannot be written.
+/// Throws InputError if `path` has no known mesh extension (.vtu .mesh .msh .xdmf) or cannot be written.
 void check_mesh_path(const std::string& path);
 void check_surface_path(const std::string& path);  ///< .stl .ply
 
@@ -38,6 +39,8 @@ void check_surface_path(const std::string& path);  ///< .stl .ply
 ///          Comments give the space, the labels and the pairs. Coordinates read back to the same doubles.
 ///   .msh   physical volumes by label value, named "kidney" or "label 3"; physical surfaces by label
 ///          pair, named "kidney|outside" or "liver|kidney"; the space in $Comments.
+///   .xdmf  two grids of arrays in <stem>.h5 beside it: "mesh", the cells with their label values, and
+///          "facets", the facets with a tag a label pair, both named in the tables /labels and /pairs.
 void write_mesh(const TetMesh& mesh, const std::string& path);
 
 /// Writes the closed, outward oriented surface of every label that has one: "s.stl" becomes

@@ -119,6 +119,9 @@ TEST(MeshFiles, TheSameMeshGivesTheSameBytes) {
     EXPECT_EQ(read_bytes(folder / ("a" + extension)), read_bytes(folder / ("b" + extension)));
   }
   EXPECT_EQ(read_bytes(folder / "a_facets.vtu"), read_bytes(folder / "b_facets.vtu"));
+  write_mesh(mesh, folder / "a.xdmf");
+  write_mesh(other, folder / "b.xdmf");
+  EXPECT_EQ(read_bytes(folder / "a.h5"), read_bytes(folder / "b.h5"));
 }
 
 class NoSpace : public testing::TestWithParam<std::string> {};
@@ -142,12 +145,14 @@ TEST_P(NoSpace, KeepsTheOldFilesAndLeavesNoNewOnes) {
   for (const std::string& name : names) EXPECT_NE(folder.read(name), "old " + name);
 }
 
-INSTANTIATE_TEST_SUITE_P(Formats, NoSpace, testing::Values("m.vtu", "m.mesh", "m.msh", "m.stl", "m.ply"),
+INSTANTIATE_TEST_SUITE_P(Formats, NoSpace,
+                         testing::Values("m.vtu", "m.mesh", "m.msh", "m.xdmf", "m.stl", "m.ply"),
                          [](const auto& instance) { return instance.param.substr(2); });
 
 TEST(CheckPath, AcceptsWhatCanBeWrittenAndLeavesNoTrace) {
   const ScratchFolder folder;
-  for (const char* name : {"a.vtu", "a.mesh", "a.msh"}) EXPECT_NO_THROW(check_mesh_path(folder / name));
+  for (const char* name : {"a.vtu", "a.mesh", "a.msh", "a.xdmf"})
+    EXPECT_NO_THROW(check_mesh_path(folder / name));
   for (const char* name : {"a.stl", "a.ply"}) EXPECT_NO_THROW(check_surface_path(folder / name));
   EXPECT_EQ(folder.files(), std::set<std::string>{});
 }

@@ -7,6 +7,8 @@
 
 #include "io/tests/kuhn_mesh.h"
 #include "io/tests/mesh_readers.h"
+#include "io/tests/split_mesh.h"
+#include "io/write_pvtu.h"
 #include "podm/mesh_io.h"
 #include "tests/scratch_folder.h"
 
@@ -18,6 +20,7 @@ struct VtuContent {
   std::vector<std::vector<std::uint32_t>> cells;           // VTK's type of the cell, then its points
   std::map<std::string, std::vector<std::string>> arrays;  // "cell label"
   std::map<std::string, std::string> field;
+  std::string global_ids;  // the array that VTK takes for them
   double area = 0, volume = 0;
 };
 
@@ -44,6 +47,8 @@ VtuContent parse(const std::string& path) {
       }
     } else if (kind == "area" || kind == "volume") {
       (kind == "area" ? content.area : content.volume) = std::stod(second);
+    } else if (kind == "globalids") {
+      content.global_ids = second;
     } else if (kind == "field") {
       content.field[line.substr(line.find(' ') + 1, line.find('\t') - line.find(' ') - 1)] =
           line.substr(line.find('\t') + 1);
@@ -131,6 +136,81 @@ TEST_F(VtuFile, AMeshWithoutFacetsIsAllowed) {
   write_mesh(mesh, folder_ / "a.vtu");
   EXPECT_EQ(read("a.vtu").cells.size(), mesh.cells.size());
   EXPECT_TRUE(read("a_facets.vtu").cells.empty());
+}
+
+class PvtuFile : public VtuFile {
+ protected:
+  void write_pieces(const TetMesh& mesh, int num_pieces) {
+    for (const MeshPiece& piece : split_into_pieces(mesh, num_pieces)) {
+      std::deque<AtomicFile> files = write_pvtu_piece(piece, folder_ / "a.pvtu");
+      publish_together(files);
+    }
+    write_pvtu_index(folder_ / "a.pvtu", num_pieces, 0);
+  }
+};
+
+// Points of the same number, in however many pieces, are one vertex.
+std::map<std::uint64_t, std::array<double, 3>> points_by_id(const VtuContent& content) {
+  std::map<std::uint64_t, std::array<double, 3>> points;
+  const auto& ids = content.arrays.at("point GlobalNodeIds");
+  for (std::size_t i = 0; i < ids.size(); ++i) {
+    const auto [entry, is_new] = points.try_emplace(std::stoull(ids[i]), content.points.at(i));
+    EXPECT_EQ(entry->second, content.points[i]);
+  }
+  return points;
+}
+
+TEST_F(PvtuFile, VtkReadsThePiecesAsOneMesh) {
+  TetMesh mesh = make_test_mesh();
+  mesh.labels[3].name = "\"left\" & <right>";
+  for (const int num_pieces : {1, 3, 8}) {
+    write_pieces(mesh, num_pieces);
+    const VtuContent content = read("a.pvtu");
+    EXPECT_EQ(content.global_ids, "GlobalNodeIds");
+    EXPECT_EQ(content.arrays.at("cell label"), values_of(mesh, mesh.cell_labels));
+    const auto points = points_by_id(content);
+    ASSERT_EQ(points.size(), mesh.vertices.size());
+    EXPECT_EQ(points.rbegin()->first, mesh.vertices.size() - 1);
+    ASSERT_EQ(content.cells.size(), mesh.cells.size());
+    for (std::size_t i = 0; i < mesh.cells.size(); ++i)
+      for (int v = 0; v < 4; ++v)
+        EXPECT_EQ(content.points[content.cells[i][v + 1]], mesh.vertices[mesh.cells[i][v]]);
+    EXPECT_EQ(content.points.size() > points.size(), num_pieces > 1);
+  }
+}
+
+TEST_F(PvtuFile, TheFacetsHaveAnIndexOfTheirOwn) {
+  const TetMesh mesh = make_test_mesh();
+  write_pieces(mesh, 3);
+  const VtuContent cells = read("a.pvtu"), facets = read("a_facets.pvtu");
+  EXPECT_EQ(facets.cells.size(), mesh.facets.size());
+  std::vector<LabelIndex> first, second;
+  for (const auto& [a, b] : mesh.facet_labels) first.push_back(a), second.push_back(b);
+  for (const auto& [name, side] : {std::pair{"cell label_a", &first}, std::pair{"cell label_b", &second}}) {
+    auto values = facets.arrays.at(name), expected = values_of(mesh, *side);
+    std::sort(values.begin(), values.end());
+    std::sort(expected.begin(), expected.end());
+    EXPECT_EQ(values, expected);
+  }
+  const auto points = points_by_id(cells);
+  for (const auto& [id, point] : points_by_id(facets)) EXPECT_EQ(points.at(id), point);
+}
+
+TEST_F(PvtuFile, RanksWithoutCellsAreAllowed) {
+  const TetMesh mesh = make_kuhn_mesh(1, 1, [](int, int, int) -> LabelIndex { return 1; });
+  write_pieces(mesh, 10);
+  EXPECT_EQ(read("a.pvtu").cells.size(), mesh.cells.size());
+  EXPECT_EQ(read("a_facets.pvtu").cells.size(), mesh.facets.size());
+}
+
+TEST_F(PvtuFile, APieceIsAMeshFileOfItsOwn) {
+  const TetMesh mesh = make_test_mesh();
+  write_pieces(mesh, 3);
+  const VtuContent cells = read("a_1.vtu"), facets = read("a_1_facets.vtu");
+  const auto& vertex = facets.arrays.at("point vertex");
+  for (std::size_t i = 0; i < vertex.size(); ++i)
+    EXPECT_EQ(facets.points[i], cells.points.at(std::stoul(vertex[i])));
+  EXPECT_TRUE(cells.field.count("label:liver"));
 }
 
 }  // namespace

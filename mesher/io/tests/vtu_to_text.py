@@ -1,7 +1,7 @@
 #!/usr/bin/python3
-"""Reads a VTU file with VTK and prints what VTK found in it, one item a line, doubles exactly.
+"""Reads a VTU file, or an index of pieces, with VTK and prints what VTK found in it, one item a line, doubles exactly.
 
-usage: vtu_to_text.py FILE.vtu
+usage: vtu_to_text.py FILE.vtu|FILE.pvtu
 """
 import sys
 
@@ -17,7 +17,8 @@ def values(array):
 
 
 def main():
-    reader = vtk.vtkXMLUnstructuredGridReader()
+    is_index = sys.argv[1].endswith(".pvtu")
+    reader = vtk.vtkXMLPUnstructuredGridReader() if is_index else vtk.vtkXMLUnstructuredGridReader()
     reader.SetFileName(sys.argv[1])
     failures = []
     reader.AddObserver("ErrorEvent", lambda *_: failures.append(1))
@@ -39,6 +40,8 @@ def main():
             for value in values(array):
                 print(value)
 
+    ids = grid.GetPointData().GetGlobalIds()
+    print("globalids", ids.GetName() if ids else "none")
     for array in arrays(grid.GetFieldData()):
         print("field", array.GetName() + "\t" + str(array.GetValue(0)))
 

@@ -1,0 +1,104 @@
+#include "io/hdf5_file.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <string_view>
+
+#include "podm/errors.h"
+
+namespace podm {
+namespace {
+
+// The system's words where it refused, else those of the innermost function of the library that failed.
+std::string last_fault() {
+  std::string fault = "the HDF5 library fails";
+  const auto take = [](unsigned, const H5E_error2_t* error, void* text) -> herr_t {
+    if (error->desc != nullptr) *static_cast<std::string*>(text) = error->desc;
+    return 0;
+  };
+  H5Ewalk2(H5E_DEFAULT, H5E_WALK_DOWNWARD, take, &fault);
+  constexpr std::string_view kMark = "error message = '";
+  const std::size_t begin = fault.find(kMark);
+  if (begin == std::string::npos) return fault;
+  fault.erase(0, begin + kMark.size());
+  return fault.substr(0, fault.find('\''));
+}
+
+// To be called before any other call clears what the library remembers of the fault.
+hid_t check_result(hid_t result, const std::string& path) {
+  if (result < 0) throw InputError(fmt::format("cannot write {}: {}", path, last_fault()));
+  return result;
+}
+
+Hdf5Handle open_file(const std::string& path, const std::string& shown_path, Hdf5File::Mode mode) {
+  // When the program ends, the library would try again to write what a full disk did not take, and crash.
+  static const herr_t unwanted_cleanup = H5dont_atexit();
+  static_cast<void>(unwanted_cleanup);
+  H5Eset_auto2(H5E_DEFAULT, nullptr, nullptr);  // it would print
+  const Hdf5Handle access(H5Pcreate(H5P_FILE_ACCESS), H5Pclose);
+  H5Pset_file_locking(access, 0, 1);  // we hold a lock on it (files/temporary_name.cpp)
+  const hid_t file = mode == Hdf5File::Mode::kMakeNew
+                         ? H5Fcreate(path.c_str(), H5F_ACC_TRUNC, H5P_DEFAULT, access)
+                         : H5Fopen(path.c_str(), H5F_ACC_RDWR, access);
+  return {check_result(file, shown_path), H5Fclose};
+}
+
+}  // namespace
+
+Hdf5File::Hdf5File(const std::string& path, const std::string& shown_path, Mode mode)
+    : path_(shown_path), file_(open_file(path, shown_path, mode)) {}
+
+hid_t Hdf5File::check(hid_t result) const { return check_result(result, path_); }
+
+void Hdf5File::close() { check(H5Fclose(file_.release())); }
+
+void Hdf5File::make_dataset(const std::string& name, hid_t type, std::uint64_t num_rows,
+                            std::uint64_t num_columns) {
+  const std::array<hsize_t, 2> sizes{num_rows, num_columns};
+  const Hdf5Handle space(check(H5Screate_simple(num_columns == 0 ? 1 : 2, sizes.data(), nullptr)), H5Sclose);
+  const Hdf5Handle creation(check(H5Pcreate(H5P_DATASET_CREATE)), H5Pclose);
+  H5Pset_alloc_time(creation, H5D_ALLOC_TIME_EARLY);  // so that writers find it there
+  H5Pset_fill_time(creation, H5D_FILL_TIME_NEVER);
+  H5Pset_obj_track_times(creation, 0);  // the same mesh gives the same bytes
+  const Hdf5Handle dataset(
+      check(H5Dcreate2(file_, name.c_str(), type, space, H5P_DEFAULT, creation, H5P_DEFAULT)), H5Dclose);
+}
+
+void Hdf5File::write_strings(const std::string& name, const std::vector<std::string>& texts) {
+  std::size_t longest = 1;
+  for (const std::string& text : texts) longest = std::max(longest, text.size());
+  const Hdf5Handle type(check(H5Tcopy(H5T_C_S1)), H5Tclose);
+  H5Tset_size(type, longest);
+  H5Tset_strpad(type, H5T_STR_NULLPAD);
+  H5Tset_cset(type, H5T_CSET_UTF8);
+  make_dataset(name, type, texts.size(), 0);
+  std::string block;
+  for (const std::string& text : texts) block += text + std::string(longest - text.size(), '\0');
+  write_block(open(name), 0, texts.size(), type, block.data());
+}
+
+void Hdf5File::make_group(const std::string& name) {
+  const Hdf5Handle group(check(H5Gcreate2(file_, name.c_str(), H5P_DEFAULT, H5P_DEFAULT, H5P_DEFAULT)),
+                         H5Gclose);
+}
+
+Hdf5File::Dataset Hdf5File::open(const std::string& name) const {
+  Hdf5Handle dataset(check(H5Dopen2(file_, name.c_str(), H5P_DEFAULT)), H5Dclose);
+  Hdf5Handle space(check(H5Dget_space(dataset)), H5Sclose);
+  std::array<hsize_t, 2> sizes{0, 1};
+  const auto rank = static_cast<int>(check(H5Sget_simple_extent_dims(space, sizes.data(), nullptr)));
+  return {std::move(dataset), std::move(space), sizes[1], rank};
+}
+
+void Hdf5File::write_block(const Dataset& to, std::uint64_t first_row, std::uint64_t num_rows, hid_t type,
+                           const void* values) const {
+  if (num_rows == 0) return;
+  const std::array<hsize_t, 2> start{first_row, 0}, count{num_rows, to.num_columns};
+  const Hdf5Handle memory(check(H5Screate_simple(to.rank, count.data(), nullptr)), H5Sclose);
+  check(H5Sselect_hyperslab(to.space, H5S_SELECT_SET, start.data(), nullptr, count.data(), nullptr));
+  check(H5Dwrite(to.dataset, type, memory, to.space, H5P_DEFAULT, values));
+}
+
+}  // namespace podm

@@ -1,0 +1,91 @@
+// VTK's index of pieces: the arrays that all of them have, and where each piece is, beside the index.
+#include "io/write_pvtu.h"
+
+#include <fmt/format.h>
+
+#include <filesystem>
+#include <fstream>
+#include <iterator>
+#include <string_view>
+
+#include "io/write_vtu.h"
+#include "io/xml_text.h"
+
+namespace podm {
+namespace {
+
+namespace fs = std::filesystem;
+
+constexpr std::string_view kPiece = "<Piece Source=\"";
+
+std::string piece_path(const std::string& index_path, int rank) {
+  const fs::path index(index_path);
+  return (index.parent_path() / fmt::format("{}_{}.vtu", index.stem().string(), rank)).string();
+}
+
+std::string array(const char* type, const char* name, int components) {
+  return fmt::format("<PDataArray type=\"{}\" Name=\"{}\" NumberOfComponents=\"{}\"/>\n", type, name,
+                     components);
+}
+
+std::string index_text(const std::string& cell_arrays, const std::vector<std::string>& pieces) {
+  std::string text = fmt::format(
+      "<?xml version=\"1.0\"?>\n<VTKFile type=\"PUnstructuredGrid\" version=\"1.0\" "
+      "byte_order=\"LittleEndian\" header_type=\"UInt64\">\n<PUnstructuredGrid GhostLevel=\"0\">\n"
+      "<PPointData "
+      "GlobalIds=\"{}\">\n{}</PPointData>\n<PCellData>\n{}</PCellData>\n<PPoints>\n{}</PPoints>\n",
+      kGlobalIds, array("Int64", kGlobalIds, 1), cell_arrays, array("Float64", "Points", 3));
+  for (const std::string& piece : pieces)
+    text += fmt::format("{}{}\"/>\n", kPiece, xml_escaped(fs::path(piece).filename().string()));
+  return text + "</PUnstructuredGrid>\n</VTKFile>\n";
+}
+
+std::string index_of_cells(const std::string& path, int num_pieces) {
+  std::vector<std::string> pieces;
+  for (int rank = 0; rank < num_pieces; ++rank) pieces.push_back(piece_path(path, rank));
+  return index_text(array("UInt32", "label", 1), pieces);
+}
+
+std::string index_of_facets(const std::string& path, int num_pieces) {
+  std::vector<std::string> pieces;
+  for (int rank = 0; rank < num_pieces; ++rank) pieces.push_back(facets_path_of(piece_path(path, rank)));
+  return index_text(array("UInt32", "label_a", 1) + array("UInt32", "label_b", 1), pieces);
+}
+
+void remove_old(const std::string& path) {
+  std::error_code error;
+  fs::remove(path, error);
+  if (error) fail_to_write(path, error.value());
+}
+
+}  // namespace
+
+std::deque<AtomicFile> write_pvtu_piece(const MeshPiece& piece, const std::string& index_path) {
+  return write_vtu_aside(piece.mesh, &piece.vertex_ids, piece_path(index_path, piece.rank));
+}
+
+int withdraw_pvtu_index(const std::string& path) {
+  std::ifstream file(path, std::ios::binary);
+  const std::string text(std::istreambuf_iterator<char>(file), {});
+  int num_pieces = 0;
+  for (std::size_t at = text.find(kPiece); at != std::string::npos; at = text.find(kPiece, at + 1))
+    ++num_pieces;
+  remove_old(path);
+  remove_old(facets_path_of(path));
+  return text == index_of_cells(path, num_pieces) ? num_pieces : 0;
+}
+
+void write_pvtu_index(const std::string& path, int num_pieces, int num_earlier_pieces) {
+  std::deque<AtomicFile> files;
+  files.emplace_back(path);
+  files.back().write(index_of_cells(path, num_pieces));
+  files.emplace_back(facets_path_of(path));
+  files.back().write(index_of_facets(path, num_pieces));
+  publish_together(files);
+  for (int rank = num_pieces; rank < num_earlier_pieces; ++rank) {
+    remove_old(piece_path(path, rank));
+    remove_old(facets_path_of(piece_path(path, rank)));
+  }
+}
+
+}  // namespace podm

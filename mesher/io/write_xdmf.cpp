@@ -1,0 +1,193 @@
+#include "io/write_xdmf.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <filesystem>
+#include <limits>
+#include <numeric>
+
+#include "io/hdf5_file.h"
+#include "io/mesh_formats.h"
+#include "io/xml_text.h"
+
+namespace podm {
+namespace {
+
+constexpr std::uint64_t kMostInt32 = std::numeric_limits<std::int32_t>::max();
+
+bool is_wide(const XdmfPart& part) { return part.total_vertices > kMostInt32; }
+
+// By the table alone, which all pieces have: what labels a piece has must not matter.
+bool values_are_tags(const TetMesh& mesh) {
+  return std::all_of(mesh.labels.begin(), mesh.labels.end(),
+                     [](const Label& label) { return label.value <= kMostInt32; });
+}
+
+// Vertices that this part writes, by their numbers in the whole.
+class WrittenVertices {
+ public:
+  explicit WrittenVertices(const XdmfPart& part) : part_(part) {
+    for (std::size_t v = 0; v < part.mesh.vertices.size(); ++v)
+      if (part.owns_vertex == nullptr || (*part.owns_vertex)[v] != 0)
+        vertices_.push_back(static_cast<std::uint32_t>(v));
+    std::sort(vertices_.begin(), vertices_.end(),
+              [this](std::uint32_t a, std::uint32_t b) { return id_of(a) < id_of(b); });
+  }
+
+  // Numbers that follow one another are one write, most often all.
+  void write(Hdf5File& file) const {
+    for (std::size_t begin = 0, end = 0; begin < vertices_.size(); begin = end) {
+      const std::uint64_t first = id_of(vertices_[begin]);
+      for (end = begin + 1; end < vertices_.size() && id_of(vertices_[end]) == first + (end - begin);) ++end;
+      file.write_rows<double>("points", first, end - begin, [&](std::uint64_t row, std::uint64_t axis) {
+        return part_.mesh.vertices[vertices_[begin + row]][axis];
+      });
+    }
+  }
+
+ private:
+  std::uint64_t id_of(std::uint32_t vertex) const {
+    return part_.vertex_ids == nullptr ? vertex : (*part_.vertex_ids)[vertex];
+  }
+
+  const XdmfPart& part_;
+  std::vector<std::uint32_t> vertices_;
+};
+
+void write_tables(Hdf5File& file, const TetMesh& mesh, const LabelPairs& pairs) {
+  const LabelNames names(mesh.labels);
+  std::vector<std::string> label_names, pair_names;
+  for (std::size_t i = 0; i < mesh.labels.size(); ++i)
+    label_names.push_back(names[static_cast<LabelIndex>(i)]);
+  for (std::size_t i = 0; i < pairs.size(); ++i) pair_names.push_back(names.of_pair(pairs[i]));
+  file.make_group("labels");
+  file.make_dataset("labels/value", H5T_STD_U32LE, mesh.labels.size(), 0);
+  file.write_rows<std::uint32_t>("labels/value", 0, mesh.labels.size(),
+                                 [&](std::uint64_t i, std::uint64_t) { return mesh.labels[i].value; });
+  file.write_strings("labels/name", label_names);
+  file.make_group("pairs");
+  file.make_dataset("pairs/labels", H5T_STD_U32LE, pairs.size(), 2);
+  file.write_rows<std::uint32_t>("pairs/labels", 0, pairs.size(), [&](std::uint64_t i, std::uint64_t side) {
+    return mesh.labels[pairs[i][side]].value;
+  });
+  file.write_strings("pairs/name", pair_names);
+}
+
+std::string data_item(const std::string& file, const char* name, const std::string& sizes, const char* type,
+                      int bytes) {
+  return fmt::format(
+      "<DataItem Dimensions=\"{}\" NumberType=\"{}\" Precision=\"{}\" Format=\"HDF\">{}:/{}</DataItem>",
+      sizes, type, bytes, xml_escaped(file), name);
+}
+
+struct GridOfXdmf {
+  const char *name, *topology, *arrays, *attribute, *values;
+  std::uint64_t num_cells;
+  int vertices_a_cell;
+};
+
+std::string grid_text(const GridOfXdmf& grid, const XdmfPart& part, const std::string& file) {
+  const std::string corners = fmt::format("{} {}", grid.num_cells, grid.vertices_a_cell);
+  return fmt::format(
+      "<Grid Name=\"{}\" GridType=\"Uniform\">\n"
+      "<Topology TopologyType=\"{}\" NumberOfElements=\"{}\" NodesPerElement=\"{}\">{}</Topology>\n"
+      "<Geometry GeometryType=\"XYZ\">{}</Geometry>\n"
+      "<Attribute Name=\"{}\" AttributeType=\"Scalar\" Center=\"Cell\">{}</Attribute>\n</Grid>\n",
+      grid.name, grid.topology, grid.num_cells, grid.vertices_a_cell,
+      data_item(file, grid.arrays, corners, "Int", is_wide(part) ? 8 : 4),
+      data_item(file, "points", fmt::format("{} 3", part.total_vertices), "Float", 8), grid.attribute,
+      data_item(file, grid.values, fmt::format("{}", grid.num_cells), "Int", 4));
+}
+
+std::string xdmf_text(const std::string& path, const XdmfPart& part) {
+  const std::string file = std::filesystem::path(hdf5_path_of(path)).filename().string();
+  return "<?xml version=\"1.0\"?>\n<Xdmf Version=\"3.0\">\n<Domain>\n" +
+         fmt::format("<Information Name=\"space\" Value=\"{}\"/>\n", to_string(part.mesh.space)) +
+         grid_text({"mesh", "Tetrahedron", "cells", "label", "cell_labels", part.total_cells, 4}, part,
+                   file) +
+         grid_text({"facets", "Triangle", "facets", "pair", "facet_tags", part.total_facets, 3}, part, file) +
+         "</Domain>\n</Xdmf>\n";
+}
+
+}  // namespace
+
+XdmfPart::XdmfPart(const TetMesh& whole)
+    : mesh(whole),
+      total_vertices(whole.vertices.size()),
+      total_cells(whole.cells.size()),
+      total_facets(whole.facets.size()) {}
+
+XdmfPart::XdmfPart(const MeshPiece& piece)
+    : mesh(piece.mesh),
+      vertex_ids(&piece.vertex_ids),
+      owns_vertex(&piece.owns_vertex),
+      first_cell(piece.first_cell),
+      first_facet(piece.first_facet),
+      total_vertices(piece.total_vertices),
+      total_cells(piece.total_cells),
+      total_facets(piece.total_facets) {}
+
+std::string hdf5_path_of(const std::string& xdmf_path) {
+  return std::filesystem::path(xdmf_path).replace_extension(".h5").string();
+}
+
+void create_xdmf_arrays(const std::string& file, const std::string& path, const XdmfPart& part,
+                        const LabelPairs& pairs) {
+  Hdf5File arrays(file, path, Hdf5File::Mode::kMakeNew);
+  const hid_t id_type = is_wide(part) ? H5T_STD_I64LE : H5T_STD_I32LE;
+  arrays.make_dataset("points", H5T_IEEE_F64LE, part.total_vertices, 3);
+  arrays.make_dataset("cells", id_type, part.total_cells, 4);
+  arrays.make_dataset("cell_labels", H5T_STD_I32LE, part.total_cells, 0);
+  arrays.make_dataset("facets", id_type, part.total_facets, 3);
+  arrays.make_dataset("facet_tags", H5T_STD_I32LE, part.total_facets, 0);
+  arrays.make_dataset("facet_labels", H5T_STD_U32LE, part.total_facets, 2);
+  write_tables(arrays, part.mesh, pairs);
+  arrays.close();
+}
+
+void write_xdmf_part(const std::string& file, const std::string& path, const XdmfPart& part,
+                     const LabelPairs& pairs) {
+  const TetMesh& mesh = part.mesh;
+  const auto id_of = [&](std::uint32_t vertex) {
+    return part.vertex_ids == nullptr ? vertex : (*part.vertex_ids)[vertex];
+  };
+  const bool has_values = values_are_tags(mesh);
+  Hdf5File arrays(file, path, Hdf5File::Mode::kAddTo);
+  WrittenVertices(part).write(arrays);
+  arrays.write_rows<std::int64_t>("cells", part.first_cell, mesh.cells.size(),
+                                  [&](std::uint64_t i, std::uint64_t v) { return id_of(mesh.cells[i][v]); });
+  arrays.write_rows<std::int32_t>("cell_labels", part.first_cell, mesh.cells.size(),
+                                  [&](std::uint64_t i, std::uint64_t) {
+                                    const LabelIndex label = mesh.cell_labels[i];
+                                    return has_values ? mesh.labels[label].value : label;
+                                  });
+  arrays.write_rows<std::int64_t>("facets", part.first_facet, mesh.facets.size(),
+                                  [&](std::uint64_t i, std::uint64_t v) { return id_of(mesh.facets[i][v]); });
+  arrays.write_rows<std::int32_t>(
+      "facet_tags", part.first_facet, mesh.facets.size(),
+      [&](std::uint64_t i, std::uint64_t) { return pairs.number_of(mesh.facet_labels[i]) + 1; });
+  arrays.write_rows<std::uint32_t>(
+      "facet_labels", part.first_facet, mesh.facets.size(),
+      [&](std::uint64_t i, std::uint64_t side) { return mesh.labels[mesh.facet_labels[i][side]].value; });
+  arrays.close();
+}
+
+void publish_xdmf(const std::string& path, const XdmfPart& part, TemporaryFile& arrays) {
+  TemporaryFile xdmf(path);
+  const std::string text = xdmf_text(path, part);
+  xdmf.write(text.data(), text.size());
+  TemporaryFile::publish(std::array{&arrays, &xdmf});
+}
+
+void write_xdmf(const TetMesh& mesh, const std::string& path) {
+  const std::string arrays_path = hdf5_path_of(path);
+  const XdmfPart part(mesh);
+  const LabelPairs pairs(mesh.facet_labels);
+  TemporaryFile arrays(arrays_path);
+  create_xdmf_arrays(arrays.temporary_path(), arrays_path, part, pairs);
+  write_xdmf_part(arrays.temporary_path(), arrays_path, part, pairs);
+  publish_xdmf(path, part, arrays);
+}
+
+}  // namespace podm
