@@ -39,9 +39,10 @@ class PieceOfMesh {
   MeshPiece operator()(std::uint64_t& facets_off_isosurface) {
     label_cells(mesh_, isosurface_, threads_);
     choose_cells();
-    MeshPiece piece{
-        .rank = ranks_.rank(), .num_pieces = ranks_.size(), .mesh = {}, .vertex_ids = number_vertices()};
-    piece.total_vertices = total_vertices_;
+    MeshPiece piece;
+    piece.rank = ranks_.rank();
+    piece.num_pieces = ranks_.size();
+    number_vertices(piece);
     const auto is_own = [this](CellId c) { return is_own_cell_[c] != 0; };
     piece.mesh = extract_mesh(mesh_, isosurface_, space_, threads_, facets_off_isosurface, is_own);
     std::tie(piece.first_cell, piece.total_cells) = sums_of(piece.mesh.cells.size());
@@ -77,23 +78,29 @@ class PieceOfMesh {
     }
   }
 
-  // Numbers of the vertices in use here, in the order of their ids. Everybody asks the rank in whose block
-  // they lie, by coordinates, itself too: what nobody asks for has no number.
-  std::vector<std::uint64_t> number_vertices() {
+  // A vertex's number in the whole mesh, and whether this piece counts it.
+  struct Number {
+    std::uint64_t id;
+    std::uint64_t is_own;
+  };
+
+  // Numbers the vertices in use here, in the order of their ids. Everybody asks the rank in whose block they
+  // lie, by coordinates, itself too: what nobody asks for has no number, and who asks first owns it.
+  void number_vertices(MeshPiece& piece) {
     std::vector<std::vector<Point>> wanted(static_cast<std::size_t>(ranks_.size()));
     for_each_used([&](VertexId, const Point& p, std::size_t rank) { wanted[rank].push_back(p); });
     std::vector<Bytes> messages(wanted.size());
     for (std::size_t rank = 0; rank < wanted.size(); ++rank)
       if (!wanted[rank].empty()) append(messages[rank], wanted[rank]);
-    std::vector<std::vector<std::uint64_t>> numbers;
-    for (const Bytes& told : ranks_.all_to_all(answers(ranks_.all_to_all(std::move(messages)))))
-      numbers.push_back(told.empty() ? std::vector<std::uint64_t>()
-                                     : MessageReader(told).read<std::uint64_t>());
+    std::vector<std::vector<Number>> numbers;
+    for (const Bytes& told : ranks_.all_to_all(answers(ranks_.all_to_all(std::move(messages)), piece)))
+      numbers.push_back(told.empty() ? std::vector<Number>() : MessageReader(told).read<Number>());
     std::vector<std::size_t> next(wanted.size());
-    std::vector<std::uint64_t> ids;
-    for_each_used(
-        [&](VertexId, const Point&, std::size_t rank) { ids.push_back(numbers[rank][next[rank]++]); });
-    return ids;
+    for_each_used([&](VertexId, const Point&, std::size_t rank) {
+      const Number& number = numbers[rank][next[rank]++];
+      piece.vertex_ids.push_back(number.id);
+      piece.owns_vertex.push_back(number.is_own != 0 ? 1 : 0);
+    });
   }
 
   // Calls visit(id, point, rank it belongs to), in the order of ids.
@@ -103,27 +110,36 @@ class PieceOfMesh {
       if (is_used_[v] != 0) visit(v, mesh_.point(v), static_cast<std::size_t>(rank_of(mesh_.point(v))));
   }
 
-  // Numbers for the vertices that each rank asks for.
-  std::vector<Bytes> answers(const std::vector<Bytes>& asked) {
+  struct Asked {
+    std::uint64_t id;
+    std::size_t first_rank;  // that asks
+  };
+
+  // Numbers for the vertices that each rank asks for. Tells the piece how many vertices there are.
+  std::vector<Bytes> answers(const std::vector<Bytes>& asked, MeshPiece& piece) {
     std::vector<std::vector<Point>> points;
-    ByPoint<std::uint64_t> number_of;
-    for (const Bytes& message : asked) {
-      points.push_back(message.empty() ? std::vector<Point>() : MessageReader(message).read<Point>());
-      for (const Point& p : points.back()) number_of.emplace(p, kNoNumber);
+    ByPoint<Asked> number_of;
+    for (std::size_t rank = 0; rank < asked.size(); ++rank) {
+      points.push_back(asked[rank].empty() ? std::vector<Point>() : MessageReader(asked[rank]).read<Point>());
+      for (const Point& p : points[rank]) number_of.emplace(p, Asked{kNoNumber, rank});
     }
     const auto [first, total] = sums_of(number_of.size());
-    total_vertices_ = total;
+    piece.total_vertices = total;
     std::uint64_t next = first;
     for (VertexId v = 0; v < mesh_.vertex_bound(); ++v) {
       if (mesh_.vertex(v).kind == VertexKind::kUnused) continue;
-      if (const auto found = number_of.find(mesh_.point(v)); found != number_of.end()) found->second = next++;
+      if (const auto found = number_of.find(mesh_.point(v)); found != number_of.end())
+        found->second.id = next++;
     }
     if (next != first + number_of.size())
       throw InternalError("another rank has a vertex of this block that is not here");
     std::vector<Bytes> messages(asked.size());
     for (std::size_t rank = 0; rank < asked.size(); ++rank) {
-      std::vector<std::uint64_t> numbers;
-      for (const Point& p : points[rank]) numbers.push_back(number_of.at(p));
+      std::vector<Number> numbers;
+      for (const Point& p : points[rank]) {
+        const Asked& number = number_of.at(p);
+        numbers.push_back({number.id, number.first_rank == rank});
+      }
       if (!numbers.empty()) append(messages[rank], numbers);
     }
     return messages;
@@ -138,7 +154,6 @@ class PieceOfMesh {
   int threads_;
   Communication& ranks_;
   std::vector<std::uint8_t> is_own_cell_, is_used_;  // by id in the store
-  std::uint64_t total_vertices_ = 0;
 };
 
 }  // namespace
