@@ -41,15 +41,15 @@ void add_limit_options(CLI::App& app, MeshCommand& command, Program which) {
           into_count(meshing.limits.max_elements));
   add_one(app, "--max-seconds", "S", "stop meshing after this many seconds [default: none]",
           into_positive(meshing.limits.max_seconds, "number of seconds"));
-  add_one(
-      app, "--max-memory-gib", "GIB",
-      fmt::format("memory of the process, GiB [default: {} % of what is available{}]",
-                  kPercentOfAvailableMemory, which == Program::kPodm ? "" : " over the ranks of the machine"),
-      [&command](const std::string& text, const std::string& name) {
-        const double bytes = parse_positive(text, name, "number of GiB") * kBytesPerGib;
-        constexpr double kMost = 1e18;  // far above any machine, and within an integer
-        command.max_memory_bytes = static_cast<std::uint64_t>(std::clamp(bytes, 1.0, kMost));
-      });
+  add_one(app, "--max-memory-gib", "GIB",
+          fmt::format("memory of the process, GiB [default: {} % of what is available{}]",
+                      kPercentOfAvailableMemory,
+                      which == Program::kPodm ? "" : "\nover the ranks of the machine"),
+          [&command](const std::string& text, const std::string& name) {
+            const double bytes = parse_positive(text, name, "number of GiB") * kBytesPerGib;
+            constexpr double kMost = 1e18;  // far above any machine, and within an integer
+            command.max_memory_bytes = static_cast<std::uint64_t>(std::clamp(bytes, 1.0, kMost));
+          });
 }
 
 void add_algorithm_options(CLI::App& app, MeshCommand& command) {
@@ -71,7 +71,7 @@ void add_algorithm_options(CLI::App& app, MeshCommand& command) {
   add_one(app, "--cores-per-node", "N", "threads of each computing node [default: threads over nodes]",
           into_threads(meshing.team.cores_per_node));
   add_one(app, "--initial-ratio", "X",
-          "bounds of the initial mesh of pdr, pdr-podm and podm-mpi over the final ones",
+          "bounds of the initial mesh of pdr, pdr-podm and\npodm-mpi over the final ones",
           into_positive(meshing.leaves.initial_ratio, "number"));
   add_one(app, "--initial-threads", "N", "threads of the initial mesh [default: all]",
           into_threads(meshing.team.initial_threads));

@@ -125,6 +125,13 @@ class Meshes(OnRanks):
         self.assertRegex(process.stderr, f"warning: .*: {processors + 1} ranks ask for {processors + 1} threads")
 
 
+    def test_help_fits_a_terminal_and_names_what_is_refused(self):
+        process = self.mpirun("-n", 1, MPI_PROGRAM, "mesh", "--help")
+        self.assert_exit(process, 0)
+        self.assertLessEqual(max(map(len, process.stdout.splitlines())), 110)
+        self.assertIn("refused: --target-elements", process.stdout)
+
+
 class Refusals(OnRanks):
     def assert_all_refuse(self, arguments, *words):
         before = self.files()
