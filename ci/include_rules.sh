@@ -17,8 +17,8 @@ may_include() {
     mesher/io) echo mesher/files mesher/runtime mesher/include ;;
     mesher/algorithms) echo mesher/workers mesher/refine mesher/delaunay mesher/octree mesher/image mesher/geometry \
       mesher/runtime mesher/include podm ;;
-    mesher/distributed) echo mesher/algorithms mesher/workers mesher/refine mesher/delaunay mesher/octree mesher/image \
-      mesher/io mesher/files mesher/geometry mesher/runtime mesher/include podm ;;
+    mesher/distributed) echo mesher mesher/algorithms mesher/workers mesher/refine mesher/delaunay mesher/octree \
+      mesher/image mesher/io mesher/files mesher/geometry mesher/runtime mesher/include podm ;;
     podm) echo mesher/include ;;
     examples/*) echo mesher/include podm ;;
     mesher) echo mesher/algorithms mesher/workers mesher/refine mesher/delaunay mesher/octree mesher/image mesher/io \

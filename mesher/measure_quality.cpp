@@ -250,13 +250,21 @@ void measure_quality(const TetMesh& mesh, const LabelImage& image, const SizeFie
                      MeshingReport& report) {
   const CellTally cells = measure_cells(mesh, sizes, threads, report);
   measure_facets(mesh, threads, report);
-  const std::vector<std::uint64_t> voxels = count_voxels(image, threads);
   for (std::size_t label = 1; label < mesh.labels.size(); ++label) {
     const CellTally::OfLabel& of_label = cells.labels[label];
     report.cells_of_label[mesh.labels[label].value] = of_label.cells;
     report.volume_of_label_mm3[mesh.labels[label].value] = of_label.volume_mm3;
-    report.guarantees.missing_labels += voxels[label] > kLargeLabelVoxels && of_label.cells == 0;
   }
+  report.guarantees.missing_labels = missing_labels(image, report.cells_of_label, threads);
+}
+
+std::uint64_t missing_labels(const LabelImage& image,
+                             const std::map<std::uint32_t, std::uint64_t>& cells_of_label, int threads) {
+  const std::vector<std::uint64_t> voxels = count_voxels(image, threads);
+  std::uint64_t count = 0;
+  for (std::size_t label = 1; label < voxels.size(); ++label)
+    count += voxels[label] > kLargeLabelVoxels && cells_of_label.at(image.labels[label].value) == 0;
+  return count;
 }
 
 }  // namespace podm

@@ -11,4 +11,8 @@ namespace podm {
 void measure_quality(const TetMesh& mesh, const LabelImage& image, const SizeField& sizes, int threads,
                      MeshingReport& report);
 
+/// Labels of more than 1000 voxels without a cell.
+std::uint64_t missing_labels(const LabelImage& image,
+                             const std::map<std::uint32_t, std::uint64_t>& cells_of_label, int threads);
+
 }  // namespace podm

@@ -223,7 +223,8 @@ Refinement refine_by_leaves(const Problem& problem, const Team& team, const Leaf
 
   Construction construction(problem, levels.clamp, team, stop);  // 1
   construction.withhold(bytes_of_leaves);
-  refine_anywhere(construction, "initial", levels.initial, construction.all_cells(), team.initial_workers);  // 4
+  refine_anywhere(construction, "initial", levels.initial, construction.all_cells(),
+                  team.initial_workers);  // 4
   if (stop.is_over()) return ended_early(construction);
   std::unique_ptr<const Octree> octree;
   construction.timed("octree", [&] {  // 2, 3: after 4, which makes no difference to leaves

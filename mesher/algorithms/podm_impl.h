@@ -1,5 +1,5 @@
-// The definitions of PODM's loop, for those who bring locks of their own: they include this in one source. All
-// others include podm.h.
+// The definitions of PODM's loop, for those who bring locks of their own: they include this in one source.
+// All others include podm.h.
 #pragma once
 
 #include <algorithm>

@@ -34,7 +34,7 @@ void add_sizing_options(CLI::App& app, MeshCommand& command) {
        target);
 }
 
-void add_limit_options(CLI::App& app, MeshCommand& command) {
+void add_limit_options(CLI::App& app, MeshCommand& command, Program which) {
   MeshingOptions& meshing = command.meshing;
   begin_group(app, "Limits (a run that meets one writes a valid mesh and exits with 1)");
   add_one(app, "--max-elements", "N", "stop at this many cells [default: none]",
@@ -42,8 +42,9 @@ void add_limit_options(CLI::App& app, MeshCommand& command) {
   add_one(app, "--max-seconds", "S", "stop meshing after this many seconds [default: none]",
           into_positive(meshing.limits.max_seconds, "number of seconds"));
   add_one(app, "--max-memory-gib", "GIB",
-          fmt::format("memory of the process, GiB [default: {} % of what is available]",
-                      kPercentOfAvailableMemory),
+          fmt::format("memory of the process, GiB [default: {} % of what is available{}]",
+                      kPercentOfAvailableMemory,
+                      which == Program::kPodm ? "" : "\nover the ranks of the machine"),
           [&command](const std::string& text, const std::string& name) {
             const double bytes = parse_positive(text, name, "number of GiB") * kBytesPerGib;
             constexpr double kMost = 1e18;  // far above any machine, and within an integer
@@ -69,7 +70,8 @@ void add_algorithm_options(CLI::App& app, MeshCommand& command) {
           into_threads(meshing.team.nodes));
   add_one(app, "--cores-per-node", "N", "threads of each computing node [default: threads over nodes]",
           into_threads(meshing.team.cores_per_node));
-  add_one(app, "--initial-ratio", "X", "bounds of the initial mesh of pdr and pdr-podm over the final ones",
+  add_one(app, "--initial-ratio", "X",
+          "bounds of the initial mesh of pdr, pdr-podm and\npodm-mpi over the final ones",
           into_positive(meshing.leaves.initial_ratio, "number"));
   add_one(app, "--initial-threads", "N", "threads of the initial mesh [default: all]",
           into_threads(meshing.team.initial_threads));
@@ -79,11 +81,14 @@ void add_algorithm_options(CLI::App& app, MeshCommand& command) {
           into(command.schedule_path));
 }
 
-void add_run_options(CLI::App& app, MeshCommand& command) {
+void add_run_options(CLI::App& app, MeshCommand& command, Program which) {
   MeshingOptions& meshing = command.meshing;
   add_one(app, "--threads", "N",
-          "threads of all phases; 1 makes the same mesh every time\n"
-          "[default: one for refinement, all cores for the feature transform]",
+          which == Program::kPodm
+              ? "threads of all phases; 1 makes the same mesh every time\n"
+                "[default: one for refinement, all cores for the feature transform]"
+              : "threads of each rank, in all phases; with 1 as many ranks make the same mesh\n"
+                "every time [default: processors over the ranks of the machine]",
           into_threads(meshing.team.threads));
   add_one(app, "--contention", "MANAGER",
           "what a thread does that meets another's lock:\n" + names_of_choices<Contention>(),
@@ -119,14 +124,18 @@ void add_run_options(CLI::App& app, MeshCommand& command) {
 
 }  // namespace
 
-void add_mesh_command(CLI::App& program, MeshCommand& command) {
-  CLI::App& app = add_command(program, "mesh", "mesh a label image into tetrahedra with guarantees");
+void add_mesh_command(CLI::App& program, MeshCommand& command, Program which) {
+  const bool is_on_ranks = which == Program::kPodmMpi;
+  CLI::App& app = add_command(program, "mesh",
+                              is_on_ranks ? "mesh a label image on all ranks that mpirun or srun has started"
+                                          : "mesh a label image into tetrahedra with guarantees");
   add_image_options(app, command.image);
   add_sizing_options(app, command);
-  add_limit_options(app, command);
+  add_limit_options(app, command, which);
   begin_group(app, "Output");
   require(add_one(app, "-o,--output", "MESH",
-                  "mesh file: .vtu, .mesh (medit), .msh (Gmsh 4.1) or .xdmf [required]",
+                  is_on_ranks ? "mesh: .pvtu, with a .vtu a rank, or .xdmf [required]"
+                              : "mesh file: .vtu, .mesh (medit), .msh (Gmsh 4.1) or .xdmf [required]",
                   into(command.mesh_path)));
   add_one(app, "--surface", "FILE", "also the closed surface of each label: .stl or .ply [default: none]",
           into(command.surface_path));
@@ -136,7 +145,7 @@ void add_mesh_command(CLI::App& program, MeshCommand& command) {
           into(command.record_path));
   add_algorithm_options(app, command);
   begin_group(app, "Run");
-  add_run_options(app, command);
+  add_run_options(app, command, which);
   add_flag(app, "--verify", command.verify,
            "have podm-verify check the written mesh; exit 1 unless all holds [default: no]");
   add_flag(app, "--verify-fidelity", command.verify_fidelity,
@@ -144,6 +153,11 @@ void add_mesh_command(CLI::App& program, MeshCommand& command) {
            "each other; a mesh much coarser than a structure may miss it [default: no]");
   add_flag(app, "--stats", command.stats, "a table of what each thread did and lost [default: no]");
   add_flag(app, "--quiet", command.quiet, "neither progress nor summary [default: both, on standard error]");
+  if (is_on_ranks)
+    end_help(
+        app,
+        "Not on ranks yet, and refused: --target-elements, --surface, --algorithm but podm, --schedule,\n"
+        "--executor virtual, --log.");
 }
 
 }  // namespace podm::cli

@@ -17,6 +17,7 @@ namespace podm::cli {
 /// A command of the program. Its options come in groups: those that follow begin_group.
 CLI::App& add_command(CLI::App& program, const std::string& name, const std::string& description);
 void begin_group(CLI::App& app, const std::string& title);
+void end_help(CLI::App& app, const std::string& text);
 
 /// An option taking one value, given once or, add_many, any number of times. Help ends with the target's
 /// default, if it has any.
@@ -32,7 +33,7 @@ void need(CLI::Option* option, CLI::Option* other);
 
 /// IMAGE and what is kept of its labels.
 void add_image_options(CLI::App& app, ImageArguments& image);
-void add_mesh_command(CLI::App& program, MeshCommand& command);
+void add_mesh_command(CLI::App& program, MeshCommand& command, Program which);
 void add_replay_command(CLI::App& program, ReplayCommand& command);
 void add_info_command(CLI::App& program, InfoCommand& command);
 void add_phantom_command(CLI::App& program, PhantomCommand& command);

@@ -26,14 +26,14 @@ Affine mesh_to_grid(const MeshRun& run, const LeafSchedule& schedule) {
 }  // namespace
 
 void write_schedule(const MeshRun& run, const std::string& path) {
-  if (!run.result.report.schedule) return;  // the run ended before the leaves
-  const LeafSchedule& schedule = *run.result.report.schedule;
+  if (!run.report.schedule) return;  // the run ended before the leaves
+  const LeafSchedule& schedule = *run.report.schedule;
   Json leaves = Json::array();
   for (const auto& leaf : schedule.leaves)
     leaves.push_back({leaf.corner[0], leaf.corner[1], leaf.corner[2], leaf.side});
   AtomicFile file(path);
   file.write(json_line({{"schema", "podm-schedule/1"},
-                        {"algorithm", to_string(run.result.report.algorithm)},
+                        {"algorithm", to_string(run.report.algorithm)},
                         {"mesh_to_grid", mesh_to_grid(run, schedule)},
                         {"leaves", leaves}}));
   for (const auto& activation : schedule.activations)

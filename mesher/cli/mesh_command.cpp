@@ -9,16 +9,13 @@
 #include "algorithms/team_size.h"
 #include "cli/appended_file.h"
 #include "cli/commands.h"
-#include "cli/json_text.h"
 #include "cli/labelled_image.h"
 #include "cli/leaf_schedule_file.h"
 #include "cli/mesh_run.h"
 #include "cli/options_for_image.h"
 #include "cli/process_memory.h"
 #include "cli/progress_display.h"
-#include "cli/record.h"
 #include "cli/signal_thread.h"
-#include "cli/summary.h"
 #include "cli/verify_mesh.h"
 #include "files/atomic_file.h"
 #include "podm/mesh_io.h"
@@ -63,7 +60,7 @@ MeshingResult mesh_with_display(const LabelImage& image, const MeshingOptions& o
 
 // The mesh must be canonical and hashed.
 void finish_log(OperationLogWriter& log, const MeshRun& run) {
-  log.finish({.box = run.result.report.virtual_box,
+  log.finish({.box = run.report.virtual_box,
               .image_sha256 = label_image_sha256(run.image),
               .space = to_string(run.options.space),
               .mesh_sha256 = run.mesh_sha256});
@@ -93,7 +90,8 @@ int run(const MeshCommand& command) {
               .image = image,
               .options = options_for_image(command, image, limit_bytes),
               .crossover = std::move(crossover),
-              .result = {},
+              .report = {},
+              .mesh = {},
               .mesh_sha256 = {},
               .read_s = read_s,
               .verdicts = {}};
@@ -101,30 +99,26 @@ int run(const MeshCommand& command) {
   if (!command.log_path.empty()) run.options.log = &log.emplace(command.log_path);
   run.options.crossover = run.crossover.threads;
   run.options.leaves.with_schedule = !command.schedule_path.empty();
-  run.result = mesh_with_display(image, run.options, command.quiet, signals);
-  auto& warnings = run.result.report.warnings;
+  MeshingResult result = mesh_with_display(image, run.options, command.quiet, signals);
+  run.report = std::move(result.report);
+  run.mesh = numbers_of(result.mesh);
+  auto& warnings = run.report.warnings;
   if (!run.crossover.warning.empty()) warnings.push_back(run.crossover.warning);
   warnings.insert(warnings.end(), image.warnings.begin(), image.warnings.end());
   run.write_s = timed([&] {
     const int threads = loop_threads(command.meshing.team);
-    canonicalize(run.result.mesh, threads);
+    canonicalize(result.mesh, threads);
     // Beside the writing where there are threads for both.
     std::future<std::string> hash = std::async(threads == 1 ? std::launch::deferred : std::launch::async,
-                                               [&] { return mesh_sha256(run.result.mesh); });
-    write_outputs(command, run.result.mesh);
+                                               [&] { return mesh_sha256(result.mesh); });
+    write_outputs(command, result.mesh);
     run.mesh_sha256 = hash.get();
     if (log) finish_log(*log, run);
     if (!command.schedule_path.empty()) write_schedule(run, command.schedule_path);
   });
   run.peak_rss_bytes = peak_resident_bytes();
-  if (command.verify && !run.result.mesh.cells.empty()) run.verdicts = verify_mesh(run, signals);
-  if (records) records->append(json_line(record(run)));
-  if (!command.quiet) fmt::print(stderr, "{}", summary(run));
-  if (command.stats) fmt::print(stderr, "{}", statistics(run));
-  for (const std::string& warning : warnings) fmt::print(stderr, "warning: {}\n", warning);
-  const auto unmet = run.unmet();
-  for (const std::string& sentence : unmet) fmt::print(stderr, "podm: {}\n", sentence);
-  return unmet.empty() ? 0 : 1;
+  if (command.verify && run.mesh.cells > 0) run.verdicts = verify_mesh(run, signals);
+  return tell(run, records);
 }
 
 }  // namespace podm::cli

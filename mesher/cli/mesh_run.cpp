@@ -3,12 +3,17 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cstdio>
 #include <set>
+
+#include "cli/json_text.h"
+#include "cli/record.h"
+#include "cli/summary.h"
 
 namespace podm::cli {
 
 std::map<std::string, double> MeshRun::phases_s() const {
-  std::map<std::string, double> phases = result.report.phases_s;
+  std::map<std::string, double> phases = report.phases_s;
   phases[command.image.path.starts_with("phantom:") ? "draw" : "read"] = read_s;
   phases["write"] = write_s;
   return phases;
@@ -19,11 +24,11 @@ double MeshRun::cells_per_second() const {
   double seconds = 0;
   for (const auto& [phase, phase_s] : phases_s())
     if (!kNotCounted.contains(phase)) seconds += phase_s;
-  return static_cast<double>(result.mesh.cells.size()) / seconds;
+  return static_cast<double>(mesh.cells) / seconds;
 }
 
 double MeshRun::refine_cells_per_second() const {
-  return static_cast<double>(result.mesh.cells.size()) / result.report.phases_s.at("refine");
+  return static_cast<double>(mesh.cells) / report.phases_s.at("refine");
 }
 
 std::vector<std::string> MeshRun::unmet() const {
@@ -31,11 +36,11 @@ std::vector<std::string> MeshRun::unmet() const {
   const auto count = [&](std::uint64_t misses, const std::string& what) {
     if (misses > 0) sentences.push_back(fmt::format("{}: {}", what, misses));
   };
-  const StopReason reason = result.report.stop_reason;
+  const StopReason reason = report.stop_reason;
   if (reason != StopReason::kComplete)
     sentences.push_back(fmt::format("the run ended early: {}", to_string(reason)));
-  if (result.mesh.cells.empty()) sentences.push_back("the mesh has no cell, so that none is written");
-  const Guarantees& misses = result.report.guarantees;
+  if (mesh.cells == 0) sentences.push_back("the mesh has no cell, so that none is written");
+  const Guarantees& misses = report.guarantees;
   count(misses.radius_edge, fmt::format("cells with a radius-edge ratio of {} or more", kRadiusEdgeBound));
   count(misses.facet_angle,
         fmt::format("boundary facets with an angle of {} degrees or less", kFacetAngleBound));
@@ -43,21 +48,48 @@ std::vector<std::string> MeshRun::unmet() const {
   count(misses.facet_vertices, "boundary facets with a vertex off the isosurface");
   count(misses.orientation, "cells that rounding made flat or turned over");
   count(misses.missing_labels, "labels of more than 1000 voxels without a cell");
-  if (command.verify && verdicts.empty() && !result.mesh.cells.empty())
+  if (command.verify && verdicts.empty() && !mesh.cells == 0)
     sentences.push_back("podm-verify: ended early by a signal, so that no claim is decided");
   for (const auto& [claim, verdict] : verdicts)
     if (verdict != "pass") sentences.push_back(fmt::format("podm-verify: claim {}: {}", claim, verdict));
   return sentences;
 }
 
-std::vector<FacetCount> count_facets(const TetMesh& mesh) {
-  std::map<std::array<LabelIndex, 2>, std::uint64_t> by_pair;
-  for (const auto& pair : mesh.facet_labels) ++by_pair[pair];
+namespace {
+
+std::vector<FacetCount> most_first(const std::map<std::array<LabelIndex, 2>, std::uint64_t>& by_pair) {
   std::vector<FacetCount> counts;
   for (const auto& [pair, facets] : by_pair) counts.push_back({pair, facets});
   std::stable_sort(counts.begin(), counts.end(),
                    [](const FacetCount& a, const FacetCount& b) { return a.facets > b.facets; });
   return counts;
+}
+
+}  // namespace
+
+std::vector<FacetCount> sums_of(const std::vector<FacetCount>& counts) {
+  std::map<std::array<LabelIndex, 2>, std::uint64_t> by_pair;
+  for (const FacetCount& count : counts) by_pair[count.labels] += count.facets;
+  return most_first(by_pair);
+}
+
+MeshNumbers numbers_of(const TetMesh& mesh) {
+  std::map<std::array<LabelIndex, 2>, std::uint64_t> by_pair;
+  for (const auto& pair : mesh.facet_labels) ++by_pair[pair];
+  return {.cells = mesh.cells.size(),
+          .vertices = mesh.vertices.size(),
+          .boundary_facets = mesh.facets.size(),
+          .facet_pairs = most_first(by_pair)};
+}
+
+int tell(const MeshRun& run, std::optional<AppendedFile>& records) {
+  if (records) records->append(json_line(record(run)));
+  if (!run.command.quiet) fmt::print(stderr, "{}", summary(run));
+  if (run.command.stats) fmt::print(stderr, "{}", statistics(run));
+  for (const std::string& warning : run.report.warnings) fmt::print(stderr, "warning: {}\n", warning);
+  const auto unmet = run.unmet();
+  for (const std::string& sentence : unmet) fmt::print(stderr, "{}: {}\n", run.program, sentence);
+  return unmet.empty() ? 0 : 1;
 }
 
 }  // namespace podm::cli

@@ -1,11 +1,14 @@
-// A finished run of podm mesh: what its summary and its record tell of.
+// A finished run of podm mesh, or of podm-mpi mesh: what its summary and its record tell of.
 #pragma once
 
 #include <cstdint>
 #include <map>
+#include <nlohmann/json.hpp>
+#include <optional>
 #include <string>
 #include <vector>
 
+#include "cli/appended_file.h"
 #include "cli/crossover.h"
 #include "cli/options.h"
 #include "podm/label_image.h"
@@ -13,16 +16,35 @@
 
 namespace podm::cli {
 
+/// Facets between two labels.
+struct FacetCount {
+  std::array<LabelIndex, 2> labels;
+  std::uint64_t facets = 0;
+};
+
+/// What the mesh has, wherever its parts are.
+struct MeshNumbers {
+  std::uint64_t cells = 0, vertices = 0, boundary_facets = 0;
+  std::vector<FacetCount> facet_pairs;  ///< one count for each pair of labels, most facets first
+};
+MeshNumbers numbers_of(const TetMesh& mesh);
+/// Adds up counts of the same pair.
+std::vector<FacetCount> sums_of(const std::vector<FacetCount>& counts);
+
 struct MeshRun {
   const MeshCommand& command;
   const LabelImage& image;
   MeshingOptions options;  ///< as handed to mesh_image()
   Crossover crossover;     ///< what --algorithm auto went by
-  MeshingResult result;
-  std::string mesh_sha256;
+  MeshingReport report;
+  MeshNumbers mesh;
+  std::string mesh_sha256;  ///< empty: nobody has the whole mesh
   double read_s = 0, write_s = 0;
   std::uint64_t peak_rss_bytes = 0;
   std::map<std::string, std::string> verdicts;  ///< podm-verify's by claim; empty: none were asked for
+  std::string program = "podm";
+  nlohmann::ordered_json ranks = nullptr;  ///< for the record; null: the mesh was made in one process
+  std::string ranks_text = {};             ///< the same for the summary
 
   /// Seconds by phase: those of the library between "read" ("draw" where a phantom was drawn) and "write".
   std::map<std::string, double> phases_s() const;
@@ -34,12 +56,8 @@ struct MeshRun {
   std::vector<std::string> unmet() const;
 };
 
-/// Facets between two labels.
-struct FacetCount {
-  std::array<LabelIndex, 2> labels;
-  std::uint64_t facets = 0;
-};
-/// One count for each pair of labels, most facets first.
-std::vector<FacetCount> count_facets(const TetMesh& mesh);
+/// Appends the record and prints summary, statistics, warnings and what is unmet, as the command asks. The
+/// exit code.
+int tell(const MeshRun& run, std::optional<AppendedFile>& records);
 
 }  // namespace podm::cli

@@ -61,6 +61,7 @@ void add_flag(CLI::App& app, const std::string& names, bool& target, const std::
   app.add_flag(names, target, description);
 }
 
+void end_help(CLI::App& app, const std::string& text) { app.footer(text); }
 void require(CLI::Option* option) { option->required(); }
 
 void exclude(CLI::Option* option, CLI::Option* other) { option->excludes(other); }
@@ -90,7 +91,7 @@ void refuse_unknown(CLI::App& program) {
   const auto commands = names_of_commands(program);
   const auto chosen = program.get_subcommands();
   CLI::App& app = chosen.empty() ? program : *chosen.front();
-  const std::string called = chosen.empty() ? "podm" : "podm " + app.get_name();
+  const std::string called = program.get_name() + (chosen.empty() ? "" : " " + app.get_name());
   if (const auto unknown = app.remaining(); !unknown.empty()) {
     std::string word = unknown.front().substr(0, unknown.front().find('='));
     if (word.starts_with('-'))
@@ -105,24 +106,27 @@ void refuse_unknown(CLI::App& program) {
 
 }  // namespace
 
-Command parse_command_line(std::vector<std::string> arguments) {
+Command parse_command_line(std::vector<std::string> arguments, Program which) {
   MeshCommand mesh;
   ReplayCommand replay;
   InfoCommand info;
   PhantomCommand phantom;
-  CLI::App program("Tetrahedral meshes with guarantees from segmented images.", "podm");
+  const std::string name = which == Program::kPodm ? "podm" : "podm-mpi";
+  CLI::App program("Tetrahedral meshes with guarantees from segmented images.", name);
   program.formatter(std::make_shared<HelpFormatter>());
   program.get_formatter()->column_width(kHelpColumn);
   program.set_help_flag("-h,--help", "print this help and leave");
-  program.set_version_flag("--version", std::string("podm " PODM_VERSION "\n") + build_info() + "\n",
+  program.set_version_flag("--version", name + " " PODM_VERSION "\n" + build_info() + "\n",
                            "print the version and leave");
   program.allow_extras()->require_subcommand(0, 1);
   program.footer(
       "Exit codes: 0 success, 1 a guarantee or limit is unmet, 2 bad usage or input, 3 internal error.");
-  add_mesh_command(program, mesh);
-  add_replay_command(program, replay);
-  add_info_command(program, info);
-  add_phantom_command(program, phantom);
+  add_mesh_command(program, mesh, which);
+  if (which == Program::kPodm) {
+    add_replay_command(program, replay);
+    add_info_command(program, info);
+    add_phantom_command(program, phantom);
+  }
   try {
     std::reverse(arguments.begin(), arguments.end());  // CLI11 takes them from the back
     program.parse(std::move(arguments));
@@ -132,7 +136,7 @@ Command parse_command_line(std::vector<std::string> arguments) {
     return ShowText{version.what()};
   } catch (const CLI::Error& error) {
     refuse_unknown(program);  // a misspelt option also looks like one that is missing
-    fail_usage(error.what(), "podm " + program.get_subcommands().front()->get_name());
+    fail_usage(error.what(), name + " " + program.get_subcommands().front()->get_name());
   }
   refuse_unknown(program);
   const std::string chosen = program.get_subcommands().front()->get_name();

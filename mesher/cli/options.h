@@ -65,7 +65,10 @@ struct ShowText {
 
 using Command = std::variant<MeshCommand, ReplayCommand, InfoCommand, PhantomCommand, ShowText>;
 
+/// podm-mpi has the command mesh alone.
+enum class Program { kPodm, kPodmMpi };
+
 /// Parses the arguments after the program's name. Throws InputError naming the option and the fault.
-Command parse_command_line(std::vector<std::string> arguments);
+Command parse_command_line(std::vector<std::string> arguments, Program program = Program::kPodm);
 
 }  // namespace podm::cli

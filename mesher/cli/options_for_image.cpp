@@ -27,23 +27,26 @@ void refuse_coarse_sampling(const MeshCommand& command, const LabelImage& image)
 
 // An element limit below the estimate bounds memory instead, and what has to be numbered.
 void refuse_what_cannot_fit(const std::string& image_path, const LabelImage& image,
-                            const MeshingOptions& options, std::uint64_t limit_bytes) {
+                            const MeshingOptions& options, std::uint64_t limit_bytes, int num_ranks) {
   const Estimate expected = estimate(image, options);
+  const double bytes_of_others = expected.cells * kPeakBytesPerMeshCell * (num_ranks - 1) / num_ranks;
+  const double memory_bytes = expected.memory_bytes - bytes_of_others;
   const double most_cells = options.limits.max_elements > 0 ? static_cast<double>(options.limits.max_elements)
                                                             : std::numeric_limits<double>::infinity();
-  if (expected.memory_bytes > static_cast<double>(limit_bytes) && most_cells >= expected.cells)
+  if (memory_bytes > static_cast<double>(limit_bytes) && most_cells >= expected.cells)
     throw InputError(fmt::format(
-        "{}: these options ask for about {:.2g} cells and {:.3g} GiB of memory, the limit is {:.3g} GiB; "
+        "{}: these options ask for about {:.2g} cells and {:.3g} GiB of memory{}, the limit is {:.3g} GiB; "
         "use a larger radius or delta, or --max-memory-gib",
-        image_path, expected.cells, expected.memory_bytes / kBytesPerGib,
+        image_path, expected.cells, memory_bytes / kBytesPerGib, num_ranks > 1 ? " a rank" : "",
         static_cast<double>(limit_bytes) / kBytesPerGib));
-  const double stored_cells = std::min(most_cells, kStoredCellsPerMeshCell * expected.cells);
+  const double stored_cells = std::min(most_cells, kStoredCellsPerMeshCell * expected.cells) / num_ranks;
   if (stored_cells > static_cast<double>(kMostStoredCells))
-    throw InputError(fmt::format(
-        "{}: these options ask for about {:.2g} cells while the mesh is made, those of the background among "
-        "them, and no more than 2^30 can be numbered; use a larger radius or delta, or a smaller "
-        "--max-elements",
-        image_path, stored_cells));
+    throw InputError(
+        fmt::format("{}: these options ask for about {:.2g} cells{} while the mesh is made, those of the "
+                    "background among "
+                    "them, and no more than 2^30 can be numbered; use a larger radius or delta, or a smaller "
+                    "--max-elements",
+                    image_path, stored_cells, num_ranks > 1 ? " a rank" : ""));
 }
 
 // What program, image and transform leave of the limit.
@@ -70,11 +73,11 @@ std::uint64_t bytes_for_image(std::uint64_t limit_bytes) {
 }
 
 MeshingOptions options_for_image(const MeshCommand& command, const LabelImage& image,
-                                 std::uint64_t limit_bytes) {
+                                 std::uint64_t limit_bytes, int num_ranks) {
   MeshingOptions options = command.meshing;
   options.sizes.radius_of_mm = lengths_by_value(command.radius_of_mm, image, command.image.path);
   refuse_coarse_sampling(command, image);
-  refuse_what_cannot_fit(command.image.path, image, options, limit_bytes);
+  refuse_what_cannot_fit(command.image.path, image, options, limit_bytes, num_ranks);
   options.limits.max_memory_bytes =
       bytes_for_mesh(limit_bytes, command.image.path, image, loop_threads(options.team));
   return options;

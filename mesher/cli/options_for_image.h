@@ -19,8 +19,9 @@ std::uint64_t memory_limit_bytes(const MeshCommand& command);
 std::uint64_t bytes_for_image(std::uint64_t limit_bytes);
 
 /// Throws InputError, naming the image and the fault, where a label is absent, delta exceeds the image, or
-/// the run is expected to need more memory than allowed.
+/// the run is expected to need more memory than allowed. The mesh is in as many processes as there are ranks,
+/// the image in each.
 MeshingOptions options_for_image(const MeshCommand& command, const LabelImage& image,
-                                 std::uint64_t limit_bytes);
+                                 std::uint64_t limit_bytes, int num_ranks = 1);
 
 }  // namespace podm::cli

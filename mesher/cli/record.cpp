@@ -133,7 +133,7 @@ Json workers_of(const MeshingReport& report) {
 }
 
 Json simulated_machine_of(const MeshRun& run) {
-  const auto& machine = run.result.report.simulated_machine;
+  const auto& machine = run.report.simulated_machine;
   if (!machine) return nullptr;
   const std::string& path = run.options.team.topology_path;
   return {{"name", machine->name},
@@ -146,13 +146,13 @@ Json simulated_machine_of(const MeshRun& run) {
 Json virtual_of(const MeshRun& run) {
   if (run.options.team.executor != Executor::kVirtual) return nullptr;
   double refine_s = 0;
-  const std::map<std::string, double>& phases_s = run.result.report.virtual_phases_s;
+  const std::map<std::string, double>& phases_s = run.report.virtual_phases_s;
   for (const char* phase : {"initial", "refine", "closing"})
     if (const auto found = phases_s.find(phase); found != phases_s.end()) refine_s += found->second;
   return {{"cost", to_string(run.options.team.virtual_cost)},
           {"refine_s", refine_s},
           {"phases_s", phases_s},
-          {"worker_s", run.result.report.virtual_worker_s},
+          {"worker_s", run.report.virtual_worker_s},
           {"machine", simulated_machine_of(run)}};
 }
 
@@ -169,10 +169,10 @@ Json calibration_of(const MeshingReport& report) {
 }
 
 Json leaves_of(const MeshRun& run) {
-  const Algorithm algorithm = run.result.report.algorithm;
+  const Algorithm algorithm = run.report.algorithm;
   if (algorithm == Algorithm::kPodm || algorithm == Algorithm::kPodmHome) return nullptr;
-  return {{"number", run.result.report.num_leaves},
-          {"nodes", run.result.report.computing_nodes},
+  return {{"number", run.report.num_leaves},
+          {"nodes", run.report.computing_nodes},
           {"initial_ratio", run.options.leaves.initial_ratio},
           {"initial_threads", run.options.team.initial_threads},
           {"leaf_size_mm", run.options.leaves.size_mm}};
@@ -195,7 +195,7 @@ Json guarantees_of(const Guarantees& misses) {
 }
 
 Json labels_of(const MeshRun& run) {
-  const MeshingReport& report = run.result.report;
+  const MeshingReport& report = run.report;
   Json labels = Json::array();
   for (const Label& label : run.image.labels) {
     const auto cells = report.cells_of_label.find(label.value);
@@ -209,10 +209,11 @@ Json labels_of(const MeshRun& run) {
   return labels;
 }
 
-Json facet_pairs_of(const TetMesh& mesh) {
+Json facet_pairs_of(const MeshRun& run) {
+  const std::vector<Label>& labels = run.image.labels;
   Json pairs = Json::array();
-  for (const FacetCount& count : count_facets(mesh))
-    pairs.push_back({{"labels", {mesh.labels[count.labels[0]].value, mesh.labels[count.labels[1]].value}},
+  for (const FacetCount& count : run.mesh.facet_pairs)
+    pairs.push_back({{"labels", {labels[count.labels[0]].value, labels[count.labels[1]].value}},
                      {"facets", count.facets}});
   return pairs;
 }
@@ -220,12 +221,11 @@ Json facet_pairs_of(const TetMesh& mesh) {
 }  // namespace
 
 Json record(const MeshRun& run) {
-  const MeshingReport& report = run.result.report;
-  const TetMesh& mesh = run.result.mesh;
+  const MeshingReport& report = run.report;
   const std::string& path = run.command.image.path;
   return {
       {"schema", kRecordSchema},
-      {"program", "podm " PODM_VERSION},
+      {"program", run.program + " " PODM_VERSION},
       {"algorithm", to_string(report.algorithm)},
       {"input",
        {{"path", path}, {"sha256", input_sha256(path, run.image)}, {"affine", affine_rows(run.image)}}},
@@ -241,15 +241,16 @@ Json record(const MeshRun& run) {
         {"begging", to_string(run.options.team.begging)}}},
       {"auto", run.options.algorithm == Algorithm::kAuto ? run.crossover.source : Json()},
       {"leaves", leaves_of(run)},
+      {"ranks", run.ranks},
       {"executor", to_string(run.options.team.executor)},
       {"virtual", virtual_of(run)},
       {"phases_s", run.phases_s()},
       {"calibration", calibration_of(report)},
-      {"cells", mesh.cells.size()},
-      {"vertices", mesh.vertices.size()},
-      {"boundary_facets", mesh.facets.size()},
+      {"cells", run.mesh.cells},
+      {"vertices", run.mesh.vertices},
+      {"boundary_facets", run.mesh.boundary_facets},
       {"labels", labels_of(run)},
-      {"facet_pairs", facet_pairs_of(mesh)},
+      {"facet_pairs", facet_pairs_of(run)},
       {"cells_per_second", run.cells_per_second()},
       {"refine_cells_per_second", run.refine_cells_per_second()},
       {"peak_rss_bytes", run.peak_rss_bytes},
@@ -262,7 +263,7 @@ Json record(const MeshRun& run) {
       {"workers", workers_of(report)},
       {"quality", quality_of(report.quality)},
       {"guarantees", guarantees_of(report.guarantees)},
-      {"mesh_sha256", run.mesh_sha256},
+      {"mesh_sha256", run.mesh_sha256.empty() ? Json() : Json(run.mesh_sha256)},
       {"verdicts", run.verdicts},
       {"stop_reason", to_string(report.stop_reason)},
       {"warnings", report.warnings},

@@ -16,7 +16,7 @@ std::string more(std::size_t total, const std::string& what) {
 }
 
 std::string labels_text(const MeshRun& run) {
-  const MeshingReport& report = run.result.report;
+  const MeshingReport& report = run.report;
   std::vector<Label> labels(run.image.labels.begin() + 1, run.image.labels.end());
   const auto cells_of = [&](const Label& label) {
     const auto found = report.cells_of_label.find(label.value);
@@ -34,11 +34,11 @@ std::string labels_text(const MeshRun& run) {
   return text + more(labels.size(), "labels");
 }
 
-std::string facets_text(const TetMesh& mesh) {
+std::string facets_text(const MeshRun& run) {
   const auto name = [&](LabelIndex label) {
-    return label == kBackground ? std::string("outside") : display_name(mesh.labels[label]);
+    return label == kBackground ? std::string("outside") : display_name(run.image.labels[label]);
   };
-  const auto counts = count_facets(mesh);
+  const auto& counts = run.mesh.facet_pairs;
   std::string text = "boundary facets by what they separate\n";
   for (std::size_t i = 0; i < std::min(counts.size(), kLongestList); ++i)
     text += fmt::format("  {:>10}  {} | {}\n", counts[i].facets, name(counts[i].labels[1]),
@@ -70,32 +70,31 @@ std::string calibration_text(const MeshingReport& report) {
 std::string time_text(const MeshRun& run) {
   const auto phases = run.phases_s();
   std::string text = "time      ";
-  for (const char* phase : {"read", "draw", "transform", "allocate", "initial", "octree", "refine", "closing",
-                            "extract", "measure", "write"})
+  for (const char* phase : {"read", "draw", "transform", "allocate", "initial", "octree", "refine",
+                            "exchange", "closing", "extract", "measure", "write"})
     if (const auto found = phases.find(phase); found != phases.end())
       text += fmt::format(" {} {:.2f} s", phase, found->second);
   return text +
          fmt::format("\nspeed      {:.0f} cells/s from image to mesh, {:.0f} cells/s refining\n",
                      run.cells_per_second(), run.refine_cells_per_second()) +
-         calibration_text(run.result.report);
+         calibration_text(run.report);
 }
 
 }  // namespace
 
 std::string summary(const MeshRun& run) {
-  const TetMesh& mesh = run.result.mesh;
-  const MeshingReport& report = run.result.report;
+  const MeshingReport& report = run.report;
   std::string text =
       fmt::format("{}: {} cells, {} vertices, {} boundary facets; {} space\n", run.command.mesh_path,
-                  mesh.cells.size(), mesh.vertices.size(), mesh.facets.size(), to_string(mesh.space));
-  text += labels_text(run) + facets_text(mesh) + quality_text(report.quality);
+                  run.mesh.cells, run.mesh.vertices, run.mesh.boundary_facets, to_string(run.options.space));
+  text += labels_text(run) + facets_text(run) + quality_text(report.quality);
   text += fmt::format("sizes      radius {}, delta {:.4g} mm\n",
                       report.radius_mm > 0 ? fmt::format("{:.4g} mm", report.radius_mm) : "unbounded",
                       report.delta_mm);
-  text += time_text(run);
+  text += time_text(run) + run.ranks_text;
   text += fmt::format("memory     {:.3f} GiB at most\n",
                       static_cast<double>(run.peak_rss_bytes) / (1024.0 * 1024 * 1024));
-  text += fmt::format("sha256     {}\n", run.mesh_sha256);
+  if (!run.mesh_sha256.empty()) text += fmt::format("sha256     {}\n", run.mesh_sha256);
   text += fmt::format("guarantees {}\n", report.guarantees.all_met() ? "all met" : "not met");
   return text;
 }
@@ -123,7 +122,7 @@ std::string statistics_line(const std::string& name, const std::string& place, c
 }  // namespace
 
 std::string statistics(const MeshRun& run) {
-  const MeshingReport& report = run.result.report;
+  const MeshingReport& report = run.report;
   const bool is_virtual = run.options.team.executor == Executor::kVirtual;
   std::string text = fmt::format(
       "{:>6} {:>11} {:>11} {:>11} {:>9} {:>9} {:>9} {:>28}{}\n"

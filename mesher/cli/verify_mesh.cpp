@@ -64,12 +64,12 @@ std::vector<std::string> verifier_command(const MeshRun& run, std::optional<Temp
   std::vector<std::string> command{verifier_path(), run.command.mesh_path, "--json", "-"};
   if (run.command.quiet) command.push_back("--quiet");
   std::string claims = "structure,radius_edge,boundary_angles,delaunay,conformity,surface,labels";
-  const double radius_mm = run.result.report.radius_mm;
+  const double radius_mm = run.report.radius_mm;
   const auto& radius_of = run.options.sizes.radius_of_mm;
   if (radius_mm > 0 || !radius_of.empty()) claims += ",size";
   if (run.command.verify_fidelity) {
     claims += ",fidelity";
-    command.insert(command.end(), {"--delta", fmt::format("{}", run.result.report.delta_mm)});
+    command.insert(command.end(), {"--delta", fmt::format("{}", run.report.delta_mm)});
   }
   command.insert(command.end(), {"--claims", claims});
   const auto image = image_options(run, scratch);

@@ -1,5 +1,5 @@
-// Visibility walk to the cell that has a point in it. In a Delaunay triangulation such walks end. (Edelsbrunner,
-// Combinatorica 10 (1990) 251-260.) Nobody may change the mesh meanwhile.
+// Visibility walk to the cell that has a point in it. In a Delaunay triangulation such walks end.
+// (Edelsbrunner, Combinatorica 10 (1990) 251-260.) Nobody may change the mesh meanwhile.
 #pragma once
 
 #include "delaunay/mesh.h"

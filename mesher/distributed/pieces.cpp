@@ -49,7 +49,6 @@ class PieceOfMesh {
     piece.rank = ranks_.rank();
     piece.num_pieces = ranks_.size();
     number_vertices(piece);
-    piece.total_vertices = total_vertices_;
     const auto is_own = [this](CellId c) { return is_own_cell_[c] != 0; };
     piece.mesh = extract_mesh(mesh_, isosurface_, space_, threads_, facets_off_isosurface, is_own);
     std::tie(piece.first_cell, piece.total_cells) = sums_of(piece.mesh.cells.size());
@@ -85,23 +84,59 @@ class PieceOfMesh {
     }
   }
 
-  // Numbers the vertices in use here, in the order of their ids. Everybody asks the rank in whose block they
-  // lie, by coordinates, itself too: what nobody asks for has no number.
+  // Numbers the vertices in use here, in the order of their ids. The rank in whose part of space a vertex
+  // lies numbers it if it or another uses it; others ask by coordinates.
   void number_vertices(MeshPiece& piece) {
+    const auto self = static_cast<std::size_t>(ranks_.rank());
     std::vector<std::vector<Point>> wanted(static_cast<std::size_t>(ranks_.size()));
-    for_each_used([&](VertexId, const Point& p, std::size_t rank) { wanted[rank].push_back(p); });
-    std::vector<Bytes> messages(wanted.size());
-    for (std::size_t rank = 0; rank < wanted.size(); ++rank)
-      if (!wanted[rank].empty()) append(messages[rank], wanted[rank]);
+    for_each_used([&](VertexId, const Point& p, std::size_t rank) {
+      if (rank != self) wanted[rank].push_back(p);
+    });
+    const std::vector<Bytes> asked = ranks_.all_to_all(messages_of(wanted));
+    const ByPoint<Number> told = number_own(asked);
+    std::vector<std::vector<Number>> answers(asked.size());
+    for (std::size_t rank = 0; rank < asked.size(); ++rank)
+      for (const Point& p : values_of<Point>(asked[rank])) answers[rank].push_back(told.at(p));
     std::vector<std::vector<Number>> numbers;
-    for (const Bytes& told : ranks_.all_to_all(answers(ranks_.all_to_all(std::move(messages)))))
-      numbers.push_back(told.empty() ? std::vector<Number>() : MessageReader(told).read<Number>());
-    std::vector<std::size_t> next(wanted.size());
-    for_each_used([&](VertexId, const Point&, std::size_t rank) {
-      const Number& number = numbers[rank][next[rank]++];
+    for (const Bytes& message : ranks_.all_to_all(messages_of(answers)))
+      numbers.push_back(values_of<Number>(message));
+    std::vector<std::size_t> next(numbers.size());
+    for_each_used([&](VertexId v, const Point&, std::size_t rank) {
+      const Number number =
+          rank == self ? Number{own_numbers_[v], ranks_.rank()} : numbers[rank][next[rank]++];
       piece.vertex_ids.push_back(number.id);
       piece.owns_vertex.push_back(number.owner == ranks_.rank());
     });
+    piece.total_vertices = total_vertices_;
+  }
+
+  // Numbers the vertices of this part of space, and returns those that others ask for. Who uses one here owns
+  // it, else the first to ask.
+  ByPoint<Number> number_own(const std::vector<Bytes>& asked) {
+    ByPoint<Number> told;
+    for (std::size_t rank = 0; rank < asked.size(); ++rank)
+      for (const Point& p : values_of<Point>(asked[rank]))
+        told.try_emplace(p, Number{kNoNumber, static_cast<std::int64_t>(rank)});
+    own_numbers_.assign(mesh_.vertex_bound(), kNoNumber);
+    std::uint64_t count = 0;
+    for (VertexId v = 0; v < mesh_.vertex_bound(); ++v) {
+      const Vertex& vertex = mesh_.vertex(v);
+      if (vertex.kind == VertexKind::kUnused || rank_of(vertex.point) != ranks_.rank()) continue;
+      if (is_used_[v] != 0 || told.contains(vertex.point)) own_numbers_[v] = count++;
+    }
+    const auto [first, total] = sums_of(count);
+    total_vertices_ = total;
+    for (VertexId v = 0; v < mesh_.vertex_bound(); ++v) {
+      if (own_numbers_[v] == kNoNumber) continue;
+      own_numbers_[v] += first;
+      const auto found = told.find(mesh_.point(v));
+      if (found != told.end())
+        found->second = {own_numbers_[v], is_used_[v] != 0 ? ranks_.rank() : found->second.owner};
+    }
+    for (const auto& number : told)
+      if (number.second.id == kNoNumber)
+        throw InternalError("another rank has a vertex that its own rank has not");
+    return told;
   }
 
   // Calls visit(id, point, rank it belongs to), in the order of ids.
@@ -111,33 +146,19 @@ class PieceOfMesh {
       if (is_used_[v] != 0) visit(v, mesh_.point(v), static_cast<std::size_t>(rank_of(mesh_.point(v))));
   }
 
-  // Numbers for the vertices that each rank asks for. The first to ask owns the vertex.
-  std::vector<Bytes> answers(const std::vector<Bytes>& asked) {
-    std::vector<std::vector<Point>> points;
-    ByPoint<Number> number_of;
-    for (std::size_t rank = 0; rank < asked.size(); ++rank) {
-      points.push_back(asked[rank].empty() ? std::vector<Point>() : MessageReader(asked[rank]).read<Point>());
-      for (const Point& p : points.back())
-        number_of.try_emplace(p, Number{0, static_cast<std::int64_t>(rank)});
-    }
-    const auto [first, total] = sums_of(number_of.size());
-    total_vertices_ = total;
-    std::uint64_t next = first;
-    for (VertexId v = 0; v < mesh_.vertex_bound(); ++v) {
-      if (mesh_.vertex(v).kind == VertexKind::kUnused) continue;
-      if (const auto found = number_of.find(mesh_.point(v)); found != number_of.end())
-        found->second.id = next++;
-    }
-    if (next != first + number_of.size())
-      throw InternalError("another rank has a vertex of this block that is not here");
-    std::vector<Bytes> messages(asked.size());
-    for (std::size_t rank = 0; rank < asked.size(); ++rank) {
-      std::vector<Number> numbers;
-      for (const Point& p : points[rank]) numbers.push_back(number_of.at(p));
-      if (!numbers.empty()) append(messages[rank], numbers);
-    }
+  template <class Value>
+  static std::vector<Bytes> messages_of(const std::vector<std::vector<Value>>& values) {
+    std::vector<Bytes> messages(values.size());
+    for (std::size_t rank = 0; rank < values.size(); ++rank)
+      if (!values[rank].empty()) append(messages[rank], values[rank]);
     return messages;
   }
+  template <class Value>
+  static std::vector<Value> values_of(const Bytes& message) {
+    return message.empty() ? std::vector<Value>() : MessageReader(message).read<Value>();
+  }
+
+  static constexpr std::uint64_t kNoNumber = ~std::uint64_t{0};
 
   DistributedRefinement& refined_;
   Mesh& mesh_;
@@ -146,6 +167,7 @@ class PieceOfMesh {
   int threads_;
   Communication& ranks_;
   std::vector<std::uint8_t> is_own_cell_, is_used_;  // by id in the store
+  std::vector<std::uint64_t> own_numbers_;           // likewise
   std::uint64_t total_vertices_ = 0;
 };
 

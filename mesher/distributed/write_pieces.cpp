@@ -3,6 +3,7 @@
 #include <optional>
 
 #include "distributed/messages.h"
+#include "distributed/together.h"
 #include "io/write_pvtu.h"
 #include "io/write_xdmf.h"
 
@@ -34,16 +35,35 @@ std::string told_by_first(const std::string& text, Communication& ranks) {
 
 }  // namespace
 
+void check_pieces_path(const std::string& path) {
+  if (!path.ends_with(".pvtu") && !path.ends_with(".xdmf"))
+    throw InputError(fmt::format("cannot write {}: ranks write .pvtu or .xdmf", path));
+  const AtomicFile trial(path);  // what writing will do first; it leaves nothing behind
+}
+
+void write_pieces(const MeshPiece& piece, const std::string& path, Communication& ranks) {
+  check_pieces_path(path);
+  return path.ends_with(".pvtu") ? write_pvtu(piece, path, ranks) : write_xdmf(piece, path, ranks);
+}
+
 void write_pvtu(const MeshPiece& piece, const std::string& path, Communication& ranks) {
-  std::deque<AtomicFile> files = write_pvtu_piece(piece, path);
-  for (AtomicFile& file : files) file.finish();
-  ranks.barrier();
-  const int num_earlier_pieces = piece.rank == 0 ? withdraw_pvtu_index(path) : 0;
-  ranks.barrier();
-  publish_together(files);
-  ranks.barrier();
-  if (piece.rank == 0) write_pvtu_index(path, piece.num_pieces, num_earlier_pieces);
-  ranks.barrier();
+  const auto on_first = [&](const auto& action) {
+    do_together(
+        [&] {
+          if (piece.rank == 0) action();
+        },
+        ranks);
+  };
+  std::deque<AtomicFile> files;
+  const auto write_aside = [&] {
+    files = write_pvtu_piece(piece, path);
+    for (AtomicFile& file : files) file.finish();
+  };
+  do_together(write_aside, ranks);
+  int num_earlier_pieces = 0;
+  on_first([&] { num_earlier_pieces = withdraw_pvtu_index(path); });
+  do_together([&] { publish_together(files); }, ranks);
+  on_first([&] { write_pvtu_index(path, piece.num_pieces, num_earlier_pieces); });
 }
 
 void write_xdmf(const MeshPiece& piece, const std::string& path, Communication& ranks) {
@@ -51,17 +71,23 @@ void write_xdmf(const MeshPiece& piece, const std::string& path, Communication& 
   const LabelPairs pairs = gathered(LabelPairs(piece.mesh.facet_labels), ranks);
   const std::string arrays_path = hdf5_path_of(path);
   std::optional<TemporaryFile> arrays;
-  if (piece.rank == 0) {
+  const auto make_arrays = [&] {
+    if (piece.rank != 0) return;
     arrays.emplace(arrays_path);
     create_xdmf_arrays(arrays->temporary_path(), arrays_path, part, pairs);
-  }
+  };
+  do_together(make_arrays, ranks);
   const std::string file = told_by_first(arrays ? arrays->temporary_path() : "", ranks);
   for (int turn = 0; turn < piece.num_pieces; ++turn) {
-    if (turn == piece.rank) write_xdmf_part(file, arrays_path, part, pairs);
-    ranks.barrier();
+    const auto add_rows = [&] {
+      if (turn == piece.rank) write_xdmf_part(file, arrays_path, part, pairs);
+    };
+    do_together(add_rows, ranks);
   }
-  if (arrays) publish_xdmf(path, part, *arrays);
-  ranks.barrier();
+  const auto publish = [&] {
+    if (arrays) publish_xdmf(path, part, *arrays);
+  };
+  do_together(publish, ranks);
 }
 
 }  // namespace podm

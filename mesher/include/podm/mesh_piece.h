@@ -14,7 +14,7 @@ struct MeshPiece {
   int rank = 0, num_pieces = 1;
   TetMesh mesh;                           ///< vertices are those that its cells and facets use
   std::vector<std::uint64_t> vertex_ids;  ///< one a vertex: its number in the whole mesh, from 0
-  std::vector<std::uint8_t> owns_vertex;  ///< one a vertex: 1 in the piece that counts it, 0 in others
+  std::vector<std::uint8_t> owns_vertex;  ///< one a vertex: 1 in one of the pieces that use it, 0 in others
   std::uint64_t first_cell = 0, first_facet = 0;  ///< cells and facets of the pieces before this one
   std::uint64_t total_vertices = 0, total_cells = 0, total_facets = 0;
 };

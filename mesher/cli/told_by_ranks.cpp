@@ -1,0 +1,137 @@
+#include "cli/told_by_ranks.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+
+#include "cli/options_for_image.h"
+#include "distributed/messages.h"
+
+namespace podm::cli {
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+// What the process of a rank took.
+struct Process {
+  std::uint64_t threads, peak_rss_bytes;
+};
+
+// A round on all ranks: sums, and the seconds of the rank that took longest.
+RoundReport on_all(const std::vector<PartOfRank>& parts, std::size_t round) {
+  RoundReport all;
+  for (const PartOfRank& part : parts) {
+    const RoundReport& one = part.rounds[round];
+    all.entries += one.entries;
+    all.insertions += one.insertions;
+    all.deferred = one.deferred;
+    all.cubes += one.cubes;
+    all.update += one.update;
+    all.update_s = std::max(all.update_s, one.update_s);
+    all.refine_s = std::max(all.refine_s, one.refine_s);
+  }
+  return all;
+}
+
+// Most cells of a rank over the mean.
+double imbalance(const std::vector<PartOfRank>& parts) {
+  std::uint64_t most = 0, sum = 0;
+  for (const PartOfRank& part : parts) {
+    most = std::max(most, part.cells);
+    sum += part.cells;
+  }
+  return sum == 0 ? 1 : static_cast<double>(most * parts.size()) / static_cast<double>(sum);
+}
+
+Json update_of(const Update& update) {
+  return {{"cubes", update.cubes},
+          {"vertices_told", update.vertices_told},
+          {"inserted", update.inserted},
+          {"removed", update.removed}};
+}
+
+Json rounds_of(const std::vector<PartOfRank>& parts) {
+  Json rounds = Json::array();
+  for (std::size_t i = 0; i < parts[0].rounds.size(); ++i) {
+    const RoundReport round = on_all(parts, i);
+    rounds.push_back({{"entries", round.entries},
+                      {"insertions", round.insertions},
+                      {"deferred", round.deferred},
+                      {"cubes", round.cubes},
+                      {"update", update_of(round.update)},
+                      {"update_s", round.update_s},
+                      {"refine_s", round.refine_s}});
+  }
+  return rounds;
+}
+
+Json ranks_of(const std::vector<PartOfRank>& parts, const std::vector<Process>& processes,
+              const RanksOfMachine& machines) {
+  Json by_rank = Json::array();
+  Update last;
+  for (std::size_t rank = 0; rank < parts.size(); ++rank) {
+    const PartOfRank& part = parts[rank];
+    by_rank.push_back({{"host", machines.host(rank)},
+                       {"threads", processes[rank].threads},
+                       {"cells", part.cells},
+                       {"boundary_facets", part.boundary_facets},
+                       {"store_cells", part.store_cells},
+                       {"peak_rss_bytes", processes[rank].peak_rss_bytes},
+                       {"phases_s", part.phases_s}});
+    last += part.last_update;
+  }
+  return {{"number", parts.size()},         {"machines", machines.num_machines()},
+          {"imbalance", imbalance(parts)},  {"rounds", rounds_of(parts)},
+          {"last_update", update_of(last)}, {"by_rank", by_rank}};
+}
+
+std::string text_of(const std::vector<PartOfRank>& parts, const std::vector<Process>& processes,
+                    const RanksOfMachine& machines) {
+  const auto [least, most] = std::minmax_element(
+      processes.begin(), processes.end(),
+      [](const Process& a, const Process& b) { return a.peak_rss_bytes < b.peak_rss_bytes; });
+  const auto gib = [](std::uint64_t bytes) { return static_cast<double>(bytes) / kBytesPerGib; };
+  std::string text = fmt::format(
+      "ranks      {} on {} machine{}; the most cells of one are {:.3g} times the mean; memory of one {:.3f} "
+      "to "
+      "{:.3f} GiB\n",
+      parts.size(), machines.num_machines(), machines.num_machines() > 1 ? "s" : "", imbalance(parts),
+      gib(least->peak_rss_bytes), gib(most->peak_rss_bytes));
+  if (parts[0].rounds.empty()) return text;
+  text += fmt::format("{:>10} {:>11} {:>11} {:>11} {:>14} {:>17} {:>9}\n", "round", "entries", "insertions",
+                      "deferred", "vertices told", "seconds: exchange", "refine");
+  for (std::size_t i = 0; i < parts[0].rounds.size(); ++i) {
+    const RoundReport round = on_all(parts, i);
+    text += fmt::format("{:>10} {:>11} {:>11} {:>11} {:>14} {:>17.2f} {:>9.2f}\n", i, round.entries,
+                        round.insertions, round.deferred, round.update.vertices_told, round.update_s,
+                        round.refine_s);
+  }
+  return text;
+}
+
+}  // namespace
+
+void gather_from_ranks(const MeshingOnRanks& result, int threads, std::uint64_t peak_rss_bytes,
+                       const RanksOfMachine& machines, Communication& ranks, MeshRun& run) {
+  const Process own{static_cast<std::uint64_t>(threads), peak_rss_bytes};
+  Bytes message;
+  append(message, std::span<const Process>(&own, 1));
+  append(message, numbers_of(result.piece.mesh).facet_pairs);
+  std::vector<Process> processes;
+  std::vector<FacetCount> pairs;
+  for (const Bytes& told : ranks.all_gather(std::move(message))) {
+    MessageReader reader(told);
+    processes.push_back(reader.read<Process>().at(0));
+    run.peak_rss_bytes = std::max(run.peak_rss_bytes, processes.back().peak_rss_bytes);
+    const auto more = reader.read<FacetCount>();
+    pairs.insert(pairs.end(), more.begin(), more.end());
+  }
+  run.mesh = {.cells = result.piece.total_cells,
+              .vertices = result.piece.total_vertices,
+              .boundary_facets = result.piece.total_facets,
+              .facet_pairs = sums_of(pairs)};
+  run.ranks = ranks_of(result.parts, processes, machines);
+  run.ranks_text = text_of(result.parts, processes, machines);
+}
+
+}  // namespace podm::cli

@@ -1,0 +1,15 @@
+// What a run on ranks adds to its record and its summary.
+#pragma once
+
+#include "cli/mesh_run.h"
+#include "cli/ranks_of_machine.h"
+#include "distributed/mesh_image_on_ranks.h"
+
+namespace podm::cli {
+
+/// Sums and lists over all ranks: facet pairs, the most memory of a rank, `ranks` and `ranks_text`. The mesh
+/// is in `result`, and `threads` and `peak_rss_bytes` are this rank's. Collective.
+void gather_from_ranks(const MeshingOnRanks& result, int threads, std::uint64_t peak_rss_bytes,
+                       const RanksOfMachine& machines, Communication& ranks, MeshRun& run);
+
+}  // namespace podm::cli

@@ -1,0 +1,169 @@
+#include "distributed/mesh_image_on_ranks.h"
+
+#include <algorithm>
+#include <numeric>
+
+#include "check_options.h"
+#include "default_sizes.h"
+#include "distributed/pieces.h"
+#include "distributed/report_of_ranks.h"
+#include "distributed/together.h"
+#include "extract_mesh.h"
+#include "io/sha256.h"
+#include "measure_quality.h"
+#include "phases_of_run.h"
+
+namespace podm {
+
+namespace {
+
+void refuse(bool is_asked, const std::string& what) {
+  if (is_asked) throw InputError(what + " cannot be had on ranks yet; podm mesh has it, on one machine");
+}
+
+}  // namespace
+
+void check_options_on_ranks(const MeshingOptions& options) {
+  refuse(options.algorithm != Algorithm::kPodm && options.algorithm != Algorithm::kAuto,
+         "algorithm " + to_string(options.algorithm));
+  refuse(options.team.executor == Executor::kVirtual, "virtual workers");
+  refuse(options.sizes.target_elements > 0, "a target number of elements");
+  refuse(options.leaves.with_schedule, "a schedule of leaves");
+  refuse(options.log != nullptr, "a log of operations");
+}
+
+namespace {
+
+std::string hash_of(const LabelImage& image) {
+  Sha256 hash;
+  hash.update(std::span<const int>(image.size));
+  hash.update(std::span<const double>(image.spacing));
+  hash.update(std::span<const double>(image.voxel_to_ras));
+  hash.update(std::span<const LabelIndex>(image.voxels));
+  for (const Label& label : image.labels) {
+    hash.update(std::span<const std::uint32_t>(&label.value, 1));
+    hash.update(std::span<const char>(label.name));
+  }
+  return hash.hexadecimal();
+}
+
+// What decides the mesh: it has to be the same on all ranks.
+std::vector<Fact> facts_of(const LabelImage& image, const MeshingOptions& options) {
+  const SizeOptions& sizes = options.sizes;
+  std::string radii;
+  for (const auto& [value, radius_mm] : sizes.radius_of_mm) radii += fmt::format("{}={} ", value, radius_mm);
+  return {{"radius", fmt::format("{} mm", sizes.radius_mm)},
+          {"radii of labels", radii},
+          {"delta", fmt::format("{} mm", sizes.delta_mm)},
+          {"space", to_string(options.space)},
+          {"initial ratio", fmt::format("{}", options.leaves.initial_ratio)},
+          {"limit of elements", fmt::format("{}", options.limits.max_elements)},
+          {"limit of seconds", fmt::format("{}", options.limits.max_seconds)},
+          {"image", "SHA-256 " + hash_of(image)}};
+}
+
+MeshingOptions share_of(const MeshingOptions& options, std::uint64_t num_ranks) {
+  MeshingOptions share = options;
+  share.algorithm = Algorithm::kPodm;
+  share.limits.max_elements = (options.limits.max_elements + num_ranks - 1) / num_ranks;
+  return share;
+}
+
+// One rank's part of a run.
+class RunOnRank {
+ public:
+  RunOnRank(const LabelImage& image, const MeshingOptions& options, Communication& ranks,
+            const ProgressCallback& progress, std::stop_token stop)
+      : image_(image),
+        options_(share_of(options, static_cast<std::uint64_t>(ranks.size()))),
+        ranks_(ranks),
+        phases_(image, options_, progress, std::move(stop), 1.0 / ranks.size()) {}
+
+  MeshingOnRanks operator()() {
+    MeshingOnRanks result;
+    MeshingReport own;
+    phases_.transform(own);
+    refine(own);
+    phases_.report_refinement(refined_->refinement, own);
+    phases_.extract([&](Space space) { result.piece = piece(space, own.guarantees.facet_vertices); }, own);
+    phases_.finish(result.piece.mesh, own);
+    PartOfRank part{.cells = result.piece.mesh.cells.size(),
+                    .boundary_facets = result.piece.mesh.facets.size(),
+                    .store_cells = own.store_cells,
+                    .phases_s = own.phases_s,
+                    .rounds = refined_->rounds,
+                    .last_update = refined_->last_update};
+    std::tie(result.report, result.parts) = report_of_ranks(std::move(own), std::move(part), ranks_);
+    result.report.guarantees.missing_labels =
+        missing_labels(image_, result.report.cells_of_label, phases_.loop_threads());
+    return result;
+  }
+
+ private:
+  void refine(MeshingReport& own) {
+    SizeOptions sizes = options_.sizes;
+    sizes.delta_mm = delta_mm_for(image_, sizes);
+    phases_.refine(sizes, [&](const Problem& problem, const Team& team, StopControl& stop) {
+      if (ranks_.size() == 1) return refine_alone(problem, team, stop);
+      const double start_s = ranks_.seconds();
+      refined_.emplace(podm_distributed(problem, team, options_.leaves.initial_ratio, ranks_, stop));
+      double known_s = 0;
+      for (const auto& [phase, seconds] : refined_->refinement.phases_s) known_s += seconds;
+      own.phases_s["exchange"] = std::max(0.0, ranks_.seconds() - start_s - known_s);
+    });
+  }
+
+  void refine_alone(const Problem& problem, const Team& team, StopControl& stop) {
+    const Vector extent = problem.object.high - problem.object.low;
+    const CubeGrid grid(problem.object, std::max({extent.x, extent.y, extent.z}));
+    refined_.emplace(DistributedRefinement{.refinement = podm(problem, team, stop),
+                                           .grid = grid,
+                                           .rank_of_cube = std::vector<int>(grid.num_cubes()),
+                                           .rounds = {},
+                                           .last_update = {}});
+  }
+
+  MeshPiece piece(Space space, std::uint64_t& facets_off_isosurface) {
+    MeshPiece piece;
+    if (ranks_.size() > 1) {
+      piece = extract_piece(*refined_, phases_.isosurface(), space, phases_.loop_threads(), ranks_,
+                            facets_off_isosurface);
+    } else {
+      piece.mesh = extract_mesh(*refined_->refinement.mesh, phases_.isosurface(), space,
+                                phases_.loop_threads(), facets_off_isosurface);
+      piece.vertex_ids.resize(piece.mesh.vertices.size());
+      std::iota(piece.vertex_ids.begin(), piece.vertex_ids.end(), std::uint64_t{0});
+      piece.owns_vertex.assign(piece.vertex_ids.size(), 1);
+      piece.total_vertices = piece.vertex_ids.size();
+      piece.total_cells = piece.mesh.cells.size();
+      piece.total_facets = piece.mesh.facets.size();
+    }
+    refined_->refinement.mesh.reset();
+    return piece;
+  }
+
+  const LabelImage& image_;
+  const MeshingOptions options_;
+  Communication& ranks_;
+  PhasesOfRun phases_;
+  std::optional<DistributedRefinement> refined_;
+};
+
+}  // namespace
+
+MeshingOnRanks mesh_image_on_ranks(const LabelImage& image, const MeshingOptions& options,
+                                   Communication& ranks, const ProgressCallback& progress,
+                                   std::stop_token stop) {
+  std::optional<RunOnRank> run;
+  do_together(
+      [&] {
+        check_options(image, options);
+        check_options_on_ranks(options);
+        run.emplace(image, options, ranks, progress, std::move(stop));
+      },
+      ranks);
+  if (ranks.size() > 1) expect_agreement(facts_of(image, options), ranks);
+  return (*run)();
+}
+
+}  // namespace podm

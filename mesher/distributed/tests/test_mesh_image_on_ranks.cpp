@@ -1,0 +1,99 @@
+// A run on ranks: every rank tells of the same whole, and pieces add up to it.
+#include "distributed/mesh_image_on_ranks.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+
+#include "distributed/in_process_ranks.h"
+#include "distributed/together.h"
+#include "tests/fault_of.h"
+#include "tests/images.h"
+
+namespace podm::test {
+namespace {
+
+MeshingOptions options_with_radius(double radius_mm) {
+  MeshingOptions options;
+  options.sizes.radius_mm = radius_mm;
+  options.team.threads = 1;
+  return options;
+}
+
+class MeshImageOnRanks : public testing::TestWithParam<int> {};
+
+TEST_P(MeshImageOnRanks, PiecesAddUpToTheWholeThatAllRanksTellOf) {
+  const auto num_ranks = static_cast<std::size_t>(GetParam());
+  const LabelImage image = ball(24, 9);
+  std::vector<MeshingOnRanks> results(num_ranks);
+  run_ranks({.num_ranks = GetParam(), .one_at_a_time = true}, [&](Communication& ranks) {
+    results[static_cast<std::size_t>(ranks.rank())] =
+        mesh_image_on_ranks(image, options_with_radius(1.5), ranks);
+  });
+  std::uint64_t cells = 0, facets = 0;
+  std::vector<int> owners(results[0].piece.total_vertices);
+  for (const MeshingOnRanks& result : results) {
+    const MeshPiece& piece = result.piece;
+    EXPECT_EQ(piece.first_cell, cells);
+    EXPECT_EQ(piece.first_facet, facets);
+    cells += piece.mesh.cells.size();
+    facets += piece.mesh.facets.size();
+    ASSERT_EQ(piece.vertex_ids.size(), piece.mesh.vertices.size());
+    ASSERT_EQ(piece.owns_vertex.size(), piece.mesh.vertices.size());
+    for (std::size_t v = 0; v < piece.vertex_ids.size(); ++v)
+      owners.at(piece.vertex_ids[v]) += piece.owns_vertex[v];
+    EXPECT_TRUE(result.report.guarantees.all_met());
+    EXPECT_EQ(result.report.cells_of_label, results[0].report.cells_of_label);
+    EXPECT_EQ(result.report.counters.num_committed(), results[0].report.counters.num_committed());
+    EXPECT_EQ(result.report.workers.size(), num_ranks);
+    EXPECT_EQ(result.parts.size(), num_ranks);
+  }
+  EXPECT_EQ(results[0].report.cells_of_label.at(image.labels[1].value), cells);
+  EXPECT_EQ(results[0].piece.total_cells, cells);
+  EXPECT_EQ(results[0].piece.total_facets, facets);
+  EXPECT_TRUE(std::all_of(owners.begin(), owners.end(), [](int count) { return count == 1; }));
+}
+
+INSTANTIATE_TEST_SUITE_P(Ranks, MeshImageOnRanks, testing::Values(1, 3, 4));
+
+// The words of what all ranks throw.
+std::string refusal_by_all(const std::function<void(Communication&)>& body) {
+  std::vector<std::string> words(3);
+  run_ranks({.num_ranks = 3}, [&](Communication& ranks) {
+    words[static_cast<std::size_t>(ranks.rank())] = fault_of<RefusedByAll>([&] { body(ranks); });
+  });
+  EXPECT_EQ(words[0], words[1]);
+  EXPECT_EQ(words[0], words[2]);
+  return words[0];
+}
+
+TEST(RanksThatDiffer, AreRefusedByAllWithTheRankAndWhatDiffers) {
+  const LabelImage image = ball(12, 4), other = ball(12, 3);
+  const auto with_radius_of_rank = [&](Communication& ranks) {
+    mesh_image_on_ranks(image, options_with_radius(ranks.rank() == 2 ? 3 : 4), ranks);
+  };
+  const auto with_image_of_rank = [&](Communication& ranks) {
+    mesh_image_on_ranks(ranks.rank() == 1 ? other : image, options_with_radius(4), ranks);
+  };
+  EXPECT_NE(refusal_by_all(with_radius_of_rank).find("rank 2 of 3 does not have the radius"),
+            std::string::npos);
+  EXPECT_NE(refusal_by_all(with_image_of_rank).find("rank 1 of 3 does not have the image"),
+            std::string::npos);
+}
+
+TEST(DoTogether, TellsOfTheRankUnlessAllSayTheSame) {
+  EXPECT_EQ(refusal_by_all(
+                [](Communication& ranks) { do_together([] { throw InputError("no such file"); }, ranks); }),
+            "no such file");
+  const auto fail_on_one = [](Communication& ranks) {
+    do_together(
+        [&] {
+          if (ranks.rank() == 1) throw InputError("disk full");
+        },
+        ranks);
+  };
+  EXPECT_EQ(refusal_by_all(fail_on_one), "rank 1 of 3: disk full");
+}
+
+}  // namespace
+}  // namespace podm::test

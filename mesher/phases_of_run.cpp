@@ -1,0 +1,124 @@
+#include "phases_of_run.h"
+
+#include <malloc.h>
+
+#include <algorithm>
+
+#include "algorithms/memory_model.h"
+#include "cost_model.h"
+#include "default_sizes.h"
+#include "extract_mesh.h"
+#include "measure_quality.h"
+#include "podm/operation_log.h"
+#include "workers/work_cost.h"
+
+namespace podm {
+
+namespace {
+
+double seconds_since(std::chrono::steady_clock::time_point start) {
+  return std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+}
+
+}  // namespace
+
+PhasesOfRun::PhasesOfRun(const LabelImage& image, const MeshingOptions& options,
+                         const ProgressCallback& progress, std::stop_token stop, double share_of_cells)
+    : image_(image),
+      options_(options),
+      progress_(progress),
+      stop_(std::move(stop)),
+      team_(options),
+      loop_threads_(podm::loop_threads(options.team)),
+      share_of_cells_(share_of_cells) {}
+
+void PhasesOfRun::announce(const char* phase, double fraction, std::uint64_t cells) const {
+  if (progress_) progress_({phase, std::clamp(fraction, 0.0, 1.0), cells, seconds_since(start_)});
+}
+
+void PhasesOfRun::transform(MeshingReport& report) {
+  announce("transform", 0, 0);
+  const Clock::time_point start = Clock::now();
+  isosurface_.emplace(image_, loop_threads_);
+  object_ = foreground_bounds(image_, loop_threads_);
+  expected_cells_ = estimate(image_, options_).cells * share_of_cells_;
+  report.phases_s["transform"] = seconds_since(start);
+  team_.locate_memory(image_, isosurface_->transform());
+}
+
+void PhasesOfRun::refine(const SizeOptions& sizes, const Refine& refine) {
+  sizes_ = sizes;
+  const auto observe = [&](std::uint64_t cells) {
+    announce("refine", static_cast<double>(cells) / expected_cells_, cells);
+  };
+  StopControl stop_control(options_.limits, stop_, observe, start_);
+  if (options_.log != nullptr) options_.log->restart();
+  team_.forget_reads();
+  announce("refine", 0, 0);
+  const auto num_workers = static_cast<std::uint64_t>(team_.size().num_workers);
+  const std::uint64_t bytes = memory_of_run(options_.limits);
+  const Problem problem{.isosurface = *isosurface_,
+                        .object = object_,
+                        .delta_mm = sizes.delta_mm,
+                        .sizes = size_field(image_, sizes),
+                        .cell_capacity = cell_capacity(bytes, num_workers, options_.team.executor),
+                        .memory_bytes = bytes};
+  refine(problem, team_.team(), stop_control);
+}
+
+void PhasesOfRun::report_refinement(Refinement& refinement, MeshingReport& report) const {
+  report.radius_mm = sizes_.radius_mm;
+  report.delta_mm = sizes_.delta_mm;
+  report.phases_s.merge(refinement.phases_s);
+  report.stop_reason = refinement.stop_reason;
+  report.counters = refinement.counters;
+  report.workers = refinement.workers;
+  report.store_cells = refinement.mesh->num_cells();
+  const auto& [low, high] = refinement.mesh->box();
+  report.virtual_box = {low.x, low.y, low.z, high.x, high.y, high.z};
+  if (options_.team.executor == Executor::kVirtual) simulate(refinement, report);
+  report.num_leaves = refinement.num_leaves;
+  report.schedule = std::move(refinement.schedule);
+  team_.report_to(report, std::move(refinement.pages));
+}
+
+// Phases whose loops run on this machine's threads take virtual time by their counted work.
+void PhasesOfRun::simulate(const Refinement& refinement, MeshingReport& report) const {
+  const Team team = team_.team();
+  const auto voxels = static_cast<double>(image_.voxels.size());
+  const auto cells = static_cast<double>(refinement.mesh->num_cells());
+  const int num_workers = team.coordination.num_workers;
+  report.virtual_phases_s = refinement.virtual_phases_s;
+  report.virtual_phases_s["read"] = virtual_seconds(team, kVoxelRead * voxels);
+  report.virtual_phases_s["transform"] = virtual_seconds(team, kVoxelTransformed * voxels, num_workers);
+  report.virtual_phases_s["extract"] = virtual_seconds(team, kCellExtracted * cells, num_workers);
+  const VirtualSpending& spending = refinement.virtual_spending;
+  report.virtual_worker_s = {{"compute", spending.work_s},
+                             {"memory_remote", spending.remote_memory_s},
+                             {"network_queue", spending.network_s},
+                             {"between_attempts", spending.between_s},
+                             {"locks", spending.queueing_s}};
+  for (const Cause& cause : kCauses)
+    report.virtual_worker_s[cause.name] = refinement.counters.overhead.*cause.member;
+}
+
+void PhasesOfRun::extract(const std::function<void(Space)>& extract, MeshingReport& report) const {
+  announce("extract", 0, 0);
+  const Clock::time_point start = Clock::now();
+  malloc_trim(0);  // what workers had is for the mesh now
+  extract(options_.space == Space::kVoxel ? Space::kRas : options_.space);
+  report.phases_s["extract"] += seconds_since(start);
+}
+
+void PhasesOfRun::finish(TetMesh& mesh, MeshingReport& report) const {
+  announce("measure", 0, 0);
+  const Clock::time_point start = Clock::now();
+  measure_quality(mesh, image_, size_field(image_, sizes_), loop_threads_, report);
+  report.phases_s["measure"] = seconds_since(start);
+  if (options_.space != Space::kVoxel) return;
+  const Clock::time_point begin = Clock::now();
+  convert_to_voxel_space(mesh, image_, loop_threads_);
+  report.phases_s["extract"] += seconds_since(begin);
+}
+
+}  // namespace podm

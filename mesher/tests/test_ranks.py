@@ -1,0 +1,240 @@
+"""podm-mpi as a user runs it: its meshes on some ranks, what it refuses, and how a run ends whose ranks fail or are
+stopped. Needs $PODM_MPI_PROGRAM and $PODM_MPIRUN, which are empty where MPI is not."""
+
+import json
+import os
+import pathlib
+import signal
+import subprocess
+import time
+import unittest
+
+from podm_process import PROGRAM, PodmTestCase, run_podm
+from small_images import ball_voxels, write_nifti
+
+MPI_PROGRAM, MPIRUN = os.environ["PODM_MPI_PROGRAM"], os.environ["PODM_MPIRUN"]
+VERIFIER = os.path.join(os.path.dirname(PROGRAM), "podm-verify")
+IMAGE = "phantom:spheres@32"
+ENDLESS = ["phantom:abdomen@64", "--radius", 2.0]  # some ten seconds and a GiB
+ENVIRONMENT = {**os.environ, "OMPI_ALLOW_RUN_AS_ROOT": "1", "OMPI_ALLOW_RUN_AS_ROOT_CONFIRM": "1",
+               "OMPI_MCA_mpi_yield_when_idle": "1"}
+
+
+def on_ranks(*ranks):
+    """mpirun's arguments for some arguments of podm-mpi a rank."""
+    parts = []
+    for arguments in ranks:
+        parts += [":"] * bool(parts) + ["-n", 1, MPI_PROGRAM, *arguments]
+    return ["--oversubscribe", *parts]
+
+
+@unittest.skipUnless(MPI_PROGRAM, "MPI was not found when this was configured")
+class OnRanks(PodmTestCase):
+    def setUp(self):
+        super().setUp()
+        self.out = self.folder / "out.pvtu"
+        self.runs = self.folder / "runs.jsonl"
+
+    def mpirun(self, *arguments, **options):
+        return run_podm(*arguments, program=MPIRUN, env=ENVIRONMENT, **options)
+
+    def mesh(self, number, *arguments, image=IMAGE, out=None):
+        return self.mpirun("--oversubscribe", "-n", number, MPI_PROGRAM, "mesh", image, "-o", out or self.out, "--record",
+                           self.runs, *arguments)
+
+    def assert_verifies(self, path, *options):
+        report = self.folder / "report.json"
+        self.assert_exit(run_podm(path, "--json", report, *options, program=VERIFIER), 0)
+        claims = json.loads(report.read_text())["claims"]
+        decided = {claim for claim, result in claims.items() if result["verdict"] == "pass"}
+        self.assertLessEqual({"structure", "delaunay", "conformity", "surface", "radius_edge"}, decided)
+
+    def last_record(self):
+        return json.loads(self.runs.read_text().splitlines()[-1])
+
+    def names(self):
+        return {path.name for path in self.folder.iterdir()}
+
+
+class Meshes(OnRanks):
+    def test_any_number_of_ranks_makes_a_whole_mesh_that_verifies(self):
+        image = self.folder / "spheres.nii.gz"
+        self.assert_exit(run_podm("phantom", "spheres", "--size", 32, "-o", image), 0)
+        cells = {}
+        for number in 1, 2, 4:
+            with self.subTest(ranks=number):
+                self.assert_exit(self.mesh(number, "--radius", 1.5, image=image), 0)
+                self.assert_verifies(self.out, "--radius", 1.5, "--image", image)
+                pieces = {f"out_{i}{facets}.vtu" for i in range(number) for facets in ("", "_facets")}
+                self.assertLessEqual(pieces | {"out.pvtu", "out_facets.pvtu"}, self.names())
+                record = self.last_record()
+                cells[number] = record["cells"]
+                ranks = record["ranks"]
+                self.assertEqual([ranks["number"], ranks["machines"], len(ranks["by_rank"])], [number, 1, number])
+                self.assertEqual(sum(rank["cells"] for rank in ranks["by_rank"]), record["cells"])
+                self.assertEqual(sum(label["cells"] for label in record["labels"]), record["cells"])
+                self.assertEqual(sum(pair["facets"] for pair in record["facet_pairs"]), record["boundary_facets"])
+                self.assertEqual(bool(ranks["rounds"]), number > 1)
+                self.assertTrue(all(round["deferred"] == 0 for round in ranks["rounds"][-1:]))
+        self.assertLess(max(cells.values()) / min(cells.values()), 1.02)
+
+    def test_one_rank_makes_the_mesh_of_podm(self):
+        self.assert_exit(self.mesh(1, "--radius", 3, "--threads", 1), 0)
+        alone = self.folder / "alone.vtu"
+        self.assert_exit(run_podm("mesh", IMAGE, "--radius", 3, "--threads", 1, "-o", alone, "--record", self.runs), 0)
+        ours, theirs = map(json.loads, self.runs.read_text().splitlines())
+        for key in "cells", "vertices", "boundary_facets", "labels", "facet_pairs", "quality", "counters":
+            if key == "counters":
+                ours[key].pop("store_cells"), theirs[key].pop("store_cells")
+            self.assertEqual(ours[key], theirs[key], key)
+
+    def test_as_many_ranks_of_one_thread_make_the_same_mesh(self):
+        contents = []
+        for _ in range(2):
+            self.assert_exit(self.mesh(3, "--radius", 2, "--threads", 1), 0)
+            contents.append([(self.folder / f"out_{i}.vtu").read_bytes() for i in range(3)])
+        self.assertEqual(*contents)
+
+    def test_a_mesh_of_less_pieces_replaces_one_of_more(self):
+        for number in 4, 2:
+            self.assert_exit(self.mesh(number, "--radius", 4), 0)
+        self.assertNotIn("out_2.vtu", self.names())
+        self.assert_verifies(self.out)
+
+    def test_xdmf_voxel_space_and_verification(self):
+        self.assert_exit(self.mesh(2, "--radius", 4, out=self.folder / "out.xdmf"), 0)
+        self.assertLessEqual({"out.xdmf", "out.h5"}, self.names())
+        self.assert_exit(self.mesh(2, "--radius", 4, "--space", "voxel"), 0)
+        self.assert_exit(self.mesh(2, "--radius", 4, "--verify"), 0)
+        self.assertEqual(set(self.last_record()["verdicts"].values()), {"pass"})
+
+    def test_more_ranks_than_there_is_to_do(self):
+        image = write_nifti(self.folder / "ball.nii", ball_voxels(12))
+        self.assert_exit(self.mesh(6, "--radius", 6, "--delta", 3, image=image), 0)
+        self.assert_verifies(self.out, "--radius", 6)
+
+    def test_the_summary_is_told_once(self):
+        process = self.mesh(2, "--radius", 4)
+        for words in ("guarantees all met", "deferred", "memory of one"):
+            self.assertEqual(process.stderr.count(words), 1, words)
+
+    def test_ranks_that_ask_for_more_threads_than_there_are_are_warned(self):
+        processors = len(os.sched_getaffinity(0))
+        process = self.mesh(processors + 1, "--radius", 6)
+        self.assert_exit(process, 0)
+        self.assertRegex(process.stderr, f"warning: .*: {processors + 1} ranks ask for {processors + 1} threads")
+
+
+    def test_help_fits_a_terminal_and_names_what_is_refused(self):
+        process = self.mpirun("-n", 1, MPI_PROGRAM, "mesh", "--help")
+        self.assert_exit(process, 0)
+        self.assertLessEqual(max(map(len, process.stdout.splitlines())), 110)
+        self.assertIn("refused: --target-elements", process.stdout)
+
+
+class Refusals(OnRanks):
+    def assert_all_refuse(self, arguments, *words):
+        before = self.files()
+        process = self.mpirun(*arguments)
+        self.assert_exit(process, 2)
+        told = [line for line in process.stderr.splitlines() if line.startswith("podm-mpi: ")]
+        self.assertEqual(len(told), 1, process.stderr)
+        for word in words:
+            self.assertIn(str(word), told[0])
+        self.assertEqual(self.files(), before)
+
+    def test_what_ranks_do_not_have_yet(self):
+        for option, *words in (["--target-elements", 1000, "target"], ["--executor", "virtual", "virtual"],
+                               ["--algorithm", "pdr", "algorithm pdr"], ["--log", self.folder / "run.log", "--log"],
+                               ["--surface", self.folder / "s.stl", "--surface"],
+                               ["--schedule", self.folder / "leaves.jsonl", "--schedule"]):
+            *values, word = words
+            with self.subTest(option=option):
+                self.assert_all_refuse(["--oversubscribe", "-n", 2, MPI_PROGRAM, "mesh", IMAGE, "-o", self.out, option,
+                                        *values], word, "on ranks yet")
+
+    def test_faults_that_every_rank_sees_are_told_once(self):
+        mesh = ["--oversubscribe", "-n", 3, MPI_PROGRAM, "mesh"]
+        self.assert_all_refuse([*mesh, IMAGE, "-o", self.folder / "out.vtu"], "out.vtu", ".pvtu")
+        self.assert_all_refuse([*mesh, IMAGE, "-o", self.folder / "none" / "out.pvtu"], "none/out.pvtu")
+        self.assert_all_refuse([*mesh, self.folder / "none.nii", "-o", self.out], "none.nii")
+        self.assert_all_refuse([*mesh, IMAGE, "-o", self.out, "--radios", 3], "unknown option '--radios'")
+        self.assert_all_refuse([*mesh, IMAGE, "-o", self.out, "--radius", 3, "--delta", 1000], "--delta")
+
+    def test_ranks_that_do_not_ask_for_the_same(self):
+        one, other = (write_nifti(self.folder / f"{name}.nii", ball_voxels(size), (size,) * 3)
+                      for name, size in (("one", 12), ("other", 13)))
+        mesh = ["mesh", one, "-o", self.out]
+        for arguments, word in ((["mesh", other, "-o", self.out], "image"),
+                                ([*mesh, "--radius", 3], "radius"),
+                                (["mesh", one, "-o", self.folder / "b.pvtu"], "output"),
+                                ([*mesh, "--no-such"], "rank 1 of 2: unknown option")):
+            with self.subTest(word=word):
+                self.assert_all_refuse(on_ranks(mesh, arguments), word)
+
+    def test_a_disk_that_is_full_for_one_rank(self):
+        """All tell why and leave, with what was there before."""
+        self.assert_exit(self.mesh(2, "--radius", 6), 0)
+        mesh = ["mesh", IMAGE, "-o", self.out, "--radius", 2, "--quiet"]
+        full = "ulimit -f 16"
+        self.assert_all_refuse(["--oversubscribe", "-n", 1, MPI_PROGRAM, *mesh, ":", "-n", 1, "sh", "-c",
+                                f'{full}; exec "$0" "$@"', MPI_PROGRAM, *mesh], "rank 1 of 2", "cannot write", "out_1")
+        self.assert_verifies(self.out)
+
+
+class EarlyEnds(OnRanks):
+    def assert_ended_early(self, process, reason):
+        self.assert_exit(process, 1)
+        self.assertIn(f"ended early: {reason}", process.stderr)
+        self.assertEqual(self.last_record()["stop_reason"], reason)
+        report = run_podm(self.out, "--claims", "structure,delaunay,conformity", program=VERIFIER)
+        self.assert_exit(report, 0)
+
+    def test_time_limit(self):
+        self.assert_ended_early(self.mesh(2, *ENDLESS[1:], "--max-seconds", 2, image=ENDLESS[0]), "time limit")
+
+    def test_element_limit_is_shared_evenly(self):
+        self.assert_ended_early(self.mesh(3, *ENDLESS[1:], "--max-elements", 60000, image=ENDLESS[0]), "element limit")
+        self.assertLessEqual(self.last_record()["cells"], 60000)
+
+    def start(self, number):
+        command = [MPIRUN, "--oversubscribe", "-n", str(number), MPI_PROGRAM, "mesh", *map(str, ENDLESS), "-o", self.out,
+                   "--record", self.runs]
+        process = subprocess.Popen(command, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True, env=ENVIRONMENT)
+        self.addCleanup(process.kill)
+        for line in process.stderr:
+            if line.startswith("refine"):
+                children = pathlib.Path(f"/proc/{process.pid}/task/{process.pid}/children").read_text().split()
+                self.assertEqual(len(children), number)
+                return process, [int(child) for child in children]
+        self.fail(f"no refinement: exit {process.wait()}")
+
+    def wait_for_end(self, process):
+        """Until it has ended, whether or not anybody has asked how."""
+        stat = pathlib.Path(f"/proc/{process}/stat")
+        for _ in range(100):
+            if not stat.exists() or stat.read_text().rpartition(")")[2].split()[0] in "ZX":
+                return
+            time.sleep(0.1)
+        self.fail(f"process {process} goes on")
+
+    def test_a_rank_that_is_killed_ends_all_and_nothing_is_written(self):
+        for which in 0, 2:
+            process, ranks = self.start(3)
+            os.kill(ranks[which], signal.SIGKILL)
+            process.communicate(timeout=60)
+            self.assertNotEqual(process.returncode, 0)
+            self.assertEqual(self.names() - {"runs.jsonl"}, set())
+            for rank in ranks:
+                self.wait_for_end(rank)
+
+    def test_a_signal_to_all_ranks_ends_them_with_a_valid_mesh(self):
+        process, ranks = self.start(2)
+        for rank in ranks:
+            os.kill(rank, signal.SIGTERM)
+        stdout, stderr = process.communicate(timeout=120)
+        self.assert_ended_early(subprocess.CompletedProcess([], process.returncode, stdout, stderr), "cancelled")
+
+
+if __name__ == "__main__":
+    unittest.main()
