@@ -39,8 +39,8 @@ class OnRanks(PodmTestCase):
         return run_podm(*arguments, program=MPIRUN, env=ENVIRONMENT, **options)
 
     def mesh(self, number, *arguments, image=IMAGE, out=None):
-        return self.mpirun("--oversubscribe", "-n", number, MPI_PROGRAM, "mesh", image, "-o", out or self.out, "--record",
-                           self.runs, *arguments)
+        return self.mpirun("--oversubscribe", "-n", number, MPI_PROGRAM, "mesh", image, "-o", out or self.out,
+                           "--record", self.runs, *arguments)
 
     def assert_verifies(self, path, *options):
         report = self.folder / "report.json"
@@ -198,8 +198,8 @@ class EarlyEnds(OnRanks):
         self.assertLessEqual(self.last_record()["cells"], 60000)
 
     def start(self, number):
-        command = [MPIRUN, "--oversubscribe", "-n", str(number), MPI_PROGRAM, "mesh", *map(str, ENDLESS), "-o", self.out,
-                   "--record", self.runs]
+        command = [MPIRUN, "--oversubscribe", "-n", str(number), MPI_PROGRAM, "mesh", *map(str, ENDLESS),
+                   "-o", self.out, "--record", self.runs]
         process = subprocess.Popen(command, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True, env=ENVIRONMENT)
         self.addCleanup(process.kill)
         for line in process.stderr:
