@@ -174,7 +174,7 @@ void TrialRunner::prove(const Run& run, TrialResult& result) {
   }
   if (run.trial.options.value(kReplay, false) && result.status != Status::kInterrupted) {
     const auto [replay, is_interrupted] =
-        replay_mesh(run.preparation.image, programs_.podm, run.folder, run.stop_requested);
+        replay_mesh(run.trial, run.preparation.image, programs_.podm, run.folder, run.stop_requested);
     result.replay = replay;
     const bool is_equal = replay.end == Replay::End::kEqual;
     add_fault(is_equal ? "" : "replay " + replay.text(), is_interrupted, result);

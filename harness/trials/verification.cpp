@@ -12,7 +12,8 @@ namespace podm::bench {
 namespace {
 
 constexpr const char* kClaims = "structure,radius_edge,boundary_angles,delaunay,conformity,surface,labels";
-constexpr double kTimeoutS = 600;
+// A proof may take longer than the mesh, and of a large one as long as that may.
+double timeout_s(const Trial& trial) { return std::max(600.0, trial.timeout_s); }
 constexpr int kExitDiffers = 1;  // podm replay ends with it
 
 // What is read of podm-verify's report.
@@ -65,7 +66,7 @@ Verification verify_mesh(const Trial& trial, const std::string& image, const Mes
   if (radius_mm > 0) add("--radius", fmt::format("{}", radius_mm));
   if (with_fidelity) add("--delta", fmt::format("{}", used.delta_mm.value_or(0)));
   if (trial.options.value(kSchedule, false)) add("--schedule", folder + kScheduleName);
-  const ProcessOutcome outcome = ask(command, kTimeoutS, stop_requested).outcome;
+  const ProcessOutcome outcome = ask(command, timeout_s(trial), stop_requested).outcome;
   const auto report = read_report(report_path);
   Verification verification{{}, {}, outcome.end == ProcessOutcome::End::kInterrupted};
   if (!report) {
@@ -77,10 +78,10 @@ Verification verify_mesh(const Trial& trial, const std::string& image, const Mes
   return verification;
 }
 
-ReplayAttempt replay_mesh(const std::string& image, const std::string& podm, const std::string& folder,
-                          const StopQuery& stop_requested) {
+ReplayAttempt replay_mesh(const Trial& trial, const std::string& image, const std::string& podm,
+                          const std::string& folder, const StopQuery& stop_requested) {
   using End = ProcessOutcome::End;
-  const Reply reply = ask({podm, "replay", image, folder + kLogName}, kTimeoutS, stop_requested);
+  const Reply reply = ask({podm, "replay", image, folder + kLogName}, timeout_s(trial), stop_requested);
   if (reply.succeeded()) return {{Replay::End::kEqual, ""}};
   if (reply.outcome.end == End::kExited && reply.outcome.exit_code == kExitDiffers)
     return {{Replay::End::kDiffers, ""}};

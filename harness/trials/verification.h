@@ -40,7 +40,7 @@ struct ReplayAttempt {
 };
 
 /// Whether the operations in the folder's log, one after the other, make the mesh that the run made.
-ReplayAttempt replay_mesh(const std::string& image, const std::string& podm, const std::string& folder,
-                          const StopQuery& stop_requested);
+ReplayAttempt replay_mesh(const Trial& trial, const std::string& image, const std::string& podm,
+                          const std::string& folder, const StopQuery& stop_requested);
 
 }  // namespace podm::bench
