@@ -60,11 +60,18 @@ Json update_of(const Update& update) {
           {"removed", update.removed}};
 }
 
+// Where it is one in a late round, what waited was in one piece.
+std::size_t ranks_refining(const std::vector<PartOfRank>& parts, std::size_t round) {
+  return static_cast<std::size_t>(std::count_if(
+      parts.begin(), parts.end(), [&](const PartOfRank& part) { return part.rounds[round].insertions > 0; }));
+}
+
 Json rounds_of(const std::vector<PartOfRank>& parts) {
   Json rounds = Json::array();
   for (std::size_t i = 0; i < parts[0].rounds.size(); ++i) {
     const RoundReport round = on_all(parts, i);
-    rounds.push_back({{"entries", round.entries},
+    rounds.push_back({{"ranks_refining", ranks_refining(parts, i)},
+                      {"entries", round.entries},
                       {"insertions", round.insertions},
                       {"deferred", round.deferred},
                       {"cubes", round.cubes},
