@@ -5,6 +5,7 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <optional>
 #include <span>
 #include <stdexcept>
 #include <string>
@@ -21,6 +22,17 @@ using Bytes = std::vector<std::byte>;
 class RankFailed : public std::runtime_error {
  public:
   using std::runtime_error::runtime_error;
+};
+
+/// One rank's virtual seconds, and what it sent to others. All ranks' seconds add up to the same until the
+/// last collective.
+struct RankReport {
+  double computing_s = 0;
+  double waiting_s = 0;  ///< for ranks that took longer
+  double network_s = 0;
+  std::uint64_t messages_sent = 0, bytes_sent = 0;
+
+  double total_s() const { return computing_s + waiting_s + network_s; }
 };
 
 class Communication {
@@ -45,6 +57,8 @@ class Communication {
   /// A virtual clock goes on by so much for what the rank had other threads do; it sees the rank's own thread
   /// alone.
   virtual void charge(double /*seconds*/) {}
+  /// What the rank's virtual clock has seen so far; nothing where clocks are on the wall.
+  virtual std::optional<RankReport> spent() const { return std::nullopt; }
 
  protected:
   void check_one_a_rank(const std::vector<Bytes>& messages) const {
