@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "geometry/box.h"
+#include "octree/morton.h"
 
 namespace podm {
 
@@ -30,6 +31,8 @@ class CubeGrid {
   }
   CubePlace place_of(CubeId cube) const;
   CubeId cube_at(const Point& p) const { return id(place_of(p)); }
+  /// Along a curve on which points that follow each other are near each other, finer than cubes.
+  MortonCode place_on_curve(const Point& p) const;
   /// From a point to the cube, mm^2, but for rounding.
   double squared_distance(const CubePlace& at, const Point& p) const;
 
@@ -59,6 +62,8 @@ class CubeSet {
   std::vector<CubeId> cubes() const;
   /// With all cubes within so many of one of these, along each axis.
   CubeSet grown(int rings) const;
+  /// By cube: so many rings of cubes around it are in the set, up to `most`; 0 for those outside, too.
+  std::vector<std::uint8_t> depths(std::uint8_t most) const;
   /// Those that have a face, an edge or a corner in common, directly or by others of the set, get the same
   /// number, from 0 on in the order of their first cubes. Others have kNone.
   static constexpr std::uint32_t kNone = 0xffffffffu;

@@ -7,7 +7,6 @@
 #include "distributed/messages.h"
 
 #include "delaunay/walk.h"
-#include "octree/morton.h"
 #include "podm/errors.h"
 
 namespace podm {
@@ -140,16 +139,10 @@ void VertexExchange::apply(std::vector<Change>& changes) {
     }
   };
   constexpr int kMostRounds = 10;
-  constexpr double kPlacesASide = 16;  // of a cube, along the curve
-  const Point origin = mesh_.box().low;
-  const double per_mm = kPlacesASide / grid_.side_mm();
-  const auto along = [](double x) { return static_cast<std::uint32_t>(x) & ((1u << kMortonBits) - 1); };
   std::vector<Place> order;
   for (std::size_t i = 0; i < changes.size(); ++i) {
-    const Vector g = per_mm * (changes[i].point - origin);
-    const auto rounds_after = std::countl_zero(hash_of(changes[i].point));
-    order.push_back(
-        {std::min(rounds_after, kMostRounds), morton_code({along(g.x), along(g.y), along(g.z)}), i});
+    const Point& p = changes[i].point;
+    order.push_back({std::min(std::countl_zero(hash_of(p)), kMostRounds), grid_.place_on_curve(p), i});
   }
   std::sort(order.begin(), order.end());
   const auto check = [](StepResult result) {
@@ -167,7 +160,6 @@ void VertexExchange::apply(std::vector<Change>& changes) {
       check(operation_.commit_insertion(point, kind, kTouching));
     }
     near_ = operation_.created().front();
-    for (const CellId c : operation_.created()) mesh_.make_canonical(c);
   }
 }
 
