@@ -118,7 +118,11 @@ void add_run_options(CLI::App& app, MeshCommand& command, Program which) {
              meshing.team.seed = parse_integer(text, name, 0, std::numeric_limits<std::uint32_t>::max());
            },
            std::to_string(meshing.team.seed)});
-  add_one(app, "--log", "FILE", "write every operation in its order, for podm replay [default: none]",
+  add_one(app, "--log", "FILE",
+          which == Program::kPodmMpi
+              ? "write every operation in its order, for podm replay: rank R to FILE.R, one\n"
+                "rank alone to FILE [default: none]"
+              : "write every operation in its order, for podm replay [default: none]",
           into(command.log_path));
 }
 
@@ -157,7 +161,7 @@ void add_mesh_command(CLI::App& program, MeshCommand& command, Program which) {
     end_help(
         app,
         "Not on ranks yet, and refused: --target-elements, --surface, --algorithm but podm, --schedule,\n"
-        "--executor virtual, --log.");
+        "--executor virtual.");
 }
 
 }  // namespace podm::cli

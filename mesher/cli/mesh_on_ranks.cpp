@@ -20,6 +20,8 @@
 #include "distributed/mesh_image_on_ranks.h"
 #include "distributed/together.h"
 #include "distributed/write_pieces.h"
+#include "podm/mesh_io.h"
+#include "podm/operation_log.h"
 
 namespace podm::cli {
 namespace {
@@ -36,7 +38,6 @@ void refuse(const std::string& path, const char* option) {
 void check_command(const MeshCommand& command) {
   refuse(command.surface_path, "--surface");
   refuse(command.schedule_path, "--schedule");
-  refuse(command.log_path, "--log");
   check_options_on_ranks(command.meshing);
   check_pieces_path(command.mesh_path);
   if (command.verify) check_verifier(command.mesh_path);
@@ -64,8 +65,9 @@ class Run {
     MeshingOnRanks result = mesh();
     const auto start = std::chrono::steady_clock::now();
     if (result.piece.total_cells > 0) write_pieces(result.piece, command_.mesh_path, ranks_);
-    run_.write_s = seconds_since(start);
     run_.report = std::move(result.report);
+    if (log_) write_log(result.mesh_hash);
+    run_.write_s = seconds_since(start);
     auto& warnings = run_.report.warnings;
     warnings = machines_.warnings(command_.meshing.team.threads);
     warnings.insert(warnings.end(), image_.warnings.begin(), image_.warnings.end());
@@ -89,10 +91,12 @@ class Run {
     const auto check = [&] {
       check_command(command_);
       if (ranks_.rank() == 0 && !command_.record_path.empty()) records_.emplace(command_.record_path);
+      if (!command_.log_path.empty()) log_.emplace(own_log_path());
     };
     do_together(check, ranks_);
     expect_agreement({{"program", "SHA-256 " + file_sha256("/proc/self/exe")},
                       {"output", command_.mesh_path},
+                      {"--log", command_.log_path},
                       {"--verify", command_.verify ? "asked for" : "not asked for"}},
                      ranks_);
     std::uint64_t limit_bytes = memory_limit_bytes(command_);
@@ -102,8 +106,26 @@ class Run {
       image_ = read_labelled_image(command_.image, team.threads, bytes_for_image(limit_bytes));
       run_.read_s = seconds_since(start);
       run_.options = options_for_image(command_, image_, limit_bytes, ranks_.size());
+      if (log_) run_.options.log = &*log_;
     };
     do_together(read, ranks_);
+  }
+
+  std::string own_log_path() const {
+    return ranks_.size() == 1 ? command_.log_path : fmt::format("{}.{}", command_.log_path, ranks_.rank());
+  }
+
+  // No rank's log gets its name before all are on the disks.
+  void write_log(std::uint64_t mesh_hash) {
+    const OperationLogHead head{.box = run_.report.virtual_box,
+                                .image_sha256 = label_image_sha256(image_),
+                                .space = to_string(run_.options.space),
+                                .mesh_sha256 = {},
+                                .mesh_hash = mesh_hash_text(mesh_hash),
+                                .rank = ranks_.rank(),
+                                .num_ranks = ranks_.size()};
+    do_together([&] { log_->finish(head); }, ranks_);
+    do_together([&] { log_->publish(); }, ranks_);
   }
 
   MeshingOnRanks mesh() {
@@ -124,6 +146,7 @@ class Run {
   LabelImage image_;
   MeshRun run_;
   std::optional<AppendedFile> records_;  // rank 0's
+  std::optional<OperationLogWriter> log_;
 };
 
 }  // namespace

@@ -6,6 +6,7 @@
 
 #include "cli/options_for_image.h"
 #include "distributed/messages.h"
+#include "podm/mesh_io.h"
 
 namespace podm::cli {
 namespace {
@@ -131,7 +132,9 @@ void gather_from_ranks(const MeshingOnRanks& result, int threads, std::uint64_t 
               .boundary_facets = result.piece.total_facets,
               .facet_pairs = sums_of(pairs)};
   run.ranks = ranks_of(result.parts, processes, machines);
-  run.ranks_text = text_of(result.parts, processes, machines);
+  run.ranks["mesh_hash"] = mesh_hash_text(result.mesh_hash);
+  run.ranks_text = text_of(result.parts, processes, machines) +
+                   fmt::format("hash       {}\n", mesh_hash_text(result.mesh_hash));
 }
 
 }  // namespace podm::cli
