@@ -150,6 +150,7 @@ class Rounds {
   void refine_in_rounds() {
     zone_of_ = blocks_->ranks();
     load_.assign(static_cast<std::size_t>(ranks_.size()), 0);
+    construction_.timed("refine", [] {});  // every rank has this phase
     std::vector<CellName> here;  // what waits, and is to be refined here
     do {
       const auto round = static_cast<int>(rounds_.size());
