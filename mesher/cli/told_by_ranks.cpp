@@ -8,6 +8,7 @@
 #include "cli/options_for_image.h"
 #include "cli/process_memory.h"
 #include "distributed/messages.h"
+#include "podm/mesh_io.h"
 
 namespace podm::cli {
 namespace {
@@ -190,7 +191,9 @@ void gather_from_ranks(const MeshingOnRanks& result, int threads, const RanksOfM
               .boundary_facets = result.piece.total_facets,
               .facet_pairs = sums_of(pairs)};
   run.ranks = ranks_of(result.parts, spent, machines, run);
-  run.ranks_text = text_of(result.parts, spent, machines);
+  run.ranks["mesh_hash"] = mesh_hash_text(result.mesh_hash);
+  run.ranks_text = text_of(result.parts, spent, machines) +
+                   fmt::format("hash       {}\n", mesh_hash_text(result.mesh_hash));
 }
 
 }  // namespace podm::cli

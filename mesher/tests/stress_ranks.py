@@ -1,4 +1,4 @@
-"""Meshes on ranks, each proved by podm-verify from its pieces. ci/ranks.sh calls it.
+"""Meshes on ranks, each proved by podm-verify from its pieces, and made again by podm replay. ci/ranks.sh calls it.
 
 `random` makes runs of podm-mpi with its ranks in one process: phantom, ranks, threads, initial ratio and the cuts of
 blocks are drawn from a seed alone. `images` meshes every image of a folder on several numbers of ranks, in one process
@@ -77,7 +77,7 @@ class OnRanks:
     def command(self, folder):
         return [*self.launcher, MPI_PROGRAM, "mesh", self.sample.path, "--radius", self.sample.radius_mm, "--delta",
                 self.sample.delta_mm, *self.options, "--oversubscribe", "-o", folder / "out.pvtu",
-                "--record", folder / "run.jsonl", "--quiet"]
+                "--record", folder / "run.jsonl", "--log", folder / "run.log", "--quiet"]
 
 
 @dataclasses.dataclass
@@ -100,7 +100,7 @@ class Made:
 
 
 def prove(run, folder):
-    """Raises Failed unless the mesh is whole and proved."""
+    """Raises Failed unless the mesh is whole, proved, and what its logs make."""
     record = record_in(folder)
     if record["stop_reason"] != "complete" or any(record["guarantees"].values()):
         raise Failed(f"ended as {record['stop_reason']}, guarantees missed: {record['guarantees']}")
@@ -111,10 +111,13 @@ def prove(run, folder):
     unproved = {claim for claim in CLAIMS if claims.get(claim, {}).get("verdict") != "pass"}
     if unproved:
         raise Failed(f"podm-verify does not prove {', '.join(sorted(unproved))}: {json.dumps(claims)[:3000]}")
-    pieces = {f"out_{i}{facets}.vtu" for i in range(record["ranks"]["number"]) for facets in ("", "_facets")}
-    left = {path.name for path in folder.iterdir()} - pieces
-    if left != {"out.pvtu", "out_facets.pvtu", "run.jsonl", "report.json"}:
-        raise Failed(f"left {sorted(left)} beside the pieces")
+    ranks = range(record["ranks"]["number"])
+    logs = [f"run.log.{i}" for i in ranks]
+    call([PROGRAM, "replay", run.sample.path, *(folder / log for log in logs)])
+    files = {*logs, *(f"out_{i}{facets}.vtu" for i in ranks for facets in ("", "_facets")), "out.pvtu",
+             "out_facets.pvtu", "run.jsonl", "report.json"}
+    if left := {path.name for path in folder.iterdir()} ^ files:
+        raise Failed(f"left behind, or lacks: {sorted(left)}")
     return Made.of(record, run.sample)
 
 
@@ -164,7 +167,7 @@ def run_images(options):
     if not paths:
         sys.exit(f"{options.folder}: no image")
     print("| image | radius, mm | ranks | cells | over one machine's | rounds | deferred in round 0 | "
-          "not by one rank alone | imbalance | claims |\n|---|---|---|---|---|---|---|---|---|---|", flush=True)
+          "not by one rank alone | imbalance | claims | replay |\n" + 11 * "|---" + "|", flush=True)
     are_all_made = True
     for path in paths:
         sample = Sample.of(path, options.cells)
@@ -178,7 +181,7 @@ def run_images(options):
             if made is not None:
                 print(f"| {path.name} | {sample.radius_mm:.4g} | {run.name.partition(', ')[2]} | {made.cells} | "
                       f"{made.more_cells:+.2%} | {made.rounds} | {made.deferred:.2%} | {made.in_zones:.2%} | "
-                      f"{made.imbalance:.3f} | {len(CLAIMS)} proved |", flush=True)
+                      f"{made.imbalance:.3f} | {len(CLAIMS)} proved | equal |", flush=True)
     return are_all_made
 
 
