@@ -18,8 +18,8 @@ namespace {
 
 // What is known reaches so many cubes beyond zones.
 constexpr int kKnownRings = 1;
-// And around a deferred cell so many circumradii, so that most of its neighbours are known.
-constexpr double kKnownOverRadius = 2;
+// And around a deferred cell so many circumradii: more of its neighbours known cost more than they save.
+constexpr double kKnownOverRadius = 1;
 // Cubes are so many bounds of a circumradius long.
 constexpr double kCubeOverRadius = 2;
 
