@@ -1,29 +1,17 @@
 #include "distributed/pieces.h"
 
 #include <algorithm>
-#include <bit>
 #include <numeric>
 #include <tuple>
-#include <unordered_map>
 
 #include "distributed/messages.h"
 #include "extract_mesh.h"
+#include "geometry/point_hash.h"
 #include "podm/errors.h"
 
 namespace podm {
 
 namespace {
-
-struct PointHash {
-  std::size_t operator()(const Point& p) const {
-    std::uint64_t hash = 0;
-    for (const double x : {p.x, p.y, p.z})
-      hash = (hash ^ std::bit_cast<std::uint64_t>(x + 0.0)) * 0x9e3779b97f4a7c15u, hash ^= hash >> 32;
-    return hash;
-  }
-};
-template <class Value>
-using ByPoint = std::unordered_map<Point, Value, PointHash>;
 
 // A vertex in the whole mesh, and the rank whose piece counts it.
 struct Number {
@@ -203,7 +191,7 @@ class PieceOfMesh {
   int threads_;
   Communication& ranks_;
   std::vector<std::uint8_t> is_own_vertex_, is_own_cell_, is_used_;  // by id in the store
-  std::vector<std::uint64_t> own_numbers_;           // likewise
+  std::vector<std::uint64_t> own_numbers_;                           // likewise
   std::uint64_t total_vertices_ = 0;
 };
 

@@ -104,9 +104,10 @@ class Rounds {
         levels_(two_levels(problem, options.initial_ratio)),
         construction_(problem, levels_.clamp, team, stop),
         grid_(problem.object, cube_side_mm(radii_of(problem), problem.object, ranks.size())),
-        exchange_(ranks, construction_.mesh(), construction_.pool(0), grid_) {}
+        exchange_(ranks, construction_.mesh(), construction_.pool(0), grid_, team.log) {}
 
   DistributedRefinement operator()() {
+    construction_.timed("refine", [] {});  // every rank has this phase
     refine_anywhere(construction_, "initial", levels_.initial, construction_.all_cells(), 1);
     if (is_over_anywhere()) return all_of_first_rank();
     divide_space();
@@ -136,6 +137,7 @@ class Rounds {
 
   // Coarse meshes that were not finished differ.
   DistributedRefinement all_of_first_rank() {
+    if (team_.log != nullptr && ranks_.rank() > 0) team_.log->restart();
     return {.refinement = construction_.finish(),
             .grid = grid_,
             .rank_of_cube = std::vector<int>(grid_.num_cubes(), 0),
@@ -170,6 +172,7 @@ class Rounds {
       drop_sound(entries, zone);
       report.entries = entries.size();
       report.update_s = processor_seconds() - start_s;
+      if (team_.log != nullptr) team_.log->begin_step();
       for (const CellId c : refine_in(zone, entries, report))
         left.push_back(name_of(construction_.mesh(), c));
       report.refine_s = processor_seconds() - start_s - report.update_s;

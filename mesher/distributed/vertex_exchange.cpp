@@ -26,8 +26,14 @@ bool is_shared(VertexKind kind) { return kind != VertexKind::kUnused && kind != 
 
 }  // namespace
 
-VertexExchange::VertexExchange(Communication& ranks, Mesh& mesh, Pool& pool, const CubeGrid& grid)
-    : ranks_(ranks), mesh_(mesh), grid_(grid), operation_(mesh, pool, 0), cubes_(grid.num_cubes()) {}
+VertexExchange::VertexExchange(Communication& ranks, Mesh& mesh, Pool& pool, const CubeGrid& grid,
+                               OperationLogWriter* log)
+    : ranks_(ranks),
+      mesh_(mesh),
+      grid_(grid),
+      operation_(mesh, pool, 0),
+      log_(log),
+      cubes_(grid.num_cubes()) {}
 
 void VertexExchange::note_writer(CubeId cube, int rank) {
   cubes_[cube] = {.writer = rank, .is_up_to_date = rank == ranks_.rank()};
@@ -47,6 +53,7 @@ CubeSet VertexExchange::known() const {
 }
 
 Update VertexExchange::update(const CubeSet& wanted) {
+  if (log_ != nullptr) log_->begin_step();
   Update update;
   std::vector<std::vector<CubeId>> asked(static_cast<std::size_t>(ranks_.size()));
   for (const CubeId cube : wanted.cubes()) {
@@ -155,12 +162,37 @@ void VertexExchange::apply(std::vector<Change>& changes) {
       if (!found) throw InternalError("a vertex to be taken away is not there");
       check(operation_.plan_removal(found->vertex, found->cell));
       check(operation_.commit_removals());
+      note(changes[place.change], found->vertex);
     } else {
       check(operation_.plan_insertion(point, walk_to(point)));
       check(operation_.commit_insertion(point, kind, kTouching));
+      note(changes[place.change], operation_.inserted());
     }
     near_ = operation_.created().front();
   }
+  flush_log();
+}
+
+void VertexExchange::note(const Change& change, VertexId vertex) {
+  if (log_ == nullptr) return;
+  constexpr std::size_t kEntriesToFlush = 4096;
+  const bool is_gone = change.kind == VertexKind::kUnused;
+  const auto kind = is_gone ? kForgottenVertex : kLearntVertex + static_cast<std::uint32_t>(change.kind);
+  const Point& p = change.point;
+  unlogged_.operations.push_back({.sequence = log_->next_sequence(),
+                                  .point = {p.x, p.y, p.z},
+                                  .vertex = vertex,
+                                  .worker = 0,
+                                  .kind = kind,
+                                  .num_removed = is_gone ? 1u : 0u});
+  if (is_gone) unlogged_.removed.push_back(vertex);
+  if (unlogged_.operations.size() == kEntriesToFlush) flush_log();
+}
+
+void VertexExchange::flush_log() {
+  if (log_ == nullptr) return;
+  log_->append(unlogged_);
+  unlogged_ = {};
 }
 
 std::optional<VertexExchange::Found> VertexExchange::find_vertex(const Point& p) {
