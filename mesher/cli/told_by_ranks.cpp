@@ -65,6 +65,15 @@ Json rounds_of(const std::vector<PartOfRank>& parts) {
   return rounds;
 }
 
+Json spent_of(const PartOfRank& part) {
+  Json spent = Json::object();
+  for (const auto& [phase, of_phase] : part.spent)
+    spent[phase] = {{"computing_s", of_phase.computing_s},
+                    {"waiting_s", of_phase.waiting_s},
+                    {"network_s", of_phase.network_s}};
+  return spent;
+}
+
 Json ranks_of(const std::vector<PartOfRank>& parts, const std::vector<Process>& processes,
               const RanksOfMachine& machines) {
   Json by_rank = Json::array();
@@ -77,7 +86,8 @@ Json ranks_of(const std::vector<PartOfRank>& parts, const std::vector<Process>& 
                        {"boundary_facets", part.boundary_facets},
                        {"store_cells", part.store_cells},
                        {"peak_rss_bytes", processes[rank].peak_rss_bytes},
-                       {"phases_s", part.phases_s}});
+                       {"phases_s", part.phases_s},
+                       {"spent", spent_of(part)}});
     last += part.last_update;
   }
   return {{"number", parts.size()},         {"machines", machines.num_machines()},

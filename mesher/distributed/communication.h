@@ -23,6 +23,17 @@ class RankFailed : public std::runtime_error {
   using std::runtime_error::runtime_error;
 };
 
+/// What a rank has spent until now, in seconds, and sent to others. Virtual seconds of all ranks add up to
+/// the same until the last collective.
+struct RankReport {
+  double computing_s = 0;  ///< of the processor, outside of collectives
+  double waiting_s = 0;    ///< for ranks that took longer
+  double network_s = 0;    ///< who has no virtual clock counts it as waiting
+  std::uint64_t messages_sent = 0, bytes_sent = 0;
+
+  double total_s() const { return computing_s + waiting_s + network_s; }
+};
+
 class Communication {
  public:
   virtual ~Communication() = default;
@@ -42,6 +53,7 @@ class Communication {
 
   /// This rank's clock, in seconds from some moment on: on the wall, or virtual.
   virtual double seconds() const = 0;
+  virtual RankReport report() const = 0;
   /// A virtual clock goes on by so much for what the rank had other threads do; it sees the rank's own thread
   /// alone.
   virtual void charge(double /*seconds*/) {}

@@ -353,6 +353,10 @@ class InProcessRank final : public Communication {
     state_.look_at_processor();
     return state_.clock_s;
   }
+  RankReport report() const override {
+    state_.look_at_processor();
+    return state_.report;
+  }
   void charge(double seconds) override { state_.charge(seconds); }
 
  private:

@@ -37,17 +37,6 @@ struct InProcessOptions {
   double bytes_per_s = std::numeric_limits<double>::infinity();
 };
 
-/// One rank's virtual seconds, and what it sent to others. All ranks' seconds add up to the same until the
-/// last collective.
-struct RankReport {
-  double computing_s = 0;
-  double waiting_s = 0;  ///< for ranks that took longer
-  double network_s = 0;
-  std::uint64_t messages_sent = 0, bytes_sent = 0;
-
-  double total_s() const { return computing_s + waiting_s + network_s; }
-};
-
 /// Calls `body` for each rank on a thread of its own, and returns what each took, by rank, when all have
 /// returned.
 ///

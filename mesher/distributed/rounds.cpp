@@ -111,13 +111,16 @@ class Rounds {
     for (const auto& entry : construction_.all_cells()) construction_.mesh().make_canonical(entry.cell);
     blocks_.emplace(grid_, predicted_cells(construction_.mesh(), problem_, grid_), ranks_.size());
     shared_.emplace(blocks_->near_others(kSharedRings));
+    spending_.end("initial");
     refine_in_rounds();
     const Update last_update = complete();
+    spending_.end("exchange");
     return {.refinement = construction_.finish(),
             .grid = grid_,
             .rank_of_cube = exchange_.writers(),
             .rounds = std::move(rounds_),
-            .last_update = last_update};
+            .last_update = last_update,
+            .spent = spending_.by_phase()};
   }
 
  private:
@@ -163,9 +166,11 @@ class Rounds {
       drop_sound(entries, zone);
       report.entries = entries.size();
       report.update_s = processor_seconds() - start_s;
+      spending_.end("exchange");
       for (const CellId c : refine_in(zone, entries, report))
         left.push_back(name_of(construction_.mesh(), c));
       report.refine_s = processor_seconds() - start_s - report.update_s;
+      spending_.end(round == 0 ? "refine" : "later");
       for (CubeId cube = 0; cube < grid_.num_cubes(); ++cube)
         if (zone_of_[cube] != kNobody) exchange_.note_writer(cube, zone_of_[cube]);
       here = plan_next(round, left, report);
@@ -346,6 +351,7 @@ class Rounds {
   const Team& team_;
   Communication& ranks_;
   StopControl& stop_;
+  Spending spending_{ranks_};
   const TwoLevels levels_;
   Construction construction_;
   const CubeGrid grid_;
