@@ -7,7 +7,6 @@
 #include <cstdio>
 #include <exception>
 #include <new>
-#include <optional>
 
 #include "cli/commands.h"
 #include "cli/mesh_on_ranks.h"
@@ -19,33 +18,46 @@ namespace {
 
 constexpr int kBadInput = 2, kInternal = 3;
 
-int run(int argc, char** argv, podm::Communication& ranks, podm::cli::SignalThread& signals) {
-  namespace cli = podm::cli;
-  std::optional<cli::Command> command;
-  const auto parse = [&] {
-    command = cli::parse_command_line({argv + 1, argv + argc}, cli::Program::kPodmMpi);
-  };
-  podm::do_together(parse, ranks);
-  if (const auto* mesh = std::get_if<cli::MeshCommand>(&*command))
-    return cli::mesh_on_ranks(*mesh, ranks, signals);
-  return ranks.rank() == 0 ? cli::run(std::get<cli::ShowText>(*command)) : 0;
+// The exit code for a failure that names its rank.
+int complain(const std::exception_ptr& failure) try {
+  std::rethrow_exception(failure);
+} catch (const podm::InputError& error) {
+  fmt::print(stderr, "podm-mpi: {}\n", error.what());
+  return kBadInput;
+} catch (const std::bad_alloc& error) {
+  fmt::print(stderr, "podm-mpi: {}; use more machines, a larger radius or --max-memory-gib\n", error.what());
+  return kInternal;
+} catch (const std::exception& error) {
+  fmt::print(stderr, "podm-mpi: internal error: {}\n", error.what());
+  return kInternal;
 }
 
-// The exception being handled is this rank's alone.
-[[noreturn]] void end_all_ranks(const podm::Communication& ranks) {
-  int code = kInternal;
-  try {
-    std::rethrow_exception(podm::current_rank_failure(ranks.rank(), ranks.size()).exception);
-  } catch (const podm::InputError& error) {
-    fmt::print(stderr, "podm-mpi: {}\n", error.what());
-    code = kBadInput;
-  } catch (const std::bad_alloc& error) {
-    fmt::print(stderr, "podm-mpi: {}; use more machines, a larger radius or --max-memory-gib\n",
-               error.what());
-  } catch (const std::exception& error) {
-    fmt::print(stderr, "podm-mpi: internal error: {}\n", error.what());
-  }
-  podm::abort_all_ranks(code);
+int run_in_process(const podm::cli::MeshCommand& mesh, podm::cli::SignalThread& signals) try {
+  return podm::cli::mesh_in_process(mesh, signals);
+} catch (const podm::RefusedByAll&) {
+  throw;
+} catch (...) {
+  return complain(std::current_exception());
+}
+
+podm::cli::Command parse(int argc, char** argv, const podm::Communication& ranks) {
+  auto command = podm::cli::parse_command_line({argv + 1, argv + argc}, podm::cli::Program::kPodmMpi);
+  const auto* mesh = std::get_if<podm::cli::MeshCommand>(&command);
+  if (mesh != nullptr && mesh->ranks_in_process > 0 && ranks.size() > 1)
+    throw podm::InputError(fmt::format(
+        "--in-process: MPI has started {} processes, and one is to have all ranks", ranks.size()));
+  return command;
+}
+
+int run(int argc, char** argv, podm::Communication& ranks, podm::cli::SignalThread& signals) {
+  namespace cli = podm::cli;
+  cli::Command command;
+  podm::do_together([&] { command = parse(argc, argv, ranks); }, ranks);
+  if (const auto* text = std::get_if<cli::ShowText>(&command)) return ranks.rank() == 0 ? cli::run(*text) : 0;
+  const auto& mesh = std::get<cli::MeshCommand>(command);
+  if (mesh.ranks_in_process > 0) return run_in_process(mesh, signals);
+  cli::SharedByRanks shared;
+  return cli::mesh_on_ranks(mesh, ranks, signals, shared);
 }
 
 }  // namespace
@@ -62,7 +74,8 @@ int main(int argc, char** argv) try {
     if (ranks->rank() == 0) fmt::print(stderr, "podm-mpi: {}\n", error.what());
     return kBadInput;
   } catch (...) {
-    end_all_ranks(*ranks);
+    const podm::RankFailure failure = podm::current_rank_failure(ranks->rank(), ranks->size());
+    podm::abort_all_ranks(complain(failure.exception));
   }
 } catch (const std::exception& error) {
   fmt::print(stderr, "podm-mpi: {}\n", error.what());

@@ -23,26 +23,37 @@ double seconds_since(std::chrono::steady_clock::time_point start) {
 }  // namespace
 
 PhasesOfRun::PhasesOfRun(const LabelImage& image, const MeshingOptions& options,
-                         const ProgressCallback& progress, std::stop_token stop, double share_of_cells)
+                         const ProgressCallback& progress, std::stop_token stop, double share_of_cells,
+                         Seconds seconds)
     : image_(image),
       options_(options),
       progress_(progress),
       stop_(std::move(stop)),
       team_(options),
       loop_threads_(podm::loop_threads(options.team)),
-      share_of_cells_(share_of_cells) {}
+      share_of_cells_(share_of_cells),
+      seconds_(std::move(seconds)) {}
+
+double PhasesOfRun::seconds_on_the_wall() {
+  return std::chrono::duration<double>(Clock::now().time_since_epoch()).count();
+}
 
 void PhasesOfRun::announce(const char* phase, double fraction, std::uint64_t cells) const {
   if (progress_) progress_({phase, std::clamp(fraction, 0.0, 1.0), cells, seconds_since(start_)});
 }
 
 void PhasesOfRun::transform(MeshingReport& report) {
+  transform(report, [&] { return std::make_shared<const Isosurface>(image_, loop_threads_); });
+}
+
+void PhasesOfRun::transform(MeshingReport& report,
+                            const std::function<std::shared_ptr<const Isosurface>()>& make) {
   announce("transform", 0, 0);
-  const Clock::time_point start = Clock::now();
-  isosurface_.emplace(image_, loop_threads_);
+  const double start_s = seconds_();
+  isosurface_ = make();
   object_ = foreground_bounds(image_, loop_threads_);
   expected_cells_ = estimate(image_, options_).cells * share_of_cells_;
-  report.phases_s["transform"] = seconds_since(start);
+  report.phases_s["transform"] = seconds_() - start_s;
   team_.locate_memory(image_, isosurface_->transform());
 }
 
@@ -104,21 +115,21 @@ void PhasesOfRun::simulate(const Refinement& refinement, MeshingReport& report) 
 
 void PhasesOfRun::extract(const std::function<void(Space)>& extract, MeshingReport& report) const {
   announce("extract", 0, 0);
-  const Clock::time_point start = Clock::now();
+  const double start_s = seconds_();
   malloc_trim(0);  // what workers had is for the mesh now
   extract(options_.space == Space::kVoxel ? Space::kRas : options_.space);
-  report.phases_s["extract"] += seconds_since(start);
+  report.phases_s["extract"] += seconds_() - start_s;
 }
 
 void PhasesOfRun::finish(TetMesh& mesh, MeshingReport& report) const {
   announce("measure", 0, 0);
-  const Clock::time_point start = Clock::now();
+  const double start_s = seconds_();
   measure_quality(mesh, image_, size_field(image_, sizes_), loop_threads_, report);
-  report.phases_s["measure"] = seconds_since(start);
+  report.phases_s["measure"] = seconds_() - start_s;
   if (options_.space != Space::kVoxel) return;
-  const Clock::time_point begin = Clock::now();
+  const double begin_s = seconds_();
   convert_to_voxel_space(mesh, image_, loop_threads_);
-  report.phases_s["extract"] += seconds_since(begin);
+  report.phases_s["extract"] += seconds_() - begin_s;
 }
 
 }  // namespace podm

@@ -4,7 +4,7 @@
 
 #include <chrono>
 #include <functional>
-#include <optional>
+#include <memory>
 #include <stop_token>
 
 #include "algorithms/podm.h"
@@ -16,12 +16,17 @@ namespace podm {
 
 class PhasesOfRun {
  public:
+  /// A clock that phases are timed by, in seconds.
+  using Seconds = std::function<double()>;
+  static double seconds_on_the_wall();
+
   /// So much of the mesh's cells is expected in this process. Image, options and callback must outlive it.
   /// Throws InputError on a team that the machine cannot have.
   PhasesOfRun(const LabelImage& image, const MeshingOptions& options, const ProgressCallback& progress,
-              std::stop_token stop, double share_of_cells = 1);
+              std::stop_token stop, double share_of_cells = 1, Seconds seconds = seconds_on_the_wall);
 
-  /// The first phase; all others need it.
+  /// The first phase; all others need it. The isosurface is that of the image.
+  void transform(MeshingReport& report, const std::function<std::shared_ptr<const Isosurface>()>& make);
   void transform(MeshingReport& report);
   const Isosurface& isosurface() const { return *isosurface_; }
   const TeamOfRun& team() const { return team_; }
@@ -50,7 +55,8 @@ class PhasesOfRun {
   TeamOfRun team_;
   const int loop_threads_;
   const double share_of_cells_;
-  std::optional<Isosurface> isosurface_;
+  const Seconds seconds_;
+  std::shared_ptr<const Isosurface> isosurface_;
   SizeOptions sizes_;  // the last mesh has these
   Box object_{};       // bounds of the foreground
   double expected_cells_ = 1;

@@ -81,14 +81,45 @@ void add_algorithm_options(CLI::App& app, MeshCommand& command) {
           into(command.schedule_path));
 }
 
+void add_rank_options(CLI::App& app, MeshCommand& command) {
+  CLI::Option* ranks =
+      add_one(app, "--in-process", "N",
+              "ranks are threads of this process, one computing at a time, each with a virtual\n"
+              "clock, to test or to predict [default: ranks are those of mpirun or srun]",
+              into_threads(command.ranks_in_process));
+  need(add_one(app, "--network", "US,GB/S",
+               "latency, us, and GB/s of the network between them, e.g. 2,12.5 [default: free]",
+               [&command](const std::string& text, const std::string& name) {
+                 const auto [latency_us, gigabytes_per_s] =
+                     parse_two_positive(text, name, "US,GB/S, as in 2,12.5");
+                 command.network = {latency_us, gigabytes_per_s};
+               }),
+       ranks);
+}
+
+// On ranks it decides the mesh, too.
+void add_seed_option(CLI::App& app, MeshingOptions& meshing, Program which) {
+  if (which == Program::kPodmMpi) meshing.team.seed = meshing.cut_seed;
+  add_one(app, "--seed", "N",
+          which == Program::kPodm ? "draws pauses after conflicts, and what virtual time draws"
+                                  : "0: blocks of equal predicted work; else draws where they are cut;\n"
+                                    "and pauses, and the order in which ranks in process compute",
+          {[&meshing, which](const std::string& text, const std::string& name) {
+             meshing.team.seed = parse_integer(text, name, 0, std::numeric_limits<std::uint32_t>::max());
+             if (which == Program::kPodmMpi) meshing.cut_seed = meshing.team.seed;
+           },
+           std::to_string(meshing.team.seed)});
+}
+
 void add_run_options(CLI::App& app, MeshCommand& command, Program which) {
   MeshingOptions& meshing = command.meshing;
+  if (which == Program::kPodmMpi) add_rank_options(app, command);
   add_one(app, "--threads", "N",
           which == Program::kPodm
               ? "threads of all phases; 1 makes the same mesh every time\n"
                 "[default: one for refinement, all cores for the feature transform]"
               : "threads of each rank, in all phases; with 1 as many ranks make the same mesh\n"
-                "every time [default: processors over the ranks of the machine]",
+                "every time [default: processors over the ranks of the machine; 1 in process]",
           into_threads(meshing.team.threads));
   add_one(app, "--contention", "MANAGER",
           "what a thread does that meets another's lock:\n" + names_of_choices<Contention>(),
@@ -113,11 +144,7 @@ void add_run_options(CLI::App& app, MeshCommand& command, Program which) {
           into_choice(meshing.team.executor));
   add_one(app, "--virtual-cost", "COST", "time of an attempt: unit (1 us) or measured (by its work)",
           into_choice(meshing.team.virtual_cost));
-  add_one(app, "--seed", "N", "draws pauses after conflicts, and what virtual time draws",
-          {[&meshing](const std::string& text, const std::string& name) {
-             meshing.team.seed = parse_integer(text, name, 0, std::numeric_limits<std::uint32_t>::max());
-           },
-           std::to_string(meshing.team.seed)});
+  add_seed_option(app, meshing, which);
   add_one(app, "--log", "FILE", "write every operation in its order, for podm replay [default: none]",
           into(command.log_path));
 }

@@ -3,7 +3,6 @@
 #include <fmt/format.h>
 
 #include <array>
-#include <chrono>
 #include <optional>
 
 #include "algorithms/team_size.h"
@@ -12,21 +11,16 @@
 #include "cli/labelled_image.h"
 #include "cli/mesh_run.h"
 #include "cli/options_for_image.h"
-#include "cli/process_memory.h"
 #include "cli/progress_display.h"
 #include "cli/ranks_of_machine.h"
 #include "cli/told_by_ranks.h"
 #include "cli/verify_mesh.h"
-#include "distributed/mesh_image_on_ranks.h"
+#include "distributed/in_process_ranks.h"
 #include "distributed/together.h"
 #include "distributed/write_pieces.h"
 
 namespace podm::cli {
 namespace {
-
-double seconds_since(std::chrono::steady_clock::time_point start) {
-  return std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
-}
 
 void refuse(const std::string& path, const char* option) {
   if (!path.empty())
@@ -44,47 +38,38 @@ void check_command(const MeshCommand& command) {
 
 class Run {
  public:
-  Run(MeshCommand command, Communication& ranks, SignalThread& signals)
-      : command_(std::move(command)),
-        ranks_(ranks),
-        signals_(signals),
-        machines_(ranks),
-        run_{.command = command_,
-             .image = image_,
-             .options = {},
-             .crossover = {},
-             .report = {},
-             .mesh = {},
-             .mesh_sha256 = {},
-             .verdicts = {},
-             .program = "podm-mpi"} {}
+  Run(MeshCommand command, Communication& ranks, SignalThread& signals, SharedByRanks& shared)
+      : command_(std::move(command)), ranks_(ranks), signals_(signals), shared_(shared), machines_(ranks) {}
 
   int operator()() {
-    prepare();
-    MeshingOnRanks result = mesh();
-    const auto start = std::chrono::steady_clock::now();
+    check();
+    MeshRun run = prepare();
+    MeshingOnRanks result = mesh(run);
+    const double start_s = ranks_.seconds();
     if (result.piece.total_cells > 0) write_pieces(result.piece, command_.mesh_path, ranks_);
-    run_.write_s = seconds_since(start);
-    run_.report = std::move(result.report);
-    auto& warnings = run_.report.warnings;
-    warnings = machines_.warnings(command_.meshing.team.threads);
-    warnings.insert(warnings.end(), image_.warnings.begin(), image_.warnings.end());
-    gather_from_ranks(result, command_.meshing.team.threads, peak_resident_bytes(), machines_, ranks_, run_);
+    run.write_s = ranks_.seconds() - start_s;
+    run.report = std::move(result.report);
+    auto& warnings = run.report.warnings;
+    if (!is_in_process()) warnings = machines_.warnings(command_.meshing.team.threads);
+    warnings.insert(warnings.end(), run.image.warnings.begin(), run.image.warnings.end());
+    gather_from_ranks(result, command_.meshing.team.threads, machines_, ranks_, run);
     std::array<std::uint64_t, 1> code{0};
     if (ranks_.rank() == 0) {
-      if (command_.verify && run_.mesh.cells > 0) run_.verdicts = verify_mesh(run_, signals_);
-      code[0] = static_cast<std::uint64_t>(tell(run_, records_));
+      if (command_.verify && run.mesh.cells > 0) run.verdicts = verify_mesh(run, signals_);
+      code[0] = static_cast<std::uint64_t>(tell(run, records_));
     }
     ranks_.maximum(code);
     return static_cast<int>(code[0]);
   }
 
  private:
+  bool is_in_process() const { return command_.ranks_in_process > 0; }
+
   // All that may be refused before there is work to lose.
-  void prepare() {
+  void check() {
     TeamOptions& team = command_.meshing.team;
     if (team.threads == 0 && team.nodes == 0 && team.cores_per_node == 0)
-      team.threads = machines_.share_of_processors();
+      team.threads = is_in_process() ? 1 : machines_.share_of_processors();
     team.threads = num_workers(team);
     const auto check = [&] {
       check_command(command_);
@@ -95,41 +80,88 @@ class Run {
                       {"output", command_.mesh_path},
                       {"--verify", command_.verify ? "asked for" : "not asked for"}},
                      ranks_);
-    std::uint64_t limit_bytes = memory_limit_bytes(command_);
-    if (command_.max_memory_bytes == 0) limit_bytes /= static_cast<std::uint64_t>(machines_.num_ranks_here());
-    const auto start = std::chrono::steady_clock::now();
-    const auto read = [&] {
-      image_ = read_labelled_image(command_.image, team.threads, bytes_for_image(limit_bytes));
-      run_.read_s = seconds_since(start);
-      run_.options = options_for_image(command_, image_, limit_bytes, ranks_.size());
-    };
-    do_together(read, ranks_);
   }
 
-  MeshingOnRanks mesh() {
+  // Each process has the image once, and its ranks share what is left.
+  MeshRun prepare() {
+    const std::uint64_t ranks_here = is_in_process() ? static_cast<std::uint64_t>(ranks_.size()) : 1;
+    std::uint64_t limit_bytes = memory_limit_bytes(command_);
+    if (command_.max_memory_bytes == 0 && !is_in_process())
+      limit_bytes /= static_cast<std::uint64_t>(machines_.num_ranks_here());
+    const double start_s = ranks_.seconds();
+    const auto make = [&] {
+      return std::make_shared<const LabelImage>(
+          read_labelled_image(command_.image, command_.meshing.team.threads, bytes_for_image(limit_bytes)));
+    };
+    MeshingOptions options;
+    const auto read = [&] {
+      image_ = shared_.image.get(make, ranks_);
+      options = options_for_image(command_, *image_, limit_bytes, is_in_process() ? 1 : ranks_.size());
+      options.limits.max_memory_bytes /= ranks_here;
+    };
+    do_together(read, ranks_);
+    return {.command = command_,
+            .image = *image_,
+            .options = std::move(options),
+            .crossover = {},
+            .report = {},
+            .mesh = {},
+            .mesh_sha256 = {},
+            .read_s = ranks_.seconds() - start_s,
+            .verdicts = {},
+            .program = "podm-mpi"};
+  }
+
+  // A process has one bar, and heeds signals once: by rank 0, where it has several.
+  MeshingOnRanks mesh(const MeshRun& run) {
     using Style = ProgressDisplay::Style;
     const bool is_silent = command_.quiet || ranks_.rank() != 0;
     ProgressDisplay display(stderr, is_silent ? Style::kNone : ProgressDisplay::style_for(stderr));
     const auto progress = [&](const Progress& now) {
+      if (is_in_process() && ranks_.rank() != 0) return;
       if (now.phase != "transform") signals_.heed_first(is_silent);
       display.show(now);
     };
-    return mesh_image_on_ranks(image_, run_.options, ranks_, progress, signals_.token());
+    return mesh_image_on_ranks(run.image, run.options, ranks_, progress, signals_.token(),
+                               &shared_.isosurface);
   }
 
   MeshCommand command_;
   Communication& ranks_;
   SignalThread& signals_;
+  SharedByRanks& shared_;
   const RanksOfMachine machines_;
-  LabelImage image_;
-  MeshRun run_;
+  std::shared_ptr<const LabelImage> image_;
   std::optional<AppendedFile> records_;  // rank 0's
 };
 
 }  // namespace
 
-int mesh_on_ranks(MeshCommand command, Communication& ranks, SignalThread& signals) {
-  return Run(std::move(command), ranks, signals)();
+int mesh_on_ranks(MeshCommand command, Communication& ranks, SignalThread& signals, SharedByRanks& shared) {
+  return Run(std::move(command), ranks, signals, shared)();
+}
+
+int mesh_in_process(const MeshCommand& command, SignalThread& signals) {
+  constexpr double kSecondsPerUs = 1e-6, kBytesPerGigabyte = 1e9;
+  SharedByRanks shared;
+  std::optional<RefusedByAll> refusal;
+  int code = 0;
+  const auto mesh = [&](Communication& ranks) {
+    try {
+      const int own_code = mesh_on_ranks(command, ranks, signals, shared);
+      if (ranks.rank() == 0) code = own_code;
+    } catch (const RefusedByAll& error) {  // all end, and none has failed
+      if (ranks.rank() == 0) refusal = error;
+    }
+  };
+  run_ranks({.num_ranks = command.ranks_in_process,
+             .one_at_a_time = true,
+             .seed = command.meshing.team.seed,
+             .latency_s = kSecondsPerUs * command.network.latency_us,
+             .bytes_per_s = kBytesPerGigabyte * command.network.gigabytes_per_s},
+            mesh);
+  if (refusal) throw RefusedByAll(*refusal);
+  return code;
 }
 
 }  // namespace podm::cli

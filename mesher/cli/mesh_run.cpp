@@ -28,7 +28,8 @@ double MeshRun::cells_per_second() const {
 }
 
 double MeshRun::refine_cells_per_second() const {
-  return static_cast<double>(mesh.cells) / report.phases_s.at("refine");
+  const double refine_s = report.phases_s.at("refine");
+  return refine_s > 0 ? static_cast<double>(mesh.cells) / refine_s : 0;  // 0: it ended before
 }
 
 std::vector<std::string> MeshRun::unmet() const {

@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <charconv>
 #include <cmath>
 #include <limits>
@@ -43,6 +44,17 @@ std::pair<std::string, double> parse_label_length(const std::string& text, const
     throw InputError(fmt::format("{}: '{}' is not LABEL=MM, as in liver=2 or 7=0.5", option, text));
   const std::string label = text.substr(0, equals);
   return {label, parse_positive(text.substr(equals + 1), option + " " + label, "length in mm")};
+}
+
+std::pair<double, double> parse_two_positive(const std::string& text, const std::string& option,
+                                             const std::string& quantity) {
+  const std::size_t comma = std::min(text.find(','), text.size());
+  double first = 0, second = 0;
+  const bool are_read = comma < text.size() && read_all(text.substr(0, comma), first) &&
+                        read_all(text.substr(comma + 1), second);
+  if (!are_read || !std::isfinite(first) || !std::isfinite(second) || first <= 0 || second <= 0)
+    throw InputError(fmt::format("{}: '{}' is not {}", option, text, quantity));
+  return {first, second};
 }
 
 Target into(std::string& text) {

@@ -40,6 +40,10 @@ Choice parse_choice(const std::string& text, const std::string& option) {
 /// "liver=2" or "7=0.5": a label, by name or value, and a length in mm.
 std::pair<std::string, double> parse_label_length(const std::string& text, const std::string& option);
 
+/// "2,12.5": two positive numbers; `quantity` says what they should be.
+std::pair<double, double> parse_two_positive(const std::string& text, const std::string& option,
+                                             const std::string& quantity);
+
 /// Stores the text given to the option of this name, or refuses it with an InputError.
 using Setter = std::function<void(const std::string& text, const std::string& name)>;
 

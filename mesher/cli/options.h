@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstdint>
+#include <limits>
 #include <string>
 #include <utility>
 #include <variant>
@@ -21,6 +22,12 @@ struct ImageArguments {
 
 inline constexpr int kMaxThreads = 1024;
 
+/// What virtual time takes for a message (distributed/in_process_ranks.h).
+struct NetworkArguments {
+  double latency_us = 0;
+  double gigabytes_per_s = std::numeric_limits<double>::infinity();
+};
+
 /// podm mesh
 struct MeshCommand {
   ImageArguments image;
@@ -33,6 +40,8 @@ struct MeshCommand {
   MeshingOptions meshing;  ///< lacks crossover and the two fields below, which need files, image or machine
   std::vector<std::pair<std::string, double>> radius_of_mm;  ///< by label name or value
   std::uint64_t max_memory_bytes = 0;  ///< what the process may take; 0: as the machine has
+  int ranks_in_process = 0;            ///< podm-mpi's, and none of MPI's; 0: MPI's
+  NetworkArguments network;            ///< between ranks in process
   bool verify = false;
   bool verify_fidelity = false;  ///< implies verify
   bool stats = false;

@@ -3,8 +3,10 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cmath>
 
 #include "cli/options_for_image.h"
+#include "cli/process_memory.h"
 #include "distributed/messages.h"
 
 namespace podm::cli {
@@ -12,10 +14,16 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
-// What the process of a rank took.
-struct Process {
+// What a rank took, and its process, which has others if clocks are virtual.
+struct Spent {
   std::uint64_t threads, peak_rss_bytes;
+  bool is_virtual;
+  RankReport report;
 };
+
+Spent spent_by(const Communication& ranks, int threads) {
+  return {static_cast<std::uint64_t>(threads), peak_resident_bytes(), ranks.is_virtual(), ranks.report()};
+}
 
 // A round on all ranks: sums, and the seconds of the rank that took longest.
 RoundReport on_all(const std::vector<PartOfRank>& parts, std::size_t round) {
@@ -74,39 +82,81 @@ Json spent_of(const PartOfRank& part) {
   return spent;
 }
 
-Json ranks_of(const std::vector<PartOfRank>& parts, const std::vector<Process>& processes,
-              const RanksOfMachine& machines) {
+Json memory_of(const Spent& spent) { return spent.is_virtual ? Json(nullptr) : Json(spent.peak_rss_bytes); }
+
+Json virtual_time_of(const Spent& spent) {
+  if (!spent.is_virtual) return nullptr;
+  const RankReport& report = spent.report;
+  return {{"computing_s", report.computing_s},
+          {"waiting_s", report.waiting_s},
+          {"network_s", report.network_s},
+          {"messages", report.messages_sent},
+          {"bytes", report.bytes_sent}};
+}
+
+Json network_of(const MeshCommand& command) {
+  if (std::isinf(command.network.gigabytes_per_s)) return nullptr;
+  return {{"latency_us", command.network.latency_us}, {"gigabytes_per_s", command.network.gigabytes_per_s}};
+}
+
+Json ranks_of(const std::vector<PartOfRank>& parts, const std::vector<Spent>& spent,
+              const RanksOfMachine& machines, const MeshRun& run) {
   Json by_rank = Json::array();
   Update last;
   for (std::size_t rank = 0; rank < parts.size(); ++rank) {
     const PartOfRank& part = parts[rank];
     by_rank.push_back({{"host", machines.host(rank)},
-                       {"threads", processes[rank].threads},
+                       {"threads", spent[rank].threads},
                        {"cells", part.cells},
                        {"boundary_facets", part.boundary_facets},
                        {"store_cells", part.store_cells},
-                       {"peak_rss_bytes", processes[rank].peak_rss_bytes},
+                       {"peak_rss_bytes", memory_of(spent[rank])},
                        {"phases_s", part.phases_s},
-                       {"spent", spent_of(part)}});
+                       {"spent", spent_of(part)},
+                       {"virtual", virtual_time_of(spent[rank])}});
     last += part.last_update;
   }
-  return {{"number", parts.size()},         {"machines", machines.num_machines()},
-          {"imbalance", imbalance(parts)},  {"rounds", rounds_of(parts)},
-          {"last_update", update_of(last)}, {"by_rank", by_rank}};
+  return {{"number", parts.size()},
+          {"machines", machines.num_machines()},
+          {"carrier", run.command.ranks_in_process > 0 ? "in-process" : "mpi"},
+          {"network", network_of(run.command)},
+          {"initial_ratio", run.options.leaves.initial_ratio},
+          {"imbalance", imbalance(parts)},
+          {"rounds", rounds_of(parts)},
+          {"last_update", update_of(last)},
+          {"by_rank", by_rank}};
 }
 
-std::string text_of(const std::vector<PartOfRank>& parts, const std::vector<Process>& processes,
-                    const RanksOfMachine& machines) {
-  const auto [least, most] = std::minmax_element(
-      processes.begin(), processes.end(),
-      [](const Process& a, const Process& b) { return a.peak_rss_bytes < b.peak_rss_bytes; });
+std::string memory_text(const std::vector<Spent>& spent) {
+  const auto [least, most] =
+      std::minmax_element(spent.begin(), spent.end(),
+                          [](const Spent& a, const Spent& b) { return a.peak_rss_bytes < b.peak_rss_bytes; });
   const auto gib = [](std::uint64_t bytes) { return static_cast<double>(bytes) / kBytesPerGib; };
+  return fmt::format("memory of one {:.3f} to {:.3f} GiB", gib(least->peak_rss_bytes),
+                     gib(most->peak_rss_bytes));
+}
+
+std::string virtual_time_text(const std::vector<Spent>& spent) {
+  double computing_s = 0, waiting_s = 0;
+  std::uint64_t bytes = 0;
+  for (const Spent& one : spent) {
+    computing_s = std::max(computing_s, one.report.computing_s);
+    waiting_s = std::max(waiting_s, one.report.waiting_s);
+    bytes += one.report.bytes_sent;
+  }
+  return fmt::format("at most {:.2f} s of one computing, {:.2f} s waiting, {:.4f} s network, {} bytes sent",
+                     computing_s, waiting_s, spent[0].report.network_s, bytes);
+}
+
+std::string text_of(const std::vector<PartOfRank>& parts, const std::vector<Spent>& spent,
+                    const RanksOfMachine& machines) {
+  const bool is_virtual = spent[0].is_virtual;
+  const std::string where = is_virtual ? "in this process, in virtual time"
+                                       : fmt::format("on {} machine{}", machines.num_machines(),
+                                                     machines.num_machines() > 1 ? "s" : "");
   std::string text = fmt::format(
-      "ranks      {} on {} machine{}; the most cells of one are {:.3g} times the mean; memory of one {:.3f} "
-      "to "
-      "{:.3f} GiB\n",
-      parts.size(), machines.num_machines(), machines.num_machines() > 1 ? "s" : "", imbalance(parts),
-      gib(least->peak_rss_bytes), gib(most->peak_rss_bytes));
+      "ranks      {} {}; the most cells of one are {:.3g} times the mean;\n           {}\n", parts.size(),
+      where, imbalance(parts), is_virtual ? virtual_time_text(spent) : memory_text(spent));
   if (parts[0].rounds.empty()) return text;
   text += fmt::format("{:>10} {:>11} {:>11} {:>11} {:>14} {:>17} {:>9}\n", "round", "entries", "insertions",
                       "deferred", "vertices told", "seconds: exchange", "refine");
@@ -121,18 +171,18 @@ std::string text_of(const std::vector<PartOfRank>& parts, const std::vector<Proc
 
 }  // namespace
 
-void gather_from_ranks(const MeshingOnRanks& result, int threads, std::uint64_t peak_rss_bytes,
-                       const RanksOfMachine& machines, Communication& ranks, MeshRun& run) {
-  const Process own{static_cast<std::uint64_t>(threads), peak_rss_bytes};
+void gather_from_ranks(const MeshingOnRanks& result, int threads, const RanksOfMachine& machines,
+                       Communication& ranks, MeshRun& run) {
+  const Spent own = spent_by(ranks, threads);
   Bytes message;
-  append(message, std::span<const Process>(&own, 1));
+  append(message, std::span<const Spent>(&own, 1));
   append(message, numbers_of(result.piece.mesh).facet_pairs);
-  std::vector<Process> processes;
+  std::vector<Spent> spent;
   std::vector<FacetCount> pairs;
   for (const Bytes& told : ranks.all_gather(std::move(message))) {
     MessageReader reader(told);
-    processes.push_back(reader.read<Process>().at(0));
-    run.peak_rss_bytes = std::max(run.peak_rss_bytes, processes.back().peak_rss_bytes);
+    spent.push_back(reader.read<Spent>().at(0));
+    run.peak_rss_bytes = std::max(run.peak_rss_bytes, spent.back().peak_rss_bytes);
     const auto more = reader.read<FacetCount>();
     pairs.insert(pairs.end(), more.begin(), more.end());
   }
@@ -140,8 +190,8 @@ void gather_from_ranks(const MeshingOnRanks& result, int threads, std::uint64_t 
               .vertices = result.piece.total_vertices,
               .boundary_facets = result.piece.total_facets,
               .facet_pairs = sums_of(pairs)};
-  run.ranks = ranks_of(result.parts, processes, machines);
-  run.ranks_text = text_of(result.parts, processes, machines);
+  run.ranks = ranks_of(result.parts, spent, machines, run);
+  run.ranks_text = text_of(result.parts, spent, machines);
 }
 
 }  // namespace podm::cli

@@ -7,9 +7,9 @@
 
 namespace podm::cli {
 
-/// Sums and lists over all ranks: facet pairs, the most memory of a rank, `ranks` and `ranks_text`. The mesh
-/// is in `result`, and `threads` and `peak_rss_bytes` are this rank's. Collective.
-void gather_from_ranks(const MeshingOnRanks& result, int threads, std::uint64_t peak_rss_bytes,
-                       const RanksOfMachine& machines, Communication& ranks, MeshRun& run);
+/// Sums and lists over all ranks: facet pairs, the most memory of a process, `ranks` and `ranks_text`. The
+/// mesh is in `result`, and `threads` are this rank's. Collective.
+void gather_from_ranks(const MeshingOnRanks& result, int threads, const RanksOfMachine& machines,
+                       Communication& ranks, MeshRun& run);
 
 }  // namespace podm::cli

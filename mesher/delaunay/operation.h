@@ -25,11 +25,15 @@
 namespace podm {
 
 /// Locks of a worker whose store may differ from the whole triangulation beyond a horizon
-/// (distributed/zone.h): they tell which cells are of the whole, where a vertex may be inserted, and what
-/// centres other stores have too.
+/// (distributed/zone.h): they tell which cells are of the whole, which may be read and replaced by an
+/// operation around a point that their balls have, where a vertex may be inserted, and what centres other
+/// stores have too.
 template <class Locks>
-concept HasHorizon = requires(const Locks& locks, const Cell& cell, const Point& p) {
+concept HasHorizon = requires(Locks& locks, const Mesh& mesh, const Cell& cell, const Point& p) {
   { locks.knows(cell) } -> std::same_as<bool>;
+  { locks.may_read(mesh, cell) } -> std::same_as<bool>;
+  locks.begin_around(p);
+  { locks.may_replace(mesh, cell) } -> std::same_as<bool>;
   { locks.may_insert(p) } -> std::same_as<bool>;
   { locks.is_shared(p) } -> std::same_as<bool>;
 };
@@ -95,7 +99,9 @@ class Operation {
   StepResult lock_beyond(FacetId facet);
   StepResult lock(VertexId v);
   bool is_known(CellId c) const;
-  bool is_known_around(CellId c) const;
+  bool may_read(CellId c) const;
+  void begin_around(const Point& p);
+  bool may_replace(CellId c) const;
   void count(AccessKind kind, CellId c) {
     if (counts()) [[unlikely]]
       tally_->add(kind, mesh_.node_of_cell(c), mesh_.address(c));

@@ -24,7 +24,7 @@ StepResult Operation<Locks>::reserve(CellId c, std::uint32_t stamp) {
     }
   }
   if (mesh_.stamp(c) != stamp) result = StepResult::kStaleCell;
-  if (result == StepResult::kDone && !is_known_around(c)) result = StepResult::kOutOfReach;
+  if (result == StepResult::kDone && !may_read(c)) result = StepResult::kOutOfReach;
   if (result != StepResult::kDone) locks_.unlock_all();
   return result;
 }
@@ -39,13 +39,29 @@ inline bool Operation<Locks>::is_known([[maybe_unused]] CellId c) const {
 }
 
 template <class Locks>
-inline bool Operation<Locks>::is_known_around([[maybe_unused]] CellId c) const {
+inline bool Operation<Locks>::may_read([[maybe_unused]] CellId c) const {
   if constexpr (HasHorizon<Locks>) {
-    if (!is_known(c)) return false;
-    for (const FacetId mirror : mesh_.cell(c).mirrors)
+    const Cell& cell = mesh_.cell(c);
+    if (!locks_.may_read(mesh_, cell) || !locks_.knows(cell)) return false;
+    for (const FacetId mirror : cell.mirrors)
       if (mirror != kNoFacet && !is_known(cell_of(mirror))) return false;
   }
   return true;
+}
+
+template <class Locks>
+inline void Operation<Locks>::begin_around([[maybe_unused]] const Point& p) {
+  if constexpr (HasHorizon<Locks>) locks_.begin_around(p);
+}
+
+// Of a cell whose ball has the point that the operation is around.
+template <class Locks>
+inline bool Operation<Locks>::may_replace([[maybe_unused]] CellId c) const {
+  if constexpr (HasHorizon<Locks>) {
+    return locks_.may_replace(mesh_, mesh_.cell(c));
+  } else {
+    return true;
+  }
 }
 
 template <class Locks>
@@ -56,6 +72,7 @@ inline StepResult Operation<Locks>::lock(VertexId v) {
 
 template <class Locks>
 StepResult Operation<Locks>::lock_cell(CellId c) {
+  if (!may_replace(c)) return StepResult::kOutOfReach;
   for (const VertexId v : mesh_.cell(c).vertices) {
     if (const StepResult locked = lock(v); locked != StepResult::kDone) return locked;
   }
@@ -66,6 +83,7 @@ StepResult Operation<Locks>::lock_cell(CellId c) {
 // vertex asks for its line: who fills the hole will read it.
 template <class Locks>
 StepResult Operation<Locks>::lock_beyond(FacetId facet) {
+  if (!may_replace(cell_of(facet))) return StepResult::kOutOfReach;
   const auto& vertices = mesh_.cell(cell_of(facet)).vertices;
   const VertexId apex = vertices[static_cast<unsigned>(index_in_cell(facet))];
   if (Locks::kIsShared && locks_taken().to_replace == 4) return lock(apex);
@@ -100,6 +118,7 @@ StepResult Operation<Locks>::plan_insertion(const Point& p, CellId start) {
   if constexpr (HasHorizon<Locks>) {
     if (!locks_.may_insert(p)) return StepResult::kOutOfReach;
   }
+  begin_around(p);
   if (!is_in_conflict(start, p)) return StepResult::kNotInConflict;
   if (const StepResult locked = lock_cell(start); locked != StepResult::kDone) return locked;
   add_to_region(start);
@@ -129,6 +148,7 @@ template <class Locks>
 StepResult Operation<Locks>::plan_removal(VertexId v, CellId seed) {
   is_cavity_ = false;
   region_.removed.push_back(v);
+  begin_around(mesh_.point(v));
   // Cells around v that the region already has are passed through, so the walk keeps its own list.
   ball_.assign(1, seed);
   if (const StepResult locked = lock_cell(seed); locked != StepResult::kDone) return locked;

@@ -24,7 +24,14 @@ void for_each_cube(const CubeGrid& grid, const CubePlace& low, const CubePlace& 
 
 Blocks::Blocks(const CubeGrid& grid, const std::vector<std::uint64_t>& weights, int num_blocks)
     : grid_(grid), num_blocks_(num_blocks), block_of_(grid.num_cubes()) {
-  divide({{0, 0, 0}, grid.size(), 0, num_blocks}, weights);
+  divide({{0, 0, 0}, grid.size(), 0, num_blocks},
+         [&](const Part& part) { return cut_by_weight(part, weights); });
+}
+
+Blocks::Blocks(const CubeGrid& grid, std::uint64_t seed, int num_blocks)
+    : grid_(grid), num_blocks_(num_blocks), block_of_(grid.num_cubes()) {
+  std::mt19937_64 random(seed);
+  divide({{0, 0, 0}, grid.size(), 0, num_blocks}, [&](const Part& part) { return drawn_cut(part, random); });
 }
 
 // The least and the greatest block around a cube differ there: found along one axis after another.
@@ -46,14 +53,26 @@ CubeSet Blocks::near_others(int rings) const {
   return near;
 }
 
-// Cuts are planes between cubes, across the axis along which what weighs anything is longest: at the one that
-// comes nearest to the share of the blocks on either side.
-void Blocks::divide(const Part& part, const std::vector<std::uint64_t>& weights) {
+template <class CutOf>
+void Blocks::divide(const Part& part, const CutOf& cut_of) {
   if (part.num_blocks == 1) {
     for_each_cube(grid_, part.low, part.high,
                   [&](CubeId cube, const CubePlace&) { block_of_[cube] = part.first_block; });
     return;
   }
+  const Cut cut = cut_of(part);
+  Part lower = part, upper = part;
+  lower.high[cut.axis] = upper.low[cut.axis] = part.low[cut.axis] + cut.cubes_below;
+  lower.num_blocks = cut.blocks_below;
+  upper.first_block += cut.blocks_below;
+  upper.num_blocks -= cut.blocks_below;
+  divide(lower, cut_of);
+  divide(upper, cut_of);
+}
+
+// Cuts are planes between cubes, across the axis along which what weighs anything is longest: at the one that
+// comes nearest to the share of the blocks on either side.
+Blocks::Cut Blocks::cut_by_weight(const Part& part, const std::vector<std::uint64_t>& weights) const {
   CubePlace low = part.high, high = part.low;  // of what has weight
   for_each_cube(grid_, part.low, part.high, [&](CubeId cube, const CubePlace& at) {
     for (std::size_t axis = 0; axis < 3 && weights[cube] > 0; ++axis) {
@@ -75,14 +94,21 @@ void Blocks::divide(const Part& part, const std::vector<std::uint64_t>& weights)
   const auto is_nearer = [&](std::uint64_t a, std::uint64_t b) { return off(a) < off(b); };
   const auto cut =
       std::min_element(weight_below.begin(), weight_below.end(), is_nearer) - weight_below.begin();
+  return {axis, static_cast<int>(cut), below};
+}
 
-  Part lower = part, upper = part;
-  lower.high[axis] = upper.low[axis] = part.low[axis] + static_cast<int>(cut);
-  lower.num_blocks = below;
-  upper.first_block += below;
-  upper.num_blocks -= below;
-  divide(lower, weights);
-  divide(upper, weights);
+Blocks::Cut Blocks::drawn_cut(const Part& part, std::mt19937_64& random) {
+  constexpr double kThinShare = 0.25;
+  const auto draw = [&](int least, int most) { return std::uniform_int_distribution(least, most)(random); };
+  const auto length = [&](std::size_t axis) { return part.high[axis] - part.low[axis]; };
+  std::size_t axis = static_cast<std::size_t>(draw(0, 2));
+  for (int i = 0; i < 2 && length(axis) < 2; ++i) axis = (axis + 1) % 3;
+  if (length(axis) < 2) return {axis, length(axis), part.num_blocks / 2};
+  const int cut = std::bernoulli_distribution(kThinShare)(random) ? 1 : draw(1, length(axis) - 1);
+  const int area = length((axis + 1) % 3) * length((axis + 2) % 3);
+  const int least = std::max(1, part.num_blocks - area * (length(axis) - cut));
+  const int most = std::min(part.num_blocks - 1, area * cut);
+  return {axis, cut, draw(std::min(least, most), most)};
 }
 
 }  // namespace podm

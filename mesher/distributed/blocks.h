@@ -1,6 +1,7 @@
 // Blocks of cubes with equal shares of the predicted work, one a rank.
 #pragma once
 
+#include <random>
 #include <vector>
 
 #include "distributed/cubes.h"
@@ -11,8 +12,11 @@ namespace podm {
 /// have the same weights, without a message. Some blocks have no cube where ranks are many and cubes few.
 class Blocks {
  public:
-  /// `weights`: one a cube, not negative.
+  /// `weights`: one a cube.
   Blocks(const CubeGrid& grid, const std::vector<std::uint64_t>& weights, int num_blocks);
+  /// Cuts are drawn, whatever the work: some blocks are one cube thin, some hold nearly all. Each has a cube
+  /// if there are enough.
+  Blocks(const CubeGrid& grid, std::uint64_t seed, int num_blocks);
 
   const CubeGrid& grid() const { return grid_; }
   int of(CubeId cube) const { return block_of_[cube]; }
@@ -23,7 +27,15 @@ class Blocks {
 
  private:
   struct Part;
-  void divide(const Part& part, const std::vector<std::uint64_t>& weights);
+  /// Where a part is cut in two, and how many of its blocks lie below.
+  struct Cut {
+    std::size_t axis;
+    int cubes_below, blocks_below;
+  };
+  Cut cut_by_weight(const Part& part, const std::vector<std::uint64_t>& weights) const;
+  static Cut drawn_cut(const Part& part, std::mt19937_64& random);
+  template <class CutOf>
+  void divide(const Part& part, const CutOf& cut_of);
 
   const CubeGrid& grid_;
   int num_blocks_;

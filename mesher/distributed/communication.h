@@ -53,6 +53,7 @@ class Communication {
 
   /// This rank's clock, in seconds from some moment on: on the wall, or virtual.
   virtual double seconds() const = 0;
+  virtual bool is_virtual() const { return false; }
   virtual RankReport report() const = 0;
   /// A virtual clock goes on by so much for what the rank had other threads do; it sees the rank's own thread
   /// alone.

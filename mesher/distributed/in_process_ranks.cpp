@@ -353,6 +353,7 @@ class InProcessRank final : public Communication {
     state_.look_at_processor();
     return state_.clock_s;
   }
+  bool is_virtual() const override { return true; }
   RankReport report() const override {
     state_.look_at_processor();
     return state_.report;

@@ -57,6 +57,7 @@ std::vector<Fact> facts_of(const LabelImage& image, const MeshingOptions& option
           {"delta", fmt::format("{} mm", sizes.delta_mm)},
           {"space", to_string(options.space)},
           {"initial ratio", fmt::format("{}", options.leaves.initial_ratio)},
+          {"seed", fmt::format("{}", options.cut_seed)},
           {"limit of elements", fmt::format("{}", options.limits.max_elements)},
           {"limit of seconds", fmt::format("{}", options.limits.max_seconds)},
           {"image", "SHA-256 " + hash_of(image)}};
@@ -73,16 +74,18 @@ MeshingOptions share_of(const MeshingOptions& options, std::uint64_t num_ranks) 
 class RunOnRank {
  public:
   RunOnRank(const LabelImage& image, const MeshingOptions& options, Communication& ranks,
-            const ProgressCallback& progress, std::stop_token stop)
+            const ProgressCallback& progress, std::stop_token stop, SharedIsosurface* isosurface)
       : image_(image),
         options_(share_of(options, static_cast<std::uint64_t>(ranks.size()))),
         ranks_(ranks),
-        phases_(image, options_, progress, std::move(stop), 1.0 / ranks.size()) {}
+        isosurface_(isosurface),
+        phases_(image, options_, progress, std::move(stop), 1.0 / ranks.size(),
+                [&ranks] { return ranks.seconds(); }) {}
 
   MeshingOnRanks operator()() {
     MeshingOnRanks result;
     MeshingReport own;
-    phases_.transform(own);
+    phases_.transform(own, [&] { return isosurface(); });
     spending_.end("transform");
     refine(own);
     phases_.report_refinement(refined_->refinement, own);
@@ -104,13 +107,20 @@ class RunOnRank {
   }
 
  private:
+  std::shared_ptr<const Isosurface> isosurface() {
+    const auto make = [&] { return std::make_shared<const Isosurface>(image_, phases_.loop_threads()); };
+    return isosurface_ != nullptr ? isosurface_->get(make, ranks_) : make();
+  }
+
   void refine(MeshingReport& own) {
     SizeOptions sizes = options_.sizes;
     sizes.delta_mm = delta_mm_for(image_, sizes);
     phases_.refine(sizes, [&](const Problem& problem, const Team& team, StopControl& stop) {
       if (ranks_.size() == 1) return refine_alone(problem, team, stop);
       const double start_s = ranks_.seconds();
-      refined_.emplace(podm_distributed(problem, team, options_.leaves.initial_ratio, ranks_, stop));
+      refined_.emplace(
+          podm_distributed(problem, team, {options_.leaves.initial_ratio, options_.cut_seed}, ranks_, stop));
+      refined_->refinement.phases_s.emplace("refine", 0);  // where there was nothing to refine
       double known_s = 0;
       for (const auto& [phase, seconds] : refined_->refinement.phases_s) known_s += seconds;
       own.phases_s["exchange"] = std::max(0.0, ranks_.seconds() - start_s - known_s);
@@ -151,6 +161,7 @@ class RunOnRank {
   const LabelImage& image_;
   const MeshingOptions options_;
   Communication& ranks_;
+  SharedIsosurface* const isosurface_;
   PhasesOfRun phases_;
   Spending spending_{ranks_};
   std::optional<DistributedRefinement> refined_;
@@ -160,13 +171,13 @@ class RunOnRank {
 
 MeshingOnRanks mesh_image_on_ranks(const LabelImage& image, const MeshingOptions& options,
                                    Communication& ranks, const ProgressCallback& progress,
-                                   std::stop_token stop) {
+                                   std::stop_token stop, SharedIsosurface* isosurface) {
   std::optional<RunOnRank> run;
   do_together(
       [&] {
         check_options(image, options);
         check_options_on_ranks(options);
-        run.emplace(image, options, ranks, progress, std::move(stop));
+        run.emplace(image, options, ranks, progress, std::move(stop), isosurface);
       },
       ranks);
   if (ranks.size() > 1) expect_agreement(facts_of(image, options), ranks);

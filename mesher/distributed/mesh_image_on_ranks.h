@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "distributed/communication.h"
+#include "distributed/made_once.h"
 #include "distributed/rounds.h"
 #include "podm/mesh_image.h"
 #include "podm/mesh_piece.h"
@@ -31,6 +32,8 @@ struct MeshingOnRanks {
   std::vector<PartOfRank> parts;  ///< by rank
 };
 
+using SharedIsosurface = MadeOnce<Isosurface>;
+
 /// Throws InputError on what cannot be had on ranks: virtual workers, targets of cells, other algorithms than
 /// PODM, logs and schedules.
 void check_options_on_ranks(const MeshingOptions& options);
@@ -39,9 +42,10 @@ void check_options_on_ranks(const MeshingOptions& options);
 /// Collective: image and options are the same on all ranks, but for threads and memory, which are each
 /// rank's. A rank whose store has its even share of max_elements ends the run. Throws RefusedByAll
 /// (distributed/together.h) where ranks have not the same, and on options that are bad or not for ranks.
-/// Memory that runs out between rounds is std::bad_alloc on that rank, and the others are to be ended.
+/// Memory that runs out between rounds is std::bad_alloc on that rank, and the others are to be ended. Ranks
+/// of one process may share the isosurface, and then have the same image; else each makes its own.
 MeshingOnRanks mesh_image_on_ranks(const LabelImage& image, const MeshingOptions& options,
                                    Communication& ranks, const ProgressCallback& progress = {},
-                                   std::stop_token stop = {});
+                                   std::stop_token stop = {}, SharedIsosurface* isosurface = nullptr);
 
 }  // namespace podm

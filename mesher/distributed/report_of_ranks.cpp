@@ -153,7 +153,7 @@ PartOfRank add_told(const Bytes& told, const PartOfRank& like, MeshingReport& re
   clear(part.phases_s);
   add(reader.read<double>(), part.phases_s);
   clear(part.spent);
-  add(reader.read<Spent>(), part.spent);
+  add(reader.read<PhaseSeconds>(), part.spent);
   part.rounds = reader.read<RoundReport>();
   part.last_update = read_one<Update>(reader);
   report.store_cells += part.store_cells;

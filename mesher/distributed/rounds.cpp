@@ -94,13 +94,14 @@ double cube_side_mm(const Radii& radii, const Box& object, int num_ranks) {
 
 class Rounds {
  public:
-  Rounds(const Problem& problem, const Team& team, double initial_ratio, Communication& ranks,
+  Rounds(const Problem& problem, const Team& team, const DistributedOptions& options, Communication& ranks,
          StopControl& stop)
       : problem_(problem),
         team_(team),
+        cut_seed_(options.cut_seed),
         ranks_(ranks),
         stop_(stop),
-        levels_(two_levels(problem, initial_ratio)),
+        levels_(two_levels(problem, options.initial_ratio)),
         construction_(problem, levels_.clamp, team, stop),
         grid_(problem.object, cube_side_mm(radii_of(problem), problem.object, ranks.size())),
         exchange_(ranks, construction_.mesh(), construction_.pool(0), grid_) {}
@@ -109,7 +110,7 @@ class Rounds {
     refine_anywhere(construction_, "initial", levels_.initial, construction_.all_cells(), 1);
     if (is_over_anywhere()) return all_of_first_rank();
     for (const auto& entry : construction_.all_cells()) construction_.mesh().make_canonical(entry.cell);
-    blocks_.emplace(grid_, predicted_cells(construction_.mesh(), problem_, grid_), ranks_.size());
+    divide_space();
     shared_.emplace(blocks_->near_others(kSharedRings));
     spending_.end("initial");
     refine_in_rounds();
@@ -128,6 +129,14 @@ class Rounds {
     std::array<std::uint64_t, 1> num_over{stop_.is_over() ? 1u : 0u};
     ranks_.sum(num_over);
     return num_over[0] > 0;
+  }
+
+  void divide_space() {
+    if (cut_seed_ != 0) {
+      blocks_.emplace(grid_, cut_seed_, ranks_.size());
+    } else {
+      blocks_.emplace(grid_, predicted_cells(construction_.mesh(), problem_, grid_), ranks_.size());
+    }
   }
 
   // Coarse meshes that were not finished differ.
@@ -349,6 +358,7 @@ class Rounds {
 
   const Problem& problem_;
   const Team& team_;
+  const std::uint64_t cut_seed_;
   Communication& ranks_;
   StopControl& stop_;
   Spending spending_{ranks_};
@@ -367,9 +377,10 @@ class Rounds {
 
 }  // namespace
 
-DistributedRefinement podm_distributed(const Problem& problem, const Team& team, double initial_ratio,
-                                       Communication& ranks, StopControl& stop) {
-  return Rounds(problem, team, initial_ratio, ranks, stop)();
+DistributedRefinement podm_distributed(const Problem& problem, const Team& team,
+                                       const DistributedOptions& options, Communication& ranks,
+                                       StopControl& stop) {
+  return Rounds(problem, team, options, ranks, stop)();
 }
 
 }  // namespace podm

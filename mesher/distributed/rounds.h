@@ -42,8 +42,14 @@ struct DistributedRefinement {
   SpentByPhase spent = {};
 };
 
-/// Collective. All ranks have the same problem and ratio, each a team of its own.
-DistributedRefinement podm_distributed(const Problem& problem, const Team& team, double initial_ratio,
-                                       Communication& ranks, StopControl& stop);
+struct DistributedOptions {
+  double initial_ratio = 4;    ///< bounds of the coarse mesh over the final ones
+  std::uint64_t cut_seed = 0;  ///< draws where blocks are cut; 0: by predicted work
+};
+
+/// Collective. All ranks have the same problem and options, each a team of its own.
+DistributedRefinement podm_distributed(const Problem& problem, const Team& team,
+                                       const DistributedOptions& options, Communication& ranks,
+                                       StopControl& stop);
 
 }  // namespace podm

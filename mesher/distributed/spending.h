@@ -9,17 +9,17 @@
 namespace podm {
 
 /// Seconds of one phase.
-struct Spent {
+struct PhaseSeconds {
   double computing_s = 0, waiting_s = 0, network_s = 0;
 
-  Spent& operator+=(const Spent& b) {
+  PhaseSeconds& operator+=(const PhaseSeconds& b) {
     computing_s += b.computing_s;
     waiting_s += b.waiting_s;
     network_s += b.network_s;
     return *this;
   }
 };
-using SpentByPhase = std::map<std::string, Spent>;
+using SpentByPhase = std::map<std::string, PhaseSeconds>;
 
 class Spending {
  public:

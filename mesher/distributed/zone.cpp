@@ -10,13 +10,23 @@ namespace podm {
 // A ball of radius r through a vertex of the zone lies within 2r of it. Stored radii are off by more than
 // centres.
 Zone::Zone(CubeSet own, const CubeSet& shared, CubeSet known, int rings)
-    : own_(std::move(own)), shared_(&shared), known_(std::move(known)), known_counts_(known_) {
+    : own_(std::move(own)),
+      shared_(&shared),
+      depth_(own_.depths(kMostDepth)),
+      known_(std::move(known)),
+      is_all_known_(known_.is_full()),
+      known_counts_(known_) {
+  for (std::size_t depth = 0; depth < squared_reach_.size(); ++depth) {
+    const double reach_mm = (1 - kStoredSphereTolerance) * static_cast<double>(depth) * own_.grid().side_mm();
+    squared_reach_[depth] = static_cast<float>(reach_mm * reach_mm * (1 - kStoredSphereTolerance));
+  }
   const double sure_radius_mm = (1 - kStoredSphereTolerance) * rings * known_.grid().side_mm() / 2;
   sure_squared_radius_ = static_cast<float>(sure_radius_mm * sure_radius_mm * (1 - kStoredSphereTolerance));
 }
 
 bool Zone::is_ball_known(const Cell& cell) const {
-  if (std::isnan(cell.squared_radius)) return known_.is_full();
+  if (is_all_known_) return true;
+  if (std::isnan(cell.squared_radius)) return false;
   return is_ball_known(cell.center,
                        std::sqrt((1 + kStoredSphereTolerance) * static_cast<double>(cell.squared_radius)));
 }

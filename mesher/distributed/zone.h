@@ -14,6 +14,10 @@
 // The inserted vertex has to lie in the zone too, so that a cube's vertices have one writer a round.
 #pragma once
 
+#include <algorithm>
+#include <array>
+#include <vector>
+
 #include "delaunay/operation.h"
 
 #include "distributed/cubes.h"
@@ -28,6 +32,8 @@ class Zone {
   Zone(CubeSet own, const CubeSet& shared, CubeSet known, int rings);
 
   bool has(const Point& p) const { return own_.has(p); }
+  /// All that is nearer to p than the root of this lies in the zone, mm^2.
+  float squared_reach(const Point& p) const { return squared_reach_[depth_[own_.grid().cube_at(p)]]; }
   bool is_shared(const Point& p) const { return shared_->has(p); }
   /// Of a cell with a vertex in the zone.
   bool knows(const Cell& cell) const {
@@ -40,35 +46,51 @@ class Zone {
  private:
   CubeSet own_;
   const CubeSet* shared_;
+  static constexpr std::uint8_t kMostDepth = 31;
+  std::vector<std::uint8_t> depth_;                    // of cubes in the zone
+  std::array<float, kMostDepth + 1> squared_reach_{};  // mm^2, by depth
   CubeSet known_;
+  bool is_all_known_;
   CubeCounts known_counts_;
   float sure_squared_radius_;  // mm^2: balls no larger are known
 };
 
-/// Locks confined to a zone; within it `Inner` locks.
+/// Locks of workers in a zone: `Inner`, with the zone as the operations' horizon. Deep in the zone one look
+/// at a cell's radius says that it is all there.
 template <class Inner>
 class ZoneLocks {
  public:
-  static constexpr bool kIsShared = true;
+  static constexpr bool kIsShared = Inner::kIsShared;
   explicit ZoneLocks(WorkerId self) : inner_(self) {}
 
   /// Nothing is held meanwhile. The zone must outlive the operations.
   void confine(const Zone& zone) { zone_ = &zone; }
 
-  StepResult try_lock(Vertex& v) {
-    return zone_->has(peek_point(v)) ? inner_.try_lock(v) : StepResult::kOutOfReach;
-  }
+  StepResult try_lock(Vertex& v) { return inner_.try_lock(v); }
   bool holds(const Vertex& v) const { return zone_->has(peek_point(v)) && inner_.holds(v); }
   void unlock_all() { inner_.unlock_all(); }
   WorkerId conflicting_worker() const { return inner_.conflicting_worker(); }
 
   bool knows(const Cell& cell) const { return zone_->knows(cell); }
+  bool may_read(const Mesh& mesh, const Cell& cell) const {
+    return cell.squared_radius < zone_->squared_reach(cell.center) ||
+           (has(mesh, cell.vertices[0]) && has(mesh, cell.vertices[3]));
+  }
+  // Two points of a ball are no farther from each other than twice its radius.
+  void begin_around(const Point& p) { squared_reach_ = zone_->squared_reach(p) / 4; }
+  bool may_replace(const Mesh& mesh, const Cell& cell) const {
+    return cell.squared_radius < squared_reach_ ||
+           std::all_of(cell.vertices.begin(), cell.vertices.end(), [&](VertexId v) { return has(mesh, v); });
+  }
   bool may_insert(const Point& p) const { return zone_->has(p); }
   bool is_shared(const Point& p) const { return zone_->is_shared(p); }
 
  private:
+  bool has(const Mesh& mesh, VertexId v) const { return zone_->has(mesh.point(v)); }
+
   Inner inner_;
   const Zone* zone_ = nullptr;
+  float squared_reach_ = 0;  // mm^2: balls no larger with the operation's point in them lie in the zone
 };
 
 extern template class Operation<ZoneLocks<NoLocks>>;

@@ -83,6 +83,41 @@ TEST_P(MeshImageOnRanks, PhasesAddUpToWhatEachRankSpent) {
 
 INSTANTIATE_TEST_SUITE_P(Ranks, MeshImageOnRanks, testing::Values(1, 3, 4));
 
+TEST(RanksOfOneProcess, ShareAnIsosurfaceAndAreEachChargedWithIt) {
+  const LabelImage image = ball(24, 9);
+  std::vector<MeshingOnRanks> apart(3), together(3);
+  SharedIsosurface isosurface;
+  for (auto* results : {&apart, &together})
+    run_ranks({.num_ranks = 3, .one_at_a_time = true}, [&](Communication& ranks) {
+      (*results)[static_cast<std::size_t>(ranks.rank())] = mesh_image_on_ranks(
+          image, options_with_radius(1.5), ranks, {}, {}, results == &together ? &isosurface : nullptr);
+    });
+  for (std::size_t rank = 0; rank < 3; ++rank) {
+    EXPECT_EQ(together[rank].piece.mesh.cells, apart[rank].piece.mesh.cells);
+    EXPECT_GT(together[0].parts[rank].phases_s.at("transform"), 0);
+  }
+}
+
+TEST(MadeOnce, IsMadeOnceWhenThatFailsTheFirstTimeAndChargedToAll) {
+  MadeOnce<int> seven;
+  int num_made = 0, num_failed = 0;
+  const auto reports = run_ranks({.num_ranks = 4, .one_at_a_time = true}, [&](Communication& ranks) {
+    const auto make = [&] {
+      if (num_failed++ == 0) throw InputError("not yet");
+      ++num_made;
+      ranks.charge(100);
+      return std::make_shared<const int>(7);
+    };
+    try {
+      EXPECT_EQ(*seven.get(make, ranks), 7);
+    } catch (const InputError&) {
+      EXPECT_EQ(*seven.get(make, ranks), 7);
+    }
+  });
+  EXPECT_EQ(num_made, 1);
+  for (const RankReport& report : reports) EXPECT_GE(report.computing_s, 100);
+}
+
 // The words of what all ranks throw.
 std::string refusal_by_all(const std::function<void(Communication&)>& body) {
   std::vector<std::string> words(3);

@@ -24,6 +24,7 @@ struct Case {
   int num_ranks;
   int threads = 1;
   double initial_ratio = 4;
+  std::uint64_t cut_seed = 0;
 };
 
 class Ranks {
@@ -43,7 +44,7 @@ class Ranks {
       const Team team{.coordination = {.num_workers = of.threads}};
       StopControl stop(limits, {}, [](std::uint64_t) {});
       const auto rank = static_cast<std::size_t>(ranks.rank());
-      refined[rank].emplace(podm_distributed(*problem, team, of.initial_ratio, ranks, stop));
+      refined[rank].emplace(podm_distributed(*problem, team, {of.initial_ratio, of.cut_seed}, ranks, stop));
     });
   }
 
@@ -143,6 +144,32 @@ TEST(RoundsThatStop, LeaveAMeshAllTheSame) {
   }
 }
 
+TEST(DrawnBlocks, TileSpaceAndAreThinNowAndThen) {
+  const CubeGrid grid({{0, 0, 0}, {9.5, 7.5, 3.5}}, 1);
+  int num_thin = 0;
+  for (std::uint64_t seed = 1; seed <= 50; ++seed) {
+    const int num_blocks = 2 + static_cast<int>(seed) % 8;
+    const Blocks blocks(grid, seed, num_blocks);
+    EXPECT_EQ(blocks.ranks(), Blocks(grid, seed, num_blocks).ranks());
+    for (int block = 0; block < num_blocks; ++block) {
+      CubePlace low = grid.size(), high{-1, -1, -1};
+      CubeId num_cubes = 0;
+      for (CubeId cube = 0; cube < grid.num_cubes(); ++cube) {
+        if (blocks.of(cube) != block) continue;
+        ++num_cubes;
+        for (std::size_t axis = 0; axis < 3; ++axis) {
+          low[axis] = std::min(low[axis], grid.place_of(cube)[axis]);
+          high[axis] = std::max(high[axis], grid.place_of(cube)[axis]);
+        }
+      }
+      ASSERT_GT(num_cubes, 0u) << "block " << block << " of seed " << seed;
+      for (std::size_t axis = 0; axis < 3; ++axis)
+        num_thin += low[axis] == high[axis] && low[axis] > 0 && high[axis] + 1 < grid.size()[axis];
+    }
+  }
+  EXPECT_GT(num_thin, 10);
+}
+
 LabelImage image_named(const std::string& name) {
   for (const NamedImage& image : images())
     if (name == image.name) return image.make();
@@ -158,6 +185,10 @@ std::vector<Case> cases() {
   cases.push_back({"threads", image_named("three_labels_meeting"), 1, 0, 3, 2});
   cases.push_back({"anisotropic", image_named("anisotropic_ball"), 0.9, 0, 4, 1, 2});
   cases.push_back({"no_coarser_mesh", ball(24, 9), 1.2, 0, 4, 1, 1});
+  for (const std::uint64_t seed : {1u, 2u, 3u, 4u, 5u, 6u})
+    cases.push_back({"cuts_drawn_by_" + std::to_string(seed), ball(24, 9), 1.2, 0, 3 + static_cast<int>(seed),
+                     1, seed % 2 == 0 ? 1.0 : 2.0, seed});
+  cases.push_back({"drawn_cuts_and_threads", image_named("three_labels_meeting"), 1, 0, 5, 2, 1.5, 7});
   cases.push_back({"more_ranks_than_cells", ball(12, 4), 6, 3, 24});
   return cases;
 }

@@ -67,6 +67,7 @@ struct MeshingOptions {
   int crossover = 0;
   TeamOptions team = {};
   LeafOptions leaves = {};
+  std::uint64_t cut_seed = 0;  ///< on ranks: draws where blocks are cut; 0: by predicted work
   Limits limits = {};
   OperationLogWriter* log = nullptr;  ///< learns of every operation of the last run; not finished
 };
