@@ -111,13 +111,16 @@ class Rounds {
     refine_anywhere(construction_, "initial", levels_.initial, construction_.all_cells(), 1);
     if (is_over_anywhere()) return all_of_first_rank();
     divide_space();
+    spending_.end("initial");
     refine_in_rounds();
     const Update last_update = complete();
+    spending_.end("exchange");
     return {.refinement = construction_.finish(),
             .grid = grid_,
             .rank_of_cube = exchange_.writers(),
             .rounds = std::move(rounds_),
-            .last_update = last_update};
+            .last_update = last_update,
+            .spent = spending_.by_phase()};
   }
 
  private:
@@ -172,10 +175,12 @@ class Rounds {
       drop_sound(entries, zone);
       report.entries = entries.size();
       report.update_s = processor_seconds() - start_s;
+      spending_.end("exchange");
       if (team_.log != nullptr) team_.log->begin_step();
       for (const CellId c : refine_in(zone, entries, report))
         left.push_back(name_of(construction_.mesh(), c));
       report.refine_s = processor_seconds() - start_s - report.update_s;
+      spending_.end(round == 0 ? "refine" : "later");
       for (CubeId cube = 0; cube < grid_.num_cubes(); ++cube)
         if (zone_of_[cube] != kNobody) exchange_.note_writer(cube, zone_of_[cube]);
       here = plan_next(round, left, report);
@@ -393,6 +398,7 @@ class Rounds {
   const std::uint64_t cut_seed_;
   Communication& ranks_;
   StopControl& stop_;
+  Spending spending_{ranks_};
   const TwoLevels levels_;
   Construction construction_;
   const CubeGrid grid_;

@@ -16,6 +16,7 @@
 #include "algorithms/podm.h"
 #include "distributed/blocks.h"
 #include "distributed/communication.h"
+#include "distributed/spending.h"
 #include "distributed/vertex_exchange.h"
 
 namespace podm {
@@ -36,6 +37,9 @@ struct DistributedRefinement {
   std::vector<int> rank_of_cube;  ///< by the blocks
   std::vector<RoundReport> rounds;
   Update last_update;
+  /// This rank's: "initial", the coarse mesh and blocks; "refine", round 0; "later", refining in later
+  /// rounds; "exchange", all else.
+  SpentByPhase spent = {};
 };
 
 struct DistributedOptions {

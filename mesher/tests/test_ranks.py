@@ -76,6 +76,9 @@ class Meshes(OnRanks):
                 ranks = record["ranks"]
                 self.assertEqual([ranks["number"], ranks["machines"], len(ranks["by_rank"])], [number, 1, number])
                 self.assertEqual(sum(rank["cells"] for rank in ranks["by_rank"]), record["cells"])
+                for rank in ranks["by_rank"]:
+                    self.assertLessEqual({"transform", "refine", "extract"}, set(rank["spent"]))
+                    self.assertGreater(rank["spent"]["refine"]["computing_s"], 0)
                 self.assertEqual(sum(label["cells"] for label in record["labels"]), record["cells"])
                 self.assertEqual(sum(pair["facets"] for pair in record["facet_pairs"]), record["boundary_facets"])
                 self.assertEqual(bool(ranks["rounds"]), number > 1)
