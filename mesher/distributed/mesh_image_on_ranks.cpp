@@ -93,11 +93,8 @@ class RunOnRank {
     phases_.extract([&](Space space) { result.piece = piece(space, own.guarantees.facet_vertices); }, own);
     spending_.end("extract");
     phases_.finish(result.piece.mesh, own);
-<<<<<<< HEAD
     result.mesh_hash = hash_of_whole(result.piece.mesh);
-=======
     spending_.end("measure");
->>>>>>> distributed-weak
     PartOfRank part{.cells = result.piece.mesh.cells.size(),
                     .boundary_facets = result.piece.mesh.facets.size(),
                     .store_cells = own.store_cells,

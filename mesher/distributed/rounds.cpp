@@ -107,9 +107,12 @@ class Rounds {
         exchange_(ranks, construction_.mesh(), construction_.pool(0), grid_, team.log) {}
 
   DistributedRefinement operator()() {
-    construction_.timed("refine", [] {});  // every rank has this phase
-    refine_anywhere(construction_, "initial", levels_.initial, construction_.all_cells(), 1);
+    for (const char* phase : {"initial", "refine"}) construction_.timed(phase, [] {});  // every rank has these
+    if (ranks_.rank() == 0)
+      refine_anywhere(construction_, "initial", levels_.initial, construction_.all_cells(),
+                      construction_.num_workers());
     if (is_over_anywhere()) return all_of_first_rank();
+    construction_.timed("initial", [&] { exchange_.copy_first(); });
     divide_space();
     spending_.end("initial");
     refine_in_rounds();
@@ -130,17 +133,20 @@ class Rounds {
     return num_over[0] > 0;
   }
 
+  // The first rank cuts, for the same cells have centres that differ in the last bit on other ranks.
   void divide_space() {
-    if (cut_seed_ != 0) {
-      blocks_.emplace(grid_, cut_seed_, ranks_.size());
-    } else {
-      blocks_.emplace(grid_, predicted_cells(construction_.mesh(), problem_, grid_), ranks_.size());
-    }
+    Bytes message;
+    if (ranks_.rank() == 0) append(message, cut().cuts());
+    const std::vector<Bytes> told = ranks_.all_gather(std::move(message));
+    blocks_.emplace(grid_, MessageReader(told.front()).read<Blocks::Cut>());
   }
 
-  // Coarse meshes that were not finished differ.
+  Blocks cut() const {
+    if (cut_seed_ != 0) return Blocks(grid_, cut_seed_, ranks_.size());
+    return Blocks(grid_, predicted_cells(construction_.mesh(), problem_, grid_), ranks_.size());
+  }
+
   DistributedRefinement all_of_first_rank() {
-    if (team_.log != nullptr && ranks_.rank() > 0) team_.log->restart();
     return {.refinement = construction_.finish(),
             .grid = grid_,
             .rank_of_cube = std::vector<int>(grid_.num_cubes(), 0),

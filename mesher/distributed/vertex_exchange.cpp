@@ -52,6 +52,23 @@ CubeSet VertexExchange::known() const {
   return known;
 }
 
+void VertexExchange::copy_first() {
+  if (log_ != nullptr) log_->begin_step();
+  CubeSet all(grid_);
+  for (CubeId cube = 0; cube < grid_.num_cubes(); ++cube) all.insert(cube);
+  Bytes message;
+  if (ranks_.rank() == 0) {
+    Bytes question;
+    append(question, all.cubes());
+    message = tell({std::move(question)}).front();
+  }
+  const std::vector<Bytes> told = ranks_.all_gather(std::move(message));
+  if (ranks_.rank() == 0) return;
+  Update update;
+  std::vector<Change> changes = differences(told, update);
+  apply(changes);
+}
+
 Update VertexExchange::update(const CubeSet& wanted) {
   if (log_ != nullptr) log_->begin_step();
   Update update;

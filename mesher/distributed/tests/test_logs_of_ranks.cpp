@@ -97,7 +97,7 @@ std::vector<Case> cases() {
       cases.push_back({"labels_on_" + std::to_string(num_ranks) + "_with_" + std::to_string(threads),
                        three_labels(), 1.2, num_ranks, threads, Space::kRas, 0, num_ranks > 1});
   cases.push_back({"voxel_space", ball(24, 9), 1.2, 4, 1, Space::kVoxel});
-  cases.push_back({"more_ranks_than_cells", ball(12, 4), 3, 24, 1, Space::kRas, 0, false});
+  cases.push_back({"more_ranks_than_cells", ball(12, 4), 3, 24});
   cases.push_back({"stopped_in_the_coarse_mesh", ball(24, 9), 1.2, 3, 1, Space::kRas, 1000, false});
   cases.push_back({"stopped_in_the_first_round", ball(24, 9), 1.2, 3, 1, Space::kRas, 12000});
   return cases;
