@@ -29,7 +29,7 @@ def of_row(row):
     is_measured, cells = row["basis"] == "measured", row["cells"]
 
     def mean(phases, *kinds):
-        return sum(one[phase][f"{kind}_s"] for one in spent for phase in phases if phase in one for kind in kinds) / number
+        return sum(_seconds(one, phases, kinds) for one in spent) / number
 
     every = ("computing",) if is_measured else ("computing", "waiting", "network")
     made = {phase: mean([phase], "computing") for phase in REFINING}
@@ -48,8 +48,12 @@ def of_row(row):
         "whole_s": _whole(spent, ("transform", *REFINING, "extract"), every, is_measured), "part": made}
 
 
+def _seconds(spent, phases, kinds):
+    return sum(spent[phase][f"{kind}_s"] for phase in phases if phase in spent for kind in kinds)
+
+
 def _whole(spent, phases, kinds, is_measured):
-    sums = [sum(one[phase][f"{kind}_s"] for phase in phases if phase in one for kind in kinds) for one in spent]
+    sums = [_seconds(one, phases, kinds) for one in spent]
     return numpy.mean(sums) if is_measured else max(sums)
 
 
@@ -75,17 +79,22 @@ def _base(group, per_rank):
 
 def _line(basis, per_rank, ranks, rows, base):
     def rate(of, what):
-        return (of["cells"] / of["on_ranks.number"] / of[f"on_ranks.{what}_s"]).median()
+        return _median(of["cells"] / of["on_ranks.number"] / of[f"on_ranks.{what}_s"])
 
     cells_of_rank = rows["cells"] / ranks
-    parts = {part: 1e6 * (rows[f"on_ranks.part.{part}"] / cells_of_rank).median() for part in PARTS
+    parts = {part: 1e6 * _median(rows[f"on_ranks.part.{part}"] / cells_of_rank) for part in PARTS
              if f"on_ranks.part.{part}" in rows}
     kind = "measured processor seconds" if basis == "measured" else "simulated"
     return {"basis": basis, "kind": f"{kind}, {scaling.short(per_rank)} cells a rank", "cells_per_rank": per_rank,
             "ranks": ranks, "n": len(rows), "cells": rows["cells"].median(),
-            "rounds": rows["on_ranks.rounds"].max(), **{name: rows[f"on_ranks.{name}"].median() for name in OF_ROW},
+            "rounds": rows["on_ranks.rounds"].max(), **{name: _median(rows[f"on_ranks.{name}"]) for name in OF_ROW},
             "refining_efficiency": rate(rows, "refining") / rate(base, "refining") if len(base) else math.nan,
             "efficiency": rate(rows, "whole") / rate(base, "whole") if len(base) else math.nan, **parts}
+
+
+def _median(column):
+    known = column.dropna().astype(float)
+    return known.median() if len(known) else math.nan
 
 
 def readable(table):
@@ -94,7 +103,7 @@ def readable(table):
     shown["M cells"] = [f"{1e-6 * cells:.3g}" for cells in table["cells"]]
     shown["rounds"] = table["rounds"].astype(int)
     for name, title in (("refining_efficiency", "efficiency, refining"), ("efficiency", "efficiency, whole"),
-                        ("deferred_share", "deferred in round 1, of the cells"),
+                        ("deferred_share", "deferred in round 0, of the cells"),
                         ("cells_over_one_machine", "cells over one machine's")):
         digits = 2 if name == "cells_over_one_machine" else 1
         shown[title] = ["" if pandas.isna(value) else f"{100 * value:.{digits}f} %" for value in table[name]]

@@ -53,9 +53,9 @@ def _extrapolations(axes, table):
 
 def _parts(axes, table, extrapolated):
     """A bar a size and number of ranks; extrapolated ones hatched, with one thread."""
-    bars = [(f"{scaling.short(line['cells_per_rank'])}\n{line['ranks']}", line, "") for _, line in table.iterrows()]
-    bars += [(f"{scaling.short(line['cells_per_rank'])}\n{line['ranks']}", line, "////")
-             for _, line in extrapolated[extrapolated["threads"] == 1].iterrows()]
+    bars = [(f"{scaling.short(line['cells_per_rank'])}\n{line['ranks']}", line, hatch)
+            for lines, hatch in ((table, ""), (extrapolated[extrapolated["threads"] == 1], "////"))
+            for _, line in lines.iterrows()]
     for part, words in PARTS.items():
         heights = [0 if pandas.isna(line[part]) else line[part] for _, line, _ in bars]
         below = [sum(0 if pandas.isna(line[one]) else line[one] for one in list(PARTS)[:list(PARTS).index(part)])
@@ -73,8 +73,8 @@ def caption(table, extrapolated):
     parts = []
     if (table["basis"] == "simulated").any():
         parts.append("Simulated: ranks of one thread in one process, one after the other, on the clock of their "
-                     "processor time and of a stated network; the weak efficiency is cells a second and rank over those "
-                     "of one rank of as many cells")
+                     "processor time and of a stated network; the weak efficiency is cells a second and rank over "
+                     "those of one rank of as many cells")
     if (table["basis"] == "measured").any():
         parts.append("Measured: ranks over MPI on one machine with fewer processors; cells a processor second outside "
                      "of collectives, as waiting there means nothing")

@@ -26,12 +26,12 @@ COLUMNS = ["basis", "ranks", "threads", "cells_per_rank", "n", "sizes", "refinin
            "refining_efficiency_low", "refining_efficiency_high", "efficiency", "efficiency_low", "efficiency_high",
            "worst_miss", *PARTS]
 ASSUMPTIONS = (
-    "Extrapolated: to nodes of 20 million cells, part by part, from the simulated sizes, as a sum of what goes with the "
-    "cells, with their surface (cells^(-1/3)) and once; bars: the range when any one of three or more sizes is left "
-    "out, no confidence interval. It is assumed that the coarse mesh is made by one thread of every rank, of the ratio "
-    "simulated; that sixteen threads of a node share rounds, pieces and waiting alike, with and without ranks, and "
-    "leave the coarse mesh and updates to one; that nodes are as fast as the processor that simulated them, all the "
-    "same, and the network as stated, without congestion; that each node holds the image, the same for all sizes")
+    "Extrapolated: to nodes of 20 million cells, part by part, from the simulated sizes, as a sum of what goes with "
+    "the cells, with their surface (cells^(-1/3)) and once; bars: the range when any one of three or more sizes is "
+    "left out, no confidence interval. It is assumed that the coarse mesh is made by one thread of every rank, of the "
+    "ratio simulated; that sixteen threads of a node share rounds, pieces and waiting alike, with and without ranks, "
+    "and leave the coarse mesh and updates to one; that nodes are as fast as the processor that simulated them, all "
+    "the same, and the network as stated, without congestion; that each node holds the image, the same for all sizes")
 
 
 def extrapolated(table):
@@ -54,7 +54,8 @@ def extrapolated(table):
 def _line(ranks, threads, sizes, many, base):
     def efficiencies(chosen):
         ours, alone = (_parts_at(NODE_CELLS, one.loc[chosen]) for one in (many, base))
-        return numpy.array([_sum(alone, parts, threads) / _sum(ours, parts, threads) for parts in (REFINING_PARTS, PARTS)])
+        return numpy.array([_sum(alone, parts, threads) / _sum(ours, parts, threads)
+                            for parts in (REFINING_PARTS, PARTS)])
 
     value, left_out = efficiencies(sizes), []
     if len(sizes) > 2:
