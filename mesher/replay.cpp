@@ -6,6 +6,7 @@
 
 #include "delaunay/operation.h"
 #include "delaunay/walk.h"
+#include "merge_logs.h"
 #include "podm/errors.h"
 
 namespace podm {
@@ -28,11 +29,20 @@ class Replay {
       apply(logged, removed);
       removed += logged.num_removed;
     }
+    if (is_of_ranks())
+      for (CellId c = 0; c < mesh_->cell_bound(); ++c)
+        if (mesh_->cell(c).is_alive()) mesh_->make_canonical(c);
     return std::move(mesh_);
   }
 
  private:
   double box(std::size_t i) const { return log_.head.box[i]; }
+  // They have cells in common, whose labels go by canonical centres.
+  bool is_of_ranks() const { return log_.head.num_ranks > 1; }
+  std::string name_of(const LoggedOperation& logged) const {
+    const std::string text = operation_text(logged.sequence);
+    return is_of_ranks() ? text + " of rank " + std::to_string(logged.worker >> kBitsInWorker) : text;
+  }
   // An insertion makes some 7 cells more than it takes; a hole may be filled before its cells are free.
   std::size_t capacity() const {
     return std::min<std::size_t>(16 * log_.all.operations.size() + (1 << 20), 1u << 30);
@@ -40,7 +50,7 @@ class Replay {
 
   void apply(const LoggedOperation& logged, const std::uint32_t* removed) {
     const auto check = [&](bool holds, const char* fault) {
-      if (!holds) throw InputError("operation " + std::to_string(logged.sequence) + ": " + fault);
+      if (!holds) throw InputError(name_of(logged) + ": " + fault);
     };
     const Point p{logged.point[0], logged.point[1], logged.point[2]};
     const auto inside = [](double low, double x, double high) { return low < x && x < high; };

@@ -1,4 +1,5 @@
-// Replay of a linearization log on one thread: the serial run that a parallel run claims to equal.
+// Replay of a linearization log, or of merge_logs(), on one thread: the serial run that a parallel run claims
+// to equal.
 #pragma once
 
 #include <memory>

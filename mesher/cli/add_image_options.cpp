@@ -49,8 +49,11 @@ void add_replay_command(CLI::App& program, ReplayCommand& command) {
   CLI::App& app = add_command(program, "replay",
                               "carry out a run's logged operations on one thread and compare the mesh");
   add_image_options(app, command.image);
-  require(add_one(app, "LOG", "", "what podm mesh --log wrote, with the same image and label options",
-                  into(command.log_path)));
+  require(add_many(
+      app, "LOG", "",
+      "what podm mesh --log wrote, with the same image and label options; of\n"
+      "podm-mpi mesh --log FILE the logs of all ranks: FILE.0 FILE.1 ...",
+      [&command](const std::string& text, const std::string&) { command.log_paths.push_back(text); }));
 }
 
 void add_info_command(CLI::App& program, InfoCommand& command) {

@@ -145,7 +145,11 @@ void add_run_options(CLI::App& app, MeshCommand& command, Program which) {
   add_one(app, "--virtual-cost", "COST", "time of an attempt: unit (1 us) or measured (by its work)",
           into_choice(meshing.team.virtual_cost));
   add_seed_option(app, meshing, which);
-  add_one(app, "--log", "FILE", "write every operation in its order, for podm replay [default: none]",
+  add_one(app, "--log", "FILE",
+          which == Program::kPodmMpi
+              ? "write every operation in its order, for podm replay: rank R to FILE.R, one\n"
+                "rank alone to FILE [default: none]"
+              : "write every operation in its order, for podm replay [default: none]",
           into(command.log_path));
 }
 
@@ -184,7 +188,7 @@ void add_mesh_command(CLI::App& program, MeshCommand& command, Program which) {
     end_help(
         app,
         "Not on ranks yet, and refused: --target-elements, --surface, --algorithm but podm, --schedule,\n"
-        "--executor virtual, --log.");
+        "--executor virtual.");
 }
 
 }  // namespace podm::cli

@@ -19,8 +19,8 @@ CLI::App& add_command(CLI::App& program, const std::string& name, const std::str
 void begin_group(CLI::App& app, const std::string& title);
 void end_help(CLI::App& app, const std::string& text);
 
-/// An option taking one value, given once or, add_many, any number of times. Help ends with the target's
-/// default, if it has any.
+/// An option or argument taking one value, given once or, add_many, any number of times. Help ends with the
+/// target's default, if it has any.
 CLI::Option* add_one(CLI::App& app, const std::string& names, const std::string& type,
                      const std::string& description, const Target& target);
 CLI::Option* add_many(CLI::App& app, const std::string& names, const std::string& type,

@@ -64,6 +64,7 @@ void finish_log(OperationLogWriter& log, const MeshRun& run) {
               .image_sha256 = label_image_sha256(run.image),
               .space = to_string(run.options.space),
               .mesh_sha256 = run.mesh_sha256});
+  log.publish();
 }
 
 void write_outputs(const MeshCommand& command, const TetMesh& mesh) {

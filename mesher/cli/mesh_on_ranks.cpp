@@ -18,6 +18,8 @@
 #include "distributed/in_process_ranks.h"
 #include "distributed/together.h"
 #include "distributed/write_pieces.h"
+#include "podm/mesh_io.h"
+#include "podm/operation_log.h"
 
 namespace podm::cli {
 namespace {
@@ -30,7 +32,6 @@ void refuse(const std::string& path, const char* option) {
 void check_command(const MeshCommand& command) {
   refuse(command.surface_path, "--surface");
   refuse(command.schedule_path, "--schedule");
-  refuse(command.log_path, "--log");
   check_options_on_ranks(command.meshing);
   check_pieces_path(command.mesh_path);
   if (command.verify) check_verifier(command.mesh_path);
@@ -47,8 +48,9 @@ class Run {
     MeshingOnRanks result = mesh(run);
     const double start_s = ranks_.seconds();
     if (result.piece.total_cells > 0) write_pieces(result.piece, command_.mesh_path, ranks_);
-    run.write_s = ranks_.seconds() - start_s;
     run.report = std::move(result.report);
+    if (log_) write_log(run, result.mesh_hash);
+    run.write_s = ranks_.seconds() - start_s;
     auto& warnings = run.report.warnings;
     if (!is_in_process()) warnings = machines_.warnings(command_.meshing.team.threads);
     warnings.insert(warnings.end(), run.image.warnings.begin(), run.image.warnings.end());
@@ -74,10 +76,12 @@ class Run {
     const auto check = [&] {
       check_command(command_);
       if (ranks_.rank() == 0 && !command_.record_path.empty()) records_.emplace(command_.record_path);
+      if (!command_.log_path.empty()) log_.emplace(own_log_path());
     };
     do_together(check, ranks_);
     expect_agreement({{"program", "SHA-256 " + file_sha256("/proc/self/exe")},
                       {"output", command_.mesh_path},
+                      {"--log", command_.log_path},
                       {"--verify", command_.verify ? "asked for" : "not asked for"}},
                      ranks_);
   }
@@ -98,6 +102,7 @@ class Run {
       image_ = shared_.image.get(make, ranks_);
       options = options_for_image(command_, *image_, limit_bytes, is_in_process() ? 1 : ranks_.size());
       options.limits.max_memory_bytes /= ranks_here;
+      if (log_) options.log = &*log_;
     };
     do_together(read, ranks_);
     return {.command = command_,
@@ -110,6 +115,23 @@ class Run {
             .read_s = ranks_.seconds() - start_s,
             .verdicts = {},
             .program = "podm-mpi"};
+  }
+
+  std::string own_log_path() const {
+    return ranks_.size() == 1 ? command_.log_path : fmt::format("{}.{}", command_.log_path, ranks_.rank());
+  }
+
+  // No rank's log gets its name before all are on the disks.
+  void write_log(const MeshRun& run, std::uint64_t mesh_hash) {
+    const OperationLogHead head{.box = run.report.virtual_box,
+                                .image_sha256 = label_image_sha256(run.image),
+                                .space = to_string(run.options.space),
+                                .mesh_sha256 = {},
+                                .mesh_hash = mesh_hash_text(mesh_hash),
+                                .rank = ranks_.rank(),
+                                .num_ranks = ranks_.size()};
+    do_together([&] { log_->finish(head); }, ranks_);
+    do_together([&] { log_->publish(); }, ranks_);
   }
 
   // A process has one bar, and heeds signals once: by rank 0, where it has several.
@@ -133,6 +155,7 @@ class Run {
   const RanksOfMachine machines_;
   std::shared_ptr<const LabelImage> image_;
   std::optional<AppendedFile> records_;  // rank 0's
+  std::optional<OperationLogWriter> log_;
 };
 
 }  // namespace

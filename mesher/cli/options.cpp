@@ -54,7 +54,8 @@ CLI::Option* add_one(CLI::App& app, const std::string& names, const std::string&
 
 CLI::Option* add_many(CLI::App& app, const std::string& names, const std::string& type,
                       const std::string& description, const Setter& set) {
-  return add_value(app, names, type, description, set);
+  CLI::Option* option = add_value(app, names, type, description, set);
+  return option->get_positional() ? option->expected(-1) : option;  // an option takes one each time
 }
 
 void add_flag(CLI::App& app, const std::string& names, bool& target, const std::string& description) {

@@ -51,7 +51,7 @@ struct MeshCommand {
 /// podm replay
 struct ReplayCommand {
   ImageArguments image;
-  std::string log_path;
+  std::vector<std::string> log_paths;  ///< at least one
 };
 
 /// podm info

@@ -8,6 +8,7 @@
 #include "cli/options_for_image.h"
 #include "cli/process_memory.h"
 #include "distributed/messages.h"
+#include "podm/mesh_io.h"
 
 namespace podm::cli {
 namespace {
@@ -58,11 +59,18 @@ Json update_of(const Update& update) {
           {"removed", update.removed}};
 }
 
+// Where it is one in a late round, what waited was in one piece.
+std::size_t ranks_refining(const std::vector<PartOfRank>& parts, std::size_t round) {
+  return static_cast<std::size_t>(std::count_if(
+      parts.begin(), parts.end(), [&](const PartOfRank& part) { return part.rounds[round].insertions > 0; }));
+}
+
 Json rounds_of(const std::vector<PartOfRank>& parts) {
   Json rounds = Json::array();
   for (std::size_t i = 0; i < parts[0].rounds.size(); ++i) {
     const RoundReport round = on_all(parts, i);
-    rounds.push_back({{"entries", round.entries},
+    rounds.push_back({{"ranks_refining", ranks_refining(parts, i)},
+                      {"entries", round.entries},
                       {"insertions", round.insertions},
                       {"deferred", round.deferred},
                       {"cubes", round.cubes},
@@ -191,7 +199,9 @@ void gather_from_ranks(const MeshingOnRanks& result, int threads, const RanksOfM
               .boundary_facets = result.piece.total_facets,
               .facet_pairs = sums_of(pairs)};
   run.ranks = ranks_of(result.parts, spent, machines, run);
-  run.ranks_text = text_of(result.parts, spent, machines);
+  run.ranks["mesh_hash"] = mesh_hash_text(result.mesh_hash);
+  run.ranks_text = text_of(result.parts, spent, machines) +
+                   fmt::format("hash       {}\n", mesh_hash_text(result.mesh_hash));
 }
 
 }  // namespace podm::cli

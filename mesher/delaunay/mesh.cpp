@@ -73,6 +73,7 @@ void Mesh::make_canonical(CellId c) {
   std::array<Point, 4> p{point(v[0]), point(v[1]), point(v[2]), point(v[3])};
   std::sort(p.begin(), p.end(), lexicographically_less);
   set_sphere(c, circumsphere(p[0], p[1], p[2], p[3], extent_));
+  cells_[c].label = kUnknownLabel;
 }
 
 void Mesh::move_cell(CellId from, CellId to, const std::array<VertexId, 4>& vertices,

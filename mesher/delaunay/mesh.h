@@ -199,7 +199,7 @@ class Mesh {
 
   void refresh_sphere(CellId c);
   /// The same, of the vertices in the order of their coordinates: so that stores which have the cell in
-  /// common agree about its centre to the bit.
+  /// common agree about its centre to the bit, and about its label, which has to be asked for again.
   void make_canonical(CellId c);
   bool is_in_conflict(CellId c, const Point& p) const;  // exact, unique by perturbation
   std::uint64_t num_cells() const;

@@ -26,8 +26,7 @@ namespace podm {
 
 /// Locks of a worker whose store may differ from the whole triangulation beyond a horizon
 /// (distributed/zone.h): they tell which cells are of the whole, which may be read and replaced by an
-/// operation around a point that their balls have, where a vertex may be inserted, and what centres other
-/// stores have too.
+/// operation around a point that their balls have, and where a vertex may be inserted.
 template <class Locks>
 concept HasHorizon = requires(Locks& locks, const Mesh& mesh, const Cell& cell, const Point& p) {
   { locks.knows(cell) } -> std::same_as<bool>;
@@ -35,7 +34,6 @@ concept HasHorizon = requires(Locks& locks, const Mesh& mesh, const Cell& cell, 
   locks.begin_around(p);
   { locks.may_replace(mesh, cell) } -> std::same_as<bool>;
   { locks.may_insert(p) } -> std::same_as<bool>;
-  { locks.is_shared(p) } -> std::same_as<bool>;
 };
 
 template <class Locks>

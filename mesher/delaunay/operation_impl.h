@@ -260,10 +260,6 @@ void Operation<Locks>::count_filling() {
 template <class Locks>
 void Operation<Locks>::finish(std::size_t num_destroyed) {
   count_filling();
-  if constexpr (HasHorizon<Locks>) {
-    for (const CellId c : region_.created)
-      if (locks_.is_shared(mesh_.cell(c).center)) mesh_.make_canonical(c);
-  }
   counters_.cells_created += region_.created.size();
   net_cells_ += static_cast<std::int64_t>(region_.created.size()) - static_cast<std::int64_t>(num_destroyed);
   for (const VertexId v : region_.removed) pool_.release_vertex(v);

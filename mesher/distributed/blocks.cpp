@@ -34,39 +34,51 @@ Blocks::Blocks(const CubeGrid& grid, std::uint64_t seed, int num_blocks)
   divide({{0, 0, 0}, grid.size(), 0, num_blocks}, [&](const Part& part) { return drawn_cut(part, random); });
 }
 
-// The least and the greatest block around a cube differ there: found along one axis after another.
-CubeSet Blocks::near_others(int rings) const {
-  std::vector<int> least = block_of_, greatest = block_of_;
-  for (std::size_t axis = 0; axis < 3; ++axis) {
-    const std::vector<int> least_before = least, greatest_before = greatest;
-    for_each_cube(grid_, {0, 0, 0}, grid_.size(), [&](CubeId cube, CubePlace at) {
-      const int middle = at[axis], last = std::min(grid_.size()[axis] - 1, middle + rings);
-      for (at[axis] = std::max(0, middle - rings); at[axis] <= last; ++at[axis]) {
-        least[cube] = std::min(least[cube], least_before[grid_.id(at)]);
-        greatest[cube] = std::max(greatest[cube], greatest_before[grid_.id(at)]);
-      }
-    });
+// Each cut makes one block more.
+Blocks::Blocks(const CubeGrid& grid, const std::vector<Cut>& cuts)
+    : grid_(grid), num_blocks_(static_cast<int>(cuts.size()) + 1), block_of_(grid.num_cubes()) {
+  auto next = cuts.begin();
+  divide({{0, 0, 0}, grid.size(), 0, num_blocks_}, [&](const Part&) { return *next++; });
+}
+
+std::vector<int> Blocks::in(const CubePlace& low, const CubePlace& high) const {
+  std::vector<int> blocks;
+  collect(0, low, high, blocks);
+  return blocks;
+}
+
+void Blocks::collect(std::size_t node_id, const CubePlace& low, const CubePlace& high,
+                     std::vector<int>& blocks) const {
+  const Node& node = nodes_[node_id];
+  if (node.above == 0) {
+    blocks.push_back(node.block);
+    return;
   }
-  CubeSet near(grid_);
-  for (CubeId cube = 0; cube < grid_.num_cubes(); ++cube)
-    if (least[cube] != greatest[cube]) near.insert(cube);
-  return near;
+  CubePlace high_below = high, low_above = low;
+  high_below[node.axis] = std::min(high[node.axis], node.cut - 1);
+  low_above[node.axis] = std::max(low[node.axis], node.cut);
+  if (low[node.axis] <= high_below[node.axis]) collect(node_id + 1, low, high_below, blocks);
+  if (low_above[node.axis] <= high[node.axis]) collect(node.above, low_above, high, blocks);
 }
 
 template <class CutOf>
 void Blocks::divide(const Part& part, const CutOf& cut_of) {
+  const std::size_t node = nodes_.size();
+  nodes_.push_back({.block = part.first_block});
   if (part.num_blocks == 1) {
     for_each_cube(grid_, part.low, part.high,
                   [&](CubeId cube, const CubePlace&) { block_of_[cube] = part.first_block; });
     return;
   }
   const Cut cut = cut_of(part);
+  cuts_.push_back(cut);
   Part lower = part, upper = part;
   lower.high[cut.axis] = upper.low[cut.axis] = part.low[cut.axis] + cut.cubes_below;
   lower.num_blocks = cut.blocks_below;
   upper.first_block += cut.blocks_below;
   upper.num_blocks -= cut.blocks_below;
   divide(lower, cut_of);
+  nodes_[node] = {.axis = cut.axis, .cut = upper.low[cut.axis], .above = nodes_.size()};
   divide(upper, cut_of);
 }
 

@@ -17,29 +17,43 @@ class Blocks {
   /// Cuts are drawn, whatever the work: some blocks are one cube thin, some hold nearly all. Each has a cube
   /// if there are enough.
   Blocks(const CubeGrid& grid, std::uint64_t seed, int num_blocks);
-
-  const CubeGrid& grid() const { return grid_; }
-  int of(CubeId cube) const { return block_of_[cube]; }
-  const std::vector<int>& ranks() const { return block_of_; }
-  /// Cubes that have another block within so many cubes along each axis.
-  CubeSet near_others(int rings) const;
-  int number() const { return num_blocks_; }
-
- private:
-  struct Part;
   /// Where a part is cut in two, and how many of its blocks lie below.
   struct Cut {
     std::size_t axis;
     int cubes_below, blocks_below;
   };
+  /// In the order of cutting: first the whole, then the part below, all of it, and then the part above.
+  const std::vector<Cut>& cuts() const { return cuts_; }
+  /// The blocks that were cut so.
+  Blocks(const CubeGrid& grid, const std::vector<Cut>& cuts);
+
+  const CubeGrid& grid() const { return grid_; }
+  int of(CubeId cube) const { return block_of_[cube]; }
+  const std::vector<int>& ranks() const { return block_of_; }
+  /// Those that have cubes from `low` to `high`, in order.
+  std::vector<int> in(const CubePlace& low, const CubePlace& high) const;
+  int number() const { return num_blocks_; }
+
+ private:
+  struct Part;
   Cut cut_by_weight(const Part& part, const std::vector<std::uint64_t>& weights) const;
   static Cut drawn_cut(const Part& part, std::mt19937_64& random);
   template <class CutOf>
   void divide(const Part& part, const CutOf& cut_of);
+  /// A part in the order of divide(): the part below its cut follows it.
+  struct Node {
+    std::size_t axis = 0;
+    int cut = 0;
+    std::size_t above = 0;  // none: it is a block
+    int block = 0;
+  };
+  void collect(std::size_t node, const CubePlace& low, const CubePlace& high, std::vector<int>& blocks) const;
 
   const CubeGrid& grid_;
   int num_blocks_;
   std::vector<int> block_of_;
+  std::vector<Node> nodes_;
+  std::vector<Cut> cuts_;
 };
 
 }  // namespace podm

@@ -17,6 +17,14 @@ CubeGrid::CubeGrid(const Box& box, double side_mm)
   num_cubes_ = static_cast<CubeId>(size[0] * size[1] * size[2]);
 }
 
+MortonCode CubeGrid::place_on_curve(const Point& p) const {
+  constexpr double kPlacesASide = 16;  // of a cube
+  constexpr double kLast = (1u << kMortonBits) - 1;
+  const Vector g = kPlacesASide * per_mm_ * (p - origin_);
+  const auto along = [=](double x) { return static_cast<std::uint32_t>(std::clamp(x, 0.0, kLast)); };
+  return morton_code({along(g.x), along(g.y), along(g.z)});
+}
+
 CubePlace CubeGrid::place_of(CubeId cube) const {
   const auto x = static_cast<CubeId>(size_[0]), y = static_cast<CubeId>(size_[1]);
   return {static_cast<int>(cube % x), static_cast<int>(cube / x % y), static_cast<int>(cube / x / y)};

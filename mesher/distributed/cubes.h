@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "geometry/box.h"
+#include "octree/morton.h"
 
 namespace podm {
 
@@ -30,6 +31,8 @@ class CubeGrid {
   }
   CubePlace place_of(CubeId cube) const;
   CubeId cube_at(const Point& p) const { return id(place_of(p)); }
+  /// Along a curve on which points that follow each other are near each other, finer than cubes.
+  MortonCode place_on_curve(const Point& p) const;
   /// From a point to the cube, mm^2, but for rounding.
   double squared_distance(const CubePlace& at, const Point& p) const;
 

@@ -1,6 +1,7 @@
 #include "distributed/mesh_image_on_ranks.h"
 
 #include <algorithm>
+#include <array>
 #include <numeric>
 
 #include "check_options.h"
@@ -12,6 +13,7 @@
 #include "io/sha256.h"
 #include "measure_quality.h"
 #include "phases_of_run.h"
+#include "podm/mesh_io.h"
 
 namespace podm {
 
@@ -29,7 +31,6 @@ void check_options_on_ranks(const MeshingOptions& options) {
   refuse(options.team.executor == Executor::kVirtual, "virtual workers");
   refuse(options.sizes.target_elements > 0, "a target number of elements");
   refuse(options.leaves.with_schedule, "a schedule of leaves");
-  refuse(options.log != nullptr, "a log of operations");
 }
 
 namespace {
@@ -92,6 +93,7 @@ class RunOnRank {
     phases_.extract([&](Space space) { result.piece = piece(space, own.guarantees.facet_vertices); }, own);
     spending_.end("extract");
     phases_.finish(result.piece.mesh, own);
+    result.mesh_hash = hash_of_whole(result.piece.mesh);
     spending_.end("measure");
     PartOfRank part{.cells = result.piece.mesh.cells.size(),
                     .boundary_facets = result.piece.mesh.facets.size(),
@@ -120,12 +122,17 @@ class RunOnRank {
       const double start_s = ranks_.seconds();
       refined_.emplace(
           podm_distributed(problem, team, {options_.leaves.initial_ratio, options_.cut_seed}, ranks_, stop));
-      refined_->refinement.phases_s.emplace("refine", 0);  // where there was nothing to refine
       double known_s = 0;
       for (const auto& [phase, seconds] : refined_->refinement.phases_s) known_s += seconds;
       own.phases_s["exchange"] = std::max(0.0, ranks_.seconds() - start_s - known_s);
       spending_.end(refined_->spent);
     });
+  }
+
+  std::uint64_t hash_of_whole(const TetMesh& own) const {
+    std::array<std::uint64_t, 1> hash{mesh_hash(own, phases_.loop_threads())};
+    ranks_.sum(hash);
+    return hash[0];
   }
 
   void refine_alone(const Problem& problem, const Team& team, StopControl& stop) {

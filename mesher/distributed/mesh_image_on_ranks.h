@@ -24,7 +24,8 @@ struct PartOfRank {
 };
 
 struct MeshingOnRanks {
-  MeshPiece piece;  ///< this rank's
+  MeshPiece piece;              ///< this rank's
+  std::uint64_t mesh_hash = 0;  ///< mesh_hash() of the whole, the same on all ranks
   /// The whole mesh's, the same on all ranks. Counters and store cells are sums, phases the means over ranks,
   /// which add up to the time that went by; "exchange" is what refinement took but for refining, waiting for
   /// others among it. Workers are all ranks', in their order.
@@ -35,7 +36,7 @@ struct MeshingOnRanks {
 using SharedIsosurface = MadeOnce<Isosurface>;
 
 /// Throws InputError on what cannot be had on ranks: virtual workers, targets of cells, other algorithms than
-/// PODM, logs and schedules.
+/// PODM, schedules.
 void check_options_on_ranks(const MeshingOptions& options);
 
 /// Meshes `image` as mesh_image() does, with PODM in each rank's zone; on one rank it is PODM itself.

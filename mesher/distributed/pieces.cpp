@@ -1,29 +1,17 @@
 #include "distributed/pieces.h"
 
 #include <algorithm>
-#include <bit>
 #include <numeric>
 #include <tuple>
-#include <unordered_map>
 
 #include "distributed/messages.h"
 #include "extract_mesh.h"
+#include "geometry/point_hash.h"
 #include "podm/errors.h"
 
 namespace podm {
 
 namespace {
-
-struct PointHash {
-  std::size_t operator()(const Point& p) const {
-    std::uint64_t hash = 0;
-    for (const double x : {p.x, p.y, p.z})
-      hash = (hash ^ std::bit_cast<std::uint64_t>(x + 0.0)) * 0x9e3779b97f4a7c15u, hash ^= hash >> 32;
-    return hash;
-  }
-};
-template <class Value>
-using ByPoint = std::unordered_map<Point, Value, PointHash>;
 
 // A vertex in the whole mesh, and the rank whose piece counts it.
 struct Number {
@@ -43,14 +31,18 @@ class PieceOfMesh {
         ranks_(ranks) {}
 
   MeshPiece operator()(std::uint64_t& facets_off_isosurface) {
+    is_own_vertex_.resize(mesh_.vertex_bound());
+    for (VertexId v = 0; v < mesh_.vertex_bound(); ++v)
+      is_own_vertex_[v] = rank_of(mesh_.point(v)) == ranks_.rank();
+    agree_on_centers();
     label_cells(mesh_, isosurface_, threads_);
     choose_cells();
     MeshPiece piece;
     piece.rank = ranks_.rank();
     piece.num_pieces = ranks_.size();
     number_vertices(piece);
-    const auto is_own = [this](CellId c) { return is_own_cell_[c] != 0; };
-    piece.mesh = extract_mesh(mesh_, isosurface_, space_, threads_, facets_off_isosurface, is_own);
+    const auto is_chosen = [this](CellId c) { return is_own_cell_[c] != 0; };
+    piece.mesh = extract_mesh(mesh_, isosurface_, space_, threads_, facets_off_isosurface, is_chosen);
     std::tie(piece.first_cell, piece.total_cells) = sums_of(piece.mesh.cells.size());
     std::tie(piece.first_facet, piece.total_facets) = sums_of(piece.mesh.facets.size());
     return piece;
@@ -69,18 +61,50 @@ class PieceOfMesh {
             std::accumulate(counts.begin(), counts.end(), std::uint64_t{0})};
   }
 
+  // Cells that others look at, too, have to have the same centres and labels there. This rank looks at cells
+  // with a vertex in its part of space and at their neighbours. Of those that another looks at, too, each has
+  // vertices of both parts or a neighbour that has: for a cell and its neighbour share three.
+  void agree_on_centers() {
+    std::vector<CellId> shared;
+    for (CellId c = 0; c < mesh_.cell_bound(); ++c) {
+      if (!mesh_.cell(c).is_alive() || !is_mixed(c)) continue;
+      shared.push_back(c);
+      for (const FacetId mirror : mesh_.cell(c).mirrors)
+        if (mirror != kNoFacet) shared.push_back(cell_of(mirror));
+    }
+    std::sort(shared.begin(), shared.end());
+    shared.erase(std::unique(shared.begin(), shared.end()), shared.end());
+    for (const CellId c : shared) mesh_.make_canonical(c);
+  }
+
+  int num_own_vertices(CellId c) const {
+    int count = 0;
+    for (const VertexId v : mesh_.cell(c).vertices) count += is_own_vertex_[v];
+    return count;
+  }
+  bool is_mixed(CellId c) const {
+    const int num_own = num_own_vertices(c);
+    return num_own > 0 && num_own < 4;
+  }
+
+  // A cell is its rank's who has its least vertex.
+  bool is_own(CellId c) const {
+    const int num_own = num_own_vertices(c);
+    if (num_own == 0 || num_own == 4) return num_own == 4;
+    const auto& vertices = mesh_.cell(c).vertices;
+    return is_own_vertex_[*std::min_element(vertices.begin(), vertices.end(), [&](VertexId a, VertexId b) {
+             return lexicographically_less(mesh_.point(a), mesh_.point(b));
+           })] != 0;
+  }
+
   void choose_cells() {
     is_own_cell_.assign(mesh_.cell_bound(), 0);
     is_used_.assign(mesh_.vertex_bound(), 0);
     for (CellId c = 0; c < mesh_.cell_bound(); ++c) {
       if (mesh_.label(c) == kBackground) continue;
-      const auto& vertices = mesh_.cell(c).vertices;
-      const VertexId least = *std::min_element(vertices.begin(), vertices.end(), [&](VertexId a, VertexId b) {
-        return lexicographically_less(mesh_.point(a), mesh_.point(b));
-      });
-      if (rank_of(mesh_.point(least)) != ranks_.rank()) continue;
+      if (!is_own(c)) continue;
       is_own_cell_[c] = 1;
-      for (const VertexId v : vertices) is_used_[v] = 1;
+      for (const VertexId v : mesh_.cell(c).vertices) is_used_[v] = 1;
     }
   }
 
@@ -166,8 +190,8 @@ class PieceOfMesh {
   Space space_;
   int threads_;
   Communication& ranks_;
-  std::vector<std::uint8_t> is_own_cell_, is_used_;  // by id in the store
-  std::vector<std::uint64_t> own_numbers_;           // likewise
+  std::vector<std::uint8_t> is_own_vertex_, is_own_cell_, is_used_;  // by id in the store
+  std::vector<std::uint64_t> own_numbers_;                           // likewise
   std::uint64_t total_vertices_ = 0;
 };
 

@@ -18,10 +18,8 @@ namespace {
 
 // What is known reaches so many cubes beyond zones.
 constexpr int kKnownRings = 1;
-// Cells so many cubes from other blocks are known to one rank alone, but for some of the last rounds.
-constexpr int kSharedRings = 8;
-// And around a deferred cell so many circumradii, so that most of its neighbours are known.
-constexpr double kKnownOverRadius = 2;
+// And around a deferred cell so many circumradii: more of its neighbours known cost more than they save.
+constexpr double kKnownOverRadius = 1;
 // Cubes are so many bounds of a circumradius long.
 constexpr double kCubeOverRadius = 2;
 
@@ -64,16 +62,18 @@ double area_of_facet(const Mesh& mesh, const Cell& cell, unsigned k) {
 // exact.
 std::vector<std::uint64_t> predicted_cells(const Mesh& mesh, const Problem& problem, const CubeGrid& grid) {
   constexpr double kParts = 1e6;
-  const auto label_of = [&](CellId c) { return problem.isosurface.label_at(mesh.cell(c).center); };
+  std::vector<LabelIndex> labels(mesh.cell_bound());
+  for (CellId c = 0; c < mesh.cell_bound(); ++c)
+    if (mesh.cell(c).is_alive()) labels[c] = problem.isosurface.label_at(mesh.cell(c).center);
   std::vector<std::uint64_t> cells(grid.num_cubes());
   for (CellId c = 0; c < mesh.cell_bound(); ++c) {
     const Cell& cell = mesh.cell(c);
     if (!cell.is_alive()) continue;
-    const LabelIndex label = label_of(c);
+    const LabelIndex label = labels[c];
     if (label == kBackground) continue;
     double area_mm2 = 0;
     for (unsigned k = 0; k < 4; ++k)
-      if (cell.mirrors[k] == kNoFacet || label_of(cell_of(cell.mirrors[k])) != label)
+      if (cell.mirrors[k] == kNoFacet || labels[cell_of(cell.mirrors[k])] != label)
         area_mm2 += area_of_facet(mesh, cell, k);
     const double squared_radius = problem.sizes.squared_radius(label);
     const double radius_mm = std::isinf(squared_radius) ? 0 : std::sqrt(squared_radius);
@@ -104,14 +104,16 @@ class Rounds {
         levels_(two_levels(problem, options.initial_ratio)),
         construction_(problem, levels_.clamp, team, stop),
         grid_(problem.object, cube_side_mm(radii_of(problem), problem.object, ranks.size())),
-        exchange_(ranks, construction_.mesh(), construction_.pool(0), grid_) {}
+        exchange_(ranks, construction_.mesh(), construction_.pool(0), grid_, team.log) {}
 
   DistributedRefinement operator()() {
-    refine_anywhere(construction_, "initial", levels_.initial, construction_.all_cells(), 1);
+    for (const char* phase : {"initial", "refine"}) construction_.timed(phase, [] {});  // every rank has these
+    if (ranks_.rank() == 0)
+      refine_anywhere(construction_, "initial", levels_.initial, construction_.all_cells(),
+                      construction_.num_workers());
     if (is_over_anywhere()) return all_of_first_rank();
-    for (const auto& entry : construction_.all_cells()) construction_.mesh().make_canonical(entry.cell);
+    construction_.timed("initial", [&] { exchange_.copy_first(); });
     divide_space();
-    shared_.emplace(blocks_->near_others(kSharedRings));
     spending_.end("initial");
     refine_in_rounds();
     const Update last_update = complete();
@@ -131,15 +133,19 @@ class Rounds {
     return num_over[0] > 0;
   }
 
+  // The first rank cuts, for the same cells have centres that differ in the last bit on other ranks.
   void divide_space() {
-    if (cut_seed_ != 0) {
-      blocks_.emplace(grid_, cut_seed_, ranks_.size());
-    } else {
-      blocks_.emplace(grid_, predicted_cells(construction_.mesh(), problem_, grid_), ranks_.size());
-    }
+    Bytes message;
+    if (ranks_.rank() == 0) append(message, cut().cuts());
+    const std::vector<Bytes> told = ranks_.all_gather(std::move(message));
+    blocks_.emplace(grid_, MessageReader(told.front()).read<Blocks::Cut>());
   }
 
-  // Coarse meshes that were not finished differ.
+  Blocks cut() const {
+    if (cut_seed_ != 0) return Blocks(grid_, cut_seed_, ranks_.size());
+    return Blocks(grid_, predicted_cells(construction_.mesh(), problem_, grid_), ranks_.size());
+  }
+
   DistributedRefinement all_of_first_rank() {
     return {.refinement = construction_.finish(),
             .grid = grid_,
@@ -170,12 +176,13 @@ class Rounds {
       const double start_s = processor_seconds();
       std::vector<CellName> left;
       if (round > 0) report.update = exchange_.update(wanted(own, here));
-      const Zone zone(own, *shared_, exchange_.known(), kKnownRings);
+      const Zone zone(own, exchange_.known(), kKnownRings);
       Construction::Entries entries = round == 0 ? own_cells() : find(here, zone, left);
       drop_sound(entries, zone);
       report.entries = entries.size();
       report.update_s = processor_seconds() - start_s;
       spending_.end("exchange");
+      if (team_.log != nullptr) team_.log->begin_step();
       for (const CellId c : refine_in(zone, entries, report))
         left.push_back(name_of(construction_.mesh(), c));
       report.refine_s = processor_seconds() - start_s - report.update_s;
@@ -203,11 +210,28 @@ class Rounds {
   // What has to be known of a zone in which these cells wait.
   CubeSet wanted(const CubeSet& own, const std::vector<CellName>& names) const {
     CubeSet wanted = own.grown(kKnownRings);
+    std::map<CubeId, Circumsphere> largest;  // of the cells with their centres in a cube
     for (const CellName& name : names) {
-      const Point center = center_of(name);
-      if (own.has(center)) wanted.insert(center, kKnownOverRadius * distance(center, name.vertices[0]));
+      const Circumsphere sphere = sphere_of(name, construction_.mesh().extent());
+      const CubeId cube = grid_.cube_at(sphere.center);
+      if (!own.has(cube)) continue;
+      const auto found = largest.emplace(cube, sphere).first;
+      if (found->second.squared_radius < sphere.squared_radius) found->second = sphere;
     }
+    for (const auto& [cube, sphere] : largest)
+      wanted.insert(sphere.center, kKnownOverRadius * std::sqrt(sphere.squared_radius));
     return wanted;
+  }
+
+  // An order in which walks to these cells are short.
+  std::vector<std::size_t> along_curve(const std::vector<CellName>& names) const {
+    std::vector<std::pair<MortonCode, std::size_t>> places;
+    for (std::size_t i = 0; i < names.size(); ++i)
+      places.emplace_back(grid_.place_on_curve(names[i].vertices[0]), i);
+    std::sort(places.begin(), places.end());
+    std::vector<std::size_t> order;
+    for (const auto& place : places) order.push_back(place.second);
+    return order;
   }
 
   // The cells of these names in the zone. Those that are not in the mesh have died, if all is known that
@@ -216,7 +240,8 @@ class Rounds {
                              std::vector<CellName>& left) {
     const Mesh& mesh = construction_.mesh();
     Construction::Entries entries;
-    for (const CellName& name : names) {
+    for (const std::size_t i : along_curve(names)) {
+      const CellName& name = names[i];
       const Point center = center_of(name);
       if (!zone.has(center)) {
         left.push_back(name);
@@ -332,7 +357,7 @@ class Rounds {
   }
 
   // Learns what others have changed until every cell with a vertex in what this rank wrote last is one of the
-  // whole.
+  // whole, and so are its neighbours.
   Update complete() {
     const Mesh& mesh = construction_.mesh();
     const CubeSet own = cubes_of(ranks_.rank(), exchange_.writers());
@@ -340,20 +365,38 @@ class Rounds {
     Update sum;
     for (;;) {
       sum += exchange_.update(wanted);
-      const Zone zone(own, *shared_, exchange_.known(), kKnownRings);
-      std::array<std::uint64_t, 1> more{0};
-      for (CellId c = 0; c < mesh.cell_bound(); ++c) {
+      const Zone zone(own, exchange_.known(), kKnownRings);
+      const std::vector<CellId> unknown = unknown_cells(zone);
+      for (const CellId c : unknown) {
         const Cell& cell = mesh.cell(c);
-        if (!cell.is_alive() || zone.knows(cell)) continue;
-        if (std::none_of(cell.vertices.begin(), cell.vertices.end(),
-                         [&](VertexId v) { return own.has(mesh.point(v)); }))
-          continue;
         wanted.insert(cell.center, distance(cell.center, mesh.point(cell.vertices[0])) * (1 + kMargin));
-        ++more[0];
       }
+      std::array<std::uint64_t, 1> more{unknown.size()};
       ranks_.sum(more);
       if (more[0] == 0) return sum;
     }
+  }
+
+  // Those with a vertex in the zone, and neighbours of such, that may not be cells of the whole.
+  std::vector<CellId> unknown_cells(const Zone& zone) const {
+    const Mesh& mesh = construction_.mesh();
+    std::vector<std::uint8_t> is_in_zone(mesh.vertex_bound());
+    for (VertexId v = 0; v < mesh.vertex_bound(); ++v)
+      is_in_zone[v] = mesh.vertex(v).kind != VertexKind::kBox && zone.has(mesh.point(v));
+    std::vector<CellId> unknown;
+    for (CellId c = 0; c < mesh.cell_bound(); ++c) {
+      const Cell& cell = mesh.cell(c);
+      if (!cell.is_alive()) continue;
+      const auto& v = cell.vertices;
+      const int num_in_zone = is_in_zone[v[0]] + is_in_zone[v[1]] + is_in_zone[v[2]] + is_in_zone[v[3]];
+      if (num_in_zone == 0) continue;
+      if (!zone.knows(cell)) unknown.push_back(c);
+      if (num_in_zone == 4) continue;  // so have its neighbours vertices there
+      for (const FacetId mirror : cell.mirrors)
+        if (mirror != kNoFacet && !zone.knows_beside(cell, mesh.cell(cell_of(mirror))))
+          unknown.push_back(cell_of(mirror));
+    }
+    return unknown;
   }
 
   const Problem& problem_;
@@ -367,7 +410,6 @@ class Rounds {
   const CubeGrid grid_;
   VertexExchange exchange_;
   std::optional<Blocks> blocks_;
-  std::optional<CubeSet> shared_;
   std::vector<int> zone_of_;                // by cube: the rank of the zone that it is in, or kNobody
   std::vector<std::uint32_t> num_waiting_;  // by cube: cells, on all ranks, before the round
   std::vector<std::uint64_t> load_;         // by rank: cells that waited for it

@@ -2,7 +2,7 @@
 // vertices it made and took away. (Feng, Chernikov, Chrisochoides, CAD 2018, have leaves as tasks and ship
 // sub-meshes; here zones tile space and vertices travel.)
 //
-//   1  All ranks make the same coarse mesh.
+//   1  The first rank makes a coarse mesh, and all get its vertices.
 //   2  Blocks divide space by predicted work. In round 0 a rank's zone is its block, and it refines what
 //   cells have their
 //      circumcentres there. A cell that needs vertices outside the zone is deferred.

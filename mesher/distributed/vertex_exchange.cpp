@@ -7,7 +7,6 @@
 #include "distributed/messages.h"
 
 #include "delaunay/walk.h"
-#include "octree/morton.h"
 #include "podm/errors.h"
 
 namespace podm {
@@ -27,8 +26,14 @@ bool is_shared(VertexKind kind) { return kind != VertexKind::kUnused && kind != 
 
 }  // namespace
 
-VertexExchange::VertexExchange(Communication& ranks, Mesh& mesh, Pool& pool, const CubeGrid& grid)
-    : ranks_(ranks), mesh_(mesh), grid_(grid), operation_(mesh, pool, 0), cubes_(grid.num_cubes()) {}
+VertexExchange::VertexExchange(Communication& ranks, Mesh& mesh, Pool& pool, const CubeGrid& grid,
+                               OperationLogWriter* log)
+    : ranks_(ranks),
+      mesh_(mesh),
+      grid_(grid),
+      operation_(mesh, pool, 0),
+      log_(log),
+      cubes_(grid.num_cubes()) {}
 
 void VertexExchange::note_writer(CubeId cube, int rank) {
   cubes_[cube] = {.writer = rank, .is_up_to_date = rank == ranks_.rank()};
@@ -47,7 +52,25 @@ CubeSet VertexExchange::known() const {
   return known;
 }
 
+void VertexExchange::copy_first() {
+  if (log_ != nullptr) log_->begin_step();
+  CubeSet all(grid_);
+  for (CubeId cube = 0; cube < grid_.num_cubes(); ++cube) all.insert(cube);
+  Bytes message;
+  if (ranks_.rank() == 0) {
+    Bytes question;
+    append(question, all.cubes());
+    message = tell({std::move(question)}).front();
+  }
+  const std::vector<Bytes> told = ranks_.all_gather(std::move(message));
+  if (ranks_.rank() == 0) return;
+  Update update;
+  std::vector<Change> changes = differences(told, update);
+  apply(changes);
+}
+
 Update VertexExchange::update(const CubeSet& wanted) {
+  if (log_ != nullptr) log_->begin_step();
   Update update;
   std::vector<std::vector<CubeId>> asked(static_cast<std::size_t>(ranks_.size()));
   for (const CubeId cube : wanted.cubes()) {
@@ -140,16 +163,10 @@ void VertexExchange::apply(std::vector<Change>& changes) {
     }
   };
   constexpr int kMostRounds = 10;
-  constexpr double kPlacesASide = 16;  // of a cube, along the curve
-  const Point origin = mesh_.box().low;
-  const double per_mm = kPlacesASide / grid_.side_mm();
-  const auto along = [](double x) { return static_cast<std::uint32_t>(x) & ((1u << kMortonBits) - 1); };
   std::vector<Place> order;
   for (std::size_t i = 0; i < changes.size(); ++i) {
-    const Vector g = per_mm * (changes[i].point - origin);
-    const auto rounds_after = std::countl_zero(hash_of(changes[i].point));
-    order.push_back(
-        {std::min(rounds_after, kMostRounds), morton_code({along(g.x), along(g.y), along(g.z)}), i});
+    const Point& p = changes[i].point;
+    order.push_back({std::min(std::countl_zero(hash_of(p)), kMostRounds), grid_.place_on_curve(p), i});
   }
   std::sort(order.begin(), order.end());
   const auto check = [](StepResult result) {
@@ -162,13 +179,37 @@ void VertexExchange::apply(std::vector<Change>& changes) {
       if (!found) throw InternalError("a vertex to be taken away is not there");
       check(operation_.plan_removal(found->vertex, found->cell));
       check(operation_.commit_removals());
+      note(changes[place.change], found->vertex);
     } else {
       check(operation_.plan_insertion(point, walk_to(point)));
       check(operation_.commit_insertion(point, kind, kTouching));
+      note(changes[place.change], operation_.inserted());
     }
     near_ = operation_.created().front();
-    for (const CellId c : operation_.created()) mesh_.make_canonical(c);
   }
+  flush_log();
+}
+
+void VertexExchange::note(const Change& change, VertexId vertex) {
+  if (log_ == nullptr) return;
+  constexpr std::size_t kEntriesToFlush = 4096;
+  const bool is_gone = change.kind == VertexKind::kUnused;
+  const auto kind = is_gone ? kForgottenVertex : kLearntVertex + static_cast<std::uint32_t>(change.kind);
+  const Point& p = change.point;
+  unlogged_.operations.push_back({.sequence = log_->next_sequence(),
+                                  .point = {p.x, p.y, p.z},
+                                  .vertex = vertex,
+                                  .worker = 0,
+                                  .kind = kind,
+                                  .num_removed = is_gone ? 1u : 0u});
+  if (is_gone) unlogged_.removed.push_back(vertex);
+  if (unlogged_.operations.size() == kEntriesToFlush) flush_log();
+}
+
+void VertexExchange::flush_log() {
+  if (log_ == nullptr) return;
+  log_->append(unlogged_);
+  unlogged_ = {};
 }
 
 std::optional<VertexExchange::Found> VertexExchange::find_vertex(const Point& p) {

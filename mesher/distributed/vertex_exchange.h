@@ -8,6 +8,7 @@
 #include "delaunay/operation.h"
 #include "distributed/communication.h"
 #include "distributed/cubes.h"
+#include "podm/operation_log.h"
 
 namespace podm {
 
@@ -28,8 +29,8 @@ struct Update {
 
 class VertexExchange {
  public:
-  /// All ranks have the same mesh.
-  VertexExchange(Communication& ranks, Mesh& mesh, Pool& pool, const CubeGrid& grid);
+  /// All ranks have the same mesh. The log, if there is one, is told what this rank learns.
+  VertexExchange(Communication& ranks, Mesh& mesh, Pool& pool, const CubeGrid& grid, OperationLogWriter* log);
 
   /// From now on that rank has the cube's vertices as they are; all ranks have, until the first writer
   /// changes them.
@@ -38,6 +39,8 @@ class VertexExchange {
   std::vector<int> writers() const;
   /// Cubes of which this rank has all vertices as they are.
   CubeSet known() const;
+  /// All ranks get the first one's mesh: collective. Nobody has noted a writer yet.
+  void copy_first();
   /// Brings the vertices in these cubes up to date: collective, each rank names its own cubes.
   Update update(const CubeSet& wanted);
 
@@ -63,6 +66,8 @@ class VertexExchange {
   std::vector<Bytes> tell(const std::vector<Bytes>& asked) const;
   std::vector<Change> differences(const std::vector<Bytes>& told, Update& update) const;
   void apply(std::vector<Change>& changes);
+  void note(const Change& change, VertexId vertex);
+  void flush_log();
   CellId walk_to(const Point& p);
 
   Communication& ranks_;
@@ -70,8 +75,10 @@ class VertexExchange {
   const CubeGrid& grid_;
   Operation<NoLocks> operation_;
   CellId near_ = 0;  // where the next walk begins
+  OperationLogWriter* log_;
+  OperationBatch unlogged_;
   struct State {
-    int writer = -1;            // none: all ranks have it as it was at first
+    int writer = 0;
     bool is_up_to_date = true;  // this rank's copy
   };
   std::vector<State> cubes_;

@@ -9,9 +9,8 @@ namespace podm {
 
 // A ball of radius r through a vertex of the zone lies within 2r of it. Stored radii are off by more than
 // centres.
-Zone::Zone(CubeSet own, const CubeSet& shared, CubeSet known, int rings)
+Zone::Zone(CubeSet own, CubeSet known, int rings)
     : own_(std::move(own)),
-      shared_(&shared),
       depth_(own_.depths(kMostDepth)),
       known_(std::move(known)),
       is_all_known_(known_.is_full()),

@@ -27,17 +27,21 @@ namespace podm {
 
 class Zone {
  public:
-  /// `known` holds all cubes within `rings` of own ones. `shared` are cubes that several ranks may know, and
-  /// must outlive the zone.
-  Zone(CubeSet own, const CubeSet& shared, CubeSet known, int rings);
+  /// `known` holds all cubes within `rings` of own ones.
+  Zone(CubeSet own, CubeSet known, int rings);
 
   bool has(const Point& p) const { return own_.has(p); }
   /// All that is nearer to p than the root of this lies in the zone, mm^2.
   float squared_reach(const Point& p) const { return squared_reach_[depth_[own_.grid().cube_at(p)]]; }
-  bool is_shared(const Point& p) const { return shared_->has(p); }
   /// Of a cell with a vertex in the zone.
   bool knows(const Cell& cell) const {
     return cell.squared_radius <= sure_squared_radius_ || is_ball_known(cell);
+  }
+  /// Of a neighbour of a cell with a vertex in the zone.
+  bool knows_beside(const Cell& cell, const Cell& neighbor) const {
+    return (cell.squared_radius <= sure_squared_radius_ / 4 &&
+            neighbor.squared_radius <= sure_squared_radius_ / 4) ||
+           is_ball_known(neighbor);
   }
   /// Of any cell.
   bool is_ball_known(const Cell& cell) const;
@@ -45,7 +49,6 @@ class Zone {
 
  private:
   CubeSet own_;
-  const CubeSet* shared_;
   static constexpr std::uint8_t kMostDepth = 31;
   std::vector<std::uint8_t> depth_;                    // of cubes in the zone
   std::array<float, kMostDepth + 1> squared_reach_{};  // mm^2, by depth
@@ -83,7 +86,6 @@ class ZoneLocks {
            std::all_of(cell.vertices.begin(), cell.vertices.end(), [&](VertexId v) { return has(mesh, v); });
   }
   bool may_insert(const Point& p) const { return zone_->has(p); }
-  bool is_shared(const Point& p) const { return zone_->is_shared(p); }
 
  private:
   bool has(const Mesh& mesh, VertexId v) const { return zone_->has(mesh.point(v)); }

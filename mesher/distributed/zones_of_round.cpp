@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <cmath>
 #include <map>
-#include <utility>
 
 namespace podm {
 
@@ -20,17 +19,7 @@ std::vector<int> blocks_near(const Blocks& blocks, CubeId cube) {
     low[axis] = std::max(0, at[axis] - kNear);
     high[axis] = std::min(grid.size()[axis] - 1, at[axis] + kNear);
   }
-  std::vector<int> near;
-  int last = kNobody;
-  for (int z = low[2]; z <= high[2]; ++z)
-    for (int y = low[1]; y <= high[1]; ++y)
-      for (int x = low[0]; x <= high[0]; ++x) {
-        const int block = blocks.of(grid.id({x, y, z}));
-        if (block == std::exchange(last, block)) continue;
-        if (std::find(near.begin(), near.end(), block) == near.end()) near.push_back(block);
-      }
-  std::sort(near.begin(), near.end());
-  return near;
+  return blocks.in(low, high);
 }
 
 constexpr std::size_t kNoZone = ~std::size_t{0};

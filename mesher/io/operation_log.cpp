@@ -82,7 +82,8 @@ class Reader {
       const LoggedOperation& operation = all.operations[i];
       num_removed += operation.num_removed;
       for (const double x : operation.point)
-        if (!std::isfinite(x)) fail(fmt::format("operation {}: not a finite point", operation.sequence));
+        if (!std::isfinite(x))
+          fail(fmt::format("{}: not a finite point", operation_text(operation.sequence)));
     }
     if (num_removed != sizes.removed) fail("a batch whose operations remove another number of vertices");
     return true;
@@ -100,10 +101,19 @@ class Reader {
       json.at("image_sha256").get_to(head.image_sha256);
       json.at("space").get_to(head.space);
       json.at("mesh_sha256").get_to(head.mesh_sha256);
+      if (json.contains("ranks")) take_ranks(json["ranks"], head);
       return head;
     } catch (const nlohmann::ordered_json::exception& error) {
       fail(fmt::format("the description of the run: {}", error.what()));
     }
+  }
+
+  void take_ranks(const nlohmann::ordered_json& json, OperationLogHead& head) const {
+    json.at("number").get_to(head.num_ranks);
+    json.at("rank").get_to(head.rank);
+    json.at("mesh_hash").get_to(head.mesh_hash);
+    if (head.rank < 0 || head.rank >= head.num_ranks)
+      fail(fmt::format("there is no rank {} of {}", head.rank, head.num_ranks));
   }
 
   void sort(OperationBatch& all) const {
@@ -124,7 +134,7 @@ class Reader {
     for (const std::size_t i : order) {
       const LoggedOperation& operation = all.operations[i];
       if (!sorted.operations.empty() && sorted.operations.back().sequence == operation.sequence)
-        fail(fmt::format("two operations of sequence number {}", operation.sequence));
+        fail(fmt::format("two are {}", operation_text(operation.sequence)));
       sorted.operations.push_back(operation);
       const auto from = all.removed.begin() + static_cast<std::ptrdiff_t>(first_removed[i]);
       sorted.removed.insert(sorted.removed.end(), from, from + operation.num_removed);
@@ -138,6 +148,12 @@ class Reader {
 };
 
 }  // namespace
+
+std::string operation_text(std::uint64_t sequence) {
+  const std::uint64_t step = step_of(sequence), number = sequence - (step << kBitsInStep);
+  return step == 0 ? fmt::format("operation {}", number)
+                   : fmt::format("operation {} of step {}", number, step);
+}
 
 struct OperationLogWriter::File {
   explicit File(const std::string& log_path) : path(log_path) { open(); }
@@ -155,6 +171,8 @@ struct OperationLogWriter::File {
 OperationLogWriter::OperationLogWriter(const std::string& path) : file_(std::make_unique<File>(path)) {}
 OperationLogWriter::~OperationLogWriter() = default;
 
+void OperationLogWriter::begin_step() { sequence_ = (step_of(sequence_) + 1) << kBitsInStep; }
+
 void OperationLogWriter::restart() {
   file_->open();
   sequence_ = 0;
@@ -171,15 +189,19 @@ void OperationLogWriter::append(const OperationBatch& batch) {
 }
 
 void OperationLogWriter::finish(const OperationLogHead& head) {
-  const nlohmann::ordered_json json{{"schema", kSchema},
-                                    {"box", head.box},
-                                    {"image_sha256", head.image_sha256},
-                                    {"space", head.space},
-                                    {"mesh_sha256", head.mesh_sha256}};
+  nlohmann::ordered_json json{{"schema", kSchema},
+                              {"box", head.box},
+                              {"image_sha256", head.image_sha256},
+                              {"space", head.space},
+                              {"mesh_sha256", head.mesh_sha256}};
+  if (!head.mesh_hash.empty())
+    json["ranks"] = {{"number", head.num_ranks}, {"rank", head.rank}, {"mesh_hash", head.mesh_hash}};
   file_->file->put(BatchSizes{});
   file_->file->write(json.dump() + "\n");
-  file_->file->publish();
+  file_->file->finish();
 }
+
+void OperationLogWriter::publish() { file_->file->publish(); }
 
 OperationLog read_operation_log(const std::string& path) { return Reader(path).read(); }
 

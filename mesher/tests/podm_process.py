@@ -19,12 +19,12 @@ def run_podm(*arguments, program=PROGRAM, **popen_options):
                           **popen_options)
 
 
-def start_podm(*arguments, **popen_options):
+def start_podm(*arguments, program=PROGRAM, **popen_options):
     """A running process with the default action for signals, whatever this process inherited."""
     def defaults():
         for number in signal.SIGINT, signal.SIGTERM, signal.SIGHUP, signal.SIGQUIT:
             signal.signal(number, signal.SIG_DFL)
-    return subprocess.Popen([PROGRAM, *map(str, arguments)], stdout=subprocess.PIPE, stderr=subprocess.PIPE,
+    return subprocess.Popen([program, *map(str, arguments)], stdout=subprocess.PIPE, stderr=subprocess.PIPE,
                             text=True, **{"preexec_fn": defaults, **popen_options})
 
 

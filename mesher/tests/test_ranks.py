@@ -9,7 +9,7 @@ import subprocess
 import time
 import unittest
 
-from podm_process import PROGRAM, PodmTestCase, run_podm
+from podm_process import PROGRAM, PodmTestCase, run_podm, start_podm
 from small_images import ball_voxels, write_nifti
 
 MPI_PROGRAM, MPIRUN = os.environ["PODM_MPI_PROGRAM"], os.environ["PODM_MPIRUN"]
@@ -48,6 +48,10 @@ class OnRanks(PodmTestCase):
         claims = json.loads(report.read_text())["claims"]
         decided = {claim for claim, result in claims.items() if result["verdict"] == "pass"}
         self.assertLessEqual({"structure", "delaunay", "conformity", "surface", "radius_edge"}, decided)
+
+    def mesh_in_process(self, number, *arguments, out=None):
+        return run_podm("mesh", IMAGE, "-o", out or self.out, "--record", self.runs, "--in-process", number,
+                        *arguments, program=MPI_PROGRAM, env=ENVIRONMENT)
 
     def last_record(self):
         return json.loads(self.runs.read_text().splitlines()[-1])
@@ -133,6 +137,95 @@ class Meshes(OnRanks):
         self.assert_exit(process, 0)
         self.assertLessEqual(max(map(len, process.stdout.splitlines())), 110)
         self.assertIn("refused: --target-elements", process.stdout)
+
+
+class InProcess(OnRanks):
+    def contents(self, number, out=None):
+        path = out or self.out
+        return [path.with_name(f"{path.stem}_{i}.vtu").read_bytes() for i in range(number)]
+
+    def test_they_make_the_mesh_of_as_many_processes(self):
+        self.assert_exit(self.mesh(3, "--radius", 2, "--threads", 1), 0)
+        by_mpi = self.contents(3)
+        process = self.mesh_in_process(3, "--radius", 2)
+        self.assert_exit(process, 0)
+        self.assertEqual(self.contents(3), by_mpi)
+        self.assertEqual(process.stderr.count("guarantees all met"), 1)
+        theirs, ours = (json.loads(line)["ranks"] for line in self.runs.read_text().splitlines())
+        self.assertEqual([theirs["carrier"], ours["carrier"]], ["mpi", "in-process"])
+        self.assertEqual([rank["cells"] for rank in theirs["by_rank"]], [rank["cells"] for rank in ours["by_rank"]])
+        self.assertTrue(all(rank["virtual"] is None and rank["peak_rss_bytes"] > 0 for rank in theirs["by_rank"]))
+        self.assertTrue(all(rank["peak_rss_bytes"] is None for rank in ours["by_rank"]))
+
+    def test_seeds_draw_cuts_and_meshes_verify(self):
+        image = self.folder / "spheres.nii.gz"
+        self.assert_exit(run_podm("phantom", "spheres", "--size", 32, "-o", image), 0)
+        cells_of_ranks = set()
+        for seed in range(4):
+            with self.subTest(seed=seed):
+                self.assert_exit(self.mesh_in_process(5, "--radius", 3, "--seed", seed, "--initial-ratio", 1.5), 0)
+                self.assert_verifies(self.out, "--radius", 3, "--image", image)
+                record = self.last_record()
+                self.assertEqual(record["seed"], seed)
+                self.assertEqual(record["ranks"]["initial_ratio"], 1.5)
+                cells_of_ranks.add(tuple(rank["cells"] for rank in record["ranks"]["by_rank"]))
+                phases = [set(rank["phases_s"]) for rank in record["ranks"]["by_rank"]]
+                self.assertEqual(phases, 5 * phases[:1])  # of ranks, too, that have nothing to refine
+        self.assertEqual(len(cells_of_ranks), 4)
+
+    def test_a_seed_is_drawn_alike_by_processes(self):
+        options = ["--radius", 3, "--seed", 9, "--threads", 1]
+        self.assert_exit(self.mesh(4, *options), 0)
+        by_mpi = self.contents(4)
+        self.assert_exit(self.mesh_in_process(4, *options), 0)
+        self.assertEqual(self.contents(4), by_mpi)
+
+    def test_virtual_clocks_agree_and_see_the_network(self):
+        for network in [], ["--network", "1000,0.001"]:
+            self.assert_exit(self.mesh_in_process(3, "--radius", 3, *network), 0)
+        free, slow = ([rank["virtual"] for rank in json.loads(line)["ranks"]["by_rank"]]
+                      for line in self.runs.read_text().splitlines())
+        for ranks in free, slow:
+            totals = [rank["computing_s"] + rank["waiting_s"] + rank["network_s"] for rank in ranks]
+            self.assertLess(max(totals) - min(totals), 0.1)
+            self.assertGreater(min(rank["computing_s"] for rank in ranks), 0)
+        self.assertEqual({rank["network_s"] for rank in free}, {0})
+        sent = [rank["bytes"] for rank in slow]
+        self.assertEqual(sent, [rank["bytes"] for rank in free])
+        for rank in slow:  # a MB/s, a ms a message
+            self.assertGreater(rank["network_s"], max(sent) / 1e6)
+            self.assertGreater(rank["network_s"], rank["messages"] / 3 * 1e-3)
+        self.assertEqual(self.last_record()["ranks"]["network"], {"latency_us": 1000, "gigabytes_per_s": 0.001})
+
+    def test_what_is_refused(self):
+        mesh = ["mesh", IMAGE, "-o", self.out]
+        for arguments, words in ((["--network", "2,12.5"], ["--network", "--in-process"]),
+                                 (["--in-process", 2, "--network", "2"], ["--network", "'2'", "US,GB/S"]),
+                                 (["--in-process", 2, "--network", "0,1"], ["--network", "'0,1'"]),
+                                 (["--in-process", 0], ["--in-process", "'0'"]),
+                                 (["--in-process", 2, "--delta", 1000], ["--delta"])):
+            with self.subTest(arguments=arguments):
+                process = self.assert_refused([*mesh, *arguments], *words, program=MPI_PROGRAM, env=ENVIRONMENT)
+                self.assertEqual(process.stderr.count("podm-mpi: "), 1)
+                self.assertNotIn("rank 0", process.stderr)
+        self.assert_refused(["--oversubscribe", "-n", 2, MPI_PROGRAM, *mesh, "--in-process", 2], "--in-process",
+                            "2 processes", program=MPIRUN, env=ENVIRONMENT)
+
+    def test_a_signal_ends_them_with_a_valid_mesh(self):
+        process = start_podm("mesh", *ENDLESS, "-o", self.out, "--record", self.runs, "--in-process", 3,
+                             program=MPI_PROGRAM, env=ENVIRONMENT)
+        self.addCleanup(process.kill)
+        self.assertTrue(any(line.startswith("refine") for line in process.stderr))
+        time.sleep(2)  # rank 0 may be the last to begin
+        process.send_signal(signal.SIGINT)
+        stdout, stderr = process.communicate(timeout=120)
+        self.assert_exit(subprocess.CompletedProcess([], process.returncode, stdout, stderr), 1)
+        self.assertIn("ended early: cancelled", stderr)
+        record = self.last_record()
+        self.assertEqual(record["stop_reason"], "cancelled")
+        self.assertEqual(self.out.exists(), record["cells"] > 0)
+        if record["cells"]:
+            self.assert_exit(run_podm(self.out, "--claims", "structure,delaunay,conformity", program=VERIFIER), 0)
 
 
 class Refusals(OnRanks):

@@ -153,6 +153,7 @@ class Schedules : public testing::Test {
     if (!remembers_right_labels(mesh, scene.isosurface)) return "the label of another cell is remembered";
     const auto& [low, high] = mesh.box();
     log.finish({{low.x, low.y, low.z, high.x, high.y, high.z}, "", "RAS", ""});
+    log.publish();
     if (cells_by_points(*replay(read_operation_log(log_path_))) != cells_by_points(mesh))
       return "the replay makes another mesh";
     return "";

@@ -88,7 +88,7 @@ TEST(RanksOfOneProcess, ShareAnIsosurfaceAndAreEachChargedWithIt) {
   std::vector<MeshingOnRanks> apart(3), together(3);
   SharedIsosurface isosurface;
   for (auto* results : {&apart, &together})
-    run_ranks({.num_ranks = 3, .one_at_a_time = true}, [&](Communication& ranks) {
+    run_ranks({.num_ranks = 3}, [&](Communication& ranks) {
       (*results)[static_cast<std::size_t>(ranks.rank())] = mesh_image_on_ranks(
           image, options_with_radius(1.5), ranks, {}, {}, results == &together ? &isosurface : nullptr);
     });

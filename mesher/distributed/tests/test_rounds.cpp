@@ -25,6 +25,7 @@ struct Case {
   int threads = 1;
   double initial_ratio = 4;
   std::uint64_t cut_seed = 0;
+  bool at_once = false;  // ranks compute at the same time
 };
 
 class Ranks {
@@ -40,7 +41,8 @@ class Ranks {
                             .delta_mm = delta_mm_for(of.image, sizes_),
                             .sizes = size_field(of.image, sizes_),
                             .cell_capacity = 1 << 22});
-    run_ranks({.num_ranks = of.num_ranks, .one_at_a_time = true, .seed = seed}, [&](Communication& ranks) {
+    run_ranks({.num_ranks = of.num_ranks, .one_at_a_time = !of.at_once, .seed = seed}, [&](Communication&
+                                                                                               ranks) {
       const Team team{.coordination = {.num_workers = of.threads}};
       StopControl stop(limits, {}, [](std::uint64_t) {});
       const auto rank = static_cast<std::size_t>(ranks.rank());
@@ -189,6 +191,8 @@ std::vector<Case> cases() {
     cases.push_back({"cuts_drawn_by_" + std::to_string(seed), ball(24, 9), 1.2, 0, 3 + static_cast<int>(seed),
                      1, seed % 2 == 0 ? 1.0 : 2.0, seed});
   cases.push_back({"drawn_cuts_and_threads", image_named("three_labels_meeting"), 1, 0, 5, 2, 1.5, 7});
+  cases.push_back({"threads_at_once", ball(24, 9), 1.2, 0, 3, 2, 2, 0, true});
+  cases.push_back({"drawn_cuts_at_once", image_named("three_labels_meeting"), 1, 0, 4, 2, 1.5, 8, true});
   cases.push_back({"more_ranks_than_cells", ball(12, 4), 6, 3, 24});
   return cases;
 }

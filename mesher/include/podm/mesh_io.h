@@ -2,6 +2,7 @@
 // all.
 #pragma once
 
+#include <cstdint>
 #include <string>
 
 #include "podm/tet_mesh.h"
@@ -24,6 +25,14 @@ void canonicalize(TetMesh& mesh, int threads = 0);
 ///   uint32   two label values of every facet, in the order of TetMesh::facet_labels
 /// Label names and the space have no part in it.
 std::string mesh_sha256(const TetMesh& mesh);
+
+/// A hash that needs no order, and adds up, modulo 2^64, over the pieces of a mesh that nobody has whole: the
+/// sum over all cells and facets of hashes of their vertices' coordinates, orientation and label values. (A
+/// multiset hash: Clarke, Devadas, van Dijk, Gassend, Suh, ASIACRYPT 2003; ours finds faults, not forgers.)
+/// Takes 8 bytes a vertex while it runs. `threads`: 0 for all cores; the hash is the same for any number.
+std::uint64_t mesh_hash(const TetMesh& mesh, int threads = 0);
+/// 16 hexadecimal digits.
+std::string mesh_hash_text(std::uint64_t hash);
 
 /// Throws InputError if `path` has no known mesh extension (.vtu .mesh .msh .xdmf) or cannot be written.
 void check_mesh_path(const std::string& path);

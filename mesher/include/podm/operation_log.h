@@ -2,6 +2,10 @@
 // Played in that order on one thread (podm replay), it must give the same mesh to the bit: the proof that a
 // run of many workers equals a serial one.
 //
+// On ranks that share no memory each has a log of its own, with the numbers of its own vertices. What it
+// learns of others' vertices is logged, too. Sequence numbers count steps, too, which all ranks take
+// together: so the logs of all ranks, step by step, are one serial run (merge_logs.h).
+//
 // The file: "podmlog1", then batches (two 32-bit counts, that many operations, that many vertices removed, in
 // the operations' order), in no order of sequence; two zero counts; then one JSON object to the end. Numbers
 // are little-endian.
@@ -20,6 +24,16 @@ namespace podm {
 
 /// The kind of an entry that is no operation: a vertex got another id.
 inline constexpr std::uint32_t kMovedVertex = 0;
+
+/// Kinds of entries that are no operations, but tell what a rank learns from others between its own: there is
+/// a vertex, whose VertexKind is added to the first, or one is gone, the one removed.
+inline constexpr std::uint32_t kLearntVertex = 1u << 8, kForgottenVertex = 1u << 9;
+
+/// The high bits of a sequence number are the step, from 0; the first is all of a run on one machine.
+inline constexpr unsigned kBitsInStep = 40;
+inline std::uint64_t step_of(std::uint64_t sequence) { return sequence >> kBitsInStep; }
+/// "operation 5", or "operation 5 of step 3" unless it is the first.
+std::string operation_text(std::uint64_t sequence);
 
 /// An isosurface point or circumcentre inserted, together with the removal of vertices. Or a vertex that gets
 /// another id: the one removed is called `vertex` from now on.
@@ -43,7 +57,9 @@ struct OperationLogHead {
   std::array<double, 6> box{};  ///< low and high corner of the virtual box, as above
   std::string image_sha256;     ///< label_image_sha256() of the image as meshed
   std::string space;            ///< of the coordinates hashed: "RAS", "LPS" or "voxel"
-  std::string mesh_sha256;      ///< canonical, of the mesh as written
+  std::string mesh_sha256;      ///< canonical, of the mesh as written; empty: see the next
+  std::string mesh_hash = {};   ///< of a mesh that ranks made, mesh_hash_text() of the whole; else empty
+  int rank = 0, num_ranks = 1;  ///< whose log of how many
 };
 
 struct OperationLog {
@@ -60,13 +76,17 @@ class OperationLogWriter {
   OperationLogWriter(const OperationLogWriter&) = delete;
   OperationLogWriter& operator=(const OperationLogWriter&) = delete;
 
+  /// Between operations. What comes now comes after what any rank has done in earlier steps.
+  void begin_step();
   /// Any worker, any time.
   std::uint64_t next_sequence() { return sequence_.fetch_add(1, std::memory_order_relaxed); }
   void append(const OperationBatch& batch);
   /// Forgets all operations, for a run that starts again.
   void restart();
-  /// Throws InputError when the file cannot be written whole.
+  /// Brings all to the disk, still aside. Throws InputError when the file cannot be written whole.
   void finish(const OperationLogHead& head);
+  /// Gives a finished log its name. Throws InputError when it cannot have it.
+  void publish();
 
  private:
   struct File;

@@ -40,6 +40,7 @@ class OperationLogFile : public testing::Test {
     }
     for (const OperationBatch& batch : batches) writer.append(batch);
     writer.finish(head_);
+    writer.publish();
   }
 
   std::string bytes() const {
@@ -86,6 +87,7 @@ TEST_F(OperationLogFile, RestartForgets) {
     writer.restart();
     EXPECT_EQ(writer.next_sequence(), 0);
     writer.finish(head_);
+    writer.publish();
   }
   EXPECT_TRUE(read_operation_log(path_).all.operations.empty());
 }
@@ -124,6 +126,7 @@ TEST_F(OperationLogFile, DoubledSequenceNumberIsRefused) {
     OperationLogWriter writer(path_);
     writer.append({{LoggedOperation{}, LoggedOperation{}}, {}});
     writer.finish(head_);
+    writer.publish();
   }
   EXPECT_THROW(read_operation_log(path_), InputError);
 }

@@ -1,0 +1,244 @@
+// The logs of all ranks, merged and replayed on one thread, make the mesh that the ranks made together; logs
+// that were changed do not.
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <random>
+
+#include "distributed/in_process_ranks.h"
+#include "distributed/mesh_image_on_ranks.h"
+#include "merge_logs.h"
+#include "podm/mesh_io.h"
+#include "tests/images.h"
+#include "tests/scratch_folder.h"
+
+namespace podm::test {
+namespace {
+
+struct Case {
+  std::string name;
+  LabelImage image;
+  double radius_mm;
+  int num_ranks;
+  int threads = 1;
+  Space space = Space::kRas;
+  std::uint64_t most_cells = 0;  // 0: no limit
+  bool is_shared = true;         // there is enough for several ranks to do
+};
+
+struct LoggedRun {
+  StopReason stop_reason{};
+  std::vector<LogOfRank> logs;
+};
+
+LoggedRun run(const Case& of) {
+  const ScratchFolder folder;
+  MeshingOptions options;
+  options.sizes.radius_mm = of.radius_mm;
+  options.team.threads = of.threads;
+  options.team.oversubscribe = true;
+  options.space = of.space;
+  if (of.most_cells > 0) options.limits.max_elements = of.most_cells;
+  LoggedRun result;
+  result.logs.resize(static_cast<std::size_t>(of.num_ranks));
+  run_ranks({.num_ranks = of.num_ranks, .one_at_a_time = true}, [&](Communication& ranks) {
+    const std::string path = folder / (std::to_string(ranks.rank()) + ".log");
+    OperationLogWriter log(path);
+    MeshingOptions own = options;
+    own.log = &log;
+    const MeshingOnRanks meshing = mesh_image_on_ranks(of.image, own, ranks);
+    log.finish({.box = meshing.report.virtual_box,
+                .image_sha256 = {},
+                .space = to_string(of.space),
+                .mesh_sha256 = {},
+                .mesh_hash = mesh_hash_text(meshing.mesh_hash),
+                .rank = ranks.rank(),
+                .num_ranks = ranks.size()});
+    log.publish();
+    result.logs[static_cast<std::size_t>(ranks.rank())] = {path, read_operation_log(path)};
+    if (ranks.rank() == 0) result.stop_reason = meshing.report.stop_reason;
+  });
+  return result;
+}
+
+// "equal", "differs", or why they are refused.
+std::string verdict(const std::vector<LogOfRank>& logs, const Case& of) try {
+  const OperationLog whole = merge_logs(logs);
+  const TetMesh mesh = replay_operations(of.image, whole, of.space);
+  return mesh_hash_text(mesh_hash(mesh)) == whole.head.mesh_hash ? "equal" : "differs";
+} catch (const InputError& error) {
+  return error.what();
+}
+
+class LogsOfRanks : public testing::TestWithParam<Case> {};
+
+TEST_P(LogsOfRanks, ReplayToTheSameMesh) {
+  const LoggedRun logged = run(GetParam());
+  EXPECT_EQ(verdict(logged.logs, GetParam()), "equal");
+  EXPECT_EQ(logged.stop_reason,
+            GetParam().most_cells > 0 ? StopReason::kElementLimit : StopReason::kComplete);
+  std::uint64_t num_learnt = 0;
+  for (const LogOfRank& log : logged.logs)
+    for (const LoggedOperation& entry : log.log.all.operations) num_learnt += entry.kind >= kLearntVertex;
+  EXPECT_EQ(num_learnt > 0, GetParam().is_shared);
+}
+
+LabelImage three_labels() {
+  return make_image({24, 24, 24}, {1, 1, 1}, 3, [](int i, int j, int k) {
+    if (std::hypot(i - 11.5, j - 11.5, k - 11.5) >= 10) return 0;
+    return k < 9 ? 1 : i < 12 ? 2 : 3;
+  });
+}
+
+std::vector<Case> cases() {
+  std::vector<Case> cases;
+  for (const int num_ranks : {1, 2, 3, 5, 8})
+    for (const int threads : {1, 2})
+      cases.push_back({"labels_on_" + std::to_string(num_ranks) + "_with_" + std::to_string(threads),
+                       three_labels(), 1.2, num_ranks, threads, Space::kRas, 0, num_ranks > 1});
+  cases.push_back({"voxel_space", ball(24, 9), 1.2, 4, 1, Space::kVoxel});
+  cases.push_back({"more_ranks_than_cells", ball(12, 4), 3, 24});
+  cases.push_back({"stopped_in_the_coarse_mesh", ball(24, 9), 1.2, 3, 1, Space::kRas, 1000, false});
+  cases.push_back({"stopped_in_the_first_round", ball(24, 9), 1.2, 3, 1, Space::kRas, 12000});
+  return cases;
+}
+
+INSTANTIATE_TEST_SUITE_P(Ranks, LogsOfRanks, testing::ValuesIn(cases()),
+                         [](const auto& test) { return test.param.name; });
+
+// One run, of whose logs every test spoils its own copy.
+class SpoiltLogs : public testing::Test {
+ protected:
+  static const std::vector<LogOfRank>& sound() {
+    static const std::vector<LogOfRank> logs = run(of()).logs;
+    return logs;
+  }
+  static const Case& of() {
+    static const Case of{"", three_labels(), 1.2, 3};
+    return of;
+  }
+
+  OperationBatch& log(std::size_t rank) { return logs_[rank].log.all; }
+  std::string verdict() const { return test::verdict(logs_, of()); }
+  // Some entries of the kind, of isosurface points: the mesh has them all, and they stay.
+  std::vector<std::size_t> some_entries(std::size_t rank, std::uint32_t added_to_kind) {
+    const auto kind = added_to_kind + static_cast<std::uint32_t>(VertexKind::kIsosurface);
+    std::vector<std::size_t> found, some;
+    for (std::size_t i = 0; i < log(rank).operations.size(); ++i)
+      if (log(rank).operations[i].kind == kind) found.push_back(i);
+    for (std::size_t i = 0; i < found.size(); i += 1 + found.size() / 8) some.push_back(found[i]);
+    return some;
+  }
+  void move(std::size_t rank, std::size_t entry) {
+    double& x = log(rank).operations[entry].point[entry % 3];
+    x = std::nextafter(x, 0);
+  }
+  void leave_out(std::size_t rank, std::size_t entry) {
+    OperationBatch& all = log(rank);
+    const auto at = all.operations.begin() + static_cast<std::ptrdiff_t>(entry);
+    std::ptrdiff_t first = 0;
+    for (auto it = all.operations.begin(); it != at; ++it) first += it->num_removed;
+    all.removed.erase(all.removed.begin() + first, all.removed.begin() + first + at->num_removed);
+    all.operations.erase(at);
+  }
+
+  std::vector<LogOfRank> logs_ = sound();
+};
+
+TEST_F(SpoiltLogs, AreRefusedWithALearntVertexThatIsElsewhere) {
+  int num_learnt = 0;
+  for (std::size_t rank = 0; rank < 3; ++rank) {
+    for (const std::size_t entry : some_entries(rank, kLearntVertex)) {
+      logs_ = sound();
+      move(rank, entry);
+      EXPECT_EQ(verdict(), logs_[rank].path + ": " + operation_text(log(rank).operations[entry].sequence) +
+                               ": learns of a vertex that nobody has made");
+      ++num_learnt;
+    }
+  }
+  EXPECT_GT(num_learnt, 5);
+}
+
+TEST_F(SpoiltLogs, DoNotPassWithoutAnOperation) {
+  for (std::size_t rank = 0; rank < 3; ++rank) {
+    for (const std::size_t entry : some_entries(rank, 0)) {
+      logs_ = sound();
+      leave_out(rank, entry);
+      EXPECT_NE(verdict(), "equal") << "rank " << rank << ", entry " << entry;
+    }
+  }
+}
+
+TEST_F(SpoiltLogs, DoNotPassWithAnOperationElsewhere) {
+  for (std::size_t rank = 0; rank < 3; ++rank) {
+    for (const std::size_t entry : some_entries(rank, 0)) {
+      logs_ = sound();
+      move(rank, entry);
+      EXPECT_NE(verdict(), "equal") << "rank " << rank << ", entry " << entry;
+    }
+  }
+}
+
+// The operations of a log with two steps swapped, and in the order that they have then.
+OperationBatch with_steps_swapped(const OperationBatch& all, std::uint64_t one, std::uint64_t other) {
+  OperationBatch swapped;
+  const auto take = [&](std::uint64_t step, std::uint64_t as) {
+    const std::uint32_t* removed = all.removed.data();
+    for (LoggedOperation entry : all.operations) {
+      if (step_of(entry.sequence) == step) {
+        entry.sequence += (as << kBitsInStep) - (step << kBitsInStep);
+        swapped.operations.push_back(entry);
+        swapped.removed.insert(swapped.removed.end(), removed, removed + entry.num_removed);
+      }
+      removed += entry.num_removed;
+    }
+  };
+  const std::uint64_t last = step_of(all.operations.back().sequence);
+  for (std::uint64_t step = 0; step <= last; ++step)
+    take(step == one ? other : step == other ? one : step, step);
+  return swapped;
+}
+
+// Rank 0 is the first in each step: it has learnt nothing in the first that another has made there.
+TEST_F(SpoiltLogs, AreRefusedWithTwoStepsSwapped) {
+  int num_swapped = 0;
+  for (std::uint64_t step = 2; step <= step_of(sound()[0].log.all.operations.back().sequence); ++step) {
+    logs_ = sound();
+    const auto is_learnt_in = [step](const LoggedOperation& entry) {
+      return step_of(entry.sequence) == step && entry.kind >= kLearntVertex;
+    };
+    if (std::ranges::none_of(log(0).operations, is_learnt_in)) continue;
+    log(0) = with_steps_swapped(log(0), 1, step);
+    EXPECT_NE(verdict().find("0.log: operation 0 of step 1: learns"), std::string::npos) << verdict();
+    ++num_swapped;
+  }
+  EXPECT_GT(num_swapped, 0);
+}
+
+TEST_F(SpoiltLogs, EndWithAVerdictWhateverIsInThem) {
+  std::mt19937 random(3);
+  int num_equal = 0;
+  for (int round = 0; round < 60; ++round) {
+    logs_ = sound();
+    OperationBatch& all = log(random() % 3);
+    LoggedOperation& entry = all.operations[random() % all.operations.size()];
+    switch (random() % 4) {
+      case 0:
+        entry.vertex = static_cast<std::uint32_t>(random() % 100);
+        break;
+      case 1:
+        entry.kind ^= 1u << random() % 11;
+        break;
+      case 2:
+        entry.point[random() % 3] += 0.5;
+        break;
+      default:
+        all.removed[random() % all.removed.size()] = static_cast<std::uint32_t>(random() % 1000);
+    }
+    num_equal += verdict() == "equal";
+  }
+  EXPECT_LT(num_equal, 6);  // a vertex may have its number in a log by another one's right
+}
+
+}  // namespace
+}  // namespace podm::test

@@ -1,0 +1,83 @@
+// The order-free hash of a mesh. What it is, is in podm/mesh_io.h.
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <atomic>
+#include <bit>
+
+#include "podm/mesh_io.h"
+#include "runtime/parallel_for.h"
+
+namespace podm {
+namespace {
+
+constexpr std::size_t kChunk = 1 << 13;
+constexpr std::uint64_t kCell = 1, kFacet = 2;  // hashes of both begin with these
+
+// The finalizer of SplitMix64. (Steele, Lea, Flood, OOPSLA 2014.)
+std::uint64_t mix(std::uint64_t x) {
+  x = (x ^ x >> 30) * 0xbf58476d1ce4e5b9u;
+  x = (x ^ x >> 27) * 0x94d049bb133111ebu;
+  return x ^ x >> 31;
+}
+
+std::uint64_t combine(std::uint64_t hash, std::uint64_t more) {
+  return mix(hash + 0x9e3779b97f4a7c15u + mix(more));
+}
+
+std::uint64_t hash_of(const std::array<double, 3>& vertex) {
+  std::uint64_t hash = 0;
+  for (const double x : vertex) hash = combine(hash, std::bit_cast<std::uint64_t>(x + 0.0));  // -0 becomes 0
+  return hash;
+}
+
+// Of simplices that are equal up to an even permutation of their vertices.
+template <std::size_t kVertices>
+std::uint64_t hash_of(std::uint64_t hash, const std::array<std::uint32_t, kVertices>& simplex,
+                      const std::vector<std::uint64_t>& hash_of_vertex) {
+  std::array<std::uint64_t, kVertices> sorted;
+  for (std::size_t i = 0; i < kVertices; ++i) sorted[i] = hash_of_vertex[simplex[i]];
+  bool is_odd = false;
+  for (std::size_t i = 1; i < kVertices; ++i)
+    for (std::size_t j = i; j > 0 && sorted[j] < sorted[j - 1]; --j, is_odd = !is_odd)
+      std::swap(sorted[j], sorted[j - 1]);
+  for (const std::uint64_t of_vertex : sorted) hash = combine(hash, of_vertex);
+  return combine(hash, is_odd ? 1 : 0);
+}
+
+// The sum of hash(i) for all i < count.
+template <class Hash>
+std::uint64_t sum_of(std::size_t count, std::size_t threads, const Hash& hash) {
+  std::atomic<std::uint64_t> sum = 0;
+  parallel_for_ranges(count, kChunk, threads, [&](std::size_t begin, std::size_t end, std::size_t) {
+    std::uint64_t of_chunk = 0;
+    for (std::size_t i = begin; i < end; ++i) of_chunk += hash(i);
+    sum += of_chunk;
+  });
+  return sum;
+}
+
+}  // namespace
+
+std::uint64_t mesh_hash(const TetMesh& mesh, int threads) {
+  const std::size_t num = num_threads(threads);
+  std::vector<std::uint64_t> hash_of_vertex(mesh.vertices.size());
+  parallel_for_ranges(mesh.vertices.size(), kChunk, num,
+                      [&](std::size_t begin, std::size_t end, std::size_t) {
+                        for (std::size_t v = begin; v < end; ++v)
+                          hash_of_vertex[v] = hash_of(mesh.vertices[v]);
+                      });
+  const std::uint64_t of_cells = sum_of(mesh.cells.size(), num, [&](std::size_t c) {
+    return combine(hash_of(kCell, mesh.cells[c], hash_of_vertex), mesh.labels[mesh.cell_labels[c]].value);
+  });
+  const std::uint64_t of_facets = sum_of(mesh.facets.size(), num, [&](std::size_t f) {
+    std::uint64_t hash = hash_of(kFacet, mesh.facets[f], hash_of_vertex);
+    for (const LabelIndex label : mesh.facet_labels[f]) hash = combine(hash, mesh.labels[label].value);
+    return hash;
+  });
+  return of_cells + of_facets;
+}
+
+std::string mesh_hash_text(std::uint64_t hash) { return fmt::format("{:016x}", hash); }
+
+}  // namespace podm

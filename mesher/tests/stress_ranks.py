@@ -1,0 +1,206 @@
+"""Meshes on ranks, each proved by podm-verify from its pieces, and made again by podm replay. ci/ranks.sh calls it.
+
+`random` makes runs of podm-mpi with its ranks in one process: phantom, ranks, threads, initial ratio and the cuts of
+blocks are drawn from a seed alone. `images` meshes every image of a folder on several numbers of ranks, in one process
+and over MPI, and prints a table. Both exit with 1 when a run fails, and name it. The programs are $PODM_PROGRAM,
+$PODM_MPI_PROGRAM and $PODM_MPIRUN.
+"""
+
+import argparse
+import concurrent.futures
+import dataclasses
+import json
+import os
+import pathlib
+import random
+import shlex
+import subprocess
+import sys
+import tempfile
+
+PROGRAM, MPI_PROGRAM = os.environ["PODM_PROGRAM"], os.environ["PODM_MPI_PROGRAM"]
+MPIRUN = os.environ.get("PODM_MPIRUN", "mpirun")
+VERIFIER = os.path.join(os.path.dirname(PROGRAM), "podm-verify")
+# fidelity is left out: it is missed by meshes that are coarser than a structure, on one machine as on ranks.
+CLAIMS = {"structure", "radius_edge", "boundary_angles", "size", "delaunay", "conformity", "surface", "labels"}
+PHANTOMS = [("spheres", 48), ("torus", 48), ("abdomen", 96)]
+IMAGE_SUFFIXES = (".nrrd", ".nii", ".nii.gz", ".mha", ".inr", ".inr.gz")
+IN_PROCESS_RANKS, MPI_RANKS = (2, 3, 5, 8), (2, 4)
+ENVIRONMENT = os.environ | {"OMPI_ALLOW_RUN_AS_ROOT": "1", "OMPI_ALLOW_RUN_AS_ROOT_CONFIRM": "1",
+                            "OMPI_MCA_mpi_yield_when_idle": "1"}
+TIMEOUT_S = 3600
+
+
+class Failed(Exception):
+    """What is wrong with a run."""
+
+
+def call(command, accepted=(0,)):
+    process = subprocess.run([str(word) for word in command], capture_output=True, text=True, timeout=TIMEOUT_S,
+                             env=ENVIRONMENT, check=False)
+    if process.returncode not in accepted:
+        raise Failed(f"exit {process.returncode} of {shlex.join(map(str, command))}\n"
+                     f"{(process.stdout + process.stderr).strip()[-3000:]}")
+    return process
+
+
+def record_in(folder):
+    return json.loads((folder / "run.jsonl").read_text())
+
+
+@dataclasses.dataclass
+class Sample:
+    """An image, and the sizes at which one machine makes about as many cells of it as asked for."""
+    path: pathlib.Path
+    radius_mm: float
+    delta_mm: float
+    cells: int  # one machine's
+
+    @classmethod
+    def of(cls, path, cells):
+        with tempfile.TemporaryDirectory() as name:
+            folder = pathlib.Path(name)
+            call([PROGRAM, "mesh", path, "--target-elements", cells, "-o", folder / "out.vtu", "--quiet", "--record",
+                  folder / "run.jsonl"])
+            record = record_in(folder)
+            return cls(path, record["used"]["radius_mm"], record["used"]["delta_mm"], record["cells"])
+
+
+@dataclasses.dataclass
+class OnRanks:
+    """Command of a run but for what all have, and what it is called."""
+    sample: Sample
+    name: str
+    launcher: list
+    options: list
+
+    def command(self, folder):
+        return [*self.launcher, MPI_PROGRAM, "mesh", self.sample.path, "--radius", self.sample.radius_mm, "--delta",
+                self.sample.delta_mm, *self.options, "--oversubscribe", "-o", folder / "out.pvtu",
+                "--record", folder / "run.jsonl", "--log", folder / "run.log", "--quiet"]
+
+
+@dataclasses.dataclass
+class Made:
+    """What is told of a run that is proved."""
+    cells: int
+    rounds: int
+    deferred: float   # cells that wait after round 0, over cells
+    in_zones: float   # share of the insertions of rounds but of those later ones in which one rank alone refined
+    imbalance: float
+    more_cells: float  # than one machine makes, over these
+
+    @classmethod
+    def of(cls, record, sample):
+        ranks, rounds = record["ranks"], record["ranks"]["rounds"]
+        insertions = sum(one["insertions"] for one in rounds)
+        by_many = sum(one["insertions"] for i, one in enumerate(rounds) if i == 0 or one["ranks_refining"] > 1)
+        return cls(record["cells"], len(rounds), rounds[0]["deferred"] / record["cells"], by_many / max(1, insertions),
+                   ranks["imbalance"], record["cells"] / sample.cells - 1)
+
+
+def prove(run, folder):
+    """Raises Failed unless the mesh is whole, proved, and what its logs make."""
+    record = record_in(folder)
+    if record["stop_reason"] != "complete" or any(record["guarantees"].values()):
+        raise Failed(f"ended as {record['stop_reason']}, guarantees missed: {record['guarantees']}")
+    report = folder / "report.json"
+    call([VERIFIER, folder / "out.pvtu", "--image", run.sample.path, "--radius", run.sample.radius_mm, "--claims",
+          ",".join(sorted(CLAIMS)), "--json", report, "--quiet"], accepted=(0, 1))
+    claims = json.loads(report.read_text())["claims"]
+    unproved = {claim for claim in CLAIMS if claims.get(claim, {}).get("verdict") != "pass"}
+    if unproved:
+        raise Failed(f"podm-verify does not prove {', '.join(sorted(unproved))}: {json.dumps(claims)[:3000]}")
+    ranks = range(record["ranks"]["number"])
+    logs = [f"run.log.{i}" for i in ranks]
+    call([PROGRAM, "replay", run.sample.path, *(folder / log for log in logs)])
+    files = {*logs, *(f"out_{i}{facets}.vtu" for i in ranks for facets in ("", "_facets")), "out.pvtu",
+             "out_facets.pvtu", "run.jsonl", "report.json"}
+    if left := {path.name for path in folder.iterdir()} ^ files:
+        raise Failed(f"left behind, or lacks: {sorted(left)}")
+    return Made.of(record, run.sample)
+
+
+def carry_out(run):
+    """What was made, or None after telling what is wrong."""
+    with tempfile.TemporaryDirectory(prefix="podm-ranks-") as name:
+        folder = pathlib.Path(name)
+        try:
+            call(run.command(folder))
+            return prove(run, folder)
+        except (Failed, subprocess.TimeoutExpired) as error:
+            print(f"FAILED: {run.name}\n{shlex.join(map(str, run.command(folder)))}\n{error}", flush=True)
+            return None
+
+
+def drawn(seed, samples):
+    rng = random.Random(seed)
+    sample, ranks, threads = rng.choice(samples), rng.randint(2, 9), rng.randint(1, 2)
+    ratio = round(rng.uniform(1, 2), 3)
+    return OnRanks(sample, f"seed {seed}", [], ["--in-process", ranks, "--seed", seed, "--threads", threads,
+                                                "--initial-ratio", ratio])
+
+
+def run_random(options):
+    with tempfile.TemporaryDirectory(prefix="podm-ranks-") as name, \
+            concurrent.futures.ThreadPoolExecutor(options.at_once) as pool:
+        samples = []
+        for phantom, size in PHANTOMS:
+            path = pathlib.Path(name) / f"{phantom}.nii.gz"
+            call([PROGRAM, "phantom", phantom, "--size", size, "-o", path])
+            samples.append(Sample.of(path, options.cells))
+        seeds = range(options.first, options.first + options.runs)
+        made = list(pool.map(carry_out, [drawn(seed, samples) for seed in seeds]))
+    good = [one for one in made if one is not None]
+    print(f"seeds {seeds.start} to {seeds.stop - 1} of about {options.cells} cells: {len(made)} runs, "
+          f"{len(made) - len(good)} failed", end="")
+    if good:
+        print(f"; at most {max(one.rounds for one in good)} rounds, {max(one.deferred for one in good):.1%} of the "
+              f"cells deferred in round 0; at least {min(one.in_zones for one in good):.1%} of the insertions not by "
+              f"one rank alone in a later round; cells {min(one.more_cells for one in good):+.2%} to "
+              f"{max(one.more_cells for one in good):+.2%} of one machine's")
+    return len(good) == len(made)
+
+
+def run_images(options):
+    paths = sorted(path for path in pathlib.Path(options.folder).iterdir() if path.name.endswith(IMAGE_SUFFIXES))
+    if not paths:
+        sys.exit(f"{options.folder}: no image")
+    print("| image | radius, mm | ranks | cells | over one machine's | rounds | deferred in round 0 | "
+          "not by one rank alone | imbalance | claims | replay |\n" + 11 * "|---" + "|", flush=True)
+    are_all_made = True
+    for path in paths:
+        sample = Sample.of(path, options.cells)
+        runs = [OnRanks(sample, f"{path.name}, {number} in process", [], ["--in-process", number])
+                for number in IN_PROCESS_RANKS]
+        runs += [OnRanks(sample, f"{path.name}, {number} of MPI", [MPIRUN, "--oversubscribe", "-n", number],
+                         ["--threads", 1]) for number in MPI_RANKS]
+        for run in runs:
+            made = carry_out(run)
+            are_all_made = are_all_made and made is not None
+            if made is not None:
+                print(f"| {path.name} | {sample.radius_mm:.4g} | {run.name.partition(', ')[2]} | {made.cells} | "
+                      f"{made.more_cells:+.2%} | {made.rounds} | {made.deferred:.2%} | {made.in_zones:.2%} | "
+                      f"{made.imbalance:.3f} | {len(CLAIMS)} proved | equal |", flush=True)
+    return are_all_made
+
+
+def parse_arguments():
+    parser = argparse.ArgumentParser(description=__doc__.split("\n", maxsplit=1)[0])
+    commands = parser.add_subparsers(required=True)
+    of_seeds = commands.add_parser("random")
+    of_seeds.set_defaults(run=run_random)
+    of_seeds.add_argument("--first", type=int, default=1, metavar="SEED")
+    of_seeds.add_argument("--runs", type=int, required=True)
+    of_seeds.add_argument("--at-once", type=int, default=2)
+    of_images = commands.add_parser("images")
+    of_images.set_defaults(run=run_images)
+    of_images.add_argument("folder")
+    for command in of_seeds, of_images:
+        command.add_argument("--cells", type=int, required=True, help="of each mesh, about")
+    return parser.parse_args()
+
+
+if __name__ == "__main__":
+    asked = parse_arguments()
+    sys.exit(0 if asked.run(asked) else 1)
