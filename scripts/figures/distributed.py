@@ -12,9 +12,11 @@ import pandas
 from . import scaling
 
 REFINING = ("initial", "refine", "later", "exchange")
-# What the mean rank spends its time on, in the order of the stack; waiting and network are those of refinement.
-PARTS = {"transform": "image transform", "initial": "coarse mesh", "refine": "round 0", "later": "later rounds",
-         "exchange": "updates", "waiting": "waiting", "network": "network", "extract": "pieces"}
+# What the mean rank spends its time on, in the order of the stack. Waiting and network are those of refinement but for
+# the coarse mesh, which the first rank makes while the others wait, to learn it then.
+PARTS = {"transform": "image transform", "initial": "coarse mesh", "learn": "learning it", "refine": "round 0",
+         "later": "later rounds", "exchange": "updates", "waiting": "waiting", "network": "network",
+         "extract": "pieces"}
 OF_ROW = ["deferred_share", "imbalance", "cells_over_one_machine", "rank_bytes_per_cell"]
 COLUMNS = ["basis", "kind", "cells_per_rank", "ranks", "n", "cells", "rounds", *OF_ROW, "refining_efficiency",
            "efficiency", *PARTS]
@@ -33,9 +35,11 @@ def of_row(row):
 
     every = ("computing",) if is_measured else ("computing", "waiting", "network")
     made = {phase: mean([phase], "computing") for phase in REFINING}
-    made.update(transform=mean(["transform"], *every), extract=mean(["extract"], *every))
-    for kind in every[1:]:
-        made[kind] = mean(REFINING, kind)
+    made.update({phase: mean([phase], *every) for phase in ("transform", "initial", "extract")})
+    if not is_measured:
+        first = min(spent[0].get("initial", {}).get("computing_s", 0.0), made["initial"])
+        made.update(initial=first, learn=made["initial"] - first,
+                    **{kind: mean(REFINING[1:], kind) for kind in every[1:]})
     rounds, asked = told["rounds"], row.get("asked", {}).get("target_elements")
     resolved = (row.get("resolved") or {}).get("cells")
     return {

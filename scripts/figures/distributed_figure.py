@@ -6,7 +6,8 @@ from . import scaling, style
 from .distributed import PARTS
 from .distributed_model import ASSUMPTIONS
 
-COLOURS = dict(zip(PARTS, ["#8fb996", "#e8a33d", "#d1495b", "#8f575c", "#c9b458", style.GHOST, "#3d3d6b", "#6d9dc5"]))
+COLOURS = dict(zip(PARTS, ["#8fb996", "#e8a33d", "#e6d5e8", "#d1495b", "#8f575c", "#c9b458", style.GHOST, "#3d3d6b",
+                           "#6d9dc5"]))
 
 
 def figure(table, extrapolated):

@@ -28,8 +28,8 @@ def make(frame, report=None, schedule=None, mesh=None, experiments=None):
     ranks = distributed.distributed(frame)
     nodes = distributed_model.extrapolated(ranks)
     drawn, missing = _figures(frame, series, (ranks, nodes), report, schedule, mesh)
-    return Outcome(_tables(frame, series, hops, ranks, nodes), drawn, verdicts.verdicts(frame, series, hops), missing, series,
-                   experiments)
+    return Outcome(_tables(frame, series, hops, ranks, nodes), drawn, verdicts.verdicts(frame, series, hops), missing,
+                   series, experiments)
 
 
 def _tables(frame, series, hops, ranks, nodes):

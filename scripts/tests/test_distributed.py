@@ -53,6 +53,14 @@ class Rows(unittest.TestCase):
         self.assertAlmostEqual(table.loc[2, "waiting"], 0.4)
         self.assertAlmostEqual(table.loc[2, "network"], 0.25)
 
+    def test_others_wait_for_the_first_ranks_coarse_mesh_and_learn_it(self):
+        first = spent(initial=(0.03, 0.0, 0.01), refine=(0.1, 0.0, 0.0))
+        other = spent(initial=(0.02, 0.03, 0.01), refine=(0.1, 0.0, 0.0))
+        line = table_of([row(1), row(4, by_rank=[first, other, other, other])]).set_index("ranks").loc[4]
+        self.assertAlmostEqual(line["initial"], 0.3)
+        self.assertAlmostEqual(line["learn"], (0.04 + 3 * 0.06) / 4 / 0.1 - 0.3)
+        self.assertEqual((line["waiting"], line["network"]), (0, 0))
+
     def test_measured_efficiency_is_of_processor_seconds_and_waiting_does_not_count(self):
         waiting = spent(refine=0.1, exchange=(0.1, 99.0, 0.0))
         table = table_of([row(1, basis="measured"), row(2, by_rank=[waiting] * 2, basis="measured")]).set_index("ranks")
@@ -109,7 +117,7 @@ class Extrapolation(unittest.TestCase):
 
     def test_what_one_thread_does_weighs_more_on_nodes_of_many(self):
         rows = [row(1, size) for size in SIZES] + [
-            row(8, size, [spent(initial=0.1e-6 * size, refine=1e-6 * size)] * 8) for size in SIZES]
+            row(8, size, [spent(exchange=0.1e-6 * size, refine=1e-6 * size)] * 8) for size in SIZES]
         table = distributed_model.extrapolated(table_of(rows)).set_index("threads")
         self.assertAlmostEqual(table.loc[1, "refining_efficiency"], 1 / 1.1, places=3)
         self.assertAlmostEqual(table.loc[16, "refining_efficiency"], 1 / (1 + 16 * 0.1), places=3)
