@@ -37,8 +37,8 @@ struct DistributedRefinement {
   std::vector<int> rank_of_cube;  ///< by the blocks
   std::vector<RoundReport> rounds;
   Update last_update;
-  /// This rank's: "initial", the coarse mesh and blocks; "refine", round 0; "later", refining in later
-  /// rounds; "exchange", all else.
+  /// This rank's: "initial", the coarse mesh or what it learns of it, and blocks; "refine", round 0; "later",
+  /// refining in later rounds; "exchange", all else.
   SpentByPhase spent = {};
 };
 

@@ -71,7 +71,7 @@ TEST_F(TrialTest, OptionsOfTheTrialReachTheMesher) {
   trial.options = {{"threads", 3}, {"delta_mm", 0.25},       {"cores_per_node", 8},
                    {"pin", true},  {"oversubscribe", false}, {"counters", "perf_event"}};
   run(write_record(kGoodRecord), trial);
-  const std::string arguments = " " + read_tail(folder_ / "arguments", 1000);
+  const std::string arguments = fmt::format(" {}", read_tail(folder_ / "arguments", 1000));
   EXPECT_TRUE(arguments.starts_with(" mesh image.nii --threads 3 --delta 0.25 --cores-per-node 8 --pin -o "))
       << arguments;
   EXPECT_TRUE(arguments.ends_with(" --quiet\n")) << arguments;
@@ -109,7 +109,7 @@ echo 12 > "$index"; echo 1234567 > "${index%.pvtu}_0.vtu"
 
 TEST_F(TrialTest, TrialsOverMpiAreStartedByMpirun) {
   folder_.script("podm-mpi", "");
-  folder_.script("mpirun", "echo \"$@\" > " + folder_ / "arguments");
+  folder_.script("mpirun", fmt::format("echo \"$@\" > {}", folder_ / "arguments"));
   const std::string path = std::getenv("PATH");
   setenv("PATH", fmt::format("{}:{}", folder_.path(), path).c_str(), 1);
   TrialRunner runner({fake_mesher(folder_, ""), {}});
@@ -142,7 +142,7 @@ TEST_F(TrialTest, ScheduleOfTheMesherReachesTheVerifier) {
   TrialRunner({mesher, verifier}).run(trial, prepared(trial), folder_.path());
   const std::string option = " --schedule " + folder_.path() + "/schedule.jsonl";
   for (const char* program : {"arguments", "verifier_arguments"}) {
-    const std::string arguments = " " + read_tail(folder_ / program, 1000);
+    const std::string arguments = fmt::format(" {}", read_tail(folder_ / program, 1000));
     EXPECT_NE(arguments.find(option), std::string::npos) << program << arguments;
   }
 }
@@ -278,7 +278,7 @@ TEST_F(TrialTest, RadiusFoundReachesTheMesherInPlaceOfTheTarget) {
   radius.radius_mm = 2.25;
   radius.delta_mm = 1.125;
   TrialRunner({fake_mesher(folder_, write_record(kGoodRecord)), {}}).run(trial, preparation, folder_.path());
-  const std::string arguments = " " + read_tail(folder_ / "arguments", 1000);
+  const std::string arguments = fmt::format(" {}", read_tail(folder_ / "arguments", 1000));
   EXPECT_NE(arguments.find(" --radius 2.25 --delta 1.125 "), std::string::npos) << arguments;
   EXPECT_EQ(arguments.find("target"), std::string::npos) << arguments;
 }
