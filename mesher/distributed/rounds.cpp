@@ -107,6 +107,7 @@ class Rounds {
 
   DistributedRefinement operator()() {
     refine_anywhere(construction_, "initial", levels_.initial, construction_.all_cells(), 1);
+    construction_.timed("refine", [] {});  // every rank of every run has this phase
     if (is_over_anywhere()) return all_of_first_rank();
     for (const auto& entry : construction_.all_cells()) construction_.mesh().make_canonical(entry.cell);
     blocks_.emplace(grid_, predicted_cells(construction_.mesh(), problem_, grid_), ranks_.size());
@@ -150,7 +151,6 @@ class Rounds {
   void refine_in_rounds() {
     zone_of_ = blocks_->ranks();
     load_.assign(static_cast<std::size_t>(ranks_.size()), 0);
-    construction_.timed("refine", [] {});  // every rank has this phase
     std::vector<CellName> here;  // what waits, and is to be refined here
     do {
       const auto round = static_cast<int>(rounds_.size());
