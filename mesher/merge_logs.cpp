@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <optional>
 #include <span>
 #include <tuple>
 #include <unordered_map>
@@ -25,7 +26,6 @@ class Reader {
   const std::string& path() const { return path_; }
   int rank() const { return head_.rank; }
   bool is_over() const { return next_ == all_.operations.size(); }
-  bool is_empty() const { return all_.operations.empty(); }
   const LoggedOperation& next() const { return all_.operations[next_]; }
   bool is_in(std::uint64_t step) const { return !is_over() && step_of(next().sequence) == step; }
   /// Vertices that the next entry removes.
@@ -56,10 +56,9 @@ class Merge {
   }
 
   OperationBatch operator()() {
-    make_coarse_mesh();
-    for (std::uint64_t step = 1; step > 0; step = next_step())
+    while (const std::optional<std::uint64_t> step = next_step())
       for (Reader& rank : ranks_)
-        for (; rank.is_in(step); rank.go_on()) carry_out(rank);
+        for (; rank.is_in(*step); rank.go_on()) carry_out(rank);
     return std::move(whole_);
   }
 
@@ -68,40 +67,13 @@ class Merge {
     std::uint32_t id, kind;
   };
 
-  // Rank 0's is the others', too; a rank that was stopped in its own has none.
-  void make_coarse_mesh() {
-    Reader& first = ranks_.front();
-    for (; first.is_in(0); first.go_on()) {
-      for (Reader& rank : ranks_)
-        if (&rank != &first && !rank.is_empty()) expect_equal(rank, first);
-      carry_out(first);
-    }
-    for (Reader& rank : ranks_) {
-      if (&rank == &first || rank.is_empty()) continue;
-      if (rank.is_in(0)) rank.expect(false, fmt::format("{} does not have it", first.path()));
-      rank.vertices = first.vertices;
-    }
-  }
-
-  static void expect_equal(Reader& rank, const Reader& first) {
-    if (!rank.is_in(0))
-      throw InputError(fmt::format("{}: lacks {} of {}", rank.path(), operation_text(first.next().sequence),
-                                   first.path()));
-    const LoggedOperation &ours = rank.next(), &theirs = first.next();
-    rank.expect(ours.sequence == theirs.sequence && ours.point == theirs.point &&
-                    ours.vertex == theirs.vertex && ours.kind == theirs.kind &&
-                    std::ranges::equal(rank.removed(), first.removed()),
-                fmt::format("not as in {}, though all ranks begin with the same mesh", first.path()));
-    rank.go_on();
-  }
-
-  // The least that comes in any log; 0: none.
-  std::uint64_t next_step() const {
-    std::uint64_t step = 0;
+  // The least that comes in any log.
+  std::optional<std::uint64_t> next_step() const {
+    std::optional<std::uint64_t> step;
     for (const Reader& rank : ranks_) {
       if (rank.is_over()) continue;
       const std::uint64_t its = step_of(rank.next().sequence);
-      if (step == 0 || its < step) step = its;
+      if (!step || its < *step) step = its;
     }
     return step;
   }

@@ -1,6 +1,6 @@
 // The logs of ranks that share no memory become one: the serial run that they claim to equal.
 //
-// All ranks begin with the same coarse mesh, and then take steps together. In a step each rank either changes
+// The first rank makes a coarse mesh, and then all take steps together. In a step each rank either changes
 // the mesh within a part of space that no other changes in this step, or learns from others what they have
 // changed. So operations of different ranks in one step change no vertex in common, and any order of them
 // makes the same mesh; it is by rank here.

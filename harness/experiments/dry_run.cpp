@@ -97,7 +97,8 @@ void print_total(const Plan& plan, const std::vector<TurnCount>& counts, const s
 int dry_run(const RunCommand& command) {
   const std::vector<Experiment> experiments = read_experiments(command);
   const std::string mesher_sha256 = sha256_of_file(command.programs.podm);
-  TrialKeys keys(mesher_sha256, this_machine().summary, Peers(command.programs.peers, command.programs.podm));
+  TrialKeys keys(mesher_sha256, this_machine().summary, Peers(command.programs.peers, command.programs.podm),
+                 command.programs.podm);
   Preparer preparer(command.programs.podm, mesher_sha256, command.results_folder);
   for (const Experiment& experiment : experiments) {
     const Plan plan = make_plan(

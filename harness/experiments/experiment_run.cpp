@@ -232,7 +232,8 @@ Session::Session(const RunCommand& given, const std::string& mesher_sha256, cons
     : command(given),
       is_interrupted(std::move(query)),
       preparer(given.programs.podm, mesher_sha256, given.results_folder),
-      keys(mesher_sha256, machine.summary, Peers(given.programs.peers, given.programs.podm)),
+      keys(mesher_sha256, machine.summary, Peers(given.programs.peers, given.programs.podm),
+           given.programs.podm),
       runner(given.programs) {
   programs = describe_programs(command.programs);
   environment = environment_of_run(machine.summary);

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <array>
 #include <cctype>
+#include <cstdio>
 #include <cstring>
 #include <filesystem>
 #include <limits>
@@ -21,6 +22,7 @@ constexpr std::int64_t kMaxThreads = 1024;
 constexpr std::int64_t kMaxElements = std::numeric_limits<std::uint32_t>::max();
 constexpr std::int64_t kMaxSeed = std::numeric_limits<std::int64_t>::max();
 constexpr const char* kPerThread = "target_elements_per_thread";  // becomes target_elements
+constexpr const char* kPerRank = "target_elements_per_rank";      // so does this
 constexpr const char* kPowersOfTwo = "1..all";
 constexpr const char* kMillimetres = "_mm";  // ends keys of lengths, but no option of podm
 
@@ -35,7 +37,9 @@ enum class Kind {
   kFile,
   kThreads,
   kCounters,
-  kMeasure
+  kMeasure,
+  kCarrier,
+  kNetwork
 };
 
 struct MesherOption {
@@ -44,8 +48,11 @@ struct MesherOption {
 };
 
 // These are the harness's own; no mesher is passed them.
-constexpr std::array kOfHarness{kMesher,     kSchedule, kReplay,   kFidelity,
-                                kImageGrows, kCopies,   kCounters, kMeasure};
+constexpr std::array kOfHarness{kMesher, kSchedule, kReplay,  kFidelity, kImageGrows,
+                                kCopies, kCounters, kMeasure, kRanks,    kCarrier};
+
+// What the harness does with one process of podm, and not with ranks.
+constexpr std::array kNotOnRanks{kSchedule, kReplay, kImageGrows, kCopies, kCounters};
 
 // Every mesher takes these.
 constexpr std::array kOfAll{kMesher, "radius_mm", "delta_mm", kTargetElements, kPerThread, "threads"};
@@ -62,6 +69,7 @@ constexpr MesherOption kMesherOptions[] = {
     {"delta_mm", Kind::kPositive},
     {kTargetElements, Kind::kElements},
     {kPerThread, Kind::kElements},
+    {kPerRank, Kind::kElements},
     {"threads", Kind::kThreads},
     {"contention", Kind::kWord},
     {"begging", Kind::kWord},
@@ -82,6 +90,9 @@ constexpr MesherOption kMesherOptions[] = {
     {kCopies, Kind::kThreads},
     {kCounters, Kind::kCounters},
     {kMeasure, Kind::kMeasure},
+    {kRanks, Kind::kCount},
+    {kCarrier, Kind::kCarrier},
+    {kNetwork, Kind::kNetwork},
 };
 
 // "all" is the number of usable processors, "1..all" the powers of two up to it and itself.
@@ -121,6 +132,23 @@ std::string measure_value(const TomlSection& section, const toml::node& node, st
   return kMemoryLatency;
 }
 
+std::string carrier_value(const TomlSection& section, const toml::node& node, std::string_view key) {
+  const std::string carrier = section.text_of(node, key);
+  if (carrier != kMpi && carrier != kInProcess)
+    section.fail(node.source(), fmt::format("{} must be \"{}\" or \"{}\"", key, kMpi, kInProcess));
+  return carrier;
+}
+
+std::string network_value(const TomlSection& section, const toml::node& node, std::string_view key) {
+  const std::string network = section.text_of(node, key);
+  double latency_us = -1, gb_per_s = -1;
+  char more = 0;
+  if (std::sscanf(network.c_str(), "%lf,%lf%c", &latency_us, &gb_per_s, &more) != 2 || latency_us < 0 ||
+      gb_per_s <= 0)
+    section.fail(node.source(), fmt::format("{} must be \"MICROSECONDS,GB_PER_S\", such as \"2,12.5\"", key));
+  return network;
+}
+
 std::vector<Json> read_value(const TomlSection& section, const toml::node& node, const MesherOption& option,
                              const std::string& folder) {
   const std::string key = option.key;
@@ -145,6 +173,10 @@ std::vector<Json> read_value(const TomlSection& section, const toml::node& node,
       return {counters_value(section, node, key)};
     case Kind::kMeasure:
       return {measure_value(section, node, key)};
+    case Kind::kCarrier:
+      return {carrier_value(section, node, key)};
+    case Kind::kNetwork:
+      return {network_value(section, node, key)};
     case Kind::kThreads:
       break;
   }
@@ -174,7 +206,7 @@ std::vector<Json> read_values(TomlSection& section, const MesherOption& option, 
 
 void refuse_second_size(const TomlSection& section) {
   std::vector<const char*> given;
-  for (const char* key : {"radius_mm", kTargetElements, kPerThread})
+  for (const char* key : {"radius_mm", kTargetElements, kPerThread, kPerRank})
     if (section.has(key)) given.push_back(key);
   if (given.size() > 1)
     section.fail(section.place(given.back()),
@@ -204,14 +236,27 @@ void refuse_crowded_copies(const TomlSection& section, const Json& options) {
       section.fail(section.place(key), fmt::format("{} and {} exclude each other", kCopies, key));
 }
 
-void scale_by_threads(const TomlSection& section, Json& options) {
-  if (!options.contains(kPerThread)) return;
-  const std::int64_t elements =
-      options[kPerThread].get<std::int64_t>() * options["threads"].get<std::int64_t>();
+void refuse_strangers_to_ranks(const TomlSection& section, const Json& options) {
+  const auto need = [&](const char* key, const char* needed, bool is_there) {
+    if (options.contains(key) && !is_there)
+      section.fail(section.place(key), fmt::format("{} needs {}", key, needed));
+  };
+  need(kRanks, kCarrier, options.contains(kCarrier));
+  need(kCarrier, kRanks, options.contains(kRanks));
+  need(kPerRank, kRanks, options.contains(kRanks));
+  need(kNetwork, "ranks of carrier \"in-process\"", options.value(kCarrier, "") == kInProcess);
+  if (!options.contains(kRanks)) return;
+  for (const char* key : kNotOnRanks)
+    if (options.contains(key))
+      section.fail(section.place(key), fmt::format("{} and {} exclude each other", kRanks, key));
+}
+
+void scale_by(const char* key, const char* number, const TomlSection& section, Json& options) {
+  if (!options.contains(key)) return;
+  const std::int64_t elements = options[key].get<std::int64_t>() * options[number].get<std::int64_t>();
   if (elements > kMaxElements)
-    section.fail(section.place(kPerThread),
-                 fmt::format("{} elements in all, more than {}", elements, kMaxElements));
-  options.erase(kPerThread);
+    section.fail(section.place(key), fmt::format("{} elements in all, more than {}", elements, kMaxElements));
+  options.erase(key);
   options[kTargetElements] = elements;
 }
 
@@ -238,7 +283,9 @@ std::vector<Variant> read_matrix(TomlSection& section, const std::string& folder
     refuse_options_of_meshers(section, variant.options);
     refuse_options_of_podm(section, variant.options);
     refuse_crowded_copies(section, variant.options);
-    scale_by_threads(section, variant.options);
+    refuse_strangers_to_ranks(section, variant.options);
+    scale_by(kPerThread, "threads", section, variant.options);
+    scale_by(kPerRank, kRanks, section, variant.options);
   }
   return variants;
 }

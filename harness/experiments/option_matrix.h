@@ -22,6 +22,10 @@ inline constexpr const char* kCopies = "copies";
 inline constexpr const char *kReplay = "replay", *kFidelity = "fidelity";
 /// The key that has a phantom's voxels grow with the threads.
 inline constexpr const char* kImageGrows = "image_grows";
+/// The keys of a trial that podm-mpi runs: the number of its ranks, who carries what they say, and between
+/// ranks of one process the modelled network, "MICROSECONDS,GB_PER_S".
+inline constexpr const char *kRanks = "ranks", *kCarrier = "carrier", *kMpi = "mpi",
+                            *kInProcess = "in-process", *kNetwork = "network";
 /// The key of the number of cells aimed at, by a radius that is found once: radii.h.
 inline constexpr const char* kTargetElements = "target_elements";
 

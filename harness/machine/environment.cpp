@@ -6,12 +6,14 @@
 #include <sys/utsname.h>
 
 #include <cstdlib>
+#include <filesystem>
 #include <fstream>
 #include <sstream>
 
 #include "machine/machine.h"
 #include "runtime/control_group.h"
 #include "trials/ask.h"
+#include "trials/ranks.h"
 #include "trials/sha256.h"
 
 namespace podm::bench {
@@ -119,7 +121,9 @@ void renew(EnvironmentRecord& environment) {
 }
 
 ProgramRecords describe_programs(const Programs& programs) {
-  ProgramRecords described{describe_program(programs.podm), ProgramRecords::kNone, {}};
+  ProgramRecords described{describe_program(programs.podm), ProgramRecords::kNone, {}, {}};
+  if (const std::string program = podm_mpi_of(programs.podm); std::filesystem::exists(program))
+    described.podm_mpi = describe_program(program);
   if (!programs.verifier.empty()) described.podm_verify = describe_program(programs.verifier);
   return described;
 }

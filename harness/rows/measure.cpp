@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
 
 #include "trials/counter_tool.h"
 
@@ -82,15 +83,91 @@ Value side_by_side_refining_cells_per_second(const Row& row) {
   return {sum, ""};
 }
 
+constexpr std::array kRefiningOfRank{"initial", "refine", "later", "exchange"};
+constexpr const char* kMeasureOfRank = "measure";  // makes no part of the mesh
+
+bool is_meshing(const std::string& phase) { return phase != kMeasureOfRank; }
+bool is_refining(const std::string& phase) {
+  return std::find(kRefiningOfRank.begin(), kRefiningOfRank.end(), phase) != kRefiningOfRank.end();
+}
+
+const RanksRecord* ranks_of(const Row& row) {
+  return row.mesh && row.mesh->ranks ? &*row.mesh->ranks : nullptr;
+}
+Value no_ranks() { return absent("rows have no ranks"); }
+
+// Over all ranks, of the phases that `is_counted` names.
+double processor_seconds_of(const RanksRecord& ranks, bool (*is_counted)(const std::string& phase)) {
+  double sum = 0;
+  for (const RankRecord& rank : ranks.by_rank)
+    for (const auto& [phase, spent] : rank.spent)
+      if (is_counted(phase)) sum += spent.computing_s;
+  return sum;
+}
+Value processor_seconds(const Row& row) {
+  const auto* const ranks = ranks_of(row);
+  return ranks == nullptr ? no_ranks() : Value{processor_seconds_of(*ranks, is_meshing), ""};
+}
+Value refining_processor_seconds(const Row& row) {
+  const auto* const ranks = ranks_of(row);
+  return ranks == nullptr ? no_ranks() : Value{processor_seconds_of(*ranks, is_refining), ""};
+}
+
+// Of the rank that comes last.
+double seconds_of_last(const RanksRecord& ranks, bool (*is_counted)(const std::string& phase)) {
+  double most = 0;
+  for (const RankRecord& rank : ranks.by_rank) {
+    double sum = 0;
+    for (const auto& [phase, spent] : rank.spent)
+      if (is_counted(phase)) sum += spent.computing_s + spent.waiting_s + spent.network_s;
+    most = std::max(most, sum);
+  }
+  return most;
+}
+
+Value number_of_ranks(const Row& row) {
+  const auto* const ranks = ranks_of(row);
+  return ranks == nullptr ? no_ranks() : Value{static_cast<double>(ranks->number), ""};
+}
+Value rounds(const Row& row) {
+  const auto* const ranks = ranks_of(row);
+  return ranks == nullptr ? no_ranks() : Value{static_cast<double>(ranks->rounds.size()), ""};
+}
+Value imbalance(const Row& row) {
+  const auto* const ranks = ranks_of(row);
+  return ranks == nullptr ? no_ranks() : Value{ranks->imbalance, ""};
+}
+Value deferred_share(const Row& row) {
+  const auto* const ranks = ranks_of(row);
+  if (ranks == nullptr) return no_ranks();
+  if (ranks->rounds.empty()) return absent("one rank has no rounds");
+  return quotient({static_cast<double>(ranks->rounds.front().deferred), ""}, cells(row));
+}
+Value cells_over_one_machine(const Row& row) {
+  if (!row.resolved) return absent("rows have no resolved");
+  return quotient(cells(row), {static_cast<double>(row.resolved->cells), ""});
+}
+Value bytes_per_cell_beyond_image(const Row& row) {
+  return number_or_reason(row.process.bytes_per_cell_beyond_image, "process/bytes_per_cell_beyond_image");
+}
+
 Value virtual_refining_seconds(const Row& row) {
+  if (const auto* const ranks = ranks_of(row)) return {seconds_of_last(*ranks, is_refining), ""};
   return of_mesh(row, &MeshRecord::virtual_time, &VirtualRecord::refine_s, "virtual/refine_s");
 }
 Value virtual_seconds(const Row& row) {
+  if (const auto* const ranks = ranks_of(row)) return {seconds_of_last(*ranks, is_meshing), ""};
   const bool is_there = row.mesh && row.mesh->virtual_time && row.mesh->virtual_time->phases_s;
   return is_there ? Value{meshing_seconds(*row.mesh->virtual_time->phases_s), ""}
                   : absent("rows have no virtual/phases_s");
 }
 Value virtual_cells_per_second(const Row& row) { return quotient(cells(row), virtual_seconds(row)); }
+Value virtual_cells_per_second_and_rank(const Row& row) {
+  return quotient(virtual_cells_per_second(row), number_of_ranks(row));
+}
+Value virtual_refining_cells_per_second_and_rank(const Row& row) {
+  return quotient(quotient(cells(row), virtual_refining_seconds(row)), number_of_ranks(row));
+}
 
 Value contention_seconds(const Row& row) {
   return of_mesh(row, &MeshRecord::overhead_s, &OverheadRecord::contention, "overhead_s/contention");
@@ -282,6 +359,16 @@ constexpr Measure kMeasures[] = {
     {"side_by_side_refining_cells_per_second", "1/s", kMore, kClock, side_by_side_refining_cells_per_second},
     {"virtual_refining_seconds", "s", kLess, kVirtualClock, virtual_refining_seconds},
     {"virtual_cells_per_second", "1/s", kMore, kVirtualClock, virtual_cells_per_second},
+    {"virtual_cells_per_second_and_rank", "1/s", kMore, kVirtualClock, virtual_cells_per_second_and_rank},
+    {"virtual_refining_cells_per_second_and_rank", "1/s", kMore, kVirtualClock,
+     virtual_refining_cells_per_second_and_rank},
+    {"processor_seconds", "s", kLess, kClock, processor_seconds},
+    {"refining_processor_seconds", "s", kLess, kClock, refining_processor_seconds},
+    {"rounds", "", kLess, kCost, rounds},
+    {"deferred_share", "", kLess, kCost, deferred_share},
+    {"imbalance", "", kLess, kCost, imbalance},
+    {"cells_over_one_machine", "", kLess, kCost, cells_over_one_machine},
+    {"bytes_per_cell_beyond_image", "", kLess, kCost, bytes_per_cell_beyond_image},
     {"contention_seconds", "s", kLess, kCost, contention_seconds},
     {"rollback_seconds", "s", kLess, kCost, rollback_seconds},
     {"begging_seconds", "s", kLess, kCost, begging_seconds},

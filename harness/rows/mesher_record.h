@@ -104,6 +104,46 @@ struct WorkRecord {
   }
 };
 
+/// Seconds of a rank in one phase: of the processor outside of collectives, and in collectives.
+struct SpentRecord {
+  double computing_s = 0, waiting_s = 0, network_s = 0;
+  static constexpr auto fields() {
+    using S = SpentRecord;
+    return std::tuple{field("computing_s", &S::computing_s), field("waiting_s", &S::waiting_s),
+                      field("network_s", &S::network_s)};
+  }
+};
+
+struct RankRecord {
+  std::uint64_t cells = 0;
+  ByName<SpentRecord> spent;
+  Json as_written = Json::object();
+  static constexpr auto fields() {
+    return std::tuple{field("cells", &RankRecord::cells), field("spent", &RankRecord::spent)};
+  }
+};
+
+/// A round of all ranks.
+struct RoundRecord {
+  std::uint64_t deferred = 0;  ///< cells
+  Json as_written = Json::object();
+  static constexpr auto fields() { return std::tuple{field("deferred", &RoundRecord::deferred)}; }
+};
+
+/// What podm-mpi tells of its ranks.
+struct RanksRecord {
+  std::uint64_t number = 0;
+  double imbalance = 1;  ///< most cells of a rank over the mean
+  std::vector<RoundRecord> rounds;
+  std::vector<RankRecord> by_rank;
+  Json as_written = Json::object();
+  static constexpr auto fields() {
+    using R = RanksRecord;
+    return std::tuple{field("number", &R::number), field("imbalance", &R::imbalance),
+                      field("rounds", &R::rounds), field("by_rank", &R::by_rank)};
+  }
+};
+
 /// A mesher's record of a mesh.
 struct MeshRecord {
   std::optional<int> schema;           ///< kMesherSchema; rows have their own instead
@@ -115,6 +155,7 @@ struct MeshRecord {
   std::optional<std::uint64_t> seed;
   std::optional<ThreadsRecord> threads;
   std::optional<VirtualRecord> virtual_time;
+  std::optional<RanksRecord> ranks;
   ByName<double> phases_s;
   std::uint64_t cells = 0, vertices = 0;
   std::optional<double> cells_per_second;
@@ -141,6 +182,7 @@ struct MeshRecord {
                       field_if_any("seed", &M::seed),
                       field_if_any("threads", &M::threads),
                       field_if_any("virtual", &M::virtual_time),
+                      field_if_any("ranks", &M::ranks),
                       field("phases_s", &M::phases_s),
                       field("cells", &M::cells),
                       field("vertices", &M::vertices),

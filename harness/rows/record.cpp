@@ -1,6 +1,8 @@
 #include "rows/record.h"
 
+#include "experiments/option_matrix.h"
 #include "trials/counter_tool.h"
+#include "trials/ranks.h"
 
 namespace podm::bench {
 namespace {
@@ -19,7 +21,8 @@ ProcessRecord process_of(const Trial& trial, const TrialResult& result) {
   record.user_s = process.user_s;
   record.system_s = process.system_s;
   record.peak_rss_bytes = process.peak_rss_bytes;
-  record.bytes_per_cell_beyond_image = bytes_per_cell_beyond_image(result);
+  record.bytes_per_cell_beyond_image =
+      bytes_per_cell_beyond_image(result, is_over_mpi(trial.options) ? num_ranks(trial) : 1);
   record.counters = result.counters;
   return record;
 }
@@ -41,16 +44,16 @@ Basis basis_of(const Json& asked, const Counters& counters) {
   const auto* const told = counters.find(kCachegrind);
   const bool is_on_simulated_core = asked.value(kCounters, "") == kCachegrind &&
                                     (told == nullptr || !std::holds_alternative<Unavailable>(*told));
-  const bool is_simulated =
-      asked.value("executor", "threads") != "threads" || asked.contains("topology") || is_on_simulated_core;
+  const bool is_simulated = asked.value("executor", "threads") != "threads" || asked.contains("topology") ||
+                            asked.value(kCarrier, "") == kInProcess || is_on_simulated_core;
   return is_simulated ? Basis::kSimulated : Basis::kMeasured;
 }
 
-std::optional<double> bytes_per_cell_beyond_image(const TrialResult& result) {
+std::optional<double> bytes_per_cell_beyond_image(const TrialResult& result, int num_processes) {
   if (!result.mesh || !result.image_size || result.mesh->cells == 0) return {};
   double image_bytes = kImageBytesPerVoxel;
   for (const int voxels : *result.image_size) image_bytes *= voxels;
-  return (static_cast<double>(result.process.peak_rss_bytes) - image_bytes) /
+  return (static_cast<double>(result.process.peak_rss_bytes) - image_bytes) * num_processes /
          static_cast<double>(result.mesh->cells);
 }
 
@@ -81,6 +84,7 @@ Row make_row(const RowContext& context, const Trial& trial, const Turn& turn, co
   row.stderr_tail = result.stderr_tail;
   row.programs = context.programs;
   row.programs.peer = result.peer;
+  if (num_ranks(trial) == 0) row.programs.podm_mpi.reset();
   row.environment = context.environment;
   return row;
 }

@@ -24,8 +24,9 @@ struct RowContext {
 /// cachegrind's core, else measured.
 Basis basis_of(const Json& asked, const Counters& counters);
 
-/// Peak resident bytes a cell beyond the labels of the image; nothing without a mesh.
-std::optional<double> bytes_per_cell_beyond_image(const TrialResult& result);
+/// Peak resident bytes a cell beyond the labels of the image; nothing without a mesh. Of several processes
+/// the memory is that of the largest, which has its even share of the cells.
+std::optional<double> bytes_per_cell_beyond_image(const TrialResult& result, int num_processes = 1);
 
 /// The row of a trial that ran, whatever came of it.
 Row make_row(const RowContext& context, const Trial& trial, const Turn& turn, const TrialResult& result);

@@ -165,10 +165,11 @@ struct ProgramRecords {
   ProgramRecord podm;
   std::variant<ProgramRecord, std::string> podm_verify = kNone;  ///< kNone where meshes are not verified
   std::optional<PeerRecord> peer;
+  std::optional<ProgramRecord> podm_mpi;  ///< the mesher on ranks; nothing where it is not built
   static constexpr auto fields() {
     using P = ProgramRecords;
     return std::tuple{field("podm", &P::podm), field("podm_verify", &P::podm_verify),
-                      field_if_any("peer", &P::peer)};
+                      field_if_any("peer", &P::peer), field_if_any("podm_mpi", &P::podm_mpi)};
   }
 };
 

@@ -19,8 +19,9 @@ std::string text_of(const Json& value) {
                                    : value.dump();
 }
 
-// Who made the row: this program, podm or a peer.
+// Who made the row: this program, podm, podm on ranks or a peer.
 std::string maker_of(const Row& row) {
+  if (row.asked.contains(kRanks)) return kRanks;
   return row.asked.contains(kMeasure) ? kMeasure : row.asked.value(kMesher, kPodm);
 }
 
@@ -28,8 +29,12 @@ const MachineRecord& machine_of(const Row& row) { return row.environment; }
 
 // What rows of one series share: the machine and, where a mesh is made, the mesher's bytes.
 std::string origin_of(const Row& row) {
-  const auto& [podm, verifier, peer] = row.programs;
-  return to_json(machine_of(row)).dump() + (maker_of(row) == kPodm ? podm.sha256 : peer ? peer->sha256 : "");
+  const auto& [podm, verifier, peer, podm_mpi] = row.programs;
+  const std::string maker = maker_of(row);
+  return to_json(machine_of(row)).dump() + (maker == kPodm                ? podm.sha256
+                                            : maker == kRanks && podm_mpi ? podm_mpi->sha256
+                                            : peer                        ? peer->sha256
+                                                                          : "");
 }
 
 // What a later row replaces. A trial that could not be prepared, or whose options or radius changed since,

@@ -12,6 +12,7 @@
 #include "trials/counters.h"
 #include "trials/image_info.h"
 #include "trials/judgement.h"
+#include "trials/ranks.h"
 #include "trials/side_by_side.h"
 #include "trials/stopwatch.h"
 #include "trials/warm_memory.h"
@@ -20,25 +21,36 @@ namespace podm::bench {
 namespace {
 
 constexpr std::size_t kTailBytes = 2000;
-constexpr const char* kMeshName = "/mesh.vtu";
+constexpr const char *kMeshName = "/mesh.vtu", *kIndexName = "/mesh.pvtu";
 constexpr const char* kMessagesName = "/stderr.txt";
+
+std::string mesh_name(const Trial& trial) { return num_ranks(trial) > 0 ? kIndexName : kMeshName; }
 
 std::vector<std::string> mesh_command(const Trial& trial, const Preparation& preparation,
                                       const std::string& podm, const std::string& folder) {
-  std::vector<std::string> command{podm, "mesh", preparation.image};
+  std::vector<std::string> command = mesher_of(trial, podm);
+  command.push_back(preparation.image);
   const auto add = [&command](const std::vector<std::string>& more) {
     command.insert(command.end(), more.begin(), more.end());
   };
   add(mesher_arguments(resolved_options(trial, preparation)));
   if (trial.options.value(kSchedule, false)) add({"--schedule", folder + kScheduleName});
   if (trial.options.value(kReplay, false)) add({"--log", folder + kLogName});
-  add({"-o", folder + kMeshName, "--record", folder + kRecordName, "--quiet"});
+  add({"-o", folder + mesh_name(trial), "--record", folder + kRecordName, "--quiet"});
   return command;
 }
 
 // A peer writes what format it likes and names the file.
-std::string mesh_path(const std::optional<MeshRecord>& record, const std::string& folder) {
-  return record && record->mesh ? fmt::format("{}/{}", folder, *record->mesh) : folder + kMeshName;
+std::string mesh_path(const Trial& trial, const std::optional<MeshRecord>& record,
+                      const std::string& folder) {
+  return record && record->mesh ? fmt::format("{}/{}", folder, *record->mesh) : folder + mesh_name(trial);
+}
+
+std::uint64_t mesh_bytes(const Trial& trial, const std::string& path) {
+  if (num_ranks(trial) > 0) return bytes_of_pieces(path);
+  std::error_code error;
+  const auto bytes = std::filesystem::file_size(path, error);
+  return error ? 0 : bytes;
 }
 
 ProcessRequest request_of(const Trial& trial, const std::vector<std::string>& command,
@@ -96,6 +108,7 @@ std::string TrialRunner::why_skipped(const Trial& trial) {
   const auto processors = static_cast<int>(usable_processor_ids().size());
   if (copies > processors)
     return fmt::format("{} copies need as many processors, and there are {}", copies, processors);
+  if (const std::string absence = absence_of_ranks(trial, programs_.podm); !absence.empty()) return absence;
   return is_of_peer(trial) ? peers_.of(trial).absence : "";
 }
 
@@ -157,18 +170,16 @@ void TrialRunner::make_mesh(const Run& run, TrialResult& result) {
     run_program(run, result);
     judge(run.trial, run.folder + kRecordName, result);
   }
-  std::error_code error;
-  const auto mesh_bytes = std::filesystem::file_size(mesh_path(result.mesh, run.folder), error);
-  if (!error) result.mesh_bytes = mesh_bytes;
+  result.mesh_bytes = mesh_bytes(run.trial, mesh_path(run.trial, result.mesh, run.folder));
   if (result.mesh) prove(run, result);
 }
 
 void TrialRunner::prove(const Run& run, TrialResult& result) {
   const Stopwatch watch;
   if (!programs_.verifier.empty()) {
-    const Verification verification =
-        verify_mesh(run.trial, run.preparation.image, *result.mesh, mesh_path(result.mesh, run.folder),
-                    programs_.verifier, run.folder, run.stop_requested);
+    const Verification verification = verify_mesh(run.trial, run.preparation.image, *result.mesh,
+                                                  mesh_path(run.trial, result.mesh, run.folder),
+                                                  programs_.verifier, run.folder, run.stop_requested);
     result.mesh->verdicts = verification.verdicts;
     add_fault(verification.fault, verification.is_interrupted, result);
   }

@@ -13,8 +13,12 @@ namespace podm::bench {
 /// the radius that was found, the machine and the number of the repeat. Not by paths, limits or the verifier.
 class TrialKeys {
  public:
-  TrialKeys(std::string mesher_sha256, MachineRecord machine, Peers peers = {})
-      : mesher_sha256_(std::move(mesher_sha256)), machine_(std::move(machine)), peers_(std::move(peers)) {}
+  /// `podm` is the mesher's file, which podm-mpi is beside.
+  TrialKeys(std::string mesher_sha256, MachineRecord machine, Peers peers = {}, std::string podm = {})
+      : mesher_sha256_(std::move(mesher_sha256)),
+        machine_(std::move(machine)),
+        peers_(std::move(peers)),
+        podm_(std::move(podm)) {}
 
   /// 64 hexadecimal digits. Throws InputError when a topology cannot be read or a peer is unknown.
   std::string of(const Trial& trial, const Turn& turn, const Preparation& preparation);
@@ -23,6 +27,7 @@ class TrialKeys {
   std::string mesher_sha256_;
   MachineRecord machine_;
   Peers peers_;
+  std::string podm_;
   FileHashes hashes_;
 };
 

@@ -19,13 +19,11 @@ using Json = nlohmann::ordered_json;
 struct Spent {
   std::uint64_t threads, peak_rss_bytes;
   bool is_virtual;
-  RankReport in_virtual_time;
+  RankReport report;
 };
 
 Spent spent_by(const Communication& ranks, int threads) {
-  const std::optional<RankReport> report = ranks.spent();
-  return {static_cast<std::uint64_t>(threads), peak_resident_bytes(), report.has_value(),
-          report.value_or(RankReport{})};
+  return {static_cast<std::uint64_t>(threads), peak_resident_bytes(), ranks.is_virtual(), ranks.report()};
 }
 
 // A round on all ranks: sums, and the seconds of the rank that took longest.
@@ -83,11 +81,20 @@ Json rounds_of(const std::vector<PartOfRank>& parts) {
   return rounds;
 }
 
+Json spent_of(const PartOfRank& part) {
+  Json spent = Json::object();
+  for (const auto& [phase, of_phase] : part.spent)
+    spent[phase] = {{"computing_s", of_phase.computing_s},
+                    {"waiting_s", of_phase.waiting_s},
+                    {"network_s", of_phase.network_s}};
+  return spent;
+}
+
 Json memory_of(const Spent& spent) { return spent.is_virtual ? Json(nullptr) : Json(spent.peak_rss_bytes); }
 
 Json virtual_time_of(const Spent& spent) {
   if (!spent.is_virtual) return nullptr;
-  const RankReport& report = spent.in_virtual_time;
+  const RankReport& report = spent.report;
   return {{"computing_s", report.computing_s},
           {"waiting_s", report.waiting_s},
           {"network_s", report.network_s},
@@ -113,6 +120,7 @@ Json ranks_of(const std::vector<PartOfRank>& parts, const std::vector<Spent>& sp
                        {"store_cells", part.store_cells},
                        {"peak_rss_bytes", memory_of(spent[rank])},
                        {"phases_s", part.phases_s},
+                       {"spent", spent_of(part)},
                        {"virtual", virtual_time_of(spent[rank])}});
     last += part.last_update;
   }
@@ -140,12 +148,12 @@ std::string virtual_time_text(const std::vector<Spent>& spent) {
   double computing_s = 0, waiting_s = 0;
   std::uint64_t bytes = 0;
   for (const Spent& one : spent) {
-    computing_s = std::max(computing_s, one.in_virtual_time.computing_s);
-    waiting_s = std::max(waiting_s, one.in_virtual_time.waiting_s);
-    bytes += one.in_virtual_time.bytes_sent;
+    computing_s = std::max(computing_s, one.report.computing_s);
+    waiting_s = std::max(waiting_s, one.report.waiting_s);
+    bytes += one.report.bytes_sent;
   }
   return fmt::format("at most {:.2f} s of one computing, {:.2f} s waiting, {:.4f} s network, {} bytes sent",
-                     computing_s, waiting_s, spent[0].in_virtual_time.network_s, bytes);
+                     computing_s, waiting_s, spent[0].report.network_s, bytes);
 }
 
 std::string text_of(const std::vector<PartOfRank>& parts, const std::vector<Spent>& spent,

@@ -34,6 +34,13 @@ Blocks::Blocks(const CubeGrid& grid, std::uint64_t seed, int num_blocks)
   divide({{0, 0, 0}, grid.size(), 0, num_blocks}, [&](const Part& part) { return drawn_cut(part, random); });
 }
 
+// Each cut makes one block more.
+Blocks::Blocks(const CubeGrid& grid, const std::vector<Cut>& cuts)
+    : grid_(grid), num_blocks_(static_cast<int>(cuts.size()) + 1), block_of_(grid.num_cubes()) {
+  auto next = cuts.begin();
+  divide({{0, 0, 0}, grid.size(), 0, num_blocks_}, [&](const Part&) { return *next++; });
+}
+
 std::vector<int> Blocks::in(const CubePlace& low, const CubePlace& high) const {
   std::vector<int> blocks;
   collect(0, low, high, blocks);
@@ -64,6 +71,7 @@ void Blocks::divide(const Part& part, const CutOf& cut_of) {
     return;
   }
   const Cut cut = cut_of(part);
+  cuts_.push_back(cut);
   Part lower = part, upper = part;
   lower.high[cut.axis] = upper.low[cut.axis] = part.low[cut.axis] + cut.cubes_below;
   lower.num_blocks = cut.blocks_below;

@@ -17,6 +17,15 @@ class Blocks {
   /// Cuts are drawn, whatever the work: some blocks are one cube thin, some hold nearly all. Each has a cube
   /// if there are enough.
   Blocks(const CubeGrid& grid, std::uint64_t seed, int num_blocks);
+  /// Where a part is cut in two, and how many of its blocks lie below.
+  struct Cut {
+    std::size_t axis;
+    int cubes_below, blocks_below;
+  };
+  /// In the order of cutting: first the whole, then the part below, all of it, and then the part above.
+  const std::vector<Cut>& cuts() const { return cuts_; }
+  /// The blocks that were cut so.
+  Blocks(const CubeGrid& grid, const std::vector<Cut>& cuts);
 
   const CubeGrid& grid() const { return grid_; }
   int of(CubeId cube) const { return block_of_[cube]; }
@@ -27,11 +36,6 @@ class Blocks {
 
  private:
   struct Part;
-  /// Where a part is cut in two, and how many of its blocks lie below.
-  struct Cut {
-    std::size_t axis;
-    int cubes_below, blocks_below;
-  };
   Cut cut_by_weight(const Part& part, const std::vector<std::uint64_t>& weights) const;
   static Cut drawn_cut(const Part& part, std::mt19937_64& random);
   template <class CutOf>
@@ -49,6 +53,7 @@ class Blocks {
   int num_blocks_;
   std::vector<int> block_of_;
   std::vector<Node> nodes_;
+  std::vector<Cut> cuts_;
 };
 
 }  // namespace podm

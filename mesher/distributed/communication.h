@@ -5,7 +5,6 @@
 
 #include <cstddef>
 #include <cstdint>
-#include <optional>
 #include <span>
 #include <stdexcept>
 #include <string>
@@ -24,12 +23,12 @@ class RankFailed : public std::runtime_error {
   using std::runtime_error::runtime_error;
 };
 
-/// One rank's virtual seconds, and what it sent to others. All ranks' seconds add up to the same until the
-/// last collective.
+/// What a rank has spent until now, in seconds, and sent to others. Virtual seconds of all ranks add up to
+/// the same until the last collective.
 struct RankReport {
-  double computing_s = 0;
-  double waiting_s = 0;  ///< for ranks that took longer
-  double network_s = 0;
+  double computing_s = 0;  ///< of the processor, outside of collectives
+  double waiting_s = 0;    ///< for ranks that took longer
+  double network_s = 0;    ///< who has no virtual clock counts it as waiting
   std::uint64_t messages_sent = 0, bytes_sent = 0;
 
   double total_s() const { return computing_s + waiting_s + network_s; }
@@ -54,11 +53,11 @@ class Communication {
 
   /// This rank's clock, in seconds from some moment on: on the wall, or virtual.
   virtual double seconds() const = 0;
+  virtual bool is_virtual() const { return false; }
+  virtual RankReport report() const = 0;
   /// A virtual clock goes on by so much for what the rank had other threads do; it sees the rank's own thread
   /// alone.
   virtual void charge(double /*seconds*/) {}
-  /// What the rank's virtual clock has seen so far; nothing where clocks are on the wall.
-  virtual std::optional<RankReport> spent() const { return std::nullopt; }
 
  protected:
   void check_one_a_rank(const std::vector<Bytes>& messages) const {

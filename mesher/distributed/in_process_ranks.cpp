@@ -353,11 +353,12 @@ class InProcessRank final : public Communication {
     state_.look_at_processor();
     return state_.clock_s;
   }
-  void charge(double seconds) override { state_.charge(seconds); }
-  std::optional<RankReport> spent() const override {
+  bool is_virtual() const override { return true; }
+  RankReport report() const override {
     state_.look_at_processor();
     return state_.report;
   }
+  void charge(double seconds) override { state_.charge(seconds); }
 
  private:
   std::vector<Bytes> take_part(Part part) {

@@ -87,15 +87,19 @@ class RunOnRank {
     MeshingOnRanks result;
     MeshingReport own;
     phases_.transform(own, [&] { return isosurface(); });
+    spending_.end("transform");
     refine(own);
     phases_.report_refinement(refined_->refinement, own);
     phases_.extract([&](Space space) { result.piece = piece(space, own.guarantees.facet_vertices); }, own);
+    spending_.end("extract");
     phases_.finish(result.piece.mesh, own);
     result.mesh_hash = hash_of_whole(result.piece.mesh);
+    spending_.end("measure");
     PartOfRank part{.cells = result.piece.mesh.cells.size(),
                     .boundary_facets = result.piece.mesh.facets.size(),
                     .store_cells = own.store_cells,
                     .phases_s = own.phases_s,
+                    .spent = spending_.by_phase(),
                     .rounds = refined_->rounds,
                     .last_update = refined_->last_update};
     std::tie(result.report, result.parts) = report_of_ranks(std::move(own), std::move(part), ranks_);
@@ -121,6 +125,7 @@ class RunOnRank {
       double known_s = 0;
       for (const auto& [phase, seconds] : refined_->refinement.phases_s) known_s += seconds;
       own.phases_s["exchange"] = std::max(0.0, ranks_.seconds() - start_s - known_s);
+      spending_.end(refined_->spent);
     });
   }
 
@@ -138,6 +143,7 @@ class RunOnRank {
                                            .rank_of_cube = std::vector<int>(grid.num_cubes()),
                                            .rounds = {},
                                            .last_update = {}});
+    spending_.end("refine");
   }
 
   MeshPiece piece(Space space, std::uint64_t& facets_off_isosurface) {
@@ -164,6 +170,7 @@ class RunOnRank {
   Communication& ranks_;
   SharedIsosurface* const isosurface_;
   PhasesOfRun phases_;
+  Spending spending_{ranks_};
   std::optional<DistributedRefinement> refined_;
 };
 

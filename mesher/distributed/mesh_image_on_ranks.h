@@ -18,6 +18,7 @@ struct PartOfRank {
   std::uint64_t cells = 0, boundary_facets = 0;  ///< of its piece
   std::uint64_t store_cells = 0;                 ///< what its store held at the end
   std::map<std::string, double> phases_s;
+  SpentByPhase spent;               ///< by the phases of rounds.h, "transform", "extract" and "measure"
   std::vector<RoundReport> rounds;  ///< none on one rank
   Update last_update;               ///< what completed its block
 };

@@ -7,6 +7,7 @@
 #include <algorithm>
 #include <array>
 #include <cstdlib>
+#include <ctime>
 #include <numeric>
 
 namespace podm {
@@ -19,6 +20,33 @@ void check(int code, const char* call) {
   MPI_Error_string(code, text.data(), &length);
   throw std::runtime_error(fmt::format("{} failed: {}", call, text.data()));
 }
+
+// Of all threads of this process.
+double process_seconds() {
+  std::timespec time{};
+  clock_gettime(CLOCK_PROCESS_CPUTIME_ID, &time);
+  return static_cast<double>(time.tv_sec) + 1e-9 * static_cast<double>(time.tv_nsec);
+}
+
+// What goes by in collectives: on the wall, and of the processor, which MPI keeps busy while it waits.
+struct InCollectives {
+  double wall_s = 0, processor_s = 0;
+};
+
+class CollectiveClock {
+ public:
+  explicit CollectiveClock(InCollectives& sum) : sum_(sum) {}
+  ~CollectiveClock() {
+    sum_.wall_s += MPI_Wtime() - wall_start_s_;
+    sum_.processor_s += process_seconds() - processor_start_s_;
+  }
+  CollectiveClock(const CollectiveClock&) = delete;
+  CollectiveClock& operator=(const CollectiveClock&) = delete;
+
+ private:
+  InCollectives& sum_;
+  const double wall_start_s_ = MPI_Wtime(), processor_start_s_ = process_seconds();
+};
 
 class MpiCommunication final : public Communication {
  public:
@@ -38,15 +66,31 @@ class MpiCommunication final : public Communication {
   std::vector<Bytes> all_gather(Bytes message) override;
   void sum(std::span<std::uint64_t> values) override { reduce(values, MPI_SUM); }
   void maximum(std::span<std::uint64_t> values) override { reduce(values, MPI_MAX); }
-  void barrier() override { check(MPI_Barrier(all_), "MPI_Barrier"); }
+  void barrier() override {
+    const CollectiveClock clock(in_collectives_);
+    check(MPI_Barrier(all_), "MPI_Barrier");
+  }
   double seconds() const override { return MPI_Wtime(); }
+  RankReport report() const override {
+    RankReport report = sent_;
+    report.computing_s = process_seconds() - start_s_ - in_collectives_.processor_s;
+    report.waiting_s = in_collectives_.wall_s;
+    return report;
+  }
 
  private:
   void start_receiving(Bytes& message, int from, std::vector<MPI_Request>& requests);
   void start_sending(const Bytes& message, int to, std::vector<MPI_Request>& requests);
   void reduce(std::span<std::uint64_t> values, MPI_Op operation);
   std::size_t num_ranks() const { return static_cast<std::size_t>(size_); }
+  void note_sent(const Bytes& message) {
+    sent_.messages_sent += !message.empty();
+    sent_.bytes_sent += message.size();
+  }
 
+  const double start_s_ = process_seconds();
+  InCollectives in_collectives_;
+  RankReport sent_;
   std::size_t most_bytes_;
   MPI_Comm all_ = MPI_COMM_NULL;
   int rank_ = 0, size_ = 1;
@@ -57,6 +101,7 @@ class MpiCommunication final : public Communication {
 // all with rank 0.
 std::vector<Bytes> MpiCommunication::all_to_all(std::vector<Bytes> messages) {
   check_one_a_rank(messages);
+  const CollectiveClock clock(in_collectives_);
   std::vector<std::uint64_t> to_send(num_ranks()), to_receive(num_ranks());
   for (std::size_t i = 0; i < num_ranks(); ++i) to_send[i] = messages[i].size();
   check(MPI_Alltoall(to_send.data(), 1, MPI_UINT64_T, to_receive.data(), 1, MPI_UINT64_T, all_),
@@ -73,7 +118,9 @@ std::vector<Bytes> MpiCommunication::all_to_all(std::vector<Bytes> messages) {
   }
   for (int i = 1; i < size_; ++i) {
     const int to = (rank_ + i) % size_;
-    start_sending(messages[static_cast<std::size_t>(to)], to, requests);
+    const Bytes& message = messages[static_cast<std::size_t>(to)];
+    note_sent(message);
+    start_sending(message, to, requests);
   }
   check(MPI_Waitall(static_cast<int>(requests.size()), requests.data(), MPI_STATUSES_IGNORE), "MPI_Waitall");
   return received;
@@ -98,6 +145,8 @@ void MpiCommunication::start_sending(const Bytes& message, int to, std::vector<M
 
 // Pieces of all messages at a time, so that they fit one call together: one time when messages are short.
 std::vector<Bytes> MpiCommunication::all_gather(Bytes message) {
+  const CollectiveClock clock(in_collectives_);
+  for (int other = 1; other < size_; ++other) note_sent(message);
   const std::uint64_t length = message.size();
   std::vector<std::uint64_t> lengths(num_ranks());
   check(MPI_Allgather(&length, 1, MPI_UINT64_T, lengths.data(), 1, MPI_UINT64_T, all_), "MPI_Allgather");
@@ -124,6 +173,7 @@ std::vector<Bytes> MpiCommunication::all_gather(Bytes message) {
 }
 
 void MpiCommunication::reduce(std::span<std::uint64_t> values, MPI_Op operation) {
+  const CollectiveClock clock(in_collectives_);
   const std::size_t most_values = most_bytes_ / sizeof(std::uint64_t);
   for (std::size_t begin = 0; begin < values.size(); begin += most_values) {
     const auto piece = values.subspan(begin, std::min(most_values, values.size() - begin));

@@ -76,6 +76,7 @@ Bytes told_of(const MeshingReport& own, const PartOfRank& part) {
   Bytes message;
   append_one(message, std::array{part.cells, part.boundary_facets, part.store_cells});
   append(message, values_of(part.phases_s));
+  append(message, values_of(part.spent));
   append(message, part.rounds);
   append_one(message, part.last_update);
   append_one(message, own.stop_reason);
@@ -122,7 +123,7 @@ void add(const std::vector<Value>& more, std::map<Key, Value>& sums) {
 
 template <class Key, class Value>
 void clear(std::map<Key, Value>& sums) {
-  for (auto& [key, sum] : sums) sum = 0;
+  for (auto& [key, sum] : sums) sum = {};
 }
 
 // The report of the whole begins as one of no rank.
@@ -138,17 +139,21 @@ MeshingReport none_like(MeshingReport own) {
   return own;
 }
 
-PartOfRank add_told(const Bytes& told, MeshingReport& report, bool is_first) {
+// `like` is a part with the phases that all ranks have.
+PartOfRank add_told(const Bytes& told, const PartOfRank& like, MeshingReport& report, bool is_first) {
   MessageReader reader(told);
   const auto numbers = read_one<std::array<std::uint64_t, 3>>(reader);
   PartOfRank part{.cells = numbers[0],
                   .boundary_facets = numbers[1],
                   .store_cells = numbers[2],
-                  .phases_s = report.phases_s,
+                  .phases_s = like.phases_s,
+                  .spent = like.spent,
                   .rounds = {},
                   .last_update = {}};
   clear(part.phases_s);
   add(reader.read<double>(), part.phases_s);
+  clear(part.spent);
+  add(reader.read<PhaseSeconds>(), part.spent);
   part.rounds = reader.read<RoundReport>();
   part.last_update = read_one<Update>(reader);
   report.store_cells += part.store_cells;
@@ -173,7 +178,7 @@ std::pair<MeshingReport, std::vector<PartOfRank>> report_of_ranks(MeshingReport 
   const std::vector<Bytes> told = ranks.all_gather(told_of(own, part));
   MeshingReport report = none_like(std::move(own));
   std::vector<PartOfRank> parts;
-  for (const Bytes& message : told) parts.push_back(add_told(message, report, parts.empty()));
+  for (const Bytes& message : told) parts.push_back(add_told(message, part, report, parts.empty()));
   for (auto& [phase, seconds] : report.phases_s) {
     for (const PartOfRank& of_rank : parts) seconds += of_rank.phases_s.at(phase);
     seconds /= static_cast<double>(parts.size());

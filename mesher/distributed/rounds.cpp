@@ -18,8 +18,8 @@ namespace {
 
 // What is known reaches so many cubes beyond zones.
 constexpr int kKnownRings = 1;
-// And around a deferred cell so many circumradii, so that most of its neighbours are known.
-constexpr double kKnownOverRadius = 2;
+// And around a deferred cell so many circumradii: more of its neighbours known cost more than they save.
+constexpr double kKnownOverRadius = 1;
 // Cubes are so many bounds of a circumradius long.
 constexpr double kCubeOverRadius = 2;
 
@@ -107,17 +107,24 @@ class Rounds {
         exchange_(ranks, construction_.mesh(), construction_.pool(0), grid_, team.log) {}
 
   DistributedRefinement operator()() {
-    construction_.timed("refine", [] {});  // every rank has this phase
-    refine_anywhere(construction_, "initial", levels_.initial, construction_.all_cells(), 1);
+    for (const char* phase : {"initial", "refine"})
+      construction_.timed(phase, [] {});  // every rank has these
+    if (ranks_.rank() == 0)
+      refine_anywhere(construction_, "initial", levels_.initial, construction_.all_cells(),
+                      construction_.num_workers());
     if (is_over_anywhere()) return all_of_first_rank();
+    construction_.timed("initial", [&] { exchange_.copy_first(); });
     divide_space();
+    spending_.end("initial");
     refine_in_rounds();
     const Update last_update = complete();
+    spending_.end("exchange");
     return {.refinement = construction_.finish(),
             .grid = grid_,
             .rank_of_cube = exchange_.writers(),
             .rounds = std::move(rounds_),
-            .last_update = last_update};
+            .last_update = last_update,
+            .spent = spending_.by_phase()};
   }
 
  private:
@@ -127,17 +134,20 @@ class Rounds {
     return num_over[0] > 0;
   }
 
+  // The first rank cuts, for the same cells have centres that differ in the last bit on other ranks.
   void divide_space() {
-    if (cut_seed_ != 0) {
-      blocks_.emplace(grid_, cut_seed_, ranks_.size());
-    } else {
-      blocks_.emplace(grid_, predicted_cells(construction_.mesh(), problem_, grid_), ranks_.size());
-    }
+    Bytes message;
+    if (ranks_.rank() == 0) append(message, cut().cuts());
+    const std::vector<Bytes> told = ranks_.all_gather(std::move(message));
+    blocks_.emplace(grid_, MessageReader(told.front()).read<Blocks::Cut>());
   }
 
-  // Coarse meshes that were not finished differ.
+  Blocks cut() const {
+    if (cut_seed_ != 0) return Blocks(grid_, cut_seed_, ranks_.size());
+    return Blocks(grid_, predicted_cells(construction_.mesh(), problem_, grid_), ranks_.size());
+  }
+
   DistributedRefinement all_of_first_rank() {
-    if (team_.log != nullptr && ranks_.rank() > 0) team_.log->restart();
     return {.refinement = construction_.finish(),
             .grid = grid_,
             .rank_of_cube = std::vector<int>(grid_.num_cubes(), 0),
@@ -172,10 +182,12 @@ class Rounds {
       drop_sound(entries, zone);
       report.entries = entries.size();
       report.update_s = processor_seconds() - start_s;
+      spending_.end("exchange");
       if (team_.log != nullptr) team_.log->begin_step();
       for (const CellId c : refine_in(zone, entries, report))
         left.push_back(name_of(construction_.mesh(), c));
       report.refine_s = processor_seconds() - start_s - report.update_s;
+      spending_.end(round == 0 ? "refine" : "later");
       for (CubeId cube = 0; cube < grid_.num_cubes(); ++cube)
         if (zone_of_[cube] != kNobody) exchange_.note_writer(cube, zone_of_[cube]);
       here = plan_next(round, left, report);
@@ -244,7 +256,7 @@ class Rounds {
   }
 
   // Nobody changes anything yet: so cells may be looked at that lie across zones, which nobody could later.
-  // Most of the large cells far from the object are of this kind.
+  // Most of the large cells far from the object are of this kind. Others are looked at in time.
   void drop_sound(Construction::Entries& entries, const Zone& zone) {
     Mesh& mesh = construction_.mesh();
     const Rules rules(mesh, problem_.isosurface, levels_.final);
@@ -255,8 +267,10 @@ class Rounds {
                return mirror == kNoFacet || zone.is_ball_known(mesh.cell(cell_of(mirror)));
              });
     };
-    std::erase_if(entries,
-                  [&](const auto& entry) { return is_known(entry.cell) && rules.is_sound(entry.cell); });
+    std::erase_if(entries, [&](const auto& entry) {
+      return !zone.may_read(mesh, mesh.cell(entry.cell)) && is_known(entry.cell) &&
+             rules.is_sound(entry.cell);
+    });
   }
 
   std::vector<CellId> refine_in(const Zone& zone, const Construction::Entries& entries, RoundReport& report) {
@@ -393,6 +407,7 @@ class Rounds {
   const std::uint64_t cut_seed_;
   Communication& ranks_;
   StopControl& stop_;
+  Spending spending_{ranks_};
   const TwoLevels levels_;
   Construction construction_;
   const CubeGrid grid_;

@@ -2,7 +2,7 @@
 // vertices it made and took away. (Feng, Chernikov, Chrisochoides, CAD 2018, have leaves as tasks and ship
 // sub-meshes; here zones tile space and vertices travel.)
 //
-//   1  All ranks make the same coarse mesh.
+//   1  The first rank makes a coarse mesh, and all get its vertices.
 //   2  Blocks divide space by predicted work. In round 0 a rank's zone is its block, and it refines what
 //   cells have their
 //      circumcentres there. A cell that needs vertices outside the zone is deferred.
@@ -16,6 +16,7 @@
 #include "algorithms/podm.h"
 #include "distributed/blocks.h"
 #include "distributed/communication.h"
+#include "distributed/spending.h"
 #include "distributed/vertex_exchange.h"
 
 namespace podm {
@@ -36,6 +37,9 @@ struct DistributedRefinement {
   std::vector<int> rank_of_cube;  ///< by the blocks
   std::vector<RoundReport> rounds;
   Update last_update;
+  /// This rank's: "initial", the coarse mesh or what it learns of it, and blocks; "refine", round 0; "later",
+  /// refining in later rounds; "exchange", all else.
+  SpentByPhase spent = {};
 };
 
 struct DistributedOptions {

@@ -39,6 +39,8 @@ class VertexExchange {
   std::vector<int> writers() const;
   /// Cubes of which this rank has all vertices as they are.
   CubeSet known() const;
+  /// All ranks get the first one's mesh: collective. Nobody has noted a writer yet.
+  void copy_first();
   /// Brings the vertices in these cubes up to date: collective, each rank names its own cubes.
   Update update(const CubeSet& wanted);
 
@@ -76,7 +78,7 @@ class VertexExchange {
   OperationLogWriter* log_;
   OperationBatch unlogged_;
   struct State {
-    int writer = -1;            // none: all ranks have it as it was at first
+    int writer = 0;
     bool is_up_to_date = true;  // this rank's copy
   };
   std::vector<State> cubes_;

@@ -6,11 +6,14 @@ from pathlib import Path
 
 import pandas
 
+from . import distributed
+
 SCHEMA = 4
 # A mesh counts as verified when these pass and no other claim fails; the rest may lack an input, such as the image.
 NEEDED_CLAIMS = ("structure", "delaunay", "radius_edge", "boundary_angles")
 SIMULATED_CACHES = "its seconds are those of a simulation of caches"
-LONG_LISTS = ["labels", "facet_pairs", "command", "workers"]
+OF_RANKS = "its ranks have tables and figures of their own"
+LONG_LISTS = ["labels", "facet_pairs", "command", "workers", "ranks.rounds", "ranks.by_rank"]
 # Phases in no second of equation 1: measuring and writing the mesh, finding the radius for a number of cells, drawing
 # a phantom.
 UNTIMED = ("measure", "write", "calibrate", "draw")
@@ -62,6 +65,8 @@ def derived(row):
         "refining_s": sum(timed.get(phase, 0.0) for phase in REFINING) if timed else None,
         "headline": not doubt,
         "doubt": doubt,
+        "unproved": unproved_of(row),
+        "on_ranks": distributed.of_row(row),
     }
 
 
@@ -119,7 +124,8 @@ def usable_cores(environment):
 
 def build_of(row):
     """Tells programs apart: the mesher's hash, or the commit it was built from, or its version."""
-    hashed = row.get("programs", {}).get("podm", {}).get("sha256")
+    programs = row.get("programs", {})
+    hashed = (programs.get("podm_mpi") or programs.get("podm", {})).get("sha256")
     if hashed:
         return hashed[:12]
     sources = row.get("environment", {}).get("sources")
@@ -130,11 +136,18 @@ def build_of(row):
 
 def doubt_of(row):
     """Empty when the row may give a headline number; otherwise the reason why not."""
-    if row.get("warmup"):
-        return "a warm-up"
+    if row.get("ranks"):
+        return OF_RANKS
     threads, cores = row.get("threads", {}).get("used", 0), usable_cores(row.get("environment", {}))
     if cores and threads > cores and not is_virtual(row):
         return f"{threads} threads on {cores} cores"
+    return unproved_of(row) or (SIMULATED_CACHES if simulates_caches(row) else "")
+
+
+def unproved_of(row):
+    """Empty when the row's mesh was made in its turn and verified; otherwise the reason why not."""
+    if row.get("warmup"):
+        return "a warm-up"
     status = row.get("status", "ok")
     if status != "ok":
         return f"status {status}: {row.get('reason') or 'no reason given'}"
@@ -144,7 +157,7 @@ def doubt_of(row):
     failed = [claim for claim, verdict in verdicts.items() if verdict == "fail"]
     undecided = [claim for claim in NEEDED_CLAIMS if verdicts.get(claim) not in ("pass", "fail")]
     doubts = [*(f"claim {claim} failed" for claim in failed), *(f"claim {claim} was not run" for claim in undecided)]
-    return "; ".join(doubts) or (SIMULATED_CACHES if simulates_caches(row) else "")
+    return "; ".join(doubts)
 
 
 def _newest_of_each_turn(rows):

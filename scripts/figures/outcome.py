@@ -3,8 +3,9 @@ from dataclasses import dataclass, field
 
 import pandas
 
-from . import (cache, deviation, experiment_verdicts, fig1, fig2b, fig4a, fig4b, guarantees, lost, machine, peers,
-               scaling, simulated, table1, table2, table3, validation, verdicts)
+from . import (cache, deviation, distributed, distributed_figure, distributed_model, experiment_verdicts, fig1, fig2b,
+               fig4a, fig4b, guarantees, lost, machine, peers, scaling, simulated, table1, table2, table3, validation,
+               verdicts)
 
 
 @dataclass(frozen=True)
@@ -24,12 +25,14 @@ def make(frame, report=None, schedule=None, mesh=None, experiments=None):
     """`report`: of podm-verify, or None; `schedule` and `mesh`: for figure 2 (b), or None."""
     series = scaling.weak_series(frame)
     hops = table2.table2(frame)
-    drawn, missing = _figures(frame, series, report, schedule, mesh)
-    return Outcome(_tables(frame, series, hops), drawn, verdicts.verdicts(frame, series, hops), missing, series,
-                   experiments)
+    ranks = distributed.distributed(frame)
+    nodes = distributed_model.extrapolated(ranks)
+    drawn, missing = _figures(frame, series, (ranks, nodes), report, schedule, mesh)
+    return Outcome(_tables(frame, series, hops, ranks, nodes), drawn, verdicts.verdicts(frame, series, hops), missing,
+                   series, experiments)
 
 
-def _tables(frame, series, hops):
+def _tables(frame, series, hops, ranks, nodes):
     """The paper's tables are there always, others where rows fill them."""
     always = {"table1": (table1.table1(series), table1), "table2": (hops, table2),
               "table3": (table3.table3(frame), table3)}
@@ -37,6 +40,7 @@ def _tables(frame, series, hops):
               "deviation": (deviation.deviation(series), deviation), "lost": (lost.lost(frame, series), lost),
               "validation": (validation.validation(frame), validation),
               "peers": (peers.peers(frame), peers), "cache": (cache.cache(frame), cache),
+              "distributed": (ranks, distributed), "distributed_extrapolated": (nodes, distributed_model),
               "guarantees": (guarantees.ours(frame), guarantees),
               "guarantees_of_others": (guarantees.of_others(frame), guarantees)}
     made = {**always, **{name: entry for name, entry in others.items() if len(entry[0])}}
@@ -48,7 +52,7 @@ def _tables(frame, series, hops):
     return tables
 
 
-def _figures(frame, series, report, schedule, mesh):
+def _figures(frame, series, distributed_tables, report, schedule, mesh):
     drawn = {
         "fig1": fig1.fig1(report) if report else fig1.fig1_extremes(frame),
         "fig2b": fig2b.fig2b(schedule, mesh) if schedule and mesh else None,
@@ -56,12 +60,14 @@ def _figures(frame, series, report, schedule, mesh):
         "fig4b": fig4b.fig4b(series),
         "deviation": deviation.figure(series),
         "lost": lost.figure(frame, series),
+        "distributed": distributed_figure.figure(*distributed_tables),
     }
     why = {"fig1": "no report of podm-verify and no verified row with its quality",
            "fig2b": "no two leaves of different nodes were active at one time" if schedule and mesh
            else "needs --schedule and --mesh of a run of pdr or pdr-podm",
            "deviation": "no verified simulated rows of weak scaling on more than one core",
-           "lost": "no simulated rows of weak scaling tell what their workers lost (virtual.worker_s)"}
+           "lost": "no simulated rows of weak scaling tell what their workers lost (virtual.worker_s)",
+           "distributed": "no verified rows on more than one rank (distributed_weak.toml)"}
     missing = {name: why[name] for name, figure in drawn.items() if figure is None}
     return {name: figure for name, figure in drawn.items() if figure is not None}, missing
 

@@ -20,10 +20,13 @@ FIGURE_TITLES = {"fig1": "Figure 1: quality of the cells",
                  "fig4a": "Figure 4 (a): speed-up and efficiency",
                  "fig4b": "Figure 4 (b): time and elements per second",
                  "deviation": "Simulated speed-ups beside the paper's",
-                 "lost": "Where the time of simulated cores goes"}
+                 "lost": "Where the time of simulated cores goes",
+                 "distributed": "Weak scaling on ranks that share no memory"}
 TABLE_TITLES = {"table1": "Table 1: weak scaling", "table2": "Table 2: accesses by hops",
                 "table3": "Table 3: memory levels", "peers": "Beside other meshers, one core",
-                "simulated": "Simulated: every trial of virtual workers", "cache": "Cache behaviour"}
+                "simulated": "Simulated: every trial of virtual workers", "cache": "Cache behaviour",
+                "distributed": "Ranks that share no memory",
+                "distributed_extrapolated": "Ranks of nodes of 20 million cells, extrapolated"}
 FOLDED_TABLES = ("simulated", "cache")
 NOTES = {
     "table1": "Refining: octree, initial mesh, refinement and closing alone; its efficiency is the median of ratios "

@@ -161,6 +161,15 @@ TEST_F(ExperimentTest, FaultsNameFileLineAndColumn) {
        "some.toml:8:9:", "input"},
       {kHead + "[[trials]]\nname = 'x'\nmeasure = 'memory_latency'\nthreads = 2\n",
        "some.toml:8:11:", "threads"},
+      {kHead + kTrial + "ranks = 2\n", "some.toml:8:9:", "carrier"},
+      {kHead + kTrial + "carrier = 'mpi'\n", "some.toml:8:11:", "ranks"},
+      {kHead + kTrial + "ranks = 2\ncarrier = 'pigeon'\n", "some.toml:9:11:", "in-process"},
+      {kHead + kTrial + "target_elements_per_rank = 5\n", "some.toml:8:28:", "ranks"},
+      {kHead + kTrial + "ranks = 2\ncarrier = 'mpi'\nnetwork = '2,12.5'\n", "some.toml:10:11:", "in-process"},
+      {kHead + kTrial + "ranks = 2\ncarrier = 'in-process'\nnetwork = '2'\n", "some.toml:10:11:", "12.5"},
+      {kHead + kTrial + "ranks = 2\ncarrier = 'in-process'\nnetwork = '2,0'\n", "some.toml:10:11:", "12.5"},
+      {kHead + kTrial + "ranks = 2\ncarrier = 'mpi'\nreplay = true\n", "some.toml:10:10:", "exclude"},
+      {kHead + kTrial + "ranks = 2\ncarrier = 'mpi'\nmesher = 'cgal'\n", "some.toml:8:9:", "podm alone"},
       {"tier = 'huge'\n" + kHead + kTrial, "some.toml:1:8:", "kick-tires"},
       {kHead + "[[trials]]\nname = 'x'\ninput = ['a', 'b']\n", "some.toml:7:15:", "inputs.b"},
       {kHead, "some.toml:1:", "trials"},  // what is missing
@@ -205,6 +214,16 @@ TEST_F(ExperimentTest, ThreadsUpToAllArePowersOfTwoAndAll) {
     }
   }
   EXPECT_EQ(threads_of("['1..all', 'all', 1]"), powers) << "each number once";
+}
+
+TEST_F(ExperimentTest, ElementsPerRankGrowWithTheRanks) {
+  const auto trials =
+      read(kHead + kTrial + "ranks = [1, 64]\ncarrier = 'in-process'\ntarget_elements_per_rank = 1000\n")
+          .trials;
+  ASSERT_EQ(trials.size(), 2u);
+  EXPECT_EQ(trials[1].name, "one,ranks=64");
+  EXPECT_EQ(trials[1].options["target_elements"], 64000);
+  EXPECT_FALSE(trials[1].options.contains("target_elements_per_rank"));
 }
 
 TEST_F(ExperimentTest, ElementsPerThreadGrowWithTheThreads) {

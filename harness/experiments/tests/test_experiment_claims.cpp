@@ -47,6 +47,22 @@ void set_misses_per_insertion(Row& row, double value) {
       {is_likwid ? "MEM_LOAD_RETIRED_L3_MISS" : "llc_load_misses", Counter{value * size, "s", {}}}};
 }
 
+RanksRecord& ranks_of(Row& row) {
+  RanksRecord& ranks = mesh_of(row).ranks.emplace();
+  ranks.number = row.asked.value("ranks", 1);
+  return ranks;
+}
+
+void set_seconds_of_rank(Row& row, double computing_s) {
+  RankRecord& rank = ranks_of(row).by_rank.emplace_back();
+  rank.spent["refine"].computing_s = computing_s;
+}
+
+void set_rate_of_rank(Row& row, double cells_per_second) {
+  set_seconds_of_rank(row, kMuch);
+  mesh_of(row).cells = many(cells_per_second * static_cast<double>(mesh_of(row).ranks->number));
+}
+
 using SetValue = void (*)(Row& row, double value);
 
 const std::map<std::string, SetValue> kSetters = {
@@ -71,6 +87,28 @@ const std::map<std::string, SetValue> kSetters = {
      [](Row& row, double value) {
        mesh_of(row).cells = many(value);
        mesh_of(row).virtual_time.emplace().phases_s = {{"refine", kMuch}};
+     }},
+    {"virtual_cells_per_second_and_rank", set_rate_of_rank},
+    {"virtual_refining_cells_per_second_and_rank", set_rate_of_rank},
+    {"processor_seconds", set_seconds_of_rank},
+    {"refining_processor_seconds", set_seconds_of_rank},
+    {"rounds",
+     [](Row& row, double value) { ranks_of(row).rounds.resize(static_cast<std::size_t>(std::ceil(value))); }},
+    {"deferred_share",
+     [](Row& row, double value) {
+       mesh_of(row).cells = many(1);
+       ranks_of(row).rounds.emplace_back().deferred = many(value);
+     }},
+    {"imbalance", [](Row& row, double value) { ranks_of(row).imbalance = value; }},
+    {"cells_over_one_machine",
+     [](Row& row, double value) {
+       row.resolved.emplace().cells = many(1);
+       mesh_of(row).cells = many(value);
+     }},
+    {"bytes_per_cell_beyond_image",
+     [](Row& row, double value) {
+       mesh_of(row);
+       row.process.bytes_per_cell_beyond_image = value;
      }},
     {"lost_seconds", [](Row& row, double value) { set_overhead(row, value, 0, 0); }},
     {"contention_seconds", [](Row& row, double value) { set_overhead(row, value, 0, 0); }},

@@ -114,6 +114,17 @@ TEST_F(TrialKeysTest, DifferWithTheRadiusThatWasFound) {
   EXPECT_NE(key_with(2), key_with(2.5));
 }
 
+TEST_F(TrialKeysTest, OfTrialsOnRanksDifferWithPodmMpi) {
+  Trial alone = some_trials()[0], on_ranks = alone;
+  on_ranks.options["ranks"] = 2;
+  const auto key_beside = [&](const std::string& bytes, const Trial& trial) {
+    folder_.write("podm-mpi", bytes);
+    return TrialKeys("m", {}, {}, folder_ / "podm").of(trial, {}, prepared(trial));
+  };
+  EXPECT_NE(key_beside("one", on_ranks), key_beside("other", on_ranks));
+  EXPECT_EQ(key_beside("one", alone), key_beside("other", alone));
+}
+
 TEST_F(TrialKeysTest, TopologyCountsByItsBytes) {
   Trial trial = some_trials()[0];
   trial.options["topology"] = folder_.write("machine.xml", "<topology/>");

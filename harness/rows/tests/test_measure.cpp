@@ -33,8 +33,35 @@ Row full_row() {
                                           level("memory of the own node 0", 240),
                                           level("memory of another node 1", 480),
                                           level("memory of another node 2", 360)};
+  row.resolved.emplace().cells = 1000;
+  row.process.bytes_per_cell_beyond_image = 130;
   row.replay = {Replay::End::kEqual, ""};
   row.side_by_side = {{0, 1200, {{"refine", 6.0}}, 200, {}}, {1, 1200, {{"refine", 3.0}}, 400, {}}};
+  return row;
+}
+
+// Of two ranks, of which the first computes for long and the second waits.
+Row row_on_ranks() {
+  Row row = full_row();
+  row.mesh->ranks = from_json<RanksRecord>(Json::parse(R"({
+    "number": 2, "imbalance": 1.5, "rounds": [{"deferred": 300}, {"deferred": 0}],
+    "by_rank": [
+      {"cells": 900, "spent": {
+        "transform": {"computing_s": 1, "waiting_s": 0, "network_s": 0},
+        "initial": {"computing_s": 1, "waiting_s": 0, "network_s": 0},
+        "refine": {"computing_s": 4, "waiting_s": 0, "network_s": 0},
+        "later": {"computing_s": 2, "waiting_s": 0, "network_s": 0},
+        "exchange": {"computing_s": 1, "waiting_s": 0, "network_s": 2},
+        "extract": {"computing_s": 1, "waiting_s": 0, "network_s": 0},
+        "measure": {"computing_s": 50, "waiting_s": 0, "network_s": 0}}},
+      {"cells": 300, "spent": {
+        "transform": {"computing_s": 1, "waiting_s": 0, "network_s": 0},
+        "initial": {"computing_s": 1, "waiting_s": 0, "network_s": 0},
+        "refine": {"computing_s": 2, "waiting_s": 0, "network_s": 0},
+        "later": {"computing_s": 1, "waiting_s": 0, "network_s": 0},
+        "exchange": {"computing_s": 1, "waiting_s": 2.5, "network_s": 2},
+        "extract": {"computing_s": 0.5, "waiting_s": 0, "network_s": 0},
+        "measure": {"computing_s": 50, "waiting_s": 0, "network_s": 0}}}]})"));
   return row;
 }
 
@@ -59,6 +86,31 @@ struct Expected {
   Take take;  ///< what the number needs; null: a row is enough
 };
 
+constexpr std::pair<const char*, double> kOfRanks[] = {
+    {"virtual_cells_per_second_and_rank", 50},           // 12 s until the first rank has extracted
+    {"virtual_refining_cells_per_second_and_rank", 60},  // 10 s until it has refined
+    {"processor_seconds", 16.5},
+    {"refining_processor_seconds", 13},
+    {"rounds", 2},
+    {"deferred_share", 0.25},
+    {"imbalance", 1.5},
+};
+
+TEST(Measures, OfRanksAreWhatTheTableSays) {
+  for (const auto& [name, number] : kOfRanks) {
+    const Measure* measure = find_measure(name);
+    ASSERT_NE(measure, nullptr) << name;
+    const Value value = measure->read(row_on_ranks());
+    ASSERT_TRUE(value.number) << name << ": " << value.absence;
+    EXPECT_DOUBLE_EQ(*value.number, number) << name;
+    EXPECT_FALSE(measure->read(full_row()).number) << name << " of a row without ranks";
+  }
+  Row alone = row_on_ranks();
+  alone.mesh->ranks->rounds.clear();
+  EXPECT_FALSE(find_measure("deferred_share")->read(alone).number) << "one rank defers nothing";
+  EXPECT_DOUBLE_EQ(*find_measure("virtual_refining_seconds")->read(row_on_ranks()).number, 10);
+}
+
 TEST(Measures, AreWhatTheTableSays) {
   const Expected expected[] = {
       {"seconds", 10, take_mesh},            // without measuring, writing, calibration and drawing
@@ -71,6 +123,8 @@ TEST(Measures, AreWhatTheTableSays) {
        [](Row& row) { row.side_by_side->front().phases_s.clear(); }},
       {"virtual_refining_seconds", 0.5, take_virtual},
       {"virtual_cells_per_second", 1600, [](Row& row) { row.mesh->virtual_time->phases_s.reset(); }},
+      {"cells_over_one_machine", 1.2, [](Row& row) { row.resolved.reset(); }},
+      {"bytes_per_cell_beyond_image", 130, [](Row& row) { row.process.bytes_per_cell_beyond_image.reset(); }},
       {"contention_seconds", 0.25, take_overhead},
       {"rollback_seconds", 0.125, take_overhead},
       {"begging_seconds", 7, take_overhead},
@@ -92,7 +146,8 @@ TEST(Measures, AreWhatTheTableSays) {
       {"ended", 1, nullptr},
       {"passed", 1, nullptr},
   };
-  EXPECT_EQ(std::size(expected), measures().size()) << "each measure of the table is told here";
+  EXPECT_EQ(std::size(expected) + std::size(kOfRanks), measures().size())
+      << "each measure of the table is told here";
   for (const auto& [name, number, take] : expected) {
     const Measure* measure = find_measure(name);
     ASSERT_NE(measure, nullptr) << name;

@@ -42,6 +42,22 @@ struct RowTest : testing::Test {
   TrialResult good, failed;
 };
 
+// 2000 bytes are the image's labels, 1000 cells there are.
+TEST_F(RowTest, OverMpiTheMemoryIsOfARankAndItsShareOfTheCells) {
+  context.programs.podm_mpi.emplace().sha256 = "of podm-mpi";
+  EXPECT_DOUBLE_EQ(*made_of(good).process.bytes_per_cell_beyond_image, 104);
+  EXPECT_FALSE(made_of(good).programs.podm_mpi) << "podm made the mesh";
+  trial.options = {{"threads", 1}, {"ranks", 4}, {"carrier", "mpi"}};
+  const Row over_mpi = made_of(good);
+  EXPECT_DOUBLE_EQ(*over_mpi.process.bytes_per_cell_beyond_image, 416);
+  EXPECT_EQ(over_mpi.basis, Basis::kMeasured);
+  EXPECT_EQ(row_of(good)["programs"]["podm_mpi"]["sha256"], "of podm-mpi");
+  trial.options["carrier"] = "in-process";
+  const Row in_process = made_of(good);
+  EXPECT_DOUBLE_EQ(*in_process.process.bytes_per_cell_beyond_image, 104);
+  EXPECT_EQ(in_process.basis, Basis::kSimulated) << "its ranks' clocks are virtual";
+}
+
 TEST_F(RowTest, HoldsTheMesherRecordAndWhatTheHarnessSaw) {
   const Json row = row_of(good);
   const Json recorded = Json::parse(kGoodRecord);

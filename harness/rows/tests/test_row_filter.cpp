@@ -38,6 +38,11 @@ TEST(RowsToJudge, AreTheNewestOfEachKeyOfOneBuildAndMachine) {
   peer.programs.peer = {"other", "its own", "1.0"};
   machine.asked["measure"] = "memory_latency";
   EXPECT_EQ(keys({peer, machine, row("a", "1"), row("b", "2")}), "pmb") << "they are not of podm's build";
+  Row on_ranks = row("r", "1"), earlier = row("s", "1");
+  on_ranks.asked["ranks"] = earlier.asked["ranks"] = 2;
+  on_ranks.programs.podm_mpi.emplace().sha256 = "new";
+  earlier.programs.podm_mpi.emplace().sha256 = "old";
+  EXPECT_EQ(keys({earlier, on_ranks, row("a", "2")}), "ra") << "podm-mpi is a program of its own";
   Row changed = row("a", "1");  // as after a preparation that failed
   changed.key = "another";
   EXPECT_EQ(keys({row("a", "1"), changed}), "another");

@@ -1,8 +1,11 @@
 // What becomes of a trial whose mesher does well, fails, hangs, lies or is not there.
 #include <gtest/gtest.h>
 
+#include <fmt/format.h>
+
 #include "machine/machine.h"
 #include "tests/fake_mesher.h"
+#include "trials/ranks.h"
 #include "trials/trial.h"
 
 namespace podm::bench {
@@ -68,10 +71,66 @@ TEST_F(TrialTest, OptionsOfTheTrialReachTheMesher) {
   trial.options = {{"threads", 3}, {"delta_mm", 0.25},       {"cores_per_node", 8},
                    {"pin", true},  {"oversubscribe", false}, {"counters", "perf_event"}};
   run(write_record(kGoodRecord), trial);
-  const std::string arguments = " " + read_tail(folder_ / "arguments", 1000);
+  const std::string arguments = fmt::format(" {}", read_tail(folder_ / "arguments", 1000));
   EXPECT_TRUE(arguments.starts_with(" mesh image.nii --threads 3 --delta 0.25 --cores-per-node 8 --pin -o "))
       << arguments;
   EXPECT_TRUE(arguments.ends_with(" --quiet\n")) << arguments;
+}
+
+Trial trial_on_ranks(const char* carrier) {
+  Trial trial = some_trial();
+  trial.options = {{"threads", 1}, {"radius_mm", 2.5}, {"ranks", 3}, {"carrier", carrier}};
+  return trial;
+}
+
+TEST_F(TrialTest, TrialsOnRanksAreRunByPodmMpiBesidePodm) {
+  const std::string podm = fake_mesher(folder_, "exit 9\n");
+  folder_.script("podm-mpi", R"(
+echo "$@" > "$(dirname "$0")/arguments"
+while [ $# -gt 0 ]; do
+  case $1 in --record) record=$2;; -o) index=$2;; esac
+  shift
+done
+echo 12 > "$index"; echo 1234567 > "${index%.pvtu}_0.vtu"
+)" + write_record(kGoodRecord));
+  TrialRunner runner({podm, {}});
+  Trial trial = trial_on_ranks("in-process");
+  trial.options["network"] = "2,12.5";
+  EXPECT_EQ(runner.why_skipped(trial), "");
+  const TrialResult result = runner.run(trial, prepared(trial), folder_.path());
+  EXPECT_EQ(result.status, Status::kOk) << result.reason;
+  EXPECT_EQ(result.mesh_bytes, 3 + 8) << "index and pieces";
+  const std::string arguments = read_tail(folder_ / "arguments", 1000);
+  EXPECT_TRUE(
+      arguments.starts_with("mesh --in-process 3 image.nii --threads 1 --radius 2.5 --network 2,12.5 -o "))
+      << arguments;
+  EXPECT_NE(arguments.find("/mesh.pvtu"), std::string::npos) << arguments;
+}
+
+TEST_F(TrialTest, TrialsOverMpiAreStartedByMpirun) {
+  folder_.script("podm-mpi", "");
+  folder_.script("mpirun", fmt::format("echo \"$@\" > {}", folder_ / "arguments"));
+  const std::string path = std::getenv("PATH");
+  setenv("PATH", fmt::format("{}:{}", folder_.path(), path).c_str(), 1);
+  TrialRunner runner({fake_mesher(folder_, ""), {}});
+  const Trial trial = trial_on_ranks("mpi");
+  EXPECT_EQ(runner.why_skipped(trial), "");
+  runner.run(trial, prepared(trial), folder_.path());
+  setenv("PATH", path.c_str(), 1);
+  const std::string arguments = read_tail(folder_ / "arguments", 1000);
+  EXPECT_TRUE(arguments.starts_with("--oversubscribe -n 3 ")) << arguments;
+  EXPECT_NE(arguments.find(podm_mpi_of(folder_ / "podm") + " mesh image.nii "), std::string::npos)
+      << arguments;
+}
+
+TEST_F(TrialTest, TrialsOnRanksAreSkippedWherePodmMpiIsNotBuilt) {
+  TrialRunner runner({fake_mesher(folder_, ""), {}});
+  for (const char* carrier : {"mpi", "in-process"}) {
+    const std::string why = runner.why_skipped(trial_on_ranks(carrier));
+    EXPECT_NE(why.find("podm-mpi"), std::string::npos) << why;
+    EXPECT_NE(why.find("MPI is found"), std::string::npos) << why;
+  }
+  EXPECT_EQ(runner.why_skipped(some_trial()), "");
 }
 
 TEST_F(TrialTest, ScheduleOfTheMesherReachesTheVerifier) {
@@ -83,7 +142,7 @@ TEST_F(TrialTest, ScheduleOfTheMesherReachesTheVerifier) {
   TrialRunner({mesher, verifier}).run(trial, prepared(trial), folder_.path());
   const std::string option = " --schedule " + folder_.path() + "/schedule.jsonl";
   for (const char* program : {"arguments", "verifier_arguments"}) {
-    const std::string arguments = " " + read_tail(folder_ / program, 1000);
+    const std::string arguments = fmt::format(" {}", read_tail(folder_ / program, 1000));
     EXPECT_NE(arguments.find(option), std::string::npos) << program << arguments;
   }
 }
@@ -219,7 +278,7 @@ TEST_F(TrialTest, RadiusFoundReachesTheMesherInPlaceOfTheTarget) {
   radius.radius_mm = 2.25;
   radius.delta_mm = 1.125;
   TrialRunner({fake_mesher(folder_, write_record(kGoodRecord)), {}}).run(trial, preparation, folder_.path());
-  const std::string arguments = " " + read_tail(folder_ / "arguments", 1000);
+  const std::string arguments = fmt::format(" {}", read_tail(folder_ / "arguments", 1000));
   EXPECT_NE(arguments.find(" --radius 2.25 --delta 1.125 "), std::string::npos) << arguments;
   EXPECT_EQ(arguments.find("target"), std::string::npos) << arguments;
 }

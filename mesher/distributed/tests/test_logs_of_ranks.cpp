@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <random>
+#include <stop_token>
 
 #include "distributed/in_process_ranks.h"
 #include "distributed/mesh_image_on_ranks.h"
@@ -31,7 +32,8 @@ struct LoggedRun {
   std::vector<LogOfRank> logs;
 };
 
-LoggedRun run(const Case& of) {
+// A rank may be stopped before it begins, while others go on.
+LoggedRun run(const Case& of, int stopped_rank = -1) {
   const ScratchFolder folder;
   MeshingOptions options;
   options.sizes.radius_mm = of.radius_mm;
@@ -46,7 +48,9 @@ LoggedRun run(const Case& of) {
     OperationLogWriter log(path);
     MeshingOptions own = options;
     own.log = &log;
-    const MeshingOnRanks meshing = mesh_image_on_ranks(of.image, own, ranks);
+    std::stop_source stop;
+    if (ranks.rank() == stopped_rank) stop.request_stop();
+    const MeshingOnRanks meshing = mesh_image_on_ranks(of.image, own, ranks, {}, stop.get_token());
     log.finish({.box = meshing.report.virtual_box,
                 .image_sha256 = {},
                 .space = to_string(of.space),
@@ -83,6 +87,15 @@ TEST_P(LogsOfRanks, ReplayToTheSameMesh) {
   EXPECT_EQ(num_learnt > 0, GetParam().is_shared);
 }
 
+TEST(LogsOfRanksThatStop, ReplayToTheMeshOfTheFirst) {
+  const Case of{"", ball(20, 7), 1.2, 3};
+  for (const int stopped_rank : {0, 1}) {
+    const LoggedRun logged = run(of, stopped_rank);
+    EXPECT_EQ(logged.stop_reason, StopReason::kCancelled);
+    EXPECT_EQ(verdict(logged.logs, of), "equal") << "rank " << stopped_rank;
+  }
+}
+
 LabelImage three_labels() {
   return make_image({24, 24, 24}, {1, 1, 1}, 3, [](int i, int j, int k) {
     if (std::hypot(i - 11.5, j - 11.5, k - 11.5) >= 10) return 0;
@@ -97,7 +110,7 @@ std::vector<Case> cases() {
       cases.push_back({"labels_on_" + std::to_string(num_ranks) + "_with_" + std::to_string(threads),
                        three_labels(), 1.2, num_ranks, threads, Space::kRas, 0, num_ranks > 1});
   cases.push_back({"voxel_space", ball(24, 9), 1.2, 4, 1, Space::kVoxel});
-  cases.push_back({"more_ranks_than_cells", ball(12, 4), 3, 24, 1, Space::kRas, 0, false});
+  cases.push_back({"more_ranks_than_cells", ball(12, 4), 3, 24});
   cases.push_back({"stopped_in_the_coarse_mesh", ball(24, 9), 1.2, 3, 1, Space::kRas, 1000, false});
   cases.push_back({"stopped_in_the_first_round", ball(24, 9), 1.2, 3, 1, Space::kRas, 12000});
   return cases;

@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <bit>
 
 #include "distributed/in_process_ranks.h"
 #include "distributed/together.h"
@@ -52,6 +53,32 @@ TEST_P(MeshImageOnRanks, PiecesAddUpToTheWholeThatAllRanksTellOf) {
   EXPECT_EQ(results[0].piece.total_cells, cells);
   EXPECT_EQ(results[0].piece.total_facets, facets);
   EXPECT_TRUE(std::all_of(owners.begin(), owners.end(), [](int count) { return count == 1; }));
+}
+
+// A network so slow that it is nearly all of the time: no phase may lose any.
+TEST_P(MeshImageOnRanks, PhasesAddUpToWhatEachRankSpent) {
+  const LabelImage image = ball(24, 9);
+  std::vector<PartOfRank> parts;
+  std::vector<double> until_end_s(static_cast<std::size_t>(GetParam()));
+  run_ranks({.num_ranks = GetParam(), .one_at_a_time = true, .latency_s = 100}, [&](Communication& ranks) {
+    const double start_s = ranks.report().total_s();
+    MeshingOnRanks result = mesh_image_on_ranks(image, options_with_radius(1.5), ranks);
+    until_end_s[static_cast<std::size_t>(ranks.rank())] = ranks.report().total_s() - start_s;
+    if (ranks.rank() == 0) parts = std::move(result.parts);
+  });
+  for (std::size_t rank = 0; rank < parts.size(); ++rank) {
+    double sum_s = 0;
+    for (const auto& [phase, spent] : parts[rank].spent) {
+      sum_s += spent.computing_s + spent.waiting_s + spent.network_s;
+      EXPECT_GE(spent.computing_s, 0) << phase;
+    }
+    EXPECT_EQ(parts[rank].spent.count("later") > 0, parts[rank].rounds.size() > 1);
+    EXPECT_GT(parts[rank].spent.at("refine").computing_s, 0);
+    // What ranks tell each other before the first phase and after the last.
+    const double told_s = GetParam() == 1 ? 0 : 100 * (6 * std::bit_width(parts.size() - 1));
+    EXPECT_LE(sum_s, until_end_s[rank]);
+    EXPECT_NEAR(sum_s, until_end_s[rank], told_s + 0.5);
+  }
 }
 
 INSTANTIATE_TEST_SUITE_P(Ranks, MeshImageOnRanks, testing::Values(1, 3, 4));

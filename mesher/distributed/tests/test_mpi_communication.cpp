@@ -35,6 +35,27 @@ TEST(MpiCommunication, ItsClockGoesOn) {
   EXPECT_GT(communication->seconds(), start_s);
 }
 
+// MPI keeps the processor busy while a rank waits.
+TEST(MpiCommunication, WaitingIsNoComputing) {
+  const auto communication = mpi_communication();
+  const int last = communication->size() - 1;
+  communication->barrier();
+  const RankReport before = communication->report();
+  const double busy_s = 0.3;
+  while (communication->rank() == last && communication->report().computing_s - before.computing_s < busy_s) {
+  }
+  communication->all_gather(Bytes(10));
+  const RankReport after = communication->report();
+  const double computing_s = after.computing_s - before.computing_s;
+  if (communication->rank() == last) {
+    EXPECT_GE(computing_s, busy_s);
+  } else {
+    EXPECT_LT(computing_s, busy_s / 2);
+    EXPECT_GE(after.waiting_s - before.waiting_s, busy_s / 2);
+  }
+  EXPECT_EQ(after.bytes_sent - before.bytes_sent, 10 * static_cast<std::uint64_t>(last));
+}
+
 void throw_on_rank(int rank) {
   const auto communication = mpi_communication();
   if (communication->rank() == rank) throw InputError("planted");

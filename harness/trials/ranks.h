@@ -1,0 +1,29 @@
+// Trials that podm-mpi runs: the mesher on ranks, which are processes over MPI or threads of one process.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "experiments/experiment.h"
+#include "trials/process.h"
+
+namespace podm::bench {
+
+/// Ranks that the trial asks for; 0: podm makes the mesh.
+int num_ranks(const Trial& trial);
+/// Whether they are processes; threads of one process compute one after the other, in virtual time.
+bool is_over_mpi(const nlohmann::ordered_json& options);
+
+/// The file of podm-mpi, which is built beside podm where MPI is found.
+std::string podm_mpi_of(const std::string& podm);
+
+/// Why the ranks of the trial cannot run here; empty: they can, or there are none.
+std::string absence_of_ranks(const Trial& trial, const std::string& podm);
+
+/// The program that makes the trial's mesh, with what makes it run on ranks, up to its command `mesh`.
+std::vector<std::string> mesher_of(const Trial& trial, const std::string& podm);
+
+/// Bytes of all pieces of a mesh with this index; 0 without it.
+std::uint64_t bytes_of_pieces(const std::string& index_path);
+
+}  // namespace podm::bench

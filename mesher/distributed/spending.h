@@ -1,0 +1,48 @@
+// What a rank spends its seconds on, phase by phase.
+#pragma once
+
+#include <map>
+#include <string>
+
+#include "distributed/communication.h"
+
+namespace podm {
+
+/// Seconds of one phase.
+struct PhaseSeconds {
+  double computing_s = 0, waiting_s = 0, network_s = 0;
+
+  PhaseSeconds& operator+=(const PhaseSeconds& b) {
+    computing_s += b.computing_s;
+    waiting_s += b.waiting_s;
+    network_s += b.network_s;
+    return *this;
+  }
+};
+using SpentByPhase = std::map<std::string, PhaseSeconds>;
+
+class Spending {
+ public:
+  explicit Spending(const Communication& ranks) : ranks_(ranks), last_(ranks.report()) {}
+
+  /// What the rank spent since the last call, or since this was made, is of this phase.
+  void end(const std::string& phase) {
+    const RankReport now = ranks_.report();
+    by_phase_[phase] += {now.computing_s - last_.computing_s, now.waiting_s - last_.waiting_s,
+                         now.network_s - last_.network_s};
+    last_ = now;
+  }
+  /// What the rank spent since then is of these phases, which another one told.
+  void end(const SpentByPhase& phases) {
+    for (const auto& [phase, spent] : phases) by_phase_[phase] += spent;
+    last_ = ranks_.report();
+  }
+  const SpentByPhase& by_phase() const { return by_phase_; }
+
+ private:
+  const Communication& ranks_;
+  RankReport last_;
+  SpentByPhase by_phase_;
+};
+
+}  // namespace podm

@@ -1,0 +1,119 @@
+"""Weak scaling on ranks that share no memory: rows of podm-mpi, by cells a rank.
+
+Simulated ranks compute one after the other in virtual time: their efficiency is the cells a second and rank over those
+of one rank of as many cells. Ranks over MPI on one machine have to share its processors: of them the processor seconds
+outside of collectives are told, and the cells a processor second over those of one rank; what waits does not count.
+"""
+import math
+
+import numpy
+import pandas
+
+from . import scaling
+
+REFINING = ("initial", "refine", "later", "exchange")
+# What the mean rank spends its time on, in the order of the stack. Waiting and network are those of refinement but for
+# the coarse mesh, which the first rank makes while the others wait, to learn it then.
+PARTS = {"transform": "image transform", "initial": "coarse mesh", "learn": "learning it", "refine": "round 0",
+         "later": "later rounds", "exchange": "updates", "waiting": "waiting", "network": "network",
+         "extract": "pieces"}
+OF_ROW = ["deferred_share", "imbalance", "cells_over_one_machine", "rank_bytes_per_cell"]
+COLUMNS = ["basis", "kind", "cells_per_rank", "ranks", "n", "cells", "rounds", *OF_ROW, "refining_efficiency",
+           "efficiency", *PARTS]
+
+
+def of_row(row):
+    """What the parts of a row on ranks are, seconds of the mean rank; None of another."""
+    told = row.get("ranks")
+    if not told:
+        return None
+    number, spent = told["number"], [rank["spent"] for rank in told["by_rank"]]
+    is_measured, cells = row["basis"] == "measured", row["cells"]
+
+    def mean(phases, *kinds):
+        return sum(_seconds(one, phases, kinds) for one in spent) / number
+
+    every = ("computing",) if is_measured else ("computing", "waiting", "network")
+    made = {phase: mean([phase], "computing") for phase in REFINING}
+    made.update({phase: mean([phase], *every) for phase in ("transform", "initial", "extract")})
+    if not is_measured:
+        first = min(spent[0].get("initial", {}).get("computing_s", 0.0), made["initial"])
+        made.update(initial=first, learn=made["initial"] - first,
+                    **{kind: mean(REFINING[1:], kind) for kind in every[1:]})
+    rounds, asked = told["rounds"], row.get("asked", {}).get("target_elements")
+    resolved = (row.get("resolved") or {}).get("cells")
+    return {
+        "number": number, "cells_per_rank": (asked or cells) / number, "rounds": len(rounds),
+        "deferred_share": rounds[0]["deferred"] / cells if rounds and cells else None, "imbalance": told["imbalance"],
+        "cells_over_one_machine": cells / resolved if resolved else None,
+        "rank_bytes_per_cell": (row.get("process") or {}).get("bytes_per_cell_beyond_image") if is_measured else None,
+        # Of the rank that comes last in virtual time; of the mean one in processor time.
+        "refining_s": _whole(spent, REFINING, every, is_measured),
+        "whole_s": _whole(spent, ("transform", *REFINING, "extract"), every, is_measured), "part": made}
+
+
+def _seconds(spent, phases, kinds):
+    return sum(spent[phase][f"{kind}_s"] for phase in phases if phase in spent for kind in kinds)
+
+
+def _whole(spent, phases, kinds, is_measured):
+    sums = [_seconds(one, phases, kinds) for one in spent]
+    return numpy.mean(sums) if is_measured else max(sums)
+
+
+def distributed(frame):
+    """One line a basis, cells a rank and number of ranks, medians over repeats: microseconds a cell of the mean rank by
+    part. Rows are those of the newest program and machine; they have to be proved."""
+    if "on_ranks.number" not in frame:
+        return pandas.DataFrame(columns=COLUMNS)
+    rows = frame[frame["on_ranks.number"].notna() & (frame["unproved"] == "")]
+    lines = []
+    for basis, group in rows.groupby("basis"):
+        newest = group.iloc[-1]
+        group = group[(group["machine"] == newest["machine"]) & (group["build"] == newest["build"])]
+        for (per_rank, ranks), some in group.groupby(["on_ranks.cells_per_rank", "on_ranks.number"]):
+            lines.append(_line(basis, per_rank, int(ranks), some, _base(group, per_rank)))
+    return pandas.DataFrame(lines, columns=COLUMNS)
+
+
+def _base(group, per_rank):
+    """The rows of one rank of as many cells."""
+    return group[(group["on_ranks.number"] == 1) & (group["on_ranks.cells_per_rank"] == per_rank)]
+
+
+def _line(basis, per_rank, ranks, rows, base):
+    def rate(of, what):
+        return _median(of["cells"] / of["on_ranks.number"] / of[f"on_ranks.{what}_s"])
+
+    cells_of_rank = rows["cells"] / ranks
+    parts = {part: 1e6 * _median(rows[f"on_ranks.part.{part}"] / cells_of_rank) for part in PARTS
+             if f"on_ranks.part.{part}" in rows}
+    kind = "measured processor seconds" if basis == "measured" else "simulated"
+    return {"basis": basis, "kind": f"{kind}, {scaling.short(per_rank)} cells a rank", "cells_per_rank": per_rank,
+            "ranks": ranks, "n": len(rows), "cells": rows["cells"].median(),
+            "rounds": rows["on_ranks.rounds"].max(), **{name: _median(rows[f"on_ranks.{name}"]) for name in OF_ROW},
+            "refining_efficiency": rate(rows, "refining") / rate(base, "refining") if len(base) else math.nan,
+            "efficiency": rate(rows, "whole") / rate(base, "whole") if len(base) else math.nan, **parts}
+
+
+def _median(column):
+    known = column.dropna().astype(float)
+    return known.median() if len(known) else math.nan
+
+
+def readable(table):
+    """Percent, and microseconds a cell with three digits."""
+    shown = table[["kind", "ranks", "n"]].rename(columns={"kind": "basis", "n": "runs"}).copy()
+    shown["M cells"] = [f"{1e-6 * cells:.3g}" for cells in table["cells"]]
+    shown["rounds"] = table["rounds"].astype(int)
+    for name, title in (("refining_efficiency", "efficiency, refining"), ("efficiency", "efficiency, whole"),
+                        ("deferred_share", "deferred in round 0, of the cells"),
+                        ("cells_over_one_machine", "cells over one machine's")):
+        digits = 2 if name == "cells_over_one_machine" else 1
+        shown[title] = ["" if pandas.isna(value) else f"{100 * value:.{digits}f} %" for value in table[name]]
+    shown["imbalance"] = [f"{value:.3f}" for value in table["imbalance"]]
+    shown["bytes a cell of the largest rank"] = ["" if pandas.isna(value) else f"{value:.0f}"
+                                                 for value in table["rank_bytes_per_cell"]]
+    for part, words in PARTS.items():
+        shown[f"{words}, us a cell"] = ["" if pandas.isna(value) else f"{value:.3g}" for value in table[part]]
+    return shown

@@ -1,0 +1,84 @@
+"""Weak scaling on ranks, drawn: simulated and measured efficiencies apart, and where the time goes."""
+import numpy
+import pandas
+
+from . import scaling, style
+from .distributed import PARTS
+from .distributed_model import ASSUMPTIONS
+
+COLOURS = dict(zip(PARTS, ["#8fb996", "#e8a33d", "#e6d5e8", "#d1495b", "#8f575c", "#c9b458", style.GHOST, "#3d3d6b",
+                           "#6d9dc5"]))
+
+
+def figure(table, extrapolated):
+    """Efficiencies against ranks, simulated ones with what they extrapolate to, and measured ones apart; parts of the
+    simulated. None without rows on more than one rank."""
+    if not (table["ranks"] > 1).any():
+        return None
+    drawn, (simulated, measured, parts) = style.new_figure(columns=3, width=16.0, height=4.4)
+    for axes, basis, title in ((simulated, "simulated", "weak efficiency of refining, simulated"),
+                               (measured, "measured", "cells a processor second, measured over MPI")):
+        _efficiencies(axes, table[table["basis"] == basis], style.LINES[basis])
+        axes.set(title=title, xlabel="ranks", ylabel="over one rank, %")
+    _extrapolations(simulated, extrapolated)
+    for axes in (simulated, measured):
+        ranks = [*table["ranks"], *extrapolated["ranks"]]
+        style.cores_axis(axes, ranks)
+        axes.set(xlabel="ranks", ylim=(0, 115))
+        axes.axhline(100, color=style.INK, linewidth=0.8)
+        style.legend(axes, loc="lower left")
+    _parts(parts, table[table["basis"] == "simulated"], extrapolated)
+    style.finish(drawn, caption(table, extrapolated))
+    return drawn
+
+
+def _efficiencies(axes, table, line):
+    for number, (per_rank, group) in enumerate(table.groupby("cells_per_rank")):
+        group = group[group["refining_efficiency"].notna()]
+        if (group["ranks"] > 1).any():
+            axes.plot(group["ranks"], 100 * group["refining_efficiency"], marker="osD^v<>"[number % 7],
+                      color=list(COLOURS.values())[number % len(COLOURS)],
+                      label=f"{scaling.short(per_rank)} cells a rank", **line)
+
+
+def _extrapolations(axes, table):
+    for threads, group in table.groupby("threads"):
+        middle = 100 * group["refining_efficiency"]
+        bars = numpy.nan_to_num([middle - 100 * group["refining_efficiency_low"],
+                                 100 * group["refining_efficiency_high"] - middle]).clip(0)
+        axes.errorbar(group["ranks"], middle, yerr=bars, capsize=3, color=style.INK,
+                      label=f"extrapolated, {scaling.short(group['cells_per_rank'].iloc[0])} cells a node of {threads} "
+                            f"thread{'s' * (threads > 1)}", **{**style.LINES["extrapolated"],
+                                                               "marker": "D" if threads == 1 else "s"})
+
+
+def _parts(axes, table, extrapolated):
+    """A bar a size and number of ranks; extrapolated ones hatched, with one thread."""
+    bars = [(f"{scaling.short(line['cells_per_rank'])}\n{line['ranks']}", line, hatch)
+            for lines, hatch in ((table, ""), (extrapolated[extrapolated["threads"] == 1], "////"))
+            for _, line in lines.iterrows()]
+    for part, words in PARTS.items():
+        heights = [0 if pandas.isna(line[part]) else line[part] for _, line, _ in bars]
+        below = [sum(0 if pandas.isna(line[one]) else line[one] for one in list(PARTS)[:list(PARTS).index(part)])
+                 for _, line, _ in bars]
+        axes.bar(range(len(bars)), heights, 0.7, bottom=below, color=COLOURS[part], label=words, edgecolor=style.INK,
+                 linewidth=0.3, hatch=[hatch for *_, hatch in bars])
+    axes.set_xticks(range(len(bars)), [name for name, *_ in bars], fontsize=7)
+    axes.set(title="where the time of the mean rank goes", xlabel="cells a rank, ranks (hatched: extrapolated)",
+             ylabel="simulated microseconds a cell of a rank")
+    handles, labels = axes.get_legend_handles_labels()
+    style.legend(axes, handles=handles[::-1], labels=labels[::-1], **style.BESIDE)
+
+
+def caption(table, extrapolated):
+    parts = []
+    if (table["basis"] == "simulated").any():
+        parts.append("Simulated: ranks of one thread in one process, one after the other, on the clock of their "
+                     "processor time and of a stated network; the weak efficiency is cells a second and rank over "
+                     "those of one rank of as many cells")
+    if (table["basis"] == "measured").any():
+        parts.append("Measured: ranks over MPI on one machine with fewer processors; cells a processor second outside "
+                     "of collectives, as waiting there means nothing")
+    if len(extrapolated):
+        parts.append(ASSUMPTIONS)
+    return ". ".join(parts) + "."

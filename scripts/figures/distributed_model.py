@@ -1,0 +1,125 @@
+"""What simulated ranks of few cells say of nodes of 20 million: a model of each part of the time, fitted over sizes.
+
+Microseconds a cell of a rank are, part by part, a sum of what goes with the cells (1), with the surface of a rank's
+share (cells^(-1/3)) and of what is there once a rank (1 / cells), none of them negative, at each number of ranks. The
+parts of one rank, whose sum is the base, are fitted alike.
+"""
+import numpy
+import pandas
+from scipy.optimize import nnls
+
+from . import scaling
+from .distributed import PARTS, REFINING
+
+NODE_CELLS = 20e6
+NODES = (8, 64)
+THREADS = (1, 16)
+TERMS = {"volume": lambda n: numpy.ones_like(n), "surface": lambda n: n ** (-1 / 3), "once": lambda n: 1 / n}
+# Of which terms each part is. The image is the same whatever the size.
+MODEL = {"transform": ("once",), "initial": ("volume", "surface"), "learn": ("volume", "surface"),
+         "refine": ("volume", "surface"), "later": ("surface",), "exchange": ("volume", "surface"),
+         "waiting": ("volume", "surface"), "network": ("surface", "once"), "extract": ("volume", "surface")}
+# The others are of one thread today, whatever a node has.
+THREADED = ("transform", "initial", "refine", "later", "waiting", "extract")
+REFINING_PARTS = (*REFINING, "learn", "waiting", "network")
+COLUMNS = ["basis", "ranks", "threads", "cells_per_rank", "n", "sizes", "refining_efficiency",
+           "refining_efficiency_low", "refining_efficiency_high", "efficiency", "efficiency_low", "efficiency_high",
+           "worst_miss", *PARTS]
+ASSUMPTIONS = (
+    "Extrapolated: to nodes of 20 million cells, part by part, from the simulated sizes, as a sum of what goes with "
+    "the cells, with their surface (cells^(-1/3)) and once; bars: the range when any one of three or more sizes is "
+    "left out, no confidence interval. It is assumed that the coarse mesh, of the ratio simulated, is made by all "
+    "threads of the first node while the others wait, and learned by one of each; that sixteen threads of a node share "
+    "rounds, pieces and waiting alike, with and without ranks, and leave updates to one; that nodes are as fast as the "
+    "processor that simulated them, all the same, and the network as stated, without congestion; that each node holds "
+    "the image, the same for all sizes")
+
+
+def extrapolated(table):
+    """One line a number of nodes and threads of a node, of which two sizes or more were simulated. `worst_miss`: of the
+    microseconds a cell that sizes left out have, the greatest deviation of the prediction from the others; nan of two
+    sizes."""
+    simulated = table[table["basis"] == "simulated"].fillna({part: 0.0 for part in PARTS})
+    base = simulated[simulated["ranks"] == 1].set_index("cells_per_rank")
+    lines = []
+    for ranks in NODES:
+        many = simulated[simulated["ranks"] == ranks].set_index("cells_per_rank")
+        sizes = [size for size in many.index if size in base.index]
+        if len(sizes) < 2:
+            continue
+        for threads in THREADS:
+            lines.append(_line(ranks, threads, sizes, many.loc[sizes], base.loc[sizes]))
+    return pandas.DataFrame(lines, columns=COLUMNS)
+
+
+def _line(ranks, threads, sizes, many, base):
+    def efficiencies(chosen):
+        ours, alone = (_parts_at(NODE_CELLS, one.loc[chosen]) for one in (many, base))
+        return numpy.array([_sum(alone, parts, threads) / _sum(ours, parts, threads)
+                            for parts in (REFINING_PARTS, PARTS)])
+
+    value, left_out = efficiencies(sizes), []
+    if len(sizes) > 2:
+        left_out = [efficiencies([one for one in sizes if one != size]) for size in sizes]
+    bounds = numpy.array([value, *left_out]) if left_out else numpy.full((1, 2), numpy.nan)
+    return {"basis": "extrapolated", "ranks": ranks, "threads": threads, "cells_per_rank": NODE_CELLS, "n": len(sizes),
+            "sizes": " and ".join(scaling.short(size) for size in sizes),
+            **{name + end: number for end, numbers in (("", value), ("_low", bounds.min(0)), ("_high", bounds.max(0)))
+               for name, number in zip(("refining_efficiency", "efficiency"), numbers)},
+            "worst_miss": _worst_miss(sizes, many), **_of_threads(_parts_at(NODE_CELLS, many), threads)}
+
+
+def _parts_at(cells, table):
+    """Microseconds a cell by part, fitted to the lines of `table`, whose index is the cells a rank."""
+    sizes = table.index.to_numpy(dtype=float)
+    return {part: _fitted(sizes, table[part].to_numpy(dtype=float), MODEL[part], cells) for part in PARTS}
+
+
+def _fitted(sizes, values, terms, cells):
+    """By least squares of what the model misses, relative to the mean."""
+    if not values.any():
+        return 0.0
+    columns = numpy.column_stack([TERMS[term](sizes) for term in terms])
+    scales = columns.max(0)
+    coefficients, _ = nnls(columns / scales, values)
+    return float(sum(one / scale * TERMS[term](numpy.array([cells]))[0]
+                     for one, scale, term in zip(coefficients, scales, terms)))
+
+
+def _of_threads(parts, threads):
+    return {part: value / (threads if part in THREADED else 1) for part, value in parts.items()}
+
+
+def _sum(parts, chosen, threads):
+    divided = _of_threads(parts, threads)
+    return sum(divided[part] for part in chosen)
+
+
+def _worst_miss(sizes, many):
+    if len(sizes) < 3:
+        return numpy.nan
+    misses = []
+    for size in sizes:
+        predicted = sum(_parts_at(size, many.drop(index=size)).values())
+        misses.append(abs(predicted / many.loc[size, list(PARTS)].sum() - 1))
+    return max(misses)
+
+
+def readable(table):
+    def share(line, name):
+        text = f"{100 * line[name]:.0f} %"
+        if pandas.isna(line[name + "_low"]):
+            return text
+        return f"{text} [{100 * line[name + '_low']:.0f}, {100 * line[name + '_high']:.0f}]"
+
+    shown = table[["ranks", "threads", "sizes"]].rename(columns={"ranks": "nodes", "threads": "threads of a node",
+                                                                 "sizes": "from cells a rank"}).copy()
+    shown.insert(2, "M cells a node", [f"{1e-6 * cells:.3g}" for cells in table["cells_per_rank"]])
+    lines = table.to_dict("records")
+    shown["efficiency, refining"] = [share(line, "refining_efficiency") for line in lines]
+    shown["efficiency, whole"] = [share(line, "efficiency") for line in lines]
+    shown["worst miss of a size left out"] = ["" if pandas.isna(one) else f"{100 * one:.0f} %"
+                                              for one in table["worst_miss"]]
+    for part, words in PARTS.items():
+        shown[f"{words}, us a cell"] = [f"{value:.3g}" for value in table[part]]
+    return shown
