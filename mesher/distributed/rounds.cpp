@@ -147,7 +147,9 @@ class Rounds {
     return Blocks(grid_, predicted_cells(construction_.mesh(), problem_, grid_), ranks_.size());
   }
 
+  // The first cells are of the box, whose centre many of them have: labels there hang on the last bit.
   DistributedRefinement all_of_first_rank() {
+    for (const auto& entry : construction_.all_cells()) construction_.mesh().make_canonical(entry.cell);
     return {.refinement = construction_.finish(),
             .grid = grid_,
             .rank_of_cube = std::vector<int>(grid_.num_cubes(), 0),
