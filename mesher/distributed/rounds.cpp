@@ -121,7 +121,7 @@ class Rounds {
     spending_.end("exchange");
     return {.refinement = construction_.finish(),
             .grid = grid_,
-            .rank_of_cube = exchange_.writers(),
+            .rank_of_cube = blocks_->ranks(),
             .rounds = std::move(rounds_),
             .last_update = last_update,
             .spent = spending_.by_phase()};
@@ -361,21 +361,18 @@ class Rounds {
     return here;
   }
 
-  // Learns what others have changed until every cell with a vertex in what this rank wrote last is one of the
-  // whole, and so are its neighbours.
+  // Learns what others have changed until every cell with a vertex in this rank's block is one of the whole,
+  // and so are its neighbours.
   Update complete() {
     const Mesh& mesh = construction_.mesh();
-    const CubeSet own = cubes_of(ranks_.rank(), exchange_.writers());
+    const CubeSet own = cubes_of(ranks_.rank(), blocks_->ranks());
     CubeSet wanted = own.grown(kKnownRings);
     Update sum;
     for (;;) {
       sum += exchange_.update(wanted);
       const Zone zone(own, exchange_.known(), kKnownRings);
       const std::vector<CellId> unknown = unknown_cells(zone);
-      for (const CellId c : unknown) {
-        const Cell& cell = mesh.cell(c);
-        wanted.insert(cell.center, distance(cell.center, mesh.point(cell.vertices[0])) * (1 + kMargin));
-      }
+      for (const CellId c : unknown) Zone::insert_ball(mesh.cell(c), wanted);
       std::array<std::uint64_t, 1> more{unknown.size()};
       ranks_.sum(more);
       if (more[0] == 0) return sum;

@@ -3,13 +3,10 @@
 // sub-meshes; here zones tile space and vertices travel.)
 //
 //   1  The first rank makes a coarse mesh, and all get its vertices.
-//   2  Blocks divide space by predicted work. In round 0 a rank's zone is its block, and it refines what
-//   cells have their
-//      circumcentres there. A cell that needs vertices outside the zone is deferred.
-//   3  In later rounds zones are around what waits, along faces of blocks first, then along edges, then at
-//   corners
-//      (zones_of_round.h); those of cells that are deferred again grow. When one fills space its rank knows
-//      all and defers nothing: so rounds end.
+//   2  Blocks divide space by predicted work. In round 0 a rank's zone is its block, and it refines the
+//      cells that have their least vertices there. A cell that needs vertices outside is deferred.
+//   3  In later rounds zones are around what waits (zones_of_round.h); those of cells that are deferred again
+//      grow. When one fills space its rank knows all and defers nothing: so rounds end.
 //   4  At the end each rank learns what others changed in its block, and around it.
 #pragma once
 

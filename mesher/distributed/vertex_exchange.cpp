@@ -39,12 +39,6 @@ void VertexExchange::note_writer(CubeId cube, int rank) {
   cubes_[cube] = {.writer = rank, .is_up_to_date = rank == ranks_.rank()};
 }
 
-std::vector<int> VertexExchange::writers() const {
-  std::vector<int> writers;
-  for (const State& state : cubes_) writers.push_back(state.writer);
-  return writers;
-}
-
 CubeSet VertexExchange::known() const {
   CubeSet known(grid_);
   for (CubeId cube = 0; cube < cubes_.size(); ++cube)

@@ -35,8 +35,6 @@ class VertexExchange {
   /// From now on that rank has the cube's vertices as they are; all ranks have, until the first writer
   /// changes them.
   void note_writer(CubeId cube, int rank);
-  /// By cube.
-  std::vector<int> writers() const;
   /// Cubes of which this rank has all vertices as they are.
   CubeSet known() const;
   /// All ranks get the first one's mesh: collective. Nobody has noted a writer yet.

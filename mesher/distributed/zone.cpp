@@ -7,6 +7,14 @@
 
 namespace podm {
 
+namespace {
+
+double sure_radius_mm(const Cell& cell) {
+  return std::sqrt((1 + kStoredSphereTolerance) * static_cast<double>(cell.squared_radius));
+}
+
+}  // namespace
+
 // A ball of radius r through a vertex of the zone lies within 2r of it. Stored radii are off by more than
 // centres.
 Zone::Zone(CubeSet own, CubeSet known, int rings)
@@ -28,8 +36,16 @@ bool Zone::is_ball_known(const Cell& cell) const {
   if (is_all_known_) return true;
   if (cell.squared_radius < squared_reach_[known_depth_[known_.grid().cube_at(cell.center)]]) return true;
   if (std::isnan(cell.squared_radius)) return false;
-  return is_ball_known(cell.center,
-                       std::sqrt((1 + kStoredSphereTolerance) * static_cast<double>(cell.squared_radius)));
+  return is_ball_known(cell.center, sure_radius_mm(cell));
+}
+
+// What has no certified sphere may have any.
+void Zone::insert_ball(const Cell& cell, CubeSet& cubes) {
+  if (!std::isnan(cell.squared_radius)) {
+    cubes.insert(cell.center, sure_radius_mm(cell) * (1 + kMargin));
+  } else {
+    for (CubeId cube = 0; cube < cubes.grid().num_cubes(); ++cube) cubes.insert(cube);
+  }
 }
 
 // Mostly the box around the ball is known, too.

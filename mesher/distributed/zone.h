@@ -50,6 +50,8 @@ class Zone {
   }
   /// Of any cell.
   bool is_ball_known(const Cell& cell) const;
+  /// Makes it so, if these become known.
+  static void insert_ball(const Cell& cell, CubeSet& cubes);
   bool is_ball_known(const Point& center, double radius_mm) const;
 
  private:

@@ -3,34 +3,45 @@
 #include <algorithm>
 #include <cmath>
 #include <map>
+#include <numeric>
 
 namespace podm {
 
 namespace {
 
-constexpr std::size_t kMostAtEdge = 4;  // two that end at the same face may lie side by side
-constexpr int kNear = 5;                // cubes; farther than most of what waits lies from a face
+// In a round that goes by blocks a cube is near those within so many cubes along each axis: in round 1
+// farther than most of what waits lies from a face, and then farther each time, for cells wait again where
+// zones met.
+int near_in(int round) { return 2 + 3 * round; }
+// Edges are where three blocks meet, or four, two of which end at the same face side by side.
+std::size_t most_blocks_near(int round) { return round == 1 ? 2 : round == 2 ? 4 : ~std::size_t{0}; }
+constexpr int kLastByBlocks = 4;
+// Where fewer cells wait one rank may as well end it: another round takes as long.
+constexpr std::uint64_t kCellsForBlocks = 10000;
 
-std::vector<int> blocks_near(const Blocks& blocks, CubeId cube) {
+std::vector<int> blocks_near(const Blocks& blocks, CubeId cube, int near) {
   const CubeGrid& grid = blocks.grid();
   const CubePlace at = grid.place_of(cube);
   CubePlace low, high;
   for (std::size_t axis = 0; axis < 3; ++axis) {
-    low[axis] = std::max(0, at[axis] - kNear);
-    high[axis] = std::min(grid.size()[axis] - 1, at[axis] + kNear);
+    low[axis] = std::max(0, at[axis] - near);
+    high[axis] = std::min(grid.size()[axis] - 1, at[axis] + near);
   }
   return blocks.in(low, high);
 }
 
 constexpr std::size_t kNoZone = ~std::size_t{0};
 
-// By cube: the number of its zone, or kNoZone.
-std::vector<std::size_t> zones_near_two(const Blocks& blocks, const CubeSet& waiting) {
+// By cube: the number of its zone, or kNoZone. A zone is what is near the same blocks, at most so many: more
+// are at corners.
+std::vector<std::size_t> zones_near(const Blocks& blocks, const CubeSet& waiting, int near,
+                                    std::size_t most_blocks) {
   std::vector<std::size_t> zone_of(waiting.grid().num_cubes(), kNoZone);
   std::map<std::vector<int>, std::size_t> zone_near;
   for (const CubeId cube : waiting.cubes()) {
-    const std::vector<int> near = blocks_near(blocks, cube);
-    if (near.size() <= 2) zone_of[cube] = zone_near.emplace(near, zone_near.size()).first->second;
+    const std::vector<int> blocks_there = blocks_near(blocks, cube, near);
+    if (blocks_there.size() <= most_blocks)
+      zone_of[cube] = zone_near.emplace(blocks_there, zone_near.size()).first->second;
   }
   return zone_of;
 }
@@ -42,26 +53,19 @@ std::vector<std::size_t> connected_zones(const CubeSet& waiting) {
   return zone_of;
 }
 
-// Without those near corners, where blocks are more, which would connect all edges.
-std::vector<std::size_t> zones_of_edges(const Blocks& blocks, const CubeSet& waiting) {
-  CubeSet along_edges(waiting.grid());
-  for (const CubeId cube : waiting.cubes())
-    if (blocks_near(blocks, cube).size() <= kMostAtEdge) along_edges.insert(cube);
-  return connected_zones(along_edges);
-}
-
 struct ZoneSize {
   std::map<int, std::size_t> cubes_of_block;
   std::size_t cubes = 0, cells = 0;
 };
 
-// Blocks that have their part of a zone; if none has, the first in it.
+// Blocks that have their part of a zone; if none has, all in it.
 std::vector<int> candidates(const ZoneSize& zone) {
   constexpr double kLeastShare = 0.2;
   std::vector<int> blocks;
   for (const auto& [block, cubes] : zone.cubes_of_block)
     if (static_cast<double>(cubes) >= kLeastShare * static_cast<double>(zone.cubes)) blocks.push_back(block);
-  if (blocks.empty()) blocks.push_back(zone.cubes_of_block.begin()->first);
+  if (blocks.empty())
+    for (const auto& [block, cubes] : zone.cubes_of_block) blocks.push_back(block);
   return blocks;
 }
 
@@ -97,9 +101,11 @@ double reach_over_radius(int round) { return round < 2 ? 0 : std::exp2(round - 2
 std::vector<int> zones_of_round(int round, const Blocks& blocks, const CubeSet& waiting,
                                 const std::vector<std::uint32_t>& num_cells,
                                 std::vector<std::uint64_t>& load) {
-  const std::vector<std::size_t> zone_of = round == 1   ? zones_near_two(blocks, waiting)
-                                           : round == 2 ? zones_of_edges(blocks, waiting)
-                                                        : connected_zones(waiting);
+  const std::uint64_t all_cells = std::accumulate(num_cells.begin(), num_cells.end(), std::uint64_t{0});
+  const bool is_by_blocks = round <= 2 || (round <= kLastByBlocks && all_cells >= kCellsForBlocks);
+  const std::vector<std::size_t> zone_of =
+      is_by_blocks ? zones_near(blocks, waiting, near_in(round), most_blocks_near(round))
+                   : connected_zones(waiting);
   std::vector<ZoneSize> zones;
   for (CubeId cube = 0; cube < zone_of.size(); ++cube) {
     if (zone_of[cube] == kNoZone) continue;

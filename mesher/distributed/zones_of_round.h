@@ -1,10 +1,10 @@
 // Which rank refines where in the rounds after the first.
 //
 // What waits lies along the faces of blocks. So in round 1 zones are the surroundings of faces, in round 2 of
-// edges, in round 3 of corners: a zone of round k is the cubes near which there are the same k + 1 blocks, or
-// fewer. What still waits then, or lies where blocks are thin, is in the connected parts of its surroundings:
-// these never touch, and grow together in the end. Each zone goes to a rank whose block is in it, so that
-// part of it need not travel.
+// edges, and then of corners, too: a zone is the cubes that are near the same blocks. These zones touch, and
+// cells wait again where they do, but there are many, one for each rank and more. In the end, or when little
+// waits, zones are the connected parts of its surroundings: these never touch, and grow together until one
+// fills space. Each zone goes to a rank whose block is in it, so that part of it need not travel.
 #pragma once
 
 #include <vector>
