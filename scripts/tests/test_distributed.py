@@ -45,12 +45,12 @@ def table_of(rows):
 
 class Rows(unittest.TestCase):
     def test_simulated_efficiency_is_that_of_the_rank_that_comes_last(self):
-        slow, waiting = spent(refine=0.2, exchange=0.05), spent(refine=0.1, exchange=(0.02, 0.08, 0.05))
+        slow, waiting = spent(refine=0.2, exchange=0.05), spent(refine=0.1, exchange=(0.02, 0.04, 0.05))
         table = table_of([row(1), row(2, by_rank=[slow, waiting])]).set_index("ranks")
         self.assertAlmostEqual(table.loc[1, "refining_efficiency"], 1)
         self.assertAlmostEqual(table.loc[2, "refining_efficiency"], 0.1 / 0.25)
         self.assertAlmostEqual(table.loc[2, "refine"], 1.5)
-        self.assertAlmostEqual(table.loc[2, "waiting"], 0.4)
+        self.assertAlmostEqual(table.loc[2, "waiting"], 0.2)
         self.assertAlmostEqual(table.loc[2, "network"], 0.25)
 
     def test_others_wait_for_the_first_ranks_coarse_mesh_and_learn_it(self):
