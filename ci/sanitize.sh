@@ -6,8 +6,8 @@
 set -eu
 cd "$(dirname "$0")/.."
 folder=${1:-.}
-tests="mesh_image_tests algorithms_tests fault_tests communication_tests workers_tests refine_tests delaunay_tests
-octree_tests isosurface_tests files_tests mesh_io_tests image_io_tests runtime_tests"
+tests="mesh_image_tests algorithms_tests fault_tests communication_tests rounds_tests workers_tests refine_tests
+delaunay_tests octree_tests isosurface_tests files_tests mesh_io_tests image_io_tests runtime_tests"
 export UBSAN_OPTIONS=halt_on_error=1:print_stacktrace=1 ASAN_OPTIONS=detect_stack_use_after_return=1
 image=phantom:spheres@48
 

@@ -107,7 +107,8 @@ class Rounds {
         exchange_(ranks, construction_.mesh(), construction_.pool(0), grid_, team.log) {}
 
   DistributedRefinement operator()() {
-    for (const char* phase : {"initial", "refine"}) construction_.timed(phase, [] {});  // every rank has these
+    for (const char* phase : {"initial", "refine"})
+      construction_.timed(phase, [] {});  // every rank has these
     if (ranks_.rank() == 0)
       refine_anywhere(construction_, "initial", levels_.initial, construction_.all_cells(),
                       construction_.num_workers());
@@ -255,7 +256,7 @@ class Rounds {
   }
 
   // Nobody changes anything yet: so cells may be looked at that lie across zones, which nobody could later.
-  // Most of the large cells far from the object are of this kind.
+  // Most of the large cells far from the object are of this kind. Others are looked at in time.
   void drop_sound(Construction::Entries& entries, const Zone& zone) {
     Mesh& mesh = construction_.mesh();
     const Rules rules(mesh, problem_.isosurface, levels_.final);
@@ -266,8 +267,10 @@ class Rounds {
                return mirror == kNoFacet || zone.is_ball_known(mesh.cell(cell_of(mirror)));
              });
     };
-    std::erase_if(entries,
-                  [&](const auto& entry) { return is_known(entry.cell) && rules.is_sound(entry.cell); });
+    std::erase_if(entries, [&](const auto& entry) {
+      return !zone.may_read(mesh, mesh.cell(entry.cell)) && is_known(entry.cell) &&
+             rules.is_sound(entry.cell);
+    });
   }
 
   std::vector<CellId> refine_in(const Zone& zone, const Construction::Entries& entries, RoundReport& report) {

@@ -219,18 +219,24 @@ std::optional<VertexExchange::Found> VertexExchange::find_vertex(const Point& p)
   return std::nullopt;
 }
 
-// Among the cells around the first.
+// The centroid is in it, but for rounding in flat cells. Those are among the cells around the first vertex.
 std::optional<CellId> VertexExchange::find_cell(const std::array<Point, 4>& vertices) {
+  const auto is_it = [&](CellId c) {
+    const Cell& cell = mesh_.cell(c);
+    return std::all_of(vertices.begin(), vertices.end(), [&](const Point& p) {
+      return std::any_of(cell.vertices.begin(), cell.vertices.end(),
+                         [&](VertexId v) { return mesh_.point(v) == p; });
+    });
+  };
+  const Vector sum = (vertices[1] - vertices[0]) + (vertices[2] - vertices[0]) + (vertices[3] - vertices[0]);
+  near_ = walk_to(vertices[0] + 0.25 * sum);
+  if (is_it(near_)) return near_;
   const std::optional<Found> first = find_vertex(vertices[0]);
   if (!first) return std::nullopt;
   std::vector<CellId> around{first->cell};
   for (std::size_t i = 0; i < around.size(); ++i) {
     const Cell& cell = mesh_.cell(around[i]);
-    const auto has = [&](const Point& p) {
-      return std::any_of(cell.vertices.begin(), cell.vertices.end(),
-                         [&](VertexId v) { return mesh_.point(v) == p; });
-    };
-    if (std::all_of(vertices.begin(), vertices.end(), has)) return around[i];
+    if (is_it(around[i])) return around[i];
     for (unsigned k = 0; k < 4; ++k) {
       if (cell.vertices[k] == first->vertex || cell.mirrors[k] == kNoFacet) continue;
       const CellId beside = cell_of(cell.mirrors[k]);

@@ -11,8 +11,9 @@ namespace podm {
 // centres.
 Zone::Zone(CubeSet own, CubeSet known, int rings)
     : own_(std::move(own)),
-      depth_(own_.depths(kMostDepth)),
       known_(std::move(known)),
+      own_depth_(own_.depths(kMostDepth)),
+      known_depth_(known_.depths(kMostDepth)),
       is_all_known_(known_.is_full()),
       known_counts_(known_) {
   for (std::size_t depth = 0; depth < squared_reach_.size(); ++depth) {
@@ -25,6 +26,7 @@ Zone::Zone(CubeSet own, CubeSet known, int rings)
 
 bool Zone::is_ball_known(const Cell& cell) const {
   if (is_all_known_) return true;
+  if (cell.squared_radius < squared_reach_[known_depth_[known_.grid().cube_at(cell.center)]]) return true;
   if (std::isnan(cell.squared_radius)) return false;
   return is_ball_known(cell.center,
                        std::sqrt((1 + kStoredSphereTolerance) * static_cast<double>(cell.squared_radius)));

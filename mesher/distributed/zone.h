@@ -32,7 +32,12 @@ class Zone {
 
   bool has(const Point& p) const { return own_.has(p); }
   /// All that is nearer to p than the root of this lies in the zone, mm^2.
-  float squared_reach(const Point& p) const { return squared_reach_[depth_[own_.grid().cube_at(p)]]; }
+  float squared_reach(const Point& p) const { return squared_reach_[own_depth_[own_.grid().cube_at(p)]]; }
+  /// Whether the two vertices that readers lock lie in the zone: so each neighbour has a vertex there.
+  bool may_read(const Mesh& mesh, const Cell& cell) const {
+    return cell.squared_radius < squared_reach(cell.center) ||
+           (has(mesh.point(cell.vertices[0])) && has(mesh.point(cell.vertices[3])));
+  }
   /// Of a cell with a vertex in the zone.
   bool knows(const Cell& cell) const {
     return cell.squared_radius <= sure_squared_radius_ || is_ball_known(cell);
@@ -48,11 +53,10 @@ class Zone {
   bool is_ball_known(const Point& center, double radius_mm) const;
 
  private:
-  CubeSet own_;
   static constexpr std::uint8_t kMostDepth = 31;
-  std::vector<std::uint8_t> depth_;                    // of cubes in the zone
+  CubeSet own_, known_;
+  std::vector<std::uint8_t> own_depth_, known_depth_;  // by cube: how deep it lies in these
   std::array<float, kMostDepth + 1> squared_reach_{};  // mm^2, by depth
-  CubeSet known_;
   bool is_all_known_;
   CubeCounts known_counts_;
   float sure_squared_radius_;  // mm^2: balls no larger are known
@@ -75,10 +79,7 @@ class ZoneLocks {
   WorkerId conflicting_worker() const { return inner_.conflicting_worker(); }
 
   bool knows(const Cell& cell) const { return zone_->knows(cell); }
-  bool may_read(const Mesh& mesh, const Cell& cell) const {
-    return cell.squared_radius < zone_->squared_reach(cell.center) ||
-           (has(mesh, cell.vertices[0]) && has(mesh, cell.vertices[3]));
-  }
+  bool may_read(const Mesh& mesh, const Cell& cell) const { return zone_->may_read(mesh, cell); }
   // Two points of a ball are no farther from each other than twice its radius.
   void begin_around(const Point& p) { squared_reach_ = zone_->squared_reach(p) / 4; }
   bool may_replace(const Mesh& mesh, const Cell& cell) const {

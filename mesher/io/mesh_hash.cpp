@@ -21,26 +21,31 @@ std::uint64_t mix(std::uint64_t x) {
   return x ^ x >> 31;
 }
 
-std::uint64_t combine(std::uint64_t hash, std::uint64_t more) {
-  return mix(hash + 0x9e3779b97f4a7c15u + mix(more));
-}
+// Where the numbers are random themselves this is enough, until the last is there.
+std::uint64_t combine(std::uint64_t hash, std::uint64_t more) { return hash * 0x9e3779b97f4a7c15u + more; }
 
 std::uint64_t hash_of(const std::array<double, 3>& vertex) {
   std::uint64_t hash = 0;
-  for (const double x : vertex) hash = combine(hash, std::bit_cast<std::uint64_t>(x + 0.0));  // -0 becomes 0
+  for (const double x : vertex)
+    hash = mix(combine(hash, std::bit_cast<std::uint64_t>(x + 0.0)));  // -0 becomes 0
   return hash;
 }
 
-// Of simplices that are equal up to an even permutation of their vertices.
+// Not mixed yet. The same for simplices that are equal up to an even permutation of their vertices.
 template <std::size_t kVertices>
 std::uint64_t hash_of(std::uint64_t hash, const std::array<std::uint32_t, kVertices>& simplex,
                       const std::vector<std::uint64_t>& hash_of_vertex) {
   std::array<std::uint64_t, kVertices> sorted;
   for (std::size_t i = 0; i < kVertices; ++i) sorted[i] = hash_of_vertex[simplex[i]];
   bool is_odd = false;
-  for (std::size_t i = 1; i < kVertices; ++i)
-    for (std::size_t j = i; j > 0 && sorted[j] < sorted[j - 1]; --j, is_odd = !is_odd)
-      std::swap(sorted[j], sorted[j - 1]);
+  for (std::size_t last = kVertices - 1; last > 0; --last) {
+    for (std::size_t i = 0; i < last; ++i) {  // without a branch, of which every other would be mispredicted
+      const std::uint64_t a = sorted[i], b = sorted[i + 1];
+      is_odd ^= b < a;
+      sorted[i] = std::min(a, b);
+      sorted[i + 1] = std::max(a, b);
+    }
+  }
   for (const std::uint64_t of_vertex : sorted) hash = combine(hash, of_vertex);
   return combine(hash, is_odd ? 1 : 0);
 }
@@ -68,12 +73,13 @@ std::uint64_t mesh_hash(const TetMesh& mesh, int threads) {
                           hash_of_vertex[v] = hash_of(mesh.vertices[v]);
                       });
   const std::uint64_t of_cells = sum_of(mesh.cells.size(), num, [&](std::size_t c) {
-    return combine(hash_of(kCell, mesh.cells[c], hash_of_vertex), mesh.labels[mesh.cell_labels[c]].value);
+    const std::uint64_t hash = hash_of(kCell, mesh.cells[c], hash_of_vertex);
+    return mix(combine(hash, mesh.labels[mesh.cell_labels[c]].value));
   });
   const std::uint64_t of_facets = sum_of(mesh.facets.size(), num, [&](std::size_t f) {
     std::uint64_t hash = hash_of(kFacet, mesh.facets[f], hash_of_vertex);
     for (const LabelIndex label : mesh.facet_labels[f]) hash = combine(hash, mesh.labels[label].value);
-    return hash;
+    return mix(hash);
   });
   return of_cells + of_facets;
 }

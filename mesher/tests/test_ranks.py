@@ -228,6 +228,67 @@ class InProcess(OnRanks):
             self.assert_exit(run_podm(self.out, "--claims", "structure,delaunay,conformity", program=VERIFIER), 0)
 
 
+class Logs(OnRanks):
+    def setUp(self):
+        super().setUp()
+        self.log = self.folder / "run.log"
+
+    def logs(self, number):
+        return [self.log] if number == 1 else [self.folder / f"run.log.{i}" for i in range(number)]
+
+    def assert_replays(self, logs):
+        process = run_podm("replay", IMAGE, *logs)
+        self.assert_exit(process, 0)
+        self.assertEqual(process.stderr.count(self.last_record()["ranks"]["mesh_hash"]), 2)
+
+    def test_the_logs_of_all_ranks_replay_to_their_mesh(self):
+        for number, threads, space in (1, 2, "RAS"), (2, 1, "voxel"), (4, 2, "LPS"):
+            with self.subTest(ranks=number, threads=threads):
+                self.assert_exit(self.mesh(number, "--radius", 2, "--log", self.log, "--threads", threads, "--space",
+                                           space, "--oversubscribe"), 0)
+                logs = self.logs(number)
+                self.assertLessEqual({log.name for log in logs}, self.names())
+                self.assert_replays(logs[::-1])
+                for log in logs:
+                    log.unlink()
+
+    def test_a_run_that_is_stopped_equals_its_replay(self):
+        for most in 6000, 60000:  # in the coarse mesh, and after
+            self.assert_exit(self.mesh(3, "--radius", 1, "--log", self.log, "--max-elements", most), 1)
+            self.assert_replays(self.logs(3))
+
+    def test_logs_are_needed_all_and_of_one_run(self):
+        for number, radius in (2, 3), (3, 4):
+            self.log = self.folder / f"on_{number}.log"
+            self.assert_exit(self.mesh(number, "--radius", radius, "--log", self.log), 0)
+        one, other = ([self.folder / f"on_{number}.log.{i}" for i in range(number)] for number in (2, 3))
+        for logs, *words in ((other[1:], other[1], "rank 0 of 3 is missing"),
+                             (one[:1], one[0], "rank 1 of 2 is missing"),
+                             ([*one, one[0]], one[0], "rank 0 of 2"),
+                             ([one[0], other[1]], other[1], "of another run")):
+            self.assert_refused(["replay", IMAGE, *logs], *words)
+        self.assert_refused(["replay", "phantom:spheres@31", *one], one[0], "another image")
+
+    def test_a_mesh_that_ranks_did_not_make_differs(self):
+        self.assert_exit(self.mesh(2, "--radius", 3, "--log", self.log), 0)
+        for log in self.logs(2):
+            head = f'"mesh_hash":"{self.last_record()["ranks"]["mesh_hash"]}"'.encode()
+            self.assertIn(head, log.read_bytes())
+            log.write_bytes(log.read_bytes().replace(head, b'"mesh_hash":"0123456789abcdef"'))
+        process = run_podm("replay", IMAGE, *self.logs(2))
+        self.assert_exit(process, 1)
+        self.assertIn("does not equal its replay", process.stderr)
+
+    def test_a_disk_that_is_full_for_one_rank_leaves_no_log(self):
+        mesh = [MPI_PROGRAM, "mesh", IMAGE, "-o", self.out, "--radius", 2, "--quiet", "--log", self.log]
+        process = self.mpirun("--oversubscribe", "-n", 1, *mesh, ":", "-n", 1, "sh", "-c",
+                              'ulimit -f 16; exec "$0" "$@"', *mesh)
+        self.assertNotEqual(process.returncode, 0)
+        self.assertIn("podm-mpi: rank 1 of 2: cannot write", process.stderr)
+        self.assertIn("run.log.1", process.stderr)
+        self.assertEqual({name for name in self.names() if ".tmp" not in name}, set())
+
+
 class Refusals(OnRanks):
     def assert_all_refuse(self, arguments, *words):
         before = self.files()
@@ -241,7 +302,7 @@ class Refusals(OnRanks):
 
     def test_what_ranks_do_not_have_yet(self):
         for option, *words in (["--target-elements", 1000, "target"], ["--executor", "virtual", "virtual"],
-                               ["--algorithm", "pdr", "algorithm pdr"], ["--log", self.folder / "run.log", "--log"],
+                               ["--algorithm", "pdr", "algorithm pdr"],
                                ["--surface", self.folder / "s.stl", "--surface"],
                                ["--schedule", self.folder / "leaves.jsonl", "--schedule"]):
             *values, word = words
@@ -253,6 +314,8 @@ class Refusals(OnRanks):
         mesh = ["--oversubscribe", "-n", 3, MPI_PROGRAM, "mesh"]
         self.assert_all_refuse([*mesh, IMAGE, "-o", self.folder / "out.vtu"], "out.vtu", ".pvtu")
         self.assert_all_refuse([*mesh, IMAGE, "-o", self.folder / "none" / "out.pvtu"], "none/out.pvtu")
+        self.assert_all_refuse([*mesh, IMAGE, "-o", self.out, "--log", self.folder / "none" / "run.log"],
+                               "rank 0 of 3", "none/run.log.0")
         self.assert_all_refuse([*mesh, self.folder / "none.nii", "-o", self.out], "none.nii")
         self.assert_all_refuse([*mesh, IMAGE, "-o", self.out, "--radios", 3], "unknown option '--radios'")
         self.assert_all_refuse([*mesh, IMAGE, "-o", self.out, "--radius", 3, "--delta", 1000], "--delta")
@@ -264,6 +327,7 @@ class Refusals(OnRanks):
         for arguments, word in ((["mesh", other, "-o", self.out], "image"),
                                 ([*mesh, "--radius", 3], "radius"),
                                 (["mesh", one, "-o", self.folder / "b.pvtu"], "output"),
+                                ([*mesh, "--log", self.folder / "run.log"], "--log"),
                                 ([*mesh, "--no-such"], "rank 1 of 2: unknown option")):
             with self.subTest(word=word):
                 self.assert_all_refuse(on_ranks(mesh, arguments), word)

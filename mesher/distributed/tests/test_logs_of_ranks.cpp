@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <random>
+#include <stop_token>
 
 #include "distributed/in_process_ranks.h"
 #include "distributed/mesh_image_on_ranks.h"
@@ -31,7 +32,8 @@ struct LoggedRun {
   std::vector<LogOfRank> logs;
 };
 
-LoggedRun run(const Case& of) {
+// A rank may be stopped before it begins, while others go on.
+LoggedRun run(const Case& of, int stopped_rank = -1) {
   const ScratchFolder folder;
   MeshingOptions options;
   options.sizes.radius_mm = of.radius_mm;
@@ -46,7 +48,9 @@ LoggedRun run(const Case& of) {
     OperationLogWriter log(path);
     MeshingOptions own = options;
     own.log = &log;
-    const MeshingOnRanks meshing = mesh_image_on_ranks(of.image, own, ranks);
+    std::stop_source stop;
+    if (ranks.rank() == stopped_rank) stop.request_stop();
+    const MeshingOnRanks meshing = mesh_image_on_ranks(of.image, own, ranks, {}, stop.get_token());
     log.finish({.box = meshing.report.virtual_box,
                 .image_sha256 = {},
                 .space = to_string(of.space),
@@ -81,6 +85,15 @@ TEST_P(LogsOfRanks, ReplayToTheSameMesh) {
   for (const LogOfRank& log : logged.logs)
     for (const LoggedOperation& entry : log.log.all.operations) num_learnt += entry.kind >= kLearntVertex;
   EXPECT_EQ(num_learnt > 0, GetParam().is_shared);
+}
+
+TEST(LogsOfRanksThatStop, ReplayToTheMeshOfTheFirst) {
+  const Case of{"", ball(20, 7), 1.2, 3};
+  for (const int stopped_rank : {0, 1}) {
+    const LoggedRun logged = run(of, stopped_rank);
+    EXPECT_EQ(logged.stop_reason, StopReason::kCancelled);
+    EXPECT_EQ(verdict(logged.logs, of), "equal") << "rank " << stopped_rank;
+  }
 }
 
 LabelImage three_labels() {

@@ -16,6 +16,7 @@ void check_log(const OperationLog& log) {
     check(i == 0 || log.all.operations[i - 1].sequence < log.all.operations[i].sequence);
   }
   check(num_removed == log.all.removed.size());
+  check(log.head.rank >= 0 && log.head.rank < log.head.num_ranks);
 }
 
 }  // namespace

@@ -4,6 +4,7 @@
 
 #include <gtest/gtest.h>
 
+#include <filesystem>
 #include <fstream>
 #include <random>
 
@@ -72,10 +73,47 @@ TEST_F(OperationLogFile, ReadsBackInSequence) {
   }
 }
 
+TEST_F(OperationLogFile, OfARankTellsWhoseItIs) {
+  OperationLogHead head = head_;
+  head.mesh_sha256.clear();
+  head.mesh_hash = "ef56";
+  head.rank = 2;
+  head.num_ranks = 3;
+  const auto write_and_read = [&] {
+    OperationLogWriter writer(path_);
+    writer.finish(head);
+    writer.publish();
+    return read_operation_log(path_).head;
+  };
+  const OperationLogHead read = write_and_read();
+  EXPECT_EQ(read.mesh_hash, head.mesh_hash);
+  EXPECT_EQ(read.rank, 2);
+  EXPECT_EQ(read.num_ranks, 3);
+  for (const int rank : {-1, 3}) {
+    head.rank = rank;
+    EXPECT_THROW(write_and_read(), InputError) << rank;
+  }
+}
+
+TEST_F(OperationLogFile, CountsStepsAndWhatIsInThem) {
+  OperationLogWriter writer(path_);
+  EXPECT_EQ(operation_text(writer.next_sequence()), "operation 0");
+  EXPECT_EQ(operation_text(writer.next_sequence()), "operation 1");
+  writer.begin_step();
+  EXPECT_EQ(operation_text(writer.next_sequence()), "operation 0 of step 1");
+  writer.begin_step();
+  writer.begin_step();
+  EXPECT_EQ(step_of(writer.next_sequence()), 3u);
+  writer.restart();
+  EXPECT_EQ(writer.next_sequence(), 0u);
+}
+
 TEST_F(OperationLogFile, AppearsWholeOrNotAtAll) {
-  {
+  for (const bool is_finished : {false, true}) {
     OperationLogWriter writer(path_);
     writer.append({{LoggedOperation{}}, {}});
+    if (is_finished) writer.finish(head_);
+    EXPECT_FALSE(std::filesystem::exists(path_));
   }
   EXPECT_TRUE(folder_.files().empty());
 }
