@@ -135,6 +135,14 @@ class Extrapolation(unittest.TestCase):
         self.assertTrue(self.extrapolated(SIZES[:1]).empty)
         self.assertTrue(self.extrapolated(counts=(1, 2, 4)).empty)
 
+    def test_one_rank_counts_at_all_its_sizes_and_too_few_cells_at_none(self):
+        rows = [modelled(ranks, size) for size in SIZES[:2] for ranks in (1, 8)]
+        odd = [row(1, 5_000_000, [spent(refine=50.0)]), row(1, 10_000, [spent(refine=9.0)]),
+               row(8, 10_000, [spent(refine=9.0)] * 8)]
+        plain, with_odd = (distributed_model.extrapolated(table_of(some)).iloc[0] for some in (rows, [*rows, *odd]))
+        self.assertEqual(plain["sizes"], with_odd["sizes"])
+        self.assertGreater(with_odd["refining_efficiency"], 2 * plain["refining_efficiency"])
+
     def test_nothing_measured_is_extrapolated(self):
         rows = [row(ranks, size, basis="measured") for size in SIZES for ranks in (1, 8)]
         self.assertTrue(distributed_model.extrapolated(table_of(rows)).empty)
