@@ -1,8 +1,9 @@
 """What simulated ranks of few cells say of nodes of 20 million: a model of each part of the time, fitted over sizes.
 
 Microseconds a cell of a rank are, part by part, a sum of what goes with the cells (1), with the surface of a rank's
-share (cells^(-1/3)) and of what is there once a rank (1 / cells), none of them negative, at each number of ranks. The
-parts of one rank, whose sum is the base, are fitted alike.
+share (cells^(-1/3)), along which round 0 defers, with its edges (cells^(-2/3)), along which later rounds do, and of
+what is there once a rank (1 / cells), none of them negative, at each number of ranks. The parts of one rank, whose sum
+is the base, are fitted alike.
 """
 import numpy
 import pandas
@@ -15,11 +16,12 @@ NODE_CELLS = 20e6
 LEAST_CELLS_PER_RANK = 100e3  # of fewer most cells lie along the borders of blocks
 NODES = (8, 64)
 THREADS = (1, 16)
-TERMS = {"volume": lambda n: numpy.ones_like(n), "surface": lambda n: n ** (-1 / 3), "once": lambda n: 1 / n}
+TERMS = {"volume": lambda n: numpy.ones_like(n), "surface": lambda n: n ** (-1 / 3), "edges": lambda n: n ** (-2 / 3),
+         "once": lambda n: 1 / n}
 # Of which terms each part is. The image is the same whatever the size.
 MODEL = {"transform": ("once",), "initial": ("volume", "surface"), "learn": ("volume", "surface"),
-         "refine": ("volume", "surface"), "later": ("surface",), "exchange": ("volume", "surface"),
-         "waiting": ("volume", "surface"), "network": ("surface", "once"), "extract": ("volume", "surface")}
+         "refine": ("volume", "surface"), "later": ("surface", "edges"), "exchange": ("volume", "surface"),
+         "waiting": ("volume", "surface", "edges"), "network": ("surface", "once"), "extract": ("volume", "surface")}
 # The others are of one thread today, whatever a node has.
 THREADED = ("transform", "initial", "refine", "later", "waiting", "extract")
 REFINING_PARTS = (*REFINING, "learn", "waiting", "network")
@@ -28,12 +30,12 @@ COLUMNS = ["basis", "ranks", "threads", "cells_per_rank", "n", "sizes", "refinin
            "worst_miss", *PARTS]
 ASSUMPTIONS = (
     "Extrapolated: to nodes of 20 million cells, part by part, from the simulated sizes, as a sum of what goes with "
-    "the cells, with their surface (cells^(-1/3)) and once; bars: the range when any one of three or more sizes is "
-    "left out, no confidence interval. It is assumed that the coarse mesh, of the ratio simulated, is made by all "
-    "threads of the first node while the others wait, and learned by one of each; that sixteen threads of a node share "
-    "rounds, pieces and waiting alike, with and without ranks, and leave updates to one; that nodes are as fast as the "
-    "processor that simulated them, all the same, and the network as stated, without congestion; that each node holds "
-    "the image, the same for all sizes")
+    "the cells, with the surface of a rank's share (cells^(-1/3)), its edges (cells^(-2/3)) and once; bars: the range "
+    "when any one of three or more sizes is left out, no confidence interval. It is assumed that the coarse mesh, of "
+    "the ratio simulated, is made by all threads of the first node while the others wait, and learned by one of each; "
+    "that sixteen threads of a node share rounds, pieces and waiting alike, with and without ranks, and leave updates "
+    "to one; that nodes are as fast as the processor that simulated them, all the same, and the network as stated, "
+    "without congestion; that each node holds the image, the same for all sizes")
 
 
 def extrapolated(table):

@@ -110,6 +110,15 @@ class Extrapolation(unittest.TestCase):
                 self.assertAlmostEqual(line[name], expected, places=3)
             self.assertAlmostEqual(line["worst_miss"], 0, places=6)
 
+    def test_waiting_along_edges_vanishes_sooner_than_along_faces(self):
+        waits = [[row(1, size), row(8, size, [spent(refine=1e-6 * size, exchange=(0.0, 1e-6 * size * power(size), 0.0))
+                                              ] * 8)]
+                 for power in (lambda n: 1e4 * n ** (-2 / 3), lambda n: 1e2 * n ** (-1 / 3)) for size in SIZES]
+        edges, faces = (distributed_model.extrapolated(table_of(sum(some, []))).iloc[0]["waiting"]
+                        for some in (waits[:3], waits[3:]))
+        self.assertAlmostEqual(edges, 1e4 * 2e7 ** (-2 / 3), places=4)
+        self.assertAlmostEqual(faces, 1e2 * 2e7 ** (-1 / 3), places=4)
+
     def test_the_transform_of_one_image_vanishes(self):
         line = self.extrapolated(once=0.5).iloc[0]
         self.assertAlmostEqual(line["transform"], 0.5e6 / 2e7, places=4)
