@@ -19,7 +19,8 @@ def figure(table, extrapolated):
     for axes, basis, title in ((simulated, "simulated", "weak efficiency of refining, simulated"),
                                (measured, "measured", "cells a processor second, measured over MPI")):
         _efficiencies(axes, table[table["basis"] == basis], style.LINES[basis])
-        axes.set(title=title, xlabel="ranks", ylabel="over one rank, %")
+        axes.set(title=title, ylabel="over one rank, %")
+        axes.set_visible(bool((table["basis"] == basis).any()))
     _extrapolations(simulated, extrapolated)
     for axes in (simulated, measured):
         ranks = [*table["ranks"], *extrapolated["ranks"]]

@@ -1,8 +1,9 @@
 """What simulated ranks of few cells say of nodes of 20 million: a model of each part of the time, fitted over sizes.
 
 Microseconds a cell of a rank are, part by part, a sum of what goes with the cells (1), with the surface of a rank's
-share (cells^(-1/3)) and of what is there once a rank (1 / cells), none of them negative, at each number of ranks. The
-parts of one rank, whose sum is the base, are fitted alike.
+share (cells^(-1/3)), along which round 0 defers, with its edges (cells^(-2/3)), along which later rounds do, and of
+what is there once a rank (1 / cells), none of them negative, at each number of ranks. The parts of one rank, whose sum
+is the base, are fitted alike.
 """
 import numpy
 import pandas
@@ -12,13 +13,15 @@ from . import scaling
 from .distributed import PARTS, REFINING
 
 NODE_CELLS = 20e6
+LEAST_CELLS_PER_RANK = 100e3  # of fewer most cells lie along the borders of blocks
 NODES = (8, 64)
 THREADS = (1, 16)
-TERMS = {"volume": lambda n: numpy.ones_like(n), "surface": lambda n: n ** (-1 / 3), "once": lambda n: 1 / n}
+TERMS = {"volume": lambda n: numpy.ones_like(n), "surface": lambda n: n ** (-1 / 3), "edges": lambda n: n ** (-2 / 3),
+         "once": lambda n: 1 / n}
 # Of which terms each part is. The image is the same whatever the size.
 MODEL = {"transform": ("once",), "initial": ("volume", "surface"), "learn": ("volume", "surface"),
-         "refine": ("volume", "surface"), "later": ("surface",), "exchange": ("volume", "surface"),
-         "waiting": ("volume", "surface"), "network": ("surface", "once"), "extract": ("volume", "surface")}
+         "refine": ("volume", "surface"), "later": ("surface", "edges"), "exchange": ("volume", "surface"),
+         "waiting": ("volume", "surface", "edges"), "network": ("surface", "once"), "extract": ("volume", "surface")}
 # The others are of one thread today, whatever a node has.
 THREADED = ("transform", "initial", "refine", "later", "waiting", "extract")
 REFINING_PARTS = (*REFINING, "learn", "waiting", "network")
@@ -27,46 +30,43 @@ COLUMNS = ["basis", "ranks", "threads", "cells_per_rank", "n", "sizes", "refinin
            "worst_miss", *PARTS]
 ASSUMPTIONS = (
     "Extrapolated: to nodes of 20 million cells, part by part, from the simulated sizes, as a sum of what goes with "
-    "the cells, with their surface (cells^(-1/3)) and once; bars: the range when any one of three or more sizes is "
-    "left out, no confidence interval. It is assumed that the coarse mesh, of the ratio simulated, is made by all "
-    "threads of the first node while the others wait, and learned by one of each; that sixteen threads of a node share "
-    "rounds, pieces and waiting alike, with and without ranks, and leave updates to one; that nodes are as fast as the "
-    "processor that simulated them, all the same, and the network as stated, without congestion; that each node holds "
-    "the image, the same for all sizes")
+    "the cells, with the surface of a rank's share (cells^(-1/3)), its edges (cells^(-2/3)) and once; bars: the range "
+    "when any one of three or more sizes is left out, no confidence interval. It is assumed that the coarse mesh, of "
+    "the ratio simulated, is made by all threads of the first node while the others wait, and learned by one of each; "
+    "that sixteen threads of a node share rounds, pieces and waiting alike, with and without ranks, and leave updates "
+    "to one; that nodes are as fast as the processor that simulated them, all the same, and the network as stated, "
+    "without congestion; that each node holds the image, the same for all sizes")
 
 
 def extrapolated(table):
     """One line a number of nodes and threads of a node, of which two sizes or more were simulated. `worst_miss`: of the
     microseconds a cell that sizes left out have, the greatest deviation of the prediction from the others; nan of two
     sizes."""
-    simulated = table[table["basis"] == "simulated"].fillna({part: 0.0 for part in PARTS})
-    base = simulated[simulated["ranks"] == 1].set_index("cells_per_rank")
-    lines = []
+    simulated = table[(table["basis"] == "simulated") & (table["cells_per_rank"] >= LEAST_CELLS_PER_RANK)]
+    by_size = simulated.fillna({part: 0.0 for part in PARTS}).set_index("cells_per_rank")
+    base, lines = by_size[by_size["ranks"] == 1], []
     for ranks in NODES:
-        many = simulated[simulated["ranks"] == ranks].set_index("cells_per_rank")
-        sizes = [size for size in many.index if size in base.index]
-        if len(sizes) < 2:
-            continue
-        for threads in THREADS:
-            lines.append(_line(ranks, threads, sizes, many.loc[sizes], base.loc[sizes]))
+        many = by_size[by_size["ranks"] == ranks]
+        if len(many) > 1 and len(base) > 1:
+            lines += [_line(ranks, threads, many, base) for threads in THREADS]
     return pandas.DataFrame(lines, columns=COLUMNS)
 
 
-def _line(ranks, threads, sizes, many, base):
-    def efficiencies(chosen):
-        ours, alone = (_parts_at(NODE_CELLS, one.loc[chosen]) for one in (many, base))
+def _line(ranks, threads, many, base):
+    """One rank may have been simulated at other sizes, too."""
+    def efficiencies(left_out=()):
+        ours, alone = (_parts_at(NODE_CELLS, one.drop(index=left_out, errors="ignore")) for one in (many, base))
         return numpy.array([_sum(alone, parts, threads) / _sum(ours, parts, threads)
                             for parts in (REFINING_PARTS, PARTS)])
 
-    value, left_out = efficiencies(sizes), []
-    if len(sizes) > 2:
-        left_out = [efficiencies([one for one in sizes if one != size]) for size in sizes]
+    value, sizes = efficiencies(), list(many.index)
+    left_out = [efficiencies([size]) for size in sizes] if len(sizes) > 2 else []
     bounds = numpy.array([value, *left_out]) if left_out else numpy.full((1, 2), numpy.nan)
     return {"basis": "extrapolated", "ranks": ranks, "threads": threads, "cells_per_rank": NODE_CELLS, "n": len(sizes),
             "sizes": " and ".join(scaling.short(size) for size in sizes),
             **{name + end: number for end, numbers in (("", value), ("_low", bounds.min(0)), ("_high", bounds.max(0)))
                for name, number in zip(("refining_efficiency", "efficiency"), numbers)},
-            "worst_miss": _worst_miss(sizes, many), **_of_threads(_parts_at(NODE_CELLS, many), threads)}
+            "worst_miss": _worst_miss(many), **_of_threads(_parts_at(NODE_CELLS, many), threads)}
 
 
 def _parts_at(cells, table):
@@ -95,11 +95,11 @@ def _sum(parts, chosen, threads):
     return sum(divided[part] for part in chosen)
 
 
-def _worst_miss(sizes, many):
-    if len(sizes) < 3:
+def _worst_miss(many):
+    if len(many) < 3:
         return numpy.nan
     misses = []
-    for size in sizes:
+    for size in many.index:
         predicted = sum(_parts_at(size, many.drop(index=size)).values())
         misses.append(abs(predicted / many.loc[size, list(PARTS)].sum() - 1))
     return max(misses)

@@ -45,12 +45,12 @@ def table_of(rows):
 
 class Rows(unittest.TestCase):
     def test_simulated_efficiency_is_that_of_the_rank_that_comes_last(self):
-        slow, waiting = spent(refine=0.2, exchange=0.05), spent(refine=0.1, exchange=(0.02, 0.08, 0.05))
+        slow, waiting = spent(refine=0.2, exchange=0.05), spent(refine=0.1, exchange=(0.02, 0.04, 0.05))
         table = table_of([row(1), row(2, by_rank=[slow, waiting])]).set_index("ranks")
         self.assertAlmostEqual(table.loc[1, "refining_efficiency"], 1)
         self.assertAlmostEqual(table.loc[2, "refining_efficiency"], 0.1 / 0.25)
         self.assertAlmostEqual(table.loc[2, "refine"], 1.5)
-        self.assertAlmostEqual(table.loc[2, "waiting"], 0.4)
+        self.assertAlmostEqual(table.loc[2, "waiting"], 0.2)
         self.assertAlmostEqual(table.loc[2, "network"], 0.25)
 
     def test_others_wait_for_the_first_ranks_coarse_mesh_and_learn_it(self):
@@ -110,6 +110,15 @@ class Extrapolation(unittest.TestCase):
                 self.assertAlmostEqual(line[name], expected, places=3)
             self.assertAlmostEqual(line["worst_miss"], 0, places=6)
 
+    def test_waiting_along_edges_vanishes_sooner_than_along_faces(self):
+        waits = [[row(1, size), row(8, size, [spent(refine=1e-6 * size, exchange=(0.0, 1e-6 * size * power(size), 0.0))
+                                              ] * 8)]
+                 for power in (lambda n: 1e4 * n ** (-2 / 3), lambda n: 1e2 * n ** (-1 / 3)) for size in SIZES]
+        edges, faces = (distributed_model.extrapolated(table_of(sum(some, []))).iloc[0]["waiting"]
+                        for some in (waits[:3], waits[3:]))
+        self.assertAlmostEqual(edges, 1e4 * 2e7 ** (-2 / 3), places=4)
+        self.assertAlmostEqual(faces, 1e2 * 2e7 ** (-1 / 3), places=4)
+
     def test_the_transform_of_one_image_vanishes(self):
         line = self.extrapolated(once=0.5).iloc[0]
         self.assertAlmostEqual(line["transform"], 0.5e6 / 2e7, places=4)
@@ -134,6 +143,14 @@ class Extrapolation(unittest.TestCase):
         self.assertTrue(table["refining_efficiency_low"].isna().all() and table["worst_miss"].isna().all())
         self.assertTrue(self.extrapolated(SIZES[:1]).empty)
         self.assertTrue(self.extrapolated(counts=(1, 2, 4)).empty)
+
+    def test_one_rank_counts_at_all_its_sizes_and_too_few_cells_at_none(self):
+        rows = [modelled(ranks, size) for size in SIZES[:2] for ranks in (1, 8)]
+        odd = [row(1, 5_000_000, [spent(refine=50.0)]), row(1, 10_000, [spent(refine=9.0)]),
+               row(8, 10_000, [spent(refine=9.0)] * 8)]
+        plain, with_odd = (distributed_model.extrapolated(table_of(some)).iloc[0] for some in (rows, [*rows, *odd]))
+        self.assertEqual(plain["sizes"], with_odd["sizes"])
+        self.assertGreater(with_odd["refining_efficiency"], 2 * plain["refining_efficiency"])
 
     def test_nothing_measured_is_extrapolated(self):
         rows = [row(ranks, size, basis="measured") for size in SIZES for ranks in (1, 8)]
