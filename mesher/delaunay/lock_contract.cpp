@@ -20,12 +20,21 @@ const AttemptScope* attempt_at_hand() {
   return found != attempts.end() ? found->second : nullptr;
 }
 
-int num_held(const AttemptScope& attempt, const Mesh& mesh, CellId c) {
+template <class Counts>
+int num_vertices(const Mesh& mesh, CellId c, const Counts& counts) {
   const auto vertices = mesh.peek_vertices(c);
   if (vertices[0] == vertices[1]) return 0;  // no living cell
   return static_cast<int>(std::count_if(vertices.begin(), vertices.end(), [&](VertexId v) {
-    return v != kNoVertex && attempt.holds(mesh.vertex(v));
+    return v != kNoVertex && counts(mesh.vertex(v));
   }));
+}
+
+int num_held(const AttemptScope& attempt, const Mesh& mesh, CellId c) {
+  return num_vertices(mesh, c, [&](const Vertex& v) { return attempt.holds(v); });
+}
+
+int num_changeable(const AttemptScope& attempt, const Mesh& mesh, CellId c) {
+  return num_vertices(mesh, c, [&](const Vertex& v) { return attempt.may_change(v); });
 }
 
 [[noreturn]] void fail(CellId c, const char* what, int num_held) {
@@ -54,13 +63,13 @@ void assert_may_read(const Mesh& mesh, CellId c) {
 void assert_may_write_mirrors(const Mesh& mesh, CellId c) {
   const AttemptScope* const attempt = attempt_at_hand();
   if (attempt == nullptr) return;
-  if (const int held = num_held(*attempt, mesh, c); held < 3) fail(c, "given a mirror", held);
+  if (const int held = num_changeable(*attempt, mesh, c); held < 3) fail(c, "given a mirror", held);
 }
 
 void assert_may_replace(const Mesh& mesh, CellId c) {
   const AttemptScope* const attempt = attempt_at_hand();
   if (attempt == nullptr || !mesh.peek_is_alive(c)) return;
-  if (const int held = num_held(*attempt, mesh, c); held < 4) fail(c, "replaced", held);
+  if (const int held = num_changeable(*attempt, mesh, c); held < 4) fail(c, "replaced", held);
 }
 
 }  // namespace podm

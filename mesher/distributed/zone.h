@@ -16,9 +16,11 @@
 
 #include <algorithm>
 #include <array>
+#include <span>
 #include <vector>
 
 #include "delaunay/operation.h"
+#include "delaunay/planted_fault.h"
 
 #include "distributed/cubes.h"
 #include "refine/worker.h"
@@ -76,7 +78,9 @@ class ZoneLocks {
   void confine(const Zone& zone) { zone_ = &zone; }
 
   StepResult try_lock(Vertex& v) { return inner_.try_lock(v); }
-  bool holds(const Vertex& v) const { return zone_->has(peek_point(v)) && inner_.holds(v); }
+  bool holds(const Vertex& v) const { return inner_.holds(v); }
+  /// What the lock contract counts as held for a change: ranks do not lock against each other.
+  bool may_change(const Vertex& v) const { return zone_->has(peek_point(v)) && holds(v); }
   void unlock_all() { inner_.unlock_all(); }
   WorkerId conflicting_worker() const { return inner_.conflicting_worker(); }
 
@@ -85,8 +89,9 @@ class ZoneLocks {
   // Two points of a ball are no farther from each other than twice its radius.
   void begin_around(const Point& p) { squared_reach_ = zone_->squared_reach(p) / 4; }
   bool may_replace(const Mesh& mesh, const Cell& cell) const {
+    const auto vertices = std::span(cell.vertices).first(locks_taken().in_zone);
     return cell.squared_radius < squared_reach_ ||
-           std::all_of(cell.vertices.begin(), cell.vertices.end(), [&](VertexId v) { return has(mesh, v); });
+           std::all_of(vertices.begin(), vertices.end(), [&](VertexId v) { return has(mesh, v); });
   }
   bool may_insert(const Point& p) const { return zone_->has(p); }
 
