@@ -5,7 +5,8 @@
 //   1  The first rank makes a coarse mesh, and all get its vertices.
 //   2  Blocks divide space by predicted work. In round 0 a rank's zone is its block, and it refines what
 //   cells have their
-//      circumcentres there. A cell that needs vertices outside the zone is deferred.
+//      circumcentres there. A cell that needs vertices outside the zone is deferred. It may go leaf by leaf
+//      first (leaves_of_zone.h).
 //   3  In later rounds zones are around what waits, along faces of blocks first, then along edges, then at
 //   corners
 //      (zones_of_round.h); those of cells that are deferred again grow. When one fills space its rank knows
@@ -25,6 +26,7 @@ namespace podm {
 struct RoundReport {
   std::uint64_t entries = 0;  ///< cells that it began with
   std::uint64_t insertions = 0;
+  std::uint64_t in_leaves = 0;  ///< of the insertions
   std::uint64_t deferred = 0;  ///< cells, on all ranks
   std::uint64_t cubes = 0;     ///< of its zone
   Update update;               ///< before it
@@ -43,8 +45,10 @@ struct DistributedRefinement {
 };
 
 struct DistributedOptions {
-  double initial_ratio = 4;    ///< bounds of the coarse mesh over the final ones
-  std::uint64_t cut_seed = 0;  ///< draws where blocks are cut; 0: by predicted work
+  double initial_ratio = 4;                ///< bounds of the coarse mesh over the final ones
+  std::uint64_t cut_seed = 0;              ///< draws where blocks are cut; 0: by predicted work
+  Algorithm algorithm = Algorithm::kPodm;  ///< or kPdr or kPdrPodm: leaves first, in round 0
+  double leaf_size_mm = 0;                 ///< as in LeafOptions
 };
 
 /// Collective. All ranks have the same problem and options, each a team of its own.
