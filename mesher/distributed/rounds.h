@@ -4,9 +4,8 @@
 //
 //   1  The first rank makes a coarse mesh, and all get its vertices.
 //   2  Blocks divide space by predicted work. In round 0 a rank's zone is its block, and it refines what
-//   cells have their
-//      circumcentres there. A cell that needs vertices outside the zone is deferred. It may go leaf by leaf
-//      first (leaves_of_zone.h).
+//      cells have their circumcentres there, by PODM alone or leaf by leaf first (leaves_of_zone.h). A cell
+//      that needs vertices outside the zone is deferred.
 //   3  In later rounds zones are around what waits, along faces of blocks first, then along edges, then at
 //   corners
 //      (zones_of_round.h); those of cells that are deferred again grow. When one fills space its rank knows
@@ -27,9 +26,9 @@ struct RoundReport {
   std::uint64_t entries = 0;  ///< cells that it began with
   std::uint64_t insertions = 0;
   std::uint64_t in_leaves = 0;  ///< of the insertions
-  std::uint64_t deferred = 0;  ///< cells, on all ranks
-  std::uint64_t cubes = 0;     ///< of its zone
-  Update update;               ///< before it
+  std::uint64_t deferred = 0;   ///< cells, on all ranks
+  std::uint64_t cubes = 0;      ///< of its zone
+  Update update;                ///< before it
   double update_s = 0, refine_s = 0;
 };
 

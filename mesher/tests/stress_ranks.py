@@ -1,9 +1,9 @@
 """Meshes on ranks, each proved by podm-verify from its pieces, and made again by podm replay. ci/ranks.sh calls it.
 
-`random` makes runs of podm-mpi with its ranks in one process: phantom, ranks, threads, initial ratio and the cuts of
-blocks, and the algorithm, are drawn from a seed alone. `images` meshes every image of a folder on several numbers of ranks, in one process
-and over MPI, and prints a table. Both exit with 1 when a run fails, and name it. The programs are $PODM_PROGRAM,
-$PODM_MPI_PROGRAM and $PODM_MPIRUN.
+`random` makes runs of podm-mpi with its ranks in one process: phantom, ranks, algorithm, threads, initial ratio and the
+cuts of blocks are drawn from a seed alone. `images` meshes every image of a folder on several numbers of ranks, in one
+process and over MPI, and prints a table. Both exit with 1 when a run fails, and name it. The programs are
+$PODM_PROGRAM, $PODM_MPI_PROGRAM and $PODM_MPIRUN.
 """
 
 import argparse

@@ -79,9 +79,9 @@ TEST_F(LogsOfRanks, NameVerticesByTheirPlaces) {
 
 // What rank 2 called 11 and 9 it calls 7 and 11 from then on.
 TEST_F(LogsOfRanks, FollowVerticesThatMove) {
-  add(2, at(3, 0), 5, 7, {11}, kMovedVertex);
-  add(2, at(3, 1), 2, 11, {9}, kMovedVertex);
-  add(2, at(3, 2), 7, 9, {11});
+  add(2, at(5, 0), 5, 7, {11}, kMovedVertex);
+  add(2, at(5, 1), 2, 11, {9}, kMovedVertex);
+  add(2, at(5, 2), 7, 9, {11});
   const OperationLog whole = merge_logs(logs_);
   EXPECT_EQ(whole.all.operations.back().point[0], 7);
   EXPECT_EQ(whole.all.removed.back(), 1u);
@@ -89,8 +89,8 @@ TEST_F(LogsOfRanks, FollowVerticesThatMove) {
 }
 
 TEST_F(LogsOfRanks, AreRefusedWithAVertexThatMovesFromElsewhere) {
-  add(2, at(3, 0), 3, 7, {9}, kMovedVertex);
-  EXPECT_EQ(fault(), "log.2: operation 0 of step 3: moves a vertex that is elsewhere");
+  add(2, at(5, 0), 3, 7, {9}, kMovedVertex);
+  EXPECT_EQ(fault(), "log.2: operation 0 of step 5: moves a vertex that is elsewhere");
 }
 
 TEST_F(LogsOfRanks, AreOneMachinesAsTheyAre) {

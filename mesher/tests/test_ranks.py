@@ -90,11 +90,11 @@ class Meshes(OnRanks):
         self.assert_exit(run_podm("phantom", "spheres", "--size", 32, "-o", image), 0)
         for options in (["pdr-podm", "--nodes", 2, "--cores-per-node", 2], ["pdr", "--threads", 2]):
             with self.subTest(options=options):
-                process = self.mesh(2, "--radius", 1.5, "--algorithm", *options, "--log", self.folder / "run.log",
-                                    "--leaf-size", 5, image=image)
+                process = self.mesh(2, "--radius", 3, "--algorithm", *options, "--log", self.folder / "run.log",
+                                    "--oversubscribe", image=image)
                 self.assert_exit(process, 0)
                 self.assertIn(f"by {options[0]};", process.stderr)
-                self.assert_verifies(self.out, "--radius", 1.5, "--image", image)
+                self.assert_verifies(self.out, "--radius", 3, "--image", image)
                 self.assert_exit(run_podm("replay", image, *(self.folder / f"run.log.{i}" for i in range(2))), 0)
                 record = self.last_record()
                 first, *later = record["ranks"]["rounds"]
