@@ -82,6 +82,8 @@ class Merge {
     const LoggedOperation& logged = rank.next();
     if (logged.kind == kForgottenVertex) {
       forget(rank);
+    } else if (logged.kind == kMovedVertex) {
+      move(rank);
     } else if (logged.kind >= kLearntVertex && logged.kind < kForgottenVertex) {
       learn(rank);
     } else {
@@ -94,6 +96,14 @@ class Merge {
     const Point p = take_removed(rank, rank.removed().front());
     rank.expect(p == point_of(rank.next()), "forgets a vertex that is elsewhere");
     rank.expect(!vertices_.contains(p), "forgets a vertex that nobody has removed");
+  }
+
+  // The whole knows the vertex by its point.
+  void move(Reader& rank) {
+    rank.expect(rank.removed().size() == 1, "moves other than one vertex");
+    const Point p = take_removed(rank, rank.removed().front());
+    rank.expect(p == point_of(rank.next()), "moves a vertex that is elsewhere");
+    give_number(rank);
   }
 
   void learn(Reader& rank) {

@@ -50,22 +50,9 @@ class Run {
   Refinement refine_with(const SizeOptions& sizes) {
     Refinement refinement;
     phases_.refine(sizes, [&](const Problem& problem, const Team& team, StopControl& stop) {
-      refinement = refine_by_algorithm(problem, team, stop);
+      refinement = refine_by(phases_.team().size().algorithm, problem, team, options_.leaves, stop);
     });
     return refinement;
-  }
-
-  Refinement refine_by_algorithm(const Problem& problem, const Team& team, StopControl& stop) const {
-    switch (phases_.team().size().algorithm) {
-      case Algorithm::kPdr:
-        return pdr(problem, team, options_.leaves, stop);
-      case Algorithm::kPdrPodm:
-        return pdr_podm(problem, team, options_.leaves, stop);
-      case Algorithm::kPodmHome:
-        return podm_home(problem, team, stop);
-      default:
-        return podm(problem, team, stop);
-    }
   }
 
   const LabelImage& image_;

@@ -5,19 +5,27 @@
 
 namespace podm {
 
-LeafCells::LeafCells(const Mesh& mesh, const Octree& octree)
+LeafCells::LeafCells(const Mesh& mesh, const Octree& octree, const Entries* only)
     : mesh_(mesh),
       octree_(octree),
-      bound_(mesh.cell_bound()),
+      only_(only),
+      bound_(only != nullptr ? static_cast<CellId>(only->size()) : mesh.cell_bound()),
       outside_((bound_ + std::size_t{kSlice} - 1) / kSlice),
       list_of_leaf_(octree.num_leaves()) {}
 
-std::size_t LeafCells::distribute(std::size_t slice) {
+LeafCells::Entries LeafCells::living_of(std::size_t slice) const {
   const auto begin = static_cast<CellId>(slice * kSlice);
+  const CellId end = begin + std::min(kSlice, bound_ - begin);
+  if (only_ != nullptr) return Entries(only_->begin() + begin, only_->begin() + end);
   Entries living;
   living.reserve(kSlice);
-  for (CellId c = begin; c < begin + std::min(kSlice, bound_ - begin); ++c)
+  for (CellId c = begin; c < end; ++c)
     if (mesh_.cell(c).is_alive()) living.push_back({c, mesh_.stamp(c)});
+  return living;
+}
+
+std::size_t LeafCells::distribute(std::size_t slice) {
+  const Entries living = living_of(slice);
   for_each_leaf(living, [&](LeafId leaf, std::span<const Key> keys) {
     if (leaf == kNoLeaf) {
       append(living, keys, outside_[slice]);

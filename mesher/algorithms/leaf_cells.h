@@ -29,11 +29,11 @@ class LeafCells {
   using Entries = std::vector<PoorElementList::Entry>;
   static constexpr CellId kSlice = 4096;  // cells
 
-  /// The store's cells of this moment are to be distributed, or not.
-  LeafCells(const Mesh& mesh, const Octree& octree);
+  /// The store's cells of this moment are to be distributed, or not; or `only` these, which live.
+  LeafCells(const Mesh& mesh, const Octree& octree, const Entries* only = nullptr);
 
   std::size_t num_slices() const { return outside_.size(); }
-  /// Lists the living cells of a slice of the store with their leaves, and returns how many. Each slice is
+  /// Lists the living cells of a slice with their leaves, and returns how many. Each slice is
   /// distributed once, in any order, and meanwhile no cell changes.
   std::size_t distribute(std::size_t slice);
   /// Tells the queue of all cells that have been distributed, and shares them out. Nobody else may call
@@ -64,6 +64,7 @@ class LeafCells {
   };
 
   using Key = std::uint64_t;  // leaf << 32 | place among the cells
+  Entries living_of(std::size_t slice) const;
   template <class Action>
   void for_each_leaf(const Entries& cells, Action&& action) const;
   static void append(const Entries& cells, std::span<const Key> keys, Entries& to);
@@ -71,7 +72,8 @@ class LeafCells {
 
   const Mesh& mesh_;
   const Octree& octree_;
-  const CellId bound_;
+  const Entries* const only_;      // none: all cells of the store
+  const CellId bound_;             // so many places of cells are looked at
   std::vector<Entries> outside_;   // indexed by slice: its cells in no leaf
   std::vector<Lock> locks_{1024};  // each guards the lists of some leaves
   std::vector<List> list_of_leaf_;

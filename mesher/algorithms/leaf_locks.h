@@ -1,7 +1,7 @@
 // Locks confined to the region of one leaf of an octree: a vertex outside of it cannot be had. Regions of
 // leaves that are refined at the same time are disjoint (octree/octree.h), so their workers never meet: what
 // holds for two or three locked vertices of a cell (vertex_locks.h) holds for as many in the region. Within
-// one leaf `Inner` locks; with NoLocks a leaf has one worker, as in PDR.
+// one leaf `Inner` locks; with NoLocks a leaf has one worker, as in PDR. A horizon of `Inner` is kept, too.
 #pragma once
 
 #include <algorithm>
@@ -23,6 +23,7 @@ class LeafLocks {
   /// Nothing is held meanwhile. The region must outlive the operations.
   void confine(const LeafRegion& region) { region_ = &region; }
   const LeafRegion& region() const { return *region_; }
+  Inner& inner() { return inner_; }
   /// Remembers, from now on, the leaves that locked vertices lie in.
   void record_leaves() { is_recording_ = true; }
   std::vector<LeafId>& touched_leaves() { return touched_leaves_; }
@@ -36,6 +37,16 @@ class LeafLocks {
   bool holds(const Vertex& v) const { return region_->contains(peek_point(v)) && inner_.holds(v); }
   void unlock_all() { inner_.unlock_all(); }
   WorkerId conflicting_worker() const { return inner_.conflicting_worker(); }
+
+  bool knows(const Cell& cell) const requires HasHorizon<Inner> { return inner_.knows(cell); }
+  bool may_read(const Mesh& mesh, const Cell& cell) const requires HasHorizon<Inner> {
+    return inner_.may_read(mesh, cell);
+  }
+  void begin_around(const Point& p) requires HasHorizon<Inner> { inner_.begin_around(p); }
+  bool may_replace(const Mesh& mesh, const Cell& cell) const requires HasHorizon<Inner> {
+    return inner_.may_replace(mesh, cell);
+  }
+  bool may_insert(const Point& p) const requires HasHorizon<Inner> { return inner_.may_insert(p); }
 
  private:
   void remember(LeafId leaf) {

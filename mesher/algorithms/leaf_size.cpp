@@ -101,17 +101,17 @@ std::uint64_t checked_bytes_of_leaves(const Problem& problem, const LeafOptions&
 // what is remote, deferred, handed over or in the way of a leaf's other workers lies along its sides. Where
 // the initial mesh is too coarse for that they are as short as it allows.
 std::unique_ptr<const Octree> make_octree(const Problem& problem, const Radii& radii, const Box& box,
-                                          const LeafOptions& options, const Team& team,
+                                          const LeafOptions& options, std::uint64_t num_nodes,
                                           const std::stop_token& stop) {
-  constexpr LeafId kLeavesPerNode = 64;
+  constexpr std::uint64_t kLeavesPerNode = 64;
   constexpr double kStep = 1.26;  // halves the number of leaves
   const double ratio = options.initial_ratio;
   if (const double asked_mm = options.size_mm; asked_mm > 0)
     return std::make_unique<Octree>(octree_of_sides(problem, radii, box, ratio, asked_mm, asked_mm, stop));
   const double finest_mm = kLeafSizeOverRadius * ratio * radii.least;
   double coarsest_mm = kLeafSizeOverRadius * ratio * radii.most;
-  const LeafId wanted = kLeavesPerNode * static_cast<LeafId>(team.num_nodes);
-  double growth = std::max(1.0, side_for(box, wanted, kStep) / finest_mm);
+  const std::uint64_t wanted = kLeavesPerNode * num_nodes;
+  double growth = std::max(1.0, side_for(box, static_cast<double>(wanted), kStep) / finest_mm);
   for (;;) {
     auto octree = std::make_unique<Octree>(
         octree_of_sides(problem, radii, box, ratio, growth * finest_mm, growth * coarsest_mm, stop));

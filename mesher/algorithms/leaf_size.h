@@ -24,9 +24,9 @@ std::uint64_t checked_bytes_of_leaves(const Problem& problem, const LeafOptions&
 
 /// Leaves near the object; the cells elsewhere are few, and left to the closing phase. Their sides follow
 /// from the labels' bounds, longer where a leaf has to feed several workers, then shorter until there are
-/// leaves enough to keep all nodes at work. A stop request leaves them unfit.
+/// leaves enough to keep so many computing nodes at work. A stop request leaves them unfit.
 std::unique_ptr<const Octree> make_octree(const Problem& problem, const Radii& radii, const Box& box,
-                                          const LeafOptions& options, const Team& team,
+                                          const LeafOptions& options, std::uint64_t num_nodes,
                                           const std::stop_token& stop);
 
 }  // namespace podm

@@ -88,6 +88,20 @@ Refinement podm(const Problem& problem, const Team& team, StopControl& stop) {
   return construction.finish();
 }
 
+Refinement refine_by(Algorithm algorithm, const Problem& problem, const Team& team, const LeafOptions& leaves,
+                     StopControl& stop) {
+  switch (algorithm) {
+    case Algorithm::kPdr:
+      return pdr(problem, team, leaves, stop);
+    case Algorithm::kPdrPodm:
+      return pdr_podm(problem, team, leaves, stop);
+    case Algorithm::kPodmHome:
+      return podm_home(problem, team, stop);
+    default:
+      return podm(problem, team, stop);
+  }
+}
+
 template bool refine(Worker<NoLocks>&, Coordination&, RealTime&, const std::function<void()>&);
 template bool refine(Worker<VertexLocks>&, Coordination&, RealTime&, const std::function<void()>&);
 template bool refine(Worker<VertexLocks>&, Coordination&, VirtualTime&, const std::function<void()>&);

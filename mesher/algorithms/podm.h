@@ -18,6 +18,10 @@ Refinement pdr(const Problem& problem, const Team& team, const LeafOptions& opti
 /// The same with several workers a leaf, which lock vertices against each other.
 Refinement pdr_podm(const Problem& problem, const Team& team, const LeafOptions& options, StopControl& stop);
 
+/// By one of these; not kAuto.
+Refinement refine_by(Algorithm algorithm, const Problem& problem, const Team& team, const LeafOptions& leaves,
+                     StopControl& stop);
+
 /// PODM's loop, for one worker of a group. True: all cells that the group had are refined, as its master is
 /// told, or the worker was dismissed. False: the run is over. `before_begging`, if given, is called each time
 /// that the worker has no cells left.

@@ -187,7 +187,7 @@ void add_mesh_command(CLI::App& program, MeshCommand& command, Program which) {
   if (is_on_ranks)
     end_help(
         app,
-        "Not on ranks yet, and refused: --target-elements, --surface, --algorithm but podm, --schedule,\n"
+        "Not on ranks yet, and refused: --target-elements, --surface, --algorithm podm-home, --schedule,\n"
         "--executor virtual.");
 }
 

@@ -33,6 +33,7 @@ RoundReport on_all(const std::vector<PartOfRank>& parts, std::size_t round) {
     const RoundReport& one = part.rounds[round];
     all.entries += one.entries;
     all.insertions += one.insertions;
+    all.in_leaves += one.in_leaves;
     all.deferred = one.deferred;
     all.cubes += one.cubes;
     all.update += one.update;
@@ -72,6 +73,7 @@ Json rounds_of(const std::vector<PartOfRank>& parts) {
     rounds.push_back({{"ranks_refining", ranks_refining(parts, i)},
                       {"entries", round.entries},
                       {"insertions", round.insertions},
+                      {"in_leaves", round.in_leaves},
                       {"deferred", round.deferred},
                       {"cubes", round.cubes},
                       {"update", update_of(round.update)},
@@ -157,14 +159,15 @@ std::string virtual_time_text(const std::vector<Spent>& spent) {
 }
 
 std::string text_of(const std::vector<PartOfRank>& parts, const std::vector<Spent>& spent,
-                    const RanksOfMachine& machines) {
+                    const RanksOfMachine& machines, Algorithm algorithm) {
   const bool is_virtual = spent[0].is_virtual;
   const std::string where = is_virtual ? "in this process, in virtual time"
                                        : fmt::format("on {} machine{}", machines.num_machines(),
                                                      machines.num_machines() > 1 ? "s" : "");
   std::string text = fmt::format(
-      "ranks      {} {}; the most cells of one are {:.3g} times the mean;\n           {}\n", parts.size(),
-      where, imbalance(parts), is_virtual ? virtual_time_text(spent) : memory_text(spent));
+      "ranks      {} {}, by {}; the most cells of one are {:.3g} times the mean;\n           {}\n",
+      parts.size(), where, to_string(algorithm), imbalance(parts),
+      is_virtual ? virtual_time_text(spent) : memory_text(spent));
   if (parts[0].rounds.empty()) return text;
   text += fmt::format("{:>10} {:>11} {:>11} {:>11} {:>14} {:>17} {:>9}\n", "round", "entries", "insertions",
                       "deferred", "vertices told", "seconds: exchange", "refine");
@@ -200,7 +203,7 @@ void gather_from_ranks(const MeshingOnRanks& result, int threads, const RanksOfM
               .facet_pairs = sums_of(pairs)};
   run.ranks = ranks_of(result.parts, spent, machines, run);
   run.ranks["mesh_hash"] = mesh_hash_text(result.mesh_hash);
-  run.ranks_text = text_of(result.parts, spent, machines) +
+  run.ranks_text = text_of(result.parts, spent, machines, result.report.algorithm) +
                    fmt::format("hash       {}\n", mesh_hash_text(result.mesh_hash));
 }
 

@@ -26,8 +26,7 @@ void refuse(bool is_asked, const std::string& what) {
 }  // namespace
 
 void check_options_on_ranks(const MeshingOptions& options) {
-  refuse(options.algorithm != Algorithm::kPodm && options.algorithm != Algorithm::kAuto,
-         "algorithm " + to_string(options.algorithm));
+  refuse(options.algorithm == Algorithm::kPodmHome, "algorithm " + to_string(options.algorithm));
   refuse(options.team.executor == Executor::kVirtual, "virtual workers");
   refuse(options.sizes.target_elements > 0, "a target number of elements");
   refuse(options.leaves.with_schedule, "a schedule of leaves");
@@ -57,6 +56,8 @@ std::vector<Fact> facts_of(const LabelImage& image, const MeshingOptions& option
           {"radii of labels", radii},
           {"delta", fmt::format("{} mm", sizes.delta_mm)},
           {"space", to_string(options.space)},
+          {"algorithm", to_string(options.algorithm)},
+          {"leaf size", fmt::format("{} mm", options.leaves.size_mm)},
           {"initial ratio", fmt::format("{}", options.leaves.initial_ratio)},
           {"seed", fmt::format("{}", options.cut_seed)},
           {"limit of elements", fmt::format("{}", options.limits.max_elements)},
@@ -66,7 +67,7 @@ std::vector<Fact> facts_of(const LabelImage& image, const MeshingOptions& option
 
 MeshingOptions share_of(const MeshingOptions& options, std::uint64_t num_ranks) {
   MeshingOptions share = options;
-  share.algorithm = Algorithm::kPodm;
+  if (share.algorithm == Algorithm::kAuto) share.algorithm = Algorithm::kPodm;
   share.limits.max_elements = (options.limits.max_elements + num_ranks - 1) / num_ranks;
   return share;
 }
@@ -120,8 +121,12 @@ class RunOnRank {
     phases_.refine(sizes, [&](const Problem& problem, const Team& team, StopControl& stop) {
       if (ranks_.size() == 1) return refine_alone(problem, team, stop);
       const double start_s = ranks_.seconds();
-      refined_.emplace(
-          podm_distributed(problem, team, {options_.leaves.initial_ratio, options_.cut_seed}, ranks_, stop));
+      refined_.emplace(podm_distributed(problem, team,
+                                        {.initial_ratio = options_.leaves.initial_ratio,
+                                         .cut_seed = options_.cut_seed,
+                                         .algorithm = options_.algorithm,
+                                         .leaf_size_mm = options_.leaves.size_mm},
+                                        ranks_, stop));
       double known_s = 0;
       for (const auto& [phase, seconds] : refined_->refinement.phases_s) known_s += seconds;
       own.phases_s["exchange"] = std::max(0.0, ranks_.seconds() - start_s - known_s);
@@ -138,11 +143,12 @@ class RunOnRank {
   void refine_alone(const Problem& problem, const Team& team, StopControl& stop) {
     const Vector extent = problem.object.high - problem.object.low;
     const CubeGrid grid(problem.object, std::max({extent.x, extent.y, extent.z}));
-    refined_.emplace(DistributedRefinement{.refinement = podm(problem, team, stop),
-                                           .grid = grid,
-                                           .rank_of_cube = std::vector<int>(grid.num_cubes()),
-                                           .rounds = {},
-                                           .last_update = {}});
+    refined_.emplace(DistributedRefinement{
+        .refinement = refine_by(options_.algorithm, problem, team, options_.leaves, stop),
+        .grid = grid,
+        .rank_of_cube = std::vector<int>(grid.num_cubes()),
+        .rounds = {},
+        .last_update = {}});
     spending_.end("refine");
   }
 

@@ -35,16 +35,17 @@ struct MeshingOnRanks {
 
 using SharedIsosurface = MadeOnce<Isosurface>;
 
-/// Throws InputError on what cannot be had on ranks: virtual workers, targets of cells, other algorithms than
-/// PODM, schedules.
+/// Throws InputError on what cannot be had on ranks: virtual workers, targets of cells, PODM at home,
+/// schedules.
 void check_options_on_ranks(const MeshingOptions& options);
 
-/// Meshes `image` as mesh_image() does, with PODM in each rank's zone; on one rank it is PODM itself.
-/// Collective: image and options are the same on all ranks, but for threads and memory, which are each
-/// rank's. A rank whose store has its even share of max_elements ends the run. Throws RefusedByAll
-/// (distributed/together.h) where ranks have not the same, and on options that are bad or not for ranks.
-/// Memory that runs out between rounds is std::bad_alloc on that rank, and the others are to be ended. Ranks
-/// of one process may share the isosurface, and then have the same image; else each makes its own.
+/// Meshes `image` as mesh_image() does, with PODM in each rank's zone, leaf by leaf if asked; on one rank it
+/// is the algorithm itself. Collective: image and options are the same on all ranks, but for threads and
+/// memory, which are each rank's. A rank whose store has its even share of max_elements ends the run. Throws
+/// RefusedByAll (distributed/together.h) where ranks have not the same, and on options that are bad or not
+/// for ranks. Memory that runs out between rounds is std::bad_alloc on that rank, and the others are to be
+/// ended. Ranks of one process may share the isosurface, and then have the same image; else each makes its
+/// own.
 MeshingOnRanks mesh_image_on_ranks(const LabelImage& image, const MeshingOptions& options,
                                    Communication& ranks, const ProgressCallback& progress = {},
                                    std::stop_token stop = {}, SharedIsosurface* isosurface = nullptr);

@@ -7,6 +7,7 @@
 #include "algorithms/leaf_size.h"
 #include "algorithms/podm_impl.h"
 #include "cost_model.h"
+#include "distributed/leaves_of_zone.h"
 #include "distributed/messages.h"
 #include "distributed/zone.h"
 #include "distributed/zones_of_round.h"
@@ -104,14 +105,20 @@ class Rounds {
         levels_(two_levels(problem, options.initial_ratio)),
         construction_(problem, levels_.clamp, team, stop),
         grid_(problem.object, cube_side_mm(radii_of(problem), problem.object, ranks.size())),
-        exchange_(ranks, construction_.mesh(), construction_.pool(0), grid_, team.log) {}
+        exchange_(ranks, construction_.mesh(), construction_.pool(0), grid_, team.log) {
+    if (options.algorithm == Algorithm::kPodm) return;
+    const LeafOptions of_leaves{.initial_ratio = options.initial_ratio, .size_mm = options.leaf_size_mm};
+    leaves_.emplace(construction_, levels_, of_leaves, options.algorithm, ranks);
+  }
 
   DistributedRefinement operator()() {
     for (const char* phase : {"initial", "refine"})
       construction_.timed(phase, [] {});  // every rank has these
+    for (const char* phase : {"octree", "closing"})
+      if (leaves_) construction_.timed(phase, [] {});
     if (ranks_.rank() == 0)
       refine_anywhere(construction_, "initial", levels_.initial, construction_.all_cells(),
-                      construction_.num_workers());
+                      team_.initial_workers);
     if (is_over_anywhere()) return all_of_first_rank();
     construction_.timed("initial", [&] { exchange_.copy_first(); });
     divide_space();
@@ -186,6 +193,7 @@ class Rounds {
       report.update_s = processor_seconds() - start_s;
       spending_.end("exchange");
       if (team_.log != nullptr) team_.log->begin_step();
+      if (round == 0 && leaves_) entries = refine_leaves(zone, entries, report);
       for (const CellId c : refine_in(zone, entries, report))
         left.push_back(name_of(construction_.mesh(), c));
       report.refine_s = processor_seconds() - start_s - report.update_s;
@@ -275,6 +283,14 @@ class Rounds {
     });
   }
 
+  // What is left is for PODM.
+  Construction::Entries refine_leaves(const Zone& zone, const Construction::Entries& entries,
+                                      RoundReport& report) {
+    LeavesOfZone::Refined refined = (*leaves_)(zone, entries);
+    report.insertions += report.in_leaves = refined.insertions;
+    return std::move(refined.left);
+  }
+
   std::vector<CellId> refine_in(const Zone& zone, const Construction::Entries& entries, RoundReport& report) {
     if (construction_.num_workers() > 1) return refine_with<VertexLocks>(zone, entries, report);
     return refine_with<NoLocks>(zone, entries, report);
@@ -287,11 +303,12 @@ class Rounds {
     std::vector<CellId> deferred;
     if (entries.empty() || stop_.is_over()) return deferred;
     const Mesh& mesh = construction_.mesh();
-    construction_.timed("refine", [&] {
+    const char* const phase = leaves_ ? "closing" : "refine";
+    construction_.timed(phase, [&] {
       const auto workers =
           construction_.make_workers<ZoneLocks<Inner>>(levels_.final, construction_.num_workers());
       for (const auto& worker : workers) worker->locks().confine(zone);
-      construction_.in_time("refine", construction_.num_workers(), [&](auto& time) {
+      construction_.in_time(phase, construction_.num_workers(), [&](auto& time) {
         refine(construction_, workers, coordination_of_first(team_, construction_.num_workers()), entries,
                time);
       });
@@ -411,6 +428,7 @@ class Rounds {
   Construction construction_;
   const CubeGrid grid_;
   VertexExchange exchange_;
+  std::optional<LeavesOfZone> leaves_;  // none: PODM alone
   std::optional<Blocks> blocks_;
   std::vector<int> zone_of_;                // by cube: the rank of the zone that it is in, or kNobody
   std::vector<std::uint32_t> num_waiting_;  // by cube: cells, on all ranks, before the round

@@ -4,7 +4,8 @@
 //
 //   1  The first rank makes a coarse mesh, and all get its vertices.
 //   2  Blocks divide space by predicted work. In round 0 a rank's zone is its block, and it refines the
-//      cells that have their least vertices there. A cell that needs vertices outside is deferred.
+//      cells that have their least vertices there, by PODM alone or leaf by leaf first (leaves_of_zone.h). A
+//      cell that needs vertices outside is deferred.
 //   3  In later rounds zones are around what waits (zones_of_round.h); those of cells that are deferred again
 //      grow. When one fills space its rank knows all and defers nothing: so rounds end.
 //   4  At the end each rank learns what others changed in its block, and around it.
@@ -22,9 +23,10 @@ namespace podm {
 struct RoundReport {
   std::uint64_t entries = 0;  ///< cells that it began with
   std::uint64_t insertions = 0;
-  std::uint64_t deferred = 0;  ///< cells, on all ranks
-  std::uint64_t cubes = 0;     ///< of its zone
-  Update update;               ///< before it
+  std::uint64_t in_leaves = 0;  ///< of the insertions
+  std::uint64_t deferred = 0;   ///< cells, on all ranks
+  std::uint64_t cubes = 0;      ///< of its zone
+  Update update;                ///< before it
   double update_s = 0, refine_s = 0;
 };
 
@@ -40,8 +42,10 @@ struct DistributedRefinement {
 };
 
 struct DistributedOptions {
-  double initial_ratio = 4;    ///< bounds of the coarse mesh over the final ones
-  std::uint64_t cut_seed = 0;  ///< draws where blocks are cut; 0: by predicted work
+  double initial_ratio = 4;                ///< bounds of the coarse mesh over the final ones
+  std::uint64_t cut_seed = 0;              ///< draws where blocks are cut; 0: by predicted work
+  Algorithm algorithm = Algorithm::kPodm;  ///< or kPdr or kPdrPodm: leaves first, in round 0
+  double leaf_size_mm = 0;                 ///< as in LeafOptions
 };
 
 /// Collective. All ranks have the same problem and options, each a team of its own.

@@ -1,9 +1,9 @@
 """Meshes on ranks, each proved by podm-verify from its pieces, and made again by podm replay. ci/ranks.sh calls it.
 
-`random` makes runs of podm-mpi with its ranks in one process: phantom, ranks, threads, initial ratio and the cuts of
-blocks are drawn from a seed alone. `images` meshes every image of a folder on several numbers of ranks, in one process
-and over MPI, and prints a table. Both exit with 1 when a run fails, and name it. The programs are $PODM_PROGRAM,
-$PODM_MPI_PROGRAM and $PODM_MPIRUN.
+`random` makes runs of podm-mpi with its ranks in one process: phantom, ranks, algorithm, threads, initial ratio and the
+cuts of blocks are drawn from a seed alone. `images` meshes every image of a folder on several numbers of ranks, in one
+process and over MPI, and prints a table. Both exit with 1 when a run fails, and name it. The programs are
+$PODM_PROGRAM, $PODM_MPI_PROGRAM and $PODM_MPIRUN.
 """
 
 import argparse
@@ -137,8 +137,11 @@ def drawn(seed, samples):
     rng = random.Random(seed)
     sample, ranks, threads = rng.choice(samples), rng.randint(2, 9), rng.randint(1, 2)
     ratio = round(rng.uniform(1, 2), 3)
+    algorithm = rng.choice([["podm"], ["pdr"], ["pdr-podm", "--nodes", threads, "--cores-per-node", 2]])
+    if algorithm[0] == "pdr-podm":
+        threads *= 2
     return OnRanks(sample, f"seed {seed}", [], ["--in-process", ranks, "--seed", seed, "--threads", threads,
-                                                "--initial-ratio", ratio])
+                                                "--initial-ratio", ratio, "--algorithm", *algorithm])
 
 
 def run_random(options):

@@ -77,6 +77,22 @@ TEST_F(LogsOfRanks, NameVerticesByTheirPlaces) {
   EXPECT_NE(workers[4], workers[5]);
 }
 
+// What rank 2 called 11 and 9 it calls 7 and 11 from then on.
+TEST_F(LogsOfRanks, FollowVerticesThatMove) {
+  add(2, at(5, 0), 5, 7, {11}, kMovedVertex);
+  add(2, at(5, 1), 2, 11, {9}, kMovedVertex);
+  add(2, at(5, 2), 7, 9, {11});
+  const OperationLog whole = merge_logs(logs_);
+  EXPECT_EQ(whole.all.operations.back().point[0], 7);
+  EXPECT_EQ(whole.all.removed.back(), 1u);
+  for (const LoggedOperation& operation : whole.all.operations) EXPECT_NE(operation.kind, kMovedVertex);
+}
+
+TEST_F(LogsOfRanks, AreRefusedWithAVertexThatMovesFromElsewhere) {
+  add(2, at(5, 0), 3, 7, {9}, kMovedVertex);
+  EXPECT_EQ(fault(), "log.2: operation 0 of step 5: moves a vertex that is elsewhere");
+}
+
 TEST_F(LogsOfRanks, AreOneMachinesAsTheyAre) {
   logs_.resize(1);
   logs_[0].log.head.num_ranks = 1;

@@ -85,11 +85,36 @@ class Meshes(OnRanks):
                 self.assertTrue(all(round["deferred"] == 0 for round in ranks["rounds"][-1:]))
         self.assertLess(max(cells.values()) / min(cells.values()), 1.02)
 
+    def test_leaf_by_leaf_in_each_rank(self):
+        image = self.folder / "spheres.nii.gz"
+        self.assert_exit(run_podm("phantom", "spheres", "--size", 32, "-o", image), 0)
+        for options in (["pdr-podm", "--nodes", 2, "--cores-per-node", 2], ["pdr", "--threads", 2]):
+            with self.subTest(options=options):
+                process = self.mesh(2, "--radius", 3, "--algorithm", *options, "--log", self.folder / "run.log",
+                                    "--oversubscribe", image=image)
+                self.assert_exit(process, 0)
+                self.assertIn(f"by {options[0]};", process.stderr)
+                self.assert_verifies(self.out, "--radius", 3, "--image", image)
+                self.assert_exit(run_podm("replay", image, *(self.folder / f"run.log.{i}" for i in range(2))), 0)
+                record = self.last_record()
+                first, *later = record["ranks"]["rounds"]
+                self.assertEqual(record["algorithm"], options[0])
+                self.assertEqual(record["leaves"]["nodes"], 2)
+                self.assertGreater(record["leaves"]["number"], 100)
+                self.assertGreater(first["in_leaves"], first["insertions"] / 2)
+                self.assertEqual({round["in_leaves"] for round in later}, {0})
+                self.assertLessEqual({"octree", "refine", "closing"}, set(record["phases_s"]))
+
     def test_one_rank_makes_the_mesh_of_podm(self):
-        self.assert_exit(self.mesh(1, "--radius", 3, "--threads", 1), 0)
+        for algorithm in "podm", "pdr-podm":
+            with self.subTest(algorithm=algorithm):
+                self.assert_is_mesh_of_podm("--radius", 3, "--threads", 1, "--algorithm", algorithm)
+
+    def assert_is_mesh_of_podm(self, *options):
+        self.assert_exit(self.mesh(1, *options), 0)
         alone = self.folder / "alone.vtu"
-        self.assert_exit(run_podm("mesh", IMAGE, "--radius", 3, "--threads", 1, "-o", alone, "--record", self.runs), 0)
-        ours, theirs = map(json.loads, self.runs.read_text().splitlines())
+        self.assert_exit(run_podm("mesh", IMAGE, *options, "-o", alone, "--record", self.runs), 0)
+        ours, theirs = map(json.loads, self.runs.read_text().splitlines()[-2:])
         for key in "cells", "vertices", "boundary_facets", "labels", "facet_pairs", "quality", "counters":
             if key == "counters":
                 ours[key].pop("store_cells"), theirs[key].pop("store_cells")
@@ -302,7 +327,7 @@ class Refusals(OnRanks):
 
     def test_what_ranks_do_not_have_yet(self):
         for option, *words in (["--target-elements", 1000, "target"], ["--executor", "virtual", "virtual"],
-                               ["--algorithm", "pdr", "algorithm pdr"],
+                               ["--algorithm", "podm-home", "algorithm podm-home"],
                                ["--surface", self.folder / "s.stl", "--surface"],
                                ["--schedule", self.folder / "leaves.jsonl", "--schedule"]):
             *values, word = words
@@ -326,6 +351,8 @@ class Refusals(OnRanks):
         mesh = ["mesh", one, "-o", self.out]
         for arguments, word in ((["mesh", other, "-o", self.out], "image"),
                                 ([*mesh, "--radius", 3], "radius"),
+                                ([*mesh, "--algorithm", "pdr"], "algorithm"),
+                                ([*mesh, "--leaf-size", 3], "leaf size"),
                                 (["mesh", one, "-o", self.folder / "b.pvtu"], "output"),
                                 ([*mesh, "--log", self.folder / "run.log"], "--log"),
                                 ([*mesh, "--no-such"], "rank 1 of 2: unknown option")):

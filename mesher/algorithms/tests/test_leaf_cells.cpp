@@ -152,6 +152,20 @@ TEST_F(Distribution, ListsEveryLivingCellOnceOnAnyNumberOfThreads) {
   }
 }
 
+TEST_F(Distribution, ListsOnlyTheCellsThatAreGiven) {
+  LeafCells::Entries some = construction_.all_cells();
+  std::erase_if(some, [](const auto& entry) { return entry.cell % 3 != 0; });
+  LeafCells cells(mesh_, octree_, &some);
+  ASSERT_GE(cells.num_slices(), 2u);
+  std::uint64_t num_cells = 0;
+  for (const std::size_t slice : slices(cells)) num_cells += cells.distribute(slice);
+  EXPECT_EQ(num_cells, some.size());
+  for (LeafId leaf = 0; leaf < octree_.num_leaves(); ++leaf) {
+    std::erase_if(of_leaf_[leaf], [](CellId c) { return c % 3 != 0; });
+    EXPECT_EQ(ids(cells.take(leaf)), of_leaf_[leaf]) << "leaf " << leaf;
+  }
+}
+
 TEST_F(Distribution, TellsTheQueueOfEveryLeafThatHasCells) {
   LeafCells cells(mesh_, octree_);
   RefinementQueue queue(octree_, 2);

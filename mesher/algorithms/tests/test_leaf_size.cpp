@@ -24,8 +24,8 @@ TEST_P(LeafSizeIn, NextLongerSideMakesTooFewLeaves) {
   const Problem problem{
       .isosurface = isosurface, .object = box, .delta_mm = 0.02, .sizes = SizeField({0.02, 0.02})};
   for (const int num_nodes : {1, 4, 7}) {
-    const Team team{.coordination = {.num_workers = num_nodes}, .num_nodes = num_nodes};
-    const auto octree = make_octree(problem, radii_of(problem), box, {.initial_ratio = 4}, team, {});
+    const auto nodes = static_cast<std::uint64_t>(num_nodes);
+    const auto octree = make_octree(problem, radii_of(problem), box, {.initial_ratio = 4}, nodes, {});
     const Vector extent = box.high - box.low;
     const double longer_mm = kLongerSide * octree->finest_side_mm();
     const double num_longer =

@@ -25,6 +25,7 @@ struct Case {
   Space space = Space::kRas;
   std::uint64_t most_cells = 0;  // 0: no limit
   bool is_shared = true;         // there is enough for several ranks to do
+  Algorithm algorithm = Algorithm::kPodm;
 };
 
 struct LoggedRun {
@@ -37,7 +38,9 @@ LoggedRun run(const Case& of, int stopped_rank = -1) {
   const ScratchFolder folder;
   MeshingOptions options;
   options.sizes.radius_mm = of.radius_mm;
+  options.algorithm = of.algorithm;
   options.team.threads = of.threads;
+  options.team.nodes = of.algorithm == Algorithm::kPdrPodm ? 2 : 0;
   options.team.oversubscribe = true;
   options.space = of.space;
   if (of.most_cells > 0) options.limits.max_elements = of.most_cells;
@@ -111,6 +114,12 @@ std::vector<Case> cases() {
                        three_labels(), 1.2, num_ranks, threads, Space::kRas, 0, num_ranks > 1});
   cases.push_back({"voxel_space", ball(24, 9), 1.2, 4, 1, Space::kVoxel});
   cases.push_back({"more_ranks_than_cells", ball(12, 4), 3, 24});
+  for (const int num_ranks : {1, 2, 5})
+    cases.push_back({"leaves_on_" + std::to_string(num_ranks), three_labels(), 1, num_ranks, 4, Space::kRas,
+                     0, num_ranks > 1, Algorithm::kPdrPodm});
+  cases.push_back({"pdr", three_labels(), 1, 3, 2, Space::kRas, 0, true, Algorithm::kPdr});
+  cases.push_back(
+      {"stopped_in_leaves", ball(24, 9), 1.2, 3, 4, Space::kRas, 12000, true, Algorithm::kPdrPodm});
   cases.push_back({"stopped_in_the_coarse_mesh", ball(24, 9), 1.2, 3, 1, Space::kRas, 1000, false});
   cases.push_back({"stopped_in_the_first_round", ball(24, 9), 1.2, 3, 1, Space::kRas, 12000});
   return cases;

@@ -143,6 +143,18 @@ TEST(RanksThatDiffer, AreRefusedByAllWithTheRankAndWhatDiffers) {
             std::string::npos);
 }
 
+TEST(RanksThatDiffer, AreRefusedByAllWhereLeavesDoNotFitInTheMemoryOfOne) {
+  const LabelImage image = ball(12, 4);
+  EXPECT_NE(refusal_by_all([&](Communication& ranks) {
+              MeshingOptions options = options_with_radius(1);
+              options.algorithm = Algorithm::kPdrPodm;
+              options.leaves.size_mm = 0.3;
+              options.limits.max_memory_bytes = ranks.rank() == 1 ? 64 << 20 : 1 << 30;
+              mesh_image_on_ranks(image, options, ranks);
+            }).find("rank 1 of 3: a leaf size of 0.3 mm makes"),
+            std::string::npos);
+}
+
 TEST(DoTogether, TellsOfTheRankUnlessAllSayTheSame) {
   EXPECT_EQ(refusal_by_all(
                 [](Communication& ranks) { do_together([] { throw InputError("no such file"); }, ranks); }),

@@ -26,6 +26,9 @@ struct Case {
   double initial_ratio = 4;
   std::uint64_t cut_seed = 0;
   bool at_once = false;  // ranks compute at the same time
+  Algorithm algorithm = Algorithm::kPodm;
+  int nodes = 1;  // computing nodes of a rank
+  double leaf_size_mm = 0;
 };
 
 class Ranks {
@@ -41,13 +44,16 @@ class Ranks {
                             .delta_mm = delta_mm_for(of.image, sizes_),
                             .sizes = size_field(of.image, sizes_),
                             .cell_capacity = 1 << 22});
-    run_ranks({.num_ranks = of.num_ranks, .one_at_a_time = !of.at_once, .seed = seed}, [&](Communication&
-                                                                                               ranks) {
-      const Team team{.coordination = {.num_workers = of.threads}};
-      StopControl stop(limits, {}, [](std::uint64_t) {});
-      const auto rank = static_cast<std::size_t>(ranks.rank());
-      refined[rank].emplace(podm_distributed(*problem, team, {of.initial_ratio, of.cut_seed}, ranks, stop));
-    });
+    run_ranks(
+        {.num_ranks = of.num_ranks, .one_at_a_time = !of.at_once, .seed = seed}, [&](Communication& ranks) {
+          const Team team{.coordination = {.num_workers = of.threads},
+                          .num_nodes = of.nodes,
+                          .initial_workers = of.threads};
+          StopControl stop(limits, {}, [](std::uint64_t) {});
+          const auto rank = static_cast<std::size_t>(ranks.rank());
+          refined[rank].emplace(podm_distributed(
+              *problem, team, {of.initial_ratio, of.cut_seed, of.algorithm, of.leaf_size_mm}, ranks, stop));
+        });
   }
 
   /// The mesh of all vertices that ranks have in their blocks, made anew.
@@ -128,6 +134,32 @@ TEST_P(Rounds, EveryRankHasItsPartOfOneMeshThatIsDone) {
   EXPECT_EQ(ranks.insertions_left(*whole), 0u);
 }
 
+// On 2 computing nodes with 2 cores each, or on as many as cores. Leaves are short, so that some operations
+// need more than their regions.
+Case by_leaves(const std::string& name, int num_ranks, Algorithm algorithm = Algorithm::kPdrPodm) {
+  Case of{name, ball(24, 9), 1.2, 0, num_ranks, 4, 2};
+  of.algorithm = algorithm;
+  of.nodes = algorithm == Algorithm::kPdr ? of.threads : 2;
+  of.leaf_size_mm = 4;
+  return of;
+}
+
+TEST(RoundsByLeaves, RefineMostInLeavesOfOneOctree) {
+  for (const Algorithm algorithm : {Algorithm::kPdr, Algorithm::kPdrPodm}) {
+    const Case of = by_leaves("", 2, algorithm);
+    const Ranks ranks(of);
+    std::uint64_t in_leaves = 0, insertions = 0;
+    for (const auto& refined : ranks.refined) {
+      const RoundReport& first = refined->rounds.front();
+      in_leaves += first.in_leaves;
+      insertions += first.insertions;
+      EXPECT_EQ(refined->refinement.num_leaves, ranks.refined[0]->refinement.num_leaves);
+      EXPECT_GT(refined->refinement.num_leaves, 50u);
+    }
+    EXPECT_GT(in_leaves, insertions / 2);
+  }
+}
+
 TEST(RoundsThatStop, LeaveAMeshAllTheSame) {
   const Case of{"", ball(24, 9), 1.2, 0, 3};
   for (const std::uint64_t most_cells : {1000u, 4000u}) {  // in the coarse mesh, and in the first round
@@ -194,6 +226,18 @@ std::vector<Case> cases() {
   cases.push_back({"threads_at_once", ball(24, 9), 1.2, 0, 3, 2, 2, 0, true});
   cases.push_back({"drawn_cuts_at_once", image_named("three_labels_meeting"), 1, 0, 4, 2, 1.5, 8, true});
   cases.push_back({"more_ranks_than_cells", ball(12, 4), 6, 3, 24});
+  for (const int num_ranks : {2, 3, 5})
+    cases.push_back(by_leaves("leaves_on_" + std::to_string(num_ranks), num_ranks));
+  cases.push_back(by_leaves("pdr", 4, Algorithm::kPdr));
+  for (const std::uint64_t seed : {1u, 2u, 3u, 4u}) {
+    cases.push_back(
+        by_leaves("leaves_and_cuts_drawn_by_" + std::to_string(seed), 1 + static_cast<int>(seed)));
+    cases.back().cut_seed = seed;
+    cases.back().image = image_named("three_labels_meeting");
+    cases.back().at_once = seed % 2 == 0;
+  }
+  cases.push_back(by_leaves("leaves_longer_than_blocks", 5));
+  cases.back().leaf_size_mm = 30;
   return cases;
 }
 
