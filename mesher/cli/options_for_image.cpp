@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cmath>
 #include <limits>
 
 #include "algorithms/memory_model.h"
@@ -29,8 +30,9 @@ void refuse_coarse_sampling(const MeshCommand& command, const LabelImage& image)
 void refuse_what_cannot_fit(const std::string& image_path, const LabelImage& image,
                             const MeshingOptions& options, std::uint64_t limit_bytes, int num_ranks) {
   const Estimate expected = estimate(image, options);
-  const double bytes_of_others = expected.cells * kPeakBytesPerMeshCell * (num_ranks - 1) / num_ranks;
-  const double memory_bytes = expected.memory_bytes - bytes_of_others;
+  double memory_bytes = expected.memory_bytes;
+  if (std::isfinite(memory_bytes))
+    memory_bytes -= expected.cells * kPeakBytesPerMeshCell * (num_ranks - 1) / num_ranks;
   const double most_cells = options.limits.max_elements > 0 ? static_cast<double>(options.limits.max_elements)
                                                             : std::numeric_limits<double>::infinity();
   if (memory_bytes > static_cast<double>(limit_bytes) && most_cells >= expected.cells)
@@ -41,12 +43,11 @@ void refuse_what_cannot_fit(const std::string& image_path, const LabelImage& ima
         static_cast<double>(limit_bytes) / kBytesPerGib));
   const double stored_cells = std::min(most_cells, kStoredCellsPerMeshCell * expected.cells) / num_ranks;
   if (stored_cells > static_cast<double>(kMostStoredCells))
-    throw InputError(
-        fmt::format("{}: these options ask for about {:.2g} cells{} while the mesh is made, those of the "
-                    "background among "
-                    "them, and no more than 2^30 can be numbered; use a larger radius or delta, or a smaller "
-                    "--max-elements",
-                    image_path, stored_cells, num_ranks > 1 ? " a rank" : ""));
+    throw InputError(fmt::format(
+        "{}: these options ask for about {:.2g} cells{} while the mesh is made, those of the "
+        "background among them, and no more than 2^30 can be numbered; use a larger radius or delta, "
+        "or a smaller --max-elements",
+        image_path, stored_cells, num_ranks > 1 ? " a rank" : ""));
 }
 
 // What program, image and transform leave of the limit.
