@@ -49,7 +49,7 @@ std::vector<std::string> MeshRun::unmet() const {
   count(misses.facet_vertices, "boundary facets with a vertex off the isosurface");
   count(misses.orientation, "cells that rounding made flat or turned over");
   count(misses.missing_labels, "labels of more than 1000 voxels without a cell");
-  if (command.verify && verdicts.empty() && !mesh.cells == 0)
+  if (command.verify && verdicts.empty() && mesh.cells > 0)
     sentences.push_back("podm-verify: ended early by a signal, so that no claim is decided");
   for (const auto& [claim, verdict] : verdicts)
     if (verdict != "pass") sentences.push_back(fmt::format("podm-verify: claim {}: {}", claim, verdict));
