@@ -23,22 +23,23 @@ void for_each_cube(const CubeGrid& grid, const CubePlace& low, const CubePlace& 
 }  // namespace
 
 Blocks::Blocks(const CubeGrid& grid, const std::vector<std::uint64_t>& weights, int num_blocks)
-    : grid_(grid), num_blocks_(num_blocks), block_of_(grid.num_cubes()) {
+    : grid_(grid), block_of_(grid.num_cubes()) {
   divide({{0, 0, 0}, grid.size(), 0, num_blocks},
          [&](const Part& part) { return cut_by_weight(part, weights); });
 }
 
 Blocks::Blocks(const CubeGrid& grid, std::uint64_t seed, int num_blocks)
-    : grid_(grid), num_blocks_(num_blocks), block_of_(grid.num_cubes()) {
+    : grid_(grid), block_of_(grid.num_cubes()) {
   std::mt19937_64 random(seed);
   divide({{0, 0, 0}, grid.size(), 0, num_blocks}, [&](const Part& part) { return drawn_cut(part, random); });
 }
 
 // Each cut makes one block more.
 Blocks::Blocks(const CubeGrid& grid, const std::vector<Cut>& cuts)
-    : grid_(grid), num_blocks_(static_cast<int>(cuts.size()) + 1), block_of_(grid.num_cubes()) {
+    : grid_(grid), block_of_(grid.num_cubes()) {
   auto next = cuts.begin();
-  divide({{0, 0, 0}, grid.size(), 0, num_blocks_}, [&](const Part&) { return *next++; });
+  divide({{0, 0, 0}, grid.size(), 0, static_cast<int>(cuts.size()) + 1},
+         [&](const Part&) { return *next++; });
 }
 
 std::vector<int> Blocks::in(const CubePlace& low, const CubePlace& high) const {

@@ -32,7 +32,6 @@ class Blocks {
   const std::vector<int>& ranks() const { return block_of_; }
   /// Those that have cubes from `low` to `high`, in order.
   std::vector<int> in(const CubePlace& low, const CubePlace& high) const;
-  int number() const { return num_blocks_; }
 
  private:
   struct Part;
@@ -50,7 +49,6 @@ class Blocks {
   void collect(std::size_t node, const CubePlace& low, const CubePlace& high, std::vector<int>& blocks) const;
 
   const CubeGrid& grid_;
-  int num_blocks_;
   std::vector<int> block_of_;
   std::vector<Node> nodes_;
   std::vector<Cut> cuts_;

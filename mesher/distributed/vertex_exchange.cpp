@@ -49,7 +49,7 @@ CubeSet VertexExchange::known() const {
 void VertexExchange::copy_first() {
   if (log_ != nullptr) log_->begin_step();
   CubeSet all(grid_);
-  for (CubeId cube = 0; cube < grid_.num_cubes(); ++cube) all.insert(cube);
+  all.insert_all();
   Bytes message;
   if (ranks_.rank() == 0) {
     Bytes question;
@@ -83,7 +83,7 @@ Update VertexExchange::update(const CubeSet& wanted) {
   return update;
 }
 
-// To each rank all vertices in the cubes that it asked for: the cubes, how many each has, and these.
+// To each rank all vertices in the cubes that it asked for: the cubes, and these.
 std::vector<Bytes> VertexExchange::tell(const std::vector<Bytes>& asked) const {
   struct Answer {
     std::size_t rank;

@@ -44,7 +44,7 @@ void Zone::insert_ball(const Cell& cell, CubeSet& cubes) {
   if (!std::isnan(cell.squared_radius)) {
     cubes.insert(cell.center, sure_radius_mm(cell) * (1 + kMargin));
   } else {
-    for (CubeId cube = 0; cube < cubes.grid().num_cubes(); ++cube) cubes.insert(cube);
+    cubes.insert_all();
   }
 }
 
