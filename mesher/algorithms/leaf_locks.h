@@ -46,7 +46,9 @@ class LeafLocks {
   bool may_replace(const Mesh& mesh, const Cell& cell) const requires HasHorizon<Inner> {
     return inner_.may_replace(mesh, cell);
   }
-  bool may_insert(const Point& p) const requires HasHorizon<Inner> { return inner_.may_insert(p); }
+  bool may_insert(const Point& p, const Cell& cell) const requires HasHorizon<Inner> {
+    return inner_.may_insert(p, cell);
+  }
 
  private:
   void remember(LeafId leaf) {

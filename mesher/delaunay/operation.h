@@ -26,14 +26,14 @@ namespace podm {
 
 /// Locks of a worker whose store may differ from the whole triangulation beyond a horizon
 /// (distributed/zone.h): they tell which cells are of the whole, which may be read and replaced by an
-/// operation around a point that their balls have, and where a vertex may be inserted.
+/// operation around a point that their balls have, and where a vertex may be inserted, in a cell's ball.
 template <class Locks>
 concept HasHorizon = requires(Locks& locks, const Mesh& mesh, const Cell& cell, const Point& p) {
   { locks.knows(cell) } -> std::same_as<bool>;
   { locks.may_read(mesh, cell) } -> std::same_as<bool>;
   locks.begin_around(p);
   { locks.may_replace(mesh, cell) } -> std::same_as<bool>;
-  { locks.may_insert(p) } -> std::same_as<bool>;
+  { locks.may_insert(p, cell) } -> std::same_as<bool>;
 };
 
 template <class Locks>

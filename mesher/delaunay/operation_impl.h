@@ -116,7 +116,7 @@ template <class Locks>
 StepResult Operation<Locks>::plan_insertion(const Point& p, CellId start) {
   is_cavity_ = true;
   if constexpr (HasHorizon<Locks>) {
-    if (!locks_.may_insert(p)) return StepResult::kOutOfReach;
+    if (!locks_.may_insert(p, mesh_.cell(start))) return StepResult::kOutOfReach;
   }
   begin_around(p);
   if (!is_in_conflict(start, p)) return StepResult::kNotInConflict;

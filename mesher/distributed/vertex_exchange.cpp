@@ -92,17 +92,23 @@ std::vector<Bytes> VertexExchange::tell(const std::vector<Bytes>& asked) const {
   };
   std::vector<Answer> answers;
   std::unordered_multimap<CubeId, std::size_t> answers_of;  // by cube
+  CubeSet asked_for(grid_);
   for (std::size_t rank = 0; rank < asked.size(); ++rank) {
     if (asked[rank].empty()) continue;
     MessageReader question(asked[rank]);
     answers.push_back({rank, question.read<CubeId>(), {}});
     question.expect_end();
-    for (const CubeId cube : answers.back().cubes) answers_of.emplace(cube, answers.size() - 1);
+    for (const CubeId cube : answers.back().cubes) {
+      answers_of.emplace(cube, answers.size() - 1);
+      asked_for.insert(cube);
+    }
   }
   for (VertexId v = 0; v < mesh_.vertex_bound() && !answers.empty(); ++v) {
     const Vertex& vertex = mesh_.vertex(v);
     if (!is_shared(vertex.kind)) continue;
-    const auto [first, last] = answers_of.equal_range(grid_.cube_at(vertex.point));
+    const CubeId cube = grid_.cube_at(vertex.point);
+    if (!asked_for.has(cube)) continue;
+    const auto [first, last] = answers_of.equal_range(cube);
     for (auto it = first; it != last; ++it)
       answers[it->second].vertices.push_back({vertex.point, vertex.kind});
   }

@@ -10,12 +10,13 @@
 //   (geometry/predicates.cpp), there is but one. What is looked at and is not such a cell ends the operation,
 //   and waits for another round. Meanwhile others change the whole. None of their operations replaces a cell
 //   with a vertex in our zone; those that we look at have one. So they stay cells of the whole until we
-//   replace them.
+//   replace them, and what we make of cells of the whole are cells of the whole.
 // The inserted vertex has to lie in the zone too, so that a cube's vertices have one writer a round.
 #pragma once
 
 #include <algorithm>
 #include <array>
+#include <cmath>
 #include <span>
 #include <vector>
 
@@ -39,6 +40,10 @@ class Zone {
   bool may_read(const Mesh& mesh, const Cell& cell) const {
     return cell.squared_radius < squared_reach(cell.center) ||
            (has(mesh.point(cell.vertices[0])) && has(mesh.point(cell.vertices[3])));
+  }
+  /// Whether a ball around p lies in the zone.
+  bool has_ball(const Point& p, double squared_radius) const {
+    return squared_radius < squared_reach(p) || own_.covers(p, std::sqrt(squared_radius));
   }
   /// Of a cell with a vertex in the zone.
   bool knows(const Cell& cell) const {
@@ -93,7 +98,11 @@ class ZoneLocks {
     return cell.squared_radius < squared_reach_ ||
            std::all_of(vertices.begin(), vertices.end(), [&](VertexId v) { return has(mesh, v); });
   }
-  bool may_insert(const Point& p) const { return zone_->has(p); }
+  /// Balls with p in them that are no larger than this cell's lie within two of its radii. What leaves the
+  /// zone there would hardly get to its end.
+  bool may_insert(const Point& p, const Cell& cell) const {
+    return zone_->has(p) && (std::isnan(cell.squared_radius) || zone_->has_ball(p, 4 * cell.squared_radius));
+  }
 
  private:
   bool has(const Mesh& mesh, VertexId v) const { return zone_->has(mesh.point(v)); }
