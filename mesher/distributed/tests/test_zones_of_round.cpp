@@ -1,0 +1,196 @@
+// Blocks share what cubes weigh evenly, and the zones of later rounds keep their ranks apart.
+#include "distributed/zones_of_round.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <numeric>
+#include <random>
+#include <set>
+
+namespace podm::test {
+namespace {
+
+constexpr int kRoundOfConnected = 5;  // the first that never goes by blocks
+
+CubeGrid cubes_of_1_mm(double x, double y, double z) { return CubeGrid({{0, 0, 0}, {x, y, z}}, 1); }
+
+// Much in the middle, little outside, nothing in a corner.
+std::vector<std::uint64_t> hill(const CubeGrid& grid) {
+  std::vector<std::uint64_t> weights;
+  for (CubeId cube = 0; cube < grid.num_cubes(); ++cube) {
+    double squared = 0;
+    for (std::size_t axis = 0; axis < 3; ++axis)
+      squared += std::pow((grid.place_of(cube)[axis] + 0.5) / grid.size()[axis] - 0.4, 2);
+    weights.push_back(squared > 0.6 ? 0 : static_cast<std::uint64_t>(1e6 * std::exp(-4 * squared)));
+  }
+  return weights;
+}
+
+bool touch(const CubePlace& a, const CubePlace& b) {
+  return std::abs(a[0] - b[0]) <= 1 && std::abs(a[1] - b[1]) <= 1 && std::abs(a[2] - b[2]) <= 1;
+}
+
+TEST(WeighedBlocks, ShareTheWeightAsEvenlyAsPlanesOfCubesCan) {
+  const CubeGrid grid = cubes_of_1_mm(40, 30, 30);
+  const std::vector<std::uint64_t> weights = hill(grid);
+  const auto total = static_cast<double>(std::accumulate(weights.begin(), weights.end(), std::uint64_t{0}));
+  for (const int num_blocks : {1, 2, 3, 5, 8, 13}) {
+    std::vector<double> share(static_cast<std::size_t>(num_blocks));
+    const Blocks blocks(grid, weights, num_blocks);
+    for (CubeId cube = 0; cube < grid.num_cubes(); ++cube)
+      share[static_cast<std::size_t>(blocks.of(cube))] += static_cast<double>(weights[cube]) / total;
+    for (const double one : share) EXPECT_NEAR(one * num_blocks, 1, 0.15) << "of " << num_blocks << " blocks";
+  }
+}
+
+TEST(WeighedBlocks, AreMadeAgainFromTheirCuts) {
+  const CubeGrid grid = cubes_of_1_mm(21, 17, 12);
+  for (const int num_blocks : {1, 2, 7, 30}) {
+    const Blocks blocks(grid, hill(grid), num_blocks);
+    EXPECT_EQ(Blocks(grid, blocks.cuts()).ranks(), blocks.ranks());
+  }
+}
+
+TEST(WeighedBlocks, AreThereWithoutCubesWhereRanksAreMore) {
+  const CubeGrid grid = cubes_of_1_mm(2, 1, 1);
+  const Blocks blocks(grid, {1, 1}, 9);
+  EXPECT_EQ(blocks.cuts().size(), 8u);
+  EXPECT_NE(blocks.of(0), blocks.of(1));
+}
+
+class ZonesOfRound : public testing::TestWithParam<int> {
+ protected:
+  // Cells wait along the faces of blocks, as they do.
+  CubeSet along_faces() const {
+    CubeSet waiting(grid_);
+    for (CubeId cube = 0; cube < grid_.num_cubes(); ++cube) {
+      const CubePlace at = grid_.place_of(cube);
+      CubePlace next = at;
+      for (std::size_t axis = 0; axis < 3; ++axis)
+        next[axis] = std::min(next[axis] + 1, grid_.size()[axis] - 1);
+      if (blocks_.in(at, next).size() > 1) waiting.insert(cube);
+    }
+    return waiting;
+  }
+  // By cube: so many in each that waits.
+  std::vector<std::uint32_t> cells_in(const CubeSet& waiting, std::uint32_t cells) const {
+    std::vector<std::uint32_t> num_cells(grid_.num_cubes());
+    for (const CubeId cube : waiting.cubes()) num_cells[cube] = cells;
+    return num_cells;
+  }
+  std::vector<int> zones(const CubeSet& waiting, std::uint32_t cells) {
+    return zones_of_round(GetParam(), blocks_, waiting, cells_in(waiting, cells), load_);
+  }
+
+  static constexpr int kRanks = 8;
+  static constexpr std::uint32_t kMany = 100;  // a cube: more than one rank is to end in all
+  const CubeGrid grid_ = cubes_of_1_mm(60, 60, 60);
+  const Blocks blocks_{grid_, hill(grid_), kRanks};
+  std::vector<std::uint64_t> load_ = std::vector<std::uint64_t>(kRanks);
+};
+
+TEST_P(ZonesOfRound, AreOfWhatWaitsAndOfRanksThatHaveABlockThere) {
+  const CubeSet waiting = along_faces();
+  const std::vector<int> rank_of = zones(waiting, kMany);
+  ASSERT_EQ(rank_of.size(), grid_.num_cubes());
+  int num_in_zones = 0;
+  for (CubeId cube = 0; cube < grid_.num_cubes(); ++cube) {
+    if (rank_of[cube] == kNobody) continue;
+    ++num_in_zones;
+    ASSERT_TRUE(waiting.has(cube));
+    ASSERT_GE(rank_of[cube], 0);
+    ASSERT_LT(rank_of[cube], kRanks);
+  }
+  EXPECT_GT(2 * num_in_zones, static_cast<int>(waiting.cubes().size()));
+}
+
+TEST_P(ZonesOfRound, AddTheirCellsToTheLoadOfTheirRanks) {
+  const std::vector<std::uint64_t> before{5000, 0, 0, 700, 0, 0, 0, 1};
+  load_ = before;
+  const CubeSet waiting = along_faces();
+  const std::vector<int> rank_of = zones(waiting, kMany);
+  std::vector<std::uint64_t> expected = before;
+  for (const int rank : rank_of)
+    if (rank != kNobody) expected[static_cast<std::size_t>(rank)] += kMany;
+  EXPECT_EQ(load_, expected);
+}
+
+TEST_P(ZonesOfRound, AreForManyRanksWhereMuchWaits) {
+  const std::vector<int> rank_of = zones(along_faces(), kMany);
+  std::set<int> ranks(rank_of.begin(), rank_of.end());
+  ranks.erase(kNobody);
+  EXPECT_GE(static_cast<int>(ranks.size()), GetParam() < kRoundOfConnected ? kRanks / 2 : 1);
+}
+
+TEST_P(ZonesOfRound, LeaveNoCubeOutOnceTheyAreConnected) {
+  const CubeSet waiting = along_faces();
+  const std::vector<int> rank_of = zones(waiting, 0);  // little waits
+  if (GetParam() <= 2) return;                         // edges and corners have rounds of their own
+  for (const CubeId cube : waiting.cubes()) EXPECT_NE(rank_of[cube], kNobody);
+}
+
+TEST_P(ZonesOfRound, DoNotTouchThoseOfOthersOnceTheyAreConnected) {
+  if (GetParam() <= 2) return;
+  std::mt19937_64 random(1);
+  CubeSet waiting(grid_);
+  for (int i = 0; i < 800; ++i) {
+    const auto drawn = [&] { return 20 + static_cast<int>(random() % 20); };
+    waiting.insert(grid_.id({drawn(), drawn(), drawn()}));
+  }
+  const std::vector<int> rank_of = zones(waiting, 1);
+  const std::vector<CubeId> cubes = waiting.cubes();
+  EXPECT_GT(std::set<int>(rank_of.begin(), rank_of.end()).size(), 3u);
+  for (const CubeId a : cubes)
+    for (const CubeId b : cubes)
+      if (touch(grid_.place_of(a), grid_.place_of(b))) {
+        ASSERT_EQ(rank_of[a], rank_of[b]);
+      }
+}
+
+TEST_P(ZonesOfRound, AreNoneWhereNothingWaits) {
+  const std::vector<int> rank_of = zones(CubeSet(grid_), kMany);
+  EXPECT_TRUE(std::all_of(rank_of.begin(), rank_of.end(), [](int rank) { return rank == kNobody; }));
+}
+
+// All wait at one corner, which the first rounds have no zones for: yet every round has to get on.
+TEST_P(ZonesOfRound, AreThereWhereverItIsThatCellsWait) {
+  const Blocks corner(grid_,
+                      {{0, 30, 4}, {1, 30, 2}, {2, 30, 1}, {2, 30, 1}, {1, 30, 2}, {2, 30, 1}, {2, 30, 1}});
+  CubeSet waiting(grid_);
+  waiting.insert(grid_.id({29, 29, 29}));
+  const std::vector<int> rank_of =
+      zones_of_round(GetParam(), corner, waiting, cells_in(waiting, kMany), load_);
+  EXPECT_NE(rank_of[grid_.id({29, 29, 29})], kNobody);
+}
+
+INSTANTIATE_TEST_SUITE_P(Rounds, ZonesOfRound, testing::Values(1, 2, 3, 4, kRoundOfConnected, 9));
+
+TEST(Components, AreTheCubesThatChainsOfNeighboursJoin) {
+  const CubeGrid grid = cubes_of_1_mm(7, 6, 5);
+  for (unsigned seed = 1; seed <= 20; ++seed) {
+    std::mt19937_64 random(seed);
+    CubeSet set(grid);
+    for (CubeId cube = 0; cube < grid.num_cubes(); ++cube)
+      if (random() % 8 == 0) set.insert(cube);
+    const std::vector<std::uint32_t> component = set.components();
+    const std::vector<CubeId> cubes = set.cubes();
+    std::vector<std::uint32_t> least(grid.num_cubes());  // of those that chains have joined so far
+    for (const CubeId cube : cubes) least[cube] = cube;
+    for (std::size_t length = 0; length < cubes.size(); ++length)
+      for (const CubeId a : cubes)
+        for (const CubeId b : cubes)
+          if (touch(grid.place_of(a), grid.place_of(b))) least[a] = std::min(least[a], least[b]);
+    for (CubeId a = 0; a < grid.num_cubes(); ++a) {
+      ASSERT_EQ(component[a] == CubeSet::kNone, !set.has(a));
+      for (const CubeId b : cubes)
+        if (set.has(a)) {
+          ASSERT_EQ(component[a] == component[b], least[a] == least[b]);
+        }
+    }
+  }
+}
+
+}  // namespace
+}  // namespace podm::test
