@@ -53,6 +53,8 @@ int run(int argc, char** argv, podm::Communication& ranks, podm::cli::SignalThre
   namespace cli = podm::cli;
   cli::Command command;
   podm::do_together([&] { command = parse(argc, argv, ranks); }, ranks);
+  const bool is_mesh = std::holds_alternative<cli::MeshCommand>(command);
+  podm::expect_agreement({{"command", is_mesh ? "mesh" : "a text to show"}}, ranks);
   if (const auto* text = std::get_if<cli::ShowText>(&command)) return ranks.rank() == 0 ? cli::run(*text) : 0;
   const auto& mesh = std::get<cli::MeshCommand>(command);
   if (mesh.ranks_in_process > 0) return run_in_process(mesh, signals);

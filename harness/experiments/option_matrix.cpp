@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <array>
 #include <cctype>
+#include <cmath>
 #include <cstdio>
 #include <cstring>
 #include <filesystem>
@@ -143,8 +144,8 @@ std::string network_value(const TomlSection& section, const toml::node& node, st
   const std::string network = section.text_of(node, key);
   double latency_us = -1, gb_per_s = -1;
   char more = 0;
-  if (std::sscanf(network.c_str(), "%lf,%lf%c", &latency_us, &gb_per_s, &more) != 2 || latency_us < 0 ||
-      gb_per_s <= 0)
+  if (std::sscanf(network.c_str(), "%lf,%lf%c", &latency_us, &gb_per_s, &more) != 2 || !(latency_us > 0) ||
+      !(gb_per_s > 0) || std::isinf(latency_us) || std::isinf(gb_per_s))
     section.fail(node.source(), fmt::format("{} must be \"MICROSECONDS,GB_PER_S\", such as \"2,12.5\"", key));
   return network;
 }

@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <array>
+#include <filesystem>
 #include <optional>
 
 #include "algorithms/team_size.h"
@@ -132,6 +133,14 @@ class Run {
                                 .num_ranks = ranks_.size()};
     do_together([&] { log_->finish(head); }, ranks_);
     do_together([&] { log_->publish(); }, ranks_);
+    if (ranks_.rank() == 0) remove_logs_of_more_ranks();
+  }
+
+  // An earlier run's, which would be taken for this one's.
+  void remove_logs_of_more_ranks() const {
+    std::error_code error;
+    for (int rank = ranks_.size() == 1 ? 0 : ranks_.size();; ++rank)
+      if (!std::filesystem::remove(fmt::format("{}.{}", command_.log_path, rank), error)) return;
   }
 
   // A process has one bar, and heeds signals once: by rank 0, where it has several.

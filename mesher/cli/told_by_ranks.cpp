@@ -94,8 +94,11 @@ Json spent_of(const PartOfRank& part) {
 
 Json memory_of(const Spent& spent) { return spent.is_virtual ? Json(nullptr) : Json(spent.peak_rss_bytes); }
 
+// The clock sees a rank's own thread, and no others that it starts.
+bool has_virtual_time(const Spent& spent) { return spent.is_virtual && spent.threads == 1; }
+
 Json virtual_time_of(const Spent& spent) {
-  if (!spent.is_virtual) return nullptr;
+  if (!has_virtual_time(spent)) return nullptr;
   const RankReport& report = spent.report;
   return {{"computing_s", report.computing_s},
           {"waiting_s", report.waiting_s},
@@ -147,6 +150,7 @@ std::string memory_text(const std::vector<Spent>& spent) {
 }
 
 std::string virtual_time_text(const std::vector<Spent>& spent) {
+  if (!has_virtual_time(spent[0])) return "clocks do not see their other threads";
   double computing_s = 0, waiting_s = 0;
   std::uint64_t bytes = 0;
   for (const Spent& one : spent) {
@@ -154,14 +158,15 @@ std::string virtual_time_text(const std::vector<Spent>& spent) {
     waiting_s = std::max(waiting_s, one.report.waiting_s);
     bytes += one.report.bytes_sent;
   }
-  return fmt::format("at most {:.2f} s of one computing, {:.2f} s waiting, {:.4f} s network, {} bytes sent",
-                     computing_s, waiting_s, spent[0].report.network_s, bytes);
+  return fmt::format(
+      "virtual time at most {:.2f} s of one computing, {:.2f} s waiting, {:.4f} s network, {} bytes sent",
+      computing_s, waiting_s, spent[0].report.network_s, bytes);
 }
 
 std::string text_of(const std::vector<PartOfRank>& parts, const std::vector<Spent>& spent,
                     const RanksOfMachine& machines, Algorithm algorithm) {
   const bool is_virtual = spent[0].is_virtual;
-  const std::string where = is_virtual ? "in this process, in virtual time"
+  const std::string where = is_virtual ? "in this process"
                                        : fmt::format("on {} machine{}", machines.num_machines(),
                                                      machines.num_machines() > 1 ? "s" : "");
   std::string text = fmt::format(

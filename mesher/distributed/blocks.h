@@ -8,8 +8,8 @@
 
 namespace podm {
 
-/// Each cube's share of the work, by weighted bisection along the longest axis: the same on all ranks that
-/// have the same weights, without a message. Some blocks have no cube where ranks are many and cubes few.
+/// Each cube's share of the work, by weighted bisection along the longest axis. Some blocks have no cube
+/// where ranks are many and cubes few.
 class Blocks {
  public:
   /// `weights`: one a cube.

@@ -65,11 +65,9 @@ std::vector<Fact> facts_of(const LabelImage& image, const MeshingOptions& option
           {"image", "SHA-256 " + hash_of(image)}};
 }
 
-MeshingOptions share_of(const MeshingOptions& options, std::uint64_t num_ranks) {
-  MeshingOptions share = options;
-  if (share.algorithm == Algorithm::kAuto) share.algorithm = Algorithm::kPodm;
-  share.limits.max_elements = (options.limits.max_elements + num_ranks - 1) / num_ranks;
-  return share;
+MeshingOptions with_algorithm(MeshingOptions options) {
+  if (options.algorithm == Algorithm::kAuto) options.algorithm = Algorithm::kPodm;
+  return options;
 }
 
 // One rank's part of a run.
@@ -78,7 +76,7 @@ class RunOnRank {
   RunOnRank(const LabelImage& image, const MeshingOptions& options, Communication& ranks,
             const ProgressCallback& progress, std::stop_token stop, SharedIsosurface* isosurface)
       : image_(image),
-        options_(share_of(options, static_cast<std::uint64_t>(ranks.size()))),
+        options_(with_algorithm(options)),
         ranks_(ranks),
         isosurface_(isosurface),
         phases_(image, options_, progress, std::move(stop), 1.0 / ranks.size(),

@@ -121,6 +121,7 @@ class Rounds {
                       team_.initial_workers);
     if (is_over_anywhere()) return all_of_first_rank();
     construction_.timed("initial", [&] { exchange_.copy_first(); });
+    stop_.share_limit(construction_.mesh().num_cells(), static_cast<std::uint64_t>(ranks_.size()));
     divide_space();
     spending_.end("initial");
     refine_in_rounds();

@@ -103,9 +103,10 @@ std::vector<int> zones_of_round(int round, const Blocks& blocks, const CubeSet& 
                                 std::vector<std::uint64_t>& load) {
   const std::uint64_t all_cells = std::accumulate(num_cells.begin(), num_cells.end(), std::uint64_t{0});
   const bool is_by_blocks = round <= 2 || (round <= kLastByBlocks && all_cells >= kCellsForBlocks);
-  const std::vector<std::size_t> zone_of =
-      is_by_blocks ? zones_near(blocks, waiting, near_in(round), most_blocks_near(round))
-                   : connected_zones(waiting);
+  std::vector<std::size_t> zone_of;
+  if (is_by_blocks) zone_of = zones_near(blocks, waiting, near_in(round), most_blocks_near(round));
+  const auto is_none = [](std::size_t zone) { return zone == kNoZone; };
+  if (std::all_of(zone_of.begin(), zone_of.end(), is_none)) zone_of = connected_zones(waiting);
   std::vector<ZoneSize> zones;
   for (CubeId cube = 0; cube < zone_of.size(); ++cube) {
     if (zone_of[cube] == kNoZone) continue;

@@ -356,7 +356,8 @@ class Refusals(OnRanks):
                                 ([*mesh, "--leaf-size", 3], "leaf size"),
                                 (["mesh", one, "-o", self.folder / "b.pvtu"], "output"),
                                 ([*mesh, "--log", self.folder / "run.log"], "--log"),
-                                ([*mesh, "--no-such"], "rank 1 of 2: unknown option")):
+                                ([*mesh, "--no-such"], "rank 1 of 2: unknown option"),
+                                (["--help"], "command")):
             with self.subTest(word=word):
                 self.assert_all_refuse(on_ranks(mesh, arguments), word)
 
@@ -384,6 +385,10 @@ class EarlyEnds(OnRanks):
     def test_element_limit_is_shared_evenly(self):
         self.assert_ended_early(self.mesh(3, *ENDLESS[1:], "--max-elements", 60000, image=ENDLESS[0]), "element limit")
         self.assertLessEqual(self.last_record()["cells"], 60000)
+
+    def test_the_coarse_mesh_is_not_measured_by_one_ranks_share(self):
+        self.assert_exit(self.mesh_in_process(64, "--radius", 8, "--max-elements", 60000), 0)
+        self.assertLess(self.last_record()["cells"], 60000)
 
     def start(self, number):
         command = [MPIRUN, "--oversubscribe", "-n", str(number), MPI_PROGRAM, "mesh", *map(str, ENDLESS),

@@ -19,6 +19,13 @@ void StopControl::check_limits() {
   }
 }
 
+void StopControl::share_limit(std::uint64_t cells, std::uint64_t num_shares) {
+  num_cells_ = static_cast<std::int64_t>(cells);
+  if (max_cells_ == 0) return;
+  const std::uint64_t left = max_cells_ - std::min(max_cells_, cells);
+  max_cells_ = cells + (left + num_shares - 1) / num_shares;
+}
+
 void StopControl::end(StopReason reason) {
   StopReason none = StopReason::kComplete;
   reason_.compare_exchange_strong(none, reason);

@@ -31,6 +31,9 @@ class StopControl {
         observe_(std::move(observe)),
         on_stop_(std::move(stop), [this] { end(StopReason::kCancelled); }) {}
 
+  /// From now on the store has so many cells, and of what is left of the limit of cells it may have one of so
+  /// many even shares. Between phases.
+  void share_limit(std::uint64_t cells, std::uint64_t num_shares);
   /// The store has so many more cells.
   void add_cells(std::int64_t more) { num_cells_.fetch_add(more, std::memory_order_relaxed); }
   /// Ends the run if a limit is passed.
