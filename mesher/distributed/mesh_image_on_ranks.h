@@ -41,11 +41,11 @@ void check_options_on_ranks(const MeshingOptions& options);
 
 /// Meshes `image` as mesh_image() does, with PODM in each rank's zone, leaf by leaf if asked; on one rank it
 /// is the algorithm itself. Collective: image and options are the same on all ranks, but for threads and
-/// memory, which are each rank's. The coarse mesh counts for max_elements, and a rank that makes more than
-/// its even share of what is left ends the run. Throws RefusedByAll (distributed/together.h) where ranks have
-/// not the same, and on options that are bad or not for ranks. Memory that runs out between rounds is
-/// std::bad_alloc on that rank, and the others are to be ended. Ranks of one process may share the
-/// isosurface, and then have the same image; else each makes its own.
+/// memory, which are each rank's. A rank that makes more than its even share of what max_elements leaves
+/// in a round ends the run. Throws RefusedByAll (distributed/together.h) where ranks have not the same, and
+/// on options that are bad or not for ranks. Memory that runs out between rounds is std::bad_alloc on that
+/// rank, and the others are to be ended. Ranks of one process may share the isosurface, and then have the
+/// same image; else each makes its own.
 MeshingOnRanks mesh_image_on_ranks(const LabelImage& image, const MeshingOptions& options,
                                    Communication& ranks, const ProgressCallback& progress = {},
                                    std::stop_token stop = {}, SharedIsosurface* isosurface = nullptr);

@@ -121,7 +121,8 @@ class Rounds {
                       team_.initial_workers);
     if (is_over_anywhere()) return all_of_first_rank();
     construction_.timed("initial", [&] { exchange_.copy_first(); });
-    stop_.share_limit(construction_.mesh().num_cells(), static_cast<std::uint64_t>(ranks_.size()));
+    cells_of_all_ = static_cast<std::int64_t>(construction_.mesh().num_cells());
+    cells_told_ = stop_.num_cells();
     divide_space();
     spending_.end("initial");
     refine_in_rounds();
@@ -190,6 +191,7 @@ class Rounds {
       const Zone zone(own, exchange_.known(), kKnownRings);
       Construction::Entries entries = round == 0 ? own_cells() : find(here, zone, left);
       drop_sound(entries, zone);
+      share_limit(!entries.empty());
       report.entries = entries.size();
       report.update_s = processor_seconds() - start_s;
       spending_.end("exchange");
@@ -204,6 +206,16 @@ class Rounds {
       here = plan_next(round, left, report);
       rounds_.push_back(report);
     } while (rounds_.back().deferred > 0 && !is_over_);
+  }
+
+  // Ranks that have something to do share what is left of the limit of cells.
+  void share_limit(bool has_work) {
+    const std::int64_t more = stop_.num_cells() - cells_told_;
+    std::array<std::uint64_t, 2> sums{static_cast<std::uint64_t>(more), has_work ? 1u : 0u};
+    ranks_.sum(sums);  // modulo 2^64, so less than none adds up as well
+    cells_told_ += more;
+    cells_of_all_ += static_cast<std::int64_t>(sums[0]);
+    stop_.share_limit(cells_of_all_, std::max(1, static_cast<int>(sums[1])));
   }
 
   CubeSet cubes_of(int rank, const std::vector<int>& rank_of_cube) const {
@@ -435,7 +447,9 @@ class Rounds {
   std::vector<std::uint32_t> num_waiting_;  // by cube: cells, on all ranks, before the round
   std::vector<std::uint64_t> load_;         // by rank: cells that waited for it
   std::vector<RoundReport> rounds_;
-  bool is_over_ = false;  // on all ranks
+  std::int64_t cells_of_all_ = 0;  // of the whole, before the round
+  std::int64_t cells_told_ = 0;    // of those that this rank has added, what others know
+  bool is_over_ = false;           // on all ranks
 };
 
 }  // namespace

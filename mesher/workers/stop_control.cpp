@@ -12,18 +12,16 @@ constexpr auto kObservationInterval = std::chrono::milliseconds(200);
 
 void StopControl::check_limits() {
   const std::int64_t cells = num_cells_.load(std::memory_order_relaxed);
-  if (max_cells_ > 0 && cells > static_cast<std::int64_t>(max_cells_)) {
+  if (max_elements_ > 0 && cells > max_cells_) {
     end(StopReason::kElementLimit);
   } else if (Clock::now() > deadline_) {
     end(StopReason::kTimeLimit);
   }
 }
 
-void StopControl::share_limit(std::uint64_t cells, std::uint64_t num_shares) {
-  num_cells_ = static_cast<std::int64_t>(cells);
-  if (max_cells_ == 0) return;
-  const std::uint64_t left = max_cells_ - std::min(max_cells_, cells);
-  max_cells_ = cells + (left + num_shares - 1) / num_shares;
+void StopControl::share_limit(std::int64_t cells_of_all, int num_shares) {
+  const std::int64_t left = std::max<std::int64_t>(0, max_elements_ - cells_of_all);
+  max_cells_ = num_cells_ + left / num_shares;
 }
 
 void StopControl::end(StopReason reason) {

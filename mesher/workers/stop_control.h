@@ -24,18 +24,21 @@ class StopControl {
   /// tells of it even while nobody asks for reasons.
   StopControl(const Limits& limits, std::stop_token stop, std::function<void(std::uint64_t)> observe,
               Clock::time_point start = Clock::now())
-      : max_cells_(limits.max_elements),
+      : max_elements_(static_cast<std::int64_t>(limits.max_elements)),
+        max_cells_(max_elements_),
         deadline_(limits.max_seconds > 0 ? start + std::chrono::duration_cast<Clock::duration>(
                                                        std::chrono::duration<double>(limits.max_seconds))
                                          : Clock::time_point::max()),
         observe_(std::move(observe)),
         on_stop_(std::move(stop), [this] { end(StopReason::kCancelled); }) {}
 
-  /// From now on the store has so many cells, and of what is left of the limit of cells it may have one of so
-  /// many even shares. Between phases.
-  void share_limit(std::uint64_t cells, std::uint64_t num_shares);
+  /// All stores together have so many cells: from now on this one may grow by one of so many even shares of
+  /// what the limit leaves. Between phases.
+  void share_limit(std::int64_t cells_of_all, int num_shares);
   /// The store has so many more cells.
   void add_cells(std::int64_t more) { num_cells_.fetch_add(more, std::memory_order_relaxed); }
+  /// Those that were added.
+  std::int64_t num_cells() const { return num_cells_; }
   /// Ends the run if a limit is passed.
   void check_limits();
   /// Ends the run. The first reason counts.
@@ -50,7 +53,8 @@ class StopControl {
   void observe();
 
  private:
-  std::uint64_t max_cells_;  // 0: any number
+  const std::int64_t max_elements_;  // of all stores; 0: any number
+  std::int64_t max_cells_;           // of this one
   Clock::time_point deadline_;
   std::function<void(std::uint64_t)> observe_;
   std::atomic<std::int64_t> num_cells_ = 0;
