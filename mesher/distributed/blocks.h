@@ -30,8 +30,6 @@ class Blocks {
   const CubeGrid& grid() const { return grid_; }
   int of(CubeId cube) const { return block_of_[cube]; }
   const std::vector<int>& ranks() const { return block_of_; }
-  /// Those that have cubes from `low` to `high`, in order.
-  std::vector<int> in(const CubePlace& low, const CubePlace& high) const;
 
  private:
   struct Part;
@@ -39,18 +37,9 @@ class Blocks {
   static Cut drawn_cut(const Part& part, std::mt19937_64& random);
   template <class CutOf>
   void divide(const Part& part, const CutOf& cut_of);
-  /// A part in the order of divide(): the part below its cut follows it.
-  struct Node {
-    std::size_t axis = 0;
-    int cut = 0;
-    std::size_t above = 0;  // none: it is a block
-    int block = 0;
-  };
-  void collect(std::size_t node, const CubePlace& low, const CubePlace& high, std::vector<int>& blocks) const;
 
   const CubeGrid& grid_;
   std::vector<int> block_of_;
-  std::vector<Node> nodes_;
   std::vector<Cut> cuts_;
 };
 

@@ -30,6 +30,15 @@ CubePlace CubeGrid::place_of(CubeId cube) const {
   return {static_cast<int>(cube % x), static_cast<int>(cube / x % y), static_cast<int>(cube / x / y)};
 }
 
+CubeRange CubeGrid::with_neighbors(const CubePlace& at) const {
+  CubeRange range;
+  for (std::size_t axis = 0; axis < 3; ++axis) {
+    range.low[axis] = std::max(0, at[axis] - 1);
+    range.high[axis] = std::min(size_[axis], at[axis] + 2);
+  }
+  return range;
+}
+
 double CubeGrid::squared_distance(const CubePlace& at, const Point& p) const {
   const auto along = [&](std::size_t axis, double offset_mm) {
     const double low = at[axis] * side_mm_, high = low + side_mm_;
@@ -124,17 +133,11 @@ std::vector<std::uint32_t> CubeSet::components() const {
     while (!front.empty()) {
       const CubePlace at = grid_->place_of(front.back());
       front.pop_back();
-      for (int i = 0; i < 27; ++i) {
-        const CubePlace beside{at[0] + i % 3 - 1, at[1] + i / 3 % 3 - 1, at[2] + i / 9 - 1};
-        bool is_inside = true;
-        for (std::size_t axis = 0; axis < 3; ++axis)
-          is_inside = is_inside && beside[axis] >= 0 && beside[axis] < grid_->size()[axis];
-        if (!is_inside) continue;
-        const CubeId cube = grid_->id(beside);
-        if (!has(cube) || component[cube] != kNone) continue;
+      grid_->for_each(grid_->with_neighbors(at), [&](CubeId cube, const CubePlace&) {
+        if (!has(cube) || component[cube] != kNone) return;
         component[cube] = next;
         front.push_back(cube);
-      }
+      });
     }
     ++next;
   }

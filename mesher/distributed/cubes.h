@@ -5,6 +5,8 @@
 
 #include <array>
 #include <cstdint>
+#include <numeric>
+#include <utility>
 #include <vector>
 
 #include "geometry/box.h"
@@ -15,6 +17,12 @@ namespace podm {
 using CubeId = std::uint32_t;
 using CubePlace = std::array<int, 3>;
 
+/// Cubes from `low` to before `high`.
+struct CubeRange {
+  CubePlace low, high;
+  int length(std::size_t axis) const { return high[axis] - low[axis]; }
+};
+
 class CubeGrid {
  public:
   /// Cubes of that side, mm, as many as cover the box. Throws InputError where they are more than ids.
@@ -22,6 +30,9 @@ class CubeGrid {
 
   CubeId num_cubes() const { return num_cubes_; }
   const CubePlace& size() const { return size_; }
+  CubeRange all() const { return {{0, 0, 0}, size_}; }
+  /// A cube and all that have a face, an edge or a corner in common with it.
+  CubeRange with_neighbors(const CubePlace& at) const;
   double side_mm() const { return side_mm_; }
   CubePlace place_of(const Point& p) const {
     return {along(0, p.x - origin_.x), along(1, p.y - origin_.y), along(2, p.z - origin_.z)};
@@ -35,6 +46,13 @@ class CubeGrid {
   MortonCode place_on_curve(const Point& p) const;
   /// From a point to the cube, mm^2, but for rounding.
   double squared_distance(const CubePlace& at, const Point& p) const;
+  /// Calls visit(cube, its place).
+  template <class Visit>
+  void for_each(const CubeRange& range, const Visit& visit) const;
+  /// What the cubes of a range that lie below each plane across the axis weigh, of length + 1 planes.
+  template <class Weight>
+  std::vector<std::uint64_t> weights_below(const CubeRange& range, std::size_t axis,
+                                           const std::vector<Weight>& weight_of_cube) const;
 
  private:
   // Grid coordinates are clamped as doubles: points may be anywhere.
@@ -48,6 +66,25 @@ class CubeGrid {
   CubePlace size_;
   CubeId num_cubes_;
 };
+
+template <class Visit>
+void CubeGrid::for_each(const CubeRange& range, const Visit& visit) const {
+  CubePlace at;
+  for (at[2] = range.low[2]; at[2] < range.high[2]; ++at[2])
+    for (at[1] = range.low[1]; at[1] < range.high[1]; ++at[1])
+      for (at[0] = range.low[0]; at[0] < range.high[0]; ++at[0]) visit(id(at), std::as_const(at));
+}
+
+template <class Weight>
+std::vector<std::uint64_t> CubeGrid::weights_below(const CubeRange& range, std::size_t axis,
+                                                   const std::vector<Weight>& weight_of_cube) const {
+  std::vector<std::uint64_t> below(static_cast<std::size_t>(range.length(axis)) + 1);
+  for_each(range, [&](CubeId cube, const CubePlace& at) {
+    below[static_cast<std::size_t>(at[axis] - range.low[axis]) + 1] += weight_of_cube[cube];
+  });
+  std::partial_sum(below.begin(), below.end(), below.begin());
+  return below;
+}
 
 /// Some cubes of a grid, which must outlive the set.
 class CubeSet {

@@ -93,6 +93,11 @@ double cube_side_mm(const Radii& radii, const Box& object, int num_ranks) {
                   std::min(kCubeOverRadius * radii.most, std::cbrt(share_mm3 / kCubesABlock)));
 }
 
+// Blocks have room for this around what is refined in them: balls that have a point in common and are no
+// larger than one lie within two of its radii, so what leaves the zone there would hardly get to its end. The
+// zones of later rounds are too narrow.
+constexpr double kRoomInBlocks = 2;
+
 class Rounds {
  public:
   Rounds(const Problem& problem, const Team& team, const DistributedOptions& options, Communication& ranks,
@@ -188,7 +193,7 @@ class Rounds {
       const double start_s = processor_seconds();
       std::vector<CellName> left;
       if (round > 0) report.update = exchange_.update(wanted(own, here));
-      const Zone zone(own, exchange_.known(), kKnownRings);
+      const Zone zone(own, exchange_.known(), kKnownRings, round == 0 ? kRoomInBlocks : 0);
       Construction::Entries entries = round == 0 ? own_cells() : find(here, zone, left);
       drop_sound(entries, zone);
       share_limit(!entries.empty());

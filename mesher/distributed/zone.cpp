@@ -17,11 +17,12 @@ double sure_radius_mm(const Cell& cell) {
 
 // A ball of radius r through a vertex of the zone lies within 2r of it. Stored radii are off by more than
 // centres.
-Zone::Zone(CubeSet own, CubeSet known, int rings)
+Zone::Zone(CubeSet own, CubeSet known, int rings, double room_over_radius)
     : own_(std::move(own)),
       known_(std::move(known)),
       own_depth_(own_.depths(kMostDepth)),
       known_depth_(known_.depths(kMostDepth)),
+      squared_room_(room_over_radius * room_over_radius),
       is_all_known_(known_.is_full()),
       known_counts_(known_) {
   for (std::size_t depth = 0; depth < squared_reach_.size(); ++depth) {

@@ -30,8 +30,9 @@ namespace podm {
 
 class Zone {
  public:
-  /// `known` holds all cubes within `rings` of own ones.
-  Zone(CubeSet own, CubeSet known, int rings);
+  /// `known` holds all cubes within `rings` of own ones. Insertions are begun only where the ball around the
+  /// point of `room_over_radius` times the radius of the cell to go lies in the zone.
+  Zone(CubeSet own, CubeSet known, int rings, double room_over_radius = 0);
 
   bool has(const Point& p) const { return own_.has(p); }
   /// All that is nearer to p than the root of this lies in the zone, mm^2.
@@ -41,8 +42,11 @@ class Zone {
     return cell.squared_radius < squared_reach(cell.center) ||
            (has(mesh.point(cell.vertices[0])) && has(mesh.point(cell.vertices[3])));
   }
-  /// Whether a ball around p lies in the zone.
-  bool has_ball(const Point& p, double squared_radius) const {
+  /// Whether a vertex is to be inserted at p, in the cell's ball.
+  bool has_room(const Point& p, const Cell& cell) const {
+    if (!has(p)) return false;
+    if (squared_room_ == 0 || std::isnan(cell.squared_radius)) return true;
+    const double squared_radius = squared_room_ * static_cast<double>(cell.squared_radius);
     return squared_radius < squared_reach(p) || own_.covers(p, std::sqrt(squared_radius));
   }
   /// Of a cell with a vertex in the zone.
@@ -66,6 +70,7 @@ class Zone {
   CubeSet own_, known_;
   std::vector<std::uint8_t> own_depth_, known_depth_;  // by cube: how deep it lies in these
   std::array<float, kMostDepth + 1> squared_reach_{};  // mm^2, by depth
+  double squared_room_;
   bool is_all_known_;
   CubeCounts known_counts_;
   float sure_squared_radius_;  // mm^2: balls no larger are known
@@ -98,11 +103,7 @@ class ZoneLocks {
     return cell.squared_radius < squared_reach_ ||
            std::all_of(vertices.begin(), vertices.end(), [&](VertexId v) { return has(mesh, v); });
   }
-  /// Balls with p in them that are no larger than this cell's lie within two of its radii. What leaves the
-  /// zone there would hardly get to its end.
-  bool may_insert(const Point& p, const Cell& cell) const {
-    return zone_->has(p) && (std::isnan(cell.squared_radius) || zone_->has_ball(p, 4 * cell.squared_radius));
-  }
+  bool may_insert(const Point& p, const Cell& cell) const { return zone_->has_room(p, cell); }
 
  private:
   bool has(const Mesh& mesh, VertexId v) const { return zone_->has(mesh.point(v)); }

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <map>
 #include <numeric>
 
@@ -9,42 +10,89 @@ namespace podm {
 
 namespace {
 
-// In a round that goes by blocks a cube is near those within so many cubes along each axis: in round 1
-// farther than most of what waits lies from a face, and then farther each time, for cells wait again where
-// zones met.
-int near_in(int round) { return 2 + 3 * round; }
-// Edges are where three blocks meet, or four, two of which end at the same face side by side.
-std::size_t most_blocks_near(int round) { return round == 1 ? 2 : round == 2 ? 4 : ~std::size_t{0}; }
-constexpr int kLastByBlocks = 4;
-// Where fewer cells wait one rank may as well end it: another round takes as long.
-constexpr std::uint64_t kCellsForBlocks = 10000;
-
-std::vector<int> blocks_near(const Blocks& blocks, CubeId cube, int near) {
-  const CubeGrid& grid = blocks.grid();
-  const CubePlace at = grid.place_of(cube);
-  CubePlace low, high;
-  for (std::size_t axis = 0; axis < 3; ++axis) {
-    low[axis] = std::max(0, at[axis] - near);
-    high[axis] = std::min(grid.size()[axis] - 1, at[axis] + near);
-  }
-  return blocks.in(low, high);
-}
+// After so many rounds what still waits needs more room than cuts leave.
+constexpr int kLastWithCuts = 6;
+// Where fewer cells wait a rank may as well have them all: another round takes as long.
+constexpr std::uint64_t kCellsAZone = 5000;
+// What so many cubes on either side of a cut hold may have to wait again.
+constexpr int kCubesBesideCut = 3;
 
 constexpr std::size_t kNoZone = ~std::size_t{0};
 
-// By cube: the number of its zone, or kNoZone. A zone is what is near the same blocks, at most so many: more
-// are at corners.
-std::vector<std::size_t> zones_near(const Blocks& blocks, const CubeSet& waiting, int near,
-                                    std::size_t most_blocks) {
-  std::vector<std::size_t> zone_of(waiting.grid().num_cubes(), kNoZone);
-  std::map<std::vector<int>, std::size_t> zone_near;
-  for (const CubeId cube : waiting.cubes()) {
-    const std::vector<int> blocks_there = blocks_near(blocks, cube, near);
-    if (blocks_there.size() <= most_blocks)
-      zone_of[cube] = zone_near.emplace(blocks_there, zone_near.size()).first->second;
+// Cubes, and the zones that share them.
+struct Part {
+  CubeRange cubes;
+  std::size_t first_zone, num_zones;
+};
+
+struct PlaneCut {
+  std::size_t axis = 0;
+  int at = 0;
+  double cost = std::numeric_limits<double>::infinity();
+};
+
+// Parts of about equally many waiting cells, cut where few lie.
+class CutZones {
+ public:
+  CutZones(const CubeSet& waiting, const std::vector<std::uint32_t>& num_cells, std::size_t num_zones)
+      : waiting_(waiting), num_cells_(num_cells), zone_of_(waiting.grid().num_cubes(), kNoZone) {
+    divide({waiting.grid().all(), 0, num_zones});
   }
-  return zone_of;
-}
+  /// By cube: the number of its zone, or kNoZone.
+  const std::vector<std::size_t>& operator()() const { return zone_of_; }
+
+ private:
+  void divide(const Part& part) {
+    const PlaneCut cut = part.num_zones > 1 ? best_cut(part) : PlaneCut{};
+    if (std::isinf(cut.cost)) {
+      waiting_.grid().for_each(part.cubes, [&](CubeId cube, const CubePlace&) {
+        if (waiting_.has(cube)) zone_of_[cube] = part.first_zone;
+      });
+      return;
+    }
+    Part lower = part, upper = part;
+    lower.cubes.high[cut.axis] = upper.cubes.low[cut.axis] = cut.at;
+    lower.num_zones = part.num_zones / 2;
+    upper.first_zone += lower.num_zones;
+    upper.num_zones -= lower.num_zones;
+    divide(lower);
+    divide(upper);
+  }
+
+  PlaneCut best_cut(const Part& part) const {
+    PlaneCut best;
+    for (std::size_t axis = 0; axis < 3; ++axis) {
+      const PlaneCut cut = best_cut_across(axis, part);
+      if (cut.cost < best.cost) best = cut;
+    }
+    return best;
+  }
+
+  // Costs the share of the cells beside it. Both sides get at least half of what is theirs by their zones.
+  PlaneCut best_cut_across(std::size_t axis, const Part& part) const {
+    const std::vector<std::uint64_t> cells_below =
+        waiting_.grid().weights_below(part.cubes, axis, num_cells_);
+    const int num_planes = part.cubes.length(axis);
+    const auto below = [&](int plane) {
+      return static_cast<double>(cells_below[static_cast<std::size_t>(std::clamp(plane, 0, num_planes))]);
+    };
+    const double all = below(num_planes);
+    const double least_below =
+        0.5 * all * static_cast<double>(part.num_zones / 2) / static_cast<double>(part.num_zones);
+    const double most_below = 0.5 * all + least_below;
+    PlaneCut best{.axis = axis};
+    for (int plane = 1; plane < num_planes && all > 0; ++plane) {
+      if (below(plane) < least_below || below(plane) > most_below) continue;
+      const double cost = (below(plane + kCubesBesideCut) - below(plane - kCubesBesideCut)) / all;
+      if (cost < best.cost) best = {axis, part.cubes.low[axis] + plane, cost};
+    }
+    return best;
+  }
+
+  const CubeSet& waiting_;
+  const std::vector<std::uint32_t>& num_cells_;
+  std::vector<std::size_t> zone_of_;
+};
 
 std::vector<std::size_t> connected_zones(const CubeSet& waiting) {
   const std::vector<std::uint32_t> components = waiting.components();
@@ -96,17 +144,17 @@ std::vector<int> ranks_of(const std::vector<ZoneSize>& zones, std::vector<std::u
 
 }  // namespace
 
-double reach_over_radius(int round) { return round < 2 ? 0 : std::exp2(round - 2); }
+double reach_over_radius(int round) { return std::exp2(std::max(0, (round - 2) / 2)); }
 
 std::vector<int> zones_of_round(int round, const Blocks& blocks, const CubeSet& waiting,
                                 const std::vector<std::uint32_t>& num_cells,
                                 std::vector<std::uint64_t>& load) {
   const std::uint64_t all_cells = std::accumulate(num_cells.begin(), num_cells.end(), std::uint64_t{0});
-  const bool is_by_blocks = round <= 2 || (round <= kLastByBlocks && all_cells >= kCellsForBlocks);
-  std::vector<std::size_t> zone_of;
-  if (is_by_blocks) zone_of = zones_near(blocks, waiting, near_in(round), most_blocks_near(round));
-  const auto is_none = [](std::size_t zone) { return zone == kNoZone; };
-  if (std::all_of(zone_of.begin(), zone_of.end(), is_none)) zone_of = connected_zones(waiting);
+  const std::uint64_t most_zones = std::max<std::uint64_t>(1, all_cells / kCellsAZone);
+  const std::vector<std::size_t> zone_of =
+      round <= kLastWithCuts
+          ? CutZones(waiting, num_cells, std::min<std::uint64_t>(load.size(), most_zones))()
+          : connected_zones(waiting);
   std::vector<ZoneSize> zones;
   for (CubeId cube = 0; cube < zone_of.size(); ++cube) {
     if (zone_of[cube] == kNoZone) continue;

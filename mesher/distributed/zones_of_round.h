@@ -1,10 +1,10 @@
 // Which rank refines where in the rounds after the first.
 //
-// What waits lies along the faces of blocks. So in round 1 zones are the surroundings of faces, in round 2 of
-// edges, and then of corners, too: a zone is the cubes that are near the same blocks. These zones touch, and
-// cells wait again where they do, but there are many, one for each rank and more. In the end, or when little
-// waits, zones are the connected parts of its surroundings: these never touch, and grow together until one
-// fills space. Each zone goes to a rank whose block is in it, so that part of it need not travel.
+// What waits lies along the cuts of earlier rounds, whose zones ended there. So each round cuts space anew,
+// into boxes, one for each rank, that have about equally much of it, where least of it would have to wait
+// again: what cuts leave of a plate is a strip, and of a strip a spot. In the end zones are the connected
+// parts of the cubes around what waits: these never touch, and grow together until one fills space. Each zone
+// goes to a rank whose block is in it, so that part of it need not travel.
 #pragma once
 
 #include <vector>

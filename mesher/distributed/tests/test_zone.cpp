@@ -3,12 +3,11 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
+#include <array>
 #include <cmath>
 #include <limits>
 #include <random>
-#include <set>
-
-#include "distributed/blocks.h"
 
 namespace podm::test {
 namespace {
@@ -19,14 +18,12 @@ class Zones : public testing::Test {
   CubeSet drawn_cubes() {
     CubeSet set(grid_);
     for (int i = 0; i < 3; ++i) {
-      CubePlace low, high, at;
+      CubeRange box;
       for (std::size_t axis = 0; axis < 3; ++axis) {
-        low[axis] = draw(grid_.size()[axis]);
-        high[axis] = low[axis] + draw(grid_.size()[axis] - low[axis]);
+        box.low[axis] = draw(grid_.size()[axis]);
+        box.high[axis] = box.low[axis] + 1 + draw(grid_.size()[axis] - box.low[axis]);
       }
-      for (at[2] = low[2]; at[2] <= high[2]; ++at[2])
-        for (at[1] = low[1]; at[1] <= high[1]; ++at[1])
-          for (at[0] = low[0]; at[0] <= high[0]; ++at[0]) set.insert(grid_.id(at));
+      grid_.for_each(box, [&](CubeId cube, const CubePlace&) { set.insert(cube); });
     }
     return set;
   }
@@ -68,6 +65,33 @@ TEST_F(Zones, WhatIsWithinReachOfAPointIsInTheZone) {
   EXPECT_GT(num_within, 100);
 }
 
+TEST_F(Zones, InsertionsHaveRoomWhereTheBallAroundThemLiesInTheZone) {
+  std::array<int, 2> count{};
+  for (int i = 0; i < 20; ++i) {
+    const CubeSet own = drawn_cubes();
+    const Zone narrow(own, own.grown(1), 1), zone(own, own.grown(1), 1, 2);
+    for (int k = 0; k < 1000; ++k) {
+      const Point p = drawn_point();
+      Cell cell{};
+      const double radius_mm = drawn_mm(0.1, 4);
+      cell.squared_radius = static_cast<float>(radius_mm * radius_mm);
+      EXPECT_EQ(narrow.has_room(p, cell), own.has(p));
+      const bool has_room = zone.has_room(p, cell);
+      ++count[has_room];
+      for (int j = 0; j < 50 && has_room; ++j) {
+        const Vector v{drawn_mm(-1, 1), drawn_mm(-1, 1), drawn_mm(-1, 1)};
+        EXPECT_TRUE(own.has(p + (1.99 * radius_mm / std::max(1.0, std::sqrt(squared_length(v)))) * v));
+      }
+      if (!has_room && own.has(p)) {
+        EXPECT_FALSE(own.covers(p, 2.01 * radius_mm));
+      }
+      cell.squared_radius = std::numeric_limits<float>::quiet_NaN();
+      EXPECT_EQ(zone.has_room(p, cell), own.has(p));
+    }
+  }
+  EXPECT_GT(std::min(count[0], count[1]), 100);
+}
+
 // Where a ball just touches a cube, too.
 TEST_F(Zones, ABallIsKnownOnceItsCubesAre) {
   for (int i = 0; i < 20; ++i) {
@@ -94,25 +118,6 @@ TEST_F(Zones, ACellWithoutASphereIsKnownOnceAllIs) {
   EXPECT_FALSE(Zone(own, known, 1).knows(cell));
   Zone::insert_ball(cell, known);
   EXPECT_TRUE(Zone(own, known, 1).knows(cell));
-}
-
-TEST_F(Zones, BlocksInABoxAreThoseOfItsCubes) {
-  for (std::uint64_t seed = 1; seed <= 30; ++seed) {
-    const Blocks blocks(grid_, seed, 1 + draw(9));
-    EXPECT_EQ(Blocks(grid_, blocks.cuts()).ranks(), blocks.ranks());
-    for (int k = 0; k < 20; ++k) {
-      CubePlace low, high, at;
-      for (std::size_t axis = 0; axis < 3; ++axis) {
-        low[axis] = draw(grid_.size()[axis]);
-        high[axis] = low[axis] + draw(grid_.size()[axis] - low[axis]);
-      }
-      std::set<int> there;
-      for (at[2] = low[2]; at[2] <= high[2]; ++at[2])
-        for (at[1] = low[1]; at[1] <= high[1]; ++at[1])
-          for (at[0] = low[0]; at[0] <= high[0]; ++at[0]) there.insert(blocks.of(grid_.id(at)));
-      EXPECT_EQ(blocks.in(low, high), std::vector<int>(there.begin(), there.end()));
-    }
-  }
 }
 
 }  // namespace

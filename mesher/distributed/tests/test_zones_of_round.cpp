@@ -12,7 +12,7 @@
 namespace podm::test {
 namespace {
 
-constexpr int kRoundOfConnected = 5;  // the first that never goes by blocks
+constexpr int kRoundOfConnected = 7;  // the first without cuts
 
 CubeGrid cubes_of_1_mm(double x, double y, double z) { return CubeGrid({{0, 0, 0}, {x, y, z}}, 1); }
 
@@ -63,15 +63,17 @@ TEST(WeighedBlocks, AreThereWithoutCubesWhereRanksAreMore) {
 class ZonesOfRound : public testing::TestWithParam<int> {
  protected:
   // Cells wait along the faces of blocks, as they do.
-  CubeSet along_faces() const {
+  CubeSet along_faces() const { return along_faces_of(blocks_.ranks()); }
+  CubeSet along_faces_of(const std::vector<int>& part_of_cube) const {
     CubeSet waiting(grid_);
-    for (CubeId cube = 0; cube < grid_.num_cubes(); ++cube) {
-      const CubePlace at = grid_.place_of(cube);
-      CubePlace next = at;
-      for (std::size_t axis = 0; axis < 3; ++axis)
-        next[axis] = std::min(next[axis] + 1, grid_.size()[axis] - 1);
-      if (blocks_.in(at, next).size() > 1) waiting.insert(cube);
-    }
+    grid_.for_each(grid_.all(), [&](CubeId cube, const CubePlace& at) {
+      for (std::size_t axis = 0; axis < 3; ++axis) {
+        CubePlace next = at;
+        if (++next[axis] == grid_.size()[axis]) continue;
+        const int part = part_of_cube[cube], beyond = part_of_cube[grid_.id(next)];
+        if (part != beyond && part != kNobody && beyond != kNobody) waiting.insert(cube);
+      }
+    });
     return waiting;
   }
   // By cube: so many in each that waits.
@@ -91,19 +93,16 @@ class ZonesOfRound : public testing::TestWithParam<int> {
   std::vector<std::uint64_t> load_ = std::vector<std::uint64_t>(kRanks);
 };
 
-TEST_P(ZonesOfRound, AreOfWhatWaitsAndOfRanksThatHaveABlockThere) {
-  const CubeSet waiting = along_faces();
-  const std::vector<int> rank_of = zones(waiting, kMany);
-  ASSERT_EQ(rank_of.size(), grid_.num_cubes());
-  int num_in_zones = 0;
-  for (CubeId cube = 0; cube < grid_.num_cubes(); ++cube) {
-    if (rank_of[cube] == kNobody) continue;
-    ++num_in_zones;
-    ASSERT_TRUE(waiting.has(cube));
-    ASSERT_GE(rank_of[cube], 0);
-    ASSERT_LT(rank_of[cube], kRanks);
+TEST_P(ZonesOfRound, AreOfAllThatWaitsAndNothingElse) {
+  for (const std::uint32_t cells : {0u, 1u, kMany}) {
+    const CubeSet waiting = along_faces();
+    const std::vector<int> rank_of = zones(waiting, cells);
+    ASSERT_EQ(rank_of.size(), grid_.num_cubes());
+    for (CubeId cube = 0; cube < grid_.num_cubes(); ++cube) {
+      ASSERT_EQ(rank_of[cube] == kNobody, !waiting.has(cube));
+      ASSERT_LT(rank_of[cube], kRanks);
+    }
   }
-  EXPECT_GT(2 * num_in_zones, static_cast<int>(waiting.cubes().size()));
 }
 
 TEST_P(ZonesOfRound, AddTheirCellsToTheLoadOfTheirRanks) {
@@ -124,15 +123,16 @@ TEST_P(ZonesOfRound, AreForManyRanksWhereMuchWaits) {
   EXPECT_GE(static_cast<int>(ranks.size()), GetParam() < kRoundOfConnected ? kRanks / 2 : 1);
 }
 
-TEST_P(ZonesOfRound, LeaveNoCubeOutOnceTheyAreConnected) {
-  const CubeSet waiting = along_faces();
-  const std::vector<int> rank_of = zones(waiting, 0);  // little waits
-  if (GetParam() <= 2) return;                         // edges and corners have rounds of their own
-  for (const CubeId cube : waiting.cubes()) EXPECT_NE(rank_of[cube], kNobody);
+// What waits where zones meet is much less each time, or rounds would not end.
+TEST_P(ZonesOfRound, MeetWhereLittleWaits) {
+  CubeSet waiting = along_faces();
+  const std::size_t before = waiting.cubes().size();
+  const std::vector<int> rank_of = zones(waiting, kMany);
+  EXPECT_LT(6 * along_faces_of(rank_of).cubes().size(), before);
 }
 
-TEST_P(ZonesOfRound, DoNotTouchThoseOfOthersOnceTheyAreConnected) {
-  if (GetParam() <= 2) return;
+TEST_P(ZonesOfRound, DoNotTouchThoseOfOthersInTheEnd) {
+  if (GetParam() < kRoundOfConnected) return;
   std::mt19937_64 random(1);
   CubeSet waiting(grid_);
   for (int i = 0; i < 800; ++i) {
@@ -154,18 +154,16 @@ TEST_P(ZonesOfRound, AreNoneWhereNothingWaits) {
   EXPECT_TRUE(std::all_of(rank_of.begin(), rank_of.end(), [](int rank) { return rank == kNobody; }));
 }
 
-// All wait at one corner, which the first rounds have no zones for: yet every round has to get on.
-TEST_P(ZonesOfRound, AreThereWhereverItIsThatCellsWait) {
-  const Blocks corner(grid_,
-                      {{0, 30, 4}, {1, 30, 2}, {2, 30, 1}, {2, 30, 1}, {1, 30, 2}, {2, 30, 1}, {2, 30, 1}});
+// However much waits in one place: every round has to get on.
+TEST_P(ZonesOfRound, AreThereWhereAllWaitInOneCube) {
   CubeSet waiting(grid_);
-  waiting.insert(grid_.id({29, 29, 29}));
-  const std::vector<int> rank_of =
-      zones_of_round(GetParam(), corner, waiting, cells_in(waiting, kMany), load_);
-  EXPECT_NE(rank_of[grid_.id({29, 29, 29})], kNobody);
+  const CubeId cube = grid_.id({29, 29, 29});
+  waiting.insert(cube);
+  EXPECT_NE(zones(waiting, 1000 * kMany)[cube], kNobody);
 }
 
-INSTANTIATE_TEST_SUITE_P(Rounds, ZonesOfRound, testing::Values(1, 2, 3, 4, kRoundOfConnected, 9));
+INSTANTIATE_TEST_SUITE_P(Rounds, ZonesOfRound,
+                         testing::Values(1, 2, kRoundOfConnected - 1, kRoundOfConnected, 9));
 
 TEST(Components, AreTheCubesThatChainsOfNeighboursJoin) {
   const CubeGrid grid = cubes_of_1_mm(7, 6, 5);
