@@ -14,6 +14,8 @@ namespace {
 constexpr int kLastWithCuts = 6;
 // Where fewer cells wait a rank may as well have them all: another round takes as long.
 constexpr std::uint64_t kCellsAZone = 5000;
+// More than one, for ranks to have equally much of.
+constexpr std::uint64_t kZonesARank = 2;
 // What so many cubes on either side of a cut hold may have to wait again.
 constexpr int kCubesBesideCut = 3;
 
@@ -68,7 +70,8 @@ class CutZones {
     return best;
   }
 
-  // Costs the share of the cells beside it. Both sides get at least half of what is theirs by their zones.
+  // Costs what lies beside it over what lies on either side. (Shi and Malik, IEEE TPAMI 2000.) Both sides get
+  // at least half of what is theirs by their zones.
   PlaneCut best_cut_across(std::size_t axis, const Part& part) const {
     const std::vector<std::uint64_t> cells_below =
         waiting_.grid().weights_below(part.cubes, axis, num_cells_);
@@ -83,7 +86,8 @@ class CutZones {
     PlaneCut best{.axis = axis};
     for (int plane = 1; plane < num_planes && all > 0; ++plane) {
       if (below(plane) < least_below || below(plane) > most_below) continue;
-      const double cost = (below(plane + kCubesBesideCut) - below(plane - kCubesBesideCut)) / all;
+      const double cost = (below(plane + kCubesBesideCut) - below(plane - kCubesBesideCut)) /
+                          (below(plane) * (all - below(plane)));
       if (cost < best.cost) best = {axis, part.cubes.low[axis] + plane, cost};
     }
     return best;
@@ -153,7 +157,7 @@ std::vector<int> zones_of_round(int round, const Blocks& blocks, const CubeSet& 
   const std::uint64_t most_zones = std::max<std::uint64_t>(1, all_cells / kCellsAZone);
   const std::vector<std::size_t> zone_of =
       round <= kLastWithCuts
-          ? CutZones(waiting, num_cells, std::min<std::uint64_t>(load.size(), most_zones))()
+          ? CutZones(waiting, num_cells, std::min<std::uint64_t>(kZonesARank * load.size(), most_zones))()
           : connected_zones(waiting);
   std::vector<ZoneSize> zones;
   for (CubeId cube = 0; cube < zone_of.size(); ++cube) {

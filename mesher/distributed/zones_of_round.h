@@ -1,7 +1,7 @@
 // Which rank refines where in the rounds after the first.
 //
 // What waits lies along the cuts of earlier rounds, whose zones ended there. So each round cuts space anew,
-// into boxes, one for each rank, that have about equally much of it, where least of it would have to wait
+// into boxes, two for each rank, that have about equally much of it, where least of it would have to wait
 // again: what cuts leave of a plate is a strip, and of a strip a spot. In the end zones are the connected
 // parts of the cubes around what waits: these never touch, and grow together until one fills space. Each zone
 // goes to a rank whose block is in it, so that part of it need not travel.
