@@ -27,7 +27,6 @@ class Blocks {
   /// The blocks that were cut so.
   Blocks(const CubeGrid& grid, const std::vector<Cut>& cuts);
 
-  const CubeGrid& grid() const { return grid_; }
   int of(CubeId cube) const { return block_of_[cube]; }
   const std::vector<int>& ranks() const { return block_of_; }
 

@@ -41,9 +41,15 @@ CellName name_of(const Mesh& mesh, CellId c) {
   return name;
 }
 
-Circumsphere sphere_of(const CellName& name, double extent) {
+struct Ball {
+  Point center;
+  double radius_mm;
+};
+
+Ball ball_of(const CellName& name, double extent) {
   const auto& v = name.vertices;
-  return circumsphere(v[0], v[1], v[2], v[3], extent);
+  const Point center = circumsphere(v[0], v[1], v[2], v[3], extent).center;
+  return {center, distance(center, v[0])};
 }
 
 double volume_of(const Mesh& mesh, const Cell& cell) {
@@ -239,16 +245,13 @@ class Rounds {
   // What has to be known of a zone in which these cells wait.
   CubeSet wanted(const CubeSet& own, const std::vector<CellName>& names) const {
     CubeSet wanted = own.grown(kKnownRings);
-    std::map<CubeId, Circumsphere> largest;  // of the cells with their centres in a cube
+    std::map<CubeId, Ball> largest;  // of the cells with their centres in a cube
     for (const CellName& name : names) {
-      const Circumsphere sphere = sphere_of(name, construction_.mesh().extent());
-      const CubeId cube = grid_.cube_at(sphere.center);
-      if (!own.has(cube)) continue;
-      const auto found = largest.emplace(cube, sphere).first;
-      if (found->second.squared_radius < sphere.squared_radius) found->second = sphere;
+      const Ball ball = ball_of(name);
+      Ball& here = largest.emplace(grid_.cube_at(ball.center), ball).first->second;
+      if (here.radius_mm < ball.radius_mm) here = ball;
     }
-    for (const auto& [cube, sphere] : largest)
-      wanted.insert(sphere.center, kKnownOverRadius * std::sqrt(sphere.squared_radius));
+    for (const auto& [cube, ball] : largest) wanted.insert(ball.center, kKnownOverRadius * ball.radius_mm);
     return wanted;
   }
 
@@ -264,19 +267,16 @@ class Rounds {
   }
 
   // The cells of these names in the zone. Those that are not in the mesh have died, if all is known that
-  // could be in their balls; else they are `left` for another round, with those that are in nobody's zone.
+  // could be in their balls; else they are `left` for another round.
   Construction::Entries find(const std::vector<CellName>& names, const Zone& zone,
                              std::vector<CellName>& left) {
     const Mesh& mesh = construction_.mesh();
     Construction::Entries entries;
     for (const std::size_t i : along_curve(names)) {
       const CellName& name = names[i];
-      const Point center = center_of(name);
-      if (!zone.has(center)) {
-        left.push_back(name);
-      } else if (const auto cell = exchange_.find_cell(name.vertices)) {
+      if (const auto cell = exchange_.find_cell(name.vertices)) {
         entries.push_back({*cell, mesh.stamp(*cell)});
-      } else if (!zone.is_ball_known(center, distance(center, name.vertices[0]))) {
+      } else if (const Ball ball = ball_of(name); !zone.is_ball_known(ball.center, ball.radius_mm)) {
         left.push_back(name);
       }
     }
@@ -349,9 +349,9 @@ class Rounds {
     const CubeSet waiting = share_waiting(round + 1, left);
     zone_of_ = zones_of_round(round + 1, *blocks_, waiting.grown(1), num_waiting_, load_);
     std::vector<std::vector<CellName>> names(static_cast<std::size_t>(ranks_.size()));
-    for (std::size_t i = 0; i < left.size(); ++i) {
-      const int rank = zone_of_[grid_.cube_at(center_of(left[i]))];
-      names[static_cast<std::size_t>(rank == kNobody ? ranks_.rank() : rank)].push_back(left[i]);
+    for (const CellName& name : left) {
+      const int rank = zone_of_[grid_.cube_at(ball_of(name).center)];
+      names.at(static_cast<std::size_t>(rank)).push_back(name);
     }
     return exchanged(names);
   }
@@ -361,9 +361,9 @@ class Rounds {
     std::map<CubeId, std::uint32_t> here;  // cells by cube
     CubeSet around(grid_), waiting(grid_);
     for (const CellName& name : left) {
-      const Point center = center_of(name);
-      ++here[grid_.cube_at(center)];
-      around.insert(center, reach_over_radius(round) * distance(center, name.vertices[0]));
+      const Ball ball = ball_of(name);
+      ++here[grid_.cube_at(ball.center)];
+      around.insert(ball.center, reach_over_radius(round) * ball.radius_mm);
     }
     Bytes message;
     std::vector<CubeCount> counts;
@@ -379,9 +379,7 @@ class Rounds {
     return waiting;
   }
 
-  Point center_of(const CellName& name) const {
-    return sphere_of(name, construction_.mesh().extent()).center;
-  }
+  Ball ball_of(const CellName& name) const { return podm::ball_of(name, construction_.mesh().extent()); }
 
   std::vector<CellName> exchanged(const std::vector<std::vector<CellName>>& names) {
     std::vector<Bytes> messages(names.size());

@@ -6,8 +6,8 @@
 //   2  Blocks divide space by predicted work. In round 0 a rank's zone is its block, and it refines the
 //      cells that have their least vertices there, by PODM alone or leaf by leaf first (leaves_of_zone.h). A
 //      cell that needs vertices outside is deferred.
-//   3  In later rounds zones are around what waits (zones_of_round.h), cut anew each time, and wider where
-//      cells are deferred again. When one fills space its rank knows all and defers nothing: so rounds end.
+//   3  In later rounds zones are around what waits (zones_of_round.h), other ones each time, and ever wider.
+//      When one fills space its rank knows all and defers nothing: so rounds end.
 //   4  At the end each rank learns what others changed in its block, and around it.
 #pragma once
 

@@ -12,7 +12,7 @@ namespace {
 
 // After so many rounds what still waits needs more room than cuts leave.
 constexpr int kLastWithCuts = 6;
-// Where fewer cells wait a rank may as well have them all: another round takes as long.
+// Where fewer cells wait a cut is not worth the round that it may cost.
 constexpr std::uint64_t kCellsAZone = 5000;
 // More than one, for ranks to have equally much of.
 constexpr std::uint64_t kZonesARank = 2;
@@ -24,7 +24,7 @@ constexpr std::size_t kNoZone = ~std::size_t{0};
 // Cubes, and the zones that share them.
 struct Part {
   CubeRange cubes;
-  std::size_t first_zone, num_zones;
+  std::size_t num_zones;
 };
 
 struct PlaneCut {
@@ -38,7 +38,7 @@ class CutZones {
  public:
   CutZones(const CubeSet& waiting, const std::vector<std::uint32_t>& num_cells, std::size_t num_zones)
       : waiting_(waiting), num_cells_(num_cells), zone_of_(waiting.grid().num_cubes(), kNoZone) {
-    divide({waiting.grid().all(), 0, num_zones});
+    divide({waiting.grid().all(), num_zones});
   }
   /// By cube: the number of its zone, or kNoZone.
   const std::vector<std::size_t>& operator()() const { return zone_of_; }
@@ -48,14 +48,14 @@ class CutZones {
     const PlaneCut cut = part.num_zones > 1 ? best_cut(part) : PlaneCut{};
     if (std::isinf(cut.cost)) {
       waiting_.grid().for_each(part.cubes, [&](CubeId cube, const CubePlace&) {
-        if (waiting_.has(cube)) zone_of_[cube] = part.first_zone;
+        if (waiting_.has(cube)) zone_of_[cube] = next_zone_;
       });
+      ++next_zone_;
       return;
     }
     Part lower = part, upper = part;
     lower.cubes.high[cut.axis] = upper.cubes.low[cut.axis] = cut.at;
     lower.num_zones = part.num_zones / 2;
-    upper.first_zone += lower.num_zones;
     upper.num_zones -= lower.num_zones;
     divide(lower);
     divide(upper);
@@ -86,8 +86,8 @@ class CutZones {
     PlaneCut best{.axis = axis};
     for (int plane = 1; plane < num_planes && all > 0; ++plane) {
       if (below(plane) < least_below || below(plane) > most_below) continue;
-      const double cost = (below(plane + kCubesBesideCut) - below(plane - kCubesBesideCut)) /
-                          (below(plane) * (all - below(plane)));
+      const double beside = below(plane + kCubesBesideCut) - below(plane - kCubesBesideCut);
+      const double cost = (1 + beside) / (below(plane) * (all - below(plane)));
       if (cost < best.cost) best = {axis, part.cubes.low[axis] + plane, cost};
     }
     return best;
@@ -96,6 +96,7 @@ class CutZones {
   const CubeSet& waiting_;
   const std::vector<std::uint32_t>& num_cells_;
   std::vector<std::size_t> zone_of_;
+  std::size_t next_zone_ = 0;
 };
 
 std::vector<std::size_t> connected_zones(const CubeSet& waiting) {
@@ -154,11 +155,10 @@ std::vector<int> zones_of_round(int round, const Blocks& blocks, const CubeSet& 
                                 const std::vector<std::uint32_t>& num_cells,
                                 std::vector<std::uint64_t>& load) {
   const std::uint64_t all_cells = std::accumulate(num_cells.begin(), num_cells.end(), std::uint64_t{0});
-  const std::uint64_t most_zones = std::max<std::uint64_t>(1, all_cells / kCellsAZone);
+  const std::size_t num_zones = std::min<std::uint64_t>(kZonesARank * load.size(), all_cells / kCellsAZone);
+  const bool has_cuts = round <= kLastWithCuts && num_zones > 1;
   const std::vector<std::size_t> zone_of =
-      round <= kLastWithCuts
-          ? CutZones(waiting, num_cells, std::min<std::uint64_t>(kZonesARank * load.size(), most_zones))()
-          : connected_zones(waiting);
+      has_cuts ? CutZones(waiting, num_cells, num_zones)() : connected_zones(waiting);
   std::vector<ZoneSize> zones;
   for (CubeId cube = 0; cube < zone_of.size(); ++cube) {
     if (zone_of[cube] == kNoZone) continue;

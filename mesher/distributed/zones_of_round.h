@@ -1,10 +1,10 @@
 // Which rank refines where in the rounds after the first.
 //
 // What waits lies along the cuts of earlier rounds, whose zones ended there. So each round cuts space anew,
-// into boxes, two for each rank, that have about equally much of it, where least of it would have to wait
-// again: what cuts leave of a plate is a strip, and of a strip a spot. In the end zones are the connected
-// parts of the cubes around what waits: these never touch, and grow together until one fills space. Each zone
-// goes to a rank whose block is in it, so that part of it need not travel.
+// into boxes with at least half of an even share of it, where little of it would have to wait again: what
+// cuts leave of a plate is a strip, and of a strip a spot. In the end, or when little waits, zones are the
+// connected parts of the cubes around what waits: these never touch, and grow together until one fills space.
+// Each zone goes to a rank whose block is in it, so that part of it need not travel.
 #pragma once
 
 #include <vector>
@@ -15,9 +15,8 @@ namespace podm {
 
 inline constexpr int kNobody = -1;
 
-/// How far from its circumcentre a deferred cell asks for a zone, over its circumradius. Most of those that
-/// wait for the first time need no more than the cubes around; what is deferred again gets more, and in the
-/// end all of space.
+/// How far from its circumcentre a deferred cell asks for a zone, over its circumradius: no less than its
+/// ball, twice as far in every second round, and in the end all of space.
 double reach_over_radius(int round);
 
 /// The rank of every cube's zone, or kNobody. `waiting` are the cubes that deferred cells ask for, and those

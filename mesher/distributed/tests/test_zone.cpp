@@ -1,4 +1,4 @@
-// Cubes, blocks and zones of cubes say of points and balls what each cube by itself says.
+// Cubes and zones of cubes say of points and balls what each cube by itself says.
 #include "distributed/zone.h"
 
 #include <gtest/gtest.h>
