@@ -15,20 +15,22 @@ def figure(table, extrapolated):
     simulated. None without rows on more than one rank."""
     if not (table["ranks"] > 1).any():
         return None
-    drawn, (simulated, measured, parts) = style.new_figure(columns=3, width=16.0, height=4.4)
-    for axes, basis, title in ((simulated, "simulated", "weak efficiency of refining, simulated"),
-                               (measured, "measured", "cells a processor second, measured over MPI")):
+    titles = {"simulated": "weak efficiency of refining, simulated",
+              "measured": "cells a processor second, measured over MPI"}
+    bases = [basis for basis in titles if (table["basis"] == basis).any()]
+    has_parts = "simulated" in bases
+    drawn, panels = style.new_figure(columns=len(bases) + has_parts, width=5.3 * (len(bases) + has_parts), height=4.4)
+    for axes, basis in zip(numpy.atleast_1d(panels), bases):
         _efficiencies(axes, table[table["basis"] == basis], style.LINES[basis])
-        axes.set(title=title, ylabel="over one rank, %")
-        axes.set_visible(bool((table["basis"] == basis).any()))
-    _extrapolations(simulated, extrapolated)
-    for axes in (simulated, measured):
-        ranks = [*table["ranks"], *extrapolated["ranks"]]
-        style.cores_axis(axes, ranks)
-        axes.set(xlabel="ranks", ylim=(0, 115))
+        if basis == "simulated":
+            _extrapolations(axes, extrapolated)
+        style.cores_axis(axes, [*table["ranks"], *extrapolated["ranks"]])
         axes.axhline(100, color=style.INK, linewidth=0.8)
-        style.legend(axes, loc="lower left")
-    _parts(parts, table[table["basis"] == "simulated"], extrapolated)
+        axes.set(title=titles[basis], xlabel="ranks", ylabel="over one rank, %", ylim=(0, 175),
+                 yticks=range(0, 101, 20))
+        style.legend(axes, loc="upper right")
+    if has_parts:
+        _parts(panels[-1], table[table["basis"] == "simulated"], extrapolated)
     style.finish(drawn, caption(table, extrapolated))
     return drawn
 
@@ -55,7 +57,7 @@ def _extrapolations(axes, table):
 
 def _parts(axes, table, extrapolated):
     """A bar a size and number of ranks; extrapolated ones hatched, with one thread."""
-    bars = [(f"{scaling.short(line['cells_per_rank'])}\n{line['ranks']}", line, hatch)
+    bars = [(scaling.short(line["cells_per_rank"]), line, hatch)
             for lines, hatch in ((table, ""), (extrapolated[extrapolated["threads"] == 1], "////"))
             for _, line in lines.iterrows()]
     for part, words in PARTS.items():
@@ -64,8 +66,15 @@ def _parts(axes, table, extrapolated):
                  for _, line, _ in bars]
         axes.bar(range(len(bars)), heights, 0.7, bottom=below, color=COLOURS[part], label=words, edgecolor=style.INK,
                  linewidth=0.3, hatch=[hatch for *_, hatch in bars])
-    axes.set_xticks(range(len(bars)), [name for name, *_ in bars], fontsize=7)
-    axes.set(title="where the time of the mean rank goes", xlabel="cells a rank, ranks (hatched: extrapolated)",
+    axes.set_xticks(range(len(bars)), [line["ranks"] for _, line, _ in bars], fontsize=7)
+    sizes = [name for name, *_ in bars]
+    middles = {name: numpy.mean([i for i, other in enumerate(sizes) if other == name]) for name in sizes}
+    below = axes.secondary_xaxis("bottom")
+    below.tick_params(axis="x", length=0, pad=16)
+    below.set_xticks(list(middles.values()), list(middles), fontsize=7)
+    below.spines["bottom"].set_visible(False)
+    below.set_xlabel("ranks, and cells of each (hatched: extrapolated)")
+    axes.set(title="where the time of the mean rank goes",
              ylabel="simulated microseconds a cell of a rank")
     handles, labels = axes.get_legend_handles_labels()
     style.legend(axes, handles=handles[::-1], labels=labels[::-1], **style.BESIDE)

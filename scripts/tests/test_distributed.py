@@ -177,6 +177,13 @@ class Shown(unittest.TestCase):
         for words in ("Simulated", "Measured", "no confidence interval", "It is assumed"):
             self.assertIn(words, label)
 
+    def test_there_is_a_panel_for_each_basis_that_has_rows(self):
+        table, nodes = self.made().tables["distributed"][0], self.made().tables["distributed_extrapolated"][0]
+        for basis, panels in (("simulated", 2), ("measured", 1)):
+            drawn = distributed_figure.figure(table[table["basis"] == basis], nodes)
+            self.assertEqual(len(drawn.axes), panels)
+            self.assertTrue(all(axes.get_visible() for axes in drawn.axes))
+
     def test_bars_are_as_high_as_their_parts(self):
         table = self.made().tables["distributed"][0]
         parts = self.made().figures["distributed"].axes[2]
