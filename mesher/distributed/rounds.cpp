@@ -346,7 +346,8 @@ class Rounds {
     report.deferred = num_left[0];
     is_over_ = is_over_anywhere();
     if (report.deferred == 0 || is_over_) return {};
-    const CubeSet waiting = share_waiting(round + 1, left);
+    const CubeSet waiting = share_waiting(left);
+    if (!has_cuts(round + 1, report.deferred)) reach_over_radius_ *= 2;
     zone_of_ = zones_of_round(round + 1, *blocks_, waiting.grown(1), num_waiting_, load_);
     std::vector<std::vector<CellName>> names(static_cast<std::size_t>(ranks_.size()));
     for (const CellName& name : left) {
@@ -357,13 +358,13 @@ class Rounds {
   }
 
   // The cubes for which cells of all ranks ask; num_waiting_ are the cells with their centres there.
-  CubeSet share_waiting(int round, const std::vector<CellName>& left) {
+  CubeSet share_waiting(const std::vector<CellName>& left) {
     std::map<CubeId, std::uint32_t> here;  // cells by cube
     CubeSet around(grid_), waiting(grid_);
     for (const CellName& name : left) {
       const Ball ball = ball_of(name);
       ++here[grid_.cube_at(ball.center)];
-      around.insert(ball.center, reach_over_radius(round) * ball.radius_mm);
+      around.insert(ball.center, reach_over_radius_ * ball.radius_mm);
     }
     Bytes message;
     std::vector<CubeCount> counts;
@@ -446,6 +447,7 @@ class Rounds {
   VertexExchange exchange_;
   std::optional<LeavesOfZone> leaves_;  // none: PODM alone
   std::optional<Blocks> blocks_;
+  double reach_over_radius_ = 1;            // how far from its centre a waiting cell asks for a zone
   std::vector<int> zone_of_;                // by cube: the rank of the zone that it is in, or kNobody
   std::vector<std::uint32_t> num_waiting_;  // by cube: cells, on all ranks, before the round
   std::vector<std::uint64_t> load_;         // by rank: cells that waited for it

@@ -11,7 +11,7 @@ namespace podm {
 namespace {
 
 // After so many rounds what still waits needs more room than cuts leave.
-constexpr int kLastWithCuts = 6;
+constexpr int kLastWithCuts = 8;
 // Where fewer cells wait a cut is not worth the round that it may cost.
 constexpr std::uint64_t kCellsAZone = 5000;
 // More than one, for ranks to have equally much of.
@@ -149,16 +149,17 @@ std::vector<int> ranks_of(const std::vector<ZoneSize>& zones, std::vector<std::u
 
 }  // namespace
 
-double reach_over_radius(int round) { return std::exp2(std::max(0, (round - 2) / 2)); }
+bool has_cuts(int round, std::uint64_t num_waiting) {
+  return round <= kLastWithCuts && num_waiting >= 2 * kCellsAZone;
+}
 
 std::vector<int> zones_of_round(int round, const Blocks& blocks, const CubeSet& waiting,
                                 const std::vector<std::uint32_t>& num_cells,
                                 std::vector<std::uint64_t>& load) {
   const std::uint64_t all_cells = std::accumulate(num_cells.begin(), num_cells.end(), std::uint64_t{0});
   const std::size_t num_zones = std::min<std::uint64_t>(kZonesARank * load.size(), all_cells / kCellsAZone);
-  const bool has_cuts = round <= kLastWithCuts && num_zones > 1;
   const std::vector<std::size_t> zone_of =
-      has_cuts ? CutZones(waiting, num_cells, num_zones)() : connected_zones(waiting);
+      has_cuts(round, all_cells) ? CutZones(waiting, num_cells, num_zones)() : connected_zones(waiting);
   std::vector<ZoneSize> zones;
   for (CubeId cube = 0; cube < zone_of.size(); ++cube) {
     if (zone_of[cube] == kNoZone) continue;

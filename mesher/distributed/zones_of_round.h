@@ -15,9 +15,8 @@ namespace podm {
 
 inline constexpr int kNobody = -1;
 
-/// How far from its circumcentre a deferred cell asks for a zone, over its circumradius: no less than its
-/// ball, twice as far in every second round, and in the end all of space.
-double reach_over_radius(int round);
+/// Whether a round cuts what waits. Others have connected zones, which must grow each time for rounds to end.
+bool has_cuts(int round, std::uint64_t num_waiting);
 
 /// The rank of every cube's zone, or kNobody. `waiting` are the cubes that deferred cells ask for, and those
 /// around; `num_cells`, by cube, how many there are. `load`: the cells that each rank had in earlier rounds;

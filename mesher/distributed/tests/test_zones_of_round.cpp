@@ -12,7 +12,7 @@
 namespace podm::test {
 namespace {
 
-constexpr int kRoundOfConnected = 7;  // the first without cuts
+constexpr int kRoundOfConnected = 9;  // the first without cuts
 
 CubeGrid cubes_of_1_mm(double x, double y, double z) { return CubeGrid({{0, 0, 0}, {x, y, z}}, 1); }
 
@@ -184,16 +184,14 @@ TEST_P(ZonesOfRound, AreCutInTheMiddleOfWhatIsEmpty) {
   EXPECT_EQ(load, (std::vector<std::uint64_t>{6000, 6000}));
 }
 
-TEST(Reach, IsNoLessThanABallAndGrowsBeyondAnyLength) {
-  for (int round = 1; round < 40; ++round) {
-    EXPECT_GE(reach_over_radius(round), 1);
-    EXPECT_GE(reach_over_radius(round + 1), reach_over_radius(round));
-    EXPECT_GE(reach_over_radius(round + 4), 2 * reach_over_radius(round));
-  }
+TEST(Cuts, AreMadeWhereMuchWaitsAndEnd) {
+  EXPECT_TRUE(has_cuts(1, 100000));
+  EXPECT_FALSE(has_cuts(1, 100));
+  for (int round = kRoundOfConnected; round < 40; ++round) EXPECT_FALSE(has_cuts(round, ~std::uint64_t{0}));
 }
 
 INSTANTIATE_TEST_SUITE_P(Rounds, ZonesOfRound,
-                         testing::Values(1, 2, kRoundOfConnected - 1, kRoundOfConnected, 9));
+                         testing::Values(1, 2, kRoundOfConnected - 1, kRoundOfConnected, 20));
 
 TEST(Components, AreTheCubesThatChainsOfNeighboursJoin) {
   const CubeGrid grid = cubes_of_1_mm(7, 6, 5);
