@@ -39,17 +39,6 @@ CubeRange CubeGrid::with_neighbors(const CubePlace& at) const {
   return range;
 }
 
-double CubeGrid::squared_distance(const CubePlace& at, const Point& p) const {
-  const auto along = [&](std::size_t axis, double offset_mm) {
-    const double low = at[axis] * side_mm_, high = low + side_mm_;
-    if (offset_mm < low && at[axis] > 0) return low - offset_mm;
-    if (offset_mm > high && at[axis] + 1 < size_[axis]) return offset_mm - high;
-    return 0.0;
-  };
-  const Vector offset = p - origin_;
-  return squared_length({along(0, offset.x), along(1, offset.y), along(2, offset.z)});
-}
-
 bool CubeSet::is_full() const { return std::find(has_.begin(), has_.end(), 0) == has_.end(); }
 
 std::vector<CubeId> CubeSet::cubes() const {
@@ -74,29 +63,49 @@ CubeSet CubeSet::grown(int rings) const {
 }
 
 // A cube not in the set is 0 steps from one, and each is one step farther than the nearest of its neighbours.
-// Two passes, along the ids and back, ask those that were passed already. (Rosenfeld and Pfaltz, J. ACM 13
-// (1966) 471-494.)
+// Two passes, row by row and back, ask those that were passed already. (Rosenfeld and Pfaltz, J. ACM 13
+// (1966) 471-494.) Rows lie in a frame of cubes that are farther than any.
 std::vector<std::uint8_t> CubeSet::depths(std::uint8_t most) const {
   const CubePlace& size = grid_->size();
-  std::vector<std::uint8_t> steps(has_.size());
-  const auto visit = [&](CubePlace at, int direction) {
-    const CubeId cube = grid_->id(at);
-    if (!has(cube)) return;
-    int least = direction > 0 ? most + 1 : steps[cube];
-    for (int i = 0; i < 13; ++i) {  // the first of 27 in the order of ids
-      const CubePlace beside{at[0] + direction * (i % 3 - 1), at[1] + direction * (i / 3 % 3 - 1),
-                             at[2] + direction * (i / 9 - 1)};
-      bool is_inside = true;
-      for (std::size_t axis = 0; axis < 3; ++axis)
-        is_inside = is_inside && beside[axis] >= 0 && beside[axis] < size[axis];
-      if (is_inside) least = std::min(least, steps[grid_->id(beside)] + 1);
-    }
-    steps[cube] = static_cast<std::uint8_t>(least);
+  const auto length = static_cast<std::size_t>(size[0]);
+  const std::size_t in_frame = length + 2, rows = static_cast<std::size_t>(size[1]) + 2;
+  const auto farthest = static_cast<std::uint8_t>(most + 1);
+  std::vector<std::uint8_t> steps(in_frame * rows * (static_cast<std::size_t>(size[2]) + 2), farthest);
+  std::vector<std::uint8_t> nearest(in_frame);
+  const auto row_at = [&](int y, int z) {
+    return steps.data() +
+           (static_cast<std::size_t>(z + 1) * rows + static_cast<std::size_t>(y + 1)) * in_frame;
   };
-  for (CubeId cube = 0; cube < grid_->num_cubes(); ++cube) visit(grid_->place_of(cube), 1);
-  for (CubeId cube = grid_->num_cubes(); cube-- > 0;) visit(grid_->place_of(cube), -1);
-  for (std::uint8_t& step : steps) step = static_cast<std::uint8_t>(std::max(0, step - 1));
-  return steps;
+  const auto visit_row = [&](int y, int z, int direction) {
+    std::uint8_t* const row = row_at(y, z);
+    const std::uint8_t* const beside[] = {row_at(y - direction, z), row_at(y - 1, z - direction),
+                                          row_at(y, z - direction), row_at(y + 1, z - direction)};
+    for (std::size_t x = 0; x < in_frame; ++x)
+      nearest[x] = std::min(std::min(beside[0][x], beside[1][x]), std::min(beside[2][x], beside[3][x]));
+    const std::uint8_t* const has = has_.data() + grid_->id({0, y, z});
+    for (std::size_t x = 1; x <= length; ++x) {
+      const std::uint8_t around = std::min(std::min(nearest[x - 1], nearest[x]), nearest[x + 1]);
+      row[x] = has[x - 1] == 0 ? 0 : std::min<std::uint8_t>(row[x], around < farthest ? around + 1 : farthest);
+    }
+    for (std::size_t i = 1; i <= length; ++i) {
+      const std::size_t x = direction > 0 ? i : length + 1 - i;
+      const std::uint8_t passed = direction > 0 ? row[x - 1] : row[x + 1];
+      if (passed < row[x]) row[x] = static_cast<std::uint8_t>(std::min(passed + 1, int{row[x]}));
+    }
+  };
+  const auto for_each_row = [&](int direction) {
+    for (int i = 0; i < size[2]; ++i)
+      for (int j = 0; j < size[1]; ++j)
+        direction > 0 ? visit_row(j, i, 1) : visit_row(size[1] - 1 - j, size[2] - 1 - i, -1);
+  };
+  for_each_row(1);
+  for_each_row(-1);
+  std::vector<std::uint8_t> depths(has_.size());
+  for (int z = 0; z < size[2]; ++z)
+    for (int y = 0; y < size[1]; ++y)
+      std::transform(row_at(y, z) + 1, row_at(y, z) + 1 + length, depths.data() + grid_->id({0, y, z}),
+                     [](std::uint8_t step) { return static_cast<std::uint8_t>(std::max(0, step - 1)); });
+  return depths;
 }
 
 CubeCounts::CubeCounts(const CubeSet& set) {

@@ -45,7 +45,11 @@ class CubeGrid {
   /// Along a curve on which points that follow each other are near each other, finer than cubes.
   MortonCode place_on_curve(const Point& p) const;
   /// From a point to the cube, mm^2, but for rounding.
-  double squared_distance(const CubePlace& at, const Point& p) const;
+  double squared_distance(const CubePlace& at, const Point& p) const {
+    const Vector offset = p - origin_;
+    return squared_length(
+        {to_cube(at, 0, offset.x), to_cube(at, 1, offset.y), to_cube(at, 2, offset.z)});
+  }
   /// Calls visit(cube, its place).
   template <class Visit>
   void for_each(const CubeRange& range, const Visit& visit) const;
@@ -59,6 +63,12 @@ class CubeGrid {
   int along(std::size_t axis, double offset_mm) const {
     const double g = offset_mm * per_mm_;
     return g <= 0 ? 0 : g >= size_[axis] ? size_[axis] - 1 : static_cast<int>(g);
+  }
+  double to_cube(const CubePlace& at, std::size_t axis, double offset_mm) const {
+    const double low = at[axis] * side_mm_, high = low + side_mm_;
+    if (offset_mm < low && at[axis] > 0) return low - offset_mm;
+    if (offset_mm > high && at[axis] + 1 < size_[axis]) return offset_mm - high;
+    return 0;
   }
 
   Point origin_;

@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cmath>
 #include <map>
+#include <numeric>
+#include <utility>
 
 #include "algorithms/leaf_size.h"
 #include "algorithms/podm_impl.h"
@@ -44,6 +46,12 @@ CellName name_of(const Mesh& mesh, CellId c) {
 struct Ball {
   Point center;
   double radius_mm;
+};
+
+// Cells that wait in a cube.
+struct Waiting {
+  std::uint32_t cells;
+  Ball largest;
 };
 
 Ball ball_of(const CellName& name, double extent) {
@@ -245,14 +253,21 @@ class Rounds {
   // What has to be known of a zone in which these cells wait.
   CubeSet wanted(const CubeSet& own, const std::vector<CellName>& names) const {
     CubeSet wanted = own.grown(kKnownRings);
-    std::map<CubeId, Ball> largest;  // of the cells with their centres in a cube
+    for (const auto& [cube, waiting] : by_cube(names))
+      wanted.insert(waiting.largest.center, kKnownOverRadius * waiting.largest.radius_mm);
+    return wanted;
+  }
+
+  // Those with their centres in a cube. The largest ball asks for all: the others are hardly anywhere else.
+  std::map<CubeId, Waiting> by_cube(const std::vector<CellName>& names) const {
+    std::map<CubeId, Waiting> by_cube;
     for (const CellName& name : names) {
       const Ball ball = ball_of(name);
-      Ball& here = largest.emplace(grid_.cube_at(ball.center), ball).first->second;
-      if (here.radius_mm < ball.radius_mm) here = ball;
+      Waiting& here = by_cube.emplace(grid_.cube_at(ball.center), Waiting{0, ball}).first->second;
+      ++here.cells;
+      if (here.largest.radius_mm < ball.radius_mm) here.largest = ball;
     }
-    for (const auto& [cube, ball] : largest) wanted.insert(ball.center, kKnownOverRadius * ball.radius_mm);
-    return wanted;
+    return by_cube;
   }
 
   // An order in which walks to these cells are short.
@@ -359,16 +374,13 @@ class Rounds {
 
   // The cubes for which cells of all ranks ask; num_waiting_ are the cells with their centres there.
   CubeSet share_waiting(const std::vector<CellName>& left) {
-    std::map<CubeId, std::uint32_t> here;  // cells by cube
     CubeSet around(grid_), waiting(grid_);
-    for (const CellName& name : left) {
-      const Ball ball = ball_of(name);
-      ++here[grid_.cube_at(ball.center)];
-      around.insert(ball.center, reach_over_radius_ * ball.radius_mm);
-    }
     Bytes message;
     std::vector<CubeCount> counts;
-    for (const auto& [cube, cells] : here) counts.push_back({cube, cells});
+    for (const auto& [cube, here] : by_cube(left)) {
+      around.insert(here.largest.center, reach_over_radius_ * here.largest.radius_mm);
+      counts.push_back({cube, here.cells});
+    }
     append(message, around.cubes());
     append(message, counts);
     num_waiting_.assign(grid_.num_cubes(), 0);
@@ -398,29 +410,56 @@ class Rounds {
   // Learns what others have changed until every cell with a vertex in this rank's block is one of the whole,
   // and so are its neighbours.
   Update complete() {
-    const Mesh& mesh = construction_.mesh();
     const CubeSet own = cubes_of(ranks_.rank(), blocks_->ranks());
     CubeSet wanted = own.grown(kKnownRings);
-    Update sum;
-    for (;;) {
-      sum += exchange_.update(wanted);
+    std::vector<CellId> unknown, made;
+    Update sum = exchange_.update(wanted);
+    for (bool is_first = true;; is_first = false) {
       const Zone zone(own, exchange_.known(), kKnownRings);
-      const std::vector<CellId> unknown = unknown_cells(zone);
-      for (const CellId c : unknown) Zone::insert_ball(mesh.cell(c), wanted);
+      unknown = unknown_among(is_first ? all_cells() : around(made, unknown), zone);
+      insert_largest(unknown, wanted);
       std::array<std::uint64_t, 1> more{unknown.size()};
       ranks_.sum(more);
       if (more[0] == 0) return sum;
+      made.clear();
+      sum += exchange_.update(wanted, &made);
     }
   }
 
-  // Those with a vertex in the zone, and neighbours of such, that may not be cells of the whole.
-  std::vector<CellId> unknown_cells(const Zone& zone) const {
+  std::vector<CellId> all_cells() const {
+    std::vector<CellId> cells(construction_.mesh().cell_bound());
+    std::iota(cells.begin(), cells.end(), CellId{0});
+    return cells;
+  }
+
+  // These cells and those beside them, each once.
+  std::vector<CellId> around(const std::vector<CellId>& some, const std::vector<CellId>& more) const {
+    const Mesh& mesh = construction_.mesh();
+    std::vector<std::uint8_t> is_listed(mesh.cell_bound());
+    std::vector<CellId> cells;
+    const auto list = [&](CellId c) {
+      if (std::exchange(is_listed[c], 1) == 0) cells.push_back(c);
+    };
+    for (const CellId c : some) list(c);
+    for (const CellId c : more) list(c);
+    const std::size_t num_listed = cells.size();
+    for (std::size_t i = 0; i < num_listed; ++i) {
+      if (!mesh.cell(cells[i]).is_alive()) continue;
+      for (const FacetId mirror : mesh.cell(cells[i]).mirrors)
+        if (mirror != kNoFacet) list(cell_of(mirror));
+    }
+    return cells;
+  }
+
+  // Of these cells those with a vertex in the zone, and neighbours of such, that may not be cells of the
+  // whole.
+  std::vector<CellId> unknown_among(const std::vector<CellId>& cells, const Zone& zone) const {
     const Mesh& mesh = construction_.mesh();
     std::vector<std::uint8_t> is_in_zone(mesh.vertex_bound());
     for (VertexId v = 0; v < mesh.vertex_bound(); ++v)
       is_in_zone[v] = mesh.vertex(v).kind != VertexKind::kBox && zone.has(mesh.point(v));
     std::vector<CellId> unknown;
-    for (CellId c = 0; c < mesh.cell_bound(); ++c) {
+    for (const CellId c : cells) {
       const Cell& cell = mesh.cell(c);
       if (!cell.is_alive()) continue;
       const auto& v = cell.vertices;
@@ -433,6 +472,22 @@ class Rounds {
           unknown.push_back(cell_of(mirror));
     }
     return unknown;
+  }
+
+  // Of the balls with their centres in a cube the largest one: the others are hardly anywhere else, and are
+  // looked at again.
+  void insert_largest(const std::vector<CellId>& cells, CubeSet& wanted) const {
+    const Mesh& mesh = construction_.mesh();
+    std::map<CubeId, CellId> largest;
+    const auto has_less = [&](CellId a, CellId b) {
+      const float of_a = mesh.cell(a).squared_radius, of_b = mesh.cell(b).squared_radius;
+      return !std::isnan(of_a) && !(of_b <= of_a);
+    };
+    for (const CellId c : cells) {
+      CellId& here = largest.emplace(grid_.cube_at(mesh.cell(c).center), c).first->second;
+      if (has_less(here, c)) here = c;
+    }
+    for (const auto& [cube, c] : largest) Zone::insert_ball(mesh.cell(c), wanted);
   }
 
   const Problem& problem_;

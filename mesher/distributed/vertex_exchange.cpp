@@ -60,10 +60,10 @@ void VertexExchange::copy_first() {
   if (ranks_.rank() == 0) return;
   Update update;
   std::vector<Change> changes = differences(told, update);
-  apply(changes);
+  apply(changes, nullptr);
 }
 
-Update VertexExchange::update(const CubeSet& wanted) {
+Update VertexExchange::update(const CubeSet& wanted, std::vector<CellId>* made) {
   if (log_ != nullptr) log_->begin_step();
   Update update;
   std::vector<std::vector<CubeId>> asked(static_cast<std::size_t>(ranks_.size()));
@@ -79,7 +79,7 @@ Update VertexExchange::update(const CubeSet& wanted) {
     if (!asked[rank].empty()) append(questions[rank], asked[rank]);
   const std::vector<Bytes> told = ranks_.all_to_all(tell(ranks_.all_to_all(std::move(questions))));
   std::vector<Change> changes = differences(told, update);
-  apply(changes);
+  apply(changes, made);
   return update;
 }
 
@@ -153,7 +153,7 @@ std::vector<VertexExchange::Change> VertexExchange::differences(const std::vecto
 // In rounds of random points, each twice as many as the last, and along a curve within each: neighbours in
 // the order are near each other, and cavities no larger than those of points in random order. (Amenta, Choi,
 // Rote, SoCG 2003.)
-void VertexExchange::apply(std::vector<Change>& changes) {
+void VertexExchange::apply(std::vector<Change>& changes, std::vector<CellId>* made) {
   struct Place {
     int rounds_after;
     MortonCode code;
@@ -185,7 +185,9 @@ void VertexExchange::apply(std::vector<Change>& changes) {
       check(operation_.commit_insertion(point, kind, kTouching));
       note(changes[place.change], operation_.inserted());
     }
-    near_ = operation_.created().front();
+    const std::vector<CellId>& created = operation_.created();
+    if (made != nullptr) made->insert(made->end(), created.begin(), created.end());
+    near_ = created.front();
   }
   flush_log();
 }

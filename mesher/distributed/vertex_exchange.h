@@ -39,8 +39,9 @@ class VertexExchange {
   CubeSet known() const;
   /// All ranks get the first one's mesh: collective. Nobody has noted a writer yet.
   void copy_first();
-  /// Brings the vertices in these cubes up to date: collective, each rank names its own cubes.
-  Update update(const CubeSet& wanted);
+  /// Brings the vertices in these cubes up to date: collective, each rank names its own cubes. The cells that
+  /// this makes are added to `made`, those that die again among them.
+  Update update(const CubeSet& wanted, std::vector<CellId>* made = nullptr);
 
   /// The cell of the store that has these vertices, if there is one.
   std::optional<CellId> find_cell(const std::array<Point, 4>& vertices);
@@ -63,7 +64,7 @@ class VertexExchange {
 
   std::vector<Bytes> tell(const std::vector<Bytes>& asked) const;
   std::vector<Change> differences(const std::vector<Bytes>& told, Update& update) const;
-  void apply(std::vector<Change>& changes);
+  void apply(std::vector<Change>& changes, std::vector<CellId>* made);
   void note(const Change& change, VertexId vertex);
   void flush_log();
   CellId walk_to(const Point& p);
