@@ -7,6 +7,68 @@
 
 namespace podm {
 
+namespace {
+
+// A cube not in the set is 0 steps from one, and each is one step farther than the nearest of its neighbours.
+// Two passes, row by row and back, ask those that were passed already. (Rosenfeld and Pfaltz, J. ACM 13
+// (1966) 471-494.) Rows lie in a frame of cubes that are `farthest`, as is what lies farther.
+class StepsOut {
+ public:
+  StepsOut(const CubeGrid& grid, const std::vector<std::uint8_t>& has, std::uint8_t farthest)
+      : grid_(grid),
+        has_(has),
+        farthest_(farthest),
+        length_(static_cast<std::size_t>(grid.size()[0])),
+        rows_(static_cast<std::size_t>(grid.size()[1]) + 2),
+        steps_((length_ + 2) * rows_ * (static_cast<std::size_t>(grid.size()[2]) + 2), farthest),
+        nearest_(length_ + 2) {}
+
+  std::vector<std::uint8_t> operator()() {
+    const auto [x, y, z] = grid_.size();
+    for (int i = 0; i < y * z; ++i) visit_row(i % y, i / y, 1);
+    for (int i = y * z; i-- > 0;) visit_row(i % y, i / y, -1);
+    std::vector<std::uint8_t> steps(has_.size());
+    for (int i = 0; i < y * z; ++i)
+      std::copy_n(row(i % y, i / y) + 1, length_, steps.data() + grid_.id({0, i % y, i / y}));
+    return steps;
+  }
+
+ private:
+  std::uint8_t* row(int y, int z) {
+    return steps_.data() +
+           (static_cast<std::size_t>(z + 1) * rows_ + static_cast<std::size_t>(y + 1)) * (length_ + 2);
+  }
+
+  void visit_row(int y, int z, int direction) {
+    const std::array<const std::uint8_t*, 4> passed{row(y - direction, z), row(y - 1, z - direction),
+                                                    row(y, z - direction), row(y + 1, z - direction)};
+    for (std::size_t x = 0; x < length_ + 2; ++x)
+      nearest_[x] = std::min(std::min(passed[0][x], passed[1][x]), std::min(passed[2][x], passed[3][x]));
+    const std::uint8_t* const has = has_.data() + grid_.id({0, y, z});
+    std::uint8_t* const here = row(y, z);
+    for (std::size_t x = 1; x <= length_; ++x) {
+      const std::uint8_t nearest = std::min(std::min(nearest_[x - 1], nearest_[x]), nearest_[x + 1]);
+      here[x] = has[x - 1] == 0 ? std::uint8_t{0} : std::min(here[x], farther(nearest));
+    }
+    for (std::size_t i = 1; i <= length_; ++i) {
+      const std::size_t x = direction > 0 ? i : length_ + 1 - i;
+      here[x] = std::min(here[x], farther(here[direction > 0 ? x - 1 : x + 1]));
+    }
+  }
+
+  std::uint8_t farther(std::uint8_t steps) const {
+    return static_cast<std::uint8_t>(std::min(steps + 1, int{farthest_}));
+  }
+
+  const CubeGrid& grid_;
+  const std::vector<std::uint8_t>& has_;
+  const std::uint8_t farthest_;
+  const std::size_t length_, rows_;
+  std::vector<std::uint8_t> steps_, nearest_;
+};
+
+}  // namespace
+
 CubeGrid::CubeGrid(const Box& box, double side_mm)
     : origin_(box.low), side_mm_(side_mm), per_mm_(1 / side_mm) {
   const Vector extent = box.high - box.low;
@@ -62,49 +124,11 @@ CubeSet CubeSet::grown(int rings) const {
   return result;
 }
 
-// A cube not in the set is 0 steps from one, and each is one step farther than the nearest of its neighbours.
-// Two passes, row by row and back, ask those that were passed already. (Rosenfeld and Pfaltz, J. ACM 13
-// (1966) 471-494.) Rows lie in a frame of cubes that are farther than any.
 std::vector<std::uint8_t> CubeSet::depths(std::uint8_t most) const {
-  const CubePlace& size = grid_->size();
-  const auto length = static_cast<std::size_t>(size[0]);
-  const std::size_t in_frame = length + 2, rows = static_cast<std::size_t>(size[1]) + 2;
-  const auto farthest = static_cast<std::uint8_t>(most + 1);
-  std::vector<std::uint8_t> steps(in_frame * rows * (static_cast<std::size_t>(size[2]) + 2), farthest);
-  std::vector<std::uint8_t> nearest(in_frame);
-  const auto row_at = [&](int y, int z) {
-    return steps.data() +
-           (static_cast<std::size_t>(z + 1) * rows + static_cast<std::size_t>(y + 1)) * in_frame;
-  };
-  const auto visit_row = [&](int y, int z, int direction) {
-    std::uint8_t* const row = row_at(y, z);
-    const std::uint8_t* const beside[] = {row_at(y - direction, z), row_at(y - 1, z - direction),
-                                          row_at(y, z - direction), row_at(y + 1, z - direction)};
-    for (std::size_t x = 0; x < in_frame; ++x)
-      nearest[x] = std::min(std::min(beside[0][x], beside[1][x]), std::min(beside[2][x], beside[3][x]));
-    const std::uint8_t* const has = has_.data() + grid_->id({0, y, z});
-    for (std::size_t x = 1; x <= length; ++x) {
-      const std::uint8_t around = std::min(std::min(nearest[x - 1], nearest[x]), nearest[x + 1]);
-      row[x] = has[x - 1] == 0 ? 0 : std::min<std::uint8_t>(row[x], around < farthest ? around + 1 : farthest);
-    }
-    for (std::size_t i = 1; i <= length; ++i) {
-      const std::size_t x = direction > 0 ? i : length + 1 - i;
-      const std::uint8_t passed = direction > 0 ? row[x - 1] : row[x + 1];
-      if (passed < row[x]) row[x] = static_cast<std::uint8_t>(std::min(passed + 1, int{row[x]}));
-    }
-  };
-  const auto for_each_row = [&](int direction) {
-    for (int i = 0; i < size[2]; ++i)
-      for (int j = 0; j < size[1]; ++j)
-        direction > 0 ? visit_row(j, i, 1) : visit_row(size[1] - 1 - j, size[2] - 1 - i, -1);
-  };
-  for_each_row(1);
-  for_each_row(-1);
-  std::vector<std::uint8_t> depths(has_.size());
-  for (int z = 0; z < size[2]; ++z)
-    for (int y = 0; y < size[1]; ++y)
-      std::transform(row_at(y, z) + 1, row_at(y, z) + 1 + length, depths.data() + grid_->id({0, y, z}),
-                     [](std::uint8_t step) { return static_cast<std::uint8_t>(std::max(0, step - 1)); });
+  const std::vector<std::uint8_t> steps = StepsOut(*grid_, has_, static_cast<std::uint8_t>(most + 1))();
+  std::vector<std::uint8_t> depths(steps.size());
+  std::transform(steps.begin(), steps.end(), depths.begin(),
+                 [](std::uint8_t step) { return static_cast<std::uint8_t>(std::max(0, step - 1)); });
   return depths;
 }
 

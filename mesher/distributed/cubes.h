@@ -47,8 +47,7 @@ class CubeGrid {
   /// From a point to the cube, mm^2, but for rounding.
   double squared_distance(const CubePlace& at, const Point& p) const {
     const Vector offset = p - origin_;
-    return squared_length(
-        {to_cube(at, 0, offset.x), to_cube(at, 1, offset.y), to_cube(at, 2, offset.z)});
+    return squared_length({to_cube(at, 0, offset.x), to_cube(at, 1, offset.y), to_cube(at, 2, offset.z)});
   }
   /// Calls visit(cube, its place).
   template <class Visit>

@@ -3,12 +3,11 @@
 #include <algorithm>
 #include <cmath>
 #include <map>
-#include <numeric>
-#include <utility>
 
 #include "algorithms/leaf_size.h"
 #include "algorithms/podm_impl.h"
 #include "cost_model.h"
+#include "distributed/completion.h"
 #include "distributed/leaves_of_zone.h"
 #include "distributed/messages.h"
 #include "distributed/zone.h"
@@ -145,7 +144,8 @@ class Rounds {
     divide_space();
     spending_.end("initial");
     refine_in_rounds();
-    const Update last_update = complete();
+    const Update last_update = complete(construction_.mesh(), exchange_,
+                                        cubes_of(ranks_.rank(), blocks_->ranks()), kKnownRings, ranks_);
     spending_.end("exchange");
     return {.refinement = construction_.finish(),
             .grid = grid_,
@@ -405,89 +405,6 @@ class Rounds {
       here.insert(here.end(), more.begin(), more.end());
     }
     return here;
-  }
-
-  // Learns what others have changed until every cell with a vertex in this rank's block is one of the whole,
-  // and so are its neighbours.
-  Update complete() {
-    const CubeSet own = cubes_of(ranks_.rank(), blocks_->ranks());
-    CubeSet wanted = own.grown(kKnownRings);
-    std::vector<CellId> unknown, made;
-    Update sum = exchange_.update(wanted);
-    for (bool is_first = true;; is_first = false) {
-      const Zone zone(own, exchange_.known(), kKnownRings);
-      unknown = unknown_among(is_first ? all_cells() : around(made, unknown), zone);
-      insert_largest(unknown, wanted);
-      std::array<std::uint64_t, 1> more{unknown.size()};
-      ranks_.sum(more);
-      if (more[0] == 0) return sum;
-      made.clear();
-      sum += exchange_.update(wanted, &made);
-    }
-  }
-
-  std::vector<CellId> all_cells() const {
-    std::vector<CellId> cells(construction_.mesh().cell_bound());
-    std::iota(cells.begin(), cells.end(), CellId{0});
-    return cells;
-  }
-
-  // These cells and those beside them, each once.
-  std::vector<CellId> around(const std::vector<CellId>& some, const std::vector<CellId>& more) const {
-    const Mesh& mesh = construction_.mesh();
-    std::vector<std::uint8_t> is_listed(mesh.cell_bound());
-    std::vector<CellId> cells;
-    const auto list = [&](CellId c) {
-      if (std::exchange(is_listed[c], 1) == 0) cells.push_back(c);
-    };
-    for (const CellId c : some) list(c);
-    for (const CellId c : more) list(c);
-    const std::size_t num_listed = cells.size();
-    for (std::size_t i = 0; i < num_listed; ++i) {
-      if (!mesh.cell(cells[i]).is_alive()) continue;
-      for (const FacetId mirror : mesh.cell(cells[i]).mirrors)
-        if (mirror != kNoFacet) list(cell_of(mirror));
-    }
-    return cells;
-  }
-
-  // Of these cells those with a vertex in the zone, and neighbours of such, that may not be cells of the
-  // whole.
-  std::vector<CellId> unknown_among(const std::vector<CellId>& cells, const Zone& zone) const {
-    const Mesh& mesh = construction_.mesh();
-    std::vector<std::uint8_t> is_in_zone(mesh.vertex_bound());
-    for (VertexId v = 0; v < mesh.vertex_bound(); ++v)
-      is_in_zone[v] = mesh.vertex(v).kind != VertexKind::kBox && zone.has(mesh.point(v));
-    std::vector<CellId> unknown;
-    for (const CellId c : cells) {
-      const Cell& cell = mesh.cell(c);
-      if (!cell.is_alive()) continue;
-      const auto& v = cell.vertices;
-      const int num_in_zone = is_in_zone[v[0]] + is_in_zone[v[1]] + is_in_zone[v[2]] + is_in_zone[v[3]];
-      if (num_in_zone == 0) continue;
-      if (!zone.knows(cell)) unknown.push_back(c);
-      if (num_in_zone == 4) continue;  // so have its neighbours vertices there
-      for (const FacetId mirror : cell.mirrors)
-        if (mirror != kNoFacet && !zone.knows_beside(cell, mesh.cell(cell_of(mirror))))
-          unknown.push_back(cell_of(mirror));
-    }
-    return unknown;
-  }
-
-  // Of the balls with their centres in a cube the largest one: the others are hardly anywhere else, and are
-  // looked at again.
-  void insert_largest(const std::vector<CellId>& cells, CubeSet& wanted) const {
-    const Mesh& mesh = construction_.mesh();
-    std::map<CubeId, CellId> largest;
-    const auto has_less = [&](CellId a, CellId b) {
-      const float of_a = mesh.cell(a).squared_radius, of_b = mesh.cell(b).squared_radius;
-      return !std::isnan(of_a) && !(of_b <= of_a);
-    };
-    for (const CellId c : cells) {
-      CellId& here = largest.emplace(grid_.cube_at(mesh.cell(c).center), c).first->second;
-      if (has_less(here, c)) here = c;
-    }
-    for (const auto& [cube, c] : largest) Zone::insert_ball(mesh.cell(c), wanted);
   }
 
   const Problem& problem_;

@@ -1,0 +1,98 @@
+#include "distributed/completion.h"
+
+#include <cmath>
+#include <map>
+#include <numeric>
+#include <utility>
+#include <vector>
+
+#include "distributed/zone.h"
+
+namespace podm {
+
+namespace {
+
+std::vector<CellId> all_cells(const Mesh& mesh) {
+  std::vector<CellId> cells(mesh.cell_bound());
+  std::iota(cells.begin(), cells.end(), CellId{0});
+  return cells;
+}
+
+// These cells and those beside them, each once.
+std::vector<CellId> around(const Mesh& mesh, const std::vector<CellId>& some,
+                           const std::vector<CellId>& more) {
+  std::vector<std::uint8_t> is_listed(mesh.cell_bound());
+  std::vector<CellId> cells;
+  const auto list = [&](CellId c) {
+    if (std::exchange(is_listed[c], 1) == 0) cells.push_back(c);
+  };
+  for (const CellId c : some) list(c);
+  for (const CellId c : more) list(c);
+  const std::size_t num_listed = cells.size();
+  for (std::size_t i = 0; i < num_listed; ++i) {
+    if (!mesh.cell(cells[i]).is_alive()) continue;
+    for (const FacetId mirror : mesh.cell(cells[i]).mirrors)
+      if (mirror != kNoFacet) list(cell_of(mirror));
+  }
+  return cells;
+}
+
+// Of these cells those with a vertex in the zone, and neighbours of such, that may not be cells of the whole.
+std::vector<CellId> unknown_among(const std::vector<CellId>& cells, const Mesh& mesh, const Zone& zone) {
+  std::vector<std::uint8_t> is_in_zone(mesh.vertex_bound());
+  for (VertexId v = 0; v < mesh.vertex_bound(); ++v)
+    is_in_zone[v] = mesh.vertex(v).kind != VertexKind::kBox && zone.has(mesh.point(v));
+  std::vector<CellId> unknown;
+  for (const CellId c : cells) {
+    const Cell& cell = mesh.cell(c);
+    if (!cell.is_alive()) continue;
+    const auto& v = cell.vertices;
+    const int num_in_zone = is_in_zone[v[0]] + is_in_zone[v[1]] + is_in_zone[v[2]] + is_in_zone[v[3]];
+    if (num_in_zone == 0) continue;
+    if (!zone.knows(cell)) unknown.push_back(c);
+    if (num_in_zone == 4) continue;  // so have its neighbours vertices there
+    for (const FacetId mirror : cell.mirrors)
+      if (mirror != kNoFacet && !zone.knows_beside(cell, mesh.cell(cell_of(mirror))))
+        unknown.push_back(cell_of(mirror));
+  }
+  return unknown;
+}
+
+// Of the balls with their centres in a cube the largest: the others hardly reach farther, and are looked at
+// again.
+void insert_largest(const std::vector<CellId>& cells, const Mesh& mesh, CubeSet& wanted) {
+  std::map<CubeId, CellId> largest;
+  const auto is_larger = [&](CellId a, CellId b) {  // one without a certified sphere than all
+    const float of_a = mesh.cell(a).squared_radius, of_b = mesh.cell(b).squared_radius;
+    return !std::isnan(of_b) && !(of_a <= of_b);
+  };
+  for (const CellId c : cells) {
+    CellId& here = largest.emplace(wanted.grid().cube_at(mesh.cell(c).center), c).first->second;
+    if (is_larger(c, here)) here = c;
+  }
+  for (const auto& [cube, c] : largest) Zone::insert_ball(mesh.cell(c), wanted);
+}
+
+}  // namespace
+
+// Each turn but the first looks only at what changed and at what was unknown. Every turn asks for the largest
+// ball of a cube in which something is unknown, so no turn but the last asks for nothing.
+Update complete(const Mesh& mesh, VertexExchange& exchange, const CubeSet& own, int rings,
+                Communication& ranks) {
+  CubeSet wanted = own.grown(rings);
+  Update sum = exchange.update(wanted);
+  std::vector<CellId> candidates = all_cells(mesh);
+  for (;;) {
+    const Zone zone(own, exchange.known(), rings);
+    const std::vector<CellId> unknown = unknown_among(candidates, mesh, zone);
+    insert_largest(unknown, mesh, wanted);
+    std::array<std::uint64_t, 1> more{unknown.size()};
+    ranks.sum(more);
+    if (more[0] == 0) return sum;
+    std::vector<CellId> made;
+    sum += exchange.update(wanted, &made);
+    candidates = around(mesh, made, unknown);
+  }
+}
+
+}  // namespace podm
