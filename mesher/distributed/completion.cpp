@@ -2,7 +2,7 @@
 
 #include <cmath>
 #include <map>
-#include <numeric>
+#include <optional>
 #include <utility>
 #include <vector>
 
@@ -11,12 +11,6 @@
 namespace podm {
 
 namespace {
-
-std::vector<CellId> all_cells(const Mesh& mesh) {
-  std::vector<CellId> cells(mesh.cell_bound());
-  std::iota(cells.begin(), cells.end(), CellId{0});
-  return cells;
-}
 
 // These cells and those beside them, each once.
 std::vector<CellId> around(const Mesh& mesh, const std::vector<CellId>& some,
@@ -37,13 +31,17 @@ std::vector<CellId> around(const Mesh& mesh, const std::vector<CellId>& some,
   return cells;
 }
 
-// Of these cells those with a vertex in the zone, and neighbours of such, that may not be cells of the whole.
-std::vector<CellId> unknown_among(const std::vector<CellId>& cells, const Mesh& mesh, const Zone& zone) {
+// Of these cells, or of all, those with a vertex in the zone, and neighbours of such, that may not be cells
+// of the whole.
+std::vector<CellId> unknown_among(const std::optional<std::vector<CellId>>& cells, const Mesh& mesh,
+                                  const Zone& zone) {
   std::vector<std::uint8_t> is_in_zone(mesh.vertex_bound());
   for (VertexId v = 0; v < mesh.vertex_bound(); ++v)
     is_in_zone[v] = mesh.vertex(v).kind != VertexKind::kBox && zone.has(mesh.point(v));
   std::vector<CellId> unknown;
-  for (const CellId c : cells) {
+  const std::size_t num_cells = cells ? cells->size() : mesh.cell_bound();
+  for (std::size_t i = 0; i < num_cells; ++i) {
+    const CellId c = cells ? (*cells)[i] : static_cast<CellId>(i);
     const Cell& cell = mesh.cell(c);
     if (!cell.is_alive()) continue;
     const auto& v = cell.vertices;
@@ -81,7 +79,7 @@ Update complete(const Mesh& mesh, VertexExchange& exchange, const CubeSet& own, 
                 Communication& ranks) {
   CubeSet wanted = own.grown(rings);
   Update sum = exchange.update(wanted);
-  std::vector<CellId> candidates = all_cells(mesh);
+  std::optional<std::vector<CellId>> candidates;  // all cells
   for (;;) {
     const Zone zone(own, exchange.known(), rings);
     const std::vector<CellId> unknown = unknown_among(candidates, mesh, zone);

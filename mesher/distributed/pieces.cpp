@@ -41,6 +41,7 @@ class PieceOfMesh {
     piece.rank = ranks_.rank();
     piece.num_pieces = ranks_.size();
     number_vertices(piece);
+    own_numbers_ = {};  // extraction takes the most memory, and what is not freed before adds to it
     const auto is_chosen = [this](CellId c) { return is_own_cell_[c] != 0; };
     piece.mesh = extract_mesh(mesh_, isosurface_, space_, threads_, facets_off_isosurface, is_chosen);
     std::tie(piece.first_cell, piece.total_cells) = sums_of(piece.mesh.cells.size());
