@@ -1,6 +1,8 @@
 #include "distributed/completion.h"
 
+#include <array>
 #include <cmath>
+#include <cstdint>
 #include <map>
 #include <optional>
 #include <utility>
@@ -56,8 +58,8 @@ std::vector<CellId> unknown_among(const std::optional<std::vector<CellId>>& cell
   return unknown;
 }
 
-// Of the balls with their centres in a cube the largest: the others hardly reach farther, and are looked at
-// again.
+// Inserts the largest of the balls with their centres in a cube: the others hardly reach farther, and a cell
+// that still lacks something is unknown again.
 void insert_largest(const std::vector<CellId>& cells, const Mesh& mesh, CubeSet& wanted) {
   std::map<CubeId, CellId> largest;
   const auto is_larger = [&](CellId a, CellId b) {  // one without a certified sphere than all
@@ -73,8 +75,8 @@ void insert_largest(const std::vector<CellId>& cells, const Mesh& mesh, CubeSet&
 
 }  // namespace
 
-// Each turn but the first looks only at what changed and at what was unknown. Every turn asks for the largest
-// ball of a cube in which something is unknown, so no turn but the last asks for nothing.
+// Each turn but the first looks only at what changed and at what was unknown. Some rank asks for a largest
+// ball that it lacks in every turn but the last, hence for a new cube: so turns end.
 Update complete(const Mesh& mesh, VertexExchange& exchange, const CubeSet& own, int rings,
                 Communication& ranks) {
   CubeSet wanted = own.grown(rings);

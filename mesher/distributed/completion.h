@@ -1,4 +1,4 @@
-// What a rank learns when all is refined: its piece of the mesh is to be one of the whole.
+// What a rank learns when rounds have ended: its piece is to be one of the whole mesh.
 #pragma once
 
 #include "distributed/communication.h"

@@ -23,14 +23,19 @@ class StepsOut {
         steps_((length_ + 2) * rows_ * (static_cast<std::size_t>(grid.size()[2]) + 2), farthest),
         nearest_(length_ + 2) {}
 
-  std::vector<std::uint8_t> operator()() {
-    const auto [x, y, z] = grid_.size();
-    for (int i = 0; i < y * z; ++i) visit_row(i % y, i / y, 1);
-    for (int i = y * z; i-- > 0;) visit_row(i % y, i / y, -1);
-    std::vector<std::uint8_t> steps(has_.size());
-    for (int i = 0; i < y * z; ++i)
-      std::copy_n(row(i % y, i / y) + 1, length_, steps.data() + grid_.id({0, i % y, i / y}));
-    return steps;
+  /// By cube: one step less than so many, for those of the set.
+  std::vector<std::uint8_t> depths() {
+    const auto [x, y_end, z_end] = grid_.size();
+    for (int z = 0; z < z_end; ++z)
+      for (int y = 0; y < y_end; ++y) visit_row(y, z, 1);
+    for (int z = z_end; z-- > 0;)
+      for (int y = y_end; y-- > 0;) visit_row(y, z, -1);
+    std::vector<std::uint8_t> depths(has_.size());
+    for (int z = 0; z < z_end; ++z)
+      for (int y = 0; y < y_end; ++y)
+        std::transform(row(y, z) + 1, row(y, z) + 1 + length_, depths.data() + grid_.id({0, y, z}),
+                       [](std::uint8_t steps) { return static_cast<std::uint8_t>(std::max(0, steps - 1)); });
+    return depths;
   }
 
  private:
@@ -125,11 +130,7 @@ CubeSet CubeSet::grown(int rings) const {
 }
 
 std::vector<std::uint8_t> CubeSet::depths(std::uint8_t most) const {
-  const std::vector<std::uint8_t> steps = StepsOut(*grid_, has_, static_cast<std::uint8_t>(most + 1))();
-  std::vector<std::uint8_t> depths(steps.size());
-  std::transform(steps.begin(), steps.end(), depths.begin(),
-                 [](std::uint8_t step) { return static_cast<std::uint8_t>(std::max(0, step - 1)); });
-  return depths;
+  return StepsOut(*grid_, has_, static_cast<std::uint8_t>(most + 1)).depths();
 }
 
 CubeCounts::CubeCounts(const CubeSet& set) {

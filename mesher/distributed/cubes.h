@@ -108,7 +108,7 @@ class CubeSet {
   std::vector<CubeId> cubes() const;
   /// With all cubes within so many of one of these, along each axis.
   CubeSet grown(int rings) const;
-  /// By cube: so many rings of cubes around it are in the set, up to `most`; 0 for those outside, too.
+  /// By cube: so many rings of cubes around it are in the set, up to `most` < 255; 0 for those outside, too.
   std::vector<std::uint8_t> depths(std::uint8_t most) const;
   /// Those that have a face, an edge or a corner in common, directly or by others of the set, get the same
   /// number, from 0 on in the order of their first cubes. Others have kNone.

@@ -41,7 +41,9 @@ class PieceOfMesh {
     piece.rank = ranks_.rank();
     piece.num_pieces = ranks_.size();
     number_vertices(piece);
-    own_numbers_ = {};  // extraction takes the most memory, and what is not freed before adds to it
+    // Extraction takes the most memory, and what is not freed before adds to it.
+    own_numbers_ = std::vector<std::uint64_t>();
+    is_used_ = is_own_vertex_ = std::vector<std::uint8_t>();
     const auto is_chosen = [this](CellId c) { return is_own_cell_[c] != 0; };
     piece.mesh = extract_mesh(mesh_, isosurface_, space_, threads_, facets_off_isosurface, is_chosen);
     std::tie(piece.first_cell, piece.total_cells) = sums_of(piece.mesh.cells.size());

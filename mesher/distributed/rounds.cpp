@@ -419,7 +419,7 @@ class Rounds {
   VertexExchange exchange_;
   std::optional<LeavesOfZone> leaves_;  // none: PODM alone
   std::optional<Blocks> blocks_;
-  double reach_over_radius_ = 1;            // how far from its centre a waiting cell asks for a zone
+  double reach_over_radius_ = 1;            // how far from its centre a cube's largest asks for a zone
   std::vector<int> zone_of_;                // by cube: the rank of the zone that it is in, or kNobody
   std::vector<std::uint32_t> num_waiting_;  // by cube: cells, on all ranks, before the round
   std::vector<std::uint64_t> load_;         // by rank: cells that waited for it

@@ -40,7 +40,7 @@ class VertexExchange {
   /// All ranks get the first one's mesh: collective. Nobody has noted a writer yet.
   void copy_first();
   /// Brings the vertices in these cubes up to date: collective, each rank names its own cubes. The cells that
-  /// this makes are added to `made`, those that die again among them.
+  /// this makes are added to `made`, some more than once, those that die again among them.
   Update update(const CubeSet& wanted, std::vector<CellId>* made = nullptr);
 
   /// The cell of the store that has these vertices, if there is one.

@@ -79,19 +79,23 @@ class Ranks {
 
   int rank_of(const Point& p) const { return refined[0]->rank_of_cube[refined[0]->grid.cube_at(p)]; }
 
-  /// Cells with a vertex in the rank's block, by their points.
+  /// Cells with a vertex in the rank's block and those beside them, by their points.
   std::vector<std::array<Point, 4>> cells_at_block(const Mesh& mesh, int rank) const {
+    const auto is_at_block = [&](const Cell& cell) {
+      return std::any_of(cell.vertices.begin(), cell.vertices.end(),
+                         [&](VertexId v) { return rank_of(mesh.point(v)) == rank; });
+    };
     std::vector<std::array<Point, 4>> cells;
     for (CellId c = 0; c < mesh.cell_bound(); ++c) {
-      if (!mesh.cell(c).is_alive()) continue;
-      std::array<Point, 4> points;
-      bool is_at_block = false;
-      for (std::size_t i = 0; i < 4; ++i) {
-        points[i] = mesh.point(mesh.cell(c).vertices[i]);
-        is_at_block = is_at_block || rank_of(points[i]) == rank;
-      }
+      const Cell& cell = mesh.cell(c);
+      if (!cell.is_alive()) continue;
+      if (!is_at_block(cell) && std::none_of(cell.mirrors.begin(), cell.mirrors.end(), [&](FacetId mirror) {
+            return mirror != kNoFacet && is_at_block(mesh.cell(cell_of(mirror)));
+          }))
+        continue;
+      std::array<Point, 4>& points = cells.emplace_back();
+      for (std::size_t i = 0; i < 4; ++i) points[i] = mesh.point(cell.vertices[i]);
       std::sort(points.begin(), points.end(), lexicographically_less);
-      if (is_at_block) cells.push_back(points);
     }
     std::sort(cells.begin(), cells.end(), [](const auto& a, const auto& b) {
       return std::lexicographical_compare(a.begin(), a.end(), b.begin(), b.end(), lexicographically_less);
