@@ -7,11 +7,12 @@
 #include "cli/add_options.h"
 #include "cli/crossover.h"
 #include "cli/options_for_image.h"
+#include "podm/bounds.h"
 
 namespace podm::cli {
 namespace {
 
-void add_sizing_options(CLI::App& app, MeshCommand& command) {
+void add_sizing_options(CLI::App& app, MeshCommand& command, Program which) {
   MeshingOptions& meshing = command.meshing;
   begin_group(app, "Size of the cells");
   CLI::Option* radius = add_one(app, "--radius", "MM",
@@ -32,6 +33,12 @@ void add_sizing_options(CLI::App& app, MeshCommand& command) {
                "cells that the mesh may have more or fewer than that, in percent",
                into_positive(meshing.sizes.target_tolerance_percent, "percentage")),
        target);
+  if (which == Program::kPodm)
+    add_one(app, "--min-dihedral", "DEG",
+            fmt::format("move vertices until few cells have a dihedral angle below this, or above {:g},\n"
+                        "degrees up to {:g}; all bounds are kept, this is none [default: nothing moves]",
+                        kLargeDihedral, kMostMinDihedral),
+            into_positive(meshing.min_dihedral_deg, "angle in degrees"));
 }
 
 void add_limit_options(CLI::App& app, MeshCommand& command, Program which) {
@@ -161,7 +168,7 @@ void add_mesh_command(CLI::App& program, MeshCommand& command, Program which) {
                               is_on_ranks ? "mesh a label image on all ranks that mpirun or srun has started"
                                           : "mesh a label image into tetrahedra with guarantees");
   add_image_options(app, command.image);
-  add_sizing_options(app, command);
+  add_sizing_options(app, command, which);
   add_limit_options(app, command, which);
   begin_group(app, "Output");
   require(add_one(app, "-o,--output", "MESH",

@@ -9,5 +9,10 @@ namespace podm {
 inline constexpr double kRadiusEdgeBound = 1.93;
 /// Every planar angle of every boundary facet exceeds this, in degrees.
 inline constexpr double kFacetAngleBound = 30.0;
+/// Where small dihedral angles are to be avoided, so are those above this, in degrees. No bound that is kept:
+/// it is best effort.
+inline constexpr double kLargeDihedral = 165.0;
+/// The most that small ones may be asked to have: a regular cell's are 70.5.
+inline constexpr double kMostMinDihedral = 60.0;
 
 }  // namespace podm

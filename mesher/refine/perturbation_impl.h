@@ -1,0 +1,98 @@
+// The definitions of Perturbation's members, included as those of Worker are (worker_impl.h).
+#pragma once
+
+#include <algorithm>
+#include <limits>
+
+#include "refine/perturbation.h"
+
+namespace podm {
+
+template <class Locks>
+StepResult Perturbation<Locks>::plan(CellId poor) {
+  why_not_ = Unmoved::kSpacing;
+  const std::array<VertexId, 4> vertices = mesh_.cell(poor).vertices;
+  for (const VertexId v : vertices) {
+    if (!is_free(v)) continue;
+    if (const StepResult planned = plan_of(v, poor); planned != StepResult::kNoMove) return planned;
+    operation_.rollback();
+  }
+  return StepResult::kNoMove;
+}
+
+// The first point at which all cells are good will do, else the best one that the rules allow.
+template <class Locks>
+StepResult Perturbation<Locks>::plan_of(VertexId v, CellId poor) {
+  if (const StepResult planned = operation_.plan_move(v, poor); planned != StepResult::kDone)
+    return planned == StepResult::kTooNear ? StepResult::kNoMove : planned;
+  begin(v, poor);
+  const double in_ball = least_quality_in_region(0);
+  while (!points_.is_over()) {
+    const auto p = points_.spaced(points_.next(random_));
+    if (!p) continue;
+    if (const StepResult tried = try_point(*p, in_ball); tried != StepResult::kNoMove) return tried;
+  }
+  return choose();
+}
+
+template <class Locks>
+void Perturbation<Locks>::begin(VertexId v, CellId poor) {
+  neighbors_.clear();
+  points_.neighbors().clear();
+  candidates_.clear();
+  operation_.for_each_region_vertex([&](VertexId w, CellId) {
+    if (w == v || std::find(neighbors_.begin(), neighbors_.end(), w) != neighbors_.end()) return;
+    neighbors_.push_back(w);
+    points_.neighbors().push_back({mesh_.point(w), free_spacing_mm_});
+  });
+  std::array<Point, 3> others;
+  std::size_t count = 0;
+  for (const VertexId w : mesh_.cell(poor).vertices)
+    if (w != v) others[count++] = mesh_.point(w);
+  points_.begin(mesh_.point(v), others, effort_);
+}
+
+// Of the cells from the number `first` on.
+template <class Locks>
+double Perturbation<Locks>::least_quality_in_region(std::size_t first) {
+  double least = std::numeric_limits<double>::infinity();
+  for (const CellId c : operation_.region_cells().subspan(first)) {
+    const double quality = cell_quality(mesh_, c, bounds_);
+    if (quality < least && rules_.label_of(c) != kBackground) least = quality;
+  }
+  return least;
+}
+
+// kDone: it is accepted.
+template <class Locks>
+StepResult Perturbation<Locks>::try_point(const Point& p, double in_ball) {
+  ++operation_.counters().points_tried;
+  const StepResult planned = operation_.plan_move_to(p);
+  if (planned != StepResult::kDone)
+    return planned == StepResult::kNotInConflict ? StepResult::kNoMove : planned;
+  why_not_ = std::max(why_not_, Unmoved::kShape);
+  const double before = std::min(in_ball, least_quality_in_region(operation_.num_in_ball()));
+  const auto quality = judge_.quality(std::min(1.0, before + kQualityStep));
+  if (!quality) return StepResult::kNoMove;
+  if (*quality < 1) {
+    candidates_.push_back({p, *quality});
+  } else if (judge_.obeys_rules(neighbors_)) {
+    return StepResult::kDone;
+  }
+  why_not_ = Unmoved::kSurface;
+  return StepResult::kNoMove;
+}
+
+template <class Locks>
+StepResult Perturbation<Locks>::choose() {
+  std::sort(candidates_.begin(), candidates_.end(),
+            [](const Candidate& a, const Candidate& b) { return a.quality > b.quality; });
+  for (const Candidate& candidate : candidates_) {
+    if (const StepResult planned = operation_.plan_move_to(candidate.point); planned != StepResult::kDone)
+      return planned;
+    if (judge_.obeys_rules(neighbors_)) return StepResult::kDone;
+  }
+  return StepResult::kNoMove;
+}
+
+}  // namespace podm
