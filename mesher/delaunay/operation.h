@@ -81,6 +81,16 @@ class Operation {
   /// another point. commit_insertion() of the same point carries it out.
   StepResult plan_move_to(const Point& p);
   VertexMove& move() { return move_; }
+  /// Locks two vertices of c, which may be read already: then so may its neighbours. kOutOfReach: one of them
+  /// is beyond the horizon.
+  StepResult reach(CellId c);
+  /// Calls visit(CellId) for the cells beyond the plan's boundary, some more than once.
+  template <class Visit>
+  void for_each_beyond(Visit&& visit) const {
+    for (const CellId c : region_.cells)
+      for (const FacetId mirror : mesh_.cell(c).mirrors)
+        if (mirror != kNoFacet && !mesh_.is_marked(cell_of(mirror))) visit(cell_of(mirror));
+  }
   /// What the plan replaces; of a move the first num_in_ball() have the vertex.
   std::span<const CellId> region_cells() const { return region_.cells; }
   std::size_t num_in_ball() const { return num_in_ball_; }

@@ -211,6 +211,14 @@ StepResult Operation<Locks>::plan_move_to(const Point& p) {
   return StepResult::kDone;
 }
 
+template <class Locks>
+StepResult Operation<Locks>::reach(CellId c) {
+  const auto& vertices = mesh_.cell(c).vertices;
+  for (const VertexId v : {vertices[3], vertices[0]})
+    if (const StepResult locked = lock(v); locked != StepResult::kDone) return locked;
+  return may_read(c) ? StepResult::kDone : StepResult::kOutOfReach;
+}
+
 // A planned cell goes into the cavity, if it is in conflict.
 template <class Locks>
 StepResult Operation<Locks>::dig(CellId c, const Point& p) {

@@ -39,6 +39,22 @@ bool MoveJudge::obeys_rules(std::span<const VertexId> neighbors) {
   return all_of_planned([&](CellId c) { return obeys_rules(c, neighbors); });
 }
 
+// Its circumball has the sample.
+bool MoveJudge::may_need(CellId c, const Point& from) const {
+  const Cell& cell = move_.cell(c);
+  const double radius = distance(cell.center, move_.point(cell.vertices[3]));
+  return distance(cell.center, from) < (radius + parameters_.delta_mm) * (1 + kMargin);
+}
+
+bool MoveJudge::stays_covered(CellId c, const Point& from, std::span<const VertexId> neighbors) {
+  const Examination t = rules_.examine(c);
+  if (!t.is_distance_proven) ++counters_.oracle_searches;
+  const auto z = rules_.r1_sample(t);
+  if (!z || distance(*z, from) > parameters_.delta_mm * (1 + kMargin)) return true;
+  return std::any_of(neighbors.begin(), neighbors.end(),
+                     [&](VertexId v) { return rules_.is_covered(*z, v); });
+}
+
 bool MoveJudge::obeys_rules(CellId c, std::span<const VertexId> neighbors) {
   const Examination t = rules_.examine(c);
   if (!t.is_distance_proven) ++counters_.oracle_searches;

@@ -29,6 +29,13 @@ class MoveJudge {
   /// Whether the planned cells break none of R1 to R5. `neighbors` are vertices around them, which may cover
   /// a sample of R1's.
   bool obeys_rules(std::span<const VertexId> neighbors);
+  /// Whether a cell that stays asks for no sample, though the vertex has left `from`, on the isosurface.
+  bool stays_covered(CellId c, const Point& from, std::span<const VertexId> neighbors);
+  /// Whether a cell that stays may have had its sample covered from there.
+  bool may_need(CellId c, const Point& from) const;
+  std::optional<Point> on_isosurface(const Point& p, double radius_mm) const {
+    return rules_.settled(p, radius_mm);
+  }
 
  private:
   template <class Visit>

@@ -51,14 +51,17 @@ std::optional<Point> MovePoints::spaced(Point p) const {
       p = point + (kBeyondSpacing * spacing_mm / std::sqrt(squared)) * (p - point);
       is_clear = false;
     }
-    if (!is_clear) continue;
-    const double squared_step = squared_distance(p, at_);
-    const bool is_near = std::all_of(neighbors_.begin(), neighbors_.end(), [&](const Neighbor& neighbor) {
-      return squared_step < squared_distance(p, neighbor.point);
-    });
-    return is_near ? std::optional(p) : std::nullopt;
+    if (is_clear) break;
   }
-  return std::nullopt;
+  return is_spaced(p) ? std::optional(p) : std::nullopt;
+}
+
+bool MovePoints::is_spaced(const Point& p) const {
+  const double squared_step = squared_distance(p, at_);
+  return std::all_of(neighbors_.begin(), neighbors_.end(), [&](const Neighbor& neighbor) {
+    const double squared = squared_distance(neighbor.point, p);
+    return squared >= neighbor.spacing_mm * neighbor.spacing_mm && squared_step < squared;
+  });
 }
 
 }  // namespace podm

@@ -36,6 +36,9 @@ class MovePoints {
   Point next(std::mt19937_64& random);
   /// The point, or one near it, that keeps the spacing from all neighbours and is nearer to `at` than any is.
   std::optional<Point> spaced(Point p) const;
+  /// Whether it is such a point.
+  bool is_spaced(const Point& p) const;
+  double reach_mm() const { return effort_.reach * shortest_; }
 
  private:
   // Over the distance to the nearest vertex.

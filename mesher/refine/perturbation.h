@@ -57,7 +57,7 @@ class Perturbation {
         operation_(operation),
         bounds_(bounds),
         judge_(operation.move(), isosurface, parameters, bounds_, operation.counters(), reads),
-        free_spacing_mm_(kRadiusEdgeBound * parameters.spacing_mm),
+        spacing_mm_(parameters.spacing_mm),
         random_(seed) {}
 
   /// Whether the cell is inside and has an angle out of bounds.
@@ -85,7 +85,9 @@ class Perturbation {
   StepResult plan_of(VertexId v, CellId poor);
   void begin(VertexId v, CellId poor);
   double least_quality_in_region(std::size_t first);
+  std::optional<Point> next_point();
   StepResult try_point(const Point& p, double in_ball);
+  StepResult obeys_rules();
   StepResult choose();
 
   Mesh& mesh_;
@@ -93,11 +95,12 @@ class Perturbation {
   Operation<Locks>& operation_;
   const DihedralBounds bounds_;
   MoveJudge judge_;
-  const double free_spacing_mm_;
+  const double spacing_mm_;  // s
   std::mt19937_64 random_;
   MoveEffort effort_{};
   MovePoints points_;
   std::vector<VertexId> neighbors_;    // of the vertex
+  std::vector<CellId> beyond_;         // cells that stay, in which its old place may have covered a sample
   std::vector<Candidate> candidates_;  // better, but not good
   Unmoved why_not_ = Unmoved::kSpacing;
 };

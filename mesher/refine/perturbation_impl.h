@@ -12,10 +12,12 @@ template <class Locks>
 StepResult Perturbation<Locks>::plan(CellId poor) {
   why_not_ = Unmoved::kSpacing;
   const std::array<VertexId, 4> vertices = mesh_.cell(poor).vertices;
-  for (const VertexId v : vertices) {
-    if (!is_free(v)) continue;
-    if (const StepResult planned = plan_of(v, poor); planned != StepResult::kNoMove) return planned;
-    operation_.rollback();
+  for (const VertexKind kind : {VertexKind::kCircumcenter, VertexKind::kIsosurface}) {
+    for (const VertexId v : vertices) {
+      if (mesh_.vertex(v).kind != kind) continue;
+      if (const StepResult planned = plan_of(v, poor); planned != StepResult::kNoMove) return planned;
+      operation_.rollback();
+    }
   }
   return StepResult::kNoMove;
 }
@@ -28,7 +30,7 @@ StepResult Perturbation<Locks>::plan_of(VertexId v, CellId poor) {
   begin(v, poor);
   const double in_ball = least_quality_in_region(0);
   while (!points_.is_over()) {
-    const auto p = points_.spaced(points_.next(random_));
+    const auto p = next_point();
     if (!p) continue;
     if (const StepResult tried = try_point(*p, in_ball); tried != StepResult::kNoMove) return tried;
   }
@@ -43,13 +45,27 @@ void Perturbation<Locks>::begin(VertexId v, CellId poor) {
   operation_.for_each_region_vertex([&](VertexId w, CellId) {
     if (w == v || std::find(neighbors_.begin(), neighbors_.end(), w) != neighbors_.end()) return;
     neighbors_.push_back(w);
-    points_.neighbors().push_back({mesh_.point(w), free_spacing_mm_});
+    const bool is_i1 = !is_free(v) && mesh_.vertex(w).kind == VertexKind::kIsosurface;
+    points_.neighbors().push_back({mesh_.point(w), is_i1 ? spacing_mm_ : kRadiusEdgeBound * spacing_mm_});
   });
   std::array<Point, 3> others;
   std::size_t count = 0;
   for (const VertexId w : mesh_.cell(poor).vertices)
     if (w != v) others[count++] = mesh_.point(w);
   points_.begin(mesh_.point(v), others, effort_);
+}
+
+// An isosurface vertex moves near its tangent plane and back onto the isosurface.
+template <class Locks>
+std::optional<Point> Perturbation<Locks>::next_point() {
+  const Point p = points_.next(random_);
+  if (operation_.move().kind() != VertexKind::kIsosurface) return points_.spaced(p);
+  const auto settled = [&](const Point& of) { return judge_.on_isosurface(of, points_.reach_mm()); };
+  const auto first = settled(p);
+  if (!first || points_.is_spaced(*first)) return first;
+  const auto pushed = points_.spaced(*first);
+  const auto second = pushed ? settled(*pushed) : pushed;
+  return second && points_.is_spaced(*second) ? second : std::nullopt;
 }
 
 // Of the cells from the number `first` on.
@@ -74,13 +90,35 @@ StepResult Perturbation<Locks>::try_point(const Point& p, double in_ball) {
   const double before = std::min(in_ball, least_quality_in_region(operation_.num_in_ball()));
   const auto quality = judge_.quality(std::min(1.0, before + kQualityStep));
   if (!quality) return StepResult::kNoMove;
-  if (*quality < 1) {
-    candidates_.push_back({p, *quality});
-  } else if (judge_.obeys_rules(neighbors_)) {
-    return StepResult::kDone;
-  }
   why_not_ = Unmoved::kSurface;
+  if (*quality >= 1) return obeys_rules();
+  candidates_.push_back({p, *quality});
   return StepResult::kNoMove;
+}
+
+// kDone or kNoMove.
+template <class Locks>
+StepResult Perturbation<Locks>::obeys_rules() {
+  if (!judge_.obeys_rules(neighbors_)) return StepResult::kNoMove;
+  const VertexMove& move = operation_.move();
+  if (move.kind() != VertexKind::kIsosurface) return StepResult::kDone;
+  const Point from = mesh_.point(move.vertex());
+  beyond_.clear();
+  const auto add = [&](CellId c) {
+    if (judge_.may_need(c, from) && std::find(beyond_.begin(), beyond_.end(), c) == beyond_.end())
+      beyond_.push_back(c);
+  };
+  operation_.for_each_beyond(add);
+  neighbors_.push_back(move.vertex());
+  StepResult result = StepResult::kDone;
+  for (std::size_t i = 0; i < beyond_.size() && result == StepResult::kDone; ++i) {
+    if (result = operation_.reach(beyond_[i]); result != StepResult::kDone) break;
+    if (!judge_.stays_covered(beyond_[i], from, neighbors_)) result = StepResult::kNoMove;
+    for (const FacetId mirror : mesh_.cell(beyond_[i]).mirrors)
+      if (mirror != kNoFacet && !mesh_.is_marked(cell_of(mirror))) add(cell_of(mirror));
+  }
+  neighbors_.pop_back();
+  return result;
 }
 
 template <class Locks>
@@ -90,7 +128,7 @@ StepResult Perturbation<Locks>::choose() {
   for (const Candidate& candidate : candidates_) {
     if (const StepResult planned = operation_.plan_move_to(candidate.point); planned != StepResult::kDone)
       return planned;
-    if (judge_.obeys_rules(neighbors_)) return StepResult::kDone;
+    if (const StepResult obeys = obeys_rules(); obeys != StepResult::kNoMove) return obeys;
   }
   return StepResult::kNoMove;
 }

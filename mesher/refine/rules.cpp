@@ -99,6 +99,13 @@ std::optional<Point> RulesOn<Cells>::r1_sample(const Examination& t) const {
   return is_covered_beside(t.cell, z) ? std::nullopt : std::optional(z);
 }
 
+template <class Cells>
+std::optional<Point> RulesOn<Cells>::settled(const Point& p, double radius_mm) const {
+  const auto near = ask([&](const auto& oracle) { return oracle.near_point(p, radius_mm); });
+  if (!near) return std::nullopt;
+  return ask([&](const auto& oracle) { return oracle.polished(*near, p); });
+}
+
 // By a vertex opposite to one of the cell's facets. The caller would find it among the cavity's, or one
 // nearer to z, at the price of the cavity.
 template <class Cells>

@@ -86,6 +86,8 @@ class RulesOn {
   /// joined to it by a Gabriel edge, hence is among the cavity's vertices.
   std::optional<Point> r1_sample(const Examination& t) const;
   bool is_covered(const Point& z, VertexId by) const;
+  /// The isosurface point nearest to p, if within `radius_mm`.
+  std::optional<Point> settled(const Point& p, double radius_mm) const;
   std::optional<Point> r2_center(const Examination& t) const;
   std::optional<SurfaceCenter> r3_surface_center(const Examination& t) const;
   /// R4 and R5 insert the circumcentre.

@@ -38,7 +38,7 @@ class Perturb : public testing::Test {
     return sum;
   }
 
-  const DihedralBounds bounds_{8, 165};
+  const DihedralBounds bounds_{8, 165}, hard_{40, 125};
   LabelImage image_ = ball(40, 18);
   Isosurface isosurface_{image_, 1};
   Problem problem_{.isosurface = isosurface_,
@@ -63,8 +63,8 @@ TEST_F(Perturb, LeavesFewPoorCellsThatHaveAFreeVertex) {
 
 TEST_F(Perturb, TellsWhatIsLeftAndWhy) {
   for (const int num_workers : {1, 4}) {
-    const Refinement refinement = refine(DihedralBounds(20, 150), num_workers);  // much is left
-    const Perturbed::Cells left = poor(*refinement.mesh, DihedralBounds(20, 150));
+    const Refinement refinement = refine(hard_, num_workers);
+    const Perturbed::Cells left = poor(*refinement.mesh, hard_);
     ASSERT_TRUE(refinement.perturbed);
     EXPECT_EQ(refinement.perturbed->after.with_free_vertex, left.with_free_vertex);
     EXPECT_EQ(refinement.perturbed->after.without, left.without);
@@ -87,12 +87,12 @@ TEST_F(Perturb, IsNoPhaseOfARunThatDoesNotAskForIt) {
 
 TEST_F(Perturb, MayEndBetweenMoves) {
   problem_.observe_perturbation = [&](double, std::uint64_t) { stop_.end(StopReason::kCancelled); };
-  const Refinement refinement = refine(DihedralBounds(20, 150), 2);
+  const Refinement refinement = refine(hard_, 2);
   EXPECT_EQ(refinement.stop_reason, StopReason::kCancelled);
   std::string fault;
   EXPECT_TRUE(is_valid(*refinement.mesh, &fault)) << fault;
   ASSERT_TRUE(refinement.perturbed);
-  const Perturbed::Cells left = poor(*refinement.mesh, DihedralBounds(20, 150));
+  const Perturbed::Cells left = poor(*refinement.mesh, hard_);
   EXPECT_GT(refinement.perturbed->not_reached, 0u);
   EXPECT_EQ(told_unmoved(*refinement.perturbed), left.number());
   EXPECT_EQ(refinement.perturbed->after.number(), left.number());
