@@ -82,14 +82,17 @@ class Operation {
   StepResult plan_move_to(const Point& p);
   VertexMove& move() { return move_; }
   /// Locks two vertices of c, which may be read already: then so may its neighbours. kOutOfReach: one of them
-  /// is beyond the horizon.
+  /// is beyond the horizon. There is nothing to do for a planned cell.
   StepResult reach(CellId c);
-  /// Calls visit(CellId) for the cells beyond the plan's boundary, some more than once.
+  /// Calls visit(CellId) for the neighbours of a planned cell, or of one of the store that has been reached,
+  /// but for those of the store that the move replaces.
   template <class Visit>
-  void for_each_beyond(Visit&& visit) const {
-    for (const CellId c : region_.cells)
-      for (const FacetId mirror : mesh_.cell(c).mirrors)
-        if (mirror != kNoFacet && !mesh_.is_marked(cell_of(mirror))) visit(cell_of(mirror));
+  void for_each_neighbor(CellId c, Visit&& visit) const {
+    for (const FacetId mirror : move_.cell(c).mirrors) {
+      if (mirror == kNoFacet) continue;
+      const CellId neighbor = cell_of(mirror);
+      if (VertexMove::is_planned(neighbor) || !mesh_.is_marked(neighbor)) visit(neighbor);
+    }
   }
   /// What the plan replaces; of a move the first num_in_ball() have the vertex.
   std::span<const CellId> region_cells() const { return region_.cells; }

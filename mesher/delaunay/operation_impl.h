@@ -213,6 +213,7 @@ StepResult Operation<Locks>::plan_move_to(const Point& p) {
 
 template <class Locks>
 StepResult Operation<Locks>::reach(CellId c) {
+  if (VertexMove::is_planned(c)) return StepResult::kDone;
   const auto& vertices = mesh_.cell(c).vertices;
   for (const VertexId v : {vertices[3], vertices[0]})
     if (const StepResult locked = lock(v); locked != StepResult::kDone) return locked;

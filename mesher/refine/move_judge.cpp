@@ -34,36 +34,26 @@ std::optional<double> MoveJudge::quality(double least) {
   return is_good ? std::optional(lowest) : std::nullopt;
 }
 
-bool MoveJudge::obeys_rules(std::span<const VertexId> neighbors) {
-  move_.glue_star();
-  return all_of_planned([&](CellId c) { return obeys_rules(c, neighbors); });
+Examination MoveJudge::examine(CellId c) {
+  const Examination t = rules_.examine(c);
+  if (!t.is_distance_proven) ++counters_.oracle_searches;
+  return t;
 }
 
-// Its circumball has the sample.
-bool MoveJudge::may_need(CellId c, const Point& from) const {
+Ball MoveJudge::ball_of(CellId c) const {
   const Cell& cell = move_.cell(c);
-  const double radius = distance(cell.center, move_.point(cell.vertices[3]));
-  return distance(cell.center, from) < (radius + parameters_.delta_mm) * (1 + kMargin);
+  return {cell.center, distance(cell.center, move_.point(cell.vertices[3])) * (1 + kMargin)};
 }
 
-bool MoveJudge::stays_covered(CellId c, const Point& from, std::span<const VertexId> neighbors) {
-  const Examination t = rules_.examine(c);
-  if (!t.is_distance_proven) ++counters_.oracle_searches;
-  const auto z = rules_.r1_sample(t);
-  if (!z || distance(*z, from) > parameters_.delta_mm * (1 + kMargin)) return true;
-  return std::any_of(neighbors.begin(), neighbors.end(),
-                     [&](VertexId v) { return rules_.is_covered(*z, v); });
+bool MoveJudge::reaches(CellId c, const Point& from) const {
+  const Ball ball = ball_of(c), covered = covered_from(from);
+  const double reach = ball.radius + covered.radius;
+  return squared_distance(ball.center, from) <= reach * reach;
 }
 
-bool MoveJudge::obeys_rules(CellId c, std::span<const VertexId> neighbors) {
-  const Examination t = rules_.examine(c);
-  if (!t.is_distance_proven) ++counters_.oracle_searches;
-  if (const auto z = rules_.r1_sample(t)) {
-    const bool is_covered =
-        std::any_of(neighbors.begin(), neighbors.end(), [&](VertexId v) { return rules_.is_covered(*z, v); });
-    if (!is_covered) return false;
-  }
-  return !rules_.r2_center(t) && !rules_.r3_surface_center(t) && !rules_.volume_rule(t);
+bool MoveJudge::may_be_uncovered(CellId c, const Point& from) const {
+  return farthest_in_both(move_.point(), ball_of(c), covered_from(from)) >=
+         parameters_.delta_mm * (1 - kMargin);
 }
 
 }  // namespace podm

@@ -2,10 +2,10 @@
 #pragma once
 
 #include <optional>
-#include <span>
 
 #include "delaunay/vertex_move.h"
 #include "geometry/dihedral.h"
+#include "geometry/lens.h"
 #include "podm/counters.h"
 #include "refine/rules.h"
 
@@ -26,13 +26,22 @@ class MoveJudge {
   /// The least quality of the planned cells that are inside; none if one of them is below `least`, or breaks
   /// R4 or R5.
   std::optional<double> quality(double least);
-  /// Whether the planned cells break none of R1 to R5. `neighbors` are vertices around them, which may cover
-  /// a sample of R1's.
-  bool obeys_rules(std::span<const VertexId> neighbors);
-  /// Whether a cell that stays asks for no sample, though the vertex has left `from`, on the isosurface.
-  bool stays_covered(CellId c, const Point& from, std::span<const VertexId> neighbors);
-  /// Whether a cell that stays may have had its sample covered from there.
-  bool may_need(CellId c, const Point& from) const;
+  /// What the rules need to know of a planned cell, or of one that stays.
+  Examination examine(CellId c);
+  /// R1's sample, unless the cell's vertices or those of its neighbours cover it.
+  std::optional<Point> sample(const Examination& t) const { return rules_.r1_sample(t); }
+  bool covers(VertexId v, const Point& z) const { return rules_.is_covered(z, v); }
+  /// Whether the cell breaks none of R2 to R5.
+  bool obeys_r2_to_r5(const Examination& t) const {
+    return !rules_.r2_center(t) && !rules_.r3_surface_center(t) && !rules_.volume_rule(t);
+  }
+  /// Of a vertex that leaves `from`, on the isosurface, and a cell that stays: whether it may have covered a
+  /// sample in the cell's ball; whether it may not do so from where it goes; and whether it covered z.
+  bool reaches(CellId c, const Point& from) const;
+  bool may_be_uncovered(CellId c, const Point& from) const;
+  bool was_covered(const Point& z, const Point& from) const {
+    return distance(z, from) <= parameters_.delta_mm * (1 + kMargin);
+  }
   std::optional<Point> on_isosurface(const Point& p, double radius_mm) const {
     return rules_.settled(p, radius_mm);
   }
@@ -40,7 +49,9 @@ class MoveJudge {
  private:
   template <class Visit>
   bool all_of_planned(const Visit& visit) const;
-  bool obeys_rules(CellId c, std::span<const VertexId> neighbors);
+
+  Ball ball_of(CellId c) const;
+  Ball covered_from(const Point& p) const { return {p, parameters_.delta_mm * (1 + kMargin)}; }
 
   VertexMove& move_;
   RulesOn<VertexMove> rules_;

@@ -88,6 +88,12 @@ class Perturbation {
   std::optional<Point> next_point();
   StepResult try_point(const Point& p, double in_ball);
   StepResult obeys_rules();
+  StepResult obeys_rules(CellId planned);
+  StepResult is_covered(const Point& z, CellId start);
+  StepResult keeps_samples_covered();
+  static bool is_listed(CellId c, const std::vector<CellId>& cells) {
+    return std::find(cells.begin(), cells.end(), c) != cells.end();
+  }
   StepResult choose();
 
   Mesh& mesh_;
@@ -100,7 +106,8 @@ class Perturbation {
   MoveEffort effort_{};
   MovePoints points_;
   std::vector<VertexId> neighbors_;    // of the vertex
-  std::vector<CellId> beyond_;         // cells that stay, in which its old place may have covered a sample
+  std::vector<CellId> beyond_;         // scratch of keeps_samples_covered
+  std::vector<CellId> around_;         // scratch of is_covered
   std::vector<Candidate> candidates_;  // better, but not good
   Unmoved why_not_ = Unmoved::kSpacing;
 };

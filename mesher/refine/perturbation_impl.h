@@ -96,29 +96,67 @@ StepResult Perturbation<Locks>::try_point(const Point& p, double in_ball) {
   return StepResult::kNoMove;
 }
 
-// kDone or kNoMove.
+// These are done if what the move leaves breaks no rule, and otherwise kNoMove.
 template <class Locks>
 StepResult Perturbation<Locks>::obeys_rules() {
-  if (!judge_.obeys_rules(neighbors_)) return StepResult::kNoMove;
+  VertexMove& move = operation_.move();
+  move.glue_star();
+  for (CellId c = VertexMove::kFirstPlanned; c < move.end(); ++c) {
+    if (move.is_dug(c)) continue;
+    if (const StepResult obeys = obeys_rules(c); obeys != StepResult::kDone) return obeys;
+  }
+  return move.kind() == VertexKind::kIsosurface ? keeps_samples_covered() : StepResult::kDone;
+}
+
+template <class Locks>
+StepResult Perturbation<Locks>::obeys_rules(CellId planned) {
+  const Examination t = judge_.examine(planned);
+  if (const auto z = judge_.sample(t)) {
+    if (const StepResult covered = is_covered(*z, planned); covered != StepResult::kDone) return covered;
+  }
+  return judge_.obeys_r2_to_r5(t) ? StepResult::kDone : StepResult::kNoMove;
+}
+
+// The nearest isosurface vertex to z would be joined to it, so that it is one of a cell whose ball has z.
+template <class Locks>
+StepResult Perturbation<Locks>::is_covered(const Point& z, CellId start) {
   const VertexMove& move = operation_.move();
-  if (move.kind() != VertexKind::kIsosurface) return StepResult::kDone;
+  around_.assign(1, start);
+  for (std::size_t i = 0; i < around_.size(); ++i) {
+    const CellId c = around_[i];
+    const auto& vertices = move.cell(c).vertices;
+    if (std::any_of(vertices.begin(), vertices.end(), [&](VertexId v) { return judge_.covers(v, z); }))
+      return StepResult::kDone;
+    if (const StepResult reached = operation_.reach(c); reached != StepResult::kDone) return reached;
+    operation_.for_each_neighbor(c, [&](CellId neighbor) {
+      if (move.is_in_conflict(neighbor, z) && !is_listed(neighbor, around_)) around_.push_back(neighbor);
+    });
+  }
+  return StepResult::kNoMove;
+}
+
+// Of cells that stay. Those whose balls reach into the one around the vertex's old place, in which it covered
+// samples, are connected with the planned ones.
+template <class Locks>
+StepResult Perturbation<Locks>::keeps_samples_covered() {
+  const VertexMove& move = operation_.move();
   const Point from = mesh_.point(move.vertex());
   beyond_.clear();
   const auto add = [&](CellId c) {
-    if (judge_.may_need(c, from) && std::find(beyond_.begin(), beyond_.end(), c) == beyond_.end())
-      beyond_.push_back(c);
+    if (!VertexMove::is_planned(c) && judge_.reaches(c, from) && !is_listed(c, beyond_)) beyond_.push_back(c);
   };
-  operation_.for_each_beyond(add);
-  neighbors_.push_back(move.vertex());
-  StepResult result = StepResult::kDone;
-  for (std::size_t i = 0; i < beyond_.size() && result == StepResult::kDone; ++i) {
-    if (result = operation_.reach(beyond_[i]); result != StepResult::kDone) break;
-    if (!judge_.stays_covered(beyond_[i], from, neighbors_)) result = StepResult::kNoMove;
-    for (const FacetId mirror : mesh_.cell(beyond_[i]).mirrors)
-      if (mirror != kNoFacet && !mesh_.is_marked(cell_of(mirror))) add(cell_of(mirror));
+  for (CellId c = VertexMove::kFirstPlanned; c < move.end(); ++c)
+    if (!move.is_dug(c)) operation_.for_each_neighbor(c, add);
+  for (std::size_t i = 0; i < beyond_.size(); ++i) {
+    const CellId c = beyond_[i];
+    if (const StepResult reached = operation_.reach(c); reached != StepResult::kDone) return reached;
+    operation_.for_each_neighbor(c, add);
+    if (!judge_.may_be_uncovered(c, from)) continue;
+    const auto z = judge_.sample(judge_.examine(c));
+    if (!z || !judge_.was_covered(*z, from)) continue;
+    if (const StepResult covered = is_covered(*z, c); covered != StepResult::kDone) return covered;
   }
-  neighbors_.pop_back();
-  return result;
+  return StepResult::kDone;
 }
 
 template <class Locks>

@@ -38,7 +38,7 @@ class Perturb : public testing::Test {
     return sum;
   }
 
-  const DihedralBounds bounds_{8, 165}, hard_{40, 125};
+  const DihedralBounds bounds_{8, 165}, hard_{35, 130};
   LabelImage image_ = ball(40, 18);
   Isosurface isosurface_{image_, 1};
   Problem problem_{.isosurface = isosurface_,
