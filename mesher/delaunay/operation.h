@@ -78,7 +78,7 @@ class Operation {
   StepResult plan_move(VertexId v, CellId seed);
   /// Plans the move to p, instead of where it was planned to before: move() has the cells. p is nearer to
   /// where the vertex is than to all others. Unless done the caller must roll back; kNotInConflict: or try
-  /// another point. commit_insertion() of the same point carries it out.
+  /// another point.
   StepResult plan_move_to(const Point& p);
   VertexMove& move() { return move_; }
   /// Locks two vertices of c, which may be read already: then so may its neighbours. kOutOfReach: one of them
@@ -104,6 +104,8 @@ class Operation {
   /// kTooNear: a vertex that stays lies nearer to p than `min_distance` (mm), or the region has more
   /// vertices than HoleFiller numbers; nothing was written, roll back.
   StepResult commit_insertion(const Point& p, VertexKind kind, double min_distance);
+  /// Carries out the move that was planned last; inserted() is the vertex then.
+  void commit_move();
   /// The same of a plan that has removals alone.
   StepResult commit_removals();
   /// Gives the plan up; nothing was written. Locks are kept until release().

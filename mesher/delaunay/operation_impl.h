@@ -301,6 +301,19 @@ StepResult Operation<Locks>::commit_insertion(const Point& p, VertexKind kind, d
 }
 
 template <class Locks>
+void Operation<Locks>::commit_move() {
+  reserve_memory(move_.num_cells());
+  collect_boundary();
+  count_gluing();
+  inserted_ = pool_.take_vertex();
+  place(mesh_.vertex(inserted_), move_.point(), move_.kind());
+  const std::size_t num_destroyed = region_.cells.size();
+  move_.fill(pool_, region_, inserted_);
+  count_vertex(AccessKind::kMeshWrite, inserted_);
+  finish(num_destroyed);
+}
+
+template <class Locks>
 StepResult Operation<Locks>::commit_removals() {
   collect_boundary();
   if (!hole_.plan(mesh_, region_, nullptr)) return StepResult::kTooNear;

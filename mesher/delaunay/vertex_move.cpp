@@ -85,4 +85,36 @@ void VertexMove::glue_star() {
   }
 }
 
+std::size_t VertexMove::num_cells() const {
+  const auto num_dug = std::count(is_dug_.begin(), is_dug_.end(), std::uint8_t{1});
+  return cells_.size() - static_cast<std::size_t>(num_dug);
+}
+
+void VertexMove::fill(Pool& pool, Region& region, VertexId moved) {
+  pool.replace(region.cells, num_cells(), region.created);
+  ids_.assign(cells_.size(), 0);
+  auto next = region.created.begin();
+  for (std::size_t i = 0; i < cells_.size(); ++i) {
+    if (is_dug(kFirstPlanned + static_cast<CellId>(i))) continue;
+    ids_[i] = *next++;
+    std::array<VertexId, 4> vertices = cells_[i].vertices;
+    std::replace(vertices.begin(), vertices.end(), v_, moved);
+    mesh_.renew(ids_[i], vertices);
+    mesh_.set_sphere(ids_[i], {cells_[i].center, cells_[i].squared_radius});
+  }
+  for (std::size_t i = 0; i < cells_.size(); ++i) {
+    if (is_dug(kFirstPlanned + static_cast<CellId>(i))) continue;
+    std::array<FacetId, 4> mirrors = cells_[i].mirrors;
+    for (unsigned k = 0; k < 4; ++k) {
+      if (mirrors[k] == kNoFacet) continue;
+      if (is_planned(cell_of(mirrors[k]))) {
+        mirrors[k] = 4 * ids_[cell_of(mirrors[k]) - kFirstPlanned] + (mirrors[k] & 3u);
+      } else {
+        mesh_.set_mirror(mirrors[k], 4 * ids_[i] + k);
+      }
+    }
+    mesh_.set_mirrors(ids_[i], mirrors);
+  }
+}
+
 }  // namespace podm

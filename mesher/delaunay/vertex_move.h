@@ -14,6 +14,8 @@
 
 #include "delaunay/hole.h"
 #include "delaunay/mesh.h"
+#include "delaunay/pool.h"
+#include "delaunay/region.h"
 #include "podm/limits.h"
 
 namespace podm {
@@ -52,6 +54,10 @@ class VertexMove {
   /// Makes their mirrors right, and those of the hole's cells that are not dug.
   void glue_star();
 
+  std::size_t num_cells() const;
+  /// Replaces the region by the planned cells, once the star is glued. The vertex is called `moved` there.
+  void fill(Pool& pool, Region& region, VertexId moved);
+
   // ---- As of a mesh ----
 
   const Cell& cell(CellId c) const { return is_planned(c) ? cells_[c - kFirstPlanned] : mesh_.cell(c); }
@@ -77,6 +83,7 @@ class VertexMove {
   std::vector<std::uint8_t> is_dug_;
   std::vector<Border> border_;
   std::vector<std::array<FacetId, 2>> reglued_;  // facets of the hole's cells, and their mirrors before
+  std::vector<CellId> ids_;                      // scratch of fill(): those that planned cells get
 };
 
 }  // namespace podm

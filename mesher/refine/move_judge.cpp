@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <limits>
+#include <span>
 
 #include "refine/cell_quality.h"
 
@@ -12,6 +13,20 @@ template <class Visit>
 bool MoveJudge::all_of_planned(const Visit& visit) const {
   for (CellId c = VertexMove::kFirstPlanned; c < move_.end(); ++c)
     if (!move_.is_dug(c) && !visit(c)) return false;
+  return true;
+}
+
+// The nearest is among those of the star.
+bool MoveJudge::keeps_spacing(const Point& from) const {
+  const Point& p = move_.point();
+  const double squared_step = squared_distance(from, p);
+  for (CellId c = move_.first_of_star(); c < move_.end(); ++c) {
+    for (const VertexId v : std::span(move_.cell(c).vertices).first(3)) {
+      const double least = spacing_mm(move_.kind(), move_.vertex(v).kind);
+      const double squared = squared_distance(move_.point(v), p);
+      if (squared < least * least || squared <= squared_step) return false;
+    }
+  }
   return true;
 }
 

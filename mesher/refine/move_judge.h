@@ -6,6 +6,7 @@
 #include "delaunay/vertex_move.h"
 #include "geometry/dihedral.h"
 #include "geometry/lens.h"
+#include "podm/bounds.h"
 #include "podm/counters.h"
 #include "refine/rules.h"
 
@@ -23,6 +24,14 @@ class MoveJudge {
         bounds_(bounds),
         counters_(counters) {}
 
+  /// Whether the vertex, which leaves `from`, keeps the spacing of I1 to I3 from all others, and is nearer to
+  /// there than to any of them.
+  bool keeps_spacing(const Point& from) const;
+  /// What is to be between vertices of these kinds, mm.
+  double spacing_mm(VertexKind a, VertexKind b) const {
+    const bool is_i1 = a == VertexKind::kIsosurface && b == VertexKind::kIsosurface;
+    return is_i1 ? parameters_.spacing_mm : kRadiusEdgeBound * parameters_.spacing_mm;
+  }
   /// The least quality of the planned cells that are inside; none if one of them is below `least`, or breaks
   /// R4 or R5.
   std::optional<double> quality(double least);

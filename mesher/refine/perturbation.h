@@ -31,6 +31,7 @@
 #include <random>
 #include <vector>
 
+#include "delaunay/cell_list.h"
 #include "delaunay/operation.h"
 #include "geometry/dihedral.h"
 #include "podm/bounds.h"
@@ -57,7 +58,6 @@ class Perturbation {
         operation_(operation),
         bounds_(bounds),
         judge_(operation.move(), isosurface, parameters, bounds_, operation.counters(), reads),
-        spacing_mm_(parameters.spacing_mm),
         random_(seed) {}
 
   /// Whether the cell is inside and has an angle out of bounds.
@@ -91,9 +91,6 @@ class Perturbation {
   StepResult obeys_rules(CellId planned);
   StepResult is_covered(const Point& z, CellId start);
   StepResult keeps_samples_covered();
-  static bool is_listed(CellId c, const std::vector<CellId>& cells) {
-    return std::find(cells.begin(), cells.end(), c) != cells.end();
-  }
   StepResult choose();
 
   Mesh& mesh_;
@@ -101,13 +98,12 @@ class Perturbation {
   Operation<Locks>& operation_;
   const DihedralBounds bounds_;
   MoveJudge judge_;
-  const double spacing_mm_;  // s
   std::mt19937_64 random_;
   MoveEffort effort_{};
   MovePoints points_;
   std::vector<VertexId> neighbors_;    // of the vertex
-  std::vector<CellId> beyond_;         // scratch of keeps_samples_covered
-  std::vector<CellId> around_;         // scratch of is_covered
+  CellList beyond_;                    // scratch of keeps_samples_covered
+  CellList around_;                    // scratch of is_covered
   std::vector<Candidate> candidates_;  // better, but not good
   Unmoved why_not_ = Unmoved::kSpacing;
 };

@@ -45,8 +45,8 @@ void Perturbation<Locks>::begin(VertexId v, CellId poor) {
   operation_.for_each_region_vertex([&](VertexId w, CellId) {
     if (w == v || std::find(neighbors_.begin(), neighbors_.end(), w) != neighbors_.end()) return;
     neighbors_.push_back(w);
-    const bool is_i1 = !is_free(v) && mesh_.vertex(w).kind == VertexKind::kIsosurface;
-    points_.neighbors().push_back({mesh_.point(w), is_i1 ? spacing_mm_ : kRadiusEdgeBound * spacing_mm_});
+    points_.neighbors().push_back(
+        {mesh_.point(w), judge_.spacing_mm(mesh_.vertex(v).kind, mesh_.vertex(w).kind)});
   });
   std::array<Point, 3> others;
   std::size_t count = 0;
@@ -86,6 +86,7 @@ StepResult Perturbation<Locks>::try_point(const Point& p, double in_ball) {
   const StepResult planned = operation_.plan_move_to(p);
   if (planned != StepResult::kDone)
     return planned == StepResult::kNotInConflict ? StepResult::kNoMove : planned;
+  if (!judge_.keeps_spacing(mesh_.point(operation_.move().vertex()))) return StepResult::kNoMove;
   why_not_ = std::max(why_not_, Unmoved::kShape);
   const double before = std::min(in_ball, least_quality_in_region(operation_.num_in_ball()));
   const auto quality = judge_.quality(std::min(1.0, before + kQualityStep));
@@ -121,7 +122,8 @@ StepResult Perturbation<Locks>::obeys_rules(CellId planned) {
 template <class Locks>
 StepResult Perturbation<Locks>::is_covered(const Point& z, CellId start) {
   const VertexMove& move = operation_.move();
-  around_.assign(1, start);
+  around_.clear();
+  around_.add(start);
   for (std::size_t i = 0; i < around_.size(); ++i) {
     const CellId c = around_[i];
     const auto& vertices = move.cell(c).vertices;
@@ -129,7 +131,7 @@ StepResult Perturbation<Locks>::is_covered(const Point& z, CellId start) {
       return StepResult::kDone;
     if (const StepResult reached = operation_.reach(c); reached != StepResult::kDone) return reached;
     operation_.for_each_neighbor(c, [&](CellId neighbor) {
-      if (move.is_in_conflict(neighbor, z) && !is_listed(neighbor, around_)) around_.push_back(neighbor);
+      if (move.is_in_conflict(neighbor, z)) around_.add(neighbor);
     });
   }
   return StepResult::kNoMove;
@@ -143,7 +145,7 @@ StepResult Perturbation<Locks>::keeps_samples_covered() {
   const Point from = mesh_.point(move.vertex());
   beyond_.clear();
   const auto add = [&](CellId c) {
-    if (!VertexMove::is_planned(c) && judge_.reaches(c, from) && !is_listed(c, beyond_)) beyond_.push_back(c);
+    if (!VertexMove::is_planned(c) && judge_.reaches(c, from)) beyond_.add(c);
   };
   for (CellId c = VertexMove::kFirstPlanned; c < move.end(); ++c)
     if (!move.is_dug(c)) operation_.for_each_neighbor(c, add);

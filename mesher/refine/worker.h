@@ -112,7 +112,8 @@ class Worker {
   Outcome insert_circumcenter(const Point& p, CellId start, Rule rule);
   Outcome commit(const Point& p, VertexKind kind, Rule rule);
   Outcome give_up();
-  bool insert(const Point& p, VertexKind kind);
+  void make_room_in_log();
+  void tell_of_commit(const Point& p, VertexKind kind);
   void log(const Point& p, VertexKind kind);
   void list_created();
 

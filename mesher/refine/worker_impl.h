@@ -122,15 +122,15 @@ void Worker<Locks>::perturb(const DihedralBounds& bounds, std::uint64_t seed) {
 template <class Locks>
 Outcome Worker<Locks>::apply_r7(CellId c) {
   if (!perturbation_->is_poor(c)) return Outcome::kSound;
-  StepResult planned = perturbation_->plan(c);
-  const VertexMove& move = operation_.move();
-  if (planned == StepResult::kDone && !insert(move.point(), move.kind())) planned = StepResult::kNoMove;
-  if (planned != StepResult::kDone) {
+  if (const StepResult planned = perturbation_->plan(c); planned != StepResult::kDone) {
     operation_.rollback();
     if (planned == StepResult::kNoMove) kept_.push_back({{c, mesh_.stamp(c)}, perturbation_->why_not()});
     return outcome_of(planned);
   }
+  make_room_in_log();
+  operation_.commit_move();
   ++operation_.counters().moves;
+  tell_of_commit(operation_.move().point(), operation_.move().kind());
   return Outcome::kCommitted;
 }
 
@@ -182,22 +182,19 @@ Outcome Worker<Locks>::give_up() {
 
 template <class Locks>
 Outcome Worker<Locks>::commit(const Point& p, VertexKind kind, Rule rule) {
-  if (!insert(p, kind)) return give_up();
+  make_room_in_log();
+  if (operation_.commit_insertion(p, kind, min_distance_) != StepResult::kDone) return give_up();
   operation_.counters().removals += operation_.removed().size();
   ++operation_.counters().insertions_by_rule[static_cast<std::size_t>(rule)];
+  tell_of_commit(p, kind);
   return Outcome::kCommitted;
 }
 
-// Carries the plan out, unless a vertex that stays is too near.
 template <class Locks>
-bool Worker<Locks>::insert(const Point& p, VertexKind kind) {
-  if (log_ != nullptr)
-    unlogged_.removed.reserve(unlogged_.removed.size() + operation_.num_planned_removals());
-  if (operation_.commit_insertion(p, kind, min_distance_) != StepResult::kDone) return false;
+void Worker<Locks>::tell_of_commit(const Point& p, VertexKind kind) {
   if (log_ != nullptr) log(p, kind);
   list_created();
   if (poor_.is_due_for_cleaning()) poor_.drop_stale(mesh_);
-  return true;
 }
 
 template <class Locks>
@@ -217,7 +214,13 @@ void Worker<Locks>::list_created() {
   }
 }
 
-// Room was made before the commit, so that no operation is missing when memory runs out.
+// Before the commit, so that no operation is missing when memory runs out.
+template <class Locks>
+void Worker<Locks>::make_room_in_log() {
+  if (log_ == nullptr) return;
+  unlogged_.removed.reserve(unlogged_.removed.size() + operation_.num_planned_removals());
+}
+
 template <class Locks>
 void Worker<Locks>::log(const Point& p, VertexKind kind) {
   const auto& removed = operation_.removed();
