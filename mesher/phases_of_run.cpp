@@ -83,7 +83,7 @@ void PhasesOfRun::refine(const SizeOptions& sizes, const Refine& refine) {
 
 std::optional<DihedralBounds> PhasesOfRun::dihedral_bounds() const {
   if (options_.min_dihedral_deg == 0) return std::nullopt;
-  return DihedralBounds(options_.min_dihedral_deg, kLargeDihedral);
+  return DihedralBounds(options_.min_dihedral_deg, max_dihedral_deg(options_.min_dihedral_deg));
 }
 
 void PhasesOfRun::report_refinement(Refinement& refinement, MeshingReport& report) const {

@@ -12,7 +12,7 @@
 namespace podm::cli {
 namespace {
 
-void add_sizing_options(CLI::App& app, MeshCommand& command, Program which) {
+void add_sizing_options(CLI::App& app, MeshCommand& command) {
   MeshingOptions& meshing = command.meshing;
   begin_group(app, "Size of the cells");
   CLI::Option* radius = add_one(app, "--radius", "MM",
@@ -33,12 +33,12 @@ void add_sizing_options(CLI::App& app, MeshCommand& command, Program which) {
                "cells that the mesh may have more or fewer than that, in percent",
                into_positive(meshing.sizes.target_tolerance_percent, "percentage")),
        target);
-  if (which == Program::kPodm)
-    add_one(app, "--min-dihedral", "DEG",
-            fmt::format("move vertices until few cells have a dihedral angle below this, or above {:g},\n"
-                        "degrees up to {:g}; all bounds are kept, this is none [default: nothing moves]",
-                        kLargeDihedral, kMostMinDihedral),
-            into_positive(meshing.min_dihedral_deg, "angle in degrees"));
+  add_one(app, "--min-dihedral", "DEG",
+          fmt::format("at the end move vertices so that next to no cell has a dihedral angle below this,\n"
+                      "degrees up to {:g}, or above {:g} less {:g} times this: all bounds are kept,\n"
+                      "and the mesh stays Delaunay [default: nothing moves]",
+                      kMostMinDihedral, max_dihedral_deg(0), max_dihedral_deg(0) - max_dihedral_deg(1)),
+          into_positive(meshing.min_dihedral_deg, "angle in degrees"));
 }
 
 void add_limit_options(CLI::App& app, MeshCommand& command, Program which) {
@@ -168,7 +168,7 @@ void add_mesh_command(CLI::App& program, MeshCommand& command, Program which) {
                               is_on_ranks ? "mesh a label image on all ranks that mpirun or srun has started"
                                           : "mesh a label image into tetrahedra with guarantees");
   add_image_options(app, command.image);
-  add_sizing_options(app, command, which);
+  add_sizing_options(app, command);
   add_limit_options(app, command, which);
   begin_group(app, "Output");
   require(add_one(app, "-o,--output", "MESH",
@@ -192,10 +192,10 @@ void add_mesh_command(CLI::App& program, MeshCommand& command, Program which) {
   add_flag(app, "--stats", command.stats, "a table of what each thread did and lost [default: no]");
   add_flag(app, "--quiet", command.quiet, "neither progress nor summary [default: both, on standard error]");
   if (is_on_ranks)
-    end_help(
-        app,
-        "Not on ranks yet, and refused: --target-elements, --surface, --algorithm podm-home, --schedule,\n"
-        "--executor virtual.");
+    end_help(app,
+             "Not on ranks yet, and refused: --target-elements, --min-dihedral, --surface, --algorithm "
+             "podm-home,\n"
+             "--schedule, --executor virtual.");
 }
 
 }  // namespace podm::cli

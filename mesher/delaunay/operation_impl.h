@@ -214,8 +214,8 @@ StepResult Operation<Locks>::plan_move_to(const Point& p) {
 template <class Locks>
 StepResult Operation<Locks>::reach(CellId c) {
   if (VertexMove::is_planned(c)) return StepResult::kDone;
-  const auto& vertices = mesh_.cell(c).vertices;
-  for (const VertexId v : {vertices[3], vertices[0]})
+  const std::array<VertexId, 4> vertices = mesh_.cell(c).vertices;
+  for (const VertexId v : std::span(vertices).first(locks_taken().to_read))
     if (const StepResult locked = lock(v); locked != StepResult::kDone) return locked;
   return may_read(c) ? StepResult::kDone : StepResult::kOutOfReach;
 }
@@ -238,7 +238,9 @@ StepResult Operation<Locks>::dig_beyond(FacetId facet, const Point& p) {
   if (mesh_.is_marked(c)) return StepResult::kDone;
   if (!is_known(c)) return StepResult::kOutOfReach;
   if (!is_in_conflict(c, p)) return StepResult::kNotInConflict;
-  if (const StepResult locked = lock_beyond(facet); locked != StepResult::kDone) return locked;
+  if (locks_taken().to_move == 4) {
+    if (const StepResult locked = lock_beyond(facet); locked != StepResult::kDone) return locked;
+  }
   add_to_region(c);
   cavity_.push_back(c);
   return StepResult::kDone;

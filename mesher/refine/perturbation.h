@@ -8,22 +8,28 @@
 // triangulation again. It is planned (delaunay/vertex_move.h), and carried out if of the planned cells
 //   (i)   those inside all have a quality (geometry/dihedral.h) of 1, or of kQualityStep more than the least
 //         among the cells that they replace,
-//   (ii)  none asks for anything by R1 to R5, and
-//   (iii) the vertex keeps I2 and I3 (rules.h), with s for m, from all others.
-// What stays as it was asks for nothing either: R2 to R5 ask about a cell and its neighbours, and a facet's
-// dual edge changes only with one of its cells; R1 asks for isosurface vertices, which stay. So all
-// guarantees of R1 to R6 hold after each move as they did before it.
+//   (ii)  none asks for anything by R1 to R5, nor does any other cell, and
+//   (iii) the vertex keeps what I1 to I3 (rules.h) ask for with s in m's place from all others.
+// What stays asks for nothing by R2 to R5: they ask about a cell and its neighbours, and a facet's dual edge
+// changes only with one of its cells. R1 asks for isosurface vertices: where a free one moves, they stay. One
+// of these moves near its tangent plane and back onto the isosurface, and may uncover samples of cells that
+// stay, within delta of where it was; their balls have the samples, so they are among the cells whose balls
+// reach into that ball of radius delta, and those are asked again. So all guarantees of R1 to R6 hold after
+// each move as they did before it.
 //
 // It ends. Let n_i be the number of poor cells inside with a quality from i to i + 1 times kQualityStep. If i
 // is the least class of what a move replaces, it makes no cell of class i or less, and n_i falls: so (n_0,
 // n_1, ...) falls in lexicographic order, and of such finite tuples of natural numbers there is no infinite
 // falling sequence. In between each poor cell is tried once in each of a few rounds.
 //
-// Workers do this at the same time as they do R1 to R6, and for the same reasons (delaunay/vertex_locks.h):
-// all vertices of what a move replaces are locked before anything is written, and so is what was planned on
-// the way to it. The planned cells that R1 to R5 are asked about have neighbours beyond the region, which
-// share three locked vertices with it and are read as any operation reads them. Hence in any run moves are
-// those of some serial run, where each is as above, and as many as end.
+// Workers do this at the same time as they do R1 to R6, and for the same reasons (delaunay/vertex_locks.h).
+// All vertices of what a move replaces are locked before anything is written, and so are two of each cell
+// that is asked, or looked at beyond it: it stays as it is until the move is over, and whoever changes it
+// later sees the move. What is asked about a planned cell, or one that stays, depends on vertices of such
+// cells and of their neighbours alone. Could two moves each rely on a vertex that the other takes away? The
+// one relies on it as a vertex of a cell which it has locked two vertices of, or beside such; the other
+// replaces all cells around the vertex, so all their vertices are its own. Hence in any run moves are those
+// of some serial run, where each is as above, and they end.
 #pragma once
 
 #include <algorithm>
