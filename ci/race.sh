@@ -45,8 +45,12 @@ mesh() {
     2) contention=global ;;
     3) contention=random ;;
   esac
+  case $((run % 3)) in
+    0) angles="" ;;
+    *) angles="--min-dihedral 15" ;;
+  esac
   # shellcheck disable=SC2086  # a list of words
-  "$build/bin/podm" mesh "$image" --radius "$radius" --algorithm $algorithm --threads 4 --oversubscribe \
+  "$build/bin/podm" mesh "$image" --radius "$radius" $angles --algorithm $algorithm --threads 4 --oversubscribe \
     --contention $contention --seed "$run" --quiet --log "$build/run.log" -o "$build/run.vtu" "$@"
 }
 

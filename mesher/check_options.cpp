@@ -1,10 +1,13 @@
 #include "check_options.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <cmath>
 
 #include "algorithms/team_size.h"
 #include "geometry/affine.h"
+#include "podm/bounds.h"
 
 namespace podm {
 
@@ -34,6 +37,12 @@ void check_leaves(const LeafOptions& leaves) {
   if (!is_positive_or_zero(leaves.size_mm)) throw InputError("leaf size must be a positive number of mm");
 }
 
+void check_dihedral(double min_dihedral_deg) {
+  if (!(min_dihedral_deg >= 0 && min_dihedral_deg <= kMostMinDihedral))
+    throw InputError(
+        fmt::format("the least dihedral angle must be more than 0 and at most {} degrees", kMostMinDihedral));
+}
+
 // Readers see to it; others may have left the affine out.
 void check_affine(const LabelImage& image) {
   const Affine& a = image.voxel_to_ras;
@@ -53,6 +62,7 @@ void check_options(const LabelImage& image, const MeshingOptions& options) {
     throw InputError("the image has no foreground");
   check_affine(image);
   check_sizes(image, options.sizes);
+  check_dihedral(options.min_dihedral_deg);
   check_team_size(options.team, options.algorithm);
   check_leaves(options.leaves);
 }

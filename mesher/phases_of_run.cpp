@@ -73,8 +73,17 @@ void PhasesOfRun::refine(const SizeOptions& sizes, const Refine& refine) {
                         .delta_mm = sizes.delta_mm,
                         .sizes = size_field(image_, sizes),
                         .cell_capacity = cell_capacity(bytes, num_workers, options_.team.executor),
-                        .memory_bytes = bytes};
+                        .memory_bytes = bytes,
+                        .dihedral_bounds = dihedral_bounds(),
+                        .observe_perturbation = [&](double fraction, std::uint64_t cells) {
+                          announce("perturb", fraction, cells);
+                        }};
   refine(problem, team_.team(), stop_control);
+}
+
+std::optional<DihedralBounds> PhasesOfRun::dihedral_bounds() const {
+  if (options_.min_dihedral_deg == 0) return std::nullopt;
+  return DihedralBounds(options_.min_dihedral_deg, max_dihedral_deg(options_.min_dihedral_deg));
 }
 
 void PhasesOfRun::report_refinement(Refinement& refinement, MeshingReport& report) const {
@@ -90,6 +99,7 @@ void PhasesOfRun::report_refinement(Refinement& refinement, MeshingReport& repor
   if (options_.team.executor == Executor::kVirtual) simulate(refinement, report);
   report.num_leaves = refinement.num_leaves;
   report.schedule = std::move(refinement.schedule);
+  report.perturbed = refinement.perturbed;
   team_.report_to(report, std::move(refinement.pages));
 }
 

@@ -45,6 +45,7 @@ class PhasesOfRun {
  private:
   using Clock = std::chrono::steady_clock;
 
+  std::optional<DihedralBounds> dihedral_bounds() const;
   void announce(const char* phase, double fraction, std::uint64_t cells) const;
   void simulate(const Refinement& refinement, MeshingReport& report) const;
 

@@ -144,6 +144,28 @@ struct RanksRecord {
   }
 };
 
+/// Cells with a dihedral angle out of bounds.
+struct PoorCellsRecord {
+  std::uint64_t with_free_vertex = 0, without = 0;
+  static constexpr auto fields() {
+    using P = PoorCellsRecord;
+    return std::tuple{field("with_free_vertex", &P::with_free_vertex), field("without", &P::without)};
+  }
+};
+
+/// What vertices that move have done for dihedral angles.
+struct PerturbedRecord {
+  double min_dihedral_deg = 0, max_dihedral_deg = 0;  ///< the bounds
+  PoorCellsRecord before, after;
+  ByName<std::uint64_t> unmoved;  ///< those after, by reason
+  static constexpr auto fields() {
+    using P = PerturbedRecord;
+    return std::tuple{field("min_dihedral_deg", &P::min_dihedral_deg),
+                      field("max_dihedral_deg", &P::max_dihedral_deg), field("before", &P::before),
+                      field("after", &P::after), field("unmoved", &P::unmoved)};
+  }
+};
+
 /// A mesher's record of a mesh.
 struct MeshRecord {
   std::optional<int> schema;           ///< kMesherSchema; rows have their own instead
@@ -165,6 +187,7 @@ struct MeshRecord {
   std::optional<Hops> hops;
   std::optional<std::variant<ByName<Hops>, Unavailable>> hops_by_kind;
   std::optional<WorkRecord> counters;
+  std::optional<PerturbedRecord> perturbed;
   ByName<std::uint64_t> guarantees;  ///< how often each is missed
   std::optional<std::string> mesh_sha256;
   std::optional<ByName<Proof>> verdicts;             ///< one a claim; nothing where podm-verify did not run
@@ -193,6 +216,7 @@ struct MeshRecord {
                       field_if_any("hops", &M::hops),
                       field_if_any("hops_by_kind", &M::hops_by_kind),
                       field_if_any("counters", &M::counters),
+                      field_if_any("perturbed", &M::perturbed),
                       field("guarantees", &M::guarantees),
                       field_if_any("mesh_sha256", &M::mesh_sha256),
                       field_if_any("verdicts", &M::verdicts),

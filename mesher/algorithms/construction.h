@@ -2,6 +2,7 @@
 #pragma once
 
 #include <chrono>
+#include <functional>
 #include <limits>
 #include <map>
 #include <memory>
@@ -12,6 +13,7 @@
 #include "algorithms/page_sampler.h"
 #include "algorithms/report_on_workers.h"
 #include "delaunay/relocation.h"
+#include "geometry/dihedral.h"
 #include "podm/limits.h"
 #include "podm/meshing_report.h"
 #include "podm/operation_log.h"
@@ -35,6 +37,9 @@ struct Problem {
   std::uint64_t memory_bytes = std::numeric_limits<std::uint64_t>::max();
   // A store of this capacity has run out of numbers, not of memory. Tests set it lower.
   std::size_t most_numbered_cells = kMostStoredCells;
+  std::optional<DihedralBounds> dihedral_bounds = {};  // for R7; none: it is not asked for
+  /// Told of R7's progress, from 0 to 1, and of the cells of the store.
+  std::function<void(double fraction, std::uint64_t cells)> observe_perturbation = {};
 };
 
 /// Who refines.
@@ -70,6 +75,7 @@ struct Refinement {
   std::uint64_t num_leaves = 0;
   std::optional<LeafSchedule> schedule;
   PageSamples pages;
+  std::optional<Perturbed> perturbed;
 };
 
 /// The phase in which store, pools, workers and threads are made ready.
@@ -98,11 +104,12 @@ class Construction {
   /// Keeps so much memory free of the store, instead of what was withheld before. Where the store has it
   /// already the run is over.
   void withhold(std::uint64_t bytes);
-  /// The first so many of the team, with their pools. They keep a reference to the parameters.
+  /// The first so many of the team, with their pools. They keep a reference to the parameters. The phase is
+  /// charged with their making.
   template <class Locks>
-  Workers<Locks> make_workers(const Parameters& parameters, int num_workers) {
+  Workers<Locks> make_workers(const Parameters& parameters, int num_workers, const char* phase = kAllocate) {
     Workers<Locks> workers;
-    timed(kAllocate, [&] {
+    timed(phase, [&] {
       for (WorkerId id = 0; id < static_cast<WorkerId>(num_workers); ++id)
         workers.push_back(std::make_unique<Worker<Locks>>(*result_.mesh, problem_.isosurface, parameters, id,
                                                           *pools_[id], team_.log, team_.owners));
@@ -120,9 +127,9 @@ class Construction {
     charge(phase, elapsed.count() - (charged_s_ - charged_before_s));
   }
   /// Calls action(time) with the first so many of the team in their time, and takes down what it took of
-  /// them.
+  /// them. The phase `starting` is charged with the starting of their threads.
   template <class Action>
-  void in_time(const std::string& phase, int num_workers, Action&& action) {
+  void in_time(const std::string& phase, int num_workers, Action&& action, const char* starting = kAllocate) {
     const auto count = static_cast<std::size_t>(num_workers);
     if (team_.executor == Executor::kVirtual) {
       VirtualTime time(stop_, count, team_.cost, team_.coordination.seed, team_.model, nodes_of_first(count));
@@ -132,7 +139,7 @@ class Construction {
     } else {
       RealTime time(stop_, count, places_of_first(count));
       action(time);
-      charge(kAllocate, time.start_s());
+      charge(starting, time.start_s());
       for (WorkerId id = 0; id < count; ++id) result_.workers[id].bound_to = time.processor(id).bound_to;
     }
   }
@@ -183,6 +190,7 @@ class Construction {
     result_.num_leaves = num_leaves;
     result_.schedule = std::move(schedule);
   }
+  void report(const Perturbed& perturbed) { result_.perturbed = perturbed; }
   Refinement finish();
 
  private:

@@ -12,6 +12,7 @@
 #include "algorithms/leaf_size.h"
 #include "algorithms/memory_model.h"
 #include "algorithms/pdr_podm_impl.h"
+#include "algorithms/perturb.h"
 #include "algorithms/podm.h"
 #include "workers/work_cost.h"
 
@@ -60,6 +61,7 @@ Refinement refine_by_leaves(const Problem& problem, const Team& team, const Leaf
   construction.withhold(octree->num_cubes() * kBytesPerCube + octree->num_leaves() * kBytesPerLeaf);
   const auto left = refine_leaves<Locks>(construction, levels.final, *octree, options);  // 5 to 29
   refine_anywhere(construction, "closing", levels.final, left, construction.num_workers());
+  perturb(construction, levels.final);
   return construction.finish();  // 30
 }
 

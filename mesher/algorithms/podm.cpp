@@ -17,6 +17,7 @@
 
 #include "algorithms/leaf_locks.h"
 #include "algorithms/leaf_size.h"
+#include "algorithms/perturb.h"
 #include "algorithms/podm_impl.h"
 #include "refine/virtual_box.h"
 
@@ -83,8 +84,9 @@ TwoLevels two_levels(const Problem& problem, double initial_ratio) {
 Refinement podm(const Problem& problem, const Team& team, StopControl& stop) {
   const Box clamp = clamp_box(problem.object, problem.delta_mm);
   Construction construction(problem, clamp, team, stop);
-  refine_anywhere(construction, "refine", parameters_for(problem, 1, clamp), construction.all_cells(),
-                  construction.num_workers());
+  const Parameters parameters = parameters_for(problem, 1, clamp);
+  refine_anywhere(construction, "refine", parameters, construction.all_cells(), construction.num_workers());
+  perturb(construction, parameters);
   return construction.finish();
 }
 

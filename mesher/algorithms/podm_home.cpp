@@ -13,6 +13,7 @@
 #include <vector>
 
 #include "algorithms/leaf_size.h"
+#include "algorithms/perturb.h"
 #include "algorithms/podm.h"
 #include "refine/virtual_box.h"
 #include "workers/work_cost.h"
@@ -55,8 +56,10 @@ Refinement podm_home(const Problem& problem, const Team& team, StopControl& stop
   construction.timed("refine",
                      [&] { homes.emplace(expected_work(problem, kSamplesPerHome * num_homes), num_homes); });
   construction.charge_virtual("refine", kPlaceLookedUp * static_cast<double>(kSamplesPerHome * num_homes));
-  refine_anywhere(construction, "refine", parameters_for(problem, 1, clamp), construction.all_cells(),
-                  construction.num_workers(), &*homes);
+  const Parameters parameters = parameters_for(problem, 1, clamp);
+  refine_anywhere(construction, "refine", parameters, construction.all_cells(), construction.num_workers(),
+                  &*homes);
+  perturb(construction, parameters);
   return construction.finish();
 }
 

@@ -7,6 +7,7 @@
 #include "cli/add_options.h"
 #include "cli/crossover.h"
 #include "cli/options_for_image.h"
+#include "podm/bounds.h"
 
 namespace podm::cli {
 namespace {
@@ -32,6 +33,12 @@ void add_sizing_options(CLI::App& app, MeshCommand& command) {
                "cells that the mesh may have more or fewer than that, in percent",
                into_positive(meshing.sizes.target_tolerance_percent, "percentage")),
        target);
+  add_one(app, "--min-dihedral", "DEG",
+          fmt::format("at the end move vertices so that next to no cell has a dihedral angle below this,\n"
+                      "degrees up to {:g}, or above {:g} less {:g} times this: all bounds are kept,\n"
+                      "and the mesh stays Delaunay [default: nothing moves]",
+                      kMostMinDihedral, max_dihedral_deg(0), max_dihedral_deg(0) - max_dihedral_deg(1)),
+          into_positive(meshing.min_dihedral_deg, "angle in degrees"));
 }
 
 void add_limit_options(CLI::App& app, MeshCommand& command, Program which) {
@@ -185,10 +192,10 @@ void add_mesh_command(CLI::App& program, MeshCommand& command, Program which) {
   add_flag(app, "--stats", command.stats, "a table of what each thread did and lost [default: no]");
   add_flag(app, "--quiet", command.quiet, "neither progress nor summary [default: both, on standard error]");
   if (is_on_ranks)
-    end_help(
-        app,
-        "Not on ranks yet, and refused: --target-elements, --surface, --algorithm podm-home, --schedule,\n"
-        "--executor virtual.");
+    end_help(app,
+             "Not on ranks yet, and refused: --target-elements, --min-dihedral, --surface, --algorithm "
+             "podm-home,\n"
+             "--schedule, --executor virtual.");
 }
 
 }  // namespace podm::cli

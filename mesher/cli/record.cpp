@@ -38,6 +38,7 @@ Json options_of(const MeshRun& run) {
           {"target_elements", options.sizes.target_elements},
           {"target_tolerance_percent", options.sizes.target_tolerance_percent},
           {"space", to_string(options.space)},
+          {"min_dihedral_deg", options.min_dihedral_deg},
           {"max_elements", options.limits.max_elements},
           {"max_seconds", options.limits.max_seconds},
           {"max_memory_bytes", run.command.max_memory_bytes},
@@ -168,6 +169,23 @@ Json calibration_of(const MeshingReport& report) {
           {"seconds", calibration.seconds}};
 }
 
+// Null where R7 was not asked for, or the run ended before it.
+Json perturbed_of(const MeshingReport& report) {
+  if (!report.perturbed) return nullptr;
+  const Perturbed& told = *report.perturbed;
+  const auto cells = [](const Perturbed::Cells& of) {
+    return Json{{"with_free_vertex", of.with_free_vertex}, {"without", of.without}};
+  };
+  Json unmoved = {{"not_reached", told.not_reached}};
+  for (const auto& [why, name] : Names<Unmoved>::kAll)
+    unmoved[name] = told.unmoved[static_cast<std::size_t>(why)];
+  return {{"min_dihedral_deg", told.min_dihedral_deg},
+          {"max_dihedral_deg", told.max_dihedral_deg},
+          {"before", cells(told.before)},
+          {"after", cells(told.after)},
+          {"unmoved", unmoved}};
+}
+
 Json leaves_of(const MeshRun& run) {
   const Algorithm algorithm = run.report.algorithm;
   if (algorithm == Algorithm::kPodm || algorithm == Algorithm::kPodmHome) return nullptr;
@@ -262,6 +280,7 @@ Json record(const MeshRun& run) {
       {"counters", counters_of(report)},
       {"workers", workers_of(report)},
       {"quality", quality_of(report.quality)},
+      {"perturbed", perturbed_of(report)},
       {"guarantees", guarantees_of(report.guarantees)},
       {"mesh_sha256", run.mesh_sha256.empty() ? Json() : Json(run.mesh_sha256)},
       {"verdicts", run.verdicts},

@@ -57,6 +57,22 @@ std::string quality_text(const Quality& quality) {
       quality.shortest_edge_mm);
 }
 
+std::string perturbed_text(const MeshingReport& report) {
+  if (!report.perturbed) return "";
+  const Perturbed& told = *report.perturbed;
+  std::string text = fmt::format(
+      "dihedral   cells with an angle below {:g} or above {:g} deg: {} ({} with a free vertex), before {} "
+      "({})\n",
+      told.min_dihedral_deg, told.max_dihedral_deg, told.after.number(), told.after.with_free_vertex,
+      told.before.number(), told.before.with_free_vertex);
+  std::string why;
+  for (const auto& [reason, name] : Names<Unmoved>::kAll)
+    if (const std::uint64_t cells = told.unmoved[static_cast<std::size_t>(reason)]; cells > 0)
+      why += fmt::format("{} {} {}", why.empty() ? "" : ",", name, cells);
+  if (told.not_reached > 0) why += fmt::format("{} not reached {}", why.empty() ? "" : ",", told.not_reached);
+  return why.empty() ? text : text + "           these stay for" + why + "\n";
+}
+
 std::string calibration_text(const MeshingReport& report) {
   if (!report.calibration) return "";
   const Calibration& calibration = *report.calibration;
@@ -71,7 +87,7 @@ std::string time_text(const MeshRun& run) {
   const auto phases = run.phases_s();
   std::string text = "time      ";
   for (const char* phase : {"read", "draw", "transform", "allocate", "initial", "octree", "refine",
-                            "exchange", "closing", "extract", "measure", "write"})
+                            "exchange", "closing", "perturb", "extract", "measure", "write"})
     if (const auto found = phases.find(phase); found != phases.end())
       text += fmt::format(" {} {:.2f} s", phase, found->second);
   return text +
@@ -87,7 +103,7 @@ std::string summary(const MeshRun& run) {
   std::string text =
       fmt::format("{}: {} cells, {} vertices, {} boundary facets; {} space\n", run.command.mesh_path,
                   run.mesh.cells, run.mesh.vertices, run.mesh.boundary_facets, to_string(run.options.space));
-  text += labels_text(run) + facets_text(run) + quality_text(report.quality);
+  text += labels_text(run) + facets_text(run) + quality_text(report.quality) + perturbed_text(report);
   text += fmt::format("sizes      radius {}, delta {:.4g} mm\n",
                       report.radius_mm > 0 ? fmt::format("{:.4g} mm", report.radius_mm) : "unbounded",
                       report.delta_mm);

@@ -102,6 +102,22 @@ void HoleFiller::fill(Mesh& mesh, Pool& pool, Region& region, VertexId added) {
   }
 }
 
+void HoleFiller::list(const Mesh& mesh, CellId first, std::vector<Cell>& cells) const {
+  cells.assign(cells_.size(), Cell{});
+  for (std::size_t i = 0; i < cells_.size(); ++i) {
+    const auto& [a, b, c, d] = cells_[i];
+    cells[i].vertices = {ids_[a], ids_[b], ids_[c], ids_[d]};
+    const Circumsphere sphere = circumsphere(points_[a], points_[b], points_[c], points_[d], mesh.extent());
+    cells[i].center = sphere.center;
+    cells[i].squared_radius = stored_squared_radius(sphere.squared_radius);
+  }
+  const auto facet_of = [&](FacetRef f) { return f.is_planned ? 4 * first + f.facet : f.facet; };
+  for (const auto& [a, b] : glued_) {
+    if (a.is_planned) cells[cell_of(a.facet)].mirrors[static_cast<unsigned>(a.facet & 3)] = facet_of(b);
+    if (b.is_planned) cells[cell_of(b.facet)].mirrors[static_cast<unsigned>(b.facet & 3)] = facet_of(a);
+  }
+}
+
 // A facet seen for the second time closes the hole there: glue its two sides.
 void HoleFiller::add_or_match(const OpenFacet& facet) {
   if (4 * (used_slots_ + 1) > 3 * table_.size()) throw InternalError("gift wrapping does not close");

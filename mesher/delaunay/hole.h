@@ -24,6 +24,9 @@ class HoleFiller {
   /// False: there are more vertices than it can number.
   bool plan(Mesh& mesh, const Region& region, const Point* added);
   std::size_t num_cells() const { return cells_.size(); }
+  /// The planned cells, of which none has an added vertex, as they would be in a store from the id `first`
+  /// on.
+  void list(const Mesh& mesh, CellId first, std::vector<Cell>& cells) const;
   /// Replaces the region by the planned cells; `added` is the vertex whose point was given, or kNoVertex.
   void fill(Mesh& mesh, Pool& pool, Region& region, VertexId added);
 

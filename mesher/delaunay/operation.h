@@ -14,12 +14,14 @@
 
 #include <concepts>
 #include <cstdint>
+#include <span>
 #include <vector>
 
 #include "delaunay/hole.h"
 #include "delaunay/mesh.h"
 #include "delaunay/star.h"
 #include "delaunay/vertex_locks.h"
+#include "delaunay/vertex_move.h"
 #include "podm/counters.h"
 
 namespace podm {
@@ -42,7 +44,7 @@ class Operation {
   /// `tally`, if given, counts accesses to the mesh by the node whose pool made the cell or vertex. Locks
   /// that nobody shares count none: such a run is on one node.
   Operation(Mesh& mesh, Pool& pool, WorkerId self, AccessTally* tally = nullptr)
-      : mesh_(mesh), pool_(pool), locks_(self), tally_(tally) {}
+      : mesh_(mesh), pool_(pool), locks_(self), move_(mesh), tally_(tally) {}
 
   /// Locks two vertices of the cell c of that stamp, so that it and its neighbours may be read. kStaleCell:
   /// it has died. kLockConflict: conflicting_worker() tells with whom. kOutOfReach: it or a neighbour is
@@ -70,12 +72,40 @@ class Operation {
     }
   }
   bool removes(VertexId v) const;
+
+  /// Plans the move of v, a vertex of the cell `seed`, to places that are still to be tried: v's ball is the
+  /// region. kTooNear: it has too many vertices. Unless done the caller must roll back.
+  StepResult plan_move(VertexId v, CellId seed);
+  /// Plans the move to p, instead of where it was planned to before: move() has the cells. p is nearer to
+  /// where the vertex is than to all others. Unless done the caller must roll back; kNotInConflict: or try
+  /// another point.
+  StepResult plan_move_to(const Point& p);
+  VertexMove& move() { return move_; }
+  /// Locks two vertices of c, which may be read already: then so may its neighbours. kOutOfReach: one of them
+  /// is beyond the horizon. There is nothing to do for a planned cell.
+  StepResult reach(CellId c);
+  /// Calls visit(CellId) for the neighbours of a planned cell, or of one of the store that has been reached,
+  /// but for those of the store that the move replaces.
+  template <class Visit>
+  void for_each_neighbor(CellId c, Visit&& visit) const {
+    for (const FacetId mirror : move_.cell(c).mirrors) {
+      if (mirror == kNoFacet) continue;
+      const CellId neighbor = cell_of(mirror);
+      if (VertexMove::is_planned(neighbor) || !mesh_.is_marked(neighbor)) visit(neighbor);
+    }
+  }
+  /// What the plan replaces; of a move the first num_in_ball() have the vertex.
+  std::span<const CellId> region_cells() const { return region_.cells; }
+  std::size_t num_in_ball() const { return num_in_ball_; }
+
   std::size_t num_planned_removals() const { return region_.removed.size(); }
 
   /// Carries the plan out; created() then lists the new cells.
   /// kTooNear: a vertex that stays lies nearer to p than `min_distance` (mm), or the region has more
   /// vertices than HoleFiller numbers; nothing was written, roll back.
   StepResult commit_insertion(const Point& p, VertexKind kind, double min_distance);
+  /// Carries out the move that was planned last; inserted() is the vertex then.
+  void commit_move();
   /// The same of a plan that has removals alone.
   StepResult commit_removals();
   /// Gives the plan up; nothing was written. Locks are kept until release().
@@ -114,6 +144,8 @@ class Operation {
   void add_to_region(CellId c);
   bool is_in_conflict(CellId c, const Point& p);
   void collect_boundary();
+  StepResult dig(CellId c, const Point& p);
+  StepResult dig_beyond(FacetId facet, const Point& p);
   double squared_distance_to_region(const Point& p) const;
   void reserve_memory(std::size_t num_created);
   void finish(std::size_t num_destroyed);
@@ -125,7 +157,10 @@ class Operation {
   std::vector<CellId> ball_;  // scratch of plan_removal
   StarFiller star_;
   HoleFiller hole_;
-  bool is_cavity_ = false;  // the region is one point's cavity, its boundary collected while digging
+  VertexMove move_;
+  std::size_t num_in_ball_ = 0;  // of the region's cells, where a move is planned
+  std::vector<CellId> cavity_;   // scratch of plan_move_to: planned cells, and some of the store
+  bool is_cavity_ = false;       // the region is one point's cavity, its boundary collected while digging
   VertexId inserted_ = kNoVertex;
   std::vector<VertexId> removed_;
   Counters counters_;

@@ -169,6 +169,84 @@ StepResult Operation<Locks>::plan_removal(VertexId v, CellId seed) {
 }
 
 template <class Locks>
+StepResult Operation<Locks>::plan_move(VertexId v, CellId seed) {
+  if (mesh_.cell_bound() > VertexMove::kFirstPlanned) return StepResult::kTooNear;
+  if (const StepResult planned = plan_removal(v, seed); planned != StepResult::kDone) return planned;
+  num_in_ball_ = region_.cells.size();
+  collect_boundary();
+  if (!hole_.plan(mesh_, region_, nullptr)) return StepResult::kTooNear;
+  move_.begin(v, hole_);
+  counters_.planned_cells += hole_.num_cells();
+  return StepResult::kDone;
+}
+
+template <class Locks>
+StepResult Operation<Locks>::plan_move_to(const Point& p) {
+  for (; region_.cells.size() > num_in_ball_; region_.cells.pop_back())
+    mesh_.mark(region_.cells.back(), false);
+  if constexpr (HasHorizon<Locks>) {
+    if (!locks_.may_insert(p, mesh_.cell(region_.cells.front()))) return StepResult::kOutOfReach;
+  }
+  begin_around(p);
+  move_.begin_at(p);
+  cavity_.clear();
+  region_.boundary.clear();
+  for (CellId c = VertexMove::kFirstPlanned; c < move_.first_of_star() && cavity_.empty(); ++c) dig(c, p);
+  if (cavity_.empty()) return StepResult::kNotInConflict;
+  for (std::size_t i = 0; i < cavity_.size(); ++i) {
+    for (unsigned k = 0; k < 4; ++k) {
+      const FacetId facet = 4 * cavity_[i] + k, mirror = move_.mirror(facet);
+      const StepResult dug = mirror == kNoFacet                        ? StepResult::kNotInConflict
+                             : VertexMove::is_planned(cell_of(mirror)) ? dig(cell_of(mirror), p)
+                                                                       : dig_beyond(mirror, p);
+      if (dug == StepResult::kNotInConflict) {
+        region_.boundary.push_back(facet);
+      } else if (dug != StepResult::kDone) {
+        return dug;
+      }
+    }
+  }
+  for (const FacetId facet : region_.boundary) move_.add_star_facet(facet);
+  counters_.planned_cells += region_.boundary.size();
+  return StepResult::kDone;
+}
+
+template <class Locks>
+StepResult Operation<Locks>::reach(CellId c) {
+  if (VertexMove::is_planned(c)) return StepResult::kDone;
+  const std::array<VertexId, 4> vertices = mesh_.cell(c).vertices;
+  for (const VertexId v : std::span(vertices).first(locks_taken().to_read))
+    if (const StepResult locked = lock(v); locked != StepResult::kDone) return locked;
+  return may_read(c) ? StepResult::kDone : StepResult::kOutOfReach;
+}
+
+// A planned cell goes into the cavity, if it is in conflict.
+template <class Locks>
+StepResult Operation<Locks>::dig(CellId c, const Point& p) {
+  if (move_.is_dug(c)) return StepResult::kDone;
+  ++counters_.conflict_tests;
+  if (!move_.is_in_conflict(c, p)) return StepResult::kNotInConflict;
+  move_.dig(c);
+  cavity_.push_back(c);
+  return StepResult::kDone;
+}
+
+// So does a cell of the store beyond the hole, to which the facet belongs.
+template <class Locks>
+StepResult Operation<Locks>::dig_beyond(FacetId facet, const Point& p) {
+  const CellId c = cell_of(facet);
+  if (mesh_.is_marked(c)) return StepResult::kDone;
+  if (!is_known(c)) return StepResult::kOutOfReach;
+  if (!is_in_conflict(c, p)) return StepResult::kNotInConflict;
+  if (locks_taken().to_move == 4) {
+    if (const StepResult locked = lock_beyond(facet); locked != StepResult::kDone) return locked;
+  }
+  add_to_region(c);
+  cavity_.push_back(c);
+  return StepResult::kDone;
+}
+
+template <class Locks>
 bool Operation<Locks>::removes(VertexId v) const {
   return std::find(region_.removed.begin(), region_.removed.end(), v) != region_.removed.end();
 }
@@ -222,6 +300,19 @@ StepResult Operation<Locks>::commit_insertion(const Point& p, VertexKind kind, d
   count_vertex(AccessKind::kMeshWrite, inserted_);
   finish(num_destroyed);
   return StepResult::kDone;
+}
+
+template <class Locks>
+void Operation<Locks>::commit_move() {
+  reserve_memory(move_.num_cells());
+  collect_boundary();
+  count_gluing();
+  inserted_ = pool_.take_vertex();
+  place(mesh_.vertex(inserted_), move_.point(), move_.kind());
+  const std::size_t num_destroyed = region_.cells.size();
+  move_.fill(pool_, region_, inserted_);
+  count_vertex(AccessKind::kMeshWrite, inserted_);
+  finish(num_destroyed);
 }
 
 template <class Locks>

@@ -10,6 +10,7 @@ enum class StepResult {
   kStaleCell,      ///< a reservation found that the cell has died
   kNotInConflict,  ///< a plan found the point outside the ball of the cell where its cavity was to begin
   kTooNear,        ///< a commit found a vertex too near, or too many vertices in the region
+  kNoMove,         ///< R7 found no point for a vertex of a poor cell
   kCovered,        ///< the worker found an isosurface vertex that covers the point
 };
 

@@ -17,8 +17,9 @@ constexpr double kSquaredRatio = square(kRadiusEdgeBound * (1 - kMargin));
 
 }  // namespace
 
-Rules::Rules(Mesh& mesh, const Isosurface& isosurface, const Parameters& parameters,
-             const std::optional<CountedReads>& reads)
+template <class Cells>
+RulesOn<Cells>::RulesOn(Cells& mesh, const Isosurface& isosurface, const Parameters& parameters,
+                        const std::optional<CountedReads>& reads)
     : mesh_(mesh),
       isosurface_(isosurface),
       parameters_(parameters),
@@ -28,7 +29,8 @@ Rules::Rules(Mesh& mesh, const Isosurface& isosurface, const Parameters& paramet
 }
 
 // Several workers may ask for a neighbour's label at a time. Relaxed: all of them write the same.
-LabelIndex Rules::label_of(CellId c) const {
+template <class Cells>
+LabelIndex RulesOn<Cells>::label_of(CellId c) const {
   LabelIndex label = load(mesh_.label(c), std::memory_order_relaxed);
   if (label == kUnknownLabel) {
     label = ask([&](const auto& oracle) { return oracle.label_at(mesh_.cell(c).center); });
@@ -37,19 +39,22 @@ LabelIndex Rules::label_of(CellId c) const {
   return label;
 }
 
-double Rules::distance_lower_bound(const Point& p, double radius) const {
+template <class Cells>
+double RulesOn<Cells>::distance_lower_bound(const Point& p, double radius) const {
   return ask([&](const auto& oracle) { return oracle.distance_lower_bound(p, radius); });
 }
 
 // Below r = delta/2 a vertex of the cell on the isosurface, which is within 2r of z, silences R1, and R2 with
 // it.
-bool Rules::obeys_r1_and_r2(const Cell& cell, double squared_radius) const {
+template <class Cells>
+bool RulesOn<Cells>::obeys_r1_and_r2(const Cell& cell, double squared_radius) const {
   return 4 * squared_radius < squared_delta_ &&
          std::any_of(cell.vertices.begin(), cell.vertices.end(),
                      [&](VertexId v) { return mesh_.vertex(v).kind == VertexKind::kIsosurface; });
 }
 
-Examination Rules::examine(CellId c) const {
+template <class Cells>
+Examination RulesOn<Cells>::examine(CellId c) const {
   const Cell& cell = mesh_.cell(c);
   const Point& center = cell.center;
   Examination t{.cell = c,
@@ -72,7 +77,8 @@ Examination Rules::examine(CellId c) const {
 }
 
 // The balls of the cell's own vertices.
-Cover Rules::covered_by(const Cell& cell) const {
+template <class Cells>
+Cover RulesOn<Cells>::covered_by(const Cell& cell) const {
   Cover cover{{}, 0, squared_delta_};
   for (const VertexId v : cell.vertices) {
     if (mesh_.vertex(v).kind == VertexKind::kIsosurface) cover.centers[cover.num_balls++] = mesh_.point(v);
@@ -80,20 +86,30 @@ Cover Rules::covered_by(const Cell& cell) const {
   return cover;
 }
 
-bool Rules::is_covered(const Point& z, VertexId by) const {
+template <class Cells>
+bool RulesOn<Cells>::is_covered(const Point& z, VertexId by) const {
   return mesh_.vertex(by).kind == VertexKind::kIsosurface &&
          squared_distance(mesh_.point(by), z) < squared_delta_;
 }
 
-std::optional<Point> Rules::r1_sample(const Examination& t) const {
+template <class Cells>
+std::optional<Point> RulesOn<Cells>::r1_sample(const Examination& t) const {
   if (!t.nearest || t.is_covered) return std::nullopt;
   const Point z = ask([&](const auto& oracle) { return oracle.polished(*t.nearest, t.center); });
   return is_covered_beside(t.cell, z) ? std::nullopt : std::optional(z);
 }
 
+template <class Cells>
+std::optional<Point> RulesOn<Cells>::settled(const Point& p, double radius_mm) const {
+  const auto near = ask([&](const auto& oracle) { return oracle.near_point(p, radius_mm); });
+  if (!near) return std::nullopt;
+  return ask([&](const auto& oracle) { return oracle.polished(*near, p); });
+}
+
 // By a vertex opposite to one of the cell's facets. The caller would find it among the cavity's, or one
 // nearer to z, at the price of the cavity.
-bool Rules::is_covered_beside(CellId c, const Point& z) const {
+template <class Cells>
+bool RulesOn<Cells>::is_covered_beside(CellId c, const Point& z) const {
   const auto& mirrors = mesh_.cell(c).mirrors;
   return std::any_of(mirrors.begin(), mirrors.end(), [&](FacetId mirror) {
     return mirror != kNoFacet &&
@@ -101,7 +117,8 @@ bool Rules::is_covered_beside(CellId c, const Point& z) const {
   });
 }
 
-std::optional<Point> Rules::r2_center(const Examination& t) const {
+template <class Cells>
+std::optional<Point> RulesOn<Cells>::r2_center(const Examination& t) const {
   if (!t.nearest || t.squared_radius < squared_two_delta_) return std::nullopt;
   const Box& box = parameters_.clamp_box;
   return Point{std::clamp(t.center.x, box.low.x, box.high.x), std::clamp(t.center.y, box.low.y, box.high.y),
@@ -110,7 +127,8 @@ std::optional<Point> Rules::r2_center(const Examination& t) const {
 
 // It does if a vertex is off the isosurface or an angle is at most 30 degrees: a side is then at most as long
 // as the facet's circumradius (side = 2 R sin(opposite angle)).
-bool Rules::needs_sample(CellId c, unsigned facet) const {
+template <class Cells>
+bool RulesOn<Cells>::needs_sample(CellId c, unsigned facet) const {
   const auto& vertices = mesh_.cell(c).vertices;
   std::array<const Point*, 3> p{};
   for (unsigned i = 0; i < 3; ++i) {
@@ -126,14 +144,16 @@ bool Rules::needs_sample(CellId c, unsigned facet) const {
 
 // Whether the facet's dual edge may meet the isosurface: only if it is longer than the distance to it. Labels
 // that differ show it where that distance is not proven.
-bool Rules::may_be_restricted(const Examination& t, CellId neighbor) const {
+template <class Cells>
+bool RulesOn<Cells>::may_be_restricted(const Examination& t, CellId neighbor) const {
   if (square(t.isosurface_distance) < squared_distance(t.center, mesh_.cell(neighbor).center)) return true;
   return !t.is_distance_proven && label_of(neighbor) != t.label;
 }
 
 // Whether the isosurface meets the facet's dual edge. The part in a ball that is proven to hold none of it
 // need not be walked.
-bool Rules::is_restricted(const Examination& t, CellId neighbor) const {
+template <class Cells>
+bool RulesOn<Cells>::is_restricted(const Examination& t, CellId neighbor) const {
   if (label_of(neighbor) != t.label) return true;
   const Point& end = mesh_.cell(neighbor).center;
   const double clear = t.is_distance_proven ? t.isosurface_distance / distance(t.center, end) : 0;
@@ -141,7 +161,8 @@ bool Rules::is_restricted(const Examination& t, CellId neighbor) const {
   return ask([&](const auto& oracle) { return oracle.is_crossed(start, end, t.label); });
 }
 
-std::optional<SurfaceCenter> Rules::r3_surface_center(const Examination& t) const {
+template <class Cells>
+std::optional<SurfaceCenter> RulesOn<Cells>::r3_surface_center(const Examination& t) const {
   for (unsigned k = 0; k < 4; ++k) {
     const FacetId mirror = mesh_.cell(t.cell).mirrors[k];
     if (mirror == kNoFacet) continue;
@@ -160,7 +181,8 @@ std::optional<SurfaceCenter> Rules::r3_surface_center(const Examination& t) cons
   return std::nullopt;
 }
 
-bool Rules::has_poor_ratio(CellId c, double squared_radius) const {
+template <class Cells>
+bool RulesOn<Cells>::has_poor_ratio(CellId c, double squared_radius) const {
   const auto& v = mesh_.cell(c).vertices;
   for (const auto& edge : kEdgeVertices) {
     const double l2 = squared_distance(mesh_.point(v[static_cast<unsigned>(edge[0])]),
@@ -170,27 +192,39 @@ bool Rules::has_poor_ratio(CellId c, double squared_radius) const {
   return false;
 }
 
-std::optional<Rule> Rules::volume_rule(const Examination& t) const {
+template <class Cells>
+bool RulesOn<Cells>::is_large(double squared_radius, LabelIndex label) const {
+  return squared_radius > parameters_.sizes.squared_radius(label) * (1 - kMargin);
+}
+
+template <class Cells>
+std::optional<Rule> RulesOn<Cells>::volume_rule(const Examination& t) const {
   if (t.label == kBackground) return is_large_in_shell(t) ? std::optional(Rule::kR5) : std::nullopt;
   if (has_poor_ratio(t.cell, t.squared_radius)) return Rule::kR4;
-  if (t.squared_radius > parameters_.sizes.squared_radius(t.label) * (1 - kMargin)) return Rule::kR5;
+  if (is_large(t.squared_radius, t.label)) return Rule::kR5;
   return std::nullopt;
 }
 
-bool Rules::is_sound(CellId c) const {
+template <class Cells>
+bool RulesOn<Cells>::is_sound(CellId c) const {
   const Examination t = examine(c);
   return !r1_sample(t) && !r2_center(t) && !r3_surface_center(t) && !volume_rule(t);
 }
 
-bool Rules::is_large_in_shell(const Examination& t) const {
+template <class Cells>
+bool RulesOn<Cells>::is_large_in_shell(const Examination& t) const {
   return parameters_.shell_mm > 0 && t.squared_radius > square(parameters_.shell_radius_mm) &&
          is_in(parameters_.clamp_box, t.center) &&
          distance_lower_bound(t.center, parameters_.shell_mm) < parameters_.shell_mm;
 }
 
-bool Rules::r6_removes(VertexId v, const Point& z) const {
+template <class Cells>
+bool RulesOn<Cells>::r6_removes(VertexId v, const Point& z) const {
   return mesh_.vertex(v).kind == VertexKind::kCircumcenter &&
          squared_distance(mesh_.point(v), z) < squared_two_delta_;
 }
+
+template class RulesOn<Mesh>;
+template class RulesOn<VertexMove>;
 
 }  // namespace podm

@@ -25,9 +25,11 @@
 // arithmetic errs, unless the object is a million radii from the origin.
 #pragma once
 
+#include <concepts>
 #include <optional>
 
 #include "delaunay/mesh.h"
+#include "delaunay/vertex_move.h"
 #include "image/isosurface.h"
 #include "refine/size_field.h"
 
@@ -65,25 +67,34 @@ struct SurfaceCenter {
   CellId start;  // a cell in conflict with it
 };
 
-class Rules {
+/// `Cells` is the mesh, or what an operation would make of it (delaunay/vertex_move.h).
+template <class Cells>
+class RulesOn {
  public:
   /// `reads`, if given, counts what the oracle reads for these rules.
-  Rules(Mesh& mesh, const Isosurface& isosurface, const Parameters& parameters,
-        const std::optional<CountedReads>& reads = {});
+  RulesOn(Cells& mesh, const Isosurface& isosurface, const Parameters& parameters,
+          const std::optional<CountedReads>& reads = {});
 
   Examination examine(CellId c) const;
   /// Asks for what examine(c) will read, the cell itself apart. Without locks it is a guess.
-  void prefetch(CellId c) const { isosurface_.prefetch(mesh_.peek_center(c)); }
+  void prefetch(CellId c) const requires std::same_as<Cells, Mesh> {
+    isosurface_.prefetch(mesh_.peek_center(c));
+  }
 
   /// R1's point, unless a vertex of the cell itself or of a neighbour already covers it. The caller must
   /// still look for isosurface vertices closer than delta among the point's cavity: the nearest one would be
   /// joined to it by a Gabriel edge, hence is among the cavity's vertices.
   std::optional<Point> r1_sample(const Examination& t) const;
   bool is_covered(const Point& z, VertexId by) const;
+  /// The isosurface point nearest to p, if within `radius_mm`.
+  std::optional<Point> settled(const Point& p, double radius_mm) const;
   std::optional<Point> r2_center(const Examination& t) const;
   std::optional<SurfaceCenter> r3_surface_center(const Examination& t) const;
   /// R4 and R5 insert the circumcentre.
   std::optional<Rule> volume_rule(const Examination& t) const;
+  /// What R4 and R5 ask of a cell inside.
+  bool has_poor_ratio(CellId c, double squared_radius) const;
+  bool is_large(double squared_radius, LabelIndex label) const;
   /// Whether the cell asks for nothing. False may be said of one whose R1 sample is covered farther away.
   bool is_sound(CellId c) const;
   /// Whether R6 removes v when z is inserted.
@@ -103,18 +114,21 @@ class Rules {
   double distance_lower_bound(const Point& p, double radius) const;
   Cover covered_by(const Cell& cell) const;
   bool is_covered_beside(CellId c, const Point& z) const;
-  bool has_poor_ratio(CellId c, double squared_radius) const;
   bool may_be_restricted(const Examination& t, CellId neighbor) const;
   bool is_restricted(const Examination& t, CellId neighbor) const;
   bool obeys_r1_and_r2(const Cell& cell, double squared_radius) const;
   bool needs_sample(CellId c, unsigned facet) const;
   bool is_large_in_shell(const Examination& t) const;
 
-  Mesh& mesh_;
+  Cells& mesh_;
   const Isosurface& isosurface_;
   std::optional<Oracle<CountedReads>> counted_;
   const Parameters& parameters_;
   double squared_delta_, squared_two_delta_;
 };
+
+extern template class RulesOn<Mesh>;
+extern template class RulesOn<VertexMove>;
+using Rules = RulesOn<Mesh>;
 
 }  // namespace podm

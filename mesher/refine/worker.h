@@ -10,6 +10,7 @@
 #include "podm/operation_log.h"
 #include "refine/homes.h"
 #include "refine/outcome.h"
+#include "refine/perturbation.h"
 #include "refine/poor_element_list.h"
 #include "refine/rules.h"
 
@@ -41,6 +42,18 @@ class Worker {
     homes_ = &homes;
     home_ = home;
   }
+  /// From now on R7 alone is applied, to a mesh that breaks no other rule. `seed` draws where to vertices
+  /// move.
+  void perturb(const DihedralBounds& bounds, std::uint64_t seed);
+  Perturbation<Locks>& perturbation() { return *perturbation_; }
+  /// A poor cell that R7 could not change.
+  struct Kept {
+    PoorElementList::Entry entry;
+    Unmoved why;
+  };
+  /// Some may be stale.
+  std::vector<Kept> take_kept() { return std::exchange(kept_, {}); }
+
   struct Away {
     unsigned home;
     PoorElementList::Entry entry;
@@ -92,24 +105,32 @@ class Worker {
   void look_ahead();
   Outcome try_entry(const PoorElementList::Entry& entry);
   Outcome apply_first_rule(CellId c);
+  Outcome apply_r7(CellId c);
   Outcome insert_on_isosurface(const Point& z, CellId start, Rule rule);
   bool is_covered(const Point& z) const;
   StepResult plan_r6_removals(const Point& z);
   Outcome insert_circumcenter(const Point& p, CellId start, Rule rule);
   Outcome commit(const Point& p, VertexKind kind, Rule rule);
   Outcome give_up();
+  void make_room_in_log();
+  void tell_of_commit(const Point& p, VertexKind kind);
   void log(const Point& p, VertexKind kind);
   void list_created();
 
   Mesh& mesh_;
   std::optional<AccessTally> accesses_;
+  const Isosurface& isosurface_;
+  const Parameters& parameters_;
+  const std::optional<CountedReads> reads_;
   Rules rules_;
   Operation<Locks> operation_;
+  std::optional<Perturbation<Locks>> perturbation_;  // none: R1 to R6
   PoorElementList poor_;
   std::vector<PoorElementList::Entry> foreign_, deferred_;
   const Homes* homes_ = nullptr;  // none: all cells are at home
   unsigned home_ = 0;
   std::vector<Away> away_;
+  std::vector<Kept> kept_;
   double min_distance_;
   WorkerId self_;
   OperationLogWriter* log_;

@@ -2,6 +2,7 @@
 // source, which instantiates Worker for them. Everybody else includes worker.h.
 #pragma once
 
+#include "refine/perturbation_impl.h"
 #include "refine/worker.h"
 
 namespace podm {
@@ -25,7 +26,10 @@ Worker<Locks>::Worker(Mesh& mesh, const Isosurface& isosurface, const Parameters
                       Pool& pool, OperationLogWriter* log, const ImageOwners* owners)
     : mesh_(mesh),
       accesses_(tally_for(mesh)),
-      rules_(mesh, isosurface, parameters, reads_for(accesses_, owners, pool.node())),
+      isosurface_(isosurface),
+      parameters_(parameters),
+      reads_(reads_for(accesses_, owners, pool.node())),
+      rules_(mesh, isosurface, parameters, reads_),
       operation_(mesh, pool, self, accesses_ ? &*accesses_ : nullptr),
       poor_(mesh.cell_capacity()),
       min_distance_(kSpacingFloor * parameters.spacing_mm),
@@ -83,7 +87,7 @@ Outcome Worker<Locks>::try_entry(const PoorElementList::Entry& entry) {
   const bool is_timed =
       Locks::kIsShared && operation_.counters().classified_cells % kAttemptsForOneTimed == 0;
   const auto start = is_timed ? std::chrono::steady_clock::now() : std::chrono::steady_clock::time_point();
-  const Outcome outcome = apply_first_rule(entry.cell);
+  const Outcome outcome = perturbation_ ? apply_r7(entry.cell) : apply_first_rule(entry.cell);
   if (is_timed && outcome == Outcome::kLockConflict)
     operation_.counters().overhead.rollback_s +=
         kAttemptsForOneTimed *
@@ -108,6 +112,26 @@ Outcome Worker<Locks>::apply_first_rule(CellId c) {
   }
   if (const auto rule = rules_.volume_rule(t)) return insert_circumcenter(t.center, c, *rule);
   return Outcome::kSound;
+}
+
+template <class Locks>
+void Worker<Locks>::perturb(const DihedralBounds& bounds, std::uint64_t seed) {
+  perturbation_.emplace(mesh_, isosurface_, parameters_, rules_, operation_, bounds, seed, reads_);
+}
+
+template <class Locks>
+Outcome Worker<Locks>::apply_r7(CellId c) {
+  if (!perturbation_->is_poor(c)) return Outcome::kSound;
+  if (const StepResult planned = perturbation_->plan(c); planned != StepResult::kDone) {
+    operation_.rollback();
+    if (planned == StepResult::kNoMove) kept_.push_back({{c, mesh_.stamp(c)}, perturbation_->why_not()});
+    return outcome_of(planned);
+  }
+  make_room_in_log();
+  operation_.commit_move();
+  ++operation_.counters().moves;
+  tell_of_commit(operation_.move().point(), operation_.move().kind());
+  return Outcome::kCommitted;
 }
 
 // The point and its R6 removals are one operation. kRejected: the point is covered already, or the ball only
@@ -158,15 +182,19 @@ Outcome Worker<Locks>::give_up() {
 
 template <class Locks>
 Outcome Worker<Locks>::commit(const Point& p, VertexKind kind, Rule rule) {
-  if (log_ != nullptr)
-    unlogged_.removed.reserve(unlogged_.removed.size() + operation_.num_planned_removals());
+  make_room_in_log();
   if (operation_.commit_insertion(p, kind, min_distance_) != StepResult::kDone) return give_up();
-  if (log_ != nullptr) log(p, kind);
   operation_.counters().removals += operation_.removed().size();
   ++operation_.counters().insertions_by_rule[static_cast<std::size_t>(rule)];
+  tell_of_commit(p, kind);
+  return Outcome::kCommitted;
+}
+
+template <class Locks>
+void Worker<Locks>::tell_of_commit(const Point& p, VertexKind kind) {
+  if (log_ != nullptr) log(p, kind);
   list_created();
   if (poor_.is_due_for_cleaning()) poor_.drop_stale(mesh_);
-  return Outcome::kCommitted;
 }
 
 template <class Locks>
@@ -186,7 +214,13 @@ void Worker<Locks>::list_created() {
   }
 }
 
-// Room was made before the commit, so that no operation is missing when memory runs out.
+// Before the commit, so that no operation is missing when memory runs out.
+template <class Locks>
+void Worker<Locks>::make_room_in_log() {
+  if (log_ == nullptr) return;
+  unlogged_.removed.reserve(unlogged_.removed.size() + operation_.num_planned_removals());
+}
+
 template <class Locks>
 void Worker<Locks>::log(const Point& p, VertexKind kind) {
   const auto& removed = operation_.removed();

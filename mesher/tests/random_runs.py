@@ -180,5 +180,7 @@ def draw(seed, phantoms):
         threads = options[options.index("--threads") + 1]
         options[options.index("--algorithm") + 1] = algorithm
         options += ["--nodes", divisor(rng, threads)]
+    if chance(rng, 0.4):
+        options += ["--min-dihedral", f"{rng.uniform(2, 20):.3g}"]
     return Run(seed, image, *files, algorithm, executor,
                [str(option) for option in selection], [str(option) for option in options], limits)

@@ -120,7 +120,7 @@ def kinds_of(run):
              "damage": sorted(set(run.image.damages)) or ["none"],
              "voxel type": [random_images.TYPES[run.image.datatype].__name__]}
     rare = {"--target-elements", "--radius-of", "--delta", "--leaf-size", "--drop", "--labels", "--merge", "--pin",
-            "--topology", "--max-elements", "--max-seconds"}
+            "--topology", "--max-elements", "--max-seconds", "--min-dihedral"}
     return kinds | {"option": sorted(given & rare)}
 
 

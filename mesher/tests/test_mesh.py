@@ -153,6 +153,31 @@ class Mesh(PodmTestCase):
                 self.assertEqual(again["mesh_sha256"], record["mesh_sha256"])
                 self.assertIsNone(again["calibration"])
 
+    def test_vertices_move_for_dihedral_angles_and_the_record_tells(self):
+        self.assert_exit(self.mesh("--radius", "6", image="phantom:abdomen@48"), 0)
+        process = self.mesh("--radius", "6", "--min-dihedral", "8", "--verify", image="phantom:abdomen@48")
+        self.assert_exit(process, 0)
+        without, record = map(json.loads, self.runs.read_text().splitlines())
+        self.assertEqual(set(record["verdicts"].values()), {"pass"})
+        self.assertIn("delaunay", record["verdicts"])
+        self.assertIsNone(without["perturbed"])
+        told = record["perturbed"]
+        self.assertEqual((told["min_dihedral_deg"], told["max_dihedral_deg"]), (8, 165))
+        before, after = sum(told["before"].values()), sum(told["after"].values())
+        self.assertGreater(before, 50)
+        self.assertLess(after, before / 20)
+        self.assertEqual(sum(told["unmoved"].values()), after)
+        self.assertGreater(record["counters"]["moves"], 0)
+        self.assertEqual(record["counters"]["insertions"], without["counters"]["insertions"])
+        if after == 0:
+            self.assertGreaterEqual(record["quality"]["min_dihedral_deg"], 8 * (1 - 1e-9))
+            self.assertLessEqual(record["quality"]["max_dihedral_deg"], 165 * (1 + 1e-9))
+        self.assertIn("dihedral   cells with an angle below 8 or above 165 deg", process.stderr)
+        # It is in no rate of the paper's.
+        rated = sum(seconds for phase, seconds in record["phases_s"].items()
+                    if phase not in {"calibrate", "draw", "measure", "perturb", "write"})
+        self.assertAlmostEqual(record["cells_per_second"] * rated / record["cells"], 1)
+
     def test_surfaces_are_written_for_each_label(self):
         for extension in ("stl", "ply"):
             self.assert_exit(self.mesh("--surface", self.folder / f"s.{extension}"), 0)

@@ -229,7 +229,8 @@ class InProcess(OnRanks):
                                  (["--in-process", 2, "--network", "2"], ["--network", "'2'", "US,GB/S"]),
                                  (["--in-process", 2, "--network", "0,1"], ["--network", "'0,1'"]),
                                  (["--in-process", 0], ["--in-process", "'0'"]),
-                                 (["--in-process", 2, "--delta", 1000], ["--delta"])):
+                                 (["--in-process", 2, "--delta", 1000], ["--delta"]),
+                                 (["--in-process", 2, "--min-dihedral", 8], ["dihedral", "ranks"])):
             with self.subTest(arguments=arguments):
                 process = self.assert_refused([*mesh, *arguments], *words, program=MPI_PROGRAM, env=ENVIRONMENT)
                 self.assertEqual(process.stderr.count("podm-mpi: "), 1)

@@ -34,6 +34,9 @@ class Replay(PodmTestCase):
                           ["--algorithm", "pdr-podm", "--threads", 64, "--cores-per-node", 16, "--pin", "compact",
                            "--topology", BLACKLIGHT, "--executor", "virtual", "--leaf-size", 425],
                           ["--algorithm", "pdr", "--threads", 4, "--pin", "scatter", "--topology", BLACKLIGHT],
+                          ["--threads", 3, "--min-dihedral", 8],
+                          ["--executor", "virtual", "--threads", 64, "--min-dihedral", 12],
+                          ["--algorithm", "pdr-podm", "--threads", 6, "--nodes", 3, "--min-dihedral", 8],
                           ["--threads", 3, "--space", "voxel"], ["--threads", 2, "--labels", "2-5", "--space", "LPS"]):
             with self.subTest(arguments=arguments):
                 record = self.mesh(*arguments)

@@ -7,7 +7,8 @@ import unittest
 from podm_process import PROGRAM, PodmTestCase, run_podm
 
 OPTIONS = {
-    "mesh": ["--output", "--radius", "--radius-of", "--delta", "--target-elements", "--target-tolerance", "--labels",
+    "mesh": ["--output", "--radius", "--radius-of", "--delta", "--target-elements", "--target-tolerance",
+             "--min-dihedral", "--labels",
              "--merge", "--drop", "--background", "--label-names", "--space", "--surface", "--record", "--max-elements",
              "--max-seconds", "--max-memory-gib", "--threads", "--contention", "--algorithm", "--crossover", "--nodes",
              "--cores-per-node", "--initial-ratio", "--initial-threads", "--leaf-size", "--schedule", "--executor",
@@ -104,6 +105,11 @@ class Usage(PodmTestCase):
             for value in ("0", "-1", "1.5", "1e3", "99999999999999999999999", "x"):
                 with self.subTest(option=option, value=value):
                     self.assert_refused(self.mesh(f"{option}={value}"), option)
+
+    def test_the_least_dihedral_angle_is_one_that_cells_may_have(self):
+        for value in ("0", "-8", "nan", "60.5", "180", "8deg"):
+            with self.subTest(value=value):
+                self.assert_refused(self.mesh(f"--min-dihedral={value}"), "dihedral")
 
     def test_other_values(self):
         self.assert_refused(self.mesh("--space", "ras"), "--space", "RAS, LPS or voxel")

@@ -13,7 +13,7 @@
 
 namespace podm {
 
-/// Shared by all workers of a run, and by its phases. Any thread may call, but for observe().
+/// Shared by all workers of a run, and by its phases. Any thread may call, but for those that say so.
 class StopControl {
  public:
   using Clock = std::chrono::steady_clock;
@@ -49,8 +49,13 @@ class StopControl {
   bool is_over() const { return reason_.load(std::memory_order_relaxed) != StopReason::kComplete; }
   /// Requested when the run has to end.
   std::stop_token over() const { return over_.get_token(); }
-  /// Only the thread that the run was called from calls.
+  /// Only the thread that the run was called from calls these.
   void observe();
+  /// From now on observe() calls this, soon for the first time.
+  void observe_by(std::function<void(std::uint64_t)> observe) {
+    observe_ = std::move(observe);
+    next_observation_ = Clock::now();
+  }
 
  private:
   const std::int64_t max_elements_;  // of all stores; 0: any number

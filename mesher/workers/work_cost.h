@@ -15,15 +15,16 @@ namespace podm {
 
 /// Counted work, of a worker so far or between two moments.
 struct Work {
-  std::uint64_t classified = 0, searches = 0, tests = 0, created = 0;
+  std::uint64_t classified = 0, searches = 0, tests = 0, created = 0, planned = 0;
 
   Work operator-(const Work& b) const {
-    return {classified - b.classified, searches - b.searches, tests - b.tests, created - b.created};
+    return {classified - b.classified, searches - b.searches, tests - b.tests, created - b.created,
+            planned - b.planned};
   }
 };
 inline Work work_of(const Counters& counters) {
   return {counters.classified_cells, counters.oracle_searches, counters.conflict_tests,
-          counters.cells_created};
+          counters.cells_created, counters.planned_cells};
 }
 
 /// Of an attempt, for the entry that it takes off the list; where that is stale, all of it.
@@ -41,6 +42,8 @@ inline constexpr double kEntryGiven = 0.01e-6;
 inline constexpr double kEntryToLeaf = 0.055e-6;
 /// A cell of the initial mesh that moves to another node's memory.
 inline constexpr double kCellMoved = 0.1e-6;
+/// A cell whose dihedral angles are looked at.
+inline constexpr double kCellJudged = 0.05e-6;
 /// The label at a point of space.
 inline constexpr double kPlaceLookedUp = 0.1e-6;
 /// A leaf whose cells the queue is told of, and that is shared out.

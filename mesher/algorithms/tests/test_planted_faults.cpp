@@ -35,6 +35,8 @@ class PlantedFaultDeathTest : public testing::Test {
 TEST_F(PlantedFaultDeathTest, IsNoneInASoundProtocol) {
   podm_with({});
   pdr_podm_with({});
+  problem_.dihedral_bounds = DihedralBounds(20, 150);
+  podm_with({});
 }
 
 TEST_F(PlantedFaultDeathTest, OfNoLockToReadIsNoticed) {
@@ -47,6 +49,11 @@ TEST_F(PlantedFaultDeathTest, OfOneLockToReadIsNoticed) {
 
 TEST_F(PlantedFaultDeathTest, OfThreeLocksToReplaceIsNoticed) {
   EXPECT_DEATH(podm_with({.to_replace = 3}), "is replaced with 3 of its vertices held");
+}
+
+TEST_F(PlantedFaultDeathTest, OfThreeLocksToMoveIsNoticed) {
+  problem_.dihedral_bounds = DihedralBounds(20, 150);
+  EXPECT_DEATH(podm_with({.to_move = 3}), "is replaced with 3 of its vertices held");
 }
 
 TEST_F(PlantedFaultDeathTest, IsNoticedInALeafToo) {

@@ -23,6 +23,7 @@ struct Method {
   int num_workers, num_nodes;
   Contention contention = Contention::kLocal;
   Executor executor = Executor::kThreads;
+  bool is_perturbed = false;  // R7 comes after the others
 
   Refinement operator()(const Problem& problem, StopControl& stop) const {
     const Team team{.executor = executor,
@@ -45,7 +46,11 @@ const std::vector<Method> kMethods{{Algorithm::kPodm, 1, 1},
                                    {Algorithm::kPdr, 1, 1},
                                    {Algorithm::kPdr, 4, 4},
                                    {Algorithm::kPdrPodm, 6, 3},
-                                   {Algorithm::kPdrPodm, 64, 8, Contention::kLocal, Executor::kVirtual}};
+                                   {Algorithm::kPdrPodm, 64, 8, Contention::kLocal, Executor::kVirtual},
+                                   {Algorithm::kPodm, 1, 1, Contention::kLocal, Executor::kThreads, true},
+                                   {Algorithm::kPodm, 7, 1, Contention::kLocal, Executor::kThreads, true},
+                                   {Algorithm::kPodm, 64, 1, Contention::kLocal, Executor::kVirtual, true},
+                                   {Algorithm::kPdrPodm, 6, 3, Contention::kLocal, Executor::kThreads, true}};
 
 class Refined : public testing::TestWithParam<std::tuple<NamedImage, Method>> {
  protected:
@@ -55,12 +60,15 @@ class Refined : public testing::TestWithParam<std::tuple<NamedImage, Method>> {
         delta_(default_delta_mm(image_, kRadius)),
         sizes_(std::vector<double>(image_.labels.size(), kRadius)) {
     StopControl stop({}, {}, [](std::uint64_t) {});
-    const Problem problem{.isosurface = isosurface_,
-                          .object = foreground_bounds(image_),
-                          .delta_mm = delta_,
-                          .sizes = sizes_,
-                          .cell_capacity = 1 << 22};
-    refinement_ = std::get<Method>(GetParam())(problem, stop);
+    const Method& method = std::get<Method>(GetParam());
+    const Problem problem{
+        .isosurface = isosurface_,
+        .object = foreground_bounds(image_),
+        .delta_mm = delta_,
+        .sizes = sizes_,
+        .cell_capacity = 1 << 22,
+        .dihedral_bounds = method.is_perturbed ? std::optional(DihedralBounds(12, 160)) : std::nullopt};
+    refinement_ = method(problem, stop);
   }
   double spacing() const { return std::min(delta_, kRadius / std::sqrt(2 + std::sqrt(3.0))); }
 
@@ -121,7 +129,8 @@ std::string name_of(const testing::TestParamInfo<std::tuple<NamedImage, Method>>
   const auto& [image, method] = test.param;
   std::ostringstream text;
   text << image.name << '_' << to_string(method.algorithm) << '_' << method.num_workers << '_'
-       << to_string(method.contention) << '_' << to_string(method.executor);
+       << to_string(method.contention) << '_' << to_string(method.executor)
+       << (method.is_perturbed ? "_perturbed" : "");
   std::string name = text.str();
   std::replace(name.begin(), name.end(), '-', '_');
   return name;

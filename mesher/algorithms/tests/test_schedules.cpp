@@ -16,6 +16,7 @@
 #include <numeric>
 #include <random>
 
+#include "algorithms/perturb.h"
 #include "algorithms/podm.h"
 #include "cost_model.h"
 #include "delaunay/planted_fault.h"
@@ -94,6 +95,7 @@ Refinement crowded_podm(const Problem& problem, const Team& team, StopControl& s
     if (refine(*workers[self], group, time) && self == 0) group.dismiss();
   });
   construction.account(workers, time);
+  perturb(construction, parameters);
   return construction.finish();
 }
 
@@ -123,11 +125,14 @@ class Schedules : public testing::Test {
                     .num_nodes = num_nodes,
                     .initial_workers = initial_workers,
                     .log = log};
-    const Problem problem{.isosurface = scene.isosurface,
-                          .object = foreground_bounds(scene.image),
-                          .delta_mm = scene.delta_mm,
-                          .sizes = scene.sizes,
-                          .cell_capacity = capacity};
+    const bool is_perturbed = draw(0, 1) == 1;
+    const Problem problem{
+        .isosurface = scene.isosurface,
+        .object = foreground_bounds(scene.image),
+        .delta_mm = scene.delta_mm,
+        .sizes = scene.sizes,
+        .cell_capacity = capacity,
+        .dihedral_bounds = is_perturbed ? std::optional(DihedralBounds(15, 155)) : std::nullopt};
     if (algorithm == Algorithm::kPodm) return crowded_podm(problem, team, stop);
     if (algorithm == Algorithm::kPodmHome) return podm_home(problem, team, stop);
     return algorithm == Algorithm::kPdr ? pdr(problem, team, leaves, stop)

@@ -39,14 +39,17 @@ struct Counters {
   std::uint64_t lock_conflicts = 0;  ///< attempts rolled back
   std::uint64_t out_of_leaf = 0;     ///< attempts that needed vertices outside a leaf's region, deferred
   std::uint64_t region_cells = 0;    ///< cells that operations collected to replace, carried out or not
+  std::uint64_t moves = 0;           ///< vertices moved by R7
+  std::uint64_t points_tried = 0;    ///< for these, and in vain
+  std::uint64_t planned_cells = 0;   ///< cells that R7 planned, carried out or not
   Overhead overhead;
   HopsByKind hops;
 
   std::uint64_t num_insertions() const {
     return std::accumulate(insertions_by_rule.begin(), insertions_by_rule.end(), std::uint64_t{0});
   }
-  /// Vertices inserted and removed.
-  std::uint64_t num_committed() const { return num_insertions() + removals; }
+  /// Vertices inserted, removed and moved.
+  std::uint64_t num_committed() const { return num_insertions() + removals + moves; }
 };
 
 /// A count's name, and where a record tells of it.
@@ -67,7 +70,10 @@ inline constexpr std::array kCounts{
     Count{"conflict_tests", &Counters::conflict_tests, Count::kWork, true},
     Count{"exact_decisions", &Counters::exact_decisions, Count::kWork, false},
     Count{"cells_created", &Counters::cells_created, Count::kWork, false},
-    Count{"region_cells", &Counters::region_cells, Count::kWork, true}};
+    Count{"region_cells", &Counters::region_cells, Count::kWork, true},
+    Count{"moves", &Counters::moves, Count::kWork, false},
+    Count{"points_tried", &Counters::points_tried, Count::kWork, false},
+    Count{"planned_cells", &Counters::planned_cells, Count::kWork, false}};
 
 /// A cause of overhead and its name in records.
 struct Cause {

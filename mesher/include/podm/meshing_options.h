@@ -59,6 +59,10 @@ struct LeafOptions {
 
 struct MeshingOptions {
   SizeOptions sizes = {};
+  /// Degrees. When positive: at the end vertices move so that fewer cells have a dihedral angle below it, or
+  /// above max_dihedral_deg() of it (rule R7). All guarantees are kept, and this is none: the report tells
+  /// what is left.
+  double min_dihedral_deg = 0;
   Space space = Space::kRas;
   Algorithm algorithm = Algorithm::kPodm;
   /// Threads from which on kAuto is kPodmHome. 0: it is where pins make as many on each of several NUMA

@@ -11,6 +11,7 @@
 #include "podm/bounds.h"
 #include "podm/choices.h"
 #include "podm/counters.h"
+#include "podm/perturbed.h"
 
 namespace podm {
 
@@ -96,7 +97,8 @@ struct LeafSchedule {
 
 struct MeshingReport {
   /// Seconds of the mesh that is returned. "transform"; "allocate": store, pools, workers and threads made
-  /// ready; "initial", "octree", "refine", "closing" (of kPodm and kPodmHome "refine" alone); "extract";
+  /// ready; "initial", "octree", "refine", "closing" (of kPodm and kPodmHome "refine" alone); "perturb" where
+  /// R7 was asked for; "extract";
   /// "measure": quality and guarantees. And "calibrate": all that finding the radius of a target cost.
   std::map<std::string, double> phases_s;
   double radius_mm = 0;                    ///< the one used; 0 when unbounded
@@ -128,6 +130,7 @@ struct MeshingReport {
     std::map<std::string, double> constants;
   };
   std::optional<SimulatedMachine> simulated_machine;
+  std::optional<Perturbed> perturbed;  ///< there is one where R7 was asked for, and reached
   std::vector<std::string> warnings;
 };
 

@@ -1,0 +1,150 @@
+#include "algorithms/perturb.h"
+
+#include <numeric>
+
+#include "algorithms/podm_impl.h"
+
+namespace podm {
+
+namespace {
+
+constexpr const char* kPerturb = "perturb";
+
+// The few cells that the first round leaves are worth more points, and farther ones.
+constexpr std::array kRounds{MoveEffort{12, 0.25}, MoveEffort{36, 0.4}, MoveEffort{36, 0.4},
+                             MoveEffort{36, 0.4}, MoveEffort{36, 0.4}};
+
+template <class Locks, class Time>
+class Phase {
+ public:
+  Phase(Construction& construction, const Parameters& parameters, Time& time)
+      : construction_(construction),
+        mesh_(construction.mesh()),
+        time_(time),
+        workers_(construction.make_workers<Locks>(parameters, construction.num_workers(), kPerturb)) {
+    const std::uint64_t seed = construction.team().coordination.seed;
+    for (const auto& worker : workers_)
+      worker->perturb(*construction.problem().dihedral_bounds, seed + worker->id());
+  }
+
+  Perturbed operator()() {
+    const DihedralBounds& bounds = *construction_.problem().dihedral_bounds;
+    Perturbed told;
+    told.min_dihedral_deg = bounds.least_deg();
+    told.max_dihedral_deg = bounds.largest_deg();
+    told.before = list_poor(true);
+    observe(told.before.number());
+    for (const MoveEffort& effort : kRounds) {
+      if (!try_listed(effort)) break;
+      if (&effort != &kRounds.back()) list_kept();
+    }
+    tell_kept(told);
+    if (time_.is_over()) {  // what is kept was reached
+      told.after = list_poor(false);
+      told.not_reached =
+          told.after.number() - std::accumulate(told.unmoved.begin(), told.unmoved.end(), 0ull);
+    }
+    construction_.account(workers_, time_);
+    return told;
+  }
+
+ private:
+  using Kept = typename Worker<Locks>::Kept;
+
+  // Each worker lists those of its part of the store; nobody changes it meanwhile.
+  Perturbed::Cells list_poor(bool gives) {
+    std::vector<Perturbed::Cells> found(workers_.size());
+    const auto list = [&](WorkerId self) {
+      Worker<Locks>& worker = *workers_[self];
+      const std::size_t bound = mesh_.cell_bound();
+      const auto begin = static_cast<CellId>(bound * self / workers_.size()),
+                 end = static_cast<CellId>(bound * (self + 1) / workers_.size());
+      for (CellId c = begin; c < end; ++c) {
+        if (!mesh_.cell(c).is_alive() || !worker.perturbation().is_poor(c)) continue;
+        Perturbed::Cells& cells = found[self];
+        ++(worker.perturbation().has_free_vertex(c) ? cells.with_free_vertex : cells.without);
+        if (gives) worker.give(c);
+      }
+      if (gives) time_.spend(self, kCellJudged * (end - begin));
+    };
+    if (gives) {
+      time_.run(list);
+    } else {
+      for (WorkerId self = 0; self < workers_.size(); ++self) list(self);
+    }
+    Perturbed::Cells sum;
+    for (const Perturbed::Cells& cells : found) {
+      sum.with_free_vertex += cells.with_free_vertex;
+      sum.without += cells.without;
+    }
+    return sum;
+  }
+
+  // False: the run is over, or there was nothing to try.
+  bool try_listed(const MoveEffort& effort) {
+    bool has_work = false;
+    for (const auto& worker : workers_) {
+      worker->perturbation().set_effort(effort);
+      has_work = has_work || worker->has_work();
+    }
+    if (!has_work) return false;
+    Coordination group(coordination_of_first(construction_.team(), construction_.num_workers()),
+                       [&](WorkerId worker) { time_.resume(worker); });
+    time_.run([&](WorkerId self) {
+      if (refine(*workers_[self], group, time_) && self == 0) group.dismiss();
+    });
+    return !time_.is_over();
+  }
+
+  void list_kept() {
+    for (const auto& worker : workers_)
+      for (const Kept& kept : worker->take_kept())
+        if (mesh_.stamp(kept.entry.cell) == kept.entry.stamp) worker->give(kept.entry.cell);
+  }
+
+  // The last round's. A cell that was made poor was listed, and one that was tried in vain was kept.
+  void tell_kept(Perturbed& told) {
+    for (const auto& worker : workers_) {
+      for (const auto& [entry, why] : worker->take_kept()) {
+        if (mesh_.stamp(entry.cell) != entry.stamp) continue;
+        ++told.unmoved[static_cast<std::size_t>(why)];
+        const bool has_free = worker->perturbation().has_free_vertex(entry.cell);
+        ++(has_free ? told.after.with_free_vertex : told.after.without);
+      }
+    }
+  }
+
+  // By the first worker's part.
+  void observe(std::uint64_t num_poor) {
+    if (!construction_.problem().observe_perturbation) return;
+    construction_.stop().observe_by([this, num_poor](std::uint64_t cells) {
+      const double left = static_cast<double>(workers_[0]->num_listed() * workers_.size());
+      construction_.problem().observe_perturbation(1 - left / static_cast<double>(num_poor + 1), cells);
+    });
+  }
+
+  Construction& construction_;
+  const Mesh& mesh_;
+  Time& time_;
+  const Construction::Workers<Locks> workers_;
+};
+
+}  // namespace
+
+void perturb(Construction& construction, const Parameters& parameters) {
+  if (!construction.problem().dihedral_bounds || construction.stop().is_over()) return;
+  construction.timed(kPerturb, [&] {
+    const auto run = [&](auto& time) {
+      using Time = std::remove_reference_t<decltype(time)>;
+      if (construction.num_workers() > 1 || construction.team().executor == Executor::kVirtual) {
+        construction.report(Phase<VertexLocks, Time>(construction, parameters, time)());
+      } else {
+        construction.report(Phase<NoLocks, Time>(construction, parameters, time)());
+      }
+    };
+    construction.in_time(kPerturb, construction.num_workers(), run, kPerturb);
+  });
+  construction.sample_pages(kPerturb);
+}
+
+}  // namespace podm

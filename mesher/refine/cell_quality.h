@@ -1,0 +1,17 @@
+// How good a cell's dihedral angles are, in a mesh or in what an operation would make of it.
+#pragma once
+
+#include "delaunay/mesh.h"
+#include "geometry/dihedral.h"
+
+namespace podm {
+
+/// By the bounds: 1 at a bound, less beyond it.
+template <class Cells>
+double cell_quality(const Cells& cells, CellId c, const DihedralBounds& bounds) {
+  const auto& v = cells.cell(c).vertices;
+  return bounds.quality(
+      dihedral_extremes(cells.point(v[0]), cells.point(v[1]), cells.point(v[2]), cells.point(v[3])));
+}
+
+}  // namespace podm

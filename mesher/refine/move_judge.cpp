@@ -1,0 +1,74 @@
+#include "refine/move_judge.h"
+
+#include <algorithm>
+#include <limits>
+#include <span>
+
+#include "refine/cell_quality.h"
+
+namespace podm {
+
+// Calls visit(CellId) for each, until it returns false.
+template <class Visit>
+bool MoveJudge::all_of_planned(const Visit& visit) const {
+  for (CellId c = VertexMove::kFirstPlanned; c < move_.end(); ++c)
+    if (!move_.is_dug(c) && !visit(c)) return false;
+  return true;
+}
+
+// The nearest is among those of the star.
+bool MoveJudge::keeps_spacing(const Point& from) const {
+  const Point& p = move_.point();
+  const double squared_step = squared_distance(from, p);
+  for (CellId c = move_.first_of_star(); c < move_.end(); ++c) {
+    for (const VertexId v : std::span(move_.cell(c).vertices).first(3)) {
+      const double least = spacing_mm(move_.kind(), move_.vertex(v).kind);
+      const double squared = squared_distance(move_.point(v), p);
+      if (squared < least * least || squared <= squared_step) return false;
+    }
+  }
+  return true;
+}
+
+// Labels are asked for where something depends on them.
+std::optional<double> MoveJudge::quality(double least) {
+  const double smallest = parameters_.sizes.smallest_squared_radius() * (1 - kMargin);
+  double lowest = std::numeric_limits<double>::infinity();
+  const bool is_good = all_of_planned([&](CellId c) {
+    const double quality = cell_quality(move_, c, bounds_);
+    const double squared_radius =
+        squared_distance(move_.cell(c).center, move_.point(move_.cell(c).vertices[3]));
+    const bool has_poor_ratio = rules_.has_poor_ratio(c, squared_radius);
+    const bool may_be_refused = quality < least || has_poor_ratio || squared_radius > smallest;
+    if (!may_be_refused && quality >= lowest) return true;
+    const LabelIndex label = rules_.label_of(c);
+    if (label == kBackground) return true;
+    lowest = std::min(lowest, quality);
+    return quality >= least && !has_poor_ratio && !rules_.is_large(squared_radius, label);
+  });
+  return is_good ? std::optional(lowest) : std::nullopt;
+}
+
+Examination MoveJudge::examine(CellId c) {
+  const Examination t = rules_.examine(c);
+  if (!t.is_distance_proven) ++counters_.oracle_searches;
+  return t;
+}
+
+Ball MoveJudge::ball_of(CellId c) const {
+  const Cell& cell = move_.cell(c);
+  return {cell.center, distance(cell.center, move_.point(cell.vertices[3])) * (1 + kMargin)};
+}
+
+bool MoveJudge::reaches(CellId c, const Point& from) const {
+  const Ball ball = ball_of(c), covered = covered_from(from);
+  const double reach = ball.radius + covered.radius;
+  return squared_distance(ball.center, from) <= reach * reach;
+}
+
+bool MoveJudge::may_be_uncovered(CellId c, const Point& from) const {
+  return farthest_in_both(move_.point(), ball_of(c), covered_from(from)) >=
+         parameters_.delta_mm * (1 - kMargin);
+}
+
+}  // namespace podm
