@@ -3,10 +3,10 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
-#include <numbers>
 
 #include "cost_model.h"
 #include "geometry/circumsphere.h"
+#include "geometry/dihedral.h"
 #include "geometry/predicates.h"
 #include "geometry/tetrahedron.h"
 #include "runtime/parallel_for.h"
@@ -17,20 +17,13 @@ namespace {
 
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
 constexpr std::uint64_t kLargeLabelVoxels = 1000;  // larger labels must appear
-constexpr double kRadToDeg = 180 / std::numbers::pi;
 
 Point point_of(const TetMesh& mesh, std::uint32_t v) {
   return {mesh.vertices[v][0], mesh.vertices[v][1], mesh.vertices[v][2]};
 }
 
-// The square of the angle's cotangent, with its sign: falls as the angle grows, and costs neither a root nor
-// an arc tangent, so that these are left for the extremes alone. No direction makes an angle of 0 with any.
 double squared_cotangent(const Vector& u, const Vector& v) {
-  const double along = dot(u, v), squared = along * std::abs(along) / squared_length(cross(u, v));
-  return squared == squared ? squared : kInfinity;
-}
-double angle_deg(double squared_cotangent) {
-  return std::atan2(1, std::copysign(std::sqrt(std::abs(squared_cotangent)), squared_cotangent)) * kRadToDeg;
+  return signed_square_ratio(dot(u, v), squared_length(cross(u, v)));
 }
 
 // What the items of a slice add up to, by add(tally, begin, end). Any thread adds up a slice; slices are put
@@ -54,32 +47,21 @@ using Corners = std::array<Point, 4>;
 
 struct CellMeasures {
   double determinant, squared_length;  // of the sphere
-  double squared_radius, shortest2, volume_mm3;
-  // The angles are those between facets' normals, which dihedral angles make up to 180 degrees.
-  double least_cotangent2, most_cotangent2;
+  double squared_radius, shortest2;
+  DihedralExtremes dihedral;
 };
 
 inline double least(double a, double b) { return a < b ? a : b; }
-inline double most(double a, double b) { return a > b ? a : b; }
 
 // Has neither branch nor loop: a loop over it becomes vector code.
 inline CellMeasures measure_cell(const Point& a, const Point& b, const Point& c, const Point& d) {
-  const Vector da = a - d, db = b - d, dc = c - d, ab = b - a, ac = c - a, bc = c - b;
+  const Vector da = a - d, db = b - d, dc = c - d;
   const double aa = squared_length(da), bb = squared_length(db), cc = squared_length(dc);
   const RelativeSphere sphere = relative_sphere(da, db, dc, aa, bb, cc);
-  // Normals of the facets opposite a, b, c and d; the angle between two is at the edge of the other two.
-  const Vector na = cross(d - b, bc), nb = cross(ac, d - a), nc = cross(d - a, ab), nd = cross(ab, ac);
-  const double n_ab = squared_cotangent(na, nb), n_ac = squared_cotangent(na, nc),
-               n_ad = squared_cotangent(na, nd), n_bc = squared_cotangent(nb, nc),
-               n_bd = squared_cotangent(nb, nd), n_cd = squared_cotangent(nc, nd);
-  return {sphere.determinant,
-          sphere.squared_length,
-          squared_distance(d + sphere.center, d),
-          least(least(least(aa, bb), least(cc, squared_length(ab))),
-                least(squared_length(ac), squared_length(bc))),
-          dot(nd, d - a) / 6,
-          least(least(least(n_ab, n_ac), least(n_ad, n_bc)), least(n_bd, n_cd)),
-          most(most(most(n_ab, n_ac), most(n_ad, n_bc)), most(n_bd, n_cd))};
+  return {sphere.determinant, sphere.squared_length, squared_distance(d + sphere.center, d),
+          least(least(least(aa, bb), least(cc, squared_distance(a, b))),
+                least(squared_distance(a, c), squared_distance(b, c))),
+          dihedral_extremes(a, b, c, d)};
 }
 
 // Some cells side by side.
@@ -98,14 +80,17 @@ class CellBlock {
       squared_length_[i] = m.squared_length;
       squared_radius_[i] = m.squared_radius;
       shortest2_[i] = m.shortest2;
-      volume_mm3_[i] = m.volume_mm3;
-      least_cotangent2_[i] = m.least_cotangent2;
-      most_cotangent2_[i] = m.most_cotangent2;
+      of_least_[i] = m.dihedral.of_least;
+      of_largest_[i] = m.dihedral.of_largest;
+      six_volumes_[i] = m.dihedral.determinant;
     }
   }
   CellMeasures measures(std::size_t i) const {
-    return {determinant_[i], squared_length_[i],   squared_radius_[i], shortest2_[i],
-            volume_mm3_[i],  least_cotangent2_[i], most_cotangent2_[i]};
+    return {determinant_[i],
+            squared_length_[i],
+            squared_radius_[i],
+            shortest2_[i],
+            {of_least_[i], of_largest_[i], six_volumes_[i]}};
   }
 
  private:
@@ -113,8 +98,7 @@ class CellBlock {
 
   using Doubles = std::array<double, kSize>;
   std::array<Doubles, 4> x_, y_, z_;
-  Doubles determinant_, squared_length_, squared_radius_, shortest2_, volume_mm3_, least_cotangent2_,
-      most_cotangent2_;
+  Doubles determinant_, squared_length_, squared_radius_, shortest2_, of_least_, of_largest_, six_volumes_;
 };
 
 struct alignas(64) CellTally {
@@ -124,7 +108,7 @@ struct alignas(64) CellTally {
   };
 
   double max_ratio2 = 0, max_radius2 = 0, shortest2 = kInfinity;
-  double least_cotangent2 = kInfinity, most_cotangent2 = -kInfinity;
+  double of_least = -kInfinity, of_largest = kInfinity;  // dihedral angles, by their squared cotangents
   std::uint64_t bad_orientation = 0, bad_radius_edge = 0, bad_radius = 0;
   std::vector<OfLabel> labels;
 
@@ -143,9 +127,9 @@ struct alignas(64) CellTally {
     max_ratio2 = std::max(max_ratio2, ratio2);
     max_radius2 = std::max(max_radius2, m.squared_radius);
     shortest2 = std::min(shortest2, m.shortest2);
-    least_cotangent2 = std::min(least_cotangent2, m.least_cotangent2);
-    most_cotangent2 = std::max(most_cotangent2, m.most_cotangent2);
-    labels[label].volume_mm3 += m.volume_mm3;
+    of_least = std::max(of_least, m.dihedral.of_least);
+    of_largest = std::min(of_largest, m.dihedral.of_largest);
+    labels[label].volume_mm3 += m.dihedral.determinant / 6;
     ++labels[label].cells;
   }
 
@@ -153,8 +137,8 @@ struct alignas(64) CellTally {
     max_ratio2 = std::max(max_ratio2, b.max_ratio2);
     max_radius2 = std::max(max_radius2, b.max_radius2);
     shortest2 = std::min(shortest2, b.shortest2);
-    least_cotangent2 = std::min(least_cotangent2, b.least_cotangent2);
-    most_cotangent2 = std::max(most_cotangent2, b.most_cotangent2);
+    of_least = std::max(of_least, b.of_least);
+    of_largest = std::min(of_largest, b.of_largest);
     bad_orientation += b.bad_orientation;
     bad_radius_edge += b.bad_radius_edge;
     bad_radius += b.bad_radius;
@@ -203,8 +187,8 @@ CellTally measure_cells(const TetMesh& mesh, const SizeField& sizes, int threads
   report.quality.max_radius_edge = std::sqrt(tally.max_ratio2);
   report.quality.max_radius_mm = std::sqrt(tally.max_radius2);
   report.quality.shortest_edge_mm = tally.shortest2 < kInfinity ? std::sqrt(tally.shortest2) : 0;
-  report.quality.min_dihedral_deg = angle_deg(-tally.least_cotangent2);
-  report.quality.max_dihedral_deg = angle_deg(-tally.most_cotangent2);
+  report.quality.min_dihedral_deg = angle_deg(tally.of_least);
+  report.quality.max_dihedral_deg = angle_deg(tally.of_largest);
   return tally;
 }
 
