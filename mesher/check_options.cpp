@@ -34,6 +34,17 @@ void check_leaves(const LeafOptions& leaves) {
   if (!is_positive_or_zero(leaves.size_mm)) throw InputError("leaf size must be a positive number of mm");
 }
 
+void check_optimization(const MeshingOptions& options) {
+  const OptimizeOptions& optimize = options.optimize;
+  if (!optimize.is_wanted) return;
+  const double least = optimize.least_dihedral_deg, largest = optimize.largest_dihedral_deg;
+  if (!(least > 0 && least <= 15) || !(largest >= 150 && largest < 180))
+    throw InputError(
+        "bounds on dihedral angles must be more than 0 and at most 15, and at least 150 and less than 180");
+  if (options.log != nullptr)
+    throw InputError("an optimised mesh has no log of operations: those of optimisation are not logged");
+}
+
 // Readers see to it; others may have left the affine out.
 void check_affine(const LabelImage& image) {
   const Affine& a = image.voxel_to_ras;
@@ -55,6 +66,7 @@ void check_options(const LabelImage& image, const MeshingOptions& options) {
   check_sizes(image, options.sizes);
   check_team_size(options.team, options.algorithm);
   check_leaves(options.leaves);
+  check_optimization(options);
 }
 
 }  // namespace podm

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <limits>
+#include <tuple>
 
 #include "cli/add_options.h"
 #include "cli/crossover.h"
@@ -32,6 +33,24 @@ void add_sizing_options(CLI::App& app, MeshCommand& command) {
                "cells that the mesh may have more or fewer than that, in percent",
                into_positive(meshing.sizes.target_tolerance_percent, "percentage")),
        target);
+}
+
+void add_optimize_options(CLI::App& app, MeshingOptions& meshing) {
+  OptimizeOptions& optimize = meshing.optimize;
+  begin_group(app, "Dihedral angles");
+  CLI::Option* flag =
+      add_flag(app, "--optimize", optimize.is_wanted,
+               "better the worst cells of the finished mesh: all other bounds and the surfaces\n"
+               "stay, but it is no longer Delaunay [default: no]");
+  need(add_one(app, "--dihedral-bounds", "MIN,MAX",
+               "least and largest dihedral angle of a cell, degrees; half as much again is\n"
+               "aimed at, and cells that surfaces keep from it are counted",
+               {[&optimize](const std::string& text, const std::string& name) {
+                  std::tie(optimize.least_dihedral_deg, optimize.largest_dihedral_deg) =
+                      parse_two_positive(text, name, "MIN,MAX, as in 8,165");
+                },
+                fmt::format("{},{}", optimize.least_dihedral_deg, optimize.largest_dihedral_deg)}),
+       flag);
 }
 
 void add_limit_options(CLI::App& app, MeshCommand& command, Program which) {
@@ -162,6 +181,7 @@ void add_mesh_command(CLI::App& program, MeshCommand& command, Program which) {
                                           : "mesh a label image into tetrahedra with guarantees");
   add_image_options(app, command.image);
   add_sizing_options(app, command);
+  add_optimize_options(app, command.meshing);
   add_limit_options(app, command, which);
   begin_group(app, "Output");
   require(add_one(app, "-o,--output", "MESH",
@@ -187,8 +207,8 @@ void add_mesh_command(CLI::App& program, MeshCommand& command, Program which) {
   if (is_on_ranks)
     end_help(
         app,
-        "Not on ranks yet, and refused: --target-elements, --surface, --algorithm podm-home, --schedule,\n"
-        "--executor virtual.");
+        "Not on ranks yet, and refused: --target-elements, --surface, --optimize, --algorithm podm-home,\n"
+        "--schedule, --executor virtual.");
 }
 
 }  // namespace podm::cli

@@ -20,7 +20,7 @@ std::map<std::string, double> MeshRun::phases_s() const {
 }
 
 double MeshRun::cells_per_second() const {
-  static const std::set<std::string> kNotCounted{"calibrate", "draw", "measure", "write"};
+  static const std::set<std::string> kNotCounted{"calibrate", "draw", "optimize", "measure", "write"};
   double seconds = 0;
   for (const auto& [phase, phase_s] : phases_s())
     if (!kNotCounted.contains(phase)) seconds += phase_s;

@@ -11,6 +11,7 @@ enum class StepResult {
   kNotInConflict,  ///< a plan found the point outside the ball of the cell where its cavity was to begin
   kTooNear,        ///< a commit found a vertex too near, or too many vertices in the region
   kCovered,        ///< the worker found an isosurface vertex that covers the point
+  kNotBetter,      ///< an optimisation found no better cells (optimize/)
 };
 
 }  // namespace podm

@@ -29,6 +29,7 @@ void check_options_on_ranks(const MeshingOptions& options) {
   refuse(options.algorithm == Algorithm::kPodmHome, "algorithm " + to_string(options.algorithm));
   refuse(options.team.executor == Executor::kVirtual, "virtual workers");
   refuse(options.sizes.target_elements > 0, "a target number of elements");
+  refuse(options.optimize.is_wanted, "optimisation");
   refuse(options.leaves.with_schedule, "a schedule of leaves");
 }
 
