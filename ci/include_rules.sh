@@ -17,12 +17,14 @@ may_include() {
     mesher/io) echo mesher/files mesher/runtime mesher/include ;;
     mesher/algorithms) echo mesher/workers mesher/refine mesher/delaunay mesher/octree mesher/image mesher/geometry \
       mesher/runtime mesher/include podm ;;
+    mesher/optimize) echo mesher/algorithms mesher/workers mesher/refine mesher/delaunay mesher/geometry \
+      mesher/runtime mesher/include podm ;;
     mesher/distributed) echo mesher mesher/algorithms mesher/workers mesher/refine mesher/delaunay mesher/octree \
       mesher/image mesher/io mesher/files mesher/geometry mesher/runtime mesher/include podm ;;
     podm) echo mesher/include ;;
     examples/*) echo mesher/include podm ;;
-    mesher) echo mesher/algorithms mesher/workers mesher/refine mesher/delaunay mesher/octree mesher/image mesher/io \
-      mesher/files mesher/geometry mesher/runtime mesher/include podm ;;  # the phases of a run
+    mesher) echo mesher/optimize mesher/algorithms mesher/workers mesher/refine mesher/delaunay mesher/octree \
+      mesher/image mesher/io mesher/files mesher/geometry mesher/runtime mesher/include podm ;;  # the phases of a run
     mesher/*) echo "mesher mesher/* podm" ;;  # the command line, whole-mesher tests
     harness) echo mesher/runtime ;;  # asks the system as the mesher does, whom it knows as a program and by its files
     verifiers) ;;                    # they know it by its files alone

@@ -3,7 +3,7 @@ include(CMakePackageConfigHelpers)
 
 set_target_properties(podm_library PROPERTIES EXPORT_NAME podm)
 install(TARGETS podm RUNTIME DESTINATION ${CMAKE_INSTALL_BINDIR})
-install(TARGETS podm_library podm_mesher podm_refine podm_workers podm_octree podm_delaunay podm_isosurface podm_image_io podm_io
+install(TARGETS podm_library podm_mesher podm_refine podm_workers podm_optimize podm_octree podm_delaunay podm_isosurface podm_image_io podm_io
                 podm_files podm_geometry podm_runtime podm_toml podm_flags
         EXPORT podmTargets ARCHIVE DESTINATION ${CMAKE_INSTALL_LIBDIR})
 install(DIRECTORY ${PROJECT_SOURCE_DIR}/mesher/include/podm DESTINATION ${CMAKE_INSTALL_INCLUDEDIR})

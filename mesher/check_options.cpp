@@ -43,6 +43,17 @@ void check_dihedral(double min_dihedral_deg) {
         fmt::format("the least dihedral angle must be more than 0 and at most {} degrees", kMostMinDihedral));
 }
 
+void check_optimization(const MeshingOptions& options) {
+  const OptimizeOptions& optimize = options.optimize;
+  if (!optimize.is_wanted) return;
+  const double least = optimize.least_dihedral_deg, largest = optimize.largest_dihedral_deg;
+  if (!(least > 0 && least <= 15) || !(largest >= 150 && largest < 180))
+    throw InputError(
+        "bounds on dihedral angles must be more than 0 and at most 15, and at least 150 and less than 180");
+  if (options.log != nullptr)
+    throw InputError("an optimised mesh has no log of operations: those of optimisation are not logged");
+}
+
 // Readers see to it; others may have left the affine out.
 void check_affine(const LabelImage& image) {
   const Affine& a = image.voxel_to_ras;
@@ -65,6 +76,7 @@ void check_options(const LabelImage& image, const MeshingOptions& options) {
   check_dihedral(options.min_dihedral_deg);
   check_team_size(options.team, options.algorithm);
   check_leaves(options.leaves);
+  check_optimization(options);
 }
 
 }  // namespace podm

@@ -9,6 +9,7 @@
 #include "default_sizes.h"
 #include "extract_mesh.h"
 #include "measure_quality.h"
+#include "optimize/optimize_mesh.h"
 #include "podm/operation_log.h"
 #include "workers/work_cost.h"
 
@@ -18,6 +19,16 @@ namespace {
 
 double seconds_since(std::chrono::steady_clock::time_point start) {
   return std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+}
+
+// In rounded arithmetic: the margin is above its errors.
+void tell_of_optimization(OptimizationReport& optimization, const Quality& quality, TetMesh& mesh) {
+  constexpr double kMarginDeg = 1e-9;
+  const double least = optimization.least_dihedral_deg, largest = optimization.largest_dihedral_deg;
+  optimization.are_bounds_kept =
+      quality.min_dihedral_deg >= least + kMarginDeg && quality.max_dihedral_deg <= largest - kMarginDeg;
+  mesh.is_optimized = true;
+  if (optimization.are_bounds_kept) mesh.dihedral_bounds_deg = {least, largest};
 }
 
 }  // namespace
@@ -123,6 +134,25 @@ void PhasesOfRun::simulate(const Refinement& refinement, MeshingReport& report) 
     report.virtual_worker_s[cause.name] = refinement.counters.overhead.*cause.member;
 }
 
+void PhasesOfRun::optimize(Mesh& mesh, MeshingReport& report) const {
+  const OptimizeOptions& asked = options_.optimize;
+  if (!asked.is_wanted || report.stop_reason != StopReason::kComplete) return;
+  announce("optimize", 0, 0);
+  const double start_s = seconds_();
+  label_cells(mesh, *isosurface_, loop_threads_);
+  StopControl stop(
+      {.max_elements = 0, .max_seconds = options_.limits.max_seconds}, stop_,
+      [&](std::uint64_t) { announce("optimize", 0, 0); }, start_);
+  const DihedralBounds bounds(asked.least_dihedral_deg, asked.largest_dihedral_deg);
+  const OptimizerParameters parameters{CellQuality(aim_over(bounds)), bounds, size_field(image_, sizes_),
+                                       sizes_.delta_mm};
+  report.optimization = optimize_mesh(mesh, parameters, team_.team(), stop);
+  report.stop_reason = stop.reason();
+  if (options_.team.executor == Executor::kVirtual)
+    report.virtual_phases_s["optimize"] = report.optimization->simulated_s;
+  report.phases_s["optimize"] = seconds_() - start_s;
+}
+
 void PhasesOfRun::extract(const std::function<void(Space)>& extract, MeshingReport& report) const {
   announce("extract", 0, 0);
   const double start_s = seconds_();
@@ -136,9 +166,11 @@ void PhasesOfRun::finish(TetMesh& mesh, MeshingReport& report) const {
   const double start_s = seconds_();
   measure_quality(mesh, image_, size_field(image_, sizes_), loop_threads_, report);
   report.phases_s["measure"] = seconds_() - start_s;
+  if (report.optimization) tell_of_optimization(*report.optimization, report.quality, mesh);
   if (options_.space != Space::kVoxel) return;
   const double begin_s = seconds_();
   convert_to_voxel_space(mesh, image_, loop_threads_);
+  mesh.dihedral_bounds_deg.reset();  // angles are others there
   report.phases_s["extract"] += seconds_() - begin_s;
 }
 

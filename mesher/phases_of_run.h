@@ -37,6 +37,9 @@ class PhasesOfRun {
   void refine(const SizeOptions& sizes, const Refine& refine);
   void report_refinement(Refinement& refinement, MeshingReport& report) const;
 
+  /// Betters the refined mesh, if that is asked for and refinement was not ended early.
+  void optimize(Mesh& mesh, MeshingReport& report) const;
+
   /// Calls extract(space), which makes the mesh, in mm.
   void extract(const std::function<void(Space)>& extract, MeshingReport& report) const;
   /// Measures the mesh, and brings it from mm to the space that was asked for.

@@ -42,11 +42,12 @@ CLI::Validator positive() {
           ""};
 }
 
-CLI::Validator angle() {
-  return {[](std::string& text) {
+CLI::Validator angle_from(double least, double most) {
+  return {[=](std::string& text) {
             double value = 0;
-            const bool is_angle = CLI::detail::lexical_cast(text, value) && value >= 0 && value <= 60;
-            return is_angle ? std::string() : fmt::format("'{}' is no angle of 0 to 60 degrees", text);
+            const bool is_angle = CLI::detail::lexical_cast(text, value) && value >= least && value <= most;
+            return is_angle ? std::string()
+                            : fmt::format("'{}' is no angle of {} to {} degrees", text, least, most);
           },
           ""};
 }
@@ -111,7 +112,7 @@ void declare_claims(CLI::App& app, Command& command) {
                  fmt::format("angles of boundary and interface facets are above this [default: {}]",
                              options.angle_bound_deg))
       ->option_text("DEGREES")
-      ->check(angle());
+      ->check(angle_from(0, 60));
   app.add_option("--radius", options.radius_mm, "size: largest circumradius of a cell, mm [default: none]")
       ->option_text("MM")
       ->check(positive());
@@ -119,6 +120,13 @@ void declare_claims(CLI::App& app, Command& command) {
                  "the same for one label value; repeatable [default: --radius]")
       ->option_text("LABEL=MM")
       ->allow_extra_args(false);
+  app.add_option("--min-dihedral", options.min_dihedral_deg,
+                 "dihedral: least angle between facets of a cell [default: as the file promises]")
+      ->option_text("DEGREES")
+      ->check(angle_from(0, 90));
+  app.add_option("--max-dihedral", options.max_dihedral_deg, "the largest [default: as the file promises]")
+      ->option_text("DEGREES")
+      ->check(angle_from(90, 180));
   app.add_option(
          "--fidelity-voxels", options.fidelity_bound_voxels,
          fmt::format("95 % of the interfaces of mesh and image are within this of each other [default: {},\n"
@@ -198,8 +206,9 @@ void finish_options(Command& command) {
 int verify(const Command& command) {
   const auto start = std::chrono::steady_clock::now();
   const Options& options = command.options;
-  const std::vector<std::string> claims = chosen_claims(options);
+  check_claims(options);
   const Inputs inputs = read_inputs(options);
+  const std::vector<std::string> claims = chosen_claims(options, inputs.mesh);
   const bool shows_progress = !command.quiet && isatty(STDERR_FILENO) != 0;
   const std::vector<ClaimResult> results = run_claims(inputs, options, claims, [&](const std::string& claim) {
     if (shows_progress) fmt::print(stderr, "{}checking {} ...", kClearLine, claim);

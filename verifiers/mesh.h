@@ -7,6 +7,7 @@
 #include <limits>
 #include <map>
 #include <optional>
+#include <set>
 #include <string>
 #include <vector>
 
@@ -37,6 +38,9 @@ struct Mesh {
   std::map<LabelValue, std::string> label_names;        ///< as far as the file names them
   std::map<std::string, std::size_t> other_cells;       ///< cells that are neither tetrahedra nor triangles
   Space space = Space::kUnstated;
+  std::set<std::string> unclaimed;  ///< claims that its maker does not make
+  std::optional<std::array<double, 2>>
+      promised_dihedral_deg;  ///< least and largest dihedral angle, as promised
 };
 
 }  // namespace podm::verify

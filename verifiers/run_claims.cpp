@@ -16,7 +16,7 @@ namespace podm::verify {
 
 namespace {
 
-bool is_given(Needs needs, const Options& options) {
+bool is_given(Needs needs, const Options& options, const Mesh& mesh) {
   switch (needs) {
     case Needs::kNothing:
       return true;
@@ -24,6 +24,8 @@ bool is_given(Needs needs, const Options& options) {
       return !options.image_path.empty();
     case Needs::kBound:
       return options.radius_mm || !options.radius_of.empty();
+    case Needs::kDihedralBound:
+      return options.min_dihedral_deg || options.max_dihedral_deg || mesh.promised_dihedral_deg;
   }
   return false;
 }
@@ -85,6 +87,7 @@ const std::vector<Claim>& all_claims() {
       {"radius_edge", Needs::kNothing, [](I i, A, O o) { return check_radius_edge(i.mesh, o); }},
       {"boundary_angles", Needs::kNothing, [](I i, A a, O o) { return check_boundary_angles(i.mesh, a, o); }},
       {"size", Needs::kBound, [](I i, A, O o) { return check_size(i.mesh, o); }},
+      {"dihedral", Needs::kDihedralBound, [](I i, A, O o) { return check_dihedral(i.mesh, o); }},
       {"delaunay", Needs::kNothing, [](I i, A a, O o) { return check_delaunay(i.mesh, a, o); }},
       {"conformity", Needs::kNothing,
        [](I i, A a, O o) { return check_conformity(i.mesh, a, pointer(i.schedule), o); }},
@@ -95,19 +98,25 @@ const std::vector<Claim>& all_claims() {
   return kAll;
 }
 
-std::vector<std::string> chosen_claims(const Options& options) {
-  std::vector<std::string> chosen;
-  for (const Claim& claim : all_claims()) {
-    const bool is_named =
-        std::find(options.claims.begin(), options.claims.end(), claim.name) != options.claims.end();
-    if (is_named || (options.claims.empty() && is_given(claim.needs, options))) chosen.push_back(claim.name);
-  }
+void check_claims(const Options& options) {
   for (const std::string& name : options.claims) {
-    if (std::find(chosen.begin(), chosen.end(), name) != chosen.end()) continue;
+    const auto is_named = [&](const Claim& claim) { return claim.name == name; };
+    if (std::any_of(all_claims().begin(), all_claims().end(), is_named)) continue;
     std::string known;
     for (const Claim& claim : all_claims()) known += std::string(known.empty() ? "" : ", ") + claim.name;
     throw InputError(fmt::format("--claims: no claim '{}', nearest is '{}'; there are {}", name,
                                  nearest_claim(name), known));
+  }
+}
+
+std::vector<std::string> chosen_claims(const Options& options, const Mesh& mesh) {
+  std::vector<std::string> chosen;
+  for (const Claim& claim : all_claims()) {
+    const bool is_chosen =
+        options.claims.empty()
+            ? is_given(claim.needs, options, mesh) && !mesh.unclaimed.contains(claim.name)
+            : std::find(options.claims.begin(), options.claims.end(), claim.name) != options.claims.end();
+    if (is_chosen) chosen.push_back(claim.name);
   }
   return chosen;
 }

@@ -15,11 +15,13 @@
 namespace podm::verify {
 
 /// What a claim needs beside the mesh.
-enum class Needs { kNothing, kImage, kBound };
+enum class Needs { kNothing, kImage, kBound, kDihedralBound };
 
-/// The claims asked for by name, or without names all whose inputs were given. Throws InputError for an
-/// unknown one.
-std::vector<std::string> chosen_claims(const Options& options);
+/// Throws InputError where a claim is asked for that there is not.
+void check_claims(const Options& options);
+/// The claims asked for by name, or without names all whose inputs were given and that the mesh's file does
+/// not say are not claimed.
+std::vector<std::string> chosen_claims(const Options& options, const Mesh& mesh);
 
 struct Inputs {
   Mesh mesh;

@@ -64,7 +64,7 @@ Verification verify_mesh(const Trial& trial, const std::string& image, const Mes
   add("--claims",
       fmt::format("{}{}{}", kClaims, radius_mm > 0 ? ",size" : "", with_fidelity ? ",fidelity" : ""));
   if (radius_mm > 0) add("--radius", fmt::format("{}", radius_mm));
-  if (with_fidelity) add("--delta", fmt::format("{}", used.delta_mm.value_or(0)));
+  if (used.delta_mm) add("--delta", fmt::format("{}", *used.delta_mm));
   if (trial.options.value(kSchedule, false)) add("--schedule", folder + kScheduleName);
   const ProcessOutcome outcome = ask(command, timeout_s(trial), stop_requested).outcome;
   const auto report = read_report(report_path);

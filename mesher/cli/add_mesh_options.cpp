@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <limits>
+#include <tuple>
 
 #include "cli/add_options.h"
 #include "cli/crossover.h"
@@ -39,6 +40,24 @@ void add_sizing_options(CLI::App& app, MeshCommand& command) {
                       "and the mesh stays Delaunay [default: nothing moves]",
                       kMostMinDihedral, max_dihedral_deg(0), max_dihedral_deg(0) - max_dihedral_deg(1)),
           into_positive(meshing.min_dihedral_deg, "angle in degrees"));
+}
+
+void add_optimize_options(CLI::App& app, MeshingOptions& meshing) {
+  OptimizeOptions& optimize = meshing.optimize;
+  begin_group(app, "Dihedral angles");
+  CLI::Option* flag =
+      add_flag(app, "--optimize", optimize.is_wanted,
+               "better the worst cells of the finished mesh: all other bounds and the surfaces\n"
+               "stay, but it is no longer Delaunay [default: no]");
+  need(add_one(app, "--dihedral-bounds", "MIN,MAX",
+               "least and largest dihedral angle of a cell, degrees; half as much again is\n"
+               "aimed at, and cells that surfaces keep from it are counted",
+               {[&optimize](const std::string& text, const std::string& name) {
+                  std::tie(optimize.least_dihedral_deg, optimize.largest_dihedral_deg) =
+                      parse_two_positive(text, name, "MIN,MAX, as in 8,165");
+                },
+                fmt::format("{},{}", optimize.least_dihedral_deg, optimize.largest_dihedral_deg)}),
+       flag);
 }
 
 void add_limit_options(CLI::App& app, MeshCommand& command, Program which) {
@@ -169,6 +188,7 @@ void add_mesh_command(CLI::App& program, MeshCommand& command, Program which) {
                                           : "mesh a label image into tetrahedra with guarantees");
   add_image_options(app, command.image);
   add_sizing_options(app, command);
+  add_optimize_options(app, command.meshing);
   add_limit_options(app, command, which);
   begin_group(app, "Output");
   require(add_one(app, "-o,--output", "MESH",
@@ -193,9 +213,8 @@ void add_mesh_command(CLI::App& program, MeshCommand& command, Program which) {
   add_flag(app, "--quiet", command.quiet, "neither progress nor summary [default: both, on standard error]");
   if (is_on_ranks)
     end_help(app,
-             "Not on ranks yet, and refused: --target-elements, --min-dihedral, --surface, --algorithm "
-             "podm-home,\n"
-             "--schedule, --executor virtual.");
+             "Not on ranks yet, and refused: --target-elements, --min-dihedral, --surface, --optimize,\n"
+             "--algorithm podm-home, --schedule, --executor virtual.");
 }
 
 }  // namespace podm::cli

@@ -25,7 +25,7 @@ CLI::Option* add_one(CLI::App& app, const std::string& names, const std::string&
                      const std::string& description, const Target& target);
 CLI::Option* add_many(CLI::App& app, const std::string& names, const std::string& type,
                       const std::string& description, const Setter& set);
-void add_flag(CLI::App& app, const std::string& names, bool& target, const std::string& description);
+CLI::Option* add_flag(CLI::App& app, const std::string& names, bool& target, const std::string& description);
 void require(CLI::Option* option);
 void exclude(CLI::Option* option, CLI::Option* other);
 /// `option` may be given only with `other`.

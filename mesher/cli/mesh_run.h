@@ -49,7 +49,7 @@ struct MeshRun {
   /// Seconds by phase: those of the library between "read" ("draw" where a phantom was drawn) and "write".
   std::map<std::string, double> phases_s() const;
   /// The elements per second of the paper's eq. (1): cells over the seconds of all phases but measuring,
-  /// writing, the drawing of a phantom, calibration and R7, which that paper does not have.
+  /// writing, the drawing of a phantom, calibration, and R7 and optimisation, which that paper does not have.
   double cells_per_second() const;
   double refine_cells_per_second() const;
   /// One sentence for each guarantee or limit that is unmet; none: the run is a success.

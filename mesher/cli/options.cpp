@@ -58,8 +58,8 @@ CLI::Option* add_many(CLI::App& app, const std::string& names, const std::string
   return option->get_positional() ? option->expected(-1) : option;  // an option takes one each time
 }
 
-void add_flag(CLI::App& app, const std::string& names, bool& target, const std::string& description) {
-  app.add_flag(names, target, description);
+CLI::Option* add_flag(CLI::App& app, const std::string& names, bool& target, const std::string& description) {
+  return app.add_flag(names, target, description);
 }
 
 void end_help(CLI::App& app, const std::string& text) { app.footer(text); }

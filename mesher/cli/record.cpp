@@ -26,6 +26,13 @@ Json selection_of(const LabelSelection& selection) {
           {"merge", merges}};
 }
 
+// Of the bounds asked for; null: the mesh was left as it was.
+Json optimize_of(const OptimizeOptions& optimize) {
+  if (!optimize.is_wanted) return nullptr;
+  return {{"least_dihedral_deg", optimize.least_dihedral_deg},
+          {"largest_dihedral_deg", optimize.largest_dihedral_deg}};
+}
+
 // The options that were asked for; 0 means what it means in MeshingOptions.
 Json options_of(const MeshRun& run) {
   const MeshingOptions& options = run.options;
@@ -37,6 +44,7 @@ Json options_of(const MeshRun& run) {
           {"delta_mm", options.sizes.delta_mm},
           {"target_elements", options.sizes.target_elements},
           {"target_tolerance_percent", options.sizes.target_tolerance_percent},
+          {"optimize", optimize_of(options.optimize)},
           {"space", to_string(options.space)},
           {"min_dihedral_deg", options.min_dihedral_deg},
           {"max_elements", options.limits.max_elements},
@@ -186,6 +194,39 @@ Json perturbed_of(const MeshingReport& report) {
           {"unmoved", unmoved}};
 }
 
+template <class Choice>
+Json counts_of(const std::map<Choice, std::uint64_t>& counts) {
+  Json json = Json::object();
+  for (const auto& [choice, name] : Names<Choice>::kAll) {
+    const auto found = counts.find(choice);
+    json[name] = found == counts.end() ? 0 : found->second;
+  }
+  return json;
+}
+
+Json optimization_of(const MeshingReport& report) {
+  if (!report.optimization) return nullptr;
+  const OptimizationReport& done = *report.optimization;
+  return {{"least_aim_deg", done.least_aim_deg},
+          {"largest_aim_deg", done.largest_aim_deg},
+          {"beyond_aim_before", done.beyond_aim_before},
+          {"beyond_aim", done.beyond_aim},
+          {"beyond_bounds_before", done.beyond_bounds_before},
+          {"beyond_bounds", done.beyond_bounds},
+          {"obstacles", counts_of(done.obstacles)},
+          {"successes", counts_of(done.successes)},
+          {"are_bounds_kept", done.are_bounds_kept}};
+}
+
+// The claims of podm-verify that the mesh keeps, where these are not all.
+Json promises_of(const MeshingReport& report) {
+  if (!report.optimization) return nullptr;
+  Json claims = {"structure",  "radius_edge", "boundary_angles", "size",
+                 "conformity", "surface",     "labels",          "fidelity"};
+  if (report.optimization->are_bounds_kept) claims.push_back("dihedral");
+  return claims;
+}
+
 Json leaves_of(const MeshRun& run) {
   const Algorithm algorithm = run.report.algorithm;
   if (algorithm == Algorithm::kPodm || algorithm == Algorithm::kPodmHome) return nullptr;
@@ -281,7 +322,9 @@ Json record(const MeshRun& run) {
       {"workers", workers_of(report)},
       {"quality", quality_of(report.quality)},
       {"perturbed", perturbed_of(report)},
+      {"optimization", optimization_of(report)},
       {"guarantees", guarantees_of(report.guarantees)},
+      {"promises", promises_of(report)},
       {"mesh_sha256", run.mesh_sha256.empty() ? Json() : Json(run.mesh_sha256)},
       {"verdicts", run.verdicts},
       {"stop_reason", to_string(report.stop_reason)},

@@ -73,6 +73,36 @@ std::string perturbed_text(const MeshingReport& report) {
   return why.empty() ? text : text + "           these stay for" + why + "\n";
 }
 
+std::string words(std::string name) {
+  std::replace(name.begin(), name.end(), '_', ' ');
+  return name;
+}
+
+template <class Choice>
+std::string counts_text(const std::map<Choice, std::uint64_t>& counts) {
+  std::string text;
+  for (const auto& [choice, count] : counts)
+    if (count > 0) text += fmt::format("{}{} {}", text.empty() ? "" : ", ", count, words(to_string(choice)));
+  return text.empty() ? "none" : text;
+}
+
+std::string optimization_text(const MeshingReport& report) {
+  if (!report.optimization) return "";
+  const OptimizationReport& done = *report.optimization;
+  const auto line = [](double least_deg, double largest_deg, std::uint64_t before, std::uint64_t now) {
+    return fmt::format("{} cells under {:g} or over {:g} deg, {} before", now, least_deg, largest_deg,
+                       before);
+  };
+  std::string text = fmt::format(
+      "optimized  {}\n           {}\n           by {}\n",
+      line(done.least_dihedral_deg, done.largest_dihedral_deg, done.beyond_bounds_before, done.beyond_bounds),
+      line(done.least_aim_deg, done.largest_aim_deg, done.beyond_aim_before, done.beyond_aim),
+      counts_text(done.successes));
+  if (done.beyond_bounds > 0)
+    text += fmt::format("           what is in the way of the first: {}\n", counts_text(done.obstacles));
+  return text;
+}
+
 std::string calibration_text(const MeshingReport& report) {
   if (!report.calibration) return "";
   const Calibration& calibration = *report.calibration;
@@ -87,7 +117,7 @@ std::string time_text(const MeshRun& run) {
   const auto phases = run.phases_s();
   std::string text = "time      ";
   for (const char* phase : {"read", "draw", "transform", "allocate", "initial", "octree", "refine",
-                            "exchange", "closing", "perturb", "extract", "measure", "write"})
+                            "exchange", "closing", "perturb", "optimize", "extract", "measure", "write"})
     if (const auto found = phases.find(phase); found != phases.end())
       text += fmt::format(" {} {:.2f} s", phase, found->second);
   return text +
@@ -103,7 +133,8 @@ std::string summary(const MeshRun& run) {
   std::string text =
       fmt::format("{}: {} cells, {} vertices, {} boundary facets; {} space\n", run.command.mesh_path,
                   run.mesh.cells, run.mesh.vertices, run.mesh.boundary_facets, to_string(run.options.space));
-  text += labels_text(run) + facets_text(run) + quality_text(report.quality) + perturbed_text(report);
+  text += labels_text(run) + facets_text(run) + quality_text(report.quality) + perturbed_text(report) +
+          optimization_text(report);
   text += fmt::format("sizes      radius {}, delta {:.4g} mm\n",
                       report.radius_mm > 0 ? fmt::format("{:.4g} mm", report.radius_mm) : "unbounded",
                       report.delta_mm);

@@ -63,12 +63,17 @@ std::vector<std::string> image_options(const MeshRun& run, std::optional<Tempora
 std::vector<std::string> verifier_command(const MeshRun& run, std::optional<TemporaryFolder>& scratch) {
   std::vector<std::string> command{verifier_path(), run.command.mesh_path, "--json", "-"};
   if (run.command.quiet) command.push_back("--quiet");
-  std::string claims = "structure,radius_edge,boundary_angles,delaunay,conformity,surface,labels";
+  std::string claims = "structure,radius_edge,boundary_angles,conformity,surface,labels";
+  // Of an optimised mesh the file tells what it promises of dihedral angles.
+  const auto& optimization = run.report.optimization;
+  const bool is_delaunay = !optimization;
+  if (is_delaunay) claims += ",delaunay";
+  if (optimization && optimization->are_bounds_kept) claims += ",dihedral";
   const double radius_mm = run.report.radius_mm;
   const auto& radius_of = run.options.sizes.radius_of_mm;
   if (radius_mm > 0 || !radius_of.empty()) claims += ",size";
-  if (run.command.verify_fidelity) {
-    claims += ",fidelity";
+  if (run.command.verify_fidelity) claims += ",fidelity";
+  if (run.command.verify_fidelity || !is_delaunay) {
     command.insert(command.end(), {"--delta", fmt::format("{}", run.report.delta_mm)});
   }
   command.insert(command.end(), {"--claims", claims});

@@ -236,6 +236,8 @@ class Mesh {
   IdArena cell_ids_, vertex_ids_;
 };
 
+/// Whether adjacency and orientation hold: what is left of is_valid() for an optimised mesh.
+bool is_triangulation(const Mesh& mesh, std::string* fault = nullptr);
 /// Whether adjacency, orientation, circumspheres and the local Delaunay property all hold; `fault` tells what
 /// does not. Linear in the number of cells.
 bool is_valid(const Mesh& mesh, std::string* fault = nullptr);

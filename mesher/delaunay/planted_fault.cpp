@@ -15,7 +15,8 @@ constexpr std::array kFaults{std::pair{"no_lock", LocksTaken{.to_read = 0}},
                              std::pair{"one_lock", LocksTaken{.to_read = 1}},
                              std::pair{"three_locks", LocksTaken{.to_replace = 3}},
                              std::pair{"three_in_zone", LocksTaken{.in_zone = 3}},
-                             std::pair{"three_to_move", LocksTaken{.to_move = 3}}};
+                             std::pair{"three_to_move", LocksTaken{.to_move = 3}},
+                             std::pair{"three_in_cavity", LocksTaken{.in_cavity = 3}}};
 
 LocksTaken named_in_environment() {
   const char* const asked = std::getenv("PODM_PLANTED_FAULT");

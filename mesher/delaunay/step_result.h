@@ -12,6 +12,7 @@ enum class StepResult {
   kTooNear,        ///< a commit found a vertex too near, or too many vertices in the region
   kNoMove,         ///< R7 found no point for a vertex of a poor cell
   kCovered,        ///< the worker found an isosurface vertex that covers the point
+  kNotBetter,      ///< an optimisation found no better cells (optimize/)
 };
 
 }  // namespace podm

@@ -1,5 +1,6 @@
-// is_valid: every cell positive, every mirror mutual over the same three vertices, every sphere honest, every
-// interior facet locally Delaunay. Locally Delaunay everywhere is globally Delaunay (Delaunay's lemma).
+// is_triangulation: every cell positive, every mirror mutual over the same three vertices. is_valid: every
+// sphere honest, too, and every interior facet locally Delaunay. Locally Delaunay everywhere is globally
+// Delaunay (Delaunay's lemma).
 #include <algorithm>
 #include <string>
 
@@ -27,11 +28,10 @@ const char* fault_of_facet(const Mesh& mesh, CellId c, unsigned i) {
   if (cell_of(mirror) >= mesh.cell_bound() || !other.is_alive()) return "mirror in a dead cell";
   if (other.mirrors[j] != 4 * c + i) return "mirror not mutual";
   if (sorted_facet(mesh, 4 * c + i) != sorted_facet(mesh, mirror)) return "mirror over other vertices";
-  if (mesh.is_in_conflict(c, mesh.point(other.vertices[j]))) return "facet not locally Delaunay";
   return nullptr;
 }
 
-const char* fault_of_cell(const Mesh& mesh, CellId c) {
+const char* fault_of_triangulation(const Mesh& mesh, CellId c) {
   const auto& v = mesh.cell(c).vertices;
   for (const VertexId id : v) {
     if (id >= mesh.vertex_bound() || mesh.vertex(id).kind == VertexKind::kUnused) return "unused vertex";
@@ -40,19 +40,29 @@ const char* fault_of_cell(const Mesh& mesh, CellId c) {
     return "not positively oriented";
   }
   if (mesh.is_marked(c)) return "left marked by an operation";
-  for (const VertexId id : v) {
-    const Side side = side_of(mesh.cell(c).center, mesh.cell(c).squared_radius, mesh.point(id));
-    if (side != Side::kUndecided) return "circumsphere misses its vertex";
-  }
   for (unsigned i = 0; i < 4; ++i) {
     if (const char* fault = fault_of_facet(mesh, c, i)) return fault;
   }
   return nullptr;
 }
 
-}  // namespace
+const char* fault_of_cell(const Mesh& mesh, CellId c) {
+  if (const char* fault = fault_of_triangulation(mesh, c)) return fault;
+  for (const VertexId id : mesh.cell(c).vertices) {
+    const Side side = side_of(mesh.cell(c).center, mesh.cell(c).squared_radius, mesh.point(id));
+    if (side != Side::kUndecided) return "circumsphere misses its vertex";
+  }
+  for (const FacetId mirror : mesh.cell(c).mirrors) {
+    if (mirror == kNoFacet) continue;
+    const VertexId apex =
+        mesh.cell(cell_of(mirror)).vertices[static_cast<std::size_t>(index_in_cell(mirror))];
+    if (mesh.is_in_conflict(c, mesh.point(apex))) return "facet not locally Delaunay";
+  }
+  return nullptr;
+}
 
-bool is_valid(const Mesh& mesh, std::string* fault) {
+template <class FaultOfCell>
+bool is_sound(const Mesh& mesh, std::string* fault, const FaultOfCell& fault_of_cell) {
   for (CellId c = 0; c < mesh.cell_bound(); ++c) {
     if (!mesh.cell(c).is_alive()) continue;
     if (const char* found = fault_of_cell(mesh, c)) {
@@ -62,5 +72,12 @@ bool is_valid(const Mesh& mesh, std::string* fault) {
   }
   return true;
 }
+
+}  // namespace
+
+bool is_triangulation(const Mesh& mesh, std::string* fault) {
+  return is_sound(mesh, fault, fault_of_triangulation);
+}
+bool is_valid(const Mesh& mesh, std::string* fault) { return is_sound(mesh, fault, fault_of_cell); }
 
 }  // namespace podm

@@ -68,13 +68,16 @@ class DihedralBounds {
   double least_deg() const { return least_deg_; }
   double largest_deg() const { return largest_deg_; }
 
-  /// (sin t / sin bound)^2 of the cell's worst dihedral angle t, by the bound on its own side of 90 degrees:
-  /// from 0, of a cell that is flat or turned over, by 1 at a bound, to 1 / sin^2 of one.
+  /// (sin t / sin bound)^2 of an angle t, told by its squared cotangent, by the bound on its side of 90
+  /// degrees: 1 at the bound and less beyond it.
+  double quality_of_angle(double cotangent2) const {
+    return 1 / ((cotangent2 < 0 ? squared_sine_of_largest_ : squared_sine_of_least_) *
+                (1 + std::abs(cotangent2)));
+  }
+  /// The same of the cell's worst dihedral angle; 0 of a cell that is flat or turned over.
   double quality(const DihedralExtremes& cell) const {
     if (!(cell.determinant > 0)) return 0;
-    const double small = 1 / (squared_sine_of_least_ * (1 + std::max(cell.of_least, 0.0)));
-    const double large = 1 / (squared_sine_of_largest_ * (1 - std::min(cell.of_largest, 0.0)));
-    return std::min(small, large);
+    return std::min(quality_of_angle(cell.of_least), quality_of_angle(cell.of_largest));
   }
 
  private:

@@ -15,6 +15,7 @@
 #include "io/grouping.h"
 #include "io/label_table.h"
 #include "io/mesh_formats.h"
+#include "io/promises.h"
 
 namespace podm {
 namespace {
@@ -81,6 +82,7 @@ class GmshWriter {
 
   void write_comments() {
     file_.write(fmt::format("$Comments\nspace {}\n", to_string(mesh_.space)));
+    for (const std::string& promise : promises_of(mesh_)) file_.write(fmt::format("promise {}\n", promise));
     for (const LabelIndex label : volumes_) {
       file_.write(fmt::format("label {} physical volume {} {}\n", mesh_.labels[label].value,
                               physical_tag(label), names_[label]));

@@ -5,6 +5,7 @@
 #include "files/atomic_file.h"
 #include "io/label_table.h"
 #include "io/mesh_formats.h"
+#include "io/promises.h"
 
 namespace podm {
 namespace {
@@ -33,6 +34,7 @@ class TextFile {
 void print_comments(TextFile& text, const TetMesh& mesh, const LabelPairs& pairs) {
   const LabelNames names(mesh.labels);
   text.print(FMT_COMPILE("# space {}\n"), to_string(mesh.space));
+  for (const std::string& promise : promises_of(mesh)) text.print(FMT_COMPILE("# promise {}\n"), promise);
   text.print(FMT_COMPILE("# tetrahedron reference: label value\n"));
   for (std::size_t i = 1; i < mesh.labels.size(); ++i)
     text.print(FMT_COMPILE("# label {} {}\n"), mesh.labels[i].value, names[static_cast<LabelIndex>(i)]);

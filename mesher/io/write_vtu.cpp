@@ -13,6 +13,7 @@
 #include "files/atomic_file.h"
 #include "io/label_table.h"
 #include "io/mesh_formats.h"
+#include "io/promises.h"
 #include "io/vertex_subset.h"
 #include "io/write_vtu.h"
 #include "io/xml_text.h"
@@ -92,6 +93,7 @@ std::string field_data(const TetMesh& mesh) {
   };
   const LabelNames names(mesh.labels);
   std::string text = "<FieldData>\n" + array("space:" + to_string(mesh.space), 1);
+  for (const std::string& promise : promises_of(mesh)) text += array("promise:" + promise, 1);
   for (std::size_t i = 0; i < mesh.labels.size(); ++i)
     text += array("label:" + names[static_cast<LabelIndex>(i)], mesh.labels[i].value);
   return text + "</FieldData>\n";

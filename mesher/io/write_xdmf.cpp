@@ -9,6 +9,7 @@
 
 #include "io/hdf5_file.h"
 #include "io/mesh_formats.h"
+#include "io/promises.h"
 #include "io/xml_text.h"
 
 namespace podm {
@@ -100,10 +101,16 @@ std::string grid_text(const GridOfXdmf& grid, const XdmfPart& part, const std::s
       data_item(file, grid.values, fmt::format("{}", grid.num_cells), "Int", 4));
 }
 
+std::string information(const std::string& name, const std::string& value) {
+  return fmt::format("<Information Name=\"{}\" Value=\"{}\"/>\n", name, value);
+}
+
 std::string xdmf_text(const std::string& path, const XdmfPart& part) {
   const std::string file = std::filesystem::path(hdf5_path_of(path)).filename().string();
+  std::string promises;
+  for (const std::string& promise : promises_of(part.mesh)) promises += information("promise", promise);
   return "<?xml version=\"1.0\"?>\n<Xdmf Version=\"3.0\">\n<Domain>\n" +
-         fmt::format("<Information Name=\"space\" Value=\"{}\"/>\n", to_string(part.mesh.space)) +
+         information("space", to_string(part.mesh.space)) + promises +
          grid_text({"mesh", "Tetrahedron", "cells", "label", "cell_labels", part.total_cells, 4}, part,
                    file) +
          grid_text({"facets", "Triangle", "facets", "pair", "facet_tags", part.total_facets, 3}, part, file) +

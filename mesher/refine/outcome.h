@@ -7,12 +7,12 @@
 namespace podm {
 
 enum class Outcome {
-  kCommitted,     ///< a vertex was inserted, or moved
-  kSound,         ///< the cell breaks no rule
+  kCommitted,     ///< a vertex was inserted, or moved, or cells were replaced by better ones
+  kSound,         ///< the cell breaks no rule, or is good
   kStaleCell,     ///< the cell has died
   kLockConflict,  ///< nothing was changed, and the cell is back on the list
   kRejected,      ///< nothing was changed: a vertex is too near to the point or covers it, or the point lies
-                  ///< outside the ball of its cell, or R7 found none
+                  ///< outside the ball of its cell, or R7 found none; or there are no better cells
   kOutOfLeaf,     ///< nothing was changed, and the cell is among the deferred
 };
 
@@ -29,6 +29,7 @@ inline Outcome outcome_of(StepResult result) {
     case StepResult::kTooNear:
     case StepResult::kCovered:
     case StepResult::kNoMove:
+    case StepResult::kNotBetter:
       return Outcome::kRejected;
     case StepResult::kDone:
       break;

@@ -11,7 +11,8 @@ from podm_process import PROGRAM, PodmTestCase, run_podm, start_podm
 VERIFIER = os.path.join(os.path.dirname(PROGRAM), "podm-verify")
 RECORD_NAMES = {"schema", "algorithm", "input", "options", "seed", "threads", "phases_s", "cells", "vertices",
                 "boundary_facets", "cells_per_second", "refine_cells_per_second", "peak_rss_bytes", "outcomes",
-                "counters", "quality", "guarantees", "mesh_sha256", "verdicts", "stop_reason", "warnings"}
+                "counters", "quality", "optimization", "guarantees", "mesh_sha256", "verdicts", "stop_reason",
+                "warnings"}
 
 
 class Mesh(PodmTestCase):

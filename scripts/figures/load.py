@@ -16,7 +16,7 @@ OF_RANKS = "its ranks have tables and figures of their own"
 LONG_LISTS = ["labels", "facet_pairs", "command", "workers", "ranks.rounds", "ranks.by_rank"]
 # Phases in no second of equation 1: measuring and writing the mesh, finding the radius for a number of cells, drawing
 # a phantom.
-UNTIMED = ("measure", "write", "calibrate", "draw")
+UNTIMED = ("optimize", "measure", "write", "calibrate", "draw")
 REFINING = ("octree", "initial", "refine", "closing")
 # What a series varies; any other choice in a trial's name makes another series.
 VARIED = ("algorithm", "threads", "seed", "mesher", "input")

@@ -1,8 +1,12 @@
 // Claim labels.
 //   Statements  each cell's label is the image's label at its circumcentre: of the eight voxels around that
 //               point the label with the greatest trilinear weight, ties to the smaller, background (0)
-//               outside the grid. Each label of the mesh is one of the image's. Each label that has more than
-//               1000 voxels in the image has a cell.
+//               outside the grid. Of a mesh that does not claim to be Delaunay, whose flat cells have their
+//               circumcentres far away: it is the image's at the cell's centroid, or there is a voxel of that
+//               label within reach, a voxel's diagonal more than 2 delta (--delta) or another diagonal,
+//               whichever is longer; interfaces of mesh and image are no nearer each other than that. Each
+//               label of the mesh is one of the image's. Each label that has more than 1000 voxels in the
+//               image has a cell.
 //   Rests on    weights that are continuous and change by at most 1 a voxel along each axis, so that two
 //               weights' order at a point holds for all points nearer than half their difference
 //               (label_function.h). The circumcentre is known up to a bound (check_labels_circumcenter.h).
@@ -20,6 +24,7 @@
 
 #include "claims/check_labels_circumcenter.h"
 #include "claims/check_labels_overlap.h"
+#include "claims/check_labels_reach.h"
 #include "claims/claims.h"
 #include "claims/worst_witnesses.h"
 #include "image/label_function.h"
@@ -32,13 +37,14 @@ namespace {
 constexpr std::uint64_t kVoxelsThatMustBeMeshed = 1000;
 
 struct Tally {
-  std::uint64_t exact = 0, within_rounding = 0;
+  std::uint64_t exact = 0, within_rounding = 0, within_reach = 0;
   std::vector<CellId> wrong;
   WorstWitnesses violations, closest;
 
   void add(const Tally& other) {
     exact += other.exact;
     within_rounding += other.within_rounding;
+    within_reach += other.within_reach;
     wrong.insert(wrong.end(), other.wrong.begin(), other.wrong.end());
     violations.add(other.violations);
     closest.add(other.closest);
@@ -47,14 +53,16 @@ struct Tally {
 
 class CellLabels {
  public:
-  CellLabels(const Mesh& mesh, const Image& image, Space space, int threads)
+  CellLabels(const Mesh& mesh, const Image& image, Space space, double delta_mm, int threads)
       : mesh_(mesh),
         frame_(image, space),
         locator_(mesh, image, frame_, threads),
         exact_label_(mesh, image, space),
-        label_function_(image) {}
+        label_function_(image),
+        reach_(image, std::max(2 * delta_mm, LabelReach(image, 0).mm())) {}
 
   void check(CellId cell, Tally& tally) const {
+    if (is_by_centroid()) return check_centroid(cell, tally);
     const LocatedPoint center = locator_.circumcenter(cell);
     const LabelWeights weights = label_function_.weights_at(center.voxels);
     const std::size_t best = weights.best();
@@ -71,10 +79,28 @@ class CellLabels {
     }
   }
 
+  bool is_by_centroid() const { return mesh_.unclaimed.contains("delaunay"); }
+  double reach_mm() const { return reach_.mm(); }
   const ImageFrame& frame() const { return frame_; }
   const std::vector<Point>& points() const { return locator_.points(); }
 
  private:
+  // A label that wins is that of one of the eight voxels around, so what rounding leaves open is within
+  // reach.
+  void check_centroid(CellId cell, Tally& tally) const {
+    const LocatedPoint center = locator_.centroid(cell);
+    const LabelWeights weights = label_function_.weights_at(center.voxels);
+    const double lead = lead_of(mesh_.cell_labels[cell], weights, weights.best());
+    if (lead > 0) {
+      keep(tally.closest, cell, center, lead, -lead);
+    } else if (reach_.has(static_cast<std::uint32_t>(mesh_.cell_labels[cell]), center.voxels)) {
+      ++tally.within_reach;
+    } else {
+      tally.wrong.push_back(cell);
+      keep(tally.violations, cell, center, lead, -lead);
+    }
+  }
+
   // The stated label's weight exceeds every other's by so much.
   static double lead_of(LabelValue stated, const LabelWeights& weights, std::size_t best) {
     double own = 0, other = 0;
@@ -103,7 +129,8 @@ class CellLabels {
             double severity) const {
     if (!list.wants(severity)) return;
     Witness witness;
-    witness.statement = "the label is the image's at the circumcentre";
+    witness.statement = is_by_centroid() ? "the label is the image's at the centroid or within reach of it"
+                                         : "the label is the image's at the circumcentre";
     witness.cells = {cell};
     witness.vertices.assign(mesh_.cells[cell].begin(), mesh_.cells[cell].end());
     witness.points = {frame_.voxels_to_mesh(center.voxels)};
@@ -118,6 +145,7 @@ class CellLabels {
   CircumcenterLocator locator_;
   ExactCircumcenterLabel exact_label_;
   LabelFunction label_function_;
+  LabelReach reach_;
 };
 
 // Statements 2 and 3; the table of volumes and overlaps.
@@ -172,7 +200,7 @@ ClaimResult check_labels(const Mesh& mesh, const Image& image, const Options& op
   }
   const int threads = num_threads(options.threads);
   const Space space = options.space.value_or(mesh.space);
-  const CellLabels labels(mesh, image, space, threads);
+  const CellLabels labels(mesh, image, space, options.delta_mm.value_or(0), threads);
   std::vector<Tally> parts(static_cast<std::size_t>(threads));
   parallel_ranges(mesh.cells.size(), threads, [&](std::size_t begin, std::size_t end, std::size_t thread) {
     for (std::size_t cell = begin; cell < end; ++cell) labels.check(static_cast<CellId>(cell), parts[thread]);
@@ -188,9 +216,17 @@ ClaimResult check_labels(const Mesh& mesh, const Image& image, const Options& op
   result.bad_cells = tally.wrong;
   result.details["space"] = describe(space);
   result.details["within_rounding"] = tally.within_rounding;
-  result.reason = fmt::format(
-      "{} of {} cells have another label than the image at their circumcentre ({} within rounding)",
-      tally.wrong.size(), mesh.cells.size(), tally.within_rounding);
+  result.details["within_reach"] = tally.within_reach;
+  result.reason =
+      labels.is_by_centroid()
+          ? fmt::format(
+                "{} of {} cells have a label that the image has neither at their centroid nor within {:.3g} "
+                "mm "
+                "({} within)",
+                tally.wrong.size(), mesh.cells.size(), labels.reach_mm(), tally.within_reach)
+          : fmt::format(
+                "{} of {} cells have another label than the image at their circumcentre ({} within rounding)",
+                tally.wrong.size(), mesh.cells.size(), tally.within_rounding);
   const auto& witnesses = result.num_violations > 0 ? tally.violations : tally.closest;
   result.worst.insert(result.worst.end(), witnesses.worst_first().begin(), witnesses.worst_first().end());
   result.worst.resize(std::min(result.worst.size(), kMaxWitnesses));

@@ -117,6 +117,17 @@ LocatedPoint CircumcenterLocator::circumcenter(CellId cell) const {
   return located;
 }
 
+LocatedPoint CircumcenterLocator::centroid(CellId cell) const {
+  LocatedPoint located;
+  for (std::size_t axis = 0; axis < 3; ++axis) {
+    double sum = 0;
+    for (const VertexId v : mesh_.cells[cell]) sum += points_[v][axis];
+    located.voxels[axis] = sum / 4 * voxels_a_mm_[axis];
+  }
+  located.error = std::sqrt(3.0) * point_error_mm_ * l1_voxels_a_mm_ + 4 * voxel_rounding_;
+  return located;
+}
+
 ExactCircumcenterLabel::ExactCircumcenterLabel(const Mesh& mesh, const Image& image, Space space)
     : mesh_(mesh), image_(image), mesh_to_voxels_(exact_mesh_to_voxels(image, space)) {}
 

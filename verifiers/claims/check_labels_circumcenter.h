@@ -35,6 +35,7 @@ class CircumcenterLocator {
   CircumcenterLocator(const Mesh& mesh, const Image& image, const ImageFrame& frame, int threads);
 
   LocatedPoint circumcenter(CellId cell) const;
+  LocatedPoint centroid(CellId cell) const;
   /// mm in the image frame.
   const std::vector<Point>& points() const { return points_; }
 

@@ -15,6 +15,7 @@ ClaimResult check_delaunay(const Mesh& mesh, const Adjacency& adjacency, const O
 ClaimResult check_radius_edge(const Mesh& mesh, const Options& options);
 ClaimResult check_boundary_angles(const Mesh& mesh, const Adjacency& adjacency, const Options& options);
 ClaimResult check_size(const Mesh& mesh, const Options& options);
+ClaimResult check_dihedral(const Mesh& mesh, const Options& options);
 /// `schedule` null: only what can be said without one, that label interfaces match.
 ClaimResult check_conformity(const Mesh& mesh, const Adjacency& adjacency, const Schedule* schedule,
                              const Options& options);

@@ -122,13 +122,13 @@ Rational typed_decimal(double x) {
   return exponent >= 0 ? value * scale : value / scale;
 }
 
-Rational squared_sine(double degrees) {
-  const std::map<double, Rational> rational{
+Rational squared_sine(const Rational& degrees) {
+  const std::map<Rational, Rational> rational{
       {0, Rational(0)}, {30, Rational(1, 4)}, {45, Rational(1, 2)}, {60, Rational(3, 4)}, {90, Rational(1)}};
   if (const auto found = rational.find(degrees); found != rational.end()) return found->second;
   RoundedUp pi, x;
   mpfr_const_pi(pi.get(), MPFR_RNDU);
-  mpfr_set_q(x.get(), typed_decimal(degrees).mpq(), MPFR_RNDU);
+  mpfr_set_q(x.get(), degrees.mpq(), MPFR_RNDU);
   mpfr_mul(x.get(), x.get(), pi.get(), MPFR_RNDU);
   mpfr_div_ui(x.get(), x.get(), 180, MPFR_RNDU);
   mpfr_sin(x.get(), x.get(), MPFR_RNDU);

@@ -91,6 +91,6 @@ Rational typed_decimal(double x);
 
 /// sin^2 of an angle of 0 to 90 degrees: exact at 0, 30, 45, 60 and 90, the only rational ones (Niven), and
 /// elsewhere a rational above it by less than 1e-70.
-Rational squared_sine(double degrees);
+Rational squared_sine(const Rational& degrees);
 
 }  // namespace podm::verify

@@ -45,6 +45,26 @@ std::optional<Space> space_of(std::string_view word) {
   return std::nullopt;
 }
 
+void read_promise(const MeshFile& file, const std::string& place, std::string_view words, Mesh& mesh) {
+  if (const auto claim = after_prefix(words, "unclaimed ")) {
+    mesh.unclaimed.emplace(*claim);
+    return;
+  }
+  std::array<double, 2> bounds{};
+  auto angles = after_prefix(words, "dihedral ");
+  bool is_read = angles.has_value();
+  for (double& bound : bounds) {
+    if (!is_read) break;
+    const char *const begin = angles->data(), *const end = begin + angles->size();
+    const auto [after, error] = std::from_chars(begin, end, bound);
+    is_read = error == std::errc() && bound >= 0 && bound <= 180;
+    angles->remove_prefix(std::min<std::size_t>(angles->size(), static_cast<std::size_t>(after - begin) + 1));
+  }
+  if (!is_read || bounds[0] > 90 || bounds[1] < 90)
+    file.refuse(place, fmt::format("the promise '{}' is none that is known", words));
+  mesh.promised_dihedral_deg = bounds;
+}
+
 std::optional<std::string_view> after_prefix(std::string_view text, std::string_view prefix) {
   if (!text.starts_with(prefix)) return std::nullopt;
   return text.substr(prefix.size());

@@ -38,6 +38,10 @@ std::optional<std::size_t> label_array_rank(std::string_view name);
 /// The space that our mesher's word names; none for any other word.
 std::optional<Space> space_of(std::string_view word);
 
+/// Our mesher's words on what the mesh is to keep and what not: "unclaimed delaunay", "dihedral 8 165".
+/// Throws InputError at `place` for others.
+void read_promise(const MeshFile& file, const std::string& place, std::string_view words, Mesh& mesh);
+
 /// The rest of `text` after `prefix`; none where it does not begin so.
 std::optional<std::string_view> after_prefix(std::string_view text, std::string_view prefix);
 

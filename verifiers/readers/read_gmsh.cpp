@@ -112,6 +112,8 @@ class GmshReader {
       if (line.starts_with("$EndComments")) return;
       if (const auto word = after_prefix(line, "space ")) {
         if (const auto space = space_of(*word)) mesh_.space = *space;
+      } else if (const auto promise = after_prefix(line, "promise ")) {
+        read_promise(file_, "$Comments", *promise, mesh_);
       } else if (auto label = after_prefix(line, "label ")) {
         const auto value = take_integer(*label);
         auto rest = value ? after_prefix(*label, "physical volume ") : std::nullopt;

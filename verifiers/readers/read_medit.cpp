@@ -84,6 +84,8 @@ class MeditBuilder {
   void read_comment(std::string_view text) {
     if (const auto word = after_prefix(text, " space ")) {
       if (const auto space = space_of(*word)) mesh_.space = *space;
+    } else if (const auto promise = after_prefix(text, " promise ")) {
+      read_promise(file_, "a comment", *promise, mesh_);
     } else if (auto label = after_prefix(text, " label ")) {
       if (const auto value = take_integer(*label)) mesh_.label_names[*value] = *label;
     } else if (auto pair = after_prefix(text, " pair ")) {

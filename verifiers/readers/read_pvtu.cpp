@@ -58,6 +58,8 @@ class PieceMerger {
       whole_.format = fmt::format("PVTU of {} pieces: {}", pieces_.size(), grid.mesh.format);
       whole_.space = grid.mesh.space;
       whole_.label_names = grid.mesh.label_names;
+      whole_.unclaimed = grid.mesh.unclaimed;
+      whole_.promised_dihedral_deg = grid.mesh.promised_dihedral_deg;
     }
     check_labels_and_space(file, grid.mesh, whole_);
     for (std::size_t i = 0; i < grid.point_ids.size(); ++i) add_point(file, grid, i);

@@ -49,11 +49,14 @@ VtkPiece load_piece(const MeshFile& file, VtuDocument& document, const VtuPiece&
   return loaded;
 }
 
-// Our mesher's words: arrays "space:RAS" and "label:liver", the latter with the label's value.
+// Our mesher's words: arrays "space:RAS", "promise:unclaimed delaunay" and "label:liver", the latter with the
+// label's value.
 void read_field_data(const MeshFile& file, VtuDocument& document, Mesh& mesh) {
   for (const VtuArray& array : document.field_data) {
     if (const auto word = after_prefix(array.name, "space:")) {
       if (const auto space = space_of(*word)) mesh.space = *space;
+    } else if (const auto promise = after_prefix(array.name, "promise:")) {
+      read_promise(file, array.place(), *promise, mesh);
     } else if (const auto name = after_prefix(array.name, "label:")) {
       const NumberArray values = load_vtu_array(file, document, array, std::nullopt);
       const auto value = values.size() == 1 ? values.integer(0) : std::nullopt;

@@ -145,7 +145,9 @@ class VtuParser {
     if (elements_.size() < 2) return nullptr;
     const std::string& section = elements_[elements_.size() - 2];
     if (section == "FieldData")
-      return name.starts_with("space:") || name.starts_with("label:") ? &document_.field_data : nullptr;
+      return name.starts_with("space:") || name.starts_with("label:") || name.starts_with("promise:")
+                 ? &document_.field_data
+                 : nullptr;
     if (document_.pieces.empty()) return nullptr;
     VtuPiece& piece = document_.pieces.back();
     if (section == "Points") return &piece.points;

@@ -98,6 +98,8 @@ Json options_of(const Options& options) {
           {"angle_bound_deg", options.angle_bound_deg},
           {"radius_mm", options.radius_mm ? Json(*options.radius_mm) : Json(nullptr)},
           {"radius_of_mm", radius_of},
+          {"min_dihedral_deg", options.min_dihedral_deg ? Json(*options.min_dihedral_deg) : Json(nullptr)},
+          {"max_dihedral_deg", options.max_dihedral_deg ? Json(*options.max_dihedral_deg) : Json(nullptr)},
           {"fidelity_bound_voxels", options.fidelity_bound_voxels},
           {"delta_mm", options.delta_mm ? Json(*options.delta_mm) : Json(nullptr)},
           {"threads", options.threads}};
@@ -123,6 +125,9 @@ std::string json_report(const Inputs& inputs, const Options& options, const std:
   mesh_json["space"] = describe(mesh.space);
   mesh_json["cell_label_array"] = mesh.cell_label_array;
   mesh_json["other_cells"] = mesh.other_cells;
+  mesh_json["unclaimed"] = mesh.unclaimed;
+  mesh_json["promised_dihedral_deg"] =
+      mesh.promised_dihedral_deg ? Json(*mesh.promised_dihedral_deg) : Json(nullptr);
   const Json report{{"schema", "podm-verify/1"},
                     {"program", "podm-verify " PODM_VERSION},
                     {"mesh", mesh_json},

@@ -16,14 +16,28 @@ std::string witness_text(const Witness& witness) {
   return text + "\n";
 }
 
-std::string left_out(const Options& options, const std::vector<ClaimResult>& results) {
+const char* why_left_out(const Claim& claim, const Mesh& mesh) {
+  if (mesh.unclaimed.contains(claim.name)) return "the file does not claim it";
+  switch (claim.needs) {
+    case Needs::kNothing:
+      break;
+    case Needs::kImage:
+      return "needs --image";
+    case Needs::kBound:
+      return "needs --radius";
+    case Needs::kDihedralBound:
+      return "needs --min-dihedral or --max-dihedral";
+  }
+  return "needs nothing";
+}
+
+std::string left_out(const Mesh& mesh, const Options& options, const std::vector<ClaimResult>& results) {
   if (!options.claims.empty()) return "";
   std::vector<std::string> names;
   for (const Claim& claim : all_claims()) {
     const auto is_run = [&](const ClaimResult& result) { return result.claim == claim.name; };
     if (std::none_of(results.begin(), results.end(), is_run))
-      names.push_back(std::string(claim.name) +
-                      (claim.needs == Needs::kImage ? " (needs --image)" : " (needs --radius)"));
+      names.push_back(fmt::format("{} ({})", claim.name, why_left_out(claim, mesh)));
   }
   return names.empty() ? "" : fmt::format("left out: {}\n", fmt::join(names, ", "));
 }
@@ -46,7 +60,7 @@ std::string terminal_report(const Inputs& inputs, const Options& options,
                         result.reason, result.seconds);
     if (result.verdict == Verdict::kFail && !result.worst.empty()) text += witness_text(result.worst[0]);
   }
-  return text + left_out(options, results) +
+  return text + left_out(mesh, options, results) +
          fmt::format("{} of {} claims pass ({:.2f} s)\n", num_passed, results.size(), seconds);
 }
 

@@ -463,6 +463,80 @@ def angle_of_30(_):
     return Mutant(Case(exact), Case(more))
 
 
+def wedge(degrees):
+    """Two facets meet at this angle; the cell's other angles are moderate."""
+    t = math.radians(degrees)
+    return tetrahedron([(-0.5, 0, 0), (0.5, 0, 0), (0, 1, 0), (0, math.cos(t), math.sin(t))])
+
+
+DIHEDRAL = ["--min-dihedral", "8", "--max-dihedral", "165"]
+
+
+@operator("dihedral")
+def dihedral_under_the_bound(_):
+    """a dihedral angle of 7.99 degrees; harmless: 8.01"""
+    return Mutant(Case(wedge(7.99), DIHEDRAL), Case(wedge(8.01), DIHEDRAL))
+
+
+@operator("dihedral")
+def dihedral_over_the_bound(_):
+    """a dihedral angle of 165.01 degrees; harmless: 164.99"""
+    largest = ["--max-dihedral", "165"]
+    return Mutant(Case(wedge(165.01), largest), Case(wedge(164.99), largest))
+
+
+@operator("dihedral")
+def broken_promise(_):
+    """an angle of 7.99 degrees in a file that promises 8; harmless: in one that promises 7"""
+    def promising(least):
+        mesh = wedge(7.99)
+        mesh.comments = [f"# promise dihedral {least} 175\n"]
+        return Case(mesh)
+    return Mutant(promising(8), promising(7))
+
+
+@operator(None, exit_code=2)
+def unknown_promise(_):
+    """a promise that nobody knows; harmless: one that is known"""
+    def promising(words):
+        mesh = tetrahedron(REGULAR)
+        mesh.comments = [f"# promise {words}\n"]
+        return Case(mesh)
+    return Mutant(promising("dihedral of eight"), promising("unclaimed delaunay"))
+
+
+def hinge(shift):
+    """A flat cell with two facets on the interface of two labels, which a peel gives to the other label."""
+    points = [(-1, 0, 0), (1, 0, 0), (0, -shift, 0.02), (0, shift, 0.02), (0, 0, -1.5), (0, 0, 1.5)]
+    u, w, r, s, below, above = range(6)
+    cells = [[u, w, r, s, 1], [u, w, s, below, 2], [w, u, r, below, 2], [r, s, u, above, 1], [s, r, w, above, 1]]
+    mesh = MeditMesh(points, cells)
+    turned = signed_volumes(mesh) < 0
+    mesh.cells[turned, 2], mesh.cells[turned, 3] = mesh.cells[turned, 3], mesh.cells[turned, 2].copy()
+    return mesh
+
+
+@operator("boundary_angles")
+def peel_to_29_9_degrees(_):
+    """a peel whose new facets have an angle of 29.9 degrees; harmless: of 30.1"""
+    def peeled(degrees):
+        mesh = hinge(1 / math.tan(math.radians(degrees)))  # half the new edge over half the old one
+        mesh.cells[0, 4] = 2
+        return mesh
+    return Mutant(Case(peeled(29.9)), Case(peeled(30.1)), still_passes=("structure",))
+
+
+@operator("surface")
+def peel_with_stale_facets(shop):
+    """a cell given to the label across an interface, the facets listed as before; harmless: with none listed"""
+    mesh = shop.base.copy()
+    c, d = next((c, d) for c, _, d, _, _ in shop.facet_pairs(mesh) if mesh.cells[c, 4] != mesh.cells[d, 4])
+    mesh.cells[c, 4] = mesh.cells[d, 4]
+    unlisted = mesh.copy()
+    unlisted.facets = unlisted.facets[:0]
+    return Mutant(Case(mesh), Case(unlisted), still_passes=("structure",))
+
+
 @operator("size")
 def radius_over_the_bound(_):
     """a circumradius of sqrt(3) under a bound an ulp below it; harmless: an ulp above"""

@@ -64,7 +64,8 @@ class ProgramTest(unittest.TestCase):
     def test_a_sound_mesh_passes_every_claim_that_needs_nothing_else(self):
         process = self.verify("--json", self.report)
         self.assert_exit(process, 0)
-        self.assertIn("left out: size (needs --radius), labels (needs --image), fidelity (needs --image)",
+        self.assertIn("left out: size (needs --radius), dihedral (needs --min-dihedral or --max-dihedral), "
+                      "labels (needs --image), fidelity (needs --image)",
                       process.stdout)
         claims = self.read_report()["claims"]
         self.assertEqual({claim["verdict"] for claim in claims.values()}, {"pass"})

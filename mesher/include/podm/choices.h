@@ -84,6 +84,30 @@ struct Names<Space> {
                                    std::pair{Space::kVoxel, "voxel"}};
 };
 
+/// By what optimisation makes cells better: replacing the cells around an edge or on both sides of facets,
+/// moving a vertex, any cells that fill a cavity, the same with a new vertex, and giving a flat cell on an
+/// interface to another label.
+enum class OptimizationMeans { kFlips, kMoves, kSearches, kAddedVertices, kPeels };
+template <>
+struct Names<OptimizationMeans> {
+  static constexpr std::array kAll{std::pair{OptimizationMeans::kFlips, "flips"},
+                                   std::pair{OptimizationMeans::kMoves, "moves"},
+                                   std::pair{OptimizationMeans::kSearches, "searches"},
+                                   std::pair{OptimizationMeans::kAddedVertices, "added_vertices"},
+                                   std::pair{OptimizationMeans::kPeels, "peels"}};
+};
+
+/// Why a cell stays beyond the bounds: two facets of the interface of two labels, or facets of two interfaces
+/// where three labels meet, make the angle; all its vertices are on the isosurface; or none of these.
+enum class OptimizationObstacle { kFrozenFacets, kJunction, kFrozenVertices, kOther };
+template <>
+struct Names<OptimizationObstacle> {
+  static constexpr std::array kAll{std::pair{OptimizationObstacle::kFrozenFacets, "frozen_facets"},
+                                   std::pair{OptimizationObstacle::kJunction, "junction"},
+                                   std::pair{OptimizationObstacle::kFrozenVertices, "frozen_vertices"},
+                                   std::pair{OptimizationObstacle::kOther, "other"}};
+};
+
 /// kNumberLimit: as many cells were made as have numbers, though memory was left.
 enum class StopReason { kComplete, kCancelled, kElementLimit, kTimeLimit, kMemoryLimit, kNumberLimit };
 template <>

@@ -23,7 +23,7 @@ struct Estimate {
 };
 
 struct Progress {
-  std::string phase;        ///< "transform", "refine", "extract", "measure"
+  std::string phase;        ///< "transform", "refine", "optimize", "extract", "measure"
   double fraction = 0;      ///< an estimate for the phase, in [0,1]
   std::uint64_t cells = 0;  ///< so far
   double seconds = 0;       ///< since the start of the run

@@ -38,8 +38,9 @@ std::string mesh_hash_text(std::uint64_t hash);
 void check_mesh_path(const std::string& path);
 void check_surface_path(const std::string& path);  ///< .stl .ply
 
-/// Writes the mesh in the format of the extension. Throws InputError naming the file and the fault; then
-/// nothing has been written, and files that were there before are untouched.
+/// Writes the mesh in the format of the extension, with promises_of() it in field data, comments or
+/// information. Throws InputError naming the file and the fault; then nothing has been written, and files
+/// that were there before are untouched.
 ///   .vtu   the cells, with the cell array `label` (label values), and in <stem>_facets.vtu beside it the
 ///          facets, with the cell arrays `label_a`, `label_b` (facet_labels as values, the background's for
 ///          outside; the normal points from b to a) and the point array `vertex` (position among all

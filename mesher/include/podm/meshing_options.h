@@ -57,6 +57,14 @@ struct LeafOptions {
   bool with_schedule = false;  ///< the report tells when which leaf was refined
 };
 
+/// What happens to the finished mesh, which is no longer Delaunay then. A run that ends early is not
+/// optimised.
+struct OptimizeOptions {
+  bool is_wanted = false;
+  /// Bounds on dihedral angles, degrees. Half as much again is aimed at, of cells whose neighbours allow it.
+  double least_dihedral_deg = 8, largest_dihedral_deg = 165;
+};
+
 struct MeshingOptions {
   SizeOptions sizes = {};
   /// Degrees. When positive: at the end vertices move so that fewer cells have a dihedral angle below it, or
@@ -71,6 +79,7 @@ struct MeshingOptions {
   int crossover = 0;
   TeamOptions team = {};
   LeafOptions leaves = {};
+  OptimizeOptions optimize = {};
   std::uint64_t cut_seed = 0;  ///< on ranks: draws where blocks are cut; 0: by predicted work
   Limits limits = {};
   OperationLogWriter* log = nullptr;  ///< learns of every operation of the last run; not finished

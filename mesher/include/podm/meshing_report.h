@@ -95,11 +95,24 @@ struct LeafSchedule {
   std::vector<Activation> activations;  ///< the first to end comes first
 };
 
+/// What optimisation did to the cells of the mesh; those of the background are not among them.
+struct OptimizationReport {
+  double least_dihedral_deg = 0, largest_dihedral_deg = 0;  ///< the bounds asked for
+  double least_aim_deg = 0, largest_aim_deg = 0;            ///< what was aimed at
+  /// Cells beyond what was aimed at, those beyond the bounds among them.
+  std::uint64_t beyond_aim_before = 0, beyond_aim = 0;
+  std::uint64_t beyond_bounds_before = 0, beyond_bounds = 0;
+  std::map<OptimizationObstacle, std::uint64_t> obstacles;  ///< of the cells that are beyond the bounds
+  std::map<OptimizationMeans, std::uint64_t> successes;     ///< operations that made cells better
+  double simulated_s = 0;                                   ///< of all passes, under Executor::kVirtual
+  bool are_bounds_kept = false;  ///< by all cells of the mesh in mm, as its file then promises
+};
+
 struct MeshingReport {
   /// Seconds of the mesh that is returned. "transform"; "allocate": store, pools, workers and threads made
   /// ready; "initial", "octree", "refine", "closing" (of kPodm and kPodmHome "refine" alone); "perturb" where
-  /// R7 was asked for; "extract";
-  /// "measure": quality and guarantees. And "calibrate": all that finding the radius of a target cost.
+  /// R7 was asked for; "optimize"; "extract"; "measure": quality and guarantees. And "calibrate": all that
+  /// finding the radius of a target cost.
   std::map<std::string, double> phases_s;
   double radius_mm = 0;                    ///< the one used; 0 when unbounded
   double delta_mm = 0;                     ///< the one used
@@ -113,6 +126,7 @@ struct MeshingReport {
   Algorithm algorithm = Algorithm::kPodm;  ///< the one used
   int computing_nodes = 1;                 ///< the number used
   std::uint64_t num_leaves = 0;
+  std::optional<OptimizationReport> optimization;  ///< there is one of a mesh that was optimised
   std::optional<LeafSchedule> schedule;
   PageSamples pages;
   std::string image_reads_unavailable;  ///< why HopsByKind lacks reads of the image; otherwise empty

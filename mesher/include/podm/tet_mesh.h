@@ -3,6 +3,7 @@
 
 #include <array>
 #include <cstdint>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -22,6 +23,10 @@ struct TetMesh {
   std::vector<std::array<LabelIndex, 2>> facet_labels;
   std::vector<Label> labels;  ///< labels[0] is the background
   Space space = Space::kRas;
+  /// The cells were optimised: they are no Delaunay triangulation.
+  bool is_optimized = false;
+  /// Least and largest dihedral angle, degrees, that all cells keep, if that was asked for and reached.
+  std::optional<std::array<double, 2>> dihedral_bounds_deg = {};
 };
 
 }  // namespace podm

@@ -1,0 +1,48 @@
+// What optimisation makes better, a cell's worst dihedral angle, and what it must keep: the bounds on ratio
+// and size.
+#pragma once
+
+#include "geometry/circumsphere.h"
+#include "geometry/dihedral.h"
+#include "podm/bounds.h"
+
+namespace podm {
+
+/// A cell's points; the cell is positive (geometry/tetrahedron.h).
+struct CellPoints {
+  Point a, b, c, d;
+
+  DihedralExtremes dihedral() const { return dihedral_extremes(a, b, c, d); }
+};
+
+class CellQuality {
+ public:
+  /// A quality of 1 is at these bounds.
+  explicit CellQuality(const DihedralBounds& bounds) : bounds_(bounds) {}
+  const DihedralBounds& bounds() const { return bounds_; }
+
+  /// DihedralBounds::quality.
+  double of(const CellPoints& p) const { return bounds_.quality(p.dihedral()); }
+  /// The same of a cell that keeps the bounds on ratio and circumradius, in rounded arithmetic with a margin;
+  /// 0 of one that does not.
+  double of_new(const CellPoints& p, double squared_radius_bound) const {
+    const Vector e1 = p.a - p.d, e2 = p.b - p.d, e3 = p.c - p.d;
+    const double s1 = squared_length(e1), s2 = squared_length(e2), s3 = squared_length(e3);
+    const double shortest2 = std::min(
+        {s1, s2, s3, squared_distance(p.a, p.b), squared_distance(p.a, p.c), squared_distance(p.b, p.c)});
+    const double radius2 = squared_length(relative_sphere(e1, e2, e3, s1, s2, s3).center);
+    // Not a number where the cell is flat.
+    if (!(radius2 <
+          kMargin * std::min(kRadiusEdgeBound * kRadiusEdgeBound * shortest2, squared_radius_bound)))
+      return 0;
+    return of(p);
+  }
+
+ private:
+  // Far above the rounding of the circumradius of a cell with a good angle, and of output coordinates.
+  static constexpr double kMargin = 1 - 1e-9;
+
+  DihedralBounds bounds_;
+};
+
+}  // namespace podm

@@ -1,0 +1,179 @@
+#include "optimize/optimize_mesh.h"
+
+#include <algorithm>
+#include <atomic>
+#include <memory>
+
+#include "optimize/obstacles.h"
+#include "runtime/parallel_for.h"
+
+namespace podm {
+
+namespace {
+
+using Means = OptimizationMeans;
+
+// What a peel leaves beyond the bounds is searched once more, with more patience.
+constexpr std::array kPasses{
+    OptimizerPass{Means::kFlips, false, 0},          OptimizerPass{Means::kMoves, false, 0},
+    OptimizerPass{Means::kSearches, false, 400},     OptimizerPass{Means::kAddedVertices, false, 400},
+    OptimizerPass{Means::kPeels, true, 400},         OptimizerPass{Means::kSearches, true, 4000},
+    OptimizerPass{Means::kAddedVertices, true, 4000}};
+
+template <class Locks>
+class Optimization {
+ public:
+  using Entry = typename Optimizer<Locks>::Entry;
+  using Entries = std::vector<Entry>;
+
+  Optimization(Mesh& mesh, const OptimizerParameters& parameters, const Team& team)
+      : mesh_(mesh), parameters_(parameters) {
+    const auto num_workers = static_cast<std::size_t>(team.coordination.num_workers);
+    for (WorkerId id = 0; id < num_workers; ++id) {
+      const int node = team.places.empty() ? 0 : team.places[id].node;
+      pools_.push_back(std::make_unique<Pool>(mesh, static_cast<NodeIndex>(node), num_workers));
+      workers_.push_back(std::make_unique<Optimizer<Locks>>(mesh, parameters, id, *pools_[id]));
+    }
+  }
+
+  template <class Time>
+  OptimizationReport operator()(Time& time) {
+    Entries bad = find_bad_cells();
+    report_.beyond_aim_before = bad.size();
+    report_.beyond_bounds_before = num_beyond_bounds(bad);
+    for (const OptimizerPass& pass : kPasses) {
+      if (time.is_over() || bad.empty()) break;
+      bad = make(pass, std::move(bad), time);
+    }
+    report(bad);
+    return report_;
+  }
+
+ private:
+  // Cells are found by chunks, and workers take shares: few of those that take long.
+  static constexpr std::size_t kChunk = 1 << 12, kMostShared = 64;
+
+  Entries find_bad_cells() const {
+    const CellId bound = mesh_.cell_bound();
+    std::vector<Entries> found((bound + kChunk - 1) / kChunk);
+    parallel_for_ranges(bound, kChunk, workers_.size(), [&](std::size_t begin, std::size_t end, std::size_t) {
+      for (auto c = static_cast<CellId>(begin); c < end; ++c) {
+        if (c + kLookahead < bound) mesh_.prefetch_surroundings(c + kLookahead);
+        if (!mesh_.cell(c).is_alive() || mesh_.label(c) == kBackground) continue;
+        if (parameters_.aim.of(points_of(mesh_, c)) < 1) found[begin / kChunk].push_back({c, mesh_.stamp(c)});
+      }
+    });
+    Entries bad;
+    for (const Entries& of_chunk : found) bad.insert(bad.end(), of_chunk.begin(), of_chunk.end());
+    return bad;
+  }
+  static constexpr CellId kLookahead = 8;
+
+  // A pass over these cells; returns those that are bad still. Cells that met others' locks are tried again
+  // by half as many workers, and at last by one, whom nobody is in the way of.
+  template <class Time>
+  Entries make(const OptimizerPass& pass, Entries cells, Time& time) {
+    Entries left;
+    for (std::size_t num_working = workers_.size(); !cells.empty();
+         num_working = std::max<std::size_t>(1, num_working / 2)) {
+      std::atomic<std::size_t> next = 0;
+      time.run([&](WorkerId self) {
+        if (self < num_working) work(*workers_[self], pass, cells, next, time);
+      });
+      Entries conflicts;
+      left.insert(left.end(),
+                  cells.begin() + static_cast<std::ptrdiff_t>(std::min(next.load(), cells.size())),
+                  cells.end());
+      for (const auto& worker : workers_) {
+        append(worker->take_conflicts(), time.is_over() ? left : conflicts);
+        append(worker->take_given_up(), left);
+        append(worker->take_listed(), left);
+      }
+      cells = std::move(conflicts);
+    }
+    return left;
+  }
+
+  template <class Time>
+  void work(Optimizer<Locks>& worker, const OptimizerPass& pass, const Entries& cells,
+            std::atomic<std::size_t>& next, Time& time) {
+    worker.begin(pass);
+    const std::size_t share =
+        pass.max_search_steps > 0
+            ? 1
+            : std::clamp<std::size_t>(cells.size() / (8 * workers_.size()), 1, kMostShared);
+    while (!time.is_over()) {
+      if (!worker.has_work()) {
+        const std::size_t begin = next.fetch_add(share, std::memory_order_relaxed);
+        if (begin >= cells.size()) break;
+        for (std::size_t i = std::min(cells.size(), begin + share); i-- > begin;) worker.give(cells[i]);
+      }
+      time.attempt(worker);
+    }
+    time.check_limits(worker);
+  }
+
+  static void append(Entries&& from, Entries& to) { to.insert(to.end(), from.begin(), from.end()); }
+
+  bool is_beyond_bounds(CellId c) const {
+    return parameters_.bound.quality(points_of(mesh_, c).dihedral()) < 1;
+  }
+  std::uint64_t num_beyond_bounds(const Entries& cells) const {
+    return static_cast<std::uint64_t>(
+        std::count_if(cells.begin(), cells.end(), [&](const Entry& e) { return is_beyond_bounds(e.cell); }));
+  }
+
+  // Every bad cell that lives is among those left.
+  void report(const Entries& left) {
+    for (const Entry& entry : left) {
+      if (mesh_.stamp(entry.cell) != entry.stamp) continue;
+      ++report_.beyond_aim;
+      if (!is_beyond_bounds(entry.cell)) continue;
+      ++report_.beyond_bounds;
+      ++report_.obstacles[obstacle_of(mesh_, entry.cell, parameters_.bound)];
+    }
+    for (const auto& [means, name] : Names<Means>::kAll)
+      for (const auto& worker : workers_)
+        report_.successes[means] += worker->successes()[static_cast<std::size_t>(means)];
+  }
+
+  Mesh& mesh_;
+  const OptimizerParameters& parameters_;
+  std::vector<std::unique_ptr<Pool>> pools_;
+  std::vector<std::unique_ptr<Optimizer<Locks>>> workers_;
+  OptimizationReport report_;
+};
+
+template <class Time>
+OptimizationReport optimize_in(Time& time, Mesh& mesh, const OptimizerParameters& parameters,
+                               const Team& team) {
+  if (team.coordination.num_workers == 1) return Optimization<NoLocks>(mesh, parameters, team)(time);
+  return Optimization<VertexLocks>(mesh, parameters, team)(time);
+}
+
+}  // namespace
+
+DihedralBounds aim_over(const DihedralBounds& bounds) {
+  return {1.5 * bounds.least_deg(), 180 - 4.0 / 3 * (180 - bounds.largest_deg())};
+}
+
+OptimizationReport optimize_mesh(Mesh& mesh, const OptimizerParameters& parameters, const Team& team,
+                                 StopControl& stop) {
+  const auto num_workers = static_cast<std::size_t>(team.coordination.num_workers);
+  OptimizationReport report;
+  if (team.executor == Executor::kVirtual) {
+    VirtualTime time(stop, num_workers, team.cost, team.coordination.seed);
+    report = optimize_in(time, mesh, parameters, team);
+    report.simulated_s = time.now_s();
+  } else {
+    RealTime time(stop, num_workers, team.places);
+    report = optimize_in(time, mesh, parameters, team);
+  }
+  report.least_dihedral_deg = parameters.bound.least_deg();
+  report.largest_dihedral_deg = parameters.bound.largest_deg();
+  report.least_aim_deg = parameters.aim.bounds().least_deg();
+  report.largest_aim_deg = parameters.aim.bounds().largest_deg();
+  return report;
+}
+
+}  // namespace podm

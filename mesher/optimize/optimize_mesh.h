@@ -1,0 +1,20 @@
+// What happens to a finished mesh that is asked for better dihedral angles: its bad cells are found, and a
+// team of workers makes them better in passes, each with other means than the one before.
+#pragma once
+
+#include "algorithms/construction.h"
+#include "optimize/optimizer.h"
+#include "podm/meshing_report.h"
+
+namespace podm {
+
+/// Half as much again as the bounds.
+DihedralBounds aim_over(const DihedralBounds& bounds);
+
+/// Betters the cells of all labels but the background; mesh.label() must tell that of every cell. Goes on
+/// until it can do no more or the stop control ends it: the mesh is valid and no worse at any time. Cells'
+/// circumspheres are of no use afterwards. One worker does the same every time.
+OptimizationReport optimize_mesh(Mesh& mesh, const OptimizerParameters& parameters, const Team& team,
+                                 StopControl& stop);
+
+}  // namespace podm

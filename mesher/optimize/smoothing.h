@@ -1,0 +1,43 @@
+// Smoothing by non-smooth optimisation: a vertex goes where the worst of the cells around it is best. The
+// worst cells change on the way, so that their quality as a whole has no gradient: the way up is the point
+// nearest to the origin among the mixtures of the gradients of all that are nearly worst (Freitag, Jones,
+// Plassmann, "An efficient parallel algorithm for mesh smoothing", 1995).
+#pragma once
+
+#include <span>
+#include <vector>
+
+#include "optimize/cavity.h"
+
+namespace podm {
+
+class Smoothing {
+ public:
+  explicit Smoothing(const CellQuality& quality) : quality_(quality) {}
+
+  /// The vertex at `at` has these facets opposite it, each counter-clockwise seen from it. Moves it to where
+  /// the worst cell is better than `floor`, or returns false.
+  bool move(const std::vector<Point>& points, const std::vector<LocalFacet>& facets, double squared_radius,
+            double floor, Point& at);
+
+ private:
+  static constexpr unsigned kMaxSteps = 10, kMaxHalvings = 6;
+
+  double cell(std::size_t i, const Point& at) const {
+    const Triangle& t = triangles_[i];
+    return quality_.of_new({t.a, t.b, t.c, at}, squared_radius_);
+  }
+  double worst(const Point& at, double floor) const;  // if it is better than that
+  Vector ascent(const Point& at, double scale);
+
+  struct Triangle {
+    Point a, b, c;
+  };
+  const CellQuality& quality_;
+  double squared_radius_ = 0;
+  std::vector<Triangle> triangles_;
+  std::vector<double> values_;
+  std::vector<Vector> gradients_;
+};
+
+}  // namespace podm
