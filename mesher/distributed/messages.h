@@ -18,9 +18,10 @@ template <class T>
 void append(Bytes& message, std::span<const T> values) {
   static_assert(std::is_trivially_copyable_v<T>);
   const std::uint64_t count = values.size();
-  const auto count_bytes = std::as_bytes(std::span(&count, 1)), value_bytes = std::as_bytes(values);
-  message.insert(message.end(), count_bytes.begin(), count_bytes.end());
-  message.insert(message.end(), value_bytes.begin(), value_bytes.end());
+  const std::size_t before = message.size();
+  message.resize(before + sizeof count + values.size_bytes());
+  std::memcpy(message.data() + before, &count, sizeof count);
+  if (count > 0) std::memcpy(message.data() + before + sizeof count, values.data(), values.size_bytes());
 }
 
 template <class T>
