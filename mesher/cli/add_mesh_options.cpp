@@ -35,9 +35,9 @@ void add_sizing_options(CLI::App& app, MeshCommand& command) {
                into_positive(meshing.sizes.target_tolerance_percent, "percentage")),
        target);
   add_one(app, "--min-dihedral", "DEG",
-          fmt::format("at the end move vertices so that next to no cell has a dihedral angle below this,\n"
-                      "degrees up to {:g}, or above {:g} less {:g} times this: all bounds are kept,\n"
-                      "and the mesh stays Delaunay [default: nothing moves]",
+          fmt::format("at the end move vertices so that next to no cell has a dihedral angle below\n"
+                      "this, degrees up to {:g}, or above {:g} less {:g} times this: all bounds are\n"
+                      "kept, and the mesh stays Delaunay [default: nothing moves]",
                       kMostMinDihedral, max_dihedral_deg(0), max_dihedral_deg(0) - max_dihedral_deg(1)),
           into_positive(meshing.min_dihedral_deg, "angle in degrees"));
 }

@@ -218,12 +218,11 @@ Json optimization_of(const MeshingReport& report) {
           {"are_bounds_kept", done.are_bounds_kept}};
 }
 
-// The claims of podm-verify that the mesh keeps, where these are not all.
-Json promises_of(const MeshingReport& report) {
-  if (!report.optimization) return nullptr;
+// The claims of podm-verify that an optimised mesh keeps.
+Json promises_of(const OptimizationReport& optimization) {
   Json claims = {"structure",  "radius_edge", "boundary_angles", "size",
                  "conformity", "surface",     "labels",          "fidelity"};
-  if (report.optimization->are_bounds_kept) claims.push_back("dihedral");
+  if (optimization.are_bounds_kept) claims.push_back("dihedral");
   return claims;
 }
 
@@ -282,7 +281,7 @@ Json facet_pairs_of(const MeshRun& run) {
 Json record(const MeshRun& run) {
   const MeshingReport& report = run.report;
   const std::string& path = run.command.image.path;
-  return {
+  Json record = {
       {"schema", kRecordSchema},
       {"program", run.program + " " PODM_VERSION},
       {"algorithm", to_string(report.algorithm)},
@@ -324,12 +323,13 @@ Json record(const MeshRun& run) {
       {"perturbed", perturbed_of(report)},
       {"optimization", optimization_of(report)},
       {"guarantees", guarantees_of(report.guarantees)},
-      {"promises", promises_of(report)},
       {"mesh_sha256", run.mesh_sha256.empty() ? Json() : Json(run.mesh_sha256)},
       {"verdicts", run.verdicts},
       {"stop_reason", to_string(report.stop_reason)},
       {"warnings", report.warnings},
   };
+  if (report.optimization) record["promises"] = promises_of(*report.optimization);  // others promise all
+  return record;
 }
 
 }  // namespace podm::cli

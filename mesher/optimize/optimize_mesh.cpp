@@ -53,18 +53,20 @@ class Optimization {
   // Cells are found by chunks, and workers take shares: few of those that take long.
   static constexpr std::size_t kChunk = 1 << 12, kMostShared = 64;
 
+  // Nothing is allocated by threads of a parallel loop, which must not throw.
   Entries find_bad_cells() const {
     const CellId bound = mesh_.cell_bound();
-    std::vector<Entries> found((bound + kChunk - 1) / kChunk);
+    std::vector<std::uint8_t> is_bad(bound);
     parallel_for_ranges(bound, kChunk, workers_.size(), [&](std::size_t begin, std::size_t end, std::size_t) {
       for (auto c = static_cast<CellId>(begin); c < end; ++c) {
         if (c + kLookahead < bound) mesh_.prefetch_surroundings(c + kLookahead);
         if (!mesh_.cell(c).is_alive() || mesh_.label(c) == kBackground) continue;
-        if (parameters_.aim.of(points_of(mesh_, c)) < 1) found[begin / kChunk].push_back({c, mesh_.stamp(c)});
+        is_bad[c] = parameters_.aim.of(points_of(mesh_, c)) < 1;
       }
     });
     Entries bad;
-    for (const Entries& of_chunk : found) bad.insert(bad.end(), of_chunk.begin(), of_chunk.end());
+    for (CellId c = 0; c < bound; ++c)
+      if (is_bad[c] != 0) bad.push_back({c, mesh_.stamp(c)});
     return bad;
   }
   static constexpr CellId kLookahead = 8;
