@@ -76,9 +76,9 @@ class RulesOn {
           const std::optional<CountedReads>& reads = {});
 
   Examination examine(CellId c) const;
-  /// Asks for what examine(c) will read, the cell itself apart. Without locks it is a guess.
-  void prefetch(CellId c) const requires std::same_as<Cells, Mesh> {
-    isosurface_.prefetch(mesh_.peek_center(c));
+  /// Asks for what examine(c) will read of the mesh, the cell itself apart. Without locks it is a guess.
+  void prefetch([[maybe_unused]] CellId c) const {
+    if constexpr (std::same_as<Cells, Mesh>) isosurface_.prefetch(mesh_.peek_center(c));
   }
 
   /// R1's point, unless a vertex of the cell itself or of a neighbour already covers it. The caller must
