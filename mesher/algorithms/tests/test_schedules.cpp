@@ -2,13 +2,11 @@
 // in a right mesh, but not with a fault planted in the lock protocol. $PODM_SCHEDULES: how many of each;
 // $PODM_SCHEDULE: the seed of a single sound one.
 #include <gtest/gtest.h>
-#include <sys/resource.h>
-#include <sys/wait.h>
+
 #include <unistd.h>
 
 #include <array>
 #include <cmath>
-#include <csignal>
 #include <cstdio>
 #include <cstdlib>
 #include <filesystem>
@@ -18,6 +16,7 @@
 
 #include "algorithms/perturb.h"
 #include "algorithms/podm.h"
+#include "algorithms/tests/in_own_process.h"
 #include "cost_model.h"
 #include "delaunay/planted_fault.h"
 #include "delaunay/tests/cells_by_points.h"
@@ -166,19 +165,9 @@ class Schedules : public testing::Test {
     return error.what();
   }
 
-  // Whether the planted fault shows in a schedule. It is a process of its own: a broken triangulation may
-  // crash it, or never let it end, which is not counted.
+  // Whether the planted fault shows in a schedule.
   bool is_found_in(int seed) const {
-    const pid_t child = fork();
-    if (child == 0) {
-      const rlimit no_core{0, 0};
-      setrlimit(RLIMIT_CORE, &no_core);
-      alarm(kMostSeconds);
-      _exit(fault_of(seed).empty() ? 0 : 1);
-    }
-    int status = 0;
-    if (waitpid(child, &status, 0) != child) throw std::runtime_error("no process for a schedule");
-    return status != 0 && !(WIFSIGNALED(status) && WTERMSIG(status) == SIGALRM);
+    return fails_in_own_process(kMostSeconds, [&] { return !fault_of(seed).empty(); });
   }
 
   void expect_found() const {

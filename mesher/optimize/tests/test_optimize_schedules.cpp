@@ -2,14 +2,12 @@
 // all end in a sound mesh, but not with a fault planted in the lock protocol. $PODM_SCHEDULES: how many of
 // each.
 #include <gtest/gtest.h>
-#include <sys/resource.h>
-#include <sys/wait.h>
-#include <unistd.h>
 
 #include <cstdlib>
 #include <stdexcept>
 #include <string>
 
+#include "algorithms/tests/in_own_process.h"
 #include "delaunay/planted_fault.h"
 #include "optimize/tests/optimized_mesh.h"
 
@@ -56,19 +54,9 @@ class OptimizeSchedules : public testing::Test {
     return error.what();
   }
 
-  // Whether the planted fault shows in a schedule, which is a process of its own: a broken mesh may crash it,
-  // or never let it end, which is not counted.
+  // Whether the planted fault shows in a schedule.
   static bool is_found_in(int seed) {
-    const pid_t child = fork();
-    if (child == 0) {
-      const rlimit no_core{0, 0};
-      setrlimit(RLIMIT_CORE, &no_core);
-      alarm(kMostSeconds);
-      _exit(fault_of(seed).empty() ? 0 : 1);
-    }
-    int status = 0;
-    if (waitpid(child, &status, 0) != child) throw std::runtime_error("no process for a schedule");
-    return status != 0 && !(WIFSIGNALED(status) && WTERMSIG(status) == SIGALRM);
+    return fails_in_own_process(kMostSeconds, [&] { return !fault_of(seed).empty(); });
   }
 
   static void expect_found() {
