@@ -97,7 +97,7 @@ Likwid::Likwid(const std::string& group, const std::string& groups_folder, const
   const std::string path = fmt::format("{}/{}/{}.txt", groups_folder, processor, group);
   events_ = events_of_group(path);
   absence_ = processor.empty() ? refusal_of_processor(group, scratch_folder)
-             : events_.empty() ? fmt::format("there are no events in {}", path)
+             : events_.empty() ? fmt::format("{} finds no events in {}", kProgram, path)
                                : refusal_of(events_, scratch_folder);
 }
 
