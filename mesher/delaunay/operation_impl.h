@@ -6,24 +6,15 @@
 #include <limits>
 #include <span>
 
+#include "delaunay/lock_to_read.h"
 #include "delaunay/operation.h"
 #include "delaunay/planted_fault.h"
 
 namespace podm {
 
-// The stamp is compared under the locks: who replaced the cell after our peek held both vertices before
-// us, and a peek of the new cell shows the new stamp as well.
 template <class Locks>
 StepResult Operation<Locks>::reserve(CellId c, std::uint32_t stamp) {
-  StepResult result = StepResult::kDone;
-  if constexpr (Locks::kIsShared) {
-    const std::array<VertexId, 2> two = mesh_.peek_two_vertices(c);
-    for (const VertexId v : std::span(two).first(locks_taken().to_read)) {
-      if (result != StepResult::kDone) break;
-      result = v == kNoVertex ? StepResult::kStaleCell : lock(v);
-    }
-  }
-  if (mesh_.stamp(c) != stamp) result = StepResult::kStaleCell;
+  StepResult result = lock_to_read<Locks>(mesh_, c, stamp, [this](VertexId v) { return lock(v); });
   if (result == StepResult::kDone && !may_read(c)) result = StepResult::kOutOfReach;
   if (result != StepResult::kDone) locks_.unlock_all();
   return result;

@@ -4,6 +4,7 @@
 #include <limits>
 #include <span>
 
+#include "delaunay/lock_to_read.h"
 #include "delaunay/planted_fault.h"
 #include "podm/errors.h"
 
@@ -21,18 +22,10 @@ std::uint32_t sorted_key(const LocalFacet& facet) {
 
 }  // namespace
 
-// As Operation::reserve, where the stamp is explained.
 template <class Locks>
 StepResult Cavity<Locks>::reserve(CellId c, std::uint32_t stamp) {
-  StepResult result = StepResult::kDone;
-  if constexpr (Locks::kIsShared) {
-    const std::array<VertexId, 2> two = mesh_.peek_two_vertices(c);
-    for (const VertexId v : std::span(two).first(locks_taken().to_read)) {
-      if (result != StepResult::kDone) break;
-      result = v == kNoVertex ? StepResult::kStaleCell : locks_.try_lock(mesh_.vertex(v));
-    }
-  }
-  if (mesh_.stamp(c) != stamp) result = StepResult::kStaleCell;
+  const StepResult result =
+      lock_to_read<Locks>(mesh_, c, stamp, [this](VertexId v) { return locks_.try_lock(mesh_.vertex(v)); });
   if (result != StepResult::kDone) locks_.unlock_all();
   return result;
 }

@@ -30,11 +30,6 @@ void for_each_frozen_edge(const Mesh& mesh, CellId c, const Visit& visit) {
 
 }  // namespace
 
-CellPoints points_of(const Mesh& mesh, CellId c) {
-  const auto& v = mesh.cell(c).vertices;
-  return {mesh.point(v[0]), mesh.point(v[1]), mesh.point(v[2]), mesh.point(v[3])};
-}
-
 bool has_frozen_small_angle(const Mesh& mesh, CellId c, const DihedralBounds& bounds) {
   bool is_any = false;
   for_each_frozen_edge(mesh, c, [&](double cotangent2, LabelIndex, LabelIndex) {

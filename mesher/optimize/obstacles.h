@@ -2,12 +2,10 @@
 #pragma once
 
 #include "delaunay/mesh.h"
-#include "optimize/cell_quality.h"
+#include "geometry/dihedral.h"
 #include "podm/choices.h"
 
 namespace podm {
-
-CellPoints points_of(const Mesh& mesh, CellId c);
 
 /// Whether two facets of interfaces meet at an angle below the bound: then nothing but a peel helps. An angle
 /// that is too large may be shared by two cells.

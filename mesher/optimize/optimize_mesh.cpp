@@ -5,6 +5,7 @@
 #include <memory>
 
 #include "optimize/obstacles.h"
+#include "refine/cell_quality.h"
 #include "runtime/parallel_for.h"
 
 namespace podm {
@@ -61,7 +62,7 @@ class Optimization {
       for (auto c = static_cast<CellId>(begin); c < end; ++c) {
         if (c + kLookahead < bound) mesh_.prefetch_surroundings(c + kLookahead);
         if (!mesh_.cell(c).is_alive() || mesh_.label(c) == kBackground) continue;
-        is_bad[c] = parameters_.aim.of(points_of(mesh_, c)) < 1;
+        is_bad[c] = cell_quality(mesh_, c, parameters_.aim.bounds()) < 1;
       }
     });
     Entries bad;
@@ -117,9 +118,7 @@ class Optimization {
 
   static void append(Entries&& from, Entries& to) { to.insert(to.end(), from.begin(), from.end()); }
 
-  bool is_beyond_bounds(CellId c) const {
-    return parameters_.bound.quality(points_of(mesh_, c).dihedral()) < 1;
-  }
+  bool is_beyond_bounds(CellId c) const { return cell_quality(mesh_, c, parameters_.bound) < 1; }
   std::uint64_t num_beyond_bounds(const Entries& cells) const {
     return static_cast<std::uint64_t>(
         std::count_if(cells.begin(), cells.end(), [&](const Entry& e) { return is_beyond_bounds(e.cell); }));

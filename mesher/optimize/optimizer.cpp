@@ -5,6 +5,7 @@
 
 #include "optimize/obstacles.h"
 #include "optimize/peel.h"
+#include "refine/cell_quality.h"
 
 namespace podm {
 
@@ -66,7 +67,7 @@ StepResult Optimizer<Locks>::better(CellId c) {
   const LabelIndex label = mesh_.label(c);
   subject_ = {c, label, parameters_.sizes.squared_radius(label)};
   if (const StepResult added = cavity_.add(c); added != StepResult::kDone) return added;
-  if (pass_.is_for_cells_beyond_bound && parameters_.bound.quality(points_of(mesh_, c).dihedral()) >= 1)
+  if (pass_.is_for_cells_beyond_bound && cell_quality(mesh_, c, parameters_.bound) >= 1)
     return StepResult::kNotBetter;
   using Means = OptimizationMeans;
   StepResult result = StepResult::kNotBetter;
@@ -90,7 +91,7 @@ void Optimizer<Locks>::commit(const std::vector<LocalCell>& cells, OptimizationM
   counters_.cells_created += cavity_.created().size();
   if (subject_.label == kBackground) return;
   for (const CellId c : cavity_.created())
-    if (parameters_.aim.of(points_of(mesh_, c)) < 1) listed_.push_back({c, mesh_.stamp(c)});
+    if (cell_quality(mesh_, c, parameters_.aim.bounds()) < 1) listed_.push_back({c, mesh_.stamp(c)});
 }
 
 template <class Locks>

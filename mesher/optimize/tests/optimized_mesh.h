@@ -16,6 +16,11 @@
 
 namespace podm::test {
 
+inline CellPoints points_of(const Mesh& mesh, CellId c) {
+  const auto& v = mesh.cell(c).vertices;
+  return {mesh.point(v[0]), mesh.point(v[1]), mesh.point(v[2]), mesh.point(v[3])};
+}
+
 inline const DihedralBounds kBounds{8, 165};
 
 /// Refined by one worker; all cells have their labels.
