@@ -21,14 +21,19 @@ double seconds_since(std::chrono::steady_clock::time_point start) {
   return std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
 }
 
-// In rounded arithmetic: the margin is above its errors.
-void tell_of_optimization(OptimizationReport& optimization, const Quality& quality, TetMesh& mesh) {
+// The bounds on dihedral angles that were asked for, the last first, if all cells keep them. Angles are those
+// of rounded arithmetic: the margin is above its errors.
+std::optional<std::array<double, 2>> dihedral_bounds_kept(const MeshingReport& report) {
   constexpr double kMarginDeg = 1e-9;
-  const double least = optimization.least_dihedral_deg, largest = optimization.largest_dihedral_deg;
-  optimization.are_bounds_kept =
-      quality.min_dihedral_deg >= least + kMarginDeg && quality.max_dihedral_deg <= largest - kMarginDeg;
-  mesh.is_optimized = true;
-  if (optimization.are_bounds_kept) mesh.dihedral_bounds_deg = {least, largest};
+  std::vector<std::array<double, 2>> asked;
+  if (const auto& done = report.optimization)
+    asked.push_back({done->least_dihedral_deg, done->largest_dihedral_deg});
+  if (const auto& done = report.perturbed) asked.push_back({done->min_dihedral_deg, done->max_dihedral_deg});
+  for (const auto& [least, largest] : asked)
+    if (report.quality.min_dihedral_deg >= least + kMarginDeg &&
+        report.quality.max_dihedral_deg <= largest - kMarginDeg)
+      return {{least, largest}};
+  return std::nullopt;
 }
 
 }  // namespace
@@ -166,11 +171,13 @@ void PhasesOfRun::finish(TetMesh& mesh, MeshingReport& report) const {
   const double start_s = seconds_();
   measure_quality(mesh, image_, size_field(image_, sizes_), loop_threads_, report);
   report.phases_s["measure"] = seconds_() - start_s;
-  if (report.optimization) tell_of_optimization(*report.optimization, report.quality, mesh);
-  if (options_.space != Space::kVoxel) return;
+  mesh.is_optimized = report.optimization.has_value();
+  if (options_.space != Space::kVoxel) {  // angles are others there
+    mesh.dihedral_bounds_deg = report.promised_dihedral_deg = dihedral_bounds_kept(report);
+    return;
+  }
   const double begin_s = seconds_();
   convert_to_voxel_space(mesh, image_, loop_threads_);
-  mesh.dihedral_bounds_deg.reset();  // angles are others there
   report.phases_s["extract"] += seconds_() - begin_s;
 }
 

@@ -214,15 +214,19 @@ Json optimization_of(const MeshingReport& report) {
           {"beyond_bounds_before", done.beyond_bounds_before},
           {"beyond_bounds", done.beyond_bounds},
           {"obstacles", counts_of(done.obstacles)},
-          {"successes", counts_of(done.successes)},
-          {"are_bounds_kept", done.are_bounds_kept}};
+          {"successes", counts_of(done.successes)}};
+}
+
+Json promised_dihedral_of(const MeshingReport& report) {
+  if (!report.promised_dihedral_deg) return nullptr;
+  return *report.promised_dihedral_deg;
 }
 
 // The claims of podm-verify that an optimised mesh keeps.
-Json promises_of(const OptimizationReport& optimization) {
+Json promises_of(const MeshingReport& report) {
   Json claims = {"structure",  "radius_edge", "boundary_angles", "size",
                  "conformity", "surface",     "labels",          "fidelity"};
-  if (optimization.are_bounds_kept) claims.push_back("dihedral");
+  if (report.promised_dihedral_deg) claims.push_back("dihedral");
   return claims;
 }
 
@@ -322,13 +326,14 @@ Json record(const MeshRun& run) {
       {"quality", quality_of(report.quality)},
       {"perturbed", perturbed_of(report)},
       {"optimization", optimization_of(report)},
+      {"promised_dihedral_deg", promised_dihedral_of(report)},
       {"guarantees", guarantees_of(report.guarantees)},
       {"mesh_sha256", run.mesh_sha256.empty() ? Json() : Json(run.mesh_sha256)},
       {"verdicts", run.verdicts},
       {"stop_reason", to_string(report.stop_reason)},
       {"warnings", report.warnings},
   };
-  if (report.optimization) record["promises"] = promises_of(*report.optimization);  // others promise all
+  if (report.optimization) record["promises"] = promises_of(report);  // others promise all
   return record;
 }
 

@@ -64,11 +64,10 @@ std::vector<std::string> verifier_command(const MeshRun& run, std::optional<Temp
   std::vector<std::string> command{verifier_path(), run.command.mesh_path, "--json", "-"};
   if (run.command.quiet) command.push_back("--quiet");
   std::string claims = "structure,radius_edge,boundary_angles,conformity,surface,labels";
-  // Of an optimised mesh the file tells what it promises of dihedral angles.
-  const auto& optimization = run.report.optimization;
-  const bool is_delaunay = !optimization;
+  // The file tells what it promises of dihedral angles.
+  const bool is_delaunay = !run.report.optimization;
   if (is_delaunay) claims += ",delaunay";
-  if (optimization && optimization->are_bounds_kept) claims += ",dihedral";
+  if (run.report.promised_dihedral_deg) claims += ",dihedral";
   const double radius_mm = run.report.radius_mm;
   const auto& radius_of = run.options.sizes.radius_of_mm;
   if (radius_mm > 0 || !radius_of.empty()) claims += ",size";

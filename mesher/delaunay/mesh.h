@@ -69,7 +69,7 @@ inline constexpr LabelIndex kUnknownLabel = 0xffff;
 struct alignas(64) Cell {
   Point center;                      // the circumcentre
   float squared_radius = 0;          // rounded, or NaN: circumsphere.h
-  std::uint16_t stamp_and_mark = 0;  // Mesh::stamp and Mesh::is_marked
+  std::uint16_t stamp_and_bits = 0;  // Mesh::stamp, Mesh::is_marked and Mesh::relies_on_others
   LabelIndex label = kUnknownLabel;  // the image's at the circumcentre, once asked for
   std::array<VertexId, 4> vertices{kNoVertex, kNoVertex, kNoVertex, kNoVertex};
   std::array<FacetId, 4> mirrors{};  // the facet on the other side of each of ours
@@ -96,7 +96,7 @@ class Mesh {
   /// guess.
   std::uint16_t stamp(CellId c) const {
     step();
-    return load(cells_[c].stamp_and_mark, std::memory_order_relaxed) & kStampBits;
+    return load(cells_[c].stamp_and_bits, std::memory_order_relaxed) & kStampBits;
   }
   /// Two vertices as someone without locks sees them. Acquire, and release in renew(): who sees a vertex of
   /// the new cell sees the new stamp too.
@@ -127,14 +127,25 @@ class Mesh {
   bool is_marked(CellId c) const {
     step();
     assert_may_read(*this, c);
-    return (cells_[c].stamp_and_mark & kMark) != 0;
+    return has(c, kMark);
   }
   void mark(CellId c, bool is_marked) {
     step();
     assert_may_replace(*this, c);
-    const auto stamp = static_cast<std::uint16_t>(cells_[c].stamp_and_mark & kStampBits);
-    store(cells_[c].stamp_and_mark, static_cast<std::uint16_t>(is_marked ? stamp | kMark : stamp),
-          std::memory_order_relaxed);
+    put(c, kMark, is_marked);
+  }
+  /// Whether R1 asks the cell for nothing because of vertices that are not its own, as who examined it last
+  /// told; false of a new cell.
+  bool relies_on_others(CellId c) const {
+    step();
+    assert_may_read(*this, c);
+    return has(c, kReliance);
+  }
+  /// By the operation that has reserved the cell, or made it.
+  void tell_reliance(CellId c, bool relies_on_others) {
+    step();
+    assert_may_read(*this, c);
+    if (has(c, kReliance) != relies_on_others) put(c, kReliance, relies_on_others);
   }
   /// Puts a new cell in the slot c, or none (vertices kNoVertex). Its sphere and mirrors are the caller's to
   /// set.
@@ -143,7 +154,7 @@ class Mesh {
     note_replaced(c);
     assert_may_replace(*this, c);
     step();
-    store(cell.stamp_and_mark, static_cast<std::uint16_t>((cell.stamp_and_mark + 1) & kStampBits),
+    store(cell.stamp_and_bits, static_cast<std::uint16_t>((cell.stamp_and_bits + 1) & kStampBits),
           std::memory_order_relaxed);
     cell.label = kUnknownLabel;
     for (unsigned i = 0; i < 4; ++i) {
@@ -232,7 +243,16 @@ class Mesh {
   double extent_;
   HugeArray<Cell> cells_;
   HugeArray<Vertex> vertices_;
-  static constexpr std::uint16_t kStampBits = 0x7fff, kMark = 0x8000;
+  // Relaxed: others who may read the cell ask at the same time.
+  bool has(CellId c, std::uint16_t bit) const {
+    return (load(cells_[c].stamp_and_bits, std::memory_order_relaxed) & bit) != 0;
+  }
+  void put(CellId c, std::uint16_t bit, bool is_set) {
+    std::uint16_t& word = cells_[c].stamp_and_bits;
+    store(word, static_cast<std::uint16_t>(is_set ? word | bit : word & ~bit), std::memory_order_relaxed);
+  }
+
+  static constexpr std::uint16_t kStampBits = 0x3fff, kReliance = 0x4000, kMark = 0x8000;
   IdArena cell_ids_, vertex_ids_;
 };
 

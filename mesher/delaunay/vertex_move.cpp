@@ -65,6 +65,7 @@ void VertexMove::add_star_facet(FacetId f) {
 // A star has some twenty cells: each edge of its outside is looked up among all.
 void VertexMove::glue_star() {
   const CellId first = first_of_star();
+  relies_.assign(cells_.size(), 0);
   for (CellId c = first; c < end(); ++c) {
     if (const FacetId beyond = cell(c).mirrors[3]; beyond != kNoFacet && is_planned(cell_of(beyond))) {
       reglued_.push_back({beyond, planned_mirror(beyond)});
@@ -101,6 +102,7 @@ void VertexMove::fill(Pool& pool, Region& region, VertexId moved) {
     std::replace(vertices.begin(), vertices.end(), v_, moved);
     mesh_.renew(ids_[i], vertices);
     mesh_.set_sphere(ids_[i], {cells_[i].center, cells_[i].squared_radius});
+    mesh_.tell_reliance(ids_[i], relies_[i] != 0);
   }
   for (std::size_t i = 0; i < cells_.size(); ++i) {
     if (is_dug(kFirstPlanned + static_cast<CellId>(i))) continue;

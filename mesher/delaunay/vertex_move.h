@@ -54,6 +54,9 @@ class VertexMove {
   /// Makes their mirrors right, and those of the hole's cells that are not dug.
   void glue_star();
 
+  /// Tells of a planned cell, once the star is glued, what Mesh::relies_on_others is to be.
+  void tell_reliance(CellId c, bool relies_on_others) { relies_[c - kFirstPlanned] = relies_on_others; }
+
   std::size_t num_cells() const;
   /// Replaces the region by the planned cells, once the star is glued. The vertex is called `moved` there.
   void fill(Pool& pool, Region& region, VertexId moved);
@@ -80,7 +83,7 @@ class VertexMove {
   Vertex moved_;             // as it would be
   std::vector<Cell> cells_;  // of the hole, then of the star
   std::size_t num_in_hole_ = 0;
-  std::vector<std::uint8_t> is_dug_;
+  std::vector<std::uint8_t> is_dug_, relies_;
   std::vector<Border> border_;
   std::vector<std::array<FacetId, 2>> reglued_;  // facets of the hole's cells, and their mirrors before
   std::vector<CellId> ids_;                      // scratch of fill(): those that planned cells get

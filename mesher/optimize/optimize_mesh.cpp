@@ -4,7 +4,9 @@
 #include <atomic>
 #include <memory>
 
+#include "optimize/interface_hash.h"
 #include "optimize/obstacles.h"
+#include "podm/errors.h"
 #include "refine/cell_quality.h"
 #include "runtime/parallel_for.h"
 
@@ -39,13 +41,17 @@ class Optimization {
 
   template <class Time>
   OptimizationReport operator()(Time& time) {
-    Entries bad = find_bad_cells();
+    std::uint64_t interfaces = 0;
+    Entries bad = find_bad_cells(interfaces);
     report_.beyond_aim_before = bad.size();
     report_.beyond_bounds_before = num_beyond_bounds(bad);
     for (const OptimizerPass& pass : kPasses) {
       if (time.is_over() || bad.empty()) break;
       bad = make(pass, std::move(bad), time);
     }
+    for (const auto& worker : workers_) interfaces += worker->interface_change();
+    if (interfaces != hash_of_interfaces())
+      throw InternalError("optimisation changed facets between labels, other than by peels");
     report(bad);
     return report_;
   }
@@ -54,19 +60,34 @@ class Optimization {
   // Cells are found by chunks, and workers take shares: few of those that take long.
   static constexpr std::size_t kChunk = 1 << 12, kMostShared = 64;
 
-  // Nothing is allocated by threads of a parallel loop, which must not throw.
-  Entries find_bad_cells() const {
+  // Calls visit(c) for each cell of a label but the background, and returns the hash of interfaces.
+  template <class Visit>
+  std::uint64_t hash_and_visit(const Visit& visit) const {
     const CellId bound = mesh_.cell_bound();
-    std::vector<std::uint8_t> is_bad(bound);
+    std::atomic<std::uint64_t> hash = 0;
     parallel_for_ranges(bound, kChunk, workers_.size(), [&](std::size_t begin, std::size_t end, std::size_t) {
+      std::uint64_t sum = 0;
       for (auto c = static_cast<CellId>(begin); c < end; ++c) {
         if (c + kLookahead < bound) mesh_.prefetch_surroundings(c + kLookahead);
         if (!mesh_.cell(c).is_alive() || mesh_.label(c) == kBackground) continue;
-        is_bad[c] = cell_quality(mesh_, c, parameters_.aim.bounds()) < 1;
+        sum += share_of_interface_hash(mesh_, c, mesh_.label(c));
+        visit(c);
       }
+      hash.fetch_add(sum, std::memory_order_relaxed);
     });
+    return hash;
+  }
+  std::uint64_t hash_of_interfaces() const {
+    return hash_and_visit([](CellId) {});
+  }
+
+  // Nothing is allocated by threads of a parallel loop, which must not throw.
+  Entries find_bad_cells(std::uint64_t& hash_of_interfaces) const {
+    std::vector<std::uint8_t> is_bad(mesh_.cell_bound());
+    hash_of_interfaces = hash_and_visit(
+        [&](CellId c) { is_bad[c] = cell_quality(mesh_, c, parameters_.aim.bounds()) < 1; });
     Entries bad;
-    for (CellId c = 0; c < bound; ++c)
+    for (CellId c = 0; c < is_bad.size(); ++c)
       if (is_bad[c] != 0) bad.push_back({c, mesh_.stamp(c)});
     return bad;
   }

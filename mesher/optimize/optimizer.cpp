@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "optimize/interface_hash.h"
 #include "optimize/obstacles.h"
 #include "optimize/peel.h"
 #include "refine/cell_quality.h"
@@ -86,12 +87,16 @@ StepResult Optimizer<Locks>::better(CellId c) {
 
 template <class Locks>
 void Optimizer<Locks>::commit(const std::vector<LocalCell>& cells, OptimizationMeans means) {
+  const CellId c = subject_.cell;
+  const std::uint64_t change = share_of_interface_hash(mesh_, c, subject_.label) -
+                               share_of_interface_hash(mesh_, c, mesh_.label(c));  // 0 but for a peel
   cavity_.replace_by(cells, subject_.label, VertexKind::kCircumcenter);
+  interface_change_ += change;
   ++successes_[static_cast<std::size_t>(means)];
   counters_.cells_created += cavity_.created().size();
   if (subject_.label == kBackground) return;
-  for (const CellId c : cavity_.created())
-    if (cell_quality(mesh_, c, parameters_.aim.bounds()) < 1) listed_.push_back({c, mesh_.stamp(c)});
+  for (const CellId made : cavity_.created())
+    if (cell_quality(mesh_, made, parameters_.aim.bounds()) < 1) listed_.push_back({made, mesh_.stamp(made)});
 }
 
 template <class Locks>

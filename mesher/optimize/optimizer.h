@@ -75,6 +75,8 @@ class Optimizer {
   const std::optional<AccessTally>& accesses() const { return accesses_; }
   const std::array<std::uint64_t, kNumMeans>& successes() const { return successes_; }
   std::int64_t net_cells() const { return cavity_.net_cells(); }
+  /// By how much peels changed the hash of interfaces (interface_hash.h).
+  std::uint64_t interface_change() const { return interface_change_; }
 
  private:
   Outcome attempt_next();
@@ -103,6 +105,7 @@ class Optimizer {
   Counters counters_;
   std::optional<AccessTally> accesses_;
   std::array<std::uint64_t, kNumMeans> successes_{};
+  std::uint64_t interface_change_ = 0;
   // Of the attempt at hand.
   Subject subject_;
   std::vector<LocalCell> new_cells_;

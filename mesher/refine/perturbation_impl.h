@@ -112,6 +112,7 @@ StepResult Perturbation<Locks>::obeys_rules() {
 template <class Locks>
 StepResult Perturbation<Locks>::obeys_rules(CellId planned) {
   const Examination t = judge_.examine(planned);
+  operation_.move().tell_reliance(planned, t.relies_on_others());
   if (const auto z = judge_.sample(t)) {
     if (const StepResult covered = is_covered(*z, planned); covered != StepResult::kDone) return covered;
   }
@@ -137,8 +138,8 @@ StepResult Perturbation<Locks>::is_covered(const Point& z, CellId start) {
   return StepResult::kNoMove;
 }
 
-// Of cells that stay. Those whose balls reach into the one around the vertex's old place, in which it covered
-// samples, are connected with the planned ones.
+// Of cells that stay, and rely on vertices which they have not. Those whose balls reach into the one around
+// the vertex's old place, in which it covered samples, are connected with the planned ones.
 template <class Locks>
 StepResult Perturbation<Locks>::keeps_samples_covered() {
   const VertexMove& move = operation_.move();
@@ -153,7 +154,7 @@ StepResult Perturbation<Locks>::keeps_samples_covered() {
     const CellId c = beyond_[i];
     if (const StepResult reached = operation_.reach(c); reached != StepResult::kDone) return reached;
     operation_.for_each_neighbor(c, add);
-    if (!judge_.may_be_uncovered(c, from)) continue;
+    if (!mesh_.relies_on_others(c) || !judge_.may_be_uncovered(c, from)) continue;
     const auto z = judge_.sample(judge_.examine(c));
     if (!z || !judge_.was_covered(*z, from)) continue;
     if (const StepResult covered = is_covered(*z, c); covered != StepResult::kDone) return covered;

@@ -94,7 +94,7 @@ bool RulesOn<Cells>::is_covered(const Point& z, VertexId by) const {
 
 template <class Cells>
 std::optional<Point> RulesOn<Cells>::r1_sample(const Examination& t) const {
-  if (!t.nearest || t.is_covered) return std::nullopt;
+  if (!t.relies_on_others()) return std::nullopt;
   const Point z = ask([&](const auto& oracle) { return oracle.polished(*t.nearest, t.center); });
   return is_covered_beside(t.cell, z) ? std::nullopt : std::optional(z);
 }

@@ -60,6 +60,8 @@ struct Examination {
   // z, if the circumball meets the isosurface and R1 or R2 may care
   std::optional<NearPoint> nearest;
   bool is_covered;  // z, by a vertex of the cell: R1 asks for nothing
+  /// Whether R1 asks for nothing only if other vertices cover z.
+  bool relies_on_others() const { return nearest && !is_covered; }
 };
 
 struct SurfaceCenter {

@@ -99,6 +99,7 @@ template <class Locks>
 Outcome Worker<Locks>::apply_first_rule(CellId c) {
   const Examination t = rules_.examine(c);
   if (!t.is_distance_proven) ++operation_.counters().oracle_searches;
+  mesh_.tell_reliance(c, t.relies_on_others());
   if (const auto z = rules_.r1_sample(t)) {
     const Outcome sampled = insert_on_isosurface(*z, c, Rule::kR1);
     if (sampled != Outcome::kRejected) return sampled;

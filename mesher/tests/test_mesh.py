@@ -170,6 +170,7 @@ class Mesh(PodmTestCase):
         self.assertEqual(sum(told["unmoved"].values()), after)
         self.assertGreater(record["counters"]["moves"], 0)
         self.assertEqual(record["counters"]["insertions"], without["counters"]["insertions"])
+        self.assertEqual(record["promised_dihedral_deg"], [8, 165] if after == 0 else None)
         if after == 0:
             self.assertGreaterEqual(record["quality"]["min_dihedral_deg"], 8 * (1 - 1e-9))
             self.assertLessEqual(record["quality"]["max_dihedral_deg"], 165 * (1 + 1e-9))

@@ -69,7 +69,7 @@ struct MeshingOptions {
   SizeOptions sizes = {};
   /// Degrees. When positive: at the end vertices move so that fewer cells have a dihedral angle below it, or
   /// above max_dihedral_deg() of it (rule R7). All guarantees are kept, and this is none: the report tells
-  /// what is left.
+  /// what is left, and if nothing is the file promises it.
   double min_dihedral_deg = 0;
   Space space = Space::kRas;
   Algorithm algorithm = Algorithm::kPodm;

@@ -105,7 +105,6 @@ struct OptimizationReport {
   std::map<OptimizationObstacle, std::uint64_t> obstacles;  ///< of the cells that are beyond the bounds
   std::map<OptimizationMeans, std::uint64_t> successes;     ///< operations that made cells better
   double simulated_s = 0;                                   ///< of all passes, under Executor::kVirtual
-  bool are_bounds_kept = false;  ///< by all cells of the mesh in mm, as its file then promises
 };
 
 struct MeshingReport {
@@ -127,6 +126,9 @@ struct MeshingReport {
   int computing_nodes = 1;                 ///< the number used
   std::uint64_t num_leaves = 0;
   std::optional<OptimizationReport> optimization;  ///< there is one of a mesh that was optimised
+  /// Least and largest dihedral angle that all cells keep, as the file promises, if R7 or optimisation were
+  /// asked for that and reached it, and the mesh is in mm.
+  std::optional<std::array<double, 2>> promised_dihedral_deg;
   std::optional<LeafSchedule> schedule;
   PageSamples pages;
   std::string image_reads_unavailable;  ///< why HopsByKind lacks reads of the image; otherwise empty
