@@ -50,6 +50,7 @@ class Phase {
 
  private:
   using Kept = typename Worker<Locks>::Kept;
+  static constexpr CellId kLookahead = 8;
 
   // Each worker lists those of its part of the store; nobody changes it meanwhile.
   Perturbed::Cells list_poor(bool gives) {
@@ -60,6 +61,7 @@ class Phase {
       const auto begin = static_cast<CellId>(bound * self / workers_.size()),
                  end = static_cast<CellId>(bound * (self + 1) / workers_.size());
       for (CellId c = begin; c < end; ++c) {
+        if (c + kLookahead < end) mesh_.prefetch_vertices(c + kLookahead);
         if (!mesh_.cell(c).is_alive() || !worker.perturbation().is_poor(c)) continue;
         Perturbed::Cells& cells = found[self];
         ++(worker.perturbation().has_free_vertex(c) ? cells.with_free_vertex : cells.without);

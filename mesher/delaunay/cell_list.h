@@ -14,10 +14,12 @@ class CellList {
     cells_.clear();
     table_.assign(kLeastSlots, kEmpty);
   }
-  /// Unless it is there already.
-  void add(CellId c) {
+  /// False: it is there already.
+  bool add(CellId c) {
     if (2 * (cells_.size() + 1) > table_.size()) grow();
-    if (take_slot(c)) cells_.push_back(c);
+    if (!take_slot(c)) return false;
+    cells_.push_back(c);
+    return true;
   }
   std::size_t size() const { return cells_.size(); }
   CellId operator[](std::size_t i) const { return cells_[i]; }

@@ -191,14 +191,21 @@ class Mesh {
           std::memory_order_relaxed);
   }
 
-  /// Ask for cache lines before they are needed: of a cell, of a vertex, of a cell's vertices and neighbours.
+  /// Ask for cache lines before they are needed: of a cell, of a vertex, of a cell's vertices, of its
+  /// neighbours, and of both.
   void prefetch(CellId c) const { __builtin_prefetch(&cells_[c]); }
   void prefetch_vertex(VertexId v) const { __builtin_prefetch(&vertices_[v]); }
-  void prefetch_surroundings(CellId c) const {
+  void prefetch_vertices(CellId c) const {
     for (const VertexId v : peek_vertices(c))
       if (v != kNoVertex) prefetch_vertex(v);
+  }
+  void prefetch_neighbors(CellId c) const {
     for (const FacetId mirror : peek_mirrors(c))
       if (mirror != kNoFacet) prefetch(cell_of(mirror));
+  }
+  void prefetch_surroundings(CellId c) const {
+    prefetch_vertices(c);
+    prefetch_neighbors(c);
   }
 
   /// Ids below these have been handed out; some may be free again.

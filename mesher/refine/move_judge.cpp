@@ -8,6 +8,12 @@
 
 namespace podm {
 
+namespace {
+
+constexpr double square(double x) { return x * x; }
+
+}  // namespace
+
 // Calls visit(CellId) for each, until it returns false.
 template <class Visit>
 bool MoveJudge::all_of_planned(const Visit& visit) const {
@@ -60,10 +66,14 @@ Ball MoveJudge::ball_of(CellId c) const {
   return {cell.center, distance(cell.center, move_.point(cell.vertices[3])) * (1 + kMargin)};
 }
 
+// Without a root, and without a vertex: with d the distance, r and s the radii, d <= r + s if d^2 - r^2 - s^2
+// is not positive, or its square at most 4 r^2 s^2.
 bool MoveJudge::reaches(CellId c, const Point& from) const {
-  const Ball ball = ball_of(c), covered = covered_from(from);
-  const double reach = ball.radius + covered.radius;
-  return squared_distance(ball.center, from) <= reach * reach;
+  const Cell& cell = move_.cell(c);
+  const double r2 = cell.squared_radius * (1 + 2 * kStoredSphereTolerance);
+  const double s2 = square(covered_from(from).radius);
+  const double beyond = squared_distance(cell.center, from) - r2 - s2;
+  return !(beyond > 0 && beyond * beyond > 4 * r2 * s2);  // true where the radius is not certified, NaN
 }
 
 bool MoveJudge::may_be_uncovered(CellId c, const Point& from) const {

@@ -146,7 +146,7 @@ StepResult Perturbation<Locks>::keeps_samples_covered() {
   const Point from = mesh_.point(move.vertex());
   beyond_.clear();
   const auto add = [&](CellId c) {
-    if (!VertexMove::is_planned(c) && judge_.reaches(c, from)) beyond_.add(c);
+    if (!VertexMove::is_planned(c) && judge_.reaches(c, from) && beyond_.add(c)) mesh_.prefetch_neighbors(c);
   };
   for (CellId c = VertexMove::kFirstPlanned; c < move.end(); ++c)
     if (!move.is_dug(c)) operation_.for_each_neighbor(c, add);
