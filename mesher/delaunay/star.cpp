@@ -1,7 +1,6 @@
 #include "delaunay/star.h"
 
 #include <algorithm>
-#include <bit>
 #include <limits>
 
 namespace podm {
@@ -34,9 +33,7 @@ bool StarFiller::prepare(Mesh& mesh, const Region& region, const Point& p) {
       facet.local[i] = static_cast<std::uint16_t>(local);
     }
   }
-  row_bits_ = static_cast<unsigned>(std::bit_width(num_vertices_ - 1));
-  if (facet_at_edge_.size() < std::size_t{1} << (2 * row_bits_))
-    facet_at_edge_.resize(std::size_t{1} << (2 * row_bits_));
+  facets_at_edges_.begin(num_vertices_);
   return true;
 }
 
@@ -98,15 +95,14 @@ void StarFiller::fill(Mesh& mesh, Pool& pool, Region& region, VertexId apex) {
     mesh.set_sphere(id, {{spheres[0][lane], spheres[1][lane], spheres[2][lane]}, spheres[3][lane]});
     mesh.set_mirror(facet.mirror, 4 * id + 3);
     const unsigned a = facet.local[0], b = facet.local[1], c = facet.local[2];
-    facet_at_edge_[(b << row_bits_) + c] = 4 * id + 0;
-    facet_at_edge_[(c << row_bits_) + a] = 4 * id + 1;
-    facet_at_edge_[(a << row_bits_) + b] = 4 * id + 2;
+    facets_at_edges_.over(b, c) = 4 * id + 0;
+    facets_at_edges_.over(c, a) = 4 * id + 1;
+    facets_at_edges_.over(a, b) = 4 * id + 2;
   }
   for (unsigned f = 0; f < num_facets_; ++f) {
     const unsigned a = facets_[f].local[0], b = facets_[f].local[1], c = facets_[f].local[2];
-    mesh.set_mirrors(region.created[f],
-                     {facet_at_edge_[(c << row_bits_) + b], facet_at_edge_[(a << row_bits_) + c],
-                      facet_at_edge_[(b << row_bits_) + a], facets_[f].mirror});
+    mesh.set_mirrors(region.created[f], {facets_at_edges_.over(c, b), facets_at_edges_.over(a, c),
+                                         facets_at_edges_.over(b, a), facets_[f].mirror});
   }
 }
 

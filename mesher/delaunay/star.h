@@ -4,8 +4,8 @@
 
 #include <array>
 #include <cstdint>
-#include <vector>
 
+#include "delaunay/facets_at_edges.h"
 #include "delaunay/pool.h"
 #include "delaunay/region.h"
 
@@ -48,10 +48,7 @@ class StarFiller {
   alignas(64) std::array<std::array<double, 4>, kMaxVertices> offsets_;  // x-p and |x-p|^2
   std::array<Facet, kMaxFacets> facets_;
   std::array<Lanes, kMaxFacets / Lanes::kSize> lanes_;
-  // facet_at_edge_[(a << row_bits_) + b]: the new facet over the directed boundary edge (a,b). Rows are as
-  // short as the number of vertices allows, so that the usual table lies in the first-level cache.
-  std::vector<FacetId> facet_at_edge_;
-  unsigned row_bits_ = 0;
+  FacetsAtEdges facets_at_edges_;
 };
 
 }  // namespace podm

@@ -62,27 +62,39 @@ void VertexMove::add_star_facet(FacetId f) {
   cells_.push_back(made);
 }
 
-// A star has some twenty cells: each edge of its outside is looked up among all.
+void VertexMove::number_star() {
+  star_vertices_.clear();
+  star_facets_.clear();
+  for (std::size_t i = num_in_hole_; i < cells_.size(); ++i) {
+    std::array<unsigned, 3>& facet = star_facets_.emplace_back();
+    for (unsigned k = 0; k < 3; ++k) {
+      const VertexId w = cells_[i].vertices[k];
+      Vertex& vertex = mesh_.vertex(w);
+      if (vertex.local_index >= star_vertices_.size() || star_vertices_[vertex.local_index] != w) {
+        vertex.local_index = static_cast<std::uint16_t>(star_vertices_.size());
+        star_vertices_.push_back(w);
+      }
+      facet[k] = vertex.local_index;
+    }
+  }
+}
+
 void VertexMove::glue_star() {
-  const CellId first = first_of_star();
   relies_.assign(cells_.size(), 0);
-  for (CellId c = first; c < end(); ++c) {
+  number_star();
+  facets_at_edges_.begin(static_cast<unsigned>(star_vertices_.size()));
+  for (CellId c = first_of_star(); c < end(); ++c) {
+    const auto& v = star_facets_[c - first_of_star()];
+    for (unsigned i = 0; i < 3; ++i) facets_at_edges_.over(v[(i + 1) % 3], v[(i + 2) % 3]) = 4 * c + i;
     if (const FacetId beyond = cell(c).mirrors[3]; beyond != kNoFacet && is_planned(cell_of(beyond))) {
       reglued_.push_back({beyond, planned_mirror(beyond)});
       planned_mirror(beyond) = 4 * c + 3;
     }
-    const auto& v = cells_[c - kFirstPlanned].vertices;
-    for (CellId d = c + 1; d < end(); ++d) {
-      const auto& w = cells_[d - kFirstPlanned].vertices;
-      for (unsigned i = 0; i < 3; ++i) {
-        for (unsigned k = 0; k < 3; ++k) {
-          // The facets opposite to v[i] and w[k] are those over the edges from v[i+1] to v[i+2] and back.
-          if (v[(i + 1) % 3] != w[(k + 2) % 3] || v[(i + 2) % 3] != w[(k + 1) % 3]) continue;
-          planned_mirror(4 * c + i) = 4 * d + k;
-          planned_mirror(4 * d + k) = 4 * c + i;
-        }
-      }
-    }
+  }
+  for (CellId c = first_of_star(); c < end(); ++c) {
+    const auto& v = star_facets_[c - first_of_star()];
+    for (unsigned i = 0; i < 3; ++i)
+      planned_mirror(4 * c + i) = facets_at_edges_.over(v[(i + 2) % 3], v[(i + 1) % 3]);
   }
 }
 

@@ -12,6 +12,7 @@
 #include <span>
 #include <vector>
 
+#include "delaunay/facets_at_edges.h"
 #include "delaunay/hole.h"
 #include "delaunay/mesh.h"
 #include "delaunay/pool.h"
@@ -78,6 +79,8 @@ class VertexMove {
     return cells_[cell_of(f) - kFirstPlanned].mirrors[static_cast<unsigned>(index_in_cell(f))];
   }
 
+  void number_star();
+
   Mesh& mesh_;
   VertexId v_ = kNoVertex;
   Vertex moved_;             // as it would be
@@ -86,7 +89,10 @@ class VertexMove {
   std::vector<std::uint8_t> is_dug_, relies_;
   std::vector<Border> border_;
   std::vector<std::array<FacetId, 2>> reglued_;  // facets of the hole's cells, and their mirrors before
-  std::vector<CellId> ids_;                      // scratch of fill(): those that planned cells get
+  std::vector<VertexId> star_vertices_;
+  std::vector<std::array<unsigned, 3>> star_facets_;  // each star cell's vertices but v, numbered
+  FacetsAtEdges facets_at_edges_;
+  std::vector<CellId> ids_;  // scratch of fill(): those that planned cells get
 };
 
 }  // namespace podm

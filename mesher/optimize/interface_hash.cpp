@@ -7,7 +7,8 @@ namespace podm {
 
 namespace {
 
-// Mixes as SplitMix64 does (Steele, Lea, Flood, "Fast splittable pseudorandom number generators", OOPSLA 2014).
+// Mixes as SplitMix64 does (Steele, Lea, Flood, "Fast splittable pseudorandom number generators", OOPSLA
+// 2014).
 constexpr std::uint64_t mixed(std::uint64_t x) {
   x = (x ^ x >> 30) * 0xbf58476d1ce4e5b9;
   x = (x ^ x >> 27) * 0x94d049bb133111eb;
@@ -36,8 +37,8 @@ std::uint64_t share_of_interface_hash(const Mesh& mesh, CellId c, LabelIndex lab
   const auto& v = mesh.cell(c).vertices;
   std::uint64_t sum = 0;
   for (const auto& [i, j, k] : kFacetVertices)
-    sum += signed_hash(
-        {v[static_cast<unsigned>(i)], v[static_cast<unsigned>(j)], v[static_cast<unsigned>(k)]});
+    sum +=
+        signed_hash({v[static_cast<unsigned>(i)], v[static_cast<unsigned>(j)], v[static_cast<unsigned>(k)]});
   return mixed(label) * sum;
 }
 

@@ -84,8 +84,8 @@ class Optimization {
   // Nothing is allocated by threads of a parallel loop, which must not throw.
   Entries find_bad_cells(std::uint64_t& hash_of_interfaces) const {
     std::vector<std::uint8_t> is_bad(mesh_.cell_bound());
-    hash_of_interfaces = hash_and_visit(
-        [&](CellId c) { is_bad[c] = cell_quality(mesh_, c, parameters_.aim.bounds()) < 1; });
+    hash_of_interfaces =
+        hash_and_visit([&](CellId c) { is_bad[c] = cell_quality(mesh_, c, parameters_.aim.bounds()) < 1; });
     Entries bad;
     for (CellId c = 0; c < is_bad.size(); ++c)
       if (is_bad[c] != 0) bad.push_back({c, mesh_.stamp(c)});

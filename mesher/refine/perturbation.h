@@ -14,9 +14,9 @@
 // changes only with one of its cells. R1 asks for isosurface vertices: where a free one moves, they stay. One
 // of these moves near its tangent plane and back onto the isosurface, and may uncover samples of cells that
 // stay, within delta of where it was; their balls have the samples, so they are among the cells whose balls
-// reach into that ball of radius delta. Of these, cells that a vertex of their own covers keep it; the others,
-// as whoever examined them has told (Mesh::relies_on_others), are asked again. So all guarantees of R1 to R6
-// hold after each move as they did before it.
+// reach into that ball of radius delta. Of these, cells that a vertex of their own covers keep it; the
+// others, as whoever examined them has told (Mesh::relies_on_others), are asked again. So all guarantees of
+// R1 to R6 hold after each move as they did before it.
 //
 // It ends. Let n_i be the number of poor cells inside with a quality from i to i + 1 times kQualityStep. If i
 // is the least class of what a move replaces, it makes no cell of class i or less, and n_i falls: so (n_0,

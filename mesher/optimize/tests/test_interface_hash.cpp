@@ -44,8 +44,7 @@ TEST_P(InterfaceHash, IsAnotherOneWhereACellChangesItsLabel) {
   EXPECT_EQ(hash(), before);
 }
 
-INSTANTIATE_TEST_SUITE_P(Images, InterfaceHash,
-                         testing::Values(images()[0], images()[2], images()[3]),
+INSTANTIATE_TEST_SUITE_P(Images, InterfaceHash, testing::Values(images()[0], images()[2], images()[3]),
                          [](const auto& image) { return std::string(image.param.name); });
 
 }  // namespace
