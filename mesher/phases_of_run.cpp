@@ -146,12 +146,12 @@ void PhasesOfRun::optimize(Mesh& mesh, MeshingReport& report) const {
   const double start_s = seconds_();
   label_cells(mesh, *isosurface_, loop_threads_);
   StopControl stop(
-      {.max_elements = 0, .max_seconds = options_.limits.max_seconds}, stop_,
-      [&](std::uint64_t) { announce("optimize", 0, 0); }, start_);
+      {.max_elements = 0, .max_seconds = options_.limits.max_seconds}, stop_, [](std::uint64_t) {}, start_);
   const DihedralBounds bounds(asked.least_dihedral_deg, asked.largest_dihedral_deg);
   const OptimizerParameters parameters{CellQuality(aim_over(bounds)), bounds, size_field(image_, sizes_),
                                        sizes_.delta_mm};
-  report.optimization = optimize_mesh(mesh, parameters, team_.team(), stop);
+  report.optimization = optimize_mesh(mesh, parameters, team_.team(), stop,
+                                      [&](double fraction) { announce("optimize", fraction, 0); });
   report.stop_reason = stop.reason();
   if (options_.team.executor == Executor::kVirtual)
     report.virtual_phases_s["optimize"] = report.optimization->simulated_s;

@@ -48,12 +48,19 @@ class Optimization {
     for (const OptimizerPass& pass : kPasses) {
       if (time.is_over() || bad.empty()) break;
       bad = make(pass, std::move(bad), time);
+      ++num_passes_;
     }
     for (const auto& worker : workers_) interfaces += worker->interface_change();
     if (interfaces != hash_of_interfaces())
       throw InternalError("optimisation changed facets between labels, other than by peels");
     report(bad);
     return report_;
+  }
+  /// How much is done, while workers are at it. It falls a little where cells are tried again.
+  double fraction() const {
+    const auto taken = static_cast<double>(std::min(next_.load(), num_cells_.load()));
+    const double of_pass = num_cells_ == 0 ? 0 : taken / static_cast<double>(num_cells_);
+    return (num_passes_ + of_pass) / kPasses.size();
   }
 
  private:
@@ -100,13 +107,14 @@ class Optimization {
     Entries left;
     for (std::size_t num_working = workers_.size(); !cells.empty();
          num_working = std::max<std::size_t>(1, num_working / 2)) {
-      std::atomic<std::size_t> next = 0;
+      next_ = 0;
+      num_cells_ = cells.size();
       time.run([&](WorkerId self) {
-        if (self < num_working) work(*workers_[self], pass, cells, next, time);
+        if (self < num_working) work(*workers_[self], pass, cells, time);
       });
       Entries conflicts;
       left.insert(left.end(),
-                  cells.begin() + static_cast<std::ptrdiff_t>(std::min(next.load(), cells.size())),
+                  cells.begin() + static_cast<std::ptrdiff_t>(std::min(next_.load(), cells.size())),
                   cells.end());
       for (const auto& worker : workers_) {
         append(worker->take_conflicts(), time.is_over() ? left : conflicts);
@@ -119,8 +127,7 @@ class Optimization {
   }
 
   template <class Time>
-  void work(Optimizer<Locks>& worker, const OptimizerPass& pass, const Entries& cells,
-            std::atomic<std::size_t>& next, Time& time) {
+  void work(Optimizer<Locks>& worker, const OptimizerPass& pass, const Entries& cells, Time& time) {
     worker.begin(pass);
     const std::size_t share =
         pass.max_search_steps > 0
@@ -128,7 +135,7 @@ class Optimization {
             : std::clamp<std::size_t>(cells.size() / (8 * workers_.size()), 1, kMostShared);
     while (!time.is_over()) {
       if (!worker.has_work()) {
-        const std::size_t begin = next.fetch_add(share, std::memory_order_relaxed);
+        const std::size_t begin = next_.fetch_add(share, std::memory_order_relaxed);
         if (begin >= cells.size()) break;
         for (std::size_t i = std::min(cells.size(), begin + share); i-- > begin;) worker.give(cells[i]);
       }
@@ -164,13 +171,29 @@ class Optimization {
   std::vector<std::unique_ptr<Pool>> pools_;
   std::vector<std::unique_ptr<Optimizer<Locks>>> workers_;
   OptimizationReport report_;
+  int num_passes_ = 0;                                 // done
+  std::atomic<std::size_t> next_ = 0, num_cells_ = 0;  // of the pass at hand: the next cell to take, and all
 };
+
+using Observe = std::function<void(double)>;
+
+template <class Locks, class Time>
+OptimizationReport optimize_in(Time& time, Mesh& mesh, const OptimizerParameters& parameters,
+                               const Team& team, StopControl& stop, const Observe& observe) {
+  Optimization<Locks> optimization(mesh, parameters, team);
+  double most = 0;
+  stop.observe_by([&](std::uint64_t) { observe(most = std::max(most, optimization.fraction())); });
+  const OptimizationReport report = optimization(time);
+  stop.observe_by([](std::uint64_t) {});  // what it would be asked of is gone
+  return report;
+}
 
 template <class Time>
 OptimizationReport optimize_in(Time& time, Mesh& mesh, const OptimizerParameters& parameters,
-                               const Team& team) {
-  if (team.coordination.num_workers == 1) return Optimization<NoLocks>(mesh, parameters, team)(time);
-  return Optimization<VertexLocks>(mesh, parameters, team)(time);
+                               const Team& team, StopControl& stop, const Observe& observe) {
+  if (team.coordination.num_workers == 1)
+    return optimize_in<NoLocks>(time, mesh, parameters, team, stop, observe);
+  return optimize_in<VertexLocks>(time, mesh, parameters, team, stop, observe);
 }
 
 }  // namespace
@@ -180,16 +203,16 @@ DihedralBounds aim_over(const DihedralBounds& bounds) {
 }
 
 OptimizationReport optimize_mesh(Mesh& mesh, const OptimizerParameters& parameters, const Team& team,
-                                 StopControl& stop) {
+                                 StopControl& stop, const Observe& observe) {
   const auto num_workers = static_cast<std::size_t>(team.coordination.num_workers);
   OptimizationReport report;
   if (team.executor == Executor::kVirtual) {
     VirtualTime time(stop, num_workers, team.cost, team.coordination.seed);
-    report = optimize_in(time, mesh, parameters, team);
+    report = optimize_in(time, mesh, parameters, team, stop, observe);
     report.simulated_s = time.now_s();
   } else {
     RealTime time(stop, num_workers, team.places);
-    report = optimize_in(time, mesh, parameters, team);
+    report = optimize_in(time, mesh, parameters, team, stop, observe);
   }
   report.least_dihedral_deg = parameters.bound.least_deg();
   report.largest_dihedral_deg = parameters.bound.largest_deg();

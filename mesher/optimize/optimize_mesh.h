@@ -2,6 +2,8 @@
 // team of workers makes them better in passes, each with other means than the one before.
 #pragma once
 
+#include <functional>
+
 #include "algorithms/construction.h"
 #include "optimize/optimizer.h"
 #include "podm/meshing_report.h"
@@ -13,8 +15,11 @@ DihedralBounds aim_over(const DihedralBounds& bounds);
 
 /// Betters the cells of all labels but the background; mesh.label() must tell that of every cell. Goes on
 /// until it can do no more or the stop control ends it: the mesh is valid and no worse at any time. Cells'
-/// circumspheres are of no use afterwards. One worker does the same every time.
-OptimizationReport optimize_mesh(Mesh& mesh, const OptimizerParameters& parameters, const Team& team,
-                                 StopControl& stop);
+/// circumspheres are of no use afterwards. One worker does the same every time. `observe` is told a few times
+/// a second, by the calling thread, how much of it is done: a share of passes and of their cells, not of
+/// time.
+OptimizationReport optimize_mesh(
+    Mesh& mesh, const OptimizerParameters& parameters, const Team& team, StopControl& stop,
+    const std::function<void(double fraction)>& observe = [](double) {});
 
 }  // namespace podm

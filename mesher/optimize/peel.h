@@ -20,8 +20,8 @@ struct Peel {
   unsigned edge() const;
 };
 
-/// Whether the cell may be peeled, its one edge that comes to the interface apart: it is lower than a tenth
-/// of delta; as many facets go as come, or more, and two come at most; their angles keep the bound on those
+/// Whether the cell may be peeled, its one edge that comes to the interface apart: it is lower than a
+/// twentieth of delta; as many facets go as come, or more, and two come at most; their angles keep the bound on those
 /// of facets; and all vertices are on the isosurface.
 bool may_be_peeled(const Mesh& mesh, CellId c, const Peel& peel, double delta_mm);
 

@@ -233,6 +233,42 @@ class Refinement(PodmTestCase):
             os.close(write_end)
 
 
+class DihedralPhases(PodmTestCase):
+    """The mesh that is refined already is written, as good as the phase has made it until then."""
+
+    def ended_in(self, phase, *options):
+        runs = self.folder / "runs.jsonl"
+        process = start_podm("mesh", "phantom:abdomen@96", "--radius", 3, "--threads", 2, "--oversubscribe", *options,
+                             "-o", self.folder / "out.vtu", "--record", runs)
+        for line in process.stderr:
+            if line.startswith(phase):
+                break
+        end = end_of(process, signal.SIGINT)
+        self.assertEqual(end.code, 1, end.stderr)
+        record = self.read_record(runs)
+        self.assertEqual(record["stop_reason"], "cancelled")
+        self.assertLessEqual(end.seconds, LONGEST_S + seconds_of_writing(record))
+        self.assertEqual(set(record["guarantees"].values()), {0})
+        return record
+
+    def assert_proved(self, *claims):
+        self.assert_exit(run_podm(self.folder / "out.vtu", "--claims", ",".join(claims), program=VERIFIER), 0)
+
+    def test_vertices_moved_so_far_stay_where_they_are(self):
+        record = self.ended_in("perturb", "--min-dihedral", 30)
+        told = record["perturbed"]
+        self.assertGreater(told["unmoved"]["not_reached"], 0)
+        self.assertLess(sum(told["after"].values()), sum(told["before"].values()) + 1)
+        self.assert_proved("structure", "delaunay", "radius_edge", "boundary_angles", "conformity")
+
+    def test_cells_made_better_so_far_stay(self):
+        record = self.ended_in("optimize", "--optimize", "--dihedral-bounds", "15,150")
+        done = record["optimization"]
+        self.assertGreater(done["beyond_bounds"], 0)
+        self.assertLessEqual(done["beyond_bounds"], done["beyond_bounds_before"])
+        self.assert_proved("structure", "radius_edge", "boundary_angles", "conformity")
+
+
 class OtherCommands(PodmTestCase):
     def test_a_phantom_is_written_whole_or_not_at_all(self):
         image = self.folder / "p.nii.gz"
