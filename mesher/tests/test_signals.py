@@ -238,7 +238,7 @@ class DihedralPhases(PodmTestCase):
 
     def ended_in(self, phase, *options):
         runs = self.folder / "runs.jsonl"
-        process = start_podm("mesh", "phantom:abdomen@96", "--radius", 3, "--threads", 2, "--oversubscribe", *options,
+        process = start_podm("mesh", "phantom:abdomen@96", "--radius", 6, "--threads", 2, "--oversubscribe", *options,
                              "-o", self.folder / "out.vtu", "--record", runs)
         for line in process.stderr:
             if line.startswith(phase):
