@@ -3,6 +3,7 @@ import numpy
 import pandas
 
 from . import style
+from .peers import misses_of
 
 # What made a mesh, in the order of tables and legends; the first three are podm's.
 NONE, MOVED, BOTH, OPTIMIZED = "no option", "R7", "both stages", "stage 2 alone"
@@ -15,15 +16,16 @@ PRECONDITIONERS = {"jacobi": "Jacobi", "amg": "algebraic multigrid"}
 SMALL_DEG, LARGE_DEG = 8, 165
 COLUMNS = ["image", "variant", "n", "cells", "least_deg", "largest_deg", "small_per_million", "large_per_million",
            *(f"{system}_{preconditioner}" for system in SYSTEMS for preconditioner in PRECONDITIONERS),
-           *(f"{system}_largest_eigenvalue" for system in SYSTEMS)]
+           *(f"{system}_largest_eigenvalue" for system in SYSTEMS), "misses"]
 
 
 def rows_by_variant(frame, needed):
     """Finished rows with the column `needed`: by image the rows of each variant's largest mesh, in the order of
-    VARIANTS."""
+    VARIANTS. Of other meshers also those that do not keep what they promise."""
     if needed not in frame:
         return {}
-    rows = frame[frame[needed].notna() & (frame["status"] == "ok") & ~frame["warmup"].astype(bool)]
+    is_finished = (frame["status"] == "ok") | (frame["mesher"] != "podm") & (frame["status"] == "unmet")
+    rows = frame[frame[needed].notna() & is_finished & ~frame["warmup"].astype(bool)]
     rows = rows.assign(variant=[_variant_of(row) for _, row in rows.iterrows()])
     found = {}
     for image, of_image in rows[rows["basis"] == "measured"].groupby("image", sort=True):
@@ -59,6 +61,7 @@ def readable(table):
             shown[f"{system_name}, {name}"] = [f"{number:.0f}" for number in table[f"{system}_{preconditioner}"]]
         shown[f"{system_name}, largest eigenvalue"] = [f"{value:.2f}"
                                                        for value in table[f"{system}_largest_eigenvalue"]]
+    shown["claims missed"] = table["misses"]
     return shown
 
 
@@ -76,8 +79,8 @@ def figure(frame):
             _draw_bars(one, table[table["image"] == image], preconditioner)
             one.set(title=f"{image}: {name}", ylabel="iterations")
     style.legend(grid[0, -1], **style.BESIDE)
-    style.finish(made, "Conjugate gradients until the residual is 1e-8 of the first, P1 elements, 0 on the outer boundary; "
-                       "beside each other meshes of about as many cells.")
+    style.finish(made, "Conjugate gradients until the residual is 1e-8 of the first, P1 elements, 0 on the outer "
+                       "boundary; beside each other meshes of about as many cells.")
     return made
 
 
@@ -90,7 +93,7 @@ def _variant_of(row):
 
 
 def _line(group):
-    line = {"n": len(group), "cells": group["cells"].median()}
+    line = {"n": len(group), "cells": group["cells"].median(), "misses": ", ".join(misses_of(group))}
     for system in SYSTEMS:
         for preconditioner in PRECONDITIONERS:
             line[f"{system}_{preconditioner}"] = group[f"solve.{system}.{preconditioner}.iterations"].median()

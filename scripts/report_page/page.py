@@ -38,8 +38,8 @@ NOTES = {
               "leave out. In brackets: the range when one of the sizes extrapolated from is left out.",
     "simulated": "Seconds, losses and hops are of virtual workers. The wall time is what playing them took here, and "
                  "no time of theirs.",
-    "solvers": "P1 elements, 0 on the outer boundary, until the residual is 1e-8 of the first. Eigenvalues are the largest "
-               "of the matrix over its diagonal. The other meshers' sizes are those nearest to as many cells.",
+    "solvers": "P1 elements, 0 on the outer boundary, until the residual is 1e-8 of the first. Eigenvalues are the "
+               "largest of the matrix over its diagonal. The other meshers' sizes are those nearest to as many cells.",
     "peers": "Each mesher has the image and bounds of PODM. One that tells no seconds of reading has no rate by "
              "equation 1.",
 }

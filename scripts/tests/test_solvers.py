@@ -39,6 +39,11 @@ class Solvers(unittest.TestCase):
         self.assertIsNone(solvers.figure(frame_of(rows)))
         self.assertIsNone(solvers.figure(frame_of([synthetic.row()])))
 
+    def test_other_meshers_count_and_their_misses_are_told(self):
+        rows = [synthetic.solved(160, mesher="tetgen", status="unmet"), synthetic.solved(200)]
+        table = solvers.solvers(frame_of(rows))
+        self.assertEqual(dict(zip(table["variant"], table["misses"])), {solvers.NONE: "", "TetGen": "delaunay"})
+
     def test_of_several_sizes_the_largest_is_shown(self):
         small = synthetic.solved(90, cells=100_000)
         small["trial"] = "0.1M-none"
