@@ -87,7 +87,7 @@ TEST_F(TrialTest, OptimisedMeshesAreAskedForAnglesAndNotForDelaunay) {
     TrialRunner({fake_mesher(folder_, record), verifier}).run(trial, prepared(trial), folder_.path());
     return read_tail(folder_ / "asked", 1000);
   };
-  const std::string plain = claims_asked_for({}, write_record(kGoodRecord));
+  const std::string plain = claims_asked_for(Json::object(), write_record(kGoodRecord));
   EXPECT_NE(plain.find("delaunay"), std::string::npos) << plain;
   EXPECT_EQ(plain.find("dihedral"), std::string::npos) << plain;
   const std::string optimised = claims_asked_for({{"optimize", true}}, write_record(kGoodRecord));
