@@ -72,7 +72,7 @@ kick-tires:
 
 # The least of the experiments goes without the meshers that it would compare with: their trials are skipped.
 experiments: build $(if $(filter kick-tires,$(TIER)),,peers)
-	@scripts/setup run
+	@scripts/setup run $(if $(filter kick-tires,$(TIER)),,solvers)
 	build/bin/podm-bench run --tier $(TIER) $(if $(IMAGE),--image "$(IMAGE)") experiments/*.toml
 
 # Tables and figures of the records in results/runs/, the phantom cut open, and one page of it all. The phantom is

@@ -27,8 +27,12 @@ void add_run(CLI::App& program, int& exit_code) {
   };
   const auto state = std::make_shared<State>();
   RunCommand& command = state->command;
-  command.programs = {beside_this_program("podm"), beside_this_program("podm-verify"), PODM_PEERS,
-                      beside_this_program("podm-bench"), PODM_LIKWID_GROUPS};
+  command.programs = {beside_this_program("podm"),
+                      beside_this_program("podm-verify"),
+                      PODM_PEERS,
+                      beside_this_program("podm-bench"),
+                      PODM_LIKWID_GROUPS,
+                      PODM_SOLVER};
   CLI::App& app = *program.add_subcommand("run", "run the trials of experiments that are not measured yet");
   app.add_option("EXPERIMENT", command.experiment_paths, "files of experiments/")->required();
   app.add_option("--only", command.only,

@@ -49,14 +49,15 @@ struct MesherOption {
 };
 
 // These are the harness's own; no mesher is passed them.
-constexpr std::array kOfHarness{kMesher, kSchedule, kReplay,  kFidelity, kImageGrows,
+constexpr std::array kOfHarness{kMesher, kSchedule, kReplay,  kFidelity, kImageGrows, kSolve,
                                 kCopies, kCounters, kMeasure, kRanks,    kCarrier};
 
-// What the harness does with one process of podm, and not with ranks.
-constexpr std::array kNotOnRanks{kSchedule, kReplay, kImageGrows, kCopies, kCounters};
+// What podm does, or the harness with one process of it, and not ranks.
+constexpr std::array kNotOnRanks{kSchedule, kReplay,   kImageGrows,  kCopies,
+                                 kCounters, kOptimize, kMinDihedral, kSolve};
 
 // Every mesher takes these.
-constexpr std::array kOfAll{kMesher, "radius_mm", "delta_mm", kTargetElements, kPerThread, "threads"};
+constexpr std::array kOfAll{kMesher, "radius_mm", "delta_mm", kTargetElements, kPerThread, "threads", kSolve};
 
 template <class Keys>
 bool is_among(const Keys& keys, std::string_view key) {
@@ -84,9 +85,12 @@ constexpr MesherOption kMesherOptions[] = {
     {"leaf_size", Kind::kPositive},
     {"seed", Kind::kSeed},
     {"topology", Kind::kFile},
+    {kMinDihedral, Kind::kPositive},
+    {kOptimize, Kind::kFlag},
     {kSchedule, Kind::kFlag},
     {kReplay, Kind::kFlag},
     {kFidelity, Kind::kFlag},
+    {kSolve, Kind::kFlag},
     {kImageGrows, Kind::kFlag},
     {kCopies, Kind::kThreads},
     {kCounters, Kind::kCounters},

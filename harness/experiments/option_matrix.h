@@ -20,6 +20,10 @@ inline constexpr const char* kCopies = "copies";
 /// The keys of what is asked of a mesh that is made: to equal the replay of its operations, and to follow the
 /// image closely, a claim of podm-verify.
 inline constexpr const char *kReplay = "replay", *kFidelity = "fidelity";
+/// The keys of dihedral angles: the bound below which vertices move, and whether cells are optimised.
+inline constexpr const char *kMinDihedral = "min_dihedral", *kOptimize = "optimize";
+/// The key that hands the mesh to a finite-element solver: harness/solvers/README.md.
+inline constexpr const char* kSolve = "solve";
 /// The key that has a phantom's voxels grow with the threads.
 inline constexpr const char* kImageGrows = "image_grows";
 /// The keys of a trial that podm-mpi runs: the number of its ranks, who carries what they say, and between

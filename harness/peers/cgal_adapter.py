@@ -84,8 +84,12 @@ def write_image(path, options, info):
     return path
 
 
-def run(program, sequential, parallel):
-    """The adapter, on CGAL's Sequential_tag for one thread unless it is parallel alone."""
+PROMISES = ("structure", "delaunay", "radius_edge", "size", "conformity")
+
+
+def run(program, sequential, parallel, optimisers=(), promises=PROMISES):
+    """The adapter, on CGAL's Sequential_tag for one thread unless it is parallel alone. `optimisers`, perturb and
+    exude, follow on refinement, and void promises."""
     options = adapter.parse_arguments(version_of(program))
     if options.threads > 1 and not parallel:
         sys.exit("a sequential mesher: threads = 1")
@@ -96,12 +100,14 @@ def run(program, sequential, parallel):
     switches = ["--threads", str(threads)]
     for switch, bound in (("--cell-size", options.radius), ("--facet-size", options.delta)):
         switches += [switch, repr(bound)] if bound else []
+    switches += ["--" + optimiser for optimiser in optimisers]
     log, _, peak_rss_bytes = adapter.run([path_of(program, options), write_image(inside("image.inr"), options, info),
                                           *switches, "--output", inside("voxels.mesh")], inside("cgal.log"))
     measured = json.loads(log.splitlines()[-1])
     move_to_frame(inside("voxels.mesh"), inside("mesh.mesh"), info["spacing_mm"], info["affine"])
+    phases_s = {"refine": measured["seconds"], **{name: measured[f"{name}_seconds"] for name in optimisers}}
     adapter.write_record(options.output, mesh="mesh.mesh", cells=measured["cells"], vertices=measured["vertices"],
-                         boundary_facets=measured["boundary_facets"], phases_s={"refine": measured["seconds"]},
+                         boundary_facets=measured["boundary_facets"], phases_s=phases_s,
                          peak_rss_bytes=peak_rss_bytes, threads={"asked": options.threads, "used": options.threads},
                          options={"switches": switches, "queue": measured["options"]["queue"]},
-                         promises=["structure", "delaunay", "radius_edge", "size", "conformity"])
+                         promises=list(promises))

@@ -338,6 +338,13 @@ Value proved(const Row& row, const std::string& claim) {
 }
 Value conformity_proved(const Row& row) { return proved(row, "conformity"); }
 Value fidelity_proved(const Row& row) { return proved(row, "fidelity"); }
+Value dihedral_proved(const Row& row) { return proved(row, "dihedral"); }
+
+template <SystemRecord SolveRecord::*system, IterationsRecord SystemRecord::*preconditioner>
+Value iterations(const Row& row) {
+  if (!row.solve) return absent("rows have no solve");
+  return {static_cast<double>(((*row.solve).*system.*preconditioner).iterations), ""};
+}
 
 Value replay_equal(const Row& row) {
   return row.replay ? yes(row.replay->end == Replay::End::kEqual) : absent("no replay was asked for");
@@ -383,8 +390,16 @@ constexpr Measure kMeasures[] = {
     {"other_node_over_own", "", kMore, kClock, other_node_over_own},
     {"guarantee_misses", "", kLess, kFaults, guarantee_misses},
     {"unproved_claims", "", kLess, kFaults, unproved_claims},
+    {"poisson_jacobi_iterations", "", kLess, kFaults,
+     iterations<&SolveRecord::poisson, &SystemRecord::jacobi>},
+    {"poisson_amg_iterations", "", kLess, kFaults, iterations<&SolveRecord::poisson, &SystemRecord::amg>},
+    {"elasticity_jacobi_iterations", "", kLess, kFaults,
+     iterations<&SolveRecord::elasticity, &SystemRecord::jacobi>},
+    {"elasticity_amg_iterations", "", kLess, kFaults,
+     iterations<&SolveRecord::elasticity, &SystemRecord::amg>},
     {"conformity_proved", "", kMore, kAnswer, conformity_proved},
     {"fidelity_proved", "", kMore, kAnswer, fidelity_proved},
+    {"dihedral_proved", "", kMore, kAnswer, dihedral_proved},
     {"replay_equal", "", kMore, kAnswer, replay_equal},
     {"ended", "", kMore, kOutcome, has_ended},
     {"passed", "", kMore, kOutcome, has_passed},

@@ -22,7 +22,7 @@ enum class Meaning {
   kClock,         ///< time of the clock: of measured rows alone
   kVirtualClock,  ///< virtual time: of simulated rows alone
   kCost,          ///< work, losses, accesses: measured and simulated ones never in one claim
-  kFaults,        ///< faults of a mesh, whoever made it, and whatever it misses
+  kFaults,        ///< faults of a mesh, or what it costs a solver, whoever made it, and whatever it misses
   kAnswer,        ///< 1 or 0, of such a mesh
   kOutcome,       ///< 1 or 0, of a trial, also one without a mesh
 };

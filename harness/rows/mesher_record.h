@@ -166,6 +166,35 @@ struct PerturbedRecord {
   }
 };
 
+/// What optimising has done for dihedral angles: cells beyond what is aimed at, and beyond the bounds.
+struct OptimizationRecord {
+  double least_aim_deg = 0, largest_aim_deg = 0;
+  std::uint64_t beyond_aim_before = 0, beyond_aim = 0, beyond_bounds_before = 0, beyond_bounds = 0;
+  ByName<std::uint64_t> obstacles;  ///< of the cells that are beyond the bounds
+  ByName<std::uint64_t> successes;  ///< operations that made cells better, by kind
+  static constexpr auto fields() {
+    using O = OptimizationRecord;
+    return std::tuple{field("least_aim_deg", &O::least_aim_deg),
+                      field("largest_aim_deg", &O::largest_aim_deg),
+                      field("beyond_aim_before", &O::beyond_aim_before),
+                      field("beyond_aim", &O::beyond_aim),
+                      field("beyond_bounds_before", &O::beyond_bounds_before),
+                      field("beyond_bounds", &O::beyond_bounds),
+                      field("obstacles", &O::obstacles),
+                      field("successes", &O::successes)};
+  }
+};
+
+/// Dihedral angles of all cells, in degrees, as podm-verify counts them.
+struct DihedralRecord {
+  double least = 0, largest = 0;
+  std::vector<std::uint64_t> counts;  ///< a degree each, from 0 on; six angles a cell
+  static constexpr auto fields() {
+    using D = DihedralRecord;
+    return std::tuple{field("least", &D::least), field("largest", &D::largest), field("counts", &D::counts)};
+  }
+};
+
 /// A mesher's record of a mesh.
 struct MeshRecord {
   std::optional<int> schema;           ///< kMesherSchema; rows have their own instead
@@ -188,9 +217,12 @@ struct MeshRecord {
   std::optional<std::variant<ByName<Hops>, Unavailable>> hops_by_kind;
   std::optional<WorkRecord> counters;
   std::optional<PerturbedRecord> perturbed;
-  ByName<std::uint64_t> guarantees;  ///< how often each is missed
+  std::optional<OptimizationRecord> optimization;
+  std::optional<std::array<double, 2>> promised_dihedral_deg;  ///< least and largest angle; nothing: none
+  ByName<std::uint64_t> guarantees;                            ///< how often each is missed
   std::optional<std::string> mesh_sha256;
   std::optional<ByName<Proof>> verdicts;             ///< one a claim; nothing where podm-verify did not run
+  std::optional<DihedralRecord> dihedral_deg;        ///< nothing where podm-verify did not tell
   std::optional<std::vector<std::string>> promises;  ///< claims; nothing: all
   std::string stop_reason;
   Json as_written = Json::object();
@@ -217,9 +249,12 @@ struct MeshRecord {
                       field_if_any("hops_by_kind", &M::hops_by_kind),
                       field_if_any("counters", &M::counters),
                       field_if_any("perturbed", &M::perturbed),
+                      field_if_any("optimization", &M::optimization),
+                      field_if_any("promised_dihedral_deg", &M::promised_dihedral_deg),
                       field("guarantees", &M::guarantees),
                       field_if_any("mesh_sha256", &M::mesh_sha256),
                       field_if_any("verdicts", &M::verdicts),
+                      field_if_any("dihedral_deg", &M::dihedral_deg),
                       field_if_any("promises", &M::promises),
                       field("stop_reason", &M::stop_reason)};
   }

@@ -76,6 +76,7 @@ Row make_row(const RowContext& context, const Trial& trial, const Turn& turn, co
   row.measured = result.measured;
   row.replay = result.replay;
   row.side_by_side = result.side_by_side;
+  row.solve = result.solve;
   if (result.mesh_bytes > 0) row.mesh_bytes = result.mesh_bytes;
   row.process = process_of(trial, result);
   row.preparation_s = result.preparation_s;

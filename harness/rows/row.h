@@ -101,6 +101,41 @@ struct Codec<Replay> {
   static Replay read(const Json& json, const std::string& place);
 };
 
+/// What conjugate gradients took with one preconditioner: harness/solvers/README.md.
+struct IterationsRecord {
+  std::uint64_t iterations = 0;
+  double smallest_eigenvalue = 0, largest_eigenvalue = 0;  ///< of the preconditioned matrix, estimated
+  double setup_s = 0, seconds = 0;                         ///< of the preconditioner, and of the iterations
+  static constexpr auto fields() {
+    using I = IterationsRecord;
+    return std::tuple{field("iterations", &I::iterations),
+                      field("smallest_eigenvalue", &I::smallest_eigenvalue),
+                      field("largest_eigenvalue", &I::largest_eigenvalue), field("setup_s", &I::setup_s),
+                      field("seconds", &I::seconds)};
+  }
+};
+
+/// A system of equations on the mesh.
+struct SystemRecord {
+  std::uint64_t unknowns = 0;
+  IterationsRecord jacobi, amg;  ///< by preconditioner: the diagonal, an algebraic multigrid
+  static constexpr auto fields() {
+    using S = SystemRecord;
+    return std::tuple{field("unknowns", &S::unknowns), field("jacobi", &S::jacobi), field("amg", &S::amg)};
+  }
+};
+
+/// What the mesh means to a solver.
+struct SolveRecord {
+  std::string solver;  ///< its version and licence
+  SystemRecord poisson, elasticity;
+  static constexpr auto fields() {
+    using S = SolveRecord;
+    return std::tuple{field("solver", &S::solver), field("poisson", &S::poisson),
+                      field("elasticity", &S::elasticity)};
+  }
+};
+
 /// What a row tells of one of the processes that ran at the same time.
 struct CopyRecord {
   int processor = 0;  ///< that it ran on
@@ -262,6 +297,7 @@ struct Row {
 
   std::optional<Replay> replay;                         ///< nothing where none was asked for
   std::optional<std::vector<CopyRecord>> side_by_side;  ///< nothing where one process ran alone
+  std::optional<SolveRecord> solve;                     ///< nothing where none was asked for or it failed
   std::optional<std::uint64_t> mesh_bytes;              ///< size of the mesh file
   ProcessRecord process;
   double preparation_s = 0, verification_s = 0;  ///< before the mesher starts and after it has ended
@@ -283,6 +319,7 @@ struct Row {
   static constexpr auto fields_after() {
     return std::tuple{field("replay", &Row::replay),
                       field("side_by_side", &Row::side_by_side),
+                      field_if_any("solve", &Row::solve),
                       field("mesh_bytes", &Row::mesh_bytes),
                       field("process", &Row::process),
                       field("preparation_s", &Row::preparation_s),

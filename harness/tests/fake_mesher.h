@@ -87,4 +87,13 @@ done
 )" + body);
 }
 
+/// What a solver prints of a mesh.
+inline const std::string kSolved =
+    R"({"solver":"Solver 1.0","poisson":{"unknowns":9,)"
+    R"("jacobi":{"iterations":12,"smallest_eigenvalue":0.1,"largest_eigenvalue":2.0,"setup_s":0.0,"seconds":0.5},)"
+    R"("amg":{"iterations":3,"smallest_eigenvalue":0.5,"largest_eigenvalue":1.0,"setup_s":0.1,"seconds":0.2}},)"
+    R"("elasticity":{"unknowns":27,)"
+    R"("jacobi":{"iterations":24,"smallest_eigenvalue":0.1,"largest_eigenvalue":4.0,"setup_s":0.0,"seconds":1.5},)"
+    R"("amg":{"iterations":6,"smallest_eigenvalue":0.5,"largest_eigenvalue":1.0,"setup_s":0.3,"seconds":0.4}}})";
+
 }  // namespace podm::bench

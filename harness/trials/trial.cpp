@@ -14,6 +14,7 @@
 #include "trials/judgement.h"
 #include "trials/ranks.h"
 #include "trials/side_by_side.h"
+#include "trials/solving.h"
 #include "trials/stopwatch.h"
 #include "trials/warm_memory.h"
 
@@ -109,7 +110,10 @@ std::string TrialRunner::why_skipped(const Trial& trial) {
   if (copies > processors)
     return fmt::format("{} copies need as many processors, and there are {}", copies, processors);
   if (const std::string absence = absence_of_ranks(trial, programs_.podm); !absence.empty()) return absence;
-  return is_of_peer(trial) ? peers_.of(trial).absence : "";
+  if (is_of_peer(trial) && !peers_.of(trial).absence.empty()) return peers_.of(trial).absence;
+  if (!trial.options.value(kSolve, false)) return "";
+  if (!absence_of_solver_) absence_of_solver_ = absence_of_solver(programs_.solver);
+  return *absence_of_solver_;
 }
 
 std::vector<std::string> TrialRunner::command_of(const Run& run, const std::string& folder,
@@ -181,16 +185,30 @@ void TrialRunner::prove(const Run& run, TrialResult& result) {
                                                   mesh_path(run.trial, result.mesh, run.folder),
                                                   programs_.verifier, run.folder, run.stop_requested);
     result.mesh->verdicts = verification.verdicts;
+    result.mesh->dihedral_deg = verification.dihedral_deg;
     add_fault(verification.fault, verification.is_interrupted, result);
   }
-  if (run.trial.options.value(kReplay, false) && result.status != Status::kInterrupted) {
-    const auto [replay, is_interrupted] =
-        replay_mesh(run.trial, run.preparation.image, programs_.podm, run.folder, run.stop_requested);
-    result.replay = replay;
-    const bool is_equal = replay.end == Replay::End::kEqual;
-    add_fault(is_equal ? "" : "replay " + replay.text(), is_interrupted, result);
-  }
+  const auto is_asked_for = [&](const char* key) {
+    return run.trial.options.value(key, false) && result.status != Status::kInterrupted;
+  };
+  if (is_asked_for(kReplay)) replay(run, result);
+  if (is_asked_for(kSolve)) solve(run, result);
   result.verification_s = watch.seconds();
+}
+
+void TrialRunner::replay(const Run& run, TrialResult& result) {
+  const auto [replay, is_interrupted] =
+      replay_mesh(run.trial, run.preparation.image, programs_.podm, run.folder, run.stop_requested);
+  result.replay = replay;
+  const bool is_equal = replay.end == Replay::End::kEqual;
+  add_fault(is_equal ? "" : "replay " + replay.text(), is_interrupted, result);
+}
+
+void TrialRunner::solve(const Run& run, TrialResult& result) {
+  const Solving solving = solve_on_mesh(run.trial, mesh_path(run.trial, result.mesh, run.folder),
+                                        programs_.solver, run.stop_requested);
+  result.solve = solving.record;
+  add_fault(solving.fault, solving.is_interrupted, result);
 }
 
 TrialResult TrialRunner::run(const Trial& trial, const Preparation& preparation,

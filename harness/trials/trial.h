@@ -31,6 +31,7 @@ struct TrialResult {
   std::optional<ImageSize> image_size;           ///< nothing when the mesher could not tell
   std::optional<Replay> replay;                  ///< nothing when it was not asked for
   std::optional<std::vector<CopyRecord>> side_by_side;  ///< nothing where the trial asks for no copies
+  std::optional<SolveRecord> solve;                     ///< nothing where none was asked for or it failed
 };
 
 /// Runs trials one after the other.
@@ -43,7 +44,8 @@ class TrialRunner {
   std::string why_skipped(const Trial& trial);
 
   /// Runs the mesher on the trial, then the verifier on its mesh, whose verdicts join the record, and the
-  /// replay where it is asked for. Files are written into `scratch_folder`, which must exist.
+  /// replay and the solver where they are asked for. Files are written into `scratch_folder`, which must
+  /// exist.
   TrialResult run(const Trial& trial, const Preparation& preparation, const std::string& scratch_folder,
                   const StopQuery& stop_requested = {});
 
@@ -60,11 +62,14 @@ class TrialRunner {
   void run_program(const Run& run, TrialResult& result);
   void run_copies(const Run& run, TrialResult& result);
   void prove(const Run& run, TrialResult& result);
+  void replay(const Run& run, TrialResult& result);
+  void solve(const Run& run, TrialResult& result);
 
   Programs programs_;
   Peers peers_;
   std::map<std::string, std::optional<ImageSize>> image_sizes_;        // each image is looked at once
   std::map<std::string, std::unique_ptr<CounterTool>> counter_tools_;  // each is asked once
+  std::optional<std::string> absence_of_solver_;                       // it is asked once
 };
 
 }  // namespace podm::bench

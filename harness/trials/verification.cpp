@@ -11,15 +11,26 @@
 namespace podm::bench {
 namespace {
 
-constexpr const char* kClaims = "structure,radius_edge,boundary_angles,delaunay,conformity,surface,labels";
-// A proof may take longer than the mesh, and of a large one as long as that may.
-double timeout_s(const Trial& trial) { return std::max(600.0, trial.timeout_s); }
 constexpr int kExitDiffers = 1;  // podm replay ends with it
 
 // What is read of podm-verify's report.
+struct HistogramReport {
+  std::string name;
+  std::optional<double> minimum, maximum;  // nothing where not finite
+  std::vector<std::uint64_t> counts;
+  static constexpr auto fields() {
+    using H = HistogramReport;
+    return std::tuple{field("name", &H::name), field("minimum", &H::minimum), field("maximum", &H::maximum),
+                      field("counts", &H::counts)};
+  }
+};
 struct ClaimReport {
   Proof verdict = Proof::kNotRun;
-  static constexpr auto fields() { return std::tuple{field("verdict", &ClaimReport::verdict)}; }
+  std::optional<std::vector<HistogramReport>> histograms;
+  static constexpr auto fields() {
+    return std::tuple{field("verdict", &ClaimReport::verdict),
+                      field_if_any("histograms", &ClaimReport::histograms)};
+  }
 };
 struct VerifierReport {
   ByName<ClaimReport> claims;
@@ -36,6 +47,25 @@ std::optional<VerifierReport> read_report(const std::string& path) {
   }
 }
 
+// Of any claim that looks at the cells' shapes: they count alike.
+std::optional<DihedralRecord> dihedral_angles_of(const VerifierReport& report) {
+  for (const auto& [claim, told] : report.claims)
+    for (const HistogramReport& histogram : told.histograms.value_or(std::vector<HistogramReport>()))
+      if (histogram.name == "dihedral_angle" && histogram.minimum && histogram.maximum)
+        return DihedralRecord{*histogram.minimum, *histogram.maximum, histogram.counts};
+  return {};
+}
+
+std::string claims_of(const Trial& trial, const MeshRecord& record, bool has_radius) {
+  std::string claims = "structure,radius_edge,boundary_angles,conformity,surface,labels";
+  const bool is_optimized = trial.options.value(kOptimize, false);
+  if (!is_optimized) claims += ",delaunay";
+  if (is_optimized || record.promised_dihedral_deg) claims += ",dihedral";
+  if (has_radius) claims += ",size";
+  if (trial.options.value(kFidelity, false)) claims += ",fidelity";
+  return claims;
+}
+
 // The claims that the record promises and that are not proved. It promises all unless it names them.
 std::string fault_of(const ByName<Proof>& verdicts, const MeshRecord& record) {
   const auto is_promised = [&](const std::string& claim) {
@@ -50,6 +80,9 @@ std::string fault_of(const ByName<Proof>& verdicts, const MeshRecord& record) {
 
 }  // namespace
 
+// A proof may take longer than the mesh, and of a large one as long as that may.
+double timeout_of_proof_s(const Trial& trial) { return std::max(600.0, trial.timeout_s); }
+
 Verification verify_mesh(const Trial& trial, const std::string& image, const MeshRecord& record,
                          const std::string& mesh_path, const std::string& verifier, const std::string& folder,
                          const StopQuery& stop_requested) {
@@ -60,20 +93,19 @@ Verification verify_mesh(const Trial& trial, const std::string& image, const Mes
   };
   const UsedSizes used = record.used.value_or(UsedSizes{});
   const double radius_mm = used.radius_mm.value_or(0);
-  const bool with_fidelity = trial.options.value(kFidelity, false);
-  add("--claims",
-      fmt::format("{}{}{}", kClaims, radius_mm > 0 ? ",size" : "", with_fidelity ? ",fidelity" : ""));
+  add("--claims", claims_of(trial, record, radius_mm > 0));
   if (radius_mm > 0) add("--radius", fmt::format("{}", radius_mm));
   if (used.delta_mm) add("--delta", fmt::format("{}", *used.delta_mm));
   if (trial.options.value(kSchedule, false)) add("--schedule", folder + kScheduleName);
-  const ProcessOutcome outcome = ask(command, timeout_s(trial), stop_requested).outcome;
+  const ProcessOutcome outcome = ask(command, timeout_of_proof_s(trial), stop_requested).outcome;
   const auto report = read_report(report_path);
-  Verification verification{{}, {}, outcome.end == ProcessOutcome::End::kInterrupted};
+  Verification verification{{}, {}, {}, outcome.end == ProcessOutcome::End::kInterrupted};
   if (!report) {
     verification.fault = "not verified: " + outcome.describe();
     return verification;
   }
   for (const auto& [claim, told] : report->claims) verification.verdicts[claim] = told.verdict;
+  verification.dihedral_deg = dihedral_angles_of(*report);
   verification.fault = fault_of(verification.verdicts, record);
   return verification;
 }
@@ -81,7 +113,8 @@ Verification verify_mesh(const Trial& trial, const std::string& image, const Mes
 ReplayAttempt replay_mesh(const Trial& trial, const std::string& image, const std::string& podm,
                           const std::string& folder, const StopQuery& stop_requested) {
   using End = ProcessOutcome::End;
-  const Reply reply = ask({podm, "replay", image, folder + kLogName}, timeout_s(trial), stop_requested);
+  const Reply reply =
+      ask({podm, "replay", image, folder + kLogName}, timeout_of_proof_s(trial), stop_requested);
   if (reply.succeeded()) return {{Replay::End::kEqual, ""}};
   if (reply.outcome.end == End::kExited && reply.outcome.exit_code == kExitDiffers)
     return {{Replay::End::kDiffers, ""}};

@@ -18,16 +18,22 @@ struct Programs {
   std::string peers = {};          ///< folder of other meshers; empty: there are none
   std::string bench = {};          ///< this program, to measure the machine
   std::string likwid_groups = {};  ///< folder of the groups of events for likwid-perfctr
+  std::string solver = {};         ///< of finite elements; empty: there is none
 };
 
 struct Verification {
   ByName<Proof> verdicts;  ///< one a claim; empty when the verifier told nothing
-  std::string fault;       ///< why the mesh is not proved; empty: every claim promised passes
+  std::optional<DihedralRecord> dihedral_deg;
+  std::string fault;  ///< why the mesh is not proved; empty: every claim promised passes
   bool is_interrupted = false;
 };
 
+/// How long a program may take that looks at the trial's mesh.
+double timeout_of_proof_s(const Trial& trial);
+
 /// Every claim; fidelity only where the trial asks for it, as it is promised of cells about as small as
-/// voxels alone. `record` is the mesher's, of the mesh at `mesh_path`.
+/// voxels alone; dihedral of optimised cells and where it is promised, delaunay of cells that are not
+/// optimised. `record` is the mesher's, of the mesh at `mesh_path`.
 Verification verify_mesh(const Trial& trial, const std::string& image, const MeshRecord& record,
                          const std::string& mesh_path, const std::string& verifier, const std::string& folder,
                          const StopQuery& stop_requested);

@@ -69,7 +69,8 @@ INPUT_ERRORS = (RecordError, MeshError, ScheduleError, ReportError, VerdictsErro
 
 def write(outcome, frame, folder):
     folder.mkdir(parents=True, exist_ok=True)
-    write_text(folder / "rows.csv", frame.to_csv(index=False))
+    rows = frame.drop(columns="dihedral_deg.counts", errors="ignore")
+    write_text(folder / "rows.csv", rows.to_csv(index=False))
     for name, (data, shown) in outcome.tables.items():
         write_text(folder / f"{name}.csv", data.to_csv(index=False))
         write_text(folder / f"{name}.md", markdown(shown))

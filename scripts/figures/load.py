@@ -14,9 +14,9 @@ NEEDED_CLAIMS = ("structure", "delaunay", "radius_edge", "boundary_angles")
 SIMULATED_CACHES = "its seconds are those of a simulation of caches"
 OF_RANKS = "its ranks have tables and figures of their own"
 LONG_LISTS = ["labels", "facet_pairs", "command", "workers", "ranks.rounds", "ranks.by_rank"]
-# Phases in no second of equation 1: measuring and writing the mesh, finding the radius for a number of cells, drawing
-# a phantom.
-UNTIMED = ("optimize", "measure", "write", "calibrate", "draw")
+# Phases in no second of equation 1: bettering angles, measuring and writing the mesh, finding the radius for a number
+# of cells, drawing a phantom.
+UNTIMED = ("perturb", "optimize", "exude", "measure", "write", "calibrate", "draw")
 REFINING = ("octree", "initial", "refine", "closing")
 # What a series varies; any other choice in a trial's name makes another series.
 VARIED = ("algorithm", "threads", "seed", "mesher", "input")

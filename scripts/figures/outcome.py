@@ -3,9 +3,9 @@ from dataclasses import dataclass, field
 
 import pandas
 
-from . import (cache, deviation, distributed, distributed_figure, distributed_model, experiment_verdicts, fig1, fig2b,
-               fig4a, fig4b, guarantees, lost, machine, peers, scaling, simulated, table1, table2, table3, validation,
-               verdicts)
+from . import (cache, deviation, dihedral, distributed, distributed_figure, distributed_model, experiment_verdicts,
+               fig1, fig2b, fig4a, fig4b, guarantees, lost, machine, peers, scaling, simulated, solvers, table1, table2,
+               table3, validation, verdicts)
 
 
 @dataclass(frozen=True)
@@ -39,7 +39,8 @@ def _tables(frame, series, hops, ranks, nodes):
     others = {"simulated": (simulated.simulated(frame), simulated), "machine": (machine.machine(frame), machine),
               "deviation": (deviation.deviation(series), deviation), "lost": (lost.lost(frame, series), lost),
               "validation": (validation.validation(frame), validation),
-              "peers": (peers.peers(frame), peers), "cache": (cache.cache(frame), cache),
+              "peers": (peers.peers(frame), peers), "solvers": (solvers.solvers(frame), solvers),
+              "cache": (cache.cache(frame), cache),
               "distributed": (ranks, distributed), "distributed_extrapolated": (nodes, distributed_model),
               "guarantees": (guarantees.ours(frame), guarantees),
               "guarantees_of_others": (guarantees.of_others(frame), guarantees)}
@@ -61,13 +62,17 @@ def _figures(frame, series, distributed_tables, report, schedule, mesh):
         "deviation": deviation.figure(series),
         "lost": lost.figure(frame, series),
         "distributed": distributed_figure.figure(*distributed_tables),
+        "dihedral": dihedral.figure(frame),
+        "solvers": solvers.figure(frame),
     }
     why = {"fig1": "no report of podm-verify and no verified row with its quality",
            "fig2b": "no two leaves of different nodes were active at one time" if schedule and mesh
            else "needs --schedule and --mesh of a run of pdr or pdr-podm",
            "deviation": "no verified simulated rows of weak scaling on more than one core",
            "lost": "no simulated rows of weak scaling tell what their workers lost (virtual.worker_s)",
-           "distributed": "no verified rows on more than one rank (distributed_weak.toml)"}
+           "distributed": "no verified rows on more than one rank (distributed_weak.toml)",
+           "dihedral": "no verified rows without and with a stage against slivers (solvers.toml)",
+           "solvers": "no rows of meshes that a solver was handed (solvers.toml)"}
     missing = {name: why[name] for name, figure in drawn.items() if figure is None}
     return {name: figure for name, figure in drawn.items() if figure is not None}, missing
 

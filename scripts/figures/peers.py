@@ -53,7 +53,7 @@ def _line(group):
     line.update(_bounds("refining_rate", refining))
     if _tells_reading(group):
         line.update(_bounds("rate", whole))
-    return {**line, "misses": ", ".join(_misses(group))}
+    return {**line, "misses": ", ".join(misses_of(group))}
 
 
 def _bounds(name, values):
@@ -65,6 +65,7 @@ def _tells_reading(group):
     return any(f"timed.{phase}" in group and group[f"timed.{phase}"].notna().any() for phase in ("read", "surface"))
 
 
-def _misses(group):
+def misses_of(group):
+    """Claims that failed for one of the rows, promised or not."""
     names = [name for name in group if name.startswith("verdicts.")]
     return sorted(name.removeprefix("verdicts.") for name in names if (group[name] == "fail").any())

@@ -99,6 +99,23 @@ def peer(name, cells=1_000_000, **changes):
     return made
 
 
+def solved(iterations, image="made-up", optimize=None, min_dihedral=None, mesher=None, angles=(5, 170), **changes):
+    """A row whose mesh was handed to a solver; all dihedral angles are `angles`, as many of each."""
+    made = peer(mesher) if mesher else row()
+    name = mesher or f"{'both' if optimize else 'r7' if min_dihedral else 'none'}"
+    one = {"iterations": iterations, "smallest_eigenvalue": 0.1, "largest_eigenvalue": 2.5, "seconds": 1.0}
+    by_preconditioner = {"unknowns": 9, "jacobi": one, "amg": {**one, "iterations": iterations // 10}}
+    counts = [0] * 180
+    for angle in angles:
+        counts[int(angle)] += 6 * made["cells"] // len(angles)
+    asked = {"threads": 1, "solve": True, "optimize": optimize, "min_dihedral": min_dihedral}
+    made.update(experiment="solvers", trial=f"1M-{name}", input={"name": image},
+                asked={key: value for key, value in asked.items() if value is not None},
+                solve={"solver": "made up", "poisson": by_preconditioner, "elasticity": by_preconditioner},
+                dihedral_deg={"least": min(angles), "largest": max(angles), "counts": counts}, **changes)
+    return made
+
+
 def experiment_verdicts(**verdicts):
     """What podm-bench writes: a claim by name and verdict, all of one experiment."""
     claims = [{"name": name, "statement": f"{name} is so", "basis": "measured", "verdict": verdict,

@@ -102,7 +102,7 @@ ClaimResult check_dihedral(const Mesh& mesh, const Options& options) {
     return result;
   }
   Tally empty;
-  empty.bins.emplace_back("dihedral_angle", "degrees", 0, 180, 72);
+  empty.bins.push_back(bins_of_degrees("dihedral_angle"));
   const CellCheck check(bounds);
   const Tally tally = tally_over(mesh.cells.size(), options.threads, empty, [&](std::size_t i, Tally& t) {
     const auto c = static_cast<CellId>(i);

@@ -30,7 +30,7 @@ int side_of_bound(const CellPoints& p, const Constant& squared_bound, std::uint6
 ClaimResult check_radius_edge(const Mesh& mesh, const Options& options) {
   Tally empty;
   empty.bins.emplace_back("radius_edge_ratio", "", 0.6, 2.0, 56);
-  empty.bins.emplace_back("dihedral_angle", "degrees", 0, 180, 72);
+  empty.bins.push_back(bins_of_degrees("dihedral_angle"));
   const Rational bound = typed_decimal(options.radius_edge_bound);
   const Constant squared_bound(bound * bound);
   const Tally tally = tally_over(mesh.cells.size(), options.threads, empty, [&](std::size_t i, Tally& t) {

@@ -45,6 +45,9 @@ class Bins {
   Histogram histogram_;
 };
 
+/// Of angles, a bin a degree.
+inline Bins bins_of_degrees(std::string name) { return {std::move(name), "degrees", 0, 180, 180}; }
+
 struct Tally {
   std::uint64_t num_checked = 0, num_exact = 0, num_violations = 0, num_ties = 0;
   WorstWitnesses worst, closest;  // of violations; of all, where the check adds them: reported on a pass

@@ -133,6 +133,10 @@ TEST_F(ExperimentTest, FaultsNameFileLineAndColumn) {
       {kHead + kTrial + "radius_mm = nan\n", "some.toml:8:13:", "radius_mm"},
       {kHead + kTrial + "radius_mm = inf\n", "some.toml:8:13:", "radius_mm"},
       {kHead + kTrial + "delta_mm = -1\n", "some.toml:8:12:", "delta_mm"},
+      {kHead + kTrial + "min_dihedral = -8\n", "some.toml:8:16:", "min_dihedral"},
+      {kHead + kTrial + "optimize = 8\n", "some.toml:8:12:", "optimize"},
+      {kHead + kTrial + "mesher = 'cgal'\noptimize = true\n", "some.toml:9:12:", "podm alone"},
+      {kHead + kTrial + "ranks = 2\ncarrier = 'mpi'\nsolve = true\n", "some.toml:10:9:", "exclude"},
       {kHead + kTrial + "threads = 0\n", "some.toml:8:11:", "threads"},
       {kHead + kTrial + "target_elements = -5\n", "some.toml:8:19:", "target_elements"},
       {kHead + "[[trials]]\nname = '../x'\ninput = 'a'\n", "some.toml:6:8:", "name"},  // would be a path

@@ -23,7 +23,8 @@ Row full_row() {
     "hops_by_kind": {"mesh_reads": [60, 30, 10], "mesh_writes": [40, 0, 60]},
     "counters": {"insertions": {"R1": 300, "R2": 100}},
     "guarantees": {"radius_edge": 2, "facet_angle": 1},
-    "verdicts": {"structure": "pass", "conformity": "pass", "labels": "fail", "fidelity": "not_run"}
+    "verdicts": {"structure": "pass", "conformity": "pass", "labels": "fail", "fidelity": "not_run",
+                 "dihedral": "pass"}
   })"));
   row.process.counters = {{"llc_load_misses", Counter{3000UL, "s", {}}},
                           {"llc_store_misses", Counter{1000UL, "s", {}}}};
@@ -36,6 +37,8 @@ Row full_row() {
   row.resolved.emplace().cells = 1000;
   row.process.bytes_per_cell_beyond_image = 130;
   row.replay = {Replay::End::kEqual, ""};
+  row.solve = SolveRecord{
+      "s", {9, {120, 0.1, 4, 0, 1}, {12, 0.5, 1, 1, 2}}, {27, {240, 0.1, 8, 0, 3}, {24, 0.5, 1, 1, 4}}};
   row.side_by_side = {{0, 1200, {{"refine", 6.0}}, 200, {}}, {1, 1200, {{"refine", 3.0}}, 400, {}}};
   return row;
 }
@@ -78,6 +81,7 @@ void take_own_memory(Row& row) {
   auto& levels = row.measured->memory_levels;
   levels.erase(levels.begin() + 3);
 }
+void take_solve(Row& row) { row.solve.reset(); }
 void take_verdicts(Row& row) { row.mesh->verdicts.reset(); }
 
 struct Expected {
@@ -140,7 +144,12 @@ TEST(Measures, AreWhatTheTableSays) {
       {"other_node_over_own", 1.5, take_own_memory},
       {"guarantee_misses", 3, take_mesh},
       {"unproved_claims", 2, take_verdicts},
+      {"poisson_jacobi_iterations", 120, take_solve},
+      {"poisson_amg_iterations", 12, take_solve},
+      {"elasticity_jacobi_iterations", 240, take_solve},
+      {"elasticity_amg_iterations", 24, take_solve},
       {"conformity_proved", 1, take_verdicts},
+      {"dihedral_proved", 1, take_verdicts},
       {"fidelity_proved", 0, take_verdicts},
       {"replay_equal", 1, [](Row& row) { row.replay.reset(); }},
       {"ended", 1, nullptr},

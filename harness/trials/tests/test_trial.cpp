@@ -66,13 +66,89 @@ TEST_F(TrialTest, VerdictsOfTheVerifierDecide) {
   EXPECT_EQ(run_with_verifier("exit 3").status, Status::kUnmet) << "no report proves nothing";
 }
 
+TEST_F(TrialTest, DihedralAnglesAreThoseThatTheVerifierCounts) {
+  const std::string report =
+      R"({"claims":{"size":{"verdict":"pass","histograms":[]},"radius_edge":{"verdict":"pass","histograms":[)"
+      R"({"name":"other","minimum":null,"maximum":null,"counts":[]},)"
+      R"({"name":"dihedral_angle","minimum":7.5,"maximum":160.25,"counts":[0,4,2]}]}}})";
+  const std::string mesher = fake_mesher(folder_, write_record(kGoodRecord)),
+                    verifier = fake_verifier(folder_, "echo '" + report + "' > \"$report\"");
+  const TrialResult result =
+      TrialRunner({mesher, verifier}).run(some_trial(), prepared(some_trial()), folder_.path());
+  EXPECT_EQ(to_json(result.mesh.value().dihedral_deg),
+            Json({{"least", 7.5}, {"largest", 160.25}, {"counts", {0, 4, 2}}}));
+}
+
+TEST_F(TrialTest, OptimisedMeshesAreAskedForAnglesAndNotForDelaunay) {
+  const auto claims_asked_for = [&](Json options, const std::string& record) {
+    Trial trial = some_trial();
+    trial.options.update(options);
+    const std::string verifier = folder_.script("podm-verify", "echo \"$@\" > \"$(dirname \"$0\")/asked\"");
+    TrialRunner({fake_mesher(folder_, record), verifier}).run(trial, prepared(trial), folder_.path());
+    return read_tail(folder_ / "asked", 1000);
+  };
+  const std::string plain = claims_asked_for(Json::object(), write_record(kGoodRecord));
+  EXPECT_NE(plain.find("delaunay"), std::string::npos) << plain;
+  EXPECT_EQ(plain.find("dihedral"), std::string::npos) << plain;
+  const std::string optimised = claims_asked_for({{"optimize", true}}, write_record(kGoodRecord));
+  EXPECT_EQ(optimised.find("delaunay"), std::string::npos) << optimised;
+  EXPECT_NE(optimised.find("dihedral"), std::string::npos) << optimised;
+  const std::string promised = claims_asked_for(
+      {{"min_dihedral", 8.0}},
+      good_record_but(R"("cells":1000)", R"("cells":1000,"promised_dihedral_deg":[8.0,165.0])"));
+  EXPECT_NE(promised.find("delaunay"), std::string::npos) << promised;
+  EXPECT_NE(promised.find("dihedral"), std::string::npos) << promised;
+}
+
+class SolvingTest : public TrialTest {
+ protected:
+  // Runs a trial whose mesh a solver, a script, is handed.
+  TrialResult run_with_solver(const std::string& body) {
+    Trial trial = some_trial();
+    trial.options["solve"] = true;
+    Programs programs{fake_mesher(folder_, write_record(kGoodRecord) + "echo mesh > \"$output\"\n"), {}};
+    programs.solver = folder_.script("solve", body);
+    TrialRunner runner(programs);
+    reason_to_skip_ = runner.why_skipped(trial);
+    return runner.run(trial, prepared(trial), folder_.path());
+  }
+  std::string reason_to_skip_;
+};
+
+TEST_F(SolvingTest, TellsWhatTheSolverPrintsOfTheMesh) {
+  const TrialResult result = run_with_solver("[ -e \"$1\" ] && echo '" + kSolved + "'");
+  EXPECT_EQ(result.status, Status::kOk) << result.reason;
+  EXPECT_EQ(to_json(result.solve), Json::parse(kSolved));
+  EXPECT_FALSE(run(write_record(kGoodRecord)).solve) << "it is not asked for";
+}
+
+TEST_F(SolvingTest, MeshesThatAreNotSolvedAreUnmet) {
+  for (const auto& [body, fault] : {std::pair("echo flat >&2; exit 2", "flat"), {"echo '{}'", "solver"}}) {
+    const TrialResult result = run_with_solver(body);
+    EXPECT_EQ(result.status, Status::kUnmet);
+    EXPECT_TRUE(result.reason.starts_with("not solved: ")) << result.reason;
+    EXPECT_NE(result.reason.find(fault), std::string::npos) << result.reason;
+    EXPECT_FALSE(result.solve);
+  }
+}
+
+TEST_F(SolvingTest, TrialsAreSkippedWhereTheSolverCannotRun) {
+  run_with_solver("echo 'no DOLFINx'; exit 77");
+  EXPECT_EQ(reason_to_skip_, "no DOLFINx");
+  run_with_solver("echo 'Solver 1.0'");
+  EXPECT_EQ(reason_to_skip_, "");
+}
+
 TEST_F(TrialTest, OptionsOfTheTrialReachTheMesher) {
   Trial trial = some_trial();
-  trial.options = {{"threads", 3}, {"delta_mm", 0.25},       {"cores_per_node", 8},
-                   {"pin", true},  {"oversubscribe", false}, {"counters", "perf_event"}};
+  trial.options = {{"threads", 3},   {"delta_mm", 0.25},       {"cores_per_node", 8},
+                   {"pin", true},    {"oversubscribe", false}, {"counters", "perf_event"},
+                   {"solve", false}, {"min_dihedral", 8.0},    {"optimize", true}};
   run(write_record(kGoodRecord), trial);
   const std::string arguments = fmt::format(" {}", read_tail(folder_ / "arguments", 1000));
-  EXPECT_TRUE(arguments.starts_with(" mesh image.nii --threads 3 --delta 0.25 --cores-per-node 8 --pin -o "))
+  EXPECT_TRUE(
+      arguments.starts_with(" mesh image.nii --threads 3 --delta 0.25 --cores-per-node 8 --pin "
+                            "--min-dihedral 8 --optimize -o "))
       << arguments;
   EXPECT_TRUE(arguments.ends_with(" --quiet\n")) << arguments;
 }

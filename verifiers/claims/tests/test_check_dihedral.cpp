@@ -2,6 +2,7 @@
 
 #include <cmath>
 #include <numbers>
+#include <numeric>
 
 #include "claims/tests/small_meshes.h"
 
@@ -74,6 +75,15 @@ TEST(Dihedral, RejectsFlatCellsByEitherBound) {
                            mesh_of({{1, 1, 1}}, {{0, 0, 0, 0}})}) {
     EXPECT_EQ(dihedral_of(flat, 1e-9, std::nullopt).num_violations, 1);
     EXPECT_EQ(dihedral_of(flat, std::nullopt, 179.999).num_violations, 1);
+  }
+}
+
+TEST(Dihedral, HistogramHasABinADegree) {
+  for (const double degrees : {7.01, 7.99, 8.01, 164.99, 165.01, 179.9}) {
+    const Histogram histogram = dihedral_of(wedge(degrees), 1, std::nullopt).histograms.at(0);
+    ASSERT_EQ(histogram.counts.size(), 180u);
+    EXPECT_GT(histogram.counts[static_cast<std::size_t>(degrees)], 0u) << degrees;
+    EXPECT_EQ(std::accumulate(histogram.counts.begin(), histogram.counts.end(), std::uint64_t{0}), 6u);
   }
 }
 

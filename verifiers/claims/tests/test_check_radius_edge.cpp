@@ -86,6 +86,7 @@ TEST(RadiusEdge, HistogramsHoldEveryCellAndDihedralAngle) {
   };
   EXPECT_EQ(sum(result.histograms[0]), mesh.cells.size());
   EXPECT_EQ(sum(result.histograms[1]), 6 * mesh.cells.size());
+  EXPECT_EQ(result.histograms[1].counts.size(), 180u) << "a bin a degree";
   EXPECT_NEAR(result.histograms[1].minimum, 45, 1e-9);
   EXPECT_NEAR(result.histograms[1].maximum, 90, 1e-9);
 }

@@ -1,0 +1,34 @@
+"""What solving on a mesh took, as the contract of ../README.md asks for it."""
+import dataclasses
+
+import dolfinx
+from petsc4py import PETSc
+
+from conjugate_gradients import PRECONDITIONERS, SolverError, solve
+from systems import domain_of, elasticity, poisson
+
+SYSTEMS = {"poisson": poisson, "elasticity": elasticity}
+
+
+def version():
+    petsc = ".".join(map(str, PETSc.Sys.getVersion()))
+    return f"DOLFINx {dolfinx.__version__} (LGPL-3.0-or-later), PETSc {petsc} (BSD-2-Clause)"
+
+
+def report_on(points, cells):
+    """A dictionary. Raises SolverError where a mesh has no vertex inside, or a system is not solved."""
+    domain = domain_of(points, cells)
+    return {"solver": version(), **{name: _measured(name, make(domain)) for name, make in SYSTEMS.items()}}
+
+
+def _measured(name, system):
+    if system.unknowns == 0:
+        raise SolverError("every vertex is on the boundary: nothing is unknown")
+    made = {"unknowns": system.unknowns}
+    for preconditioner in PRECONDITIONERS:
+        try:
+            _, measured = solve(system, preconditioner)
+        except SolverError as error:
+            raise SolverError(f"{name}: {error}") from None
+        made[preconditioner] = dataclasses.asdict(measured)
+    return made

@@ -1,0 +1,25 @@
+// A mesh handed to a finite-element solver, a program of its own, after the clock has stopped.
+#pragma once
+
+#include <string>
+
+#include "experiments/experiment.h"
+#include "rows/row.h"
+#include "trials/stop_request.h"
+
+namespace podm::bench {
+
+struct Solving {
+  std::optional<SolveRecord> record;
+  std::string fault;  ///< why there is no record
+  bool is_interrupted = false;
+};
+
+/// Runs the program on the mesh at `mesh_path`: harness/solvers/README.md.
+Solving solve_on_mesh(const Trial& trial, const std::string& mesh_path, const std::string& program,
+                      const StopQuery& stop_requested);
+
+/// Why the program cannot run here; empty: it can.
+std::string absence_of_solver(const std::string& program);
+
+}  // namespace podm::bench
