@@ -346,6 +346,35 @@ Value iterations(const Row& row) {
   return {static_cast<double>(((*row.solve).*system.*preconditioner).iterations), ""};
 }
 
+// Of the stages that fight slivers.
+Value dihedral_seconds(const Row& row) {
+  double sum = 0;
+  bool is_any = false;
+  for (const char* phase : {"perturb", "optimize"}) {
+    const double* phase_s = row.mesh ? row.mesh->phases_s.find(phase) : nullptr;
+    if (phase_s == nullptr) continue;
+    sum += *phase_s;
+    is_any = true;
+  }
+  return is_any ? Value{sum, ""} : absent("rows have neither phases_s/perturb nor phases_s/optimize");
+}
+Value dihedral_cells_per_second(const Row& row) { return quotient(cells(row), dihedral_seconds(row)); }
+
+const PerturbedRecord* perturbed_of(const Row& row) {
+  return row.mesh && row.mesh->perturbed ? &*row.mesh->perturbed : nullptr;
+}
+Value poor_share_left(const Row& row) {
+  const auto* const told = perturbed_of(row);
+  if (told == nullptr) return absent("rows have no perturbed");
+  return quotient({static_cast<double>(told->after.with_free_vertex), ""},
+                  {static_cast<double>(told->before.with_free_vertex), ""});
+}
+
+Value beyond_bounds_per_million(const Row& row) {
+  if (!row.mesh || !row.mesh->optimization) return absent("rows have no optimization");
+  return quotient({1e6 * static_cast<double>(row.mesh->optimization->beyond_bounds), ""}, cells(row));
+}
+
 Value replay_equal(const Row& row) {
   return row.replay ? yes(row.replay->end == Replay::End::kEqual) : absent("no replay was asked for");
 }
@@ -397,6 +426,10 @@ constexpr Measure kMeasures[] = {
      iterations<&SolveRecord::elasticity, &SystemRecord::jacobi>},
     {"elasticity_amg_iterations", "", kLess, kFaults,
      iterations<&SolveRecord::elasticity, &SystemRecord::amg>},
+    {"dihedral_seconds", "s", kLess, kClock, dihedral_seconds},
+    {"dihedral_cells_per_second", "1/s", kMore, kClock, dihedral_cells_per_second},
+    {"poor_share_left", "", kLess, kFaults, poor_share_left},
+    {"beyond_bounds_per_million", "", kLess, kFaults, beyond_bounds_per_million},
     {"conformity_proved", "", kMore, kAnswer, conformity_proved},
     {"fidelity_proved", "", kMore, kAnswer, fidelity_proved},
     {"dihedral_proved", "", kMore, kAnswer, dihedral_proved},
