@@ -21,8 +21,8 @@ struct Peel {
 };
 
 /// Whether the cell may be peeled, its one edge that comes to the interface apart: it is lower than a
-/// twentieth of delta; as many facets go as come, or more, and two come at most; their angles keep the bound on those
-/// of facets; and all vertices are on the isosurface.
+/// twentieth of delta; as many facets go as come, or more, and two come at most; their angles keep the bound
+/// on those of facets; and all vertices are on the isosurface.
 bool may_be_peeled(const Mesh& mesh, CellId c, const Peel& peel, double delta_mm);
 
 }  // namespace podm
