@@ -40,7 +40,7 @@ class RefusedTest(TestCase):
         self.assert_refused("affine", "4x4", "(3, 3)", affine=np.eye(3))
         self.assert_refused("affine", "4x4", affine="RAS")
         self.assert_refused("last row", affine=np.ones((4, 4)))
-        self.assert_refused("labels", "singular", affine=AFFINE[[0, 0, 2, 3]])
+        self.assert_refused("labels", "singular", affine=np.eye(4)[:, [0, 0, 1, 3]])
         self.assert_refused("labels", "spacing is not positive", affine=np.diag([1, 1, 0, 1]))
         self.assert_refused("labels", "not finite", affine=np.where(AFFINE == 7.25, np.nan, AFFINE))
         self.assert_refused("labels", "2^33 voxels", affine=np.where(AFFINE == 7.25, 1e13, AFFINE))
