@@ -56,7 +56,7 @@ def run_program(folder, arguments):
 def make_image(folder, program, size):
     """The phantom, as the program's file and as numpy's."""
     path = folder / "image.nii"
-    subprocess.run([program, "phantom", "abdomen", "--size", str(size), "-o", path], check=True)
+    subprocess.run([program, "phantom", "abdomen", "--size", str(size), "-o", path], check=True, capture_output=True)
     image = nibabel.load(path)
     np.save(folder / "image.npy", np.asarray(image.dataobj))
     np.save(folder / "image.npy.affine.npy", image.affine)
@@ -66,8 +66,8 @@ def make_image(folder, program, size):
 def main():
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("program", type=pathlib.Path, help="podm")
-    parser.add_argument("--size", type=int, default=256, help="of the phantom, voxels (default: %(default)s)")
-    parser.add_argument("--radius", type=float, default=1.85, help="mm: some 3 million cells (default: %(default)s)")
+    parser.add_argument("--size", type=int, default=320, help="of the phantom, voxels (default: %(default)s)")
+    parser.add_argument("--radius", type=float, default=3.1, help="mm: some 3 million cells (default: %(default)s)")
     parser.add_argument("--threads", type=int, default=1, help="of both (default: %(default)s)")
     parser.add_argument("--rounds", type=int, default=5, help="runs of each, in turns (default: %(default)s)")
     arguments = parser.parse_args()
