@@ -11,7 +11,7 @@ TIER ?= default
 SECONDS ?= 600
 
 .DEFAULT_GOAL := help
-.PHONY: help setup build peers test stress kill-matrix kick-tires experiments figures clean
+.PHONY: help setup build python peers test stress kill-matrix kick-tires experiments figures clean
 
 help:
 	@echo "make kick-tires    the smallest runs of every experiment, in some minutes; tables and results/runs/"
@@ -24,6 +24,7 @@ help:
 	@echo "make figures       tables and figures of results/runs/ beside the paper's, a mesh cut open: $(FIGURES)/,"
 	@echo "                   and one page of it all: results/runs/report.html"
 	@echo "make build         the programs, in build/bin/"
+	@echo "make python        the Python package podm, in build/python/"
 	@echo "make peers         what \`make experiments\` compares and counts with: TetGen, Gmsh and likwid as packages, and"
 	@echo "                   CGAL's mesher (GPL, compiles for some 3 minutes, stays in build/bin/)"
 	@echo "make setup         install the Debian 12 packages of all of these (root or sudo; otherwise says what to run)"
@@ -43,6 +44,11 @@ build:
 	$(CONFIGURE)
 	cmake --build build
 
+python:
+	@scripts/setup build python
+	$(CONFIGURE)
+	cmake --build build --target podm_python_package
+
 # Configured anew: the packages that it looks for may have come since.
 peers: build
 	@scripts/setup peers
@@ -50,7 +56,7 @@ peers: build
 	cmake --build build --target peers
 
 test:
-	@scripts/setup build run test
+	@scripts/setup build run python test
 	$(CONFIGURE) -DPODM_BUILD_TESTS=ON
 	cmake --build build --target all tests
 	$(if $(DATA),PODM_TEST_IMAGES="$(abspath $(DATA))") ctest --test-dir build -j2 --output-on-failure

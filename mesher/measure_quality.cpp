@@ -64,6 +64,15 @@ inline CellMeasures measure_cell(const Point& a, const Point& b, const Point& c,
           dihedral_extremes(a, b, c, d)};
 }
 
+// Whether the cell is neither flat nor turned over; then its radius is made good if it is not.
+bool is_positive(const Corners& p, CellMeasures& m) {
+  // Then it is, and the radius good, by the error bounds in circumsphere.h.
+  if (m.determinant < 0 && is_well_conditioned(m.determinant, m.squared_length)) return true;
+  if (orientation(p[0], p[1], p[2], p[3]) <= 0) return false;
+  m.squared_radius = circumsphere(p[0], p[1], p[2], p[3], 0).squared_radius;
+  return true;
+}
+
 // Some cells side by side.
 class CellBlock {
  public:
@@ -113,13 +122,9 @@ struct alignas(64) CellTally {
   std::vector<OfLabel> labels;
 
   void add(const Corners& p, CellMeasures m, LabelIndex label, double squared_radius_bound) {
-    // Else positive, and the radius good, by the error bounds in circumsphere.h.
-    if (m.determinant >= 0 || !is_well_conditioned(m.determinant, m.squared_length)) {
-      if (orientation(p[0], p[1], p[2], p[3]) <= 0) {
-        ++bad_orientation;
-        return;
-      }
-      m.squared_radius = circumsphere(p[0], p[1], p[2], p[3], 0).squared_radius;
+    if (!is_positive(p, m)) {
+      ++bad_orientation;
+      return;
     }
     const double ratio2 = m.squared_radius / m.shortest2;
     bad_radius_edge += ratio2 >= kRadiusEdgeBound * kRadiusEdgeBound;
@@ -151,8 +156,9 @@ struct alignas(64) CellTally {
 
 constexpr std::size_t kLookahead = 32;  // cells whose vertices are on their way to the cache
 
-void add_cells(const TetMesh& mesh, const SizeField& sizes, std::size_t begin, std::size_t end,
-               CellTally& tally) {
+// Calls use(cell, corners, measures) for the cells of [begin, end).
+template <class Use>
+void for_each_measured(const TetMesh& mesh, std::size_t begin, std::size_t end, const Use& use) {
   CellBlock block{};
   for (std::size_t first = begin; first < end; first += CellBlock::kSize) {
     const std::size_t count = std::min(CellBlock::kSize, end - first);
@@ -164,11 +170,16 @@ void add_cells(const TetMesh& mesh, const SizeField& sizes, std::size_t begin, s
                     point_of(mesh, cell[3])});
     }
     block.measure();
-    for (std::size_t i = 0; i < count; ++i) {
-      const LabelIndex label = mesh.cell_labels[first + i];
-      tally.add(block.corners(i), block.measures(i), label, sizes.squared_radius(label));
-    }
+    for (std::size_t i = 0; i < count; ++i) use(first + i, block.corners(i), block.measures(i));
   }
+}
+
+void add_cells(const TetMesh& mesh, const SizeField& sizes, std::size_t begin, std::size_t end,
+               CellTally& tally) {
+  for_each_measured(mesh, begin, end, [&](std::size_t cell, const Corners& corners, const CellMeasures& m) {
+    const LabelIndex label = mesh.cell_labels[cell];
+    tally.add(corners, m, label, sizes.squared_radius(label));
+  });
 }
 
 CellTally measure_cells(const TetMesh& mesh, const SizeField& sizes, int threads, MeshingReport& report) {
@@ -240,6 +251,24 @@ void measure_quality(const TetMesh& mesh, const LabelImage& image, const SizeFie
     report.volume_of_label_mm3[mesh.labels[label].value] = of_label.volume_mm3;
   }
   report.guarantees.missing_labels = missing_labels(image, report.cells_of_label, threads);
+}
+
+CellQualities qualities_of_cells(const TetMesh& mesh, int threads) {
+  constexpr std::size_t kChunk = 1 << 14;
+  const std::vector<double> zeros(mesh.cells.size());
+  CellQualities all{zeros, zeros, zeros, zeros, zeros};
+  const auto tell = [&](std::size_t cell, const Corners& corners, CellMeasures m) {
+    if (!is_positive(corners, m)) m.squared_radius = kInfinity;
+    all.radius_edge[cell] = std::sqrt(m.squared_radius / m.shortest2);
+    all.circumradius[cell] = std::sqrt(m.squared_radius);
+    all.min_dihedral_deg[cell] = m.dihedral.least_deg();
+    all.max_dihedral_deg[cell] = m.dihedral.largest_deg();
+    all.volume[cell] = m.dihedral.determinant / 6;
+  };
+  parallel_for_ranges(
+      mesh.cells.size(), kChunk, num_threads(threads),
+      [&](std::size_t begin, std::size_t end, std::size_t) { for_each_measured(mesh, begin, end, tell); });
+  return all;
 }
 
 std::uint64_t missing_labels(const LabelImage& image,

@@ -19,6 +19,11 @@ void add_image_options(CLI::App& app, ImageArguments& image) {
                               "or phantom:NAME[@SIZE], NAME one of {}",
                               fmt::join(phantom_names(), ", ")),
                   into(image.path)));
+  add_label_options(app, image);
+  begin_group(app, "Options");
+}
+
+void add_label_options(CLI::App& app, ImageArguments& image) {
   begin_group(app, "Labels");
   add_one(app, "--labels", "RANGES", "keep these label values only, e.g. 1,3-7 [default: all]",
           [&image](const std::string& text, const std::string& name) {
@@ -42,7 +47,6 @@ void add_image_options(CLI::App& app, ImageArguments& image) {
   add_one(app, "--label-names", "FILE",
           "names of labels: an ITK-SNAP table or lines \"value name\" [default: none]",
           into(image.label_names_path));
-  begin_group(app, "Options");
 }
 
 void add_replay_command(CLI::App& program, ReplayCommand& command) {

@@ -62,7 +62,9 @@ void add_optimize_options(CLI::App& app, MeshingOptions& meshing) {
 
 void add_limit_options(CLI::App& app, MeshCommand& command, Program which) {
   MeshingOptions& meshing = command.meshing;
-  begin_group(app, "Limits (a run that meets one writes a valid mesh and exits with 1)");
+  begin_group(app, which == Program::kPython
+                       ? "Limits (the mesh of a run that meets one is valid)"
+                       : "Limits (a run that meets one writes a valid mesh and exits with 1)");
   add_one(app, "--max-elements", "N", "stop at this many cells [default: none]",
           into_count(meshing.limits.max_elements));
   add_one(app, "--max-seconds", "S", "stop meshing after this many seconds [default: none]",
@@ -70,7 +72,7 @@ void add_limit_options(CLI::App& app, MeshCommand& command, Program which) {
   add_one(app, "--max-memory-gib", "GIB",
           fmt::format("memory of the process, GiB [default: {} % of what is available{}]",
                       kPercentOfAvailableMemory,
-                      which == Program::kPodm ? "" : "\nover the ranks of the machine"),
+                      which != Program::kPodmMpi ? "" : "\nover the ranks of the machine"),
           [&command](const std::string& text, const std::string& name) {
             const double bytes = parse_positive(text, name, "number of GiB") * kBytesPerGib;
             constexpr double kMost = 1e18;  // far above any machine, and within an integer
@@ -103,8 +105,6 @@ void add_algorithm_options(CLI::App& app, MeshCommand& command) {
           into_threads(meshing.team.initial_threads));
   add_one(app, "--leaf-size", "MM", "side of the octree's leaves, mm [default: from the initial bound]",
           into_length(meshing.leaves.size_mm));
-  add_one(app, "--schedule", "FILE", "write which leaf was refined when, for podm-verify [default: none]",
-          into(command.schedule_path));
 }
 
 void add_rank_options(CLI::App& app, MeshCommand& command) {
@@ -127,9 +127,9 @@ void add_rank_options(CLI::App& app, MeshCommand& command) {
 void add_seed_option(CLI::App& app, MeshingOptions& meshing, Program which) {
   if (which == Program::kPodmMpi) meshing.team.seed = meshing.cut_seed;
   add_one(app, "--seed", "N",
-          which == Program::kPodm ? "draws pauses after conflicts, and what virtual time draws"
-                                  : "0: blocks of equal predicted work; else draws where they are cut;\n"
-                                    "and pauses, and the order in which ranks in process compute",
+          which != Program::kPodmMpi ? "draws pauses after conflicts, and what virtual time draws"
+                                     : "0: blocks of equal predicted work; else draws where they are cut;\n"
+                                       "and pauses, and the order in which ranks in process compute",
           {[&meshing, which](const std::string& text, const std::string& name) {
              meshing.team.seed = parse_integer(text, name, 0, std::numeric_limits<std::uint32_t>::max());
              if (which == Program::kPodmMpi) meshing.cut_seed = meshing.team.seed;
@@ -141,7 +141,7 @@ void add_run_options(CLI::App& app, MeshCommand& command, Program which) {
   MeshingOptions& meshing = command.meshing;
   if (which == Program::kPodmMpi) add_rank_options(app, command);
   add_one(app, "--threads", "N",
-          which == Program::kPodm
+          which != Program::kPodmMpi
               ? "threads of all phases; 1 makes the same mesh every time\n"
                 "[default: one for refinement, all cores for the feature transform]"
               : "threads of each rank, in all phases; with 1 as many ranks make the same mesh\n"
@@ -171,12 +171,40 @@ void add_run_options(CLI::App& app, MeshCommand& command, Program which) {
   add_one(app, "--virtual-cost", "COST", "time of an attempt: unit (1 us) or measured (by its work)",
           into_choice(meshing.team.virtual_cost));
   add_seed_option(app, meshing, which);
+}
+
+void add_space_option(CLI::App& app, MeshingOptions& meshing) {
+  add_one(app, "--space", "SPACE", "frame of the coordinates: RAS or LPS (mm), or voxel (indices)",
+          into_choice(meshing.space));
+}
+
+void add_output_options(CLI::App& app, MeshCommand& command, bool is_on_ranks) {
+  require(add_one(app, "-o,--output", "MESH",
+                  is_on_ranks ? "mesh: .pvtu, with a .vtu a rank, or .xdmf [required]"
+                              : "mesh file: .vtu, .mesh (medit), .msh (Gmsh 4.1) or .xdmf [required]",
+                  into(command.mesh_path)));
+  add_one(app, "--surface", "FILE", "also the closed surface of each label: .stl or .ply [default: none]",
+          into(command.surface_path));
+  add_space_option(app, command.meshing);
+  add_one(app, "--record", "FILE", "append one JSON line that describes the run [default: none]",
+          into(command.record_path));
+  add_one(app, "--schedule", "FILE", "write which leaf was refined when, for podm-verify [default: none]",
+          into(command.schedule_path));
   add_one(app, "--log", "FILE",
-          which == Program::kPodmMpi
-              ? "write every operation in its order, for podm replay: rank R to FILE.R, one\n"
-                "rank alone to FILE [default: none]"
-              : "write every operation in its order, for podm replay [default: none]",
+          is_on_ranks ? "write every operation in its order, for podm replay: rank R to FILE.R, one\n"
+                        "rank alone to FILE [default: none]"
+                      : "write every operation in its order, for podm replay [default: none]",
           into(command.log_path));
+}
+
+void add_telling_options(CLI::App& app, MeshCommand& command) {
+  add_flag(app, "--verify", command.verify,
+           "have podm-verify check the written mesh; exit 1 unless all holds [default: no]");
+  add_flag(app, "--verify-fidelity", command.verify_fidelity,
+           "the same, and that surfaces of mesh and image are within a voxel or 2 delta of\n"
+           "each other; a mesh much coarser than a structure may miss it [default: no]");
+  add_flag(app, "--stats", command.stats, "a table of what each thread did and lost [default: no]");
+  add_flag(app, "--quiet", command.quiet, "neither progress nor summary [default: both, on standard error]");
 }
 
 }  // namespace
@@ -186,31 +214,17 @@ void add_mesh_command(CLI::App& program, MeshCommand& command, Program which) {
   CLI::App& app = add_command(program, "mesh",
                               is_on_ranks ? "mesh a label image on all ranks that mpirun or srun has started"
                                           : "mesh a label image into tetrahedra with guarantees");
-  add_image_options(app, command.image);
+  const bool is_in_python = which == Program::kPython;
+  is_in_python ? add_label_options(app, command.image) : add_image_options(app, command.image);
   add_sizing_options(app, command);
   add_optimize_options(app, command.meshing);
   add_limit_options(app, command, which);
   begin_group(app, "Output");
-  require(add_one(app, "-o,--output", "MESH",
-                  is_on_ranks ? "mesh: .pvtu, with a .vtu a rank, or .xdmf [required]"
-                              : "mesh file: .vtu, .mesh (medit), .msh (Gmsh 4.1) or .xdmf [required]",
-                  into(command.mesh_path)));
-  add_one(app, "--surface", "FILE", "also the closed surface of each label: .stl or .ply [default: none]",
-          into(command.surface_path));
-  add_one(app, "--space", "SPACE", "frame of the coordinates: RAS or LPS (mm), or voxel (indices)",
-          into_choice(command.meshing.space));
-  add_one(app, "--record", "FILE", "append one JSON line that describes the run [default: none]",
-          into(command.record_path));
+  is_in_python ? add_space_option(app, command.meshing) : add_output_options(app, command, is_on_ranks);
   add_algorithm_options(app, command);
   begin_group(app, "Run");
   add_run_options(app, command, which);
-  add_flag(app, "--verify", command.verify,
-           "have podm-verify check the written mesh; exit 1 unless all holds [default: no]");
-  add_flag(app, "--verify-fidelity", command.verify_fidelity,
-           "the same, and that surfaces of mesh and image are within a voxel or 2 delta of\n"
-           "each other; a mesh much coarser than a structure may miss it [default: no]");
-  add_flag(app, "--stats", command.stats, "a table of what each thread did and lost [default: no]");
-  add_flag(app, "--quiet", command.quiet, "neither progress nor summary [default: both, on standard error]");
+  if (!is_in_python) add_telling_options(app, command);
   if (is_on_ranks)
     end_help(app,
              "Not on ranks yet, and refused: --target-elements, --min-dihedral, --surface, --optimize,\n"

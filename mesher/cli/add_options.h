@@ -33,6 +33,7 @@ void need(CLI::Option* option, CLI::Option* other);
 
 /// IMAGE and what is kept of its labels.
 void add_image_options(CLI::App& app, ImageArguments& image);
+void add_label_options(CLI::App& app, ImageArguments& image);
 void add_mesh_command(CLI::App& program, MeshCommand& command, Program which);
 void add_replay_command(CLI::App& program, ReplayCommand& command);
 void add_info_command(CLI::App& program, InfoCommand& command);

@@ -37,8 +37,8 @@ class Digest {
 
 }  // namespace
 
-std::string input_sha256(const std::string& path, const LabelImage& image) {
-  if (!path.starts_with("phantom:")) return file_sha256(path);
+std::string input_sha256(const ImageArguments& arguments, const LabelImage& image) {
+  if (!arguments.is_array && !arguments.is_phantom()) return file_sha256(arguments.path);
   Digest digest;
   digest.update(image.voxels.data(), image.voxels.size() * sizeof(LabelIndex));
   return digest.hexadecimal();

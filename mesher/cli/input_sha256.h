@@ -3,13 +3,14 @@
 
 #include <string>
 
+#include "cli/options.h"
 #include "podm/label_image.h"
 
 namespace podm::cli {
 
 /// Lower-case hexadecimal SHA-256 of the file's bytes; of the voxels' label indices, in memory order, for a
-/// phantom, which has no file.
-std::string input_sha256(const std::string& path, const LabelImage& image);
+/// phantom or an array, which have no file.
+std::string input_sha256(const ImageArguments& arguments, const LabelImage& image);
 /// Of a file's bytes. Throws InputError.
 std::string file_sha256(const std::string& path);
 

@@ -20,11 +20,15 @@ LabelImage read_labelled_image(const ImageArguments& arguments, int threads, std
   std::map<std::uint32_t, std::string> names;  // before the image: a fault shows at once
   if (!arguments.label_names_path.empty()) names = read_label_names(arguments.label_names_path);
   LabelImage image = read_image(arguments.path, arguments.selection, threads, most_bytes);
+  name_labels(image, names);
+  return image;
+}
+
+void name_labels(LabelImage& image, const std::map<std::uint32_t, std::string>& names) {
   for (Label& label : image.labels) {
     const auto named = names.find(label.value);
     if (label.name.empty() && named != names.end()) label.name = named->second;
   }
-  return image;
 }
 
 std::map<std::uint32_t, double> lengths_by_value(

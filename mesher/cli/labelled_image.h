@@ -18,6 +18,9 @@ namespace podm::cli {
 LabelImage read_labelled_image(const ImageArguments& arguments, int threads = 0,
                                std::uint64_t most_bytes = std::numeric_limits<std::uint64_t>::max());
 
+/// Gives names to labels that have none yet.
+void name_labels(LabelImage& image, const std::map<std::uint32_t, std::string>& names);
+
 /// Lengths by label value. A name stands for every label that bears it. Throws InputError, naming
 /// `image_path`, where a label is absent.
 std::map<std::uint32_t, double> lengths_by_value(

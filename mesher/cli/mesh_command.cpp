@@ -101,11 +101,7 @@ int run(const MeshCommand& command) {
   run.options.crossover = run.crossover.threads;
   run.options.leaves.with_schedule = !command.schedule_path.empty();
   MeshingResult result = mesh_with_display(image, run.options, command.quiet, signals);
-  run.report = std::move(result.report);
-  run.mesh = numbers_of(result.mesh);
-  auto& warnings = run.report.warnings;
-  if (!run.crossover.warning.empty()) warnings.push_back(run.crossover.warning);
-  warnings.insert(warnings.end(), image.warnings.begin(), image.warnings.end());
+  run.take(std::move(result.report), result.mesh);
   run.write_s = timed([&] {
     const int threads = loop_threads(command.meshing.team);
     canonicalize(result.mesh, threads);

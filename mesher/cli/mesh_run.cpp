@@ -14,8 +14,8 @@ namespace podm::cli {
 
 std::map<std::string, double> MeshRun::phases_s() const {
   std::map<std::string, double> phases = report.phases_s;
-  phases[command.image.path.starts_with("phantom:") ? "draw" : "read"] = read_s;
-  phases["write"] = write_s;
+  phases[command.image.is_phantom() ? "draw" : "read"] = read_s;
+  if (!command.mesh_path.empty()) phases["write"] = write_s;
   return phases;
 }
 
@@ -33,6 +33,13 @@ double MeshRun::refine_cells_per_second() const {
   return refine_s > 0 ? static_cast<double>(mesh.cells) / refine_s : 0;  // 0: it ended before
 }
 
+void MeshRun::take(MeshingReport&& finished, const TetMesh& made) {
+  report = std::move(finished);
+  mesh = numbers_of(made);
+  if (!crossover.warning.empty()) report.warnings.push_back(crossover.warning);
+  report.warnings.insert(report.warnings.end(), image.warnings.begin(), image.warnings.end());
+}
+
 std::vector<std::string> MeshRun::unmet() const {
   std::vector<std::string> sentences;
   const auto count = [&](std::uint64_t misses, const std::string& what) {
@@ -41,7 +48,9 @@ std::vector<std::string> MeshRun::unmet() const {
   const StopReason reason = report.stop_reason;
   if (reason != StopReason::kComplete)
     sentences.push_back(fmt::format("the run ended early: {}", to_string(reason)));
-  if (mesh.cells == 0) sentences.push_back("the mesh has no cell, so that none is written");
+  if (mesh.cells == 0)
+    sentences.push_back(command.mesh_path.empty() ? "the mesh has no cell"
+                                                  : "the mesh has no cell, so that none is written");
   const Guarantees& misses = report.guarantees;
   count(misses.radius_edge, fmt::format("cells with a radius-edge ratio of {} or more", kRadiusEdgeBound));
   count(misses.facet_angle,

@@ -46,6 +46,8 @@ struct MeshRun {
   nlohmann::ordered_json ranks = nullptr;  ///< for the record; null: the mesh was made in one process
   std::string ranks_text = {};             ///< the same for the summary
 
+  /// Takes over what mesh_image() returned of this run, and adds the warnings of crossover and image.
+  void take(MeshingReport&& finished, const TetMesh& made);
   /// Seconds by phase: those of the library between "read" ("draw" where a phantom was drawn) and "write".
   std::map<std::string, double> phases_s() const;
   /// The elements per second of the paper's eq. (1): cells over the seconds of all phases but measuring,

@@ -112,7 +112,7 @@ Command parse_command_line(std::vector<std::string> arguments, Program which) {
   ReplayCommand replay;
   InfoCommand info;
   PhantomCommand phantom;
-  const std::string name = which == Program::kPodm ? "podm" : "podm-mpi";
+  const std::string name = which == Program::kPodmMpi ? "podm-mpi" : "podm";
   CLI::App program("Tetrahedral meshes with guarantees from segmented images.", name);
   program.formatter(std::make_shared<HelpFormatter>());
   program.get_formatter()->column_width(kHelpColumn);
@@ -120,8 +120,9 @@ Command parse_command_line(std::vector<std::string> arguments, Program which) {
   program.set_version_flag("--version", name + " " PODM_VERSION "\n" + build_info() + "\n",
                            "print the version and leave");
   program.allow_extras()->require_subcommand(0, 1);
-  program.footer(
-      "Exit codes: 0 success, 1 a guarantee or limit is unmet, 2 bad usage or input, 3 internal error.");
+  if (which != Program::kPython)
+    program.footer(
+        "Exit codes: 0 success, 1 a guarantee or limit is unmet, 2 bad usage or input, 3 internal error.");
   add_mesh_command(program, mesh, which);
   if (which == Program::kPodm) {
     add_replay_command(program, replay);

@@ -15,9 +15,12 @@ namespace podm::cli {
 
 /// An image and what is kept of it.
 struct ImageArguments {
-  std::string path;  ///< or "phantom:NAME[@SIZE]"
+  std::string path;       ///< or "phantom:NAME[@SIZE]"; of an array what messages call it
+  bool is_array = false;  ///< in memory: see image_of_array()
   LabelSelection selection;
   std::string label_names_path;  ///< empty: none
+
+  bool is_phantom() const { return !is_array && path.starts_with("phantom:"); }
 };
 
 inline constexpr int kMaxThreads = 1024;
@@ -31,7 +34,7 @@ struct NetworkArguments {
 /// podm mesh
 struct MeshCommand {
   ImageArguments image;
-  std::string mesh_path;
+  std::string mesh_path;      ///< empty: the mesh stays in memory
   std::string surface_path;   ///< empty: no surfaces
   std::string record_path;    ///< empty: no record
   std::string log_path;       ///< empty: no linearization log
@@ -74,8 +77,9 @@ struct ShowText {
 
 using Command = std::variant<MeshCommand, ReplayCommand, InfoCommand, PhantomCommand, ShowText>;
 
-/// podm-mpi has the command mesh alone.
-enum class Program { kPodm, kPodmMpi };
+/// podm-mpi has the command mesh alone. So has the Python package, without what is about files or a terminal:
+/// the image is no argument there.
+enum class Program { kPodm, kPodmMpi, kPython };
 
 /// Parses the arguments after the program's name. Throws InputError naming the option and the fault.
 Command parse_command_line(std::vector<std::string> arguments, Program program = Program::kPodm);

@@ -284,13 +284,15 @@ Json facet_pairs_of(const MeshRun& run) {
 
 Json record(const MeshRun& run) {
   const MeshingReport& report = run.report;
-  const std::string& path = run.command.image.path;
+  const ImageArguments& input = run.command.image;
   Json record = {
       {"schema", kRecordSchema},
       {"program", run.program + " " PODM_VERSION},
       {"algorithm", to_string(report.algorithm)},
       {"input",
-       {{"path", path}, {"sha256", input_sha256(path, run.image)}, {"affine", affine_rows(run.image)}}},
+       {{"path", input.path},
+        {"sha256", input_sha256(input, run.image)},
+        {"affine", affine_rows(run.image)}}},
       {"options", options_of(run)},
       {"used", {{"radius_mm", report.radius_mm}, {"delta_mm", report.delta_mm}}},
       {"seed", run.options.team.seed},

@@ -130,9 +130,11 @@ std::string time_text(const MeshRun& run) {
 
 std::string summary(const MeshRun& run) {
   const MeshingReport& report = run.report;
+  const std::string& path = run.command.mesh_path;
+  const std::string place = path.empty() ? "" : path + ": ";
   std::string text =
-      fmt::format("{}: {} cells, {} vertices, {} boundary facets; {} space\n", run.command.mesh_path,
-                  run.mesh.cells, run.mesh.vertices, run.mesh.boundary_facets, to_string(run.options.space));
+      fmt::format("{}{} cells, {} vertices, {} boundary facets; {} space\n", place, run.mesh.cells,
+                  run.mesh.vertices, run.mesh.boundary_facets, to_string(run.options.space));
   text += labels_text(run) + facets_text(run) + quality_text(report.quality) + perturbed_text(report) +
           optimization_text(report);
   text += fmt::format("sizes      radius {}, delta {:.4g} mm\n",

@@ -42,16 +42,12 @@ std::string text_of(const Ranges& ranges) {
   return fmt::format("{}", fmt::join(parts, ","));
 }
 
-// The image and what was meshed of it. A phantom is written to `scratch` with its labels selected.
-std::vector<std::string> image_options(const MeshRun& run, std::optional<TemporaryFolder>& scratch) {
+// The image and what was meshed of it.
+std::vector<std::string> image_options(const MeshRun& run, const std::function<std::string()>& write_image) {
   const ImageArguments& image = run.command.image;
   const LabelSelection& selection = image.selection;
   const std::string background = fmt::format("{}", selection.background);
-  if (image.path.starts_with("phantom:")) {
-    const std::string path = scratch.emplace(run.command.mesh_path) / "image.nii.gz";
-    write_nifti(run.image, path);
-    return {"--image", path, "--background", background};
-  }
+  if (image.is_array || image.is_phantom()) return {"--image", write_image(), "--background", background};
   std::vector<std::string> options{"--image", image.path, "--background", background};
   if (!selection.keep.empty()) options.insert(options.end(), {"--labels", text_of(selection.keep)});
   if (!selection.drop.empty()) options.insert(options.end(), {"--drop", text_of(selection.drop)});
@@ -60,9 +56,11 @@ std::vector<std::string> image_options(const MeshRun& run, std::optional<Tempora
   return options;
 }
 
-std::vector<std::string> verifier_command(const MeshRun& run, std::optional<TemporaryFolder>& scratch) {
-  std::vector<std::string> command{verifier_path(), run.command.mesh_path, "--json", "-"};
-  if (run.command.quiet) command.push_back("--quiet");
+}  // namespace
+
+std::vector<std::string> claims_to_verify(const MeshRun& run,
+                                          const std::function<std::string()>& write_image) {
+  std::vector<std::string> options;
   std::string claims = "structure,radius_edge,boundary_angles,conformity,surface,labels";
   // The file tells what it promises of dihedral angles.
   const bool is_delaunay = !run.report.optimization;
@@ -73,17 +71,32 @@ std::vector<std::string> verifier_command(const MeshRun& run, std::optional<Temp
   if (radius_mm > 0 || !radius_of.empty()) claims += ",size";
   if (run.command.verify_fidelity) claims += ",fidelity";
   if (run.command.verify_fidelity || !is_delaunay) {
-    command.insert(command.end(), {"--delta", fmt::format("{}", run.report.delta_mm)});
+    options.insert(options.end(), {"--delta", fmt::format("{}", run.report.delta_mm)});
   }
-  command.insert(command.end(), {"--claims", claims});
-  const auto image = image_options(run, scratch);
-  command.insert(command.end(), image.begin(), image.end());
-  if (radius_mm > 0) command.insert(command.end(), {"--radius", fmt::format("{}", radius_mm)});
+  options.insert(options.end(), {"--claims", claims});
+  const auto image = image_options(run, write_image);
+  options.insert(options.end(), image.begin(), image.end());
+  if (radius_mm > 0) options.insert(options.end(), {"--radius", fmt::format("{}", radius_mm)});
   // A foreground label 0 goes by the background's value there.
   const std::uint32_t background = run.command.image.selection.background;
   for (const auto& [label, radius] : radius_of)
-    command.insert(command.end(),
+    options.insert(options.end(),
                    {"--radius-of", fmt::format("{}={}", label == 0 ? background : label, radius)});
+  return options;
+}
+
+namespace {
+
+// A phantom is written to `scratch` with its labels selected.
+std::vector<std::string> verifier_command(const MeshRun& run, std::optional<TemporaryFolder>& scratch) {
+  std::vector<std::string> command{verifier_path(), run.command.mesh_path, "--json", "-"};
+  if (run.command.quiet) command.push_back("--quiet");
+  const auto claims = claims_to_verify(run, [&] {
+    const std::string path = scratch.emplace(run.command.mesh_path) / "image.nii.gz";
+    write_nifti(run.image, path);
+    return path;
+  });
+  command.insert(command.end(), claims.begin(), claims.end());
   return command;
 }
 

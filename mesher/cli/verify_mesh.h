@@ -1,8 +1,10 @@
 // podm mesh --verify: the written mesh handed to podm-verify, a program that shares no code with the mesher.
 #pragma once
 
+#include <functional>
 #include <map>
 #include <string>
+#include <vector>
 
 #include "cli/mesh_run.h"
 #include "cli/signal_thread.h"
@@ -11,6 +13,12 @@ namespace podm::cli {
 
 /// Throws InputError where there is no podm-verify that can be run.
 void check_verifier(const std::string& mesh_path);
+
+/// The options of podm-verify by which it checks what the run promises of its mesh. Image and labels are
+/// those of the image's file; if it has none `write_image` is called, which writes it, with its labels
+/// selected, to a file whose name it returns.
+std::vector<std::string> claims_to_verify(const MeshRun& run,
+                                          const std::function<std::string()>& write_image);
 
 /// Runs the podm-verify beside this program on the mesh that `run` wrote: all claims but fidelity, which is
 /// promised only for cells about as small as voxels. The image goes with it as it is in its file, with the

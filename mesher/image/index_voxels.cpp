@@ -1,7 +1,9 @@
 #include "image/index_voxels.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
+#include <cstdlib>
 #include <cstring>
 #include <limits>
 #include <optional>
@@ -32,22 +34,94 @@ bool is_label(Voxel voxel) {
 }
 
 template <class Voxel>
-Voxel voxel_at(const RawImage& raw, std::size_t i) {
+Voxel voxel_at(const char* place) {
   Voxel voxel;
-  std::memcpy(&voxel, raw.bytes.data() + i * sizeof voxel, sizeof voxel);
+  std::memcpy(&voxel, place, sizeof voxel);
   return voxel;
 }
 
+// Whether voxels follow each other without gaps, x fastest.
+bool is_dense(const VoxelArray& array) {
+  auto expected = static_cast<std::ptrdiff_t>(bytes_of(array.type));
+  for (std::size_t axis = 0; axis < 3; ++axis) {
+    if (array.strides_bytes[axis] != expected) return false;
+    expected *= array.size[axis];
+  }
+  return true;
+}
+
+const char* first_of(const VoxelArray& array) { return static_cast<const char*>(array.first); }
+
+// Cuts an array of any strides into blocks, within which neither the array's voxels nor the image's are far
+// apart in memory.
+class Blocks {
+ public:
+  explicit Blocks(const VoxelArray& array) : array_(array), image_strides_{1, array.size[0], 0} {
+    image_strides_[2] = image_strides_[1] * array.size[1];
+    for (std::size_t axis = 0; axis < 3; ++axis)
+      numbers_[axis] = array.size[axis] / kSide + (array.size[axis] % kSide != 0);
+    std::sort(axes_.begin(), axes_.end(), [&](std::size_t a, std::size_t b) {
+      return std::abs(array.strides_bytes[a]) < std::abs(array.strides_bytes[b]);
+    });
+  }
+
+  std::size_t count() const {
+    return static_cast<std::size_t>(numbers_[0]) * static_cast<std::size_t>(numbers_[1]) *
+           static_cast<std::size_t>(numbers_[2]);
+  }
+
+  /// Calls use(position in the image, place in the array) for every voxel of the block.
+  template <class Use>
+  void for_each_voxel(std::size_t block, const Use& use) const {
+    std::array<int, 3> low{}, high{};
+    for (std::size_t axis = 0; axis < 3; ++axis) {
+      const auto number = static_cast<std::size_t>(numbers_[axis]);
+      low[axis] = static_cast<int>(block % number) * kSide;
+      high[axis] = std::min(low[axis] + kSide, array_.size[axis]);
+      block /= number;
+    }
+    const auto [fast, middle, slow] = axes_;
+    for (std::array<int, 3> at = low; at[slow] < high[slow]; ++at[slow])
+      for (at[middle] = low[middle]; at[middle] < high[middle]; ++at[middle]) {
+        at[fast] = low[fast];
+        const char* place = first_of(array_) + dot(at, array_.strides_bytes);
+        std::ptrdiff_t position = dot(at, image_strides_);
+        for (int i = low[fast]; i < high[fast]; ++i) {
+          use(static_cast<std::size_t>(position), place);
+          place += array_.strides_bytes[fast];
+          position += image_strides_[fast];
+        }
+      }
+  }
+
+ private:
+  static constexpr int kSide = 32;
+
+  static std::ptrdiff_t dot(const std::array<int, 3>& at, const std::array<std::ptrdiff_t, 3>& strides) {
+    return at[0] * strides[0] + at[1] * strides[1] + at[2] * strides[2];
+  }
+
+  const VoxelArray& array_;
+  std::array<std::ptrdiff_t, 3> image_strides_;
+  std::array<int, 3> numbers_{};
+  std::array<std::size_t, 3> axes_{0, 1, 2};  // of the array's strides the shortest first
+};
+
 // Names the first voxel whose value is no label; there must be one.
 template <class Voxel>
-[[noreturn]] void refuse_first_without_label(const RawImage& raw) {
-  std::size_t i = 0;
-  while (is_label(voxel_at<Voxel>(raw, i))) ++i;
-  const auto num_x = static_cast<std::size_t>(raw.size[0]), num_y = static_cast<std::size_t>(raw.size[1]);
-  refuse(raw.path, "a label image is needed: voxel (" + std::to_string(i % num_x) + ", " +
-                       std::to_string(i / num_x % num_y) + ", " + std::to_string(i / num_x / num_y) +
-                       ") is " + std::to_string(voxel_at<Voxel>(raw, i)) +
-                       ", no label (an integer, 0 to 2^32 - 1)");
+[[noreturn]] void refuse_first_without_label(const VoxelArray& array, const std::string& path) {
+  for (int k = 0; k < array.size[2]; ++k)
+    for (int j = 0; j < array.size[1]; ++j)
+      for (int i = 0; i < array.size[0]; ++i) {
+        const auto& strides = array.strides_bytes;
+        const auto voxel =
+            voxel_at<Voxel>(first_of(array) + i * strides[0] + j * strides[1] + k * strides[2]);
+        if (is_label(voxel)) continue;
+        refuse(path, "a label image is needed: voxel (" + std::to_string(i) + ", " + std::to_string(j) +
+                         ", " + std::to_string(k) + ") is " + std::to_string(voxel) +
+                         ", no label (an integer, 0 to 2^32 - 1)");
+      }
+  refuse(path, "its voxels change while they are read");
 }
 
 // The different voxels that one thread meets, while they are not too many and all are labels: a set of values
@@ -55,11 +129,22 @@ template <class Voxel>
 template <class Voxel>
 class VoxelSet {
  public:
-  void add(const RawImage& raw, std::size_t begin, std::size_t end) {
-    for_each_stretch(raw.bytes.data(), sizeof(Voxel), begin, end,
+  /// Voxels of a dense array.
+  void add(const char* voxels, std::size_t begin, std::size_t end) {
+    for_each_stretch(voxels, sizeof(Voxel), begin, end,
                      [&](std::size_t from, std::size_t to, bool is_uniform) {
-                       if (!has_other_) add_all(raw, from, is_uniform ? from + 1 : to);
+                       if (!has_other_) add_all(voxels, from, is_uniform ? from + 1 : to);
                      });
+  }
+
+  void add(Voxel voxel) {
+    if constexpr (kIsSmall<Voxel>) {
+      is_met_[static_cast<std::uint16_t>(voxel)] = true;
+    } else if (last_ != voxel && !has_other_) {
+      has_other_ = !is_label(voxel);
+      last_ = voxel;
+      if (!has_other_ && met_.size() <= kMostValues) met_.insert(voxel);
+    }
   }
 
   /// Whether a large voxel was met that is no label; what comes after it is not looked at.
@@ -73,19 +158,14 @@ class VoxelSet {
   }
 
  private:
-  void add_all(const RawImage& raw, std::size_t begin, std::size_t end) {
+  void add_all(const char* voxels, std::size_t begin, std::size_t end) {
     char* const is_met = is_met_.data();  // a char may alias the pointer in the vector
     for (std::size_t i = begin; i < end; ++i) {
-      const auto voxel = voxel_at<Voxel>(raw, i);
+      const auto voxel = voxel_at<Voxel>(voxels + i * sizeof(Voxel));
       if constexpr (kIsSmall<Voxel>) {
         is_met[static_cast<std::uint16_t>(voxel)] = true;
-      } else if (last_ != voxel) {
-        if (!is_label(voxel)) {
-          has_other_ = true;
-          return;
-        }
-        last_ = voxel;
-        if (met_.size() <= kMostValues) met_.insert(voxel);
+      } else {
+        add(voxel);
       }
     }
   }
@@ -96,7 +176,7 @@ class VoxelSet {
   bool has_other_ = false;
 };
 
-// The position of a voxel that is a value, among the values.
+// The position of a voxel that is a value, among the values; 0 of one that has become another meanwhile.
 template <class Voxel>
 class Positions {
  public:
@@ -112,9 +192,10 @@ class Positions {
     if constexpr (kIsSmall<Voxel>) return small_[static_cast<std::uint16_t>(voxel)];
     if (last_ != voxel) {
       last_ = voxel;
-      last_position_ = static_cast<LabelIndex>(
-          std::lower_bound(values_.begin(), values_.end(), static_cast<std::uint32_t>(voxel)) -
-          values_.begin());
+      const auto value = static_cast<std::uint32_t>(voxel);
+      const auto found = std::lower_bound(values_.begin(), values_.end(), value);
+      const bool is_value = found != values_.end() && *found == value;
+      last_position_ = is_value ? static_cast<LabelIndex>(found - values_.begin()) : LabelIndex{0};
     }
     return last_position_;
   }
@@ -127,74 +208,96 @@ class Positions {
 };
 
 template <class Voxel>
-std::vector<std::uint32_t> different_values(const RawImage& raw, std::size_t threads) {
+std::vector<std::uint32_t> different_values(const VoxelArray& array, const std::string& path,
+                                            std::size_t num_voxels, std::size_t threads) {
   std::vector<VoxelSet<Voxel>> met(threads);
-  parallel_for_ranges(
-      raw.bytes.size() / sizeof(Voxel), kChunk, threads,
-      [&](std::size_t begin, std::size_t end, std::size_t thread) { met[thread].add(raw, begin, end); });
+  if (is_dense(array)) {
+    parallel_for_ranges(num_voxels, kChunk, threads,
+                        [&](std::size_t begin, std::size_t end, std::size_t thread) {
+                          met[thread].add(first_of(array), begin, end);
+                        });
+  } else {
+    const Blocks blocks(array);
+    parallel_for(blocks.count(), threads, [&](std::size_t block, std::size_t thread) {
+      blocks.for_each_voxel(block,
+                            [&](std::size_t, const char* place) { met[thread].add(voxel_at<Voxel>(place)); });
+    });
+  }
   std::set<std::uint32_t> values;
   for (const VoxelSet<Voxel>& set : met) {
-    if (set.has_other()) refuse_first_without_label<Voxel>(raw);
+    if (set.has_other()) refuse_first_without_label<Voxel>(array, path);
     set.for_each([&](Voxel voxel) {
-      if (!is_label(voxel)) refuse_first_without_label<Voxel>(raw);
+      if (!is_label(voxel)) refuse_first_without_label<Voxel>(array, path);
       values.insert(static_cast<std::uint32_t>(voxel));
     });
   }
   if (values.size() > kMostValues)
-    refuse(raw.path,
-           "a label image is needed: more than " + std::to_string(kMostValues) + " different values");
+    refuse(path, "a label image is needed: more than " + std::to_string(kMostValues) + " different values");
   return {values.begin(), values.end()};
 }
 
+// Voxels of a dense array.
 template <class Voxel>
-void index_range(const RawImage& raw, std::size_t begin, std::size_t end, Positions<Voxel>& position,
+void index_range(const char* array, std::size_t begin, std::size_t end, Positions<Voxel>& position,
                  LabelIndex* voxels) {
-  for_each_stretch(raw.bytes.data(), sizeof(Voxel), begin, end,
-                   [&](std::size_t from, std::size_t to, bool is_uniform) {
-                     if (is_uniform) {
-                       std::fill(voxels + from, voxels + to, position(voxel_at<Voxel>(raw, from)));
-                     } else {
-                       for (std::size_t i = from; i < to; ++i) voxels[i] = position(voxel_at<Voxel>(raw, i));
-                     }
-                   });
+  const auto position_of = [&](std::size_t i) {
+    return position(voxel_at<Voxel>(array + i * sizeof(Voxel)));
+  };
+  for_each_stretch(array, sizeof(Voxel), begin, end, [&](std::size_t from, std::size_t to, bool is_uniform) {
+    if (is_uniform) {
+      std::fill(voxels + from, voxels + to, position_of(from));
+    } else {
+      for (std::size_t i = from; i < to; ++i) voxels[i] = position_of(i);
+    }
+  });
 }
 
 template <class Voxel>
-void index(const RawImage& raw, std::size_t threads, LabelImage& image) {
-  const std::vector<std::uint32_t> values = different_values<Voxel>(raw, threads);
+void index(const VoxelArray& array, const std::string& path, std::size_t threads, LabelImage& image) {
+  const std::vector<std::uint32_t> values = different_values<Voxel>(array, path, image.num_voxels(), threads);
   for (const std::uint32_t value : values) image.labels.push_back({value, {}});
   std::vector<Positions<Voxel>> positions(threads, Positions<Voxel>(values));
   parallel_resize(image.voxels, image.num_voxels(), threads);
-  parallel_for_ranges(image.voxels.size(), kChunk, threads,
-                      [&](std::size_t begin, std::size_t end, std::size_t thread) {
-                        index_range(raw, begin, end, positions[thread], image.voxels.data());
-                      });
+  LabelIndex* const voxels = image.voxels.data();
+  if (is_dense(array)) {
+    parallel_for_ranges(image.num_voxels(), kChunk, threads,
+                        [&](std::size_t begin, std::size_t end, std::size_t thread) {
+                          index_range(first_of(array), begin, end, positions[thread], voxels);
+                        });
+  } else {
+    const Blocks blocks(array);
+    parallel_for(blocks.count(), threads, [&](std::size_t block, std::size_t thread) {
+      blocks.for_each_voxel(block, [&](std::size_t i, const char* place) {
+        voxels[i] = positions[thread](voxel_at<Voxel>(place));
+      });
+    });
+  }
 }
 
 }  // namespace
 
-void index_voxels(const RawImage& raw, std::size_t threads, LabelImage& image) {
-  switch (raw.type) {
+void index_voxels(const VoxelArray& array, const std::string& path, std::size_t threads, LabelImage& image) {
+  switch (array.type) {
     case VoxelType::kUint8:
-      return index<std::uint8_t>(raw, threads, image);
+      return index<std::uint8_t>(array, path, threads, image);
     case VoxelType::kInt8:
-      return index<std::int8_t>(raw, threads, image);
+      return index<std::int8_t>(array, path, threads, image);
     case VoxelType::kUint16:
-      return index<std::uint16_t>(raw, threads, image);
+      return index<std::uint16_t>(array, path, threads, image);
     case VoxelType::kInt16:
-      return index<std::int16_t>(raw, threads, image);
+      return index<std::int16_t>(array, path, threads, image);
     case VoxelType::kUint32:
-      return index<std::uint32_t>(raw, threads, image);
+      return index<std::uint32_t>(array, path, threads, image);
     case VoxelType::kInt32:
-      return index<std::int32_t>(raw, threads, image);
+      return index<std::int32_t>(array, path, threads, image);
     case VoxelType::kUint64:
-      return index<std::uint64_t>(raw, threads, image);
+      return index<std::uint64_t>(array, path, threads, image);
     case VoxelType::kInt64:
-      return index<std::int64_t>(raw, threads, image);
+      return index<std::int64_t>(array, path, threads, image);
     case VoxelType::kFloat:
-      return index<float>(raw, threads, image);
+      return index<float>(array, path, threads, image);
     case VoxelType::kDouble:
-      return index<double>(raw, threads, image);
+      return index<double>(array, path, threads, image);
   }
 }
 

@@ -82,6 +82,12 @@ std::size_t bytes_of(VoxelType type) {
   throw InternalError("unknown voxel type");
 }
 
+VoxelArray array_of(const RawImage& raw) {
+  const auto voxel = static_cast<std::ptrdiff_t>(bytes_of(raw.type));
+  const std::ptrdiff_t row = voxel * raw.size[0], slice = row * raw.size[1];
+  return {raw.bytes.data(), raw.type, raw.size, {voxel, row, slice}};
+}
+
 void swap_bytes(std::vector<unsigned char>& bytes, std::size_t width) {
   for (std::size_t i = 0; i + width <= bytes.size(); i += width) {
     std::reverse(bytes.begin() + static_cast<std::ptrdiff_t>(i),
@@ -108,18 +114,21 @@ std::size_t checked_num_voxels(const std::string& path, const std::vector<int>& 
   return voxels;
 }
 
-std::size_t checked_num_bytes(const RawImage& raw, std::uint64_t most_bytes) {
-  const std::size_t voxels = checked_num_voxels(raw.path, raw.size), needed = voxels * bytes_of(raw.type);
-  const std::uint64_t while_read = needed + voxels * sizeof(LabelIndex);
-  if (while_read <= most_bytes) return needed;
-  const auto gib = [](std::uint64_t bytes) {
+void check_room(const std::string& path, std::uint64_t bytes, std::uint64_t most_bytes) {
+  if (bytes <= most_bytes) return;
+  const auto gib = [](std::uint64_t number) {
     std::ostringstream text;
-    text << std::setprecision(3) << static_cast<double>(bytes) / (1 << 30) << " GiB";
+    text << std::setprecision(3) << static_cast<double>(number) / (1 << 30) << " GiB";
     return text.str();
   };
-  refuse(raw.path, "its voxels take " + gib(while_read) +
-                       " while they are read, and there is no room for more than " + gib(most_bytes) +
-                       " below the memory limit");
+  refuse(path, "its voxels take " + gib(bytes) + " while they are read, and there is no room for more than " +
+                   gib(most_bytes) + " below the memory limit");
+}
+
+std::size_t checked_num_bytes(const RawImage& raw, std::uint64_t most_bytes) {
+  const std::size_t voxels = checked_num_voxels(raw.path, raw.size), needed = voxels * bytes_of(raw.type);
+  check_room(raw.path, needed + voxels * sizeof(LabelIndex), most_bytes);
+  return needed;
 }
 
 std::array<double, 3> checked_spacing(const std::string& path, std::array<double, 12>& voxel_to_ras) {

@@ -7,9 +7,9 @@
 #include <string>
 #include <vector>
 
-namespace podm {
+#include "podm/image_io.h"
 
-enum class VoxelType { kUint8, kInt8, kUint16, kInt16, kUint32, kInt32, kUint64, kInt64, kFloat, kDouble };
+namespace podm {
 
 std::size_t bytes_of(VoxelType type);
 
@@ -22,6 +22,9 @@ struct RawImage {
   std::vector<std::string> warnings = {};  ///< become those of LabelImage
 };
 
+/// Where its voxels lie.
+VoxelArray array_of(const RawImage& raw);
+
 /// Turns values of `width` bytes into the other byte order.
 void swap_bytes(std::vector<unsigned char>& bytes, std::size_t width);
 
@@ -31,6 +34,9 @@ void swap_bytes(std::vector<unsigned char>& bytes, std::size_t width);
 /// The number of voxels. Throws InputError unless the image has three axes (further ones of length 1), none
 /// empty, and at most kMaxVoxels.
 std::size_t checked_num_voxels(const std::string& path, const std::vector<int>& size);
+
+/// Throws InputError where voxels that take `bytes` while they are read take more than `most_bytes`.
+void check_room(const std::string& path, std::uint64_t bytes, std::uint64_t most_bytes);
 
 /// Bytes of all voxels, checked as above before memory is asked for. Throws InputError where these and their
 /// labels take more than `most_bytes` while they are read.

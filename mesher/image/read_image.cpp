@@ -1,4 +1,4 @@
-// A path becomes a label image: a reader is picked, voxels become labels, labels are selected.
+// A path or an array becomes a label image: a reader is picked, voxels become labels, labels are selected.
 #include <algorithm>
 #include <charconv>
 #include <initializer_list>
@@ -28,15 +28,21 @@ RawImage read_raw(const std::string& path, std::uint64_t most_bytes) {
 }
 
 // Labels by value: the background is not known yet.
-LabelImage read_file(const std::string& path, std::size_t threads, std::uint64_t most_bytes) {
-  RawImage raw = read_raw(path, most_bytes);
+LabelImage index_array(const VoxelArray& array, std::array<double, 12> voxel_to_ras, const std::string& path,
+                       std::size_t threads) {
   LabelImage image;
-  image.size = {raw.size[0], raw.size[1], raw.size[2]};
-  image.spacing = checked_spacing(path, raw.voxel_to_ras);
-  check_distance(path, raw.size, raw.voxel_to_ras);
-  image.voxel_to_ras = raw.voxel_to_ras;
-  image.warnings = std::move(raw.warnings);
-  index_voxels(raw, threads, image);
+  image.size = {array.size[0], array.size[1], array.size[2]};
+  image.spacing = checked_spacing(path, voxel_to_ras);
+  check_distance(path, array.size, voxel_to_ras);
+  image.voxel_to_ras = voxel_to_ras;
+  index_voxels(array, path, threads, image);
+  return image;
+}
+
+LabelImage read_file(const std::string& path, std::size_t threads, std::uint64_t most_bytes) {
+  const RawImage raw = read_raw(path, most_bytes);
+  LabelImage image = index_array(array_of(raw), raw.voxel_to_ras, path, threads);
+  image.warnings = raw.warnings;
   return image;
 }
 
@@ -59,6 +65,16 @@ LabelImage read_image(const std::string& path, const LabelSelection& selection, 
   LabelImage image =
       path.starts_with("phantom:") ? read_phantom(path, threads) : read_file(path, used, most_bytes);
   select_labels(image, selection, path, used);
+  return image;
+}
+
+LabelImage image_of_array(const VoxelArray& array, std::array<double, 12> voxel_to_ras,
+                          const std::string& name, const LabelSelection& selection, int threads,
+                          std::uint64_t most_bytes) {
+  const std::size_t used = num_threads(threads);
+  check_room(name, checked_num_voxels(name, array.size) * sizeof(LabelIndex), most_bytes);
+  LabelImage image = index_array(array, voxel_to_ras, name, used);
+  select_labels(image, selection, name, used);
   return image;
 }
 

@@ -1,6 +1,8 @@
-// Where label images come from: files, phantoms, and what is kept of them.
+// Where label images come from: files, phantoms, arrays in memory, and what is kept of them.
 #pragma once
 
+#include <array>
+#include <cstddef>
 #include <cstdint>
 #include <limits>
 #include <map>
@@ -37,6 +39,23 @@ std::map<std::uint32_t, std::string> read_label_names(const std::string& path);
 /// `most_bytes`: what a file's voxels and their labels may take together while they are read.
 LabelImage read_image(const std::string& path, const LabelSelection& selection = {}, int threads = 0,
                       std::uint64_t most_bytes = std::numeric_limits<std::uint64_t>::max());
+
+enum class VoxelType { kUint8, kInt8, kUint16, kInt16, kUint32, kInt32, kUint64, kInt64, kFloat, kDouble };
+
+/// Voxels in somebody's memory, in this machine's byte order. Along an axis voxels are `strides_bytes` apart,
+/// any number: also negative, or none.
+struct VoxelArray {
+  const void* first = nullptr;  ///< voxel (0,0,0)
+  VoxelType type = VoxelType::kUint8;
+  std::vector<int> size;  ///< voxels per axis: three, or more of which the others are 1
+  std::array<std::ptrdiff_t, 3> strides_bytes{};
+};
+
+/// Makes a label image of an array, which is read and not kept. `voxel_to_ras`: row-major 3x4, mm. Throws
+/// InputError naming the array, `name`, and the fault; the rest is as for read_image().
+LabelImage image_of_array(const VoxelArray& array, std::array<double, 12> voxel_to_ras,
+                          const std::string& name, const LabelSelection& selection = {}, int threads = 0,
+                          std::uint64_t most_bytes = std::numeric_limits<std::uint64_t>::max());
 
 /// The analytic phantoms: "abdomen", "spheres", "torus"; `size` voxels along the longest axis.
 LabelImage make_phantom(const std::string& name, int size, int threads = 0);

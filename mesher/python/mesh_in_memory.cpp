@@ -1,0 +1,72 @@
+#include "python/mesh_in_memory.h"
+
+#include <chrono>
+#include <utility>
+
+#include "algorithms/team_size.h"
+#include "cli/json_text.h"
+#include "cli/labelled_image.h"
+#include "cli/options_for_image.h"
+#include "cli/process_memory.h"
+#include "cli/record.h"
+#include "cli/verify_mesh.h"
+#include "podm/mesh_io.h"
+
+namespace podm::python {
+
+MeshInMemory::MeshInMemory(cli::MeshCommand command, const Input& input, const ProgressCallback& progress,
+                           const std::stop_token& stop)
+    : command_(std::move(command)),
+      run_{.command = command_,
+           .image = image_,
+           .options = {},
+           .crossover = cli::choose_crossover(command_),
+           .report = {},
+           .mesh = {},
+           .mesh_sha256 = {},
+           .verdicts = {}} {
+  command_.image.path = input.path;
+  command_.image.is_array = input.array.has_value();
+  const std::uint64_t limit_bytes = cli::memory_limit_bytes(command_);
+  const auto start = std::chrono::steady_clock::now();
+  image_ = read(input, limit_bytes);
+  run_.read_s = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+  run_.options = cli::options_for_image(command_, image_, limit_bytes);
+  run_.options.crossover = run_.crossover.threads;
+  MeshingResult result = mesh_image(image_, run_.options, progress, stop);
+  mesh_ = std::move(result.mesh);
+  run_.take(std::move(result.report), mesh_);
+  if (!command_.image.is_array && !command_.image.is_phantom()) image_.voxels = {};  // the file has them
+  canonicalize(mesh_, loop_threads(command_.meshing.team));
+  run_.peak_rss_bytes = cli::peak_resident_bytes();
+}
+
+LabelImage MeshInMemory::read(const Input& input, std::uint64_t limit_bytes) const {
+  const int threads = loop_threads(command_.meshing.team);
+  const std::uint64_t most_bytes = cli::bytes_for_image(limit_bytes);
+  LabelImage image;
+  if (input.array) {
+    image = image_of_array(*input.array, input.voxel_to_ras, input.path, command_.image.selection, threads,
+                           most_bytes);
+  } else {
+    image = cli::read_labelled_image(command_.image, threads, most_bytes);
+  }
+  auto names = input.names;
+  if (input.array && !command_.image.label_names_path.empty())
+    names.merge(read_label_names(command_.image.label_names_path));
+  cli::name_labels(image, names);
+  return image;
+}
+
+std::string MeshInMemory::record() {
+  if (run_.mesh_sha256.empty()) run_.mesh_sha256 = mesh_sha256(mesh_);
+  return cli::json_line(cli::record(run_));
+}
+
+std::vector<std::string> MeshInMemory::claims(bool with_fidelity,
+                                              const std::function<std::string()>& write_image) {
+  command_.verify_fidelity = with_fidelity;
+  return cli::claims_to_verify(run_, write_image);
+}
+
+}  // namespace podm::python

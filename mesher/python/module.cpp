@@ -1,0 +1,216 @@
+// The extension module podm._podm: arrays and text in, arrays and text out. What users see is in podm/*.py.
+#include <pybind11/functional.h>
+#include <pybind11/numpy.h>
+#include <pybind11/pybind11.h>
+#include <pybind11/stl.h>
+
+#include <algorithm>
+#include <climits>
+#include <memory>
+#include <new>
+
+#include "cli/labelled_image.h"
+#include "cli/summary.h"
+#include "measure_quality.h"
+#include "podm/errors.h"
+#include "podm/mesh_io.h"
+#include "python/beside_python.h"
+#include "python/error_text.h"
+#include "python/mesh_in_memory.h"
+
+namespace podm::python {
+namespace {
+
+namespace py = pybind11;
+
+using Names = std::map<std::uint32_t, std::string>;
+
+cli::Command parse(std::vector<std::string> arguments) {
+  arguments.insert(arguments.begin(), "mesh");
+  return cli::parse_command_line(std::move(arguments), cli::Program::kPython);
+}
+
+std::string options_help() { return std::get<cli::ShowText>(parse({"--help"})).text; }
+
+// podm/images.py lets only such arrays through.
+VoxelType voxel_type(const py::dtype& dtype) {
+  const bool is_signed = dtype.kind() == 'i';
+  if (dtype.kind() == 'f') return dtype.itemsize() == 4 ? VoxelType::kFloat : VoxelType::kDouble;
+  switch (dtype.itemsize()) {
+    case 1:
+      return is_signed ? VoxelType::kInt8 : VoxelType::kUint8;
+    case 2:
+      return is_signed ? VoxelType::kInt16 : VoxelType::kUint16;
+    case 4:
+      return is_signed ? VoxelType::kInt32 : VoxelType::kUint32;
+    case 8:
+      return is_signed ? VoxelType::kInt64 : VoxelType::kUint64;
+  }
+  throw InternalError("an array whose numbers take " + std::to_string(dtype.itemsize()) + " bytes");
+}
+
+VoxelArray voxel_array(const py::array& array) {
+  VoxelArray voxels{array.data(), voxel_type(array.dtype()), {}, {}};
+  for (py::ssize_t axis = 0; axis < array.ndim(); ++axis) {
+    voxels.size.push_back(static_cast<int>(std::min<py::ssize_t>(array.shape(axis), INT_MAX)));
+    if (axis < 3) voxels.strides_bytes[static_cast<std::size_t>(axis)] = array.strides(axis);
+  }
+  return voxels;
+}
+
+// The mesh, None where there is none, and the exception that ended the run early, None where nothing did.
+py::tuple mesh(const Input& input, std::vector<std::string> arguments, const py::object& progress) {
+  cli::MeshCommand command = std::get<cli::MeshCommand>(parse(std::move(arguments)));
+  std::shared_ptr<MeshInMemory> made;
+  const Work work = [&](const ProgressCallback& tell, const std::stop_token& stop) {
+    made = std::make_shared<MeshInMemory>(std::move(command), input, tell, stop);
+  };
+  const py::object exception = run_beside_python(work, progress);
+  return py::make_tuple(made, exception);
+}
+
+py::tuple mesh_file(const std::string& path, const Names& names, std::vector<std::string> arguments,
+                    const py::object& progress) {
+  return mesh({.path = path, .names = names}, std::move(arguments), progress);
+}
+
+py::tuple mesh_array(const py::array& array, const std::array<double, 12>& voxel_to_ras, const Names& names,
+                     std::vector<std::string> arguments, const py::object& progress) {
+  return mesh({.path = "labels", .array = voxel_array(array), .voxel_to_ras = voxel_to_ras, .names = names},
+              std::move(arguments), progress);
+}
+
+py::array read_only(py::array array) {
+  array.attr("setflags")(py::arg("write") = false);
+  return array;
+}
+
+// A view that keeps `owner`, whose memory it is, alive.
+template <class Number, std::size_t kColumns>
+py::array rows(const std::vector<std::array<Number, kColumns>>& values, const py::object& owner) {
+  static_assert(sizeof values[0] == kColumns * sizeof(Number));
+  return read_only(
+      py::array_t<Number>({values.size(), kColumns}, reinterpret_cast<const Number*>(values.data()), owner));
+}
+
+template <class Number>
+py::array column(const std::vector<Number>& values, const py::object& owner) {
+  return read_only(py::array_t<Number>(values.size(), values.data(), owner));
+}
+
+// An array that has taken over the memory.
+py::array array_of(std::vector<double> values) {
+  auto* const kept = new std::vector<double>(std::move(values));
+  const py::capsule owner(kept, [](void* memory) { delete static_cast<std::vector<double>*>(memory); });
+  return py::array_t<double>(kept->size(), kept->data(), owner);
+}
+
+py::dict qualities(const MeshInMemory& made) {
+  CellQualities all;
+  {
+    const py::gil_scoped_release others_run;
+    all = qualities_of_cells(made.mesh());
+  }
+  py::dict arrays;
+  arrays["radius_edge"] = array_of(std::move(all.radius_edge));
+  arrays["circumradius"] = array_of(std::move(all.circumradius));
+  arrays["min_dihedral_deg"] = array_of(std::move(all.min_dihedral_deg));
+  arrays["max_dihedral_deg"] = array_of(std::move(all.max_dihedral_deg));
+  arrays["volume"] = array_of(std::move(all.volume));
+  return arrays;
+}
+
+// The value and the name of every label, the background first.
+std::vector<std::pair<std::uint32_t, std::string>> labels_of(const MeshInMemory& made) {
+  std::vector<std::pair<std::uint32_t, std::string>> labels;
+  for (const Label& label : made.mesh().labels) labels.emplace_back(label.value, cli::display_name(label));
+  return labels;
+}
+
+void save(const MeshInMemory& made, const std::string& path) {
+  check_mesh_path(path);
+  if (made.mesh().cells.empty()) throw InputError(path + ": the mesh has no cell, so that none is written");
+  write_mesh(made.mesh(), path);
+}
+
+void save_surfaces(const MeshInMemory& made, const std::string& path) {
+  check_surface_path(path);
+  write_surfaces(made.mesh(), path);
+}
+
+void define_progress(py::module_& module) {
+  py::class_<Progress>(module, "Progress", "How far a run of the mesher is.")
+      .def_readonly("phase", &Progress::phase,
+                    "\"transform\", \"refine\", \"perturb\", \"optimize\", \"extract\" or \"measure\"")
+      .def_readonly("fraction", &Progress::fraction, "of the phase, an estimate from 0 to 1")
+      .def_readonly("cells", &Progress::cells, "so far")
+      .def_readonly("seconds", &Progress::seconds, "since the run began")
+      .def("__repr__", [](const Progress& progress) {
+        return py::str("podm.Progress(phase={!r}, fraction={:.3f}, cells={}, seconds={:.1f})")
+            .format(progress.phase, progress.fraction, progress.cells, progress.seconds);
+      });
+}
+
+void define_mesh(py::module_& module) {
+  using Self = const std::shared_ptr<MeshInMemory>&;
+  const auto release = py::call_guard<py::gil_scoped_release>();
+  const auto view = [](auto member, auto make) {
+    return [=](const py::object& self) { return make(self.cast<Self>()->mesh().*member, self); };
+  };
+  const auto rows_of = [](const auto& values, const py::object& owner) { return rows(values, owner); };
+  const auto column_of = [](const auto& values, const py::object& owner) { return column(values, owner); };
+  py::class_<MeshInMemory, std::shared_ptr<MeshInMemory>>(module, "MeshInMemory")
+      .def_property_readonly("points", view(&TetMesh::vertices, rows_of))
+      .def_property_readonly("cells", view(&TetMesh::cells, rows_of))
+      .def_property_readonly("label_of_cell", view(&TetMesh::cell_labels, column_of))
+      .def_property_readonly("facets", view(&TetMesh::facets, rows_of))
+      .def_property_readonly("labels_of_facet", view(&TetMesh::facet_labels, rows_of))
+      .def_property_readonly("labels", &labels_of)
+      .def_property_readonly("space", [](Self made) { return to_string(made->mesh().space); })
+      .def_property_readonly("stop_reason",
+                             [](Self made) { return to_string(made->run().report.stop_reason); })
+      .def_property_readonly("unmet", [](Self made) { return made->run().unmet(); })
+      .def_property_readonly("warnings", [](Self made) { return made->run().report.warnings; })
+      .def_property_readonly(
+          "voxels", [](const py::object& self) { return column(self.cast<Self>()->image().voxels, self); })
+      .def_property_readonly("image_size", [](Self made) { return made->image().size; })
+      .def_property_readonly("voxel_to_ras", [](Self made) { return made->image().voxel_to_ras; })
+      .def("record", &MeshInMemory::record, release)
+      .def("claims", &MeshInMemory::claims)
+      .def("summary", [](Self made) { return cli::summary(made->run()); })
+      .def("qualities", &qualities)
+      .def("save", &save, release)
+      .def("save_surfaces", &save_surfaces, release);
+}
+
+// As exceptions of the package, in its terms.
+void translate(std::exception_ptr thrown) {
+  static const py::object package_errors = py::module_::import("podm.errors");
+  const auto raise = [](const char* name, const std::string& text) {
+    PyErr_SetString(package_errors.attr(name).ptr(), in_python_terms(text).c_str());
+  };
+  try {
+    if (thrown) std::rethrow_exception(thrown);
+  } catch (const InputError& error) {
+    raise("Error", error.what());
+  } catch (const InternalError& error) {
+    raise("InternalError", error.what());
+  } catch (const std::bad_alloc&) {
+    PyErr_SetString(PyExc_MemoryError, "use a smaller image, a larger radius or max_memory_gib");
+  }
+}
+
+}  // namespace
+}  // namespace podm::python
+
+PYBIND11_MODULE(_podm, module) {
+  using namespace podm::python;
+  pybind11::register_exception_translator(&translate);
+  define_progress(module);
+  define_mesh(module);
+  module.attr("__version__") = PODM_VERSION;
+  module.def("options_help", &options_help);
+  module.def("in_python_terms", &in_python_terms);
+  module.def("mesh_file", &mesh_file);
+  module.def("mesh_array", &mesh_array);
+}

@@ -1,0 +1,28 @@
+"""Tetrahedral meshes with guarantees from segmented 3-D images.
+
+A segmentation in, as a numpy array, a nibabel image or a file name, and a mesh for finite elements out::
+
+    import nibabel, podm
+
+    mesh = podm.mesh(nibabel.load("seg.nii.gz"), radius=4, radius_of={"liver": 2}, names={1: "liver"})
+    mesh.points, mesh.cells, mesh.labels        # numpy arrays; mm, positions of points, values of the image
+    mesh.save("mesh.vtu")
+    print(mesh.verify())                        # podm-verify proves what the mesh promises
+
+Every mesh of a finished run keeps the bounds of the program `podm`: cells have a radius-edge ratio below 1.93 and are
+Delaunay; boundary and interface facets have angles above 30 degrees and vertices on the surface between the labels.
+
+`mesh` is the mesher, `Mesh` what it returns, `Verification` what proves it; `Error`, `InternalError` and `Interrupted`
+are raised, and `Progress` is what a callback is told.
+"""
+
+from ._podm import Progress, __version__
+from .errors import Error, InternalError, Interrupted
+from .meshing import mesh
+from .result import Mesh
+from .verification import Verification
+
+__all__ = ["Error", "InternalError", "Interrupted", "Mesh", "Progress", "Verification", "__version__", "mesh"]
+
+for _public in (Error, InternalError, Interrupted, Mesh, Progress, Verification, mesh):
+    _public.__module__ = "podm"

@@ -1,0 +1,113 @@
+"""podm.mesh: an image in, a mesh out."""
+
+from __future__ import annotations
+
+import os
+import re
+import warnings
+from collections.abc import Callable, Iterable, Mapping
+from typing import TYPE_CHECKING, Any
+
+from . import _podm
+from .arguments import command_line
+from .errors import Error, Interrupted
+from .images import is_file, voxels_and_affine
+from .result import Mesh
+
+if TYPE_CHECKING:
+    import numpy.typing as npt
+
+    StrPath = str | os.PathLike[str]
+    LabelValues = str | int | Iterable[int]
+
+
+def mesh(labels: npt.ArrayLike | StrPath, *, affine: npt.ArrayLike | None = None,
+         spacing: npt.ArrayLike | None = None, names: Mapping[int, str] | StrPath | None = None,
+         keep: LabelValues | None = None, drop: LabelValues | None = None,
+         merge: Mapping[str, LabelValues] | None = None, background: int | None = None,
+         radius: float | None = None, radius_of: Mapping[str | int, float] | None = None, delta: float | None = None,
+         target_elements: int | None = None, target_tolerance: float | None = None, min_dihedral: float | None = None,
+         optimize: bool = False, dihedral_bounds: tuple[float, float] | None = None,
+         max_elements: int | None = None, max_seconds: float | None = None, max_memory_gib: float | None = None,
+         space: str | None = None, algorithm: str | None = None, crossover: int | StrPath | None = None,
+         nodes: int | None = None, cores_per_node: int | None = None, initial_ratio: float | None = None,
+         initial_threads: int | None = None, leaf_size: float | None = None, threads: int | None = None,
+         contention: str | None = None, begging: str | None = None, pin: str | None = None,
+         oversubscribe: bool = False, topology: StrPath | None = None, executor: str | None = None,
+         virtual_cost: str | None = None, seed: int | None = None,
+         progress: Callable[[_podm.Progress], object] | None = None) -> Mesh:
+    """Meshes a label image into tetrahedra.
+
+    Everything but the image is optional; what is None is left to the mesher. Options have the names, meanings and
+    defaults of `podm mesh`, below.
+
+    labels
+        The image: an array of shape (ni, nj, nk) of any integer type, in any memory order, of values 0 to 2^32 - 1
+        (it is read, not copied: the mesher makes its own of 2 bytes a voxel); or an image of nibabel; or the name of a
+        NIfTI, NRRD, MetaImage or INR file, or phantom:NAME[@SIZE].
+    affine
+        The 4x4 matrix, as nibabel's, from voxel indices (i, j, k) to RAS coordinates in mm. Any that is invertible
+        serves. One that shears changes angles: the bounds on shape then hold in the image's own axes.
+    spacing
+        Instead of an affine, and of an array alone: the three distances of voxels, mm; voxel (0, 0, 0) lies at the
+        origin. Without either they are 1 mm.
+    names
+        Names of labels, as {1: "liver"}; or a file of them, an ITK-SNAP table or lines "value name".
+    progress
+        Is called with a podm.Progress some times a second, by the thread that called mesh(). What it raises ends the
+        run and is raised by mesh().
+
+    Other Python threads run meanwhile, and may mesh, too.
+
+    Raises podm.Error, a ValueError, for a fault of image or options; MemoryError; and podm.Interrupted, a
+    KeyboardInterrupt, if Ctrl-C ends the run early: its `mesh` is the mesh so far, which is valid. A limit
+    (max_elements, max_seconds) is no exception: the mesh so far is returned, and its `is_complete` is False. What a
+    mesh misses, and what is odd about an image, is told by warnings.warn().
+    """
+    options = {keyword: value for keyword, value in locals().items()
+               if keyword not in ("labels", "affine", "spacing", "names", "progress")}
+    if names is not None and not isinstance(names, Mapping):
+        options["names"] = os.fspath(names)
+    arguments = command_line(options)
+    name_of = _checked_names(names) if isinstance(names, Mapping) else {}
+    if is_file(labels):
+        if affine is not None or spacing is not None:
+            raise Error("labels: a file tells where its voxels lie, so that neither affine nor spacing is expected")
+        made, exception = _podm.mesh_file(os.fspath(labels), name_of, arguments, progress)
+    else:
+        voxels, matrix = voxels_and_affine(labels, affine, spacing)
+        made, exception = _podm.mesh_array(voxels, matrix, name_of, arguments, progress)
+    return _result(made, exception)
+
+
+def _checked_names(names: Mapping[Any, Any]) -> dict[int, str]:
+    for value, name in names.items():
+        if not (isinstance(name, str) and hasattr(value, "__index__") and 0 <= value < 2**32):
+            raise Error(f'names: label values and their names are expected, as {{1: "liver"}}, not {value!r}: {name!r}')
+    return {int(value): name for value, name in names.items()}
+
+
+def _result(made: _podm.MeshInMemory | None, exception: BaseException | None) -> Mesh:
+    if made is not None and isinstance(exception, KeyboardInterrupt) and len(made.cells) > 0:
+        raise Interrupted(Mesh(made)) from exception
+    if exception is not None:
+        raise exception
+    result = Mesh(made)
+    for text in result.unmet + made.warnings:
+        warnings.warn(_podm.in_python_terms(text), stacklevel=3)
+    return result
+
+
+def _options_text() -> str:
+    """The options by their keywords, in the format of the program's help."""
+    help_text = _podm.options_help()
+    lines = []
+    for line in help_text[help_text.index("Labels:"):].rstrip().splitlines():
+        option = re.match(r"  --\S+( \S+)?", line)  # and its type
+        width = len(option[0]) if option else 0
+        keyword = _podm.in_python_terms(line[:width]).ljust(width)  # descriptions stay below each other
+        lines.append(("    " + keyword + _podm.in_python_terms(line[width:])).rstrip())
+    return "\n".join(lines)
+
+
+mesh.__doc__ = f"{mesh.__doc__}\n    Options and their defaults:\n\n{_options_text()}\n"

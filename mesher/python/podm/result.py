@@ -1,0 +1,165 @@
+"""podm.Mesh: what podm.mesh returns."""
+
+from __future__ import annotations
+
+import functools
+import json
+import os
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+import numpy.typing as npt
+
+from . import _podm, verification
+from .verification import Verification
+
+if TYPE_CHECKING:
+    import meshio
+    import vtk
+
+
+class Mesh:
+    """A tetrahedral mesh with labels.
+
+    Its arrays are views of the mesher's memory, read-only, and keep it alive. Points, cells and facets are in the
+    canonical order of the program, so that the same mesh has the same arrays.
+    """
+
+    def __init__(self, made: _podm.MeshInMemory) -> None:
+        """Not for callers: podm.mesh makes meshes."""
+        self._made = made
+
+    @property
+    def points(self) -> npt.NDArray[np.float64]:
+        """Coordinates of the vertices in mm (of `space`), shape (n, 3)."""
+        return self._made.points
+
+    @property
+    def cells(self) -> npt.NDArray[np.uint32]:
+        """The four vertices of each cell, as positions in `points`, shape (m, 4).
+
+        Of (a, b, c, d) the determinant of (b - a, c - a, d - a) is positive."""
+        return self._made.cells
+
+    @functools.cached_property
+    def labels(self) -> npt.NDArray[np.uint32]:
+        """The label of each cell, a value of the image, shape (m,)."""
+        return self._values[self._made.label_of_cell]
+
+    @property
+    def facets(self) -> npt.NDArray[np.uint32]:
+        """The three vertices of each boundary or interface facet, as positions in `points`, shape (k, 3).
+
+        The normal, by the right-hand rule, points out of the facet's second label, towards its first."""
+        return self._made.facets
+
+    @functools.cached_property
+    def facet_labels(self) -> npt.NDArray[np.uint32]:
+        """The labels on both sides of each facet, values of the image, shape (k, 2).
+
+        The first is the background's where the outside is on that side."""
+        return self._values[self._made.labels_of_facet]
+
+    @functools.cached_property
+    def names(self) -> dict[int, str]:
+        """The name of each label by its value, "label 3" where it was given none; without the background."""
+        return dict(self._made.labels[1:])
+
+    @property
+    def background(self) -> int:
+        """The value of the image that stands for no label."""
+        return self._made.labels[0][0]
+
+    @property
+    def space(self) -> str:
+        """The frame of `points`: "RAS" or "LPS", mm, or "voxel", indices."""
+        return self._made.space
+
+    @property
+    def stop_reason(self) -> str:
+        """"complete", or why the run ended early: "time limit", "element limit", "memory limit", "cancelled"."""
+        return self._made.stop_reason
+
+    @property
+    def is_complete(self) -> bool:
+        """Whether the run was ended by nothing but the mesh that was asked for."""
+        return self.stop_reason == "complete"
+
+    @property
+    def unmet(self) -> list[str]:
+        """A sentence for each guarantee that is missed and each limit that was met; empty if all is well."""
+        return self._made.unmet
+
+    @functools.cached_property
+    def record(self) -> dict[str, Any]:
+        """All there is to tell of the run, as `podm mesh --record` does: options, times, counts, quality, hashes."""
+        return json.loads(self._made.record())
+
+    def quality(self) -> dict[str, npt.NDArray[np.float64]]:
+        """How good each cell is: arrays of shape (m,).
+
+        "radius_edge" (circumradius over shortest edge), "circumradius" (mm), "min_dihedral_deg", "max_dihedral_deg"
+        and "volume" (mm^3). They are measured on `points`: of the space "voxel" in units of voxels. The extremes of
+        all cells and facets in mm are in record["quality"]."""
+        return self._made.qualities()
+
+    def verify(self, *, fidelity: bool = False) -> Verification:
+        """Has podm-verify, a program that shares no code with the mesher, check what this mesh promises.
+
+        Mesh and image go to it as temporary files. `fidelity`: also that the surfaces of mesh and image are within a
+        voxel or 2 delta of each other, which a mesh much coarser than a structure may miss."""
+        return verification.verify(self, self._made, fidelity)
+
+    def save(self, path: str | os.PathLike[str]) -> None:
+        """Writes the mesh, in the format of the name's extension: those of `podm mesh --output`.
+
+        The file appears whole or not at all: podm.Error says what is in the way."""
+        self._made.save(os.fspath(path))
+
+    def save_surfaces(self, path: str | os.PathLike[str]) -> None:
+        """Writes the closed surface of each label as .stl or .ply: "s.stl" becomes s_VALUE[_NAME].stl."""
+        self._made.save_surfaces(os.fspath(path))
+
+    def to_meshio(self) -> meshio.Mesh:
+        """A meshio.Mesh with blocks of cells and of facets, which needs the package meshio.
+
+        Cell data: "label" of cells (the second label of facets), "label_a" and "label_b" of facets (a cell has its
+        own on both sides)."""
+        import meshio
+        first, second = self.facet_labels.T
+        return meshio.Mesh(self.points, [("tetra", self.cells), ("triangle", self.facets)], cell_data={
+            "label": [self.labels, second], "label_a": [self.labels, first], "label_b": [self.labels, second]})
+
+    def to_vtk(self) -> vtk.vtkUnstructuredGrid:
+        """A vtkUnstructuredGrid of the cells, with the cell array `label`, which needs the package vtk.
+
+        Points and labels are the memory of this mesh. Cells are a copy: VTK 9.1 keeps no others alive."""
+        import vtk
+        from vtk.util.numpy_support import numpy_to_vtk
+        points, labels = numpy_to_vtk(self.points), numpy_to_vtk(self.labels)
+        grid = vtk.vtkUnstructuredGrid()
+        grid.SetPoints(vtk.vtkPoints())
+        grid.GetPoints().SetData(points)
+        offsets = np.arange(0, self.cells.size + 1, 4, dtype=np.int32)
+        cells = vtk.vtkCellArray()
+        cells.SetData(*(numpy_to_vtk(array, deep=True) for array in (offsets, self.cells.view(np.int32).ravel())))
+        grid.SetCells(vtk.VTK_TETRA, cells)
+        labels.SetName("label")
+        grid.GetCellData().SetScalars(labels)
+        return grid
+
+    @functools.cached_property
+    def _values(self) -> npt.NDArray[np.uint32]:
+        """The image's value of each label, by the mesher's number of it."""
+        return np.array([value for value, _ in self._made.labels], dtype=np.uint32)
+
+    def __repr__(self) -> str:
+        names = list(self.names.values())
+        listed = ", ".join(names[:4]) + (f" and {len(names) - 4} more" if len(names) > 4 else "")
+        state = "" if self.is_complete else f", ended early: {self.stop_reason}"
+        return (f"<podm.Mesh: {len(self.cells)} cells, {len(self.points)} points, {len(self.facets)} facets; {listed}"
+                f"{state}>")
+
+    def __str__(self) -> str:
+        """What the program tells of a run."""
+        return _podm.in_python_terms(self._made.summary())

@@ -1,0 +1,110 @@
+"""Bad input is an exception that says what was expected."""
+
+import unittest
+
+import nibabel
+import numpy as np
+
+from balls import AFFINE, TestCase, balls, podm
+
+
+class RefusedTest(TestCase):
+    def assert_refused(self, *words, labels=None, **keywords):
+        with self.assertRaises(podm.Error) as refusal:
+            podm.mesh(balls() if labels is None else labels, **keywords)
+        for word in words:
+            self.assertIn(word, str(refusal.exception))
+        self.assertNotIn("--", str(refusal.exception))
+        self.assertIsInstance(refusal.exception, ValueError)
+
+    def test_arrays_that_are_no_label_image(self):
+        self.assert_refused("labels", "3-D image", "20 x 24 voxels", labels=balls()[:, :, 0])
+        self.assert_refused("labels", "3-D image", labels=np.stack([balls(), balls()], axis=-1))
+        self.assert_refused("labels", "no voxels", labels=balls()[:0])
+        self.assert_refused("labels", "no foreground", labels=np.zeros((4, 4, 4), int))
+        for order in "CF":
+            self.assert_refused("voxel (8, 8, 2) is -3", labels=np.asarray(-balls(np.int16), order=order))
+            self.assert_refused("voxel (8, 8, 2) is 3.5", labels=np.where(balls(order=order) == 3, 3.5, 0))
+        self.assert_refused("voxel (0, 0, 0) is nan", labels=np.full((4, 4, 4), np.nan))
+        self.assert_refused("no label (an integer, 0 to 2^32 - 1)", labels=balls(np.uint64) + 2**40)
+        self.assert_refused("more than 65535 different values", labels=np.arange(8 * 10**4).reshape(20, 40, 100))
+
+    def test_types_that_are_no_numbers_or_too_wide(self):
+        for dtype in (complex, "U3", object, np.float16, np.longdouble, "M8[s]"):
+            self.assert_refused("labels", "integers is expected", labels=np.ones((4, 4, 4)).astype(dtype))
+        for labels in (None, 5, {"a": 1}, [[["x"]]]):
+            self.assert_refused("labels", labels=np.array(labels, dtype=object) if labels is None else labels)
+        self.assert_refused("without a mask", labels=np.ma.masked_equal(balls(), 0))
+
+    def test_affines_that_place_nothing(self):
+        self.assert_refused("affine", "4x4", "(3, 3)", affine=np.eye(3))
+        self.assert_refused("affine", "4x4", affine="RAS")
+        self.assert_refused("last row", affine=np.ones((4, 4)))
+        self.assert_refused("labels", "singular", affine=np.eye(4)[:, [0, 0, 1, 3]])
+        self.assert_refused("labels", "spacing is not positive", affine=np.diag([1, 1, 0, 1]))
+        self.assert_refused("labels", "not finite", affine=np.where(AFFINE == 7.25, np.nan, AFFINE))
+        self.assert_refused("labels", "2^33 voxels", affine=np.where(AFFINE == 7.25, 1e13, AFFINE))
+        self.assert_refused("spacing", "three", spacing=(1, 2))
+        self.assert_refused("spacing", "positive", spacing=(1, 2, 0))
+        self.assert_refused("spacing", "three", spacing="isotropic")
+        self.assert_refused("one of them", affine=AFFINE, spacing=(1, 1, 1))
+
+    def test_a_file_has_an_affine_of_its_own(self):
+        path = self.nifti()
+        for labels in (path, nibabel.load(path)):
+            self.assert_refused("labels", "affine", labels=labels, affine=AFFINE)
+            self.assert_refused("labels", "spacing", labels=labels, spacing=(1, 1, 1))
+
+    def test_files_that_are_none_or_faulty(self):
+        self.assert_refused("nowhere.nii", labels=self.folder / "nowhere.nii")
+        self.assert_refused("unknown image format", labels="image.png")
+        (self.folder / "short.nii").write_bytes(self.nifti().read_bytes()[:-10])
+        self.assert_refused("short.nii", labels=self.folder / "short.nii")
+        self.assert_refused("nobody.txt", names=self.folder / "nobody.txt")
+
+    def test_names_of_no_label(self):
+        self.assert_refused("labels: no label 'livr'", "did you mean 'liver'", names={3: "liver"},
+                            radius_of={"livr": 1})
+        self.assert_refused("names", '{1: "liver"}', names={"liver": 3})
+        self.assert_refused("names", names={3: 7})
+        self.assert_refused("names", names={-1: "liver"})
+        self.assert_refused("keep", "label 5", keep=[5])
+        self.assert_refused("keep", "label values", keep=2.5)
+        self.assert_refused("merge", merge=[3, 7])
+        self.assert_refused("label 3 is the background", keep=[3], background=3)
+
+    def test_options_out_of_range(self):
+        self.assert_refused("radius: '-1' is not a positive length in mm", radius=-1)
+        self.assert_refused("radius: 'nan'", radius=float("nan"))
+        self.assert_refused("radius", "number", radius=[1, 2])
+        self.assert_refused("radius_of", "length in mm", radius_of={3: "wide"})
+        self.assert_refused("radius_of", "dict", radius_of=2)
+        self.assert_refused("radius_of 7", "not a positive length", radius_of={7: 0})
+        self.assert_refused("target_elements", "radius", radius=1, target_elements=1000)
+        self.assert_refused("target_tolerance", "target_elements", target_tolerance=3)
+        self.assert_refused("target_elements: '2.5' is not an integer", target_elements=2.5)
+        self.assert_refused("algorithm", "podm-home", algorithm="fast")
+        self.assert_refused("space", "voxel", space="MNI")
+        self.assert_refused("dihedral_bounds", "pair", optimize=True, dihedral_bounds=8)
+        self.assert_refused("dihedral_bounds", "optimize", dihedral_bounds=(8, 165))
+        self.assert_refused("delta", "longer than the image", delta=1e4)
+        self.assert_refused("1000 workers", "oversubscribe", threads=1000)
+        self.assert_refused("max_memory_gib", radius=1e-3)
+
+    def test_a_keyword_that_is_none(self):
+        with self.assertRaises(TypeError):
+            podm.mesh(balls(), raduis=3)
+
+    def test_a_mesh_is_written_whole_or_not_at_all(self):
+        mesh = podm.mesh(balls())
+        for path, *words in (("mesh.obj", "mesh.obj"), ("nowhere/mesh.vtu", "nowhere/mesh.vtu")):
+            with self.assertRaises(podm.Error) as refusal:
+                mesh.save(self.folder / path)
+            self.assertIn(*words, str(refusal.exception))
+        with self.assertRaises(podm.Error):
+            mesh.save_surfaces(self.folder / "surface.vtu")
+        self.assertEqual(list(self.folder.iterdir()), [])
+
+
+if __name__ == "__main__":
+    unittest.main()

@@ -1,0 +1,182 @@
+"""The mesh in hand: arrays that are views, files, quality, proofs, and what other packages make of it."""
+
+import gc
+import json
+import unittest
+import warnings
+import weakref
+
+import numpy as np
+
+from balls import AFFINE, TestCase, balls, podm
+
+
+class ResultTest(TestCase):
+    @classmethod
+    def setUpClass(cls):
+        cls.mesh = podm.mesh(balls(), affine=AFFINE, radius=1.5, names={3: "liver"})
+
+    def test_arrays_have_the_shapes_and_types_that_are_told(self):
+        mesh = self.mesh
+        num_points, num_cells, num_facets = (mesh.record[key] for key in ("vertices", "cells", "boundary_facets"))
+        for array, shape, dtype in ((mesh.points, (num_points, 3), np.float64), (mesh.cells, (num_cells, 4), np.uint32),
+                                    (mesh.labels, (num_cells,), np.uint32), (mesh.facets, (num_facets, 3), np.uint32),
+                                    (mesh.facet_labels, (num_facets, 2), np.uint32)):
+            self.assertEqual((array.shape, array.dtype), (shape, dtype))
+        self.assertEqual(mesh.names, {3: "liver", 7: "label 7"})
+        self.assertEqual((mesh.space, mesh.background, mesh.is_complete, mesh.unmet), ("RAS", 0, True, []))
+        self.assert_valid(mesh)
+
+    def test_normals_of_facets_point_from_the_second_label_to_the_first(self):
+        mesh = self.mesh
+        center = {value: mesh.points[mesh.cells[mesh.labels == value]].mean(axis=(0, 1)) for value in (3, 7)}
+        for outside, value in ((0, 3), (0, 7), (3, 7)):
+            corners = mesh.points[mesh.facets[(mesh.facet_labels == (outside, value)).all(axis=1)]]
+            normals = np.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0])
+            outwards = ((corners.mean(axis=1) - center[value]) * normals).sum(axis=1)
+            self.assertGreater((outwards > 0).mean(), 0.95, (outside, value))
+
+    def test_views_share_memory_are_read_only_and_keep_it_alive(self):
+        mesh = podm.mesh(balls(), radius=1.5)
+        self.assertTrue(np.shares_memory(mesh.points, mesh.points))
+        self.assertTrue(np.shares_memory(mesh.cells, mesh.cells))
+        with self.assertRaises(ValueError):
+            mesh.points[0] = 0
+        points, expected = mesh.points, mesh.points.copy()
+        del mesh
+        gc.collect()
+        podm.mesh(balls(), radius=1)  # would take the memory
+        np.testing.assert_array_equal(points, expected)
+
+    def test_every_format_of_the_program_is_written(self):
+        for name in ("mesh.vtu", "mesh.mesh", "mesh.msh", "mesh.xdmf"):
+            self.mesh.save(self.folder / name)
+            self.assertGreater((self.folder / name).stat().st_size, 0)
+        self.mesh.save_surfaces(str(self.folder / "surface.stl"))
+        self.assertTrue((self.folder / "surface_3_liver.stl").exists())
+
+    def test_quality_has_the_extremes_of_the_record(self):
+        quality, extremes = self.mesh.quality(), self.mesh.record["quality"]
+        for name, extreme, key in (("radius_edge", max, "max_radius_edge"), ("circumradius", max, "max_radius_mm"),
+                                   ("min_dihedral_deg", min, "min_dihedral_deg"),
+                                   ("max_dihedral_deg", max, "max_dihedral_deg")):
+            self.assertEqual(quality[name].shape, (len(self.mesh.cells),))
+            self.assertAlmostEqual(extreme(quality[name]), extremes[key], places=9)
+        self.assertLess(quality["radius_edge"].max(), 1.93)
+        corners = self.mesh.points[self.mesh.cells]
+        np.testing.assert_allclose(quality["volume"], np.linalg.det(corners[:, 1:] - corners[:, :1]) / 6, rtol=1e-6)
+        for label in self.mesh.record["labels"]:
+            self.assertAlmostEqual(quality["volume"][self.mesh.labels == label["value"]].sum(), label["volume_mm3"], 6)
+
+    def test_the_verifier_proves_what_the_mesh_promises(self):
+        report = self.mesh.verify(fidelity=True)
+        self.assertTrue(report and report.holds, report.text)
+        self.assertEqual(set(report.verdicts), {"structure", "delaunay", "radius_edge", "boundary_angles", "size",
+                                                "conformity", "surface", "labels", "fidelity"})
+        self.assertIn("labels", str(report))
+        self.assertEqual(set(report.details["claims"]), set(report.verdicts))
+
+    def test_the_verifier_proves_meshes_of_files_phantoms_and_chosen_labels(self):
+        for labels, keywords in ((self.nifti(), {"keep": [3]}), (balls(), {"merge": {"both": [3, 7]}}),
+                                 ("phantom:spheres@24", {"radius_of": {1: 3}}),
+                                 (balls(), {"optimize": True, "radius": 1.5})):
+            mesh = podm.mesh(labels, **keywords)
+            self.assertTrue(mesh.verify(), mesh.verify().text)
+
+    def test_the_verifier_refutes_a_mesh_of_another_image(self):
+        path = self.nifti()
+        mesh = podm.mesh(path, radius=1.5)
+        self.nifti(np.roll(balls(), 2, axis=1))
+        report = mesh.verify()
+        self.assertFalse(report)
+        self.assertEqual(report.verdicts["labels"], "fail")
+        self.assertEqual(report.verdicts["delaunay"], "pass")
+
+    def test_the_record_is_the_programs(self):
+        path = self.nifti()
+        expected = self.record_of_program(path, "--radius", 1.5)
+        record = podm.mesh(path, radius=1.5).record
+        self.assertEqual(record.keys(), expected.keys())
+        for key in ("algorithm", "input", "options", "used", "cells", "labels", "facet_pairs", "quality", "guarantees",
+                    "mesh_sha256", "stop_reason"):
+            self.assertEqual(record[key], expected[key], key)
+        self.assertEqual(json.loads(json.dumps(record)), record)
+
+    def test_a_limit_ends_a_run_early_with_a_valid_mesh(self):
+        with warnings.catch_warnings(record=True) as told:
+            warnings.simplefilter("always")
+            mesh = podm.mesh("phantom:spheres@64", radius=0.5, max_elements=5000)
+        self.assertFalse(mesh.is_complete)
+        self.assertEqual(mesh.stop_reason, "element limit")
+        self.assertIn("ended early: element limit", repr(mesh))
+        self.assertIn("element limit", " ".join(mesh.unmet))
+        self.assertTrue(any("element limit" in str(warning.message) and warning.filename == __file__
+                            for warning in told))
+        self.assert_valid(mesh)
+
+    def test_text_tells_the_essentials(self):
+        mesh = self.mesh
+        self.assertIn(f"{len(mesh.cells)} cells", repr(mesh))
+        self.assertIn("liver", repr(mesh))
+        self.assertIn("guarantees all met", str(mesh))
+
+    def test_other_frames_are_other_coordinates(self):
+        by_space = {space: podm.mesh(balls(), affine=AFFINE, space=space).points for space in ("RAS", "LPS", "voxel")}
+        ras = np.unique(by_space["RAS"].round(6) + 0.0, axis=0)
+        lps = np.unique((by_space["LPS"] * (-1, -1, 1)).round(6) + 0.0, axis=0)
+        voxel = np.unique((by_space["voxel"] @ AFFINE[:3, :3].T + AFFINE[:3, 3]).round(6) + 0.0, axis=0)
+        np.testing.assert_allclose(lps, ras)
+        np.testing.assert_allclose(np.sort(voxel, axis=0), np.sort(ras, axis=0), atol=1e-5)
+
+
+class OtherPackagesTest(TestCase):
+    @classmethod
+    def setUpClass(cls):
+        cls.mesh = podm.mesh(balls(), affine=AFFINE, radius=1.5)
+
+    def test_vtk_looks_at_the_memory_of_the_mesh(self):
+        import vtk
+        from vtk.util.numpy_support import vtk_to_numpy
+        grid = self.mesh.to_vtk()
+        for array, own in ((grid.GetPoints().GetData(), self.mesh.points),
+                           (grid.GetCellData().GetScalars(), self.mesh.labels)):
+            self.assertTrue(np.shares_memory(vtk_to_numpy(array), own))
+        self.assertEqual(grid.GetCellData().GetScalars().GetName(), "label")
+        sizes = vtk.vtkCellSizeFilter()
+        sizes.SetInputData(grid)
+        sizes.Update()
+        volumes = vtk_to_numpy(sizes.GetOutput().GetCellData().GetArray("Volume"))
+        np.testing.assert_allclose(volumes, self.mesh.quality()["volume"], rtol=1e-6)
+
+    def test_vtk_keeps_the_memory_alive(self):
+        from vtk.util.numpy_support import vtk_to_numpy
+        mesh = podm.mesh(balls(), radius=1.5)
+        expected = mesh.points.copy(), mesh.cells.ravel().copy(), mesh.labels.copy()
+        grid = mesh.to_vtk()
+        memory = weakref.ref(mesh._made)
+        del mesh
+        gc.collect()
+        podm.mesh(balls(), radius=1)
+        data = grid.GetPoints().GetData(), grid.GetCells().GetConnectivityArray(), grid.GetCellData().GetScalars()
+        for array, values in zip(data, expected):
+            np.testing.assert_array_equal(vtk_to_numpy(array), values)
+        del grid, data, array
+        self.mesh.to_vtk()  # then VTK forgets what it no longer needs
+        gc.collect()
+        self.assertIsNone(memory())
+
+    def test_meshio_writes_and_reads_it(self):
+        import meshio
+        path = self.folder / "by_meshio.vtu"
+        self.mesh.to_meshio().write(path)
+        read = meshio.read(path)
+        np.testing.assert_array_equal(read.points, self.mesh.points)
+        np.testing.assert_array_equal(read.cells_dict["tetra"], self.mesh.cells)
+        np.testing.assert_array_equal(read.cells_dict["triangle"], self.mesh.facets)
+        np.testing.assert_array_equal(read.cell_data_dict["label"]["tetra"], self.mesh.labels)
+        pairs = [read.cell_data_dict[name]["triangle"] for name in ("label_a", "label_b")]
+        np.testing.assert_array_equal(np.column_stack(pairs), self.mesh.facet_labels)
+
+
+if __name__ == "__main__":
+    unittest.main()
