@@ -10,6 +10,7 @@
 
 #include "podm/image_io.h"
 #include "podm/mesh_image.h"
+#include "podm/mesh_io.h"
 
 namespace podm::cli {
 
@@ -32,6 +33,7 @@ struct NetworkArguments {
 struct MeshCommand {
   ImageArguments image;
   std::string mesh_path;
+  MeshFileOptions mesh_file;
   std::string surface_path;   ///< empty: no surfaces
   std::string record_path;    ///< empty: no record
   std::string log_path;       ///< empty: no linearization log
@@ -54,6 +56,12 @@ struct ReplayCommand {
   std::vector<std::string> log_paths;  ///< at least one
 };
 
+/// podm convert
+struct ConvertCommand {
+  std::string input_path, output_path;
+  MeshFileOptions mesh_file;
+};
+
 /// podm info
 struct InfoCommand {
   ImageArguments image;
@@ -72,7 +80,8 @@ struct ShowText {
   std::string text;
 };
 
-using Command = std::variant<MeshCommand, ReplayCommand, InfoCommand, PhantomCommand, ShowText>;
+using Command =
+    std::variant<MeshCommand, ReplayCommand, ConvertCommand, InfoCommand, PhantomCommand, ShowText>;
 
 /// podm-mpi has the command mesh alone.
 enum class Program { kPodm, kPodmMpi };
