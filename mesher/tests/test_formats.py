@@ -83,6 +83,32 @@ class FormatsTest(PodmTestCase):
         self.assert_refused(["convert", self.folder / "no.mesh", self.folder / "out.vtu", "--gmsh-version", "2.2"],
                             "out.vtu", "Gmsh")
 
+    def test_foreign_abaqus_input(self):
+        path = self.folder / "foreign.inp"
+        path.write_text("*Heading\n*Node\n" + "".join(f"{10 * i}, {p}\n" for i, p in enumerate(
+            ("0., 0., 0.", "+1., 0., 0.", "0., 1., 0.", "0., 0., 1."), start=1)) +
+            "*ELEMENT, type=C3D4, elset=Part-1\n1, 10, 20,\n30, 40\n*Step\n1, 2\n")
+        process = self.convert(path, "a.msh")
+        self.assertIn("1 cells of 1 labels, 4 vertices, 4 facets", process.stderr)
+        self.assertIn(b'"Part-1"', (self.folder / "a.msh").read_bytes())
+        sound = path.read_text()
+        for old, new, fault in (("20,\n30, 40", "20,\n*Step", "ends after 2"), ("C3D4", "C3D99", "C3D99"),
+                                ("+1.", "one", "line 4"), ("20, +", "10, +", "10 is given twice"),
+                                ("*Step", "*INCLUDE, INPUT=a", "line 10"), ("type=C3D4, ", "", "TYPE=")):
+            with self.subTest(fault=fault):
+                path.write_text(sound.replace(old, new, 1))
+                self.assert_refused(["convert", path, self.folder / "out.vtu"], "foreign.inp", fault)
+
+    def test_an_exodus_file_that_is_cut_off_is_refused_and_a_damaged_one_never_ends_the_program(self):
+        whole = self.mesh("a.e").read_bytes()
+        path = self.folder / "b.e"
+        for size in (*range(1, 2000, 97), *range(2000, len(whole) - 4, len(whole) // 20)):
+            path.write_bytes(whole[:size])
+            self.assert_refused(["convert", path, self.folder / "out.vtu"], "b.e")
+        for place in range(4, 2000, 61):
+            path.write_bytes(whole[:place] + b"\xff" + whole[place + 1:])
+            self.assertIn(run_podm("convert", path, self.folder / "out.vtu").returncode, (0, 2), place)
+
 
 if __name__ == "__main__":
     unittest.main()
