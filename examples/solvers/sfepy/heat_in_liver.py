@@ -64,7 +64,7 @@ def main():
     problem = Problem("heat", equations=Equations([heat]))
     problem.set_bcs(ebcs=Conditions([skin]))
     problem.set_solver(Newton({}, lin_solver=ScipyDirect({})))
-    problem.solve()
+    problem.solve(save_results=False)
     rise = u()
     assert 0 < rise.max() < SOURCE / PERFUSION, "no point is hotter than without conduction"
     from_image.draw_cut(mesh.coors, mesh.get_conn("3_4"), rise, "K above blood", parsed.folder / "heat_in_liver.png")
