@@ -25,6 +25,7 @@ may_include() {
     examples/*) echo mesher/include podm ;;
     mesher) echo mesher/optimize mesher/algorithms mesher/workers mesher/refine mesher/delaunay mesher/octree \
       mesher/image mesher/io mesher/files mesher/geometry mesher/runtime mesher/include podm ;;  # the phases of a run
+    mesher/cli/foreign_mesh) echo mesher/cli mesher/io mesher/geometry mesher/include verifiers ;;  # podm convert
     mesher/*) echo "mesher mesher/* podm" ;;  # the command line, whole-mesher tests
     harness) echo mesher/runtime ;;  # asks the system as the mesher does, whom it knows as a program and by its files
     verifiers) ;;                    # they know it by its files alone
@@ -37,6 +38,7 @@ part_of() {
     mesher/include/podm/mesh_image.h | mesher/include/podm/meshing_*.h) echo podm ;;
     mesher/*/tests/*) echo mesher/tests ;;
     mesher/main*.cpp) echo mesher/cli ;;
+    mesher/cli/foreign_mesh.cpp) echo mesher/cli/foreign_mesh ;;  # alone reads with the verifier's readers
     mesher/*/*) echo "$1" | cut -d/ -f1-2 ;;
     examples/*) echo "$1" | cut -d/ -f1-2 ;;
     *) echo "${1%%/*}" ;;
@@ -45,7 +47,7 @@ part_of() {
 
 # The file of ours that `#include "$2"` or <$2> in file $1 means; nothing when it is not ours.
 resolve() {
-  for folder in "$(dirname "$1")" "${1%%/*}" mesher mesher/include harness verifiers; do  # its own part's first
+  for folder in "$(dirname "$1")" "${1%%/*}" mesher mesher/include verifiers harness; do  # its own part's first
     [ ! -f "$folder/$2" ] || { realpath --relative-to=. "$folder/$2"; return; }
   done
 }

@@ -1,4 +1,4 @@
-// The options of podm mesh.
+// The options of podm mesh, and those that podm convert has of them.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -181,8 +181,11 @@ void add_space_option(CLI::App& app, MeshingOptions& meshing) {
 void add_output_options(CLI::App& app, MeshCommand& command, bool is_on_ranks) {
   require(add_one(app, "-o,--output", "MESH",
                   is_on_ranks ? "mesh: .pvtu, with a .vtu a rank, or .xdmf [required]"
-                              : "mesh file: .vtu, .mesh (medit), .msh (Gmsh 4.1) or .xdmf [required]",
+                              : "mesh file: .vtu or .vtk (VTK), .msh (Gmsh), .xdmf (DOLFINx), .inp (Abaqus,\n"
+                                "CalculiX), .e or .exo (Exodus II), .mesh (Medit), .node or .ele (TetGen)\n"
+                                "[required]",
                   into(command.mesh_path)));
+  if (!is_on_ranks) add_mesh_file_options(app, command.mesh_file);
   add_one(app, "--surface", "FILE", "also the closed surface of each label: .stl or .ply [default: none]",
           into(command.surface_path));
   add_space_option(app, command.meshing);
@@ -209,6 +212,15 @@ void add_telling_options(CLI::App& app, MeshCommand& command) {
 
 }  // namespace
 
+void add_mesh_file_options(CLI::App& app, MeshFileOptions& options) {
+  add_one(app, "--gmsh-version", "VERSION",
+          "of a .msh file: " + names_of_choices<GmshVersion>() +
+              ", which FreeFem++ and SfePy read [default: 4.1]",
+          {[&options](const std::string& text, const std::string& name) {
+            options.gmsh_version = parse_choice<GmshVersion>(text, name);
+          }});
+}
+
 void add_mesh_command(CLI::App& program, MeshCommand& command, Program which) {
   const bool is_on_ranks = which == Program::kPodmMpi;
   CLI::App& app = add_command(program, "mesh",
@@ -229,6 +241,18 @@ void add_mesh_command(CLI::App& program, MeshCommand& command, Program which) {
     end_help(app,
              "Not on ranks yet, and refused: --target-elements, --min-dihedral, --surface, --optimize,\n"
              "--algorithm podm-home, --schedule, --executor virtual.");
+}
+
+void add_convert_command(CLI::App& program, ConvertCommand& command) {
+  CLI::App& app = add_command(program, "convert", "write a mesh file of any maker in another format");
+  require(add_one(app, "IN", "", "mesh file that podm-verify reads", into(command.input_path)));
+  require(add_one(app, "OUT", "", "mesh file, with an extension that podm mesh -o takes",
+                  into(command.output_path)));
+  add_mesh_file_options(app, command.mesh_file);
+  end_help(
+      app,
+      "Labels and their names stay; facets are those between labels; vertices, cells and facets come in\n"
+      "the order in which podm mesh writes them.");
 }
 
 }  // namespace podm::cli

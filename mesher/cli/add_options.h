@@ -34,8 +34,11 @@ void need(CLI::Option* option, CLI::Option* other);
 /// IMAGE and what is kept of its labels.
 void add_image_options(CLI::App& app, ImageArguments& image);
 void add_label_options(CLI::App& app, ImageArguments& image);
+/// How a mesh file is written, beside what its extension says.
+void add_mesh_file_options(CLI::App& app, MeshFileOptions& options);
 void add_mesh_command(CLI::App& program, MeshCommand& command, Program which);
 void add_replay_command(CLI::App& program, ReplayCommand& command);
+void add_convert_command(CLI::App& program, ConvertCommand& command);
 void add_info_command(CLI::App& program, InfoCommand& command);
 void add_phantom_command(CLI::App& program, PhantomCommand& command);
 

@@ -8,6 +8,7 @@ namespace podm::cli {
 
 int run(const MeshCommand& command);
 int run(const ReplayCommand& command);
+int run(const ConvertCommand& command);
 int run(const InfoCommand& command);
 int run(const PhantomCommand& command);
 int run(const ShowText& show);

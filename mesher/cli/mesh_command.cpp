@@ -34,7 +34,7 @@ double timed(const Action& action) {
 
 // Hours of meshing must not end at a misspelt folder.
 void check_outputs(const MeshCommand& command) {
-  check_mesh_path(command.mesh_path);
+  check_mesh_path(command.mesh_path, command.mesh_file);
   if (!command.surface_path.empty()) check_surface_path(command.surface_path);
   const Algorithm algorithm = command.meshing.algorithm;
   if (!command.schedule_path.empty()) {
@@ -67,9 +67,10 @@ void finish_log(OperationLogWriter& log, const MeshRun& run) {
   log.publish();
 }
 
-void write_outputs(const MeshCommand& command, const TetMesh& mesh) {
+void write_outputs(const MeshCommand& command, const TetMesh& mesh, std::vector<std::string>& warnings) {
   if (mesh.cells.empty()) return;  // MeshRun::unmet() tells
-  write_mesh(mesh, command.mesh_path);
+  for (const std::string& loss : write_mesh(mesh, command.mesh_path, command.mesh_file))
+    warnings.push_back(command.mesh_path + ": " + loss);
   if (!command.surface_path.empty()) write_surfaces(mesh, command.surface_path);
 }
 
@@ -108,7 +109,7 @@ int run(const MeshCommand& command) {
     // Beside the writing where there are threads for both.
     std::future<std::string> hash = std::async(threads == 1 ? std::launch::deferred : std::launch::async,
                                                [&] { return mesh_sha256(result.mesh); });
-    write_outputs(command, result.mesh);
+    write_outputs(command, result.mesh, warnings);
     run.mesh_sha256 = hash.get();
     if (log) finish_log(*log, run);
     if (!command.schedule_path.empty()) write_schedule(run, command.schedule_path);

@@ -110,6 +110,7 @@ void refuse_unknown(CLI::App& program) {
 Command parse_command_line(std::vector<std::string> arguments, Program which) {
   MeshCommand mesh;
   ReplayCommand replay;
+  ConvertCommand convert;
   InfoCommand info;
   PhantomCommand phantom;
   const std::string name = which == Program::kPodmMpi ? "podm-mpi" : "podm";
@@ -126,6 +127,7 @@ Command parse_command_line(std::vector<std::string> arguments, Program which) {
   add_mesh_command(program, mesh, which);
   if (which == Program::kPodm) {
     add_replay_command(program, replay);
+    add_convert_command(program, convert);
     add_info_command(program, info);
     add_phantom_command(program, phantom);
   }
@@ -145,6 +147,7 @@ Command parse_command_line(std::vector<std::string> arguments, Program which) {
   mesh.verify = mesh.verify || mesh.verify_fidelity;
   if (chosen == "mesh") return mesh;
   if (chosen == "replay") return replay;
+  if (chosen == "convert") return convert;
   if (chosen == "info") return info;
   return phantom;
 }

@@ -10,6 +10,7 @@
 
 #include "podm/image_io.h"
 #include "podm/mesh_image.h"
+#include "podm/mesh_io.h"
 
 namespace podm::cli {
 
@@ -35,6 +36,7 @@ struct NetworkArguments {
 struct MeshCommand {
   ImageArguments image;
   std::string mesh_path;      ///< empty: the mesh stays in memory
+  MeshFileOptions mesh_file;
   std::string surface_path;   ///< empty: no surfaces
   std::string record_path;    ///< empty: no record
   std::string log_path;       ///< empty: no linearization log
@@ -57,6 +59,12 @@ struct ReplayCommand {
   std::vector<std::string> log_paths;  ///< at least one
 };
 
+/// podm convert
+struct ConvertCommand {
+  std::string input_path, output_path;
+  MeshFileOptions mesh_file;
+};
+
 /// podm info
 struct InfoCommand {
   ImageArguments image;
@@ -75,7 +83,8 @@ struct ShowText {
   std::string text;
 };
 
-using Command = std::variant<MeshCommand, ReplayCommand, InfoCommand, PhantomCommand, ShowText>;
+using Command =
+    std::variant<MeshCommand, ReplayCommand, ConvertCommand, InfoCommand, PhantomCommand, ShowText>;
 
 /// podm-mpi has the command mesh alone. So has the Python package, without what is about files or a terminal:
 /// the image is no argument there.

@@ -169,7 +169,7 @@ class Child {
 void check_verifier(const std::string& mesh_path) {
   if (mesh_path.ends_with(".xdmf"))
     throw InputError(fmt::format(
-        "--verify: podm-verify does not read {}; it reads .vtu, .pvtu, .mesh and .msh", mesh_path));
+        "--verify: podm-verify does not read {}; it reads all other formats that are written", mesh_path));
   if (::access(verifier_path().c_str(), X_OK) != 0) fail_to_run(verifier_path());
 }
 

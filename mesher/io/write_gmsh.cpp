@@ -13,8 +13,8 @@
 
 #include "files/atomic_file.h"
 #include "io/grouping.h"
-#include "io/label_table.h"
 #include "io/mesh_formats.h"
+#include "io/mesh_sets.h"
 #include "io/promises.h"
 
 namespace podm {
@@ -42,22 +42,7 @@ struct Box {
 
 class GmshWriter {
  public:
-  GmshWriter(const TetMesh& mesh, AtomicFile& file)
-      : mesh_(mesh),
-        file_(file),
-        names_(mesh.labels),
-        pairs_(mesh.facet_labels),
-        cells_of_label_(mesh.cells.size(), mesh.labels.size(),
-                        [&](std::size_t i) { return mesh.cell_labels[i]; }),
-        facets_of_pair_(mesh.facets.size(), pairs_.size(),
-                        [&](std::size_t i) { return pairs_.number_of(mesh.facet_labels[i]); }) {
-    for (std::size_t i = 0; i < mesh.labels.size(); ++i)
-      if (!cells_of_label_[i].empty()) volumes_.push_back(static_cast<LabelIndex>(i));
-    values_are_tags_ = std::all_of(volumes_.begin(), volumes_.end(), [&](LabelIndex label) {
-      const std::uint32_t value = mesh.labels[label].value;
-      return value > 0 && value <= std::uint32_t{std::numeric_limits<std::int32_t>::max()};
-    });
-  }
+  GmshWriter(const TetMesh& mesh, AtomicFile& file) : mesh_(mesh), file_(file), sets_(mesh) {}
 
   void write() {
     write_format();
@@ -69,10 +54,8 @@ class GmshWriter {
   }
 
  private:
-  static std::int32_t surface_tag(std::size_t pair) { return static_cast<std::int32_t>(pair) + 1; }
-  std::int32_t physical_tag(LabelIndex label) const {
-    return values_are_tags_ ? static_cast<std::int32_t>(mesh_.labels[label].value) : label;
-  }
+  static std::int32_t surface_tag(std::size_t pair) { return MeshSets::surface_tag(pair); }
+  std::int32_t physical_tag(LabelIndex label) const { return sets_.volume_tags[label]; }
 
   void write_format() {
     file_.write("$MeshFormat\n4.1 1 8\n");  // version, binary, bytes of a size
@@ -83,21 +66,21 @@ class GmshWriter {
   void write_comments() {
     file_.write(fmt::format("$Comments\nspace {}\n", to_string(mesh_.space)));
     for (const std::string& promise : promises_of(mesh_)) file_.write(fmt::format("promise {}\n", promise));
-    for (const LabelIndex label : volumes_) {
+    for (const LabelIndex label : sets_.volumes) {
       file_.write(fmt::format("label {} physical volume {} {}\n", mesh_.labels[label].value,
-                              physical_tag(label), names_[label]));
+                              physical_tag(label), sets_.names[label]));
     }
     file_.write("$EndComments\n");
   }
 
   void write_physical_names() {
-    file_.write(fmt::format("$PhysicalNames\n{}\n", pairs_.size() + volumes_.size()));
-    for (std::size_t i = 0; i < pairs_.size(); ++i) {
-      file_.write(
-          fmt::format("{} {} \"{}\"\n", kSurfaceDimension, surface_tag(i), names_.of_pair(pairs_[i])));
+    file_.write(fmt::format("$PhysicalNames\n{}\n", sets_.pairs.size() + sets_.volumes.size()));
+    for (std::size_t i = 0; i < sets_.pairs.size(); ++i) {
+      file_.write(fmt::format("{} {} \"{}\"\n", kSurfaceDimension, surface_tag(i),
+                              sets_.names.of_pair(sets_.pairs[i])));
     }
-    for (const LabelIndex label : volumes_) {
-      file_.write(fmt::format("{} {} \"{}\"\n", kVolumeDimension, physical_tag(label), names_[label]));
+    for (const LabelIndex label : sets_.volumes) {
+      file_.write(fmt::format("{} {} \"{}\"\n", kVolumeDimension, physical_tag(label), sets_.names[label]));
     }
     file_.write("$EndPhysicalNames\n");
   }
@@ -106,24 +89,24 @@ class GmshWriter {
 
   void write_entities() {
     file_.write("$Entities\n");
-    for (const std::size_t count : {std::size_t{0}, std::size_t{0}, pairs_.size(), volumes_.size()})
+    for (const std::size_t count : {std::size_t{0}, std::size_t{0}, sets_.pairs.size(), sets_.volumes.size()})
       put_size(count);
     std::vector<Box> volume_boxes(mesh_.labels.size());  // of its surfaces: they close the volume
-    for (std::size_t i = 0; i < pairs_.size(); ++i) {
+    for (std::size_t i = 0; i < sets_.pairs.size(); ++i) {
       Box box;
-      for (const std::uint32_t facet : facets_of_pair_[i])
+      for (const std::uint32_t facet : sets_.facets_of_pair[i])
         for (const std::uint32_t vertex : mesh_.facets[facet]) box.include(mesh_.vertices[vertex]);
-      for (const LabelIndex label : pairs_[i]) {
+      for (const LabelIndex label : sets_.pairs[i]) {
         volume_boxes[label].include(box.low);
         volume_boxes[label].include(box.high);
       }
       put_entity(surface_tag(i), box, surface_tag(i), {});
     }
-    for (const LabelIndex label : volumes_) {
+    for (const LabelIndex label : sets_.volumes) {
       std::vector<std::int32_t> signed_surfaces;  // positive where the normal points out of the volume
-      for (std::size_t i = 0; i < pairs_.size(); ++i) {
-        if (pairs_[i][1] == label) signed_surfaces.push_back(surface_tag(i));
-        if (pairs_[i][0] == label) signed_surfaces.push_back(-surface_tag(i));
+      for (std::size_t i = 0; i < sets_.pairs.size(); ++i) {
+        if (sets_.pairs[i][1] == label) signed_surfaces.push_back(surface_tag(i));
+        if (sets_.pairs[i][0] == label) signed_surfaces.push_back(-surface_tag(i));
       }
       put_entity(label, volume_boxes[label], physical_tag(label), signed_surfaces);
     }
@@ -143,12 +126,13 @@ class GmshWriter {
 
   // A vertex belongs to the first surface through it, or else to the volume around it.
   Grouping group_vertices() const {
-    const auto first_volume = static_cast<std::uint32_t>(pairs_.size());  // groups: surfaces, then labels
+    const auto first_volume =
+        static_cast<std::uint32_t>(sets_.pairs.size());  // groups: surfaces, then labels
     std::vector<std::uint32_t> group(mesh_.vertices.size(), first_volume);
     for (std::size_t i = 0; i < mesh_.cells.size(); ++i)
       for (const std::uint32_t vertex : mesh_.cells[i]) group[vertex] = first_volume + mesh_.cell_labels[i];
     for (std::uint32_t pair = 0; pair < first_volume; ++pair)
-      for (const std::uint32_t facet : facets_of_pair_[pair])
+      for (const std::uint32_t facet : sets_.facets_of_pair[pair])
         for (const std::uint32_t vertex : mesh_.facets[facet]) group[vertex] = std::min(group[vertex], pair);
     return Grouping(group.size(), first_volume + mesh_.labels.size(),
                     [&](std::size_t v) { return group[v]; });
@@ -162,9 +146,9 @@ class GmshWriter {
     put_section_head(num_blocks, mesh_.vertices.size());
     for (std::size_t g = 0; g < groups.num_groups(); ++g) {
       if (groups[g].empty()) continue;
-      const bool on_surface = g < pairs_.size();
+      const bool on_surface = g < sets_.pairs.size();
       file_.put(on_surface ? kSurfaceDimension : kVolumeDimension);
-      file_.put(on_surface ? surface_tag(g) : static_cast<std::int32_t>(g - pairs_.size()));
+      file_.put(on_surface ? surface_tag(g) : static_cast<std::int32_t>(g - sets_.pairs.size()));
       file_.put(std::int32_t{0});  // no parametric coordinates
       put_size(groups[g].size());
       for (const std::uint32_t vertex : groups[g]) put_size(std::size_t{vertex} + 1);
@@ -175,11 +159,12 @@ class GmshWriter {
 
   void write_elements() {
     file_.write("$Elements\n");
-    put_section_head(pairs_.size() + volumes_.size(), mesh_.facets.size() + mesh_.cells.size());
-    for (std::size_t i = 0; i < pairs_.size(); ++i)
-      put_elements(kSurfaceDimension, surface_tag(i), kGmshTriangle, facets_of_pair_[i], mesh_.facets, 1);
-    for (const LabelIndex label : volumes_) {
-      put_elements(kVolumeDimension, label, kGmshTetrahedron, cells_of_label_[label], mesh_.cells,
+    put_section_head(sets_.pairs.size() + sets_.volumes.size(), mesh_.facets.size() + mesh_.cells.size());
+    for (std::size_t i = 0; i < sets_.pairs.size(); ++i)
+      put_elements(kSurfaceDimension, surface_tag(i), kGmshTriangle, sets_.facets_of_pair[i], mesh_.facets,
+                   1);
+    for (const LabelIndex label : sets_.volumes) {
+      put_elements(kVolumeDimension, label, kGmshTetrahedron, sets_.cells_of_label[label], mesh_.cells,
                    mesh_.facets.size() + 1);
     }
     file_.write("\n$EndElements\n");
@@ -208,11 +193,7 @@ class GmshWriter {
 
   const TetMesh& mesh_;
   AtomicFile& file_;
-  LabelNames names_;
-  LabelPairs pairs_;
-  Grouping cells_of_label_, facets_of_pair_;
-  std::vector<LabelIndex> volumes_;  // the labels that have cells
-  bool values_are_tags_;
+  const MeshSets sets_;
 };
 
 }  // namespace

@@ -1,35 +1,12 @@
 // Medit (.mesh) ascii. References: a tetrahedron's is its label value, a triangle's numbers its label pair.
-#include <fmt/compile.h>
-#include <fmt/format.h>
-
 #include "files/atomic_file.h"
 #include "io/label_table.h"
 #include "io/mesh_formats.h"
 #include "io/promises.h"
+#include "io/text_file.h"
 
 namespace podm {
 namespace {
-
-// Formats lines straight into a block of memory and hands full blocks to the file.
-class TextFile {
- public:
-  explicit TextFile(AtomicFile& file) : file_(file) {}
-
-  template <class Format, class... Args>
-  void print(const Format& format, const Args&... args) {
-    fmt::format_to(std::back_inserter(block_), format, args...);
-    if (block_.size() >= kBlockBytes) flush();
-  }
-  void flush() {
-    file_.write(block_.data(), block_.size());
-    block_.clear();
-  }
-
- private:
-  static constexpr std::size_t kBlockBytes = 1 << 16;
-  AtomicFile& file_;
-  fmt::memory_buffer block_;
-};
 
 void print_comments(TextFile& text, const TetMesh& mesh, const LabelPairs& pairs) {
   const LabelNames names(mesh.labels);

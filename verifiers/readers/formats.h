@@ -13,10 +13,14 @@ void read_vtu_facets(const MeshFile& file, Mesh& mesh);
 /// A mesh in pieces; both read the VTU files that the index names.
 Mesh read_pvtu(const MeshFile& index);
 void read_pvtu_facets(const MeshFile& index, Mesh& mesh);
+/// The second adds the facets of the file beside the one of the cells, as read_vtu_facets() does.
 Mesh read_legacy_vtk(const MeshFile& file);
+void read_legacy_vtk_facets(const MeshFile& file, Mesh& mesh);
 Mesh read_medit(const MeshFile& file);
 Mesh read_medit_binary(const MeshFile& file);
 Mesh read_gmsh(const MeshFile& file);
+Mesh read_abaqus(const MeshFile& file);
+Mesh read_exodus(const MeshFile& file);
 /// `faces` may be null: facets are then not known.
 Mesh read_tetgen(const MeshFile& nodes, const MeshFile& elements, const MeshFile* faces);
 

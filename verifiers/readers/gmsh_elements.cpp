@@ -43,28 +43,6 @@ std::size_t gmsh_nodes_of(std::int64_t type) {
   return type < 0 || type >= static_cast<std::int64_t>(kNodes.size()) ? 0 : kNodes[type];
 }
 
-void GmshNodeTags::finish(const MeshFile& file) {
-  if (tags_.empty()) return;
-  if (!std::is_sorted(tags_.begin(), tags_.end())) std::sort(tags_.begin(), tags_.end());
-  const auto twice = std::adjacent_find(tags_.begin(), tags_.end(),
-                                        [](const auto& a, const auto& b) { return a.first == b.first; });
-  if (twice != tags_.end()) file.refuse("$Nodes", fmt::format("node tag {} is given twice", twice->first));
-  const std::uint64_t first = tags_.front().first, span = tags_.back().first - first;
-  if (span / 4 > tags_.size()) return;
-  table_.assign(span + 1, kNone);
-  for (const auto& [tag, vertex] : tags_) table_[tag - first] = vertex;
-}
-
-VertexId GmshNodeTags::find(std::uint64_t tag) const {
-  if (tags_.empty()) return kNone;
-  if (!table_.empty()) {
-    const std::uint64_t place = tag - tags_.front().first;  // wraps round for smaller tags
-    return place < table_.size() ? table_[place] : kNone;
-  }
-  const auto found = std::lower_bound(tags_.begin(), tags_.end(), std::pair{tag, VertexId{0}});
-  return found != tags_.end() && found->first == tag ? found->second : kNone;
-}
-
 void GmshElements::make_room(std::int64_t type, std::size_t count) {
   if (type != kTetrahedron && type != kQuadraticTetrahedron) return;
   check_counts(file_, "$Elements", 0, mesh_.cells.size() + count);

@@ -1,8 +1,8 @@
 // Gmsh meshes (.msh) of the formats 2.x and 4.1, text and binary of either byte order.
 // Format: Gmsh reference manual, "MSH file format".
 //
-// Our mesher writes 4.1 with comments that tell the space and which label each physical group of volumes is;
-// the surfaces that bound a volume are signed, which tells the labels on the two sides of each facet.
+// Our mesher's comments tell the space and which label each physical group of volumes is. Which labels are on
+// the two sides of a facet comments tell in 2.2, and in 4.1 the signs of the surfaces that bound a volume.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -77,7 +77,7 @@ class GmshReader {
     } else if (name == "Nodes") {
       if (has_nodes_) cursor_.refuse("a second section $Nodes");
       is_v4_ ? read_nodes_v4() : read_nodes_v2();
-      tags_.finish(file_);
+      tags_.finish(file_, "$Nodes", "node tag");
       has_nodes_ = true;
     } else if (name == "Elements") {
       if (!has_nodes_) cursor_.refuse("$Elements before $Nodes");
@@ -103,7 +103,7 @@ class GmshReader {
       cursor_.refuse(fmt::format("${} is not closed here", name.substr(0, 40)));
   }
 
-  // "space RAS", "label 7 physical volume 7 liver"
+  // "space RAS", "label 7 physical volume 7 liver", "pair 0 7 physical surface 1"
   void read_comments() {
     cursor_.rest_of_line();
     while (true) {
@@ -119,6 +119,11 @@ class GmshReader {
         auto rest = value ? after_prefix(*label, "physical volume ") : std::nullopt;
         if (!rest) continue;
         if (const auto group = take_integer(*rest)) label_of_group_[*group] = *value;
+      } else if (auto pair = after_prefix(line, "pair ")) {
+        const auto a = take_integer(*pair), b = a ? take_integer(*pair) : std::nullopt;
+        auto rest = b ? after_prefix(*pair, "physical surface ") : std::nullopt;
+        const auto group = rest ? take_integer(*rest) : std::nullopt;
+        if (group) pair_of_surface_[*group] = {*a, *b};
       }
     }
   }
@@ -318,6 +323,7 @@ class GmshReader {
   // In our mesher's files the normal of a facet points from the second label to the first. What is outside of
   // all volumes has the background's label, 0, or one that no volume has.
   void label_facets() {
+    if (!pair_of_surface_.empty()) return label_facets_by_pairs();
     if (label_of_group_.empty()) return;
     LabelValue outside = 0;
     for (const auto& [group, label] : label_of_group_)
@@ -335,17 +341,27 @@ class GmshReader {
     }
   }
 
+  void label_facets_by_pairs() {
+    for (const std::int64_t surface : elements_.facet_entities()) {
+      const auto pair = pair_of_surface_.find(surface);
+      if (pair == pair_of_surface_.end())
+        file_.refuse("$Elements", fmt::format("no line 'pair' of $Comments tells of surface {}", surface));
+      mesh_.facet_labels.push_back(pair->second);
+    }
+  }
+
   const MeshFile& file_;
   Cursor cursor_;
   Mesh mesh_;
   bool is_v4_ = false, is_binary_ = false, is_swapped_ = false, has_nodes_ = false, has_elements_ = false;
   int size_bytes_ = 8;
-  GmshNodeTags tags_;
+  ItemNumbers tags_;
   GmshElements elements_;
-  std::array<std::uint64_t, kMostNodes> nodes_{};                // of the element at hand
-  std::map<std::int64_t, LabelValue> label_of_group_;            // of volumes, as our mesher's comments say
-  std::map<std::int64_t, std::string> group_names_;              // of volumes
-  std::map<std::pair<int, std::int64_t>, std::int64_t> groups_;  // by dimension and entity
+  std::array<std::uint64_t, kMostNodes> nodes_{};      // of the element at hand
+  std::map<std::int64_t, LabelValue> label_of_group_;  // of volumes, as our mesher's comments say
+  std::map<std::int64_t, std::array<LabelValue, 2>> pair_of_surface_;  // as they say, too
+  std::map<std::int64_t, std::string> group_names_;                    // of volumes
+  std::map<std::pair<int, std::int64_t>, std::int64_t> groups_;        // by dimension and entity
   std::vector<Side> sides_;
 };
 

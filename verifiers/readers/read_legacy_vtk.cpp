@@ -1,8 +1,11 @@
 // Legacy VTK files (.vtk) with an unstructured grid: ASCII and BINARY (big endian), cells as lists (versions
 // before 5) or as OFFSETS and CONNECTIVITY. Format: VTK file formats, "Simple legacy formats".
+//
+// Our mesher's files have field data of the whole set, as its VTU files do, with VTK's percent code in names.
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <charconv>
 #include <cstring>
 #include <optional>
 
@@ -10,6 +13,7 @@
 #include "readers/formats.h"
 #include "readers/mesh_parts.h"
 #include "readers/vtk_cells.h"
+#include "readers/vtu_grid.h"
 
 namespace podm::verify {
 namespace {
@@ -44,11 +48,27 @@ std::optional<NumberType> number_type(const std::string& upper_name) {
   return std::nullopt;
 }
 
+// VTK writes what may not be in the name of an array as '%' and two hexadecimal digits.
+std::string percent_decoded(const std::string& name) {
+  std::string text;
+  for (std::size_t i = 0; i < name.size(); ++i) {
+    unsigned char byte = 0;
+    const char* const digits = name.data() + i + 1;
+    const bool is_code = name[i] == '%' && i + 2 < name.size() &&
+                         std::from_chars(digits, digits + 2, byte, 16).ptr == digits + 2;
+    text += is_code ? static_cast<char>(byte) : name[i];
+    if (is_code) i += 2;
+  }
+  return text;
+}
+
 class LegacyVtkReader {
  public:
-  explicit LegacyVtkReader(const MeshFile& file) : file_(file), cursor_(file) {}
+  /// `id_array` as for read_vtu_grid().
+  LegacyVtkReader(const MeshFile& file, const char* id_array)
+      : file_(file), id_array_(id_array), cursor_(file) {}
 
-  Mesh read() {
+  VtuGrid read() {
     read_head();
     while (!cursor_.is_at_last_word()) {
       const std::string keyword = upper(cursor_.word("a keyword"));
@@ -86,6 +106,7 @@ class LegacyVtkReader {
     } else if (keyword == "CELL_DATA" || keyword == "POINT_DATA") {
       num_tuples_ = read_count("the number of tuples");
       is_cell_data_ = keyword == "CELL_DATA";
+      is_field_data_ = false;
       if (is_cell_data_ && num_tuples_ != num_cells_)
         cursor_.refuse(fmt::format("CELL_DATA of {} cells, the grid has {}", num_tuples_, num_cells_));
     } else if (keyword == "METADATA") {
@@ -174,8 +195,28 @@ class LegacyVtkReader {
   }
 
   void keep(const std::string& name, std::size_t num_components, NumberArray values) {
-    if (is_cell_data_ && label_array_rank(name))
-      piece_.cell_data.push_back({name, num_components, std::move(values)});
+    if (is_field_data_) return read_word(percent_decoded(name), values);
+    const bool is_label = label_array_rank(name) || name == "label_a" || name == "label_b";
+    if (is_cell_data_ && is_label) piece_.cell_data.push_back({name, num_components, std::move(values)});
+    if (!is_cell_data_ && id_array_ != nullptr && name == id_array_) keep_ids(values);
+  }
+
+  // As our mesher's VTU files have them.
+  void read_word(const std::string& name, const NumberArray& values) {
+    if (const auto word = after_prefix(name, "space:")) {
+      if (const auto space = space_of(*word)) grid_.mesh.space = *space;
+    } else if (const auto promise = after_prefix(name, "promise:")) {
+      read_promise(file_, "FIELD", *promise, grid_.mesh);
+    } else if (const auto label = after_prefix(name, "label:")) {
+      const auto value = values.size() == 1 ? values.integer(0) : std::nullopt;
+      if (!value) cursor_.refuse("not one integer, the value of the label");
+      grid_.mesh.label_names[*value] = *label;
+    }
+  }
+
+  void keep_ids(const NumberArray& ids) {
+    grid_.point_ids.clear();
+    for (std::size_t i = 0; i < ids.size(); ++i) grid_.point_ids.push_back(vertex_id(ids.integer(i)));
   }
 
   // The counts themselves may be anything: reading as many numbers checks them.
@@ -242,8 +283,8 @@ class LegacyVtkReader {
     return {};
   }
 
-  Mesh assemble() {
-    Mesh mesh;
+  VtuGrid assemble() {
+    Mesh& mesh = grid_.mesh;
     mesh.format = fmt::format("legacy VTK {}, {}", version_.substr(0, 8), is_binary_ ? "binary" : "ascii");
     piece_.place = "UNSTRUCTURED_GRID";
     if (!has_points_ || !has_cells_) file_.refuse(piece_.place, has_points_ ? "no CELLS" : "no POINTS");
@@ -252,13 +293,24 @@ class LegacyVtkReader {
                    fmt::format("CELL_TYPES names {} cells, CELLS {}", piece_.types.size(), num_cells_));
     }
     VtkAssembler(file_, mesh).append(piece_, true);
-    return mesh;
+    if (id_array_ != nullptr) check_ids();
+    return std::move(grid_);
+  }
+
+  void check_ids() {
+    grid_.ids_place = fmt::format("POINT_DATA '{}'", id_array_);
+    if (grid_.point_ids.size() != grid_.mesh.vertices.size())
+      file_.refuse(grid_.ids_place, fmt::format("{} values, {} are expected", grid_.point_ids.size(),
+                                                grid_.mesh.vertices.size()));
   }
 
   const MeshFile& file_;
+  const char* id_array_;
   Cursor cursor_;
+  VtuGrid grid_;
   std::string version_;
   bool is_binary_ = false, has_offsets_ = false;
+  bool is_field_data_ = true;  // of the whole set: before those of cells and points
   bool is_cell_data_ = false, has_points_ = false, has_cells_ = false;
   std::size_t num_cells_ = 0;
   std::size_t num_tuples_ = 0;  // of the CELL_DATA or POINT_DATA at hand
@@ -267,6 +319,12 @@ class LegacyVtkReader {
 
 }  // namespace
 
-Mesh read_legacy_vtk(const MeshFile& file) { return LegacyVtkReader(file).read(); }
+Mesh read_legacy_vtk(const MeshFile& file) { return LegacyVtkReader(file, nullptr).read().mesh; }
+
+void read_legacy_vtk_facets(const MeshFile& file, Mesh& mesh) {
+  const VtuGrid surface = LegacyVtkReader(file, "vertex").read();
+  check_points(file, surface, mesh);
+  append_facets(file, surface, surface.point_ids, mesh);
+}
 
 }  // namespace podm::verify

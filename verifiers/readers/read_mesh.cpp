@@ -47,19 +47,12 @@ struct MeshPath {
 };
 
 // The file beside it counts only for a mesh that lists no triangles itself.
-Mesh read_vtu_with_facets(const MeshPath& path, const MeshFile& file) {
-  Mesh mesh = read_vtu(file);
+Mesh read_with_facets(const MeshPath& path, const MeshFile& file, Mesh (*read)(const MeshFile&),
+                      void (*read_facets)(const MeshFile&, Mesh&)) {
+  Mesh mesh = read(file);
   mesh.path = file.path();
-  if (const auto facets = path.beside("_facets.vtu"); facets && mesh.facets.empty())
-    read_vtu_facets(MeshFile(*facets), mesh);
-  return mesh;
-}
-
-Mesh read_pvtu_with_facets(const MeshPath& path, const MeshFile& index) {
-  Mesh mesh = read_pvtu(index);
-  mesh.path = index.path();
-  if (const auto facets = path.beside("_facets.pvtu"); facets && mesh.facets.empty())
-    read_pvtu_facets(MeshFile(*facets), mesh);
+  if (const auto facets = path.beside("_facets" + path.extension); facets && mesh.facets.empty())
+    read_facets(MeshFile(*facets), mesh);
   return mesh;
 }
 
@@ -75,10 +68,16 @@ Mesh read_tetgen_files(const MeshPath& path, const MeshFile& file) {
   return read_tetgen(is_nodes ? file : other, is_nodes ? other : file, faces ? &*faces : nullptr);
 }
 
+bool is_exodus(const std::string& extension) {
+  return extension == ".e" || extension == ".exo" || extension == ".ex2" || extension == ".g";
+}
+
 Mesh read_format(const MeshPath& path, const MeshFile& file) {
-  if (path.extension == ".vtu") return read_vtu_with_facets(path, file);
-  if (path.extension == ".pvtu") return read_pvtu_with_facets(path, file);
-  if (path.extension == ".vtk") return read_legacy_vtk(file);
+  if (path.extension == ".vtu") return read_with_facets(path, file, read_vtu, read_vtu_facets);
+  if (path.extension == ".pvtu") return read_with_facets(path, file, read_pvtu, read_pvtu_facets);
+  if (path.extension == ".vtk") return read_with_facets(path, file, read_legacy_vtk, read_legacy_vtk_facets);
+  if (path.extension == ".inp") return read_abaqus(file);
+  if (is_exodus(path.extension)) return read_exodus(file);
   if (path.extension == ".mesh") return read_medit(file);
   if (path.extension == ".meshb") return read_medit_binary(file);
   if (path.extension == ".msh") return read_gmsh(file);
@@ -86,11 +85,12 @@ Mesh read_format(const MeshPath& path, const MeshFile& file) {
 }
 
 void check_extension(const std::string& path, const std::string& extension) {
-  for (const char* known : {".vtu", ".pvtu", ".vtk", ".mesh", ".meshb", ".msh", ".node", ".ele"})
+  for (const char* known : {".vtu", ".pvtu", ".vtk", ".mesh", ".meshb", ".msh", ".inp", ".node", ".ele"})
     if (extension == known) return;
+  if (is_exodus(extension)) return;
   throw InputError(
-      fmt::format("{}: no mesh format is called '{}'; known: .vtu, .pvtu, .vtk, .mesh, .meshb, .msh, "
-                  ".node, .ele, and each with .gz",
+      fmt::format("{}: no mesh format is called '{}'; known: .vtu, .pvtu, .vtk, .mesh, .meshb, .msh, .inp, "
+                  ".e, .exo, .ex2, .g, .node, .ele, and each with .gz",
                   path, extension));
 }
 

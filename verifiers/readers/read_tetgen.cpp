@@ -1,7 +1,9 @@
 // TetGen's .node, .ele and .face: a line of counts, then a line an item, ids from 0 or from 1 as in .node.
+// Our mesher's comments tell the space, the labels' names and which pair of labels a face's marker means.
 #include <fmt/format.h>
 
 #include <array>
+#include <map>
 
 #include "readers/cursor.h"
 #include "readers/formats.h"
@@ -21,10 +23,23 @@ class TetgenReader {
   }
 
  private:
-  static Cursor open(const MeshFile& file) {
+  Cursor open(const MeshFile& file) {
     Cursor cursor(file);
-    cursor.skip_comments(nullptr);
+    cursor.skip_comments([this, &file](std::string_view text) { read_comment(file, text); });
     return cursor;
+  }
+
+  void read_comment(const MeshFile& file, std::string_view text) {
+    if (const auto word = after_prefix(text, " space ")) {
+      if (const auto space = space_of(*word)) mesh_.space = *space;
+    } else if (const auto promise = after_prefix(text, " promise ")) {
+      read_promise(file, "a comment", *promise, mesh_);
+    } else if (auto label = after_prefix(text, " label ")) {
+      if (const auto value = take_integer(*label)) mesh_.label_names[*value] = *label;
+    } else if (auto pair = after_prefix(text, " pair ")) {
+      const auto number = take_integer(*pair), a = take_integer(*pair), b = take_integer(*pair);
+      if (number && a && b) pair_of_marker_[*number] = {*a, *b};
+    }
   }
 
   // A number of the head line that may be left out.
@@ -86,6 +101,7 @@ class TetgenReader {
       }
       cursor.rest_of_line();
     }
+    cursor.is_at_last_word();  // takes in the comments at the end
     if (!has_labels) mesh_.cell_labels.clear();
     if (has_labels && count > 0) mesh_.cell_label_array = "attribute of .ele";
     if (num_nodes == 10 && count > 0) mesh_.other_cells[kQuadraticTetrahedra] = count;
@@ -94,18 +110,33 @@ class TetgenReader {
   void read_faces(const MeshFile& file) {
     Cursor cursor = open(file);
     const std::size_t count = cursor.count("the number of faces", 8);
+    const bool has_markers = optional_count(cursor, "markers a face", 0) > 0;
     cursor.rest_of_line();
+    std::vector<std::int64_t> markers;
     make_room(mesh_.facets, count);
     for (std::size_t i = 0; i < count; ++i) {
       check_number(cursor, cursor.number<std::int64_t>("the number of a face"),
                    base_ + static_cast<std::int64_t>(i));
       mesh_.facets.push_back(read_ids<3>(cursor));
+      if (has_markers) markers.push_back(cursor.number<std::int64_t>("the marker of a face"));
       cursor.rest_of_line();
+    }
+    cursor.is_at_last_word();  // takes in the comments at the end
+    if (!pair_of_marker_.empty()) label_facets(file, markers);
+  }
+
+  void label_facets(const MeshFile& file, const std::vector<std::int64_t>& markers) {
+    for (const std::int64_t marker : markers) {
+      const auto pair = pair_of_marker_.find(marker);
+      if (pair == pair_of_marker_.end())
+        file.refuse("a face", fmt::format("marker {} has no line '# pair'", marker));
+      mesh_.facet_labels.push_back(pair->second);
     }
   }
 
   Mesh mesh_;
   std::int64_t base_ = 1;
+  std::map<std::int64_t, std::array<LabelValue, 2>> pair_of_marker_;
 };
 
 }  // namespace

@@ -84,6 +84,13 @@ struct Names<Space> {
                                    std::pair{Space::kVoxel, "voxel"}};
 };
 
+/// Of Gmsh's format: binary 4.1, or text 2.2, the newest that many solvers read.
+enum class GmshVersion { k4_1, k2_2 };
+template <>
+struct Names<GmshVersion> {
+  static constexpr std::array kAll{std::pair{GmshVersion::k4_1, "4.1"}, std::pair{GmshVersion::k2_2, "2.2"}};
+};
+
 /// By what optimisation makes cells better: replacing the cells around an edge or on both sides of facets,
 /// moving a vertex, any cells that fill a cavity, the same with a new vertex, and giving a flat cell on an
 /// interface to another label.

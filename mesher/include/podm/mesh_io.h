@@ -1,10 +1,13 @@
-// Mesh files: VTU, medit .mesh, Gmsh .msh 4.1, XDMF; surfaces as STL or PLY. Files appear whole or not at
-// all.
+// Mesh files: VTU, legacy VTK, XDMF, Medit, Gmsh, Abaqus, Exodus II, TetGen; surfaces as STL or PLY. Files
+// appear whole or not at all.
 #pragma once
 
 #include <cstdint>
+#include <optional>
 #include <string>
+#include <vector>
 
+#include "podm/choices.h"
 #include "podm/tet_mesh.h"
 
 namespace podm {
@@ -34,24 +37,38 @@ std::uint64_t mesh_hash(const TetMesh& mesh, int threads = 0);
 /// 16 hexadecimal digits.
 std::string mesh_hash_text(std::uint64_t hash);
 
-/// Throws InputError if `path` has no known mesh extension (.vtu .mesh .msh .xdmf) or cannot be written.
-void check_mesh_path(const std::string& path);
+struct MeshFileOptions {
+  std::optional<GmshVersion> gmsh_version = {};  ///< for .msh alone; none: 4.1
+};
+
+/// Throws InputError if `path` has no known mesh extension (those of write_mesh()), one that `options` are
+/// not for, or cannot be written.
+void check_mesh_path(const std::string& path, const MeshFileOptions& options = {});
 void check_surface_path(const std::string& path);  ///< .stl .ply
 
 /// Writes the mesh in the format of the extension, with promises_of() it in field data, comments or
-/// information. Throws InputError naming the file and the fault; then nothing has been written, and files
+/// information, where the space stands too. Returns a sentence for each thing that the file does not hold as
+/// the mesh has it. Throws InputError naming the file and the fault; then nothing has been written, and files
 /// that were there before are untouched.
 ///   .vtu   the cells, with the cell array `label` (label values), and in <stem>_facets.vtu beside it the
 ///          facets, with the cell arrays `label_a`, `label_b` (facet_labels as values, the background's for
 ///          outside; the normal points from b to a) and the point array `vertex` (position among all
-///          vertices). Field data of both: `space`, and the label table `label_value`, `label_name`.
+///          vertices). Field data of both: arrays "space:RAS" and "label:liver", which holds the value.
+///   .vtk   the same as two files of legacy VTK, names of arrays in VTK's percent code.
 ///   .mesh  a tetrahedron's reference is its label value; a triangle's numbers the unordered label pair.
-///          Comments give the space, the labels and the pairs. Coordinates read back to the same doubles.
+///          Comments give the labels and the pairs. Coordinates read back to the same doubles, as in all text
+///          but .inp.
 ///   .msh   physical volumes by label value, named "kidney" or "label 3"; physical surfaces by label
-///          pair, named "kidney|outside" or "liver|kidney"; the space in $Comments.
+///          pair, named "kidney|outside" or "liver|kidney".
 ///   .xdmf  two grids of arrays in <stem>.h5 beside it: "mesh", the cells with their label values, and
 ///          "facets", the facets with a tag a label pair, both named in the tables /labels and /pairs.
-void write_mesh(const TetMesh& mesh, const std::string& path);
+///   .inp   Abaqus: element sets named after labels, surfaces of elements after pairs, "liver-kidney", with
+///          '_' for what such names cannot hold; reals of at most 20 characters.
+///   .e .exo  Exodus II: element blocks by label value and side sets by pair, with the names that .msh has.
+///   .node .ele  TetGen: both and .face; the attribute of a tetrahedron is its label value, the marker of a
+///          face numbers the pair, and comments name them.
+std::vector<std::string> write_mesh(const TetMesh& mesh, const std::string& path,
+                                    const MeshFileOptions& options = {});
 
 /// Writes the closed, outward oriented surface of every label that has one: "s.stl" becomes
 /// s_<value>[_<name>].stl. STL holds single precision, PLY doubles. Throws as write_mesh does.

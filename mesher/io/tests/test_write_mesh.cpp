@@ -2,6 +2,10 @@
 // nothing.
 #include <gtest/gtest.h>
 
+#include <cctype>
+#include <cstdlib>
+#include <sstream>
+
 #include "io/tests/kuhn_mesh.h"
 #include "io/tests/mesh_readers.h"
 #include "podm/errors.h"
@@ -113,15 +117,15 @@ TEST(MeshFiles, TheSameMeshGivesTheSameBytes) {
   TetMesh mesh = make_test_mesh(), other = shuffled(mesh, 11);
   canonicalize(mesh);
   canonicalize(other);
-  for (const std::string extension : {".vtu", ".mesh", ".msh"}) {
-    write_mesh(mesh, folder / ("a" + extension));
-    write_mesh(other, folder / ("b" + extension));
-    EXPECT_EQ(read_bytes(folder / ("a" + extension)), read_bytes(folder / ("b" + extension)));
+  for (const char* extension : {".vtu", ".vtk", ".mesh", ".msh", ".xdmf", ".inp", ".e", ".ele"}) {
+    write_mesh(mesh, folder / (std::string("a") + extension));
+    write_mesh(other, folder / (std::string("b") + extension));
   }
-  EXPECT_EQ(read_bytes(folder / "a_facets.vtu"), read_bytes(folder / "b_facets.vtu"));
-  write_mesh(mesh, folder / "a.xdmf");
-  write_mesh(other, folder / "b.xdmf");
-  EXPECT_EQ(read_bytes(folder / "a.h5"), read_bytes(folder / "b.h5"));
+  for (const char* ending : {".vtu", "_facets.vtu", ".vtk", "_facets.vtk", ".mesh", ".msh", ".h5", ".inp",
+                             ".e", ".node", ".ele", ".face"})
+    EXPECT_EQ(read_bytes(folder / (std::string("a") + ending)),
+              read_bytes(folder / (std::string("b") + ending)))
+        << ending;
 }
 
 class NoSpace : public testing::TestWithParam<std::string> {};
@@ -131,7 +135,7 @@ TEST_P(NoSpace, KeepsTheOldFilesAndLeavesNoNewOnes) {
   const std::string path = folder / GetParam();
   const TetMesh mesh = make_test_mesh(8);
   const bool is_surface = path.ends_with(".stl") || path.ends_with(".ply");
-  const auto write = [&] { is_surface ? write_surfaces(mesh, path) : write_mesh(mesh, path); };
+  const auto write = [&] { is_surface ? write_surfaces(mesh, path) : void(write_mesh(mesh, path)); };
   write();
   const std::set<std::string> names = folder.files();
   for (const std::string& name : names) folder.write(name, "old " + name);
@@ -146,12 +150,14 @@ TEST_P(NoSpace, KeepsTheOldFilesAndLeavesNoNewOnes) {
 }
 
 INSTANTIATE_TEST_SUITE_P(Formats, NoSpace,
-                         testing::Values("m.vtu", "m.mesh", "m.msh", "m.xdmf", "m.stl", "m.ply"),
+                         testing::Values("m.vtu", "m.vtk", "m.mesh", "m.msh", "m.xdmf", "m.inp", "m.e",
+                                         "m.node", "m.stl", "m.ply"),
                          [](const auto& instance) { return instance.param.substr(2); });
 
 TEST(CheckPath, AcceptsWhatCanBeWrittenAndLeavesNoTrace) {
   const ScratchFolder folder;
-  for (const char* name : {"a.vtu", "a.mesh", "a.msh", "a.xdmf"})
+  for (const char* name :
+       {"a.vtu", "a.vtk", "a.mesh", "a.msh", "a.xdmf", "a.inp", "a.e", "a.exo", "a.node", "a.ele"})
     EXPECT_NO_THROW(check_mesh_path(folder / name));
   for (const char* name : {"a.stl", "a.ply"}) EXPECT_NO_THROW(check_surface_path(folder / name));
   EXPECT_EQ(folder.files(), std::set<std::string>{});
@@ -159,7 +165,7 @@ TEST(CheckPath, AcceptsWhatCanBeWrittenAndLeavesNoTrace) {
 
 TEST(CheckPath, RefusesUnknownExtensionsAndUnwritablePlaces) {
   const ScratchFolder folder;
-  for (const std::string name : {"a", "a.", "a.vtk", "a.stl", ".vtu", "none/a.vtu"}) {
+  for (const std::string name : {"a", "a.", "a.vtp", "a.stl", ".vtu", "none/a.vtu"}) {
     const std::string path = folder / name;
     EXPECT_NE(fault_of<InputError>([&] { check_mesh_path(path); }).find(path), std::string::npos) << name;
     EXPECT_THROW(write_mesh(make_test_mesh(2), path), InputError);
@@ -170,6 +176,63 @@ TEST(CheckPath, RefusesUnknownExtensionsAndUnwritablePlaces) {
     EXPECT_THROW(write_surfaces(make_test_mesh(2), path), InputError);
   }
   EXPECT_EQ(folder.files(), std::set<std::string>{});
+}
+
+TEST(CheckPath, AVersionOfGmshIsForItsFilesAlone) {
+  const ScratchFolder folder;
+  const MeshFileOptions options{GmshVersion::k2_2};
+  EXPECT_NO_THROW(check_mesh_path(folder / "a.msh", options));
+  EXPECT_THROW(check_mesh_path(folder / "a.vtu", options), InputError);
+}
+
+// Sets of Abaqus have names of letters, digits, '_' and '-', of at most 80 characters, whatever their case.
+TEST(AbaqusFile, NamesOfSetsAreMadeSafeAndDistinctAndToldOf) {
+  const ScratchFolder folder;
+  TetMesh mesh = make_test_mesh();
+  mesh.labels[1].name = "left kidney/2";
+  mesh.labels[2].name = "LEFT kidney,2";
+  mesh.labels[3].name = "4th " + std::string(100, 'x');
+  const std::vector<std::string> losses = write_mesh(mesh, folder / "a.inp");
+  ASSERT_EQ(losses.size(), 1u);
+  EXPECT_NE(losses[0].find("3 labels"), std::string::npos) << losses[0];
+  std::set<std::string> names;
+  std::istringstream lines(read_bytes(folder / "a.inp"));
+  for (std::string line; std::getline(lines, line);) {
+    const std::size_t place = line.find("ELSET=");
+    if (line.starts_with("**") || place == std::string::npos) continue;
+    std::string name = line.substr(place + 6);
+    EXPECT_LE(name.size(), 80u);
+    for (char& c : name) {
+      EXPECT_TRUE(std::isalnum(static_cast<unsigned char>(c)) != 0 || c == '_' || c == '-') << name;
+      c = static_cast<char>(std::toupper(static_cast<unsigned char>(c)));
+    }
+    EXPECT_TRUE(std::isalpha(static_cast<unsigned char>(name[0])) != 0) << name;
+    EXPECT_TRUE(names.insert(name).second) << name << " is there twice";
+  }
+  EXPECT_EQ(names.size(), 3u);
+}
+
+// CalculiX reads 20 characters of a number: more would lose an exponent.
+TEST(AbaqusFile, RealsHaveAtMostTwentyCharactersAndThatIsTold) {
+  const ScratchFolder folder;
+  TetMesh mesh = make_test_mesh();
+  mesh.vertices[0] = {-1.2345678901234567e-5, 0.1, -123.45678901234567};
+  mesh.vertices[1] = {-0.012345678901234567, 5e-324, -1.7976931348623157e308};
+  const std::vector<std::string> losses = write_mesh(mesh, folder / "a.inp");
+  ASSERT_FALSE(losses.empty());
+  EXPECT_NE(losses.back().find("coordinates are rounded"), std::string::npos) << losses.back();
+  const std::string text = read_bytes(folder / "a.inp");
+  std::istringstream lines(text.substr(text.find("*NODE") + 17));
+  for (const auto& vertex : mesh.vertices) {
+    std::string field;
+    std::getline(lines, field, ',');  // its number
+    for (int axis = 0; axis < 3; ++axis) {
+      std::getline(lines, field, axis < 2 ? ',' : '\n');
+      field.erase(0, 1);
+      EXPECT_LE(field.size(), 20u);
+      EXPECT_NEAR(std::strtod(field.c_str(), nullptr) / vertex[axis], 1, 1e-12) << field;
+    }
+  }
 }
 
 }  // namespace

@@ -1,0 +1,189 @@
+// Exodus II: an element block a label, a side set a label pair, both with the names and numbers that Gmsh
+// files have. Elements are numbered block after block. Information records tell the space, labels and pairs.
+// The arrays are those that the Exodus library makes of a mesh without fields in a netCDF file. Format:
+// "EXODUS: A Finite Element Data Model", appendix "Implementation of EXODUS with netCDF".
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <limits>
+
+#include "files/atomic_file.h"
+#include "files/big_endian.h"
+#include "io/facet_sides.h"
+#include "io/mesh_formats.h"
+#include "io/mesh_sets.h"
+#include "io/netcdf_file.h"
+#include "io/promises.h"
+#include "podm/errors.h"
+
+namespace podm {
+namespace {
+
+constexpr std::size_t kShortName = 32, kMostNameBytes = 255;  // what all readers hold; what netCDF does
+constexpr std::size_t kLineBytes = 80;                        // of an information record
+constexpr std::array<std::int32_t, 4> kSideOpposite{2, 3, 1,
+                                                    4};  // side 1 has vertices 1 2 4, 2: 2 3 4, 3: 1 4 3
+
+class ExodusWriter {
+ public:
+  explicit ExodusWriter(const TetMesh& mesh) : mesh_(mesh), sets_(mesh), sides_(find_facet_sides(mesh)) {
+    std::size_t first = 0;
+    for (const LabelIndex label : sets_.volumes) {
+      first_element_.push_back(first);
+      first += sets_.cells_of_label[label].size();
+      block_names_.push_back(cut(sets_.names[label]));
+    }
+    for (std::size_t i = 0; i < sets_.pairs.size(); ++i)
+      side_set_names_.push_back(cut(sets_.names.of_pair(sets_.pairs[i])));
+  }
+
+  // What a 32-bit size of an array holds.
+  void check_size(const std::string& path) const {
+    constexpr std::size_t kMostBytes = std::numeric_limits<std::uint32_t>::max() - 3;
+    bool fits = mesh_.vertices.size() <= kMostBytes / sizeof(double);
+    for (const LabelIndex label : sets_.volumes)
+      fits = fits && sets_.cells_of_label[label].size() <= kMostBytes / (4 * sizeof(std::int32_t));
+    if (!fits) throw InputError(fmt::format("cannot write {}: an array of Exodus II exceeds 4 GiB", path));
+  }
+
+  Losses write(AtomicFile& file) {
+    declare_attributes();
+    const Dimension name_bytes = file_.add_dimension("len_name", longest_name_ + 1);
+    const Dimension time_step = file_.add_dimension("time_step", 0);
+    add_points(name_bytes);
+    add_information();
+    add_blocks(name_bytes);
+    if (sets_.pairs.size() > 0) add_side_sets(name_bytes);
+    file_.add_variable("time_whole", NetcdfFile::kDouble, {time_step}, {});
+    file_.write(file);
+    return losses_;
+  }
+
+ private:
+  using Dimension = NetcdfFile::Dimension;
+
+  std::string cut(const std::string& name) {
+    if (name.size() > kMostNameBytes)
+      losses_.push_back(fmt::format("the name '{}' is cut to {} bytes", name, kMostNameBytes));
+    const std::string kept = name.substr(0, kMostNameBytes);
+    longest_name_ = std::max(longest_name_, kept.size());
+    return kept;
+  }
+
+  void declare_attributes() {
+    file_.add_attribute({"api_version", 5.0f});
+    file_.add_attribute({"version", 5.0f});
+    file_.add_attribute({"floating_point_word_size", 8});
+    file_.add_attribute({"file_size", 1});  // coordinates by axis
+    file_.add_attribute({"maximum_name_length", static_cast<std::int32_t>(longest_name_)});
+    file_.add_attribute({"int64_status", 0});
+    file_.add_attribute({"title", "tetrahedral mesh of labels"});
+  }
+
+  void add_points(Dimension name_bytes) {
+    const Dimension num_dim = file_.add_dimension("num_dim", 3);
+    const Dimension num_nodes = file_.add_dimension("num_nodes", mesh_.vertices.size());
+    file_.add_texts("coor_names", num_dim, name_bytes, {"x", "y", "z"});
+    for (const int axis : {0, 1, 2}) {
+      file_.add_variable(fmt::format("coord{}", "xyz"[axis]), NetcdfFile::kDouble, {num_nodes},
+                         [this, axis](AtomicFile& file) {
+                           for (const auto& vertex : mesh_.vertices) put_big_endian(file, vertex[axis]);
+                         });
+    }
+  }
+
+  // A record holds no long name, so that labels and pairs are told by the numbers of their sets.
+  void add_information() {
+    std::vector<std::string> lines{"space " + to_string(mesh_.space)};
+    for (const std::string& promise : promises_of(mesh_)) lines.push_back("promise " + promise);
+    for (const LabelIndex label : sets_.volumes)
+      lines.push_back(fmt::format("label {} block {}", mesh_.labels[label].value, sets_.volume_tags[label]));
+    for (std::size_t i = 0; i < sets_.pairs.size(); ++i) {
+      const auto [a, b] = sets_.pairs[i];
+      lines.push_back(fmt::format("pair {} {} side set {}", mesh_.labels[a].value, mesh_.labels[b].value,
+                                  MeshSets::surface_tag(i)));
+    }
+    const Dimension line_bytes = file_.add_dimension("len_line", kLineBytes + 1);
+    const Dimension num_lines = file_.add_dimension("num_info", lines.size());
+    file_.add_texts("info_records", num_lines, line_bytes, lines);
+  }
+
+  void add_blocks(Dimension name_bytes) {
+    file_.add_dimension("num_elem", mesh_.cells.size());
+    const Dimension num_blocks = file_.add_dimension("num_el_blk", sets_.volumes.size());
+    std::vector<std::int32_t> ids;
+    for (const LabelIndex label : sets_.volumes) ids.push_back(sets_.volume_tags[label]);
+    file_.add_ints("eb_status", num_blocks, std::vector<std::int32_t>(ids.size(), 1));
+    file_.add_ints("eb_prop1", num_blocks, ids, {{"name", "ID"}});
+    file_.add_texts("eb_names", num_blocks, name_bytes, block_names_);
+    for (std::size_t i = 0; i < sets_.volumes.size(); ++i) {
+      const auto cells = sets_.cells_of_label[sets_.volumes[i]];
+      const Dimension num_cells = file_.add_dimension(fmt::format("num_el_in_blk{}", i + 1), cells.size());
+      const Dimension num_corners = file_.add_dimension(fmt::format("num_nod_per_el{}", i + 1), 4);
+      file_.add_variable(fmt::format("connect{}", i + 1), NetcdfFile::kInt, {num_cells, num_corners},
+                         [this, cells](AtomicFile& file) {
+                           for (const std::uint32_t cell : cells)
+                             for (const std::uint32_t vertex : mesh_.cells[cell])
+                               put_big_endian(file, vertex + 1);
+                         },
+                         {{"elem_type", "TETRA"}});
+    }
+  }
+
+  void add_side_sets(Dimension name_bytes) {
+    const Dimension num_sets = file_.add_dimension("num_side_sets", sets_.pairs.size());
+    std::vector<std::int32_t> ids;
+    for (std::size_t i = 0; i < sets_.pairs.size(); ++i) ids.push_back(MeshSets::surface_tag(i));
+    file_.add_ints("ss_status", num_sets, std::vector<std::int32_t>(ids.size(), 1));
+    file_.add_ints("ss_prop1", num_sets, ids, {{"name", "ID"}});
+    file_.add_texts("ss_names", num_sets, name_bytes, side_set_names_);
+    for (std::size_t i = 0; i < sets_.pairs.size(); ++i) {
+      const auto facets = sets_.facets_of_pair[i];
+      const Dimension num_sides = file_.add_dimension(fmt::format("num_side_ss{}", i + 1), facets.size());
+      file_.add_variable(fmt::format("elem_ss{}", i + 1), NetcdfFile::kInt, {num_sides},
+                         [this, facets](AtomicFile& file) {
+                           for (const std::uint32_t facet : facets)
+                             put_big_endian(file, element_of(sides_[facet].cell));
+                         });
+      file_.add_variable(fmt::format("side_ss{}", i + 1), NetcdfFile::kInt, {num_sides},
+                         [this, facets](AtomicFile& file) {
+                           for (const std::uint32_t facet : facets)
+                             put_big_endian(file, kSideOpposite[sides_[facet].opposite]);
+                         });
+    }
+  }
+
+  // The number of a cell, from 1, when blocks follow one another.
+  std::uint32_t element_of(std::uint32_t cell) const {
+    const auto block = static_cast<std::size_t>(
+        std::lower_bound(sets_.volumes.begin(), sets_.volumes.end(), mesh_.cell_labels[cell]) -
+        sets_.volumes.begin());
+    const auto cells = sets_.cells_of_label[mesh_.cell_labels[cell]];
+    const auto position =
+        static_cast<std::size_t>(std::lower_bound(cells.begin(), cells.end(), cell) - cells.begin());
+    return static_cast<std::uint32_t>(first_element_[block] + position + 1);
+  }
+
+  const TetMesh& mesh_;
+  const MeshSets sets_;
+  const std::vector<FacetSide> sides_;
+  std::vector<std::size_t> first_element_;  // of each block
+  std::vector<std::string> block_names_, side_set_names_;
+  std::size_t longest_name_ = kShortName;
+  Losses losses_;
+  NetcdfFile file_;
+};
+
+}  // namespace
+
+Losses write_exodus(const TetMesh& mesh, const std::string& path) {
+  AtomicFile file(path);
+  ExodusWriter writer(mesh);
+  writer.check_size(path);
+  Losses losses = writer.write(file);
+  file.publish();
+  return losses;
+}
+
+}  // namespace podm

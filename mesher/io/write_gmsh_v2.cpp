@@ -1,0 +1,77 @@
+// Gmsh MSH 2.2, text: what FreeFem++, SfePy, dolfin-convert and others read that know no 4.1. Every element
+// has two tags, its physical group and its entity, alike here; groups are those of the 4.1 file. Comments say
+// which pair of labels a group of triangles separates. Format: Gmsh reference manual, "MSH file format
+// version 2 (Legacy)".
+#include "files/atomic_file.h"
+#include "io/mesh_formats.h"
+#include "io/mesh_sets.h"
+#include "io/promises.h"
+#include "io/text_file.h"
+
+namespace podm {
+namespace {
+
+void print_comments(TextFile& text, const TetMesh& mesh, const MeshSets& sets) {
+  text.print(FMT_COMPILE("$Comments\nspace {}\n"), to_string(mesh.space));
+  for (const std::string& promise : promises_of(mesh)) text.print(FMT_COMPILE("promise {}\n"), promise);
+  for (const LabelIndex label : sets.volumes)
+    text.print(FMT_COMPILE("label {} physical volume {} {}\n"), mesh.labels[label].value,
+               sets.volume_tags[label], sets.names[label]);
+  for (std::size_t i = 0; i < sets.pairs.size(); ++i) {
+    const auto [a, b] = sets.pairs[i];
+    text.print(FMT_COMPILE("pair {} {} physical surface {}\n"), mesh.labels[a].value, mesh.labels[b].value,
+               MeshSets::surface_tag(i));
+  }
+  text.put("$EndComments\n");
+}
+
+void print_names(TextFile& text, const MeshSets& sets) {
+  text.print(FMT_COMPILE("$PhysicalNames\n{}\n"), sets.pairs.size() + sets.volumes.size());
+  for (std::size_t i = 0; i < sets.pairs.size(); ++i)
+    text.print(FMT_COMPILE("2 {} \"{}\"\n"), MeshSets::surface_tag(i), sets.names.of_pair(sets.pairs[i]));
+  for (const LabelIndex label : sets.volumes)
+    text.print(FMT_COMPILE("3 {} \"{}\"\n"), sets.volume_tags[label], sets.names[label]);
+  text.put("$EndPhysicalNames\n");
+}
+
+void print_nodes(TextFile& text, const TetMesh& mesh) {
+  text.print(FMT_COMPILE("$Nodes\n{}\n"), mesh.vertices.size());
+  for (std::size_t i = 0; i < mesh.vertices.size(); ++i) {
+    const auto& [x, y, z] = mesh.vertices[i];
+    text.print(FMT_COMPILE("{} {} {} {}\n"), i + 1, x, y, z);
+  }
+  text.put("$EndNodes\n");
+}
+
+void print_elements(TextFile& text, const TetMesh& mesh, const MeshSets& sets) {
+  text.print(FMT_COMPILE("$Elements\n{}\n"), mesh.facets.size() + mesh.cells.size());
+  for (std::size_t i = 0; i < mesh.facets.size(); ++i) {
+    const auto& [a, b, c] = mesh.facets[i];
+    const std::int32_t tag = MeshSets::surface_tag(sets.pairs.number_of(mesh.facet_labels[i]));
+    text.print(FMT_COMPILE("{} 2 2 {} {} {} {} {}\n"), i + 1, tag, tag, a + 1, b + 1, c + 1);
+  }
+  for (std::size_t i = 0; i < mesh.cells.size(); ++i) {
+    const auto& [a, b, c, d] = mesh.cells[i];
+    const std::int32_t tag = sets.volume_tags[mesh.cell_labels[i]];
+    text.print(FMT_COMPILE("{} 4 2 {} {} {} {} {} {}\n"), mesh.facets.size() + i + 1, tag, tag, a + 1, b + 1,
+               c + 1, d + 1);
+  }
+  text.put("$EndElements\n");
+}
+
+}  // namespace
+
+void write_gmsh_v2(const TetMesh& mesh, const std::string& path) {
+  AtomicFile file(path);
+  TextFile text(file);
+  const MeshSets sets(mesh);
+  text.put("$MeshFormat\n2.2 0 8\n$EndMeshFormat\n");  // version, text, bytes of a real
+  print_comments(text, mesh, sets);
+  print_names(text, sets);
+  print_nodes(text, mesh);
+  print_elements(text, mesh, sets);
+  text.flush();
+  file.publish();
+}
+
+}  // namespace podm

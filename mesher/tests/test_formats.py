@@ -1,0 +1,114 @@
+"""Every mesh format: what podm writes podm-verify proves, and podm convert carries from one to the other."""
+
+import unittest
+
+from podm_process import PodmTestCase, run_podm
+
+LOSSLESS = (".vtk", ".msh", ".e", ".exo", ".node", ".ele", ".mesh")
+TWO_CELLS = """MeshVersionFormatted 2
+Dimension 3
+Vertices 5
+0 0 0 0
+1 0 0 0
+0 1 0 0
+0 0 1 0
+1 1 1 0
+Tetrahedra 2
+1 2 3 4 {0}
+2 3 4 5 {1}
+End
+"""
+
+
+class FormatsTest(PodmTestCase):
+    def mesh(self, name, *options):
+        path = self.folder / name
+        self.assert_exit(run_podm("mesh", "phantom:spheres@24", "--radius", 20, "--quiet", "-o", path, *options), 0)
+        return path
+
+    def convert(self, source, name, *options):
+        process = run_podm("convert", source, self.folder / name, *options)
+        self.assert_exit(process, 0)
+        return process
+
+    def test_what_every_format_holds_is_proved(self):
+        for name, *options in [("a" + extension,) for extension in (*LOSSLESS, ".inp")] + [
+                ("b.msh", "--gmsh-version", "2.2")]:
+            with self.subTest(name=name, options=options):
+                self.mesh(name, "--verify", *options)
+
+    def test_a_mesh_comes_back_to_the_bit_from_every_format_that_can_hold_it(self):
+        cells, facets = (self.mesh("a.vtu").with_name(name) for name in ("a.vtu", "a_facets.vtu"))
+        for name, *options in [("b" + extension,) for extension in LOSSLESS] + [("c.msh", "--gmsh-version", "2.2")]:
+            with self.subTest(name=name, options=options):
+                self.convert(cells, name, *options)
+                self.convert(self.folder / name, "back.vtu")
+                self.assertEqual((self.folder / "back.vtu").read_bytes(), cells.read_bytes())
+                self.assertEqual((self.folder / "back_facets.vtu").read_bytes(), facets.read_bytes())
+
+    def test_abaqus_keeps_all_but_what_it_says(self):
+        process = self.convert(self.mesh("a.vtu", "--merge", "1,2=big sphere"), "a.inp")
+        self.assertIn("'big sphere' is big_sphere", process.stderr)
+        self.convert(self.folder / "a.inp", "b.msh")
+        text = (self.folder / "b.msh").read_bytes()
+        self.assertIn(b'"big sphere|', text)
+
+    def test_cells_that_are_turned_over_and_labels_beyond_those_of_images(self):
+        path = self.folder / "two.mesh"
+        path.write_text(TWO_CELLS.format(7, 0))
+        process = self.convert(path, "two.msh", "--gmsh-version", "2.2")
+        self.assertIn("2 cells of 2 labels, 5 vertices, 7 facets", process.stderr)
+        self.assertIn("RAS is taken", process.stderr)
+        path.write_text(TWO_CELLS.format(7, 7).replace("2 3 4 5", "3 2 4 5"))
+        process = self.convert(path, "two.inp")
+        self.assertIn("1 cells were negatively oriented", process.stderr)
+        self.assertIn("2 cells of 1 labels, 5 vertices, 6 facets", process.stderr)
+
+    def test_faulty_meshes_are_refused_and_nothing_is_written(self):
+        faults = {"no.mesh": (TWO_CELLS.split("Tetrahedra")[0] + "End\n", "no tetrahedron"),
+                  "minus.mesh": (TWO_CELLS.format(-1, 2), "label -1"),
+                  "far.mesh": (TWO_CELLS.format(1, 2).replace("2 3 4 5 2", "2 3 4 9 2"), "tetrahedron 1"),
+                  "nan.mesh": (TWO_CELLS.format(1, 2).replace("1 1 1 0", "1 nan 1 0"), "vertex 4"),
+                  "thrice.mesh": (TWO_CELLS.format(1, 2).replace("Tetrahedra 2", "Tetrahedra 3\n2 3 4 1 1"),
+                                  "more than two tetrahedra"),
+                  "text.e": ("solid\n", "not a netCDF file"),
+                  "new.exo": ("\x89HDF\r\n", "nccopy"),
+                  "cut.inp": ("*NODE\n1, 0, 0\n", "line 2")}
+        for name, (text, fault) in faults.items():
+            with self.subTest(name=name):
+                (self.folder / name).write_text(text, encoding="latin-1", newline="")
+                self.assert_refused(["convert", self.folder / name, self.folder / "out.vtu"], name, fault)
+        self.assert_refused(["convert", self.folder / "missing.vtu", self.folder / "out.vtu"], "missing.vtu")
+        self.assert_refused(["convert", self.folder / "no.mesh", self.folder / "out.xyz"], "out.xyz", ".inp")
+        self.assert_refused(["convert", self.folder / "no.mesh", self.folder / "out.vtu", "--gmsh-version", "2.2"],
+                            "out.vtu", "Gmsh")
+
+    def test_foreign_abaqus_input(self):
+        path = self.folder / "foreign.inp"
+        path.write_text("*Heading\n*Node\n" + "".join(f"{10 * i}, {p}\n" for i, p in enumerate(
+            ("0., 0., 0.", "+1., 0., 0.", "0., 1., 0.", "0., 0., 1."), start=1)) +
+            "*ELEMENT, type=C3D4, elset=Part-1\n1, 10, 20,\n30, 40\n*Step\n1, 2\n")
+        process = self.convert(path, "a.msh")
+        self.assertIn("1 cells of 1 labels, 4 vertices, 4 facets", process.stderr)
+        self.assertIn(b'"Part-1"', (self.folder / "a.msh").read_bytes())
+        sound = path.read_text()
+        for old, new, fault in (("20,\n30, 40", "20,\n*Step", "ends after 2"), ("C3D4", "C3D99", "C3D99"),
+                                ("+1.", "one", "line 4"), ("20, +", "10, +", "10 is given twice"),
+                                ("*Step", "*INCLUDE, INPUT=a", "line 10"), ("type=C3D4, ", "", "TYPE=")):
+            with self.subTest(fault=fault):
+                path.write_text(sound.replace(old, new, 1))
+                self.assert_refused(["convert", path, self.folder / "out.vtu"], "foreign.inp", fault)
+
+    def test_an_exodus_file_that_is_cut_off_is_refused_and_a_damaged_one_never_ends_the_program(self):
+        whole = self.mesh("a.e").read_bytes()
+        path = self.folder / "b.e"
+        for size in (*range(1, 2000, 97), *range(2000, len(whole) - 4, len(whole) // 20)):
+            path.write_bytes(whole[:size])
+            self.assert_refused(["convert", path, self.folder / "out.vtu"], "b.e")
+        for place in range(4, 2000, 61):
+            path.write_bytes(whole[:place] + b"\xff" + whole[place + 1:])
+            self.assertIn(run_podm("convert", path, self.folder / "out.vtu").returncode, (0, 2), place)
+
+
+if __name__ == "__main__":
+    unittest.main()
