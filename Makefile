@@ -82,7 +82,7 @@ figures: build
 	mkdir -p $(FIGURES)
 	build/bin/podm mesh phantom:abdomen@256 --target-elements 190000 --algorithm pdr-podm --nodes 2 --cores-per-node 1 \
 	  --oversubscribe --initial-ratio 2 --schedule $(FIGURES)/abdomen_leaves.jsonl -o $(FIGURES)/abdomen.vtu
-	/usr/bin/python3 scripts/render_mesh.py $(FIGURES)/abdomen.vtu -o $(FIGURES)/abdomen_cut.png
+	build/bin/podm view $(FIGURES)/abdomen.vtu -o $(FIGURES)/abdomen_cut.png
 	build/bin/podm-verify $(FIGURES)/abdomen.vtu --schedule $(FIGURES)/abdomen_leaves.jsonl \
 	  --json $(FIGURES)/abdomen_verified.json
 	build/bin/podm-bench verdicts --json $(FIGURES)/experiment_verdicts.json experiments/*.toml > /dev/null

@@ -201,6 +201,11 @@ void add_mesh_command(CLI::App& program, MeshCommand& command, Program which) {
           into_choice(command.meshing.space));
   add_one(app, "--record", "FILE", "append one JSON line that describes the run [default: none]",
           into(command.record_path));
+  if (!is_on_ranks)
+    add_one(app, "--report", "PAGE",
+            "an HTML page that needs no network: what was asked and what holds, histograms of\n"
+            "quality by label, the mesh to turn and to cut [default: none]",
+            into(command.page_path));
   add_algorithm_options(app, command);
   begin_group(app, "Run");
   add_run_options(app, command, which);
@@ -214,7 +219,7 @@ void add_mesh_command(CLI::App& program, MeshCommand& command, Program which) {
   if (is_on_ranks)
     end_help(app,
              "Not on ranks yet, and refused: --target-elements, --min-dihedral, --surface, --optimize,\n"
-             "--algorithm podm-home, --schedule, --executor virtual.");
+             "--report, --algorithm podm-home, --schedule, --executor virtual.");
 }
 
 }  // namespace podm::cli

@@ -37,5 +37,6 @@ void add_mesh_command(CLI::App& program, MeshCommand& command, Program which);
 void add_replay_command(CLI::App& program, ReplayCommand& command);
 void add_info_command(CLI::App& program, InfoCommand& command);
 void add_phantom_command(CLI::App& program, PhantomCommand& command);
+void add_view_command(CLI::App& program, ViewCommand& command);
 
 }  // namespace podm::cli

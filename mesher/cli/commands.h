@@ -10,6 +10,7 @@ int run(const MeshCommand& command);
 int run(const ReplayCommand& command);
 int run(const InfoCommand& command);
 int run(const PhantomCommand& command);
+int run(const ViewCommand& command);
 int run(const ShowText& show);
 
 }  // namespace podm::cli

@@ -112,6 +112,7 @@ Command parse_command_line(std::vector<std::string> arguments, Program which) {
   ReplayCommand replay;
   InfoCommand info;
   PhantomCommand phantom;
+  ViewCommand view;
   const std::string name = which == Program::kPodm ? "podm" : "podm-mpi";
   CLI::App program("Tetrahedral meshes with guarantees from segmented images.", name);
   program.formatter(std::make_shared<HelpFormatter>());
@@ -127,6 +128,7 @@ Command parse_command_line(std::vector<std::string> arguments, Program which) {
     add_replay_command(program, replay);
     add_info_command(program, info);
     add_phantom_command(program, phantom);
+    add_view_command(program, view);
   }
   try {
     std::reverse(arguments.begin(), arguments.end());  // CLI11 takes them from the back
@@ -145,6 +147,7 @@ Command parse_command_line(std::vector<std::string> arguments, Program which) {
   if (chosen == "mesh") return mesh;
   if (chosen == "replay") return replay;
   if (chosen == "info") return info;
+  if (chosen == "view") return view;
   return phantom;
 }
 

@@ -1,7 +1,7 @@
 // podm mesh --verify: the written mesh handed to podm-verify, a program that shares no code with the mesher.
 #pragma once
 
-#include <map>
+#include <nlohmann/json.hpp>
 #include <string>
 
 #include "cli/mesh_run.h"
@@ -15,8 +15,8 @@ void check_verifier(const std::string& mesh_path);
 /// Runs the podm-verify beside this program on the mesh that `run` wrote: all claims but fidelity, which is
 /// promised only for cells about as small as voxels. The image goes with it as it is in its file, with the
 /// options that selected its labels; a phantom as a file beside the mesh, written for the purpose. The report
-/// for people goes to standard error unless the run is quiet. Returns the verdicts by claim, none where a
-/// signal has ended it or came before; throws InputError where the verifier is not there or tells nothing.
-std::map<std::string, std::string> verify_mesh(const MeshRun& run, const SignalThread& signals);
+/// for people goes to standard error unless the run is quiet. Returns that of podm-verify --json, null where
+/// a signal has ended it or came before; throws InputError where the verifier is not there or tells nothing.
+nlohmann::ordered_json verify_mesh(const MeshRun& run, const SignalThread& signals);
 
 }  // namespace podm::cli
