@@ -8,10 +8,11 @@ INPUTS = --records results/runs --verified $(FIGURES)/abdomen_verified.json \
   --schedule $(FIGURES)/abdomen_leaves.jsonl --mesh $(FIGURES)/abdomen.vtu \
   --experiment-verdicts $(FIGURES)/experiment_verdicts.json
 TIER ?= default
+PREFIX ?= /usr/local
 SECONDS ?= 600
 
 .DEFAULT_GOAL := help
-.PHONY: help setup build peers test stress kill-matrix kick-tires experiments figures clean
+.PHONY: help setup build install peers test stress kill-matrix kick-tires experiments figures clean
 
 help:
 	@echo "make kick-tires    the smallest runs of every experiment, in some minutes; tables and results/runs/"
@@ -24,6 +25,7 @@ help:
 	@echo "make figures       tables and figures of results/runs/ beside the paper's, a mesh cut open: $(FIGURES)/,"
 	@echo "                   and one page of it all: results/runs/report.html"
 	@echo "make build         the programs, in build/bin/"
+	@echo "make install       programs, what they run and the library, in PREFIX=/usr/local (DESTDIR=FOLDER: below that)"
 	@echo "make peers         what \`make experiments\` compares and counts with: TetGen, Gmsh and likwid as packages, and"
 	@echo "                   CGAL's mesher (GPL, compiles for some 3 minutes, stays in build/bin/)"
 	@echo "make setup         install the Debian 12 packages of all of these (root or sudo; otherwise says what to run)"
@@ -42,6 +44,10 @@ build:
 	@scripts/setup build
 	$(CONFIGURE)
 	cmake --build build
+
+# DESTDIR, of the environment or the command line, stands before PREFIX.
+install: build
+	$(if $(DESTDIR),DESTDIR="$(abspath $(DESTDIR))") cmake --install build --prefix "$(PREFIX)"
 
 # Configured anew: the packages that it looks for may have come since.
 peers: build

@@ -12,7 +12,7 @@ from views.mesh import MeshError
 from views.read_mesh import read_mesh
 
 from .histograms import histograms, quality_of
-from .html import Bar, bars, document, findings, fold, responsive, section, table_html
+from .html import Bar, bars, box, document, findings, fold, responsive, section, table_html
 from .sections import sections_html
 from .viewer import MAX_CELLS, pack, script, viewer_html
 
@@ -75,9 +75,7 @@ def _holds(record, verification, unmet):
 def _findings(record, verification):
     """(verdict, statement, reason) of podm-verify, or of the mesher."""
     if verification is None:
-        counts = record["guarantees"]
-        return [("fail" if counts[name] else "pass", f"all {statement}", f"{counts[name]} do not" if counts[name] else "")
-                for name, statement in GUARANTEES.items()]
+        return [(verdict, f"all {statement}", f"misses: {misses}") for statement, misses, verdict in _counted(record)]
     return [(claim["verdict"], name.replace("_", " "), claim["reason"])
             for name, claim in verification["claims"].items()]
 
@@ -103,8 +101,7 @@ def _good(record):
 def _quality(mesh, quality):
     figure = histograms(mesh, quality)
     title = "Histograms of quality by label"
-    picture = f'<div class="wide" tabindex="0" role="region" aria-label="{title}">' \
-              f'{responsive(svg_of(figure, "quality"), title)}</div>'
+    picture = box(title, responsive(svg_of(figure, "quality"), title))
     return f"<figure>{picture}<figcaption>{escape(figure.get_label())}</figcaption></figure>"
 
 
@@ -124,7 +121,8 @@ def _labels(mesh, quality, record):
         ratio, angle, size = (quality[name][chosen] for name in ("ratio", "dihedral", "size"))
         lines.append({"label": mesh.name_of(value), "value": str(value), "cells": f"{chosen.sum():,}",
                       "volume, cm³": f"{volumes.get(value, numpy.nan) / 1000:.4g}",
-                      "largest ratio": float(numpy.nanmax(ratio)), "smallest dihedral angle": float(numpy.nanmin(angle)),
+                      "largest ratio": float(numpy.nanmax(ratio)),
+                      "smallest dihedral angle": float(numpy.nanmin(angle)),
                       "cells under 10°": f"{100 * (angle < 10).mean():.2g} %",
                       "median circumradius, mm": float(numpy.nanmedian(size))})
     return table_html(pandas.DataFrame(lines), "Labels")

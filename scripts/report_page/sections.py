@@ -36,4 +36,5 @@ def _draw(axes, mesh, across, colours):
     axes.autoscale_view()
     axes.set_aspect("equal")
     axes.grid(False)
-    axes.set(title=f"{AXES[across]} = {middle:.4g} mm", xlabel=f"{AXES[others[0]]}, mm", ylabel=f"{AXES[others[1]]}, mm")
+    axes.set(title=f"{AXES[across]} = {middle:.4g} mm", xlabel=f"{AXES[others[0]]}, mm",
+             ylabel=f"{AXES[others[1]]}, mm")
