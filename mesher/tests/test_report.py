@@ -77,6 +77,13 @@ class Report(PodmTestCase):
     def read_last(self):
         return json.loads((self.folder / "a.jsonl").read_text().splitlines()[-1])
 
+    def test_a_mesh_too_large_to_turn_is_cut_by_planes(self):
+        self.assert_exit(run_podm("mesh", "phantom:spheres@24", "--radius", "1", "--quiet", "-o", self.folder / "a.vtu",
+                                  "--report", self.folder / "a.html"), 0)
+        self.assertRegex(self.page(), "cells, more than the 200,000 that a page can turn")
+        self.assertEqual(self.page().count('src="data:image/png;base64,'), 1)
+        self.assertNotIn("<canvas", self.page())
+
     def test_text_of_images_is_escaped(self):
         self.assert_exit(self.mesh("--merge", "1,2=<b>1"), 0)
         self.assertNotIn("<b>1", self.page())

@@ -18,8 +18,9 @@ def sections_html(mesh):
     for one, across in zip(axes, (2, 1, 0)):
         _draw(one, mesh, across, colours)
     style.finish(figure, "")
+    figure.patch.set(alpha=1, facecolor="white")  # its ink is dark in a dark page, too
     made = io.BytesIO()
-    figure.savefig(made, format="png", dpi=150, facecolor="white")
+    figure.savefig(made, format="png", dpi=150)
     data = base64.b64encode(made.getvalue()).decode()
     return ('<img class="sections" alt="The mesh cut by three planes, cells coloured by label" '
             f'src="data:image/png;base64,{data}">')
