@@ -8,10 +8,11 @@ INPUTS = --records results/runs --verified $(FIGURES)/abdomen_verified.json \
   --schedule $(FIGURES)/abdomen_leaves.jsonl --mesh $(FIGURES)/abdomen.vtu \
   --experiment-verdicts $(FIGURES)/experiment_verdicts.json
 TIER ?= default
+PREFIX ?= /usr/local
 SECONDS ?= 600
 
 .DEFAULT_GOAL := help
-.PHONY: help setup build python peers test stress kill-matrix kick-tires experiments figures clean
+.PHONY: help setup build install python peers test stress kill-matrix kick-tires experiments figures clean
 
 help:
 	@echo "make kick-tires    the smallest runs of every experiment, in some minutes; tables and results/runs/"
@@ -25,6 +26,7 @@ help:
 	@echo "                   and one page of it all: results/runs/report.html"
 	@echo "make build         the programs, in build/bin/"
 	@echo "make python        the Python package podm, in build/python/"
+	@echo "make install       programs, what they run and the library, in PREFIX=/usr/local (DESTDIR=FOLDER: below that)"
 	@echo "make peers         what \`make experiments\` compares and counts with: TetGen, Gmsh and likwid as packages, and"
 	@echo "                   CGAL's mesher (GPL, compiles for some 3 minutes, stays in build/bin/)"
 	@echo "make setup         install the Debian 12 packages of all of these (root or sudo; otherwise says what to run)"
@@ -48,6 +50,10 @@ python:
 	@scripts/setup build python
 	$(CONFIGURE)
 	cmake --build build --target podm_python_package
+
+# DESTDIR, of the environment or the command line, stands before PREFIX.
+install: build
+	$(if $(DESTDIR),DESTDIR="$(abspath $(DESTDIR))") cmake --install build --prefix "$(PREFIX)"
 
 # Configured anew: the packages that it looks for may have come since.
 peers: build
@@ -88,7 +94,7 @@ figures: build
 	mkdir -p $(FIGURES)
 	build/bin/podm mesh phantom:abdomen@256 --target-elements 190000 --algorithm pdr-podm --nodes 2 --cores-per-node 1 \
 	  --oversubscribe --initial-ratio 2 --schedule $(FIGURES)/abdomen_leaves.jsonl -o $(FIGURES)/abdomen.vtu
-	/usr/bin/python3 scripts/render_mesh.py $(FIGURES)/abdomen.vtu -o $(FIGURES)/abdomen_cut.png
+	build/bin/podm view $(FIGURES)/abdomen.vtu -o $(FIGURES)/abdomen_cut.png
 	build/bin/podm-verify $(FIGURES)/abdomen.vtu --schedule $(FIGURES)/abdomen_leaves.jsonl \
 	  --json $(FIGURES)/abdomen_verified.json
 	build/bin/podm-bench verdicts --json $(FIGURES)/experiment_verdicts.json experiments/*.toml > /dev/null

@@ -1,8 +1,18 @@
-# What `cmake --install` puts in place: the program, the library and what find_package(podm) needs.
+# What `cmake --install` puts in place: the programs that mesh, the scripts that they run, the library and what
+# find_package(podm) needs. podm-verify installs itself; podm-bench stays with its experiments.
 include(CMakePackageConfigHelpers)
 
 set_target_properties(podm_library PROPERTIES EXPORT_NAME podm)
 install(TARGETS podm RUNTIME DESTINATION ${CMAKE_INSTALL_BINDIR})
+if(TARGET podm-mpi)
+  install(TARGETS podm-mpi RUNTIME DESTINATION ${CMAKE_INSTALL_BINDIR})
+endif()
+set(PODM_SCRIPTS ${PROJECT_SOURCE_DIR}/scripts)
+install(PROGRAMS ${PODM_SCRIPTS}/view ${PODM_SCRIPTS}/mesh_report DESTINATION ${CMAKE_INSTALL_DATADIR}/podm)
+install(DIRECTORY ${PODM_SCRIPTS}/views ${PODM_SCRIPTS}/report_page ${PODM_SCRIPTS}/figures
+        DESTINATION ${CMAKE_INSTALL_DATADIR}/podm PATTERN __pycache__ EXCLUDE)
+install(FILES ${PROJECT_SOURCE_DIR}/LICENSE ${PROJECT_SOURCE_DIR}/README.md ${PROJECT_SOURCE_DIR}/CHANGELOG.md
+        DESTINATION ${CMAKE_INSTALL_DOCDIR})
 install(TARGETS podm_library podm_mesher podm_refine podm_workers podm_optimize podm_octree podm_delaunay podm_isosurface podm_image_io podm_io
                 podm_files podm_geometry podm_runtime podm_toml podm_flags
         EXPORT podmTargets ARCHIVE DESTINATION ${CMAKE_INSTALL_LIBDIR})

@@ -191,6 +191,11 @@ void add_output_options(CLI::App& app, MeshCommand& command, bool is_on_ranks) {
   add_space_option(app, command.meshing);
   add_one(app, "--record", "FILE", "append one JSON line that describes the run [default: none]",
           into(command.record_path));
+  if (!is_on_ranks)
+    add_one(app, "--report", "PAGE",
+            "an HTML page that needs no network: what was asked and what holds, histograms of\n"
+            "quality by label, the mesh to turn and to cut [default: none]",
+            into(command.page_path));
   add_one(app, "--schedule", "FILE", "write which leaf was refined when, for podm-verify [default: none]",
           into(command.schedule_path));
   add_one(app, "--log", "FILE",
@@ -240,7 +245,7 @@ void add_mesh_command(CLI::App& program, MeshCommand& command, Program which) {
   if (is_on_ranks)
     end_help(app,
              "Not on ranks yet, and refused: --target-elements, --min-dihedral, --surface, --optimize,\n"
-             "--algorithm podm-home, --schedule, --executor virtual.");
+             "--report, --algorithm podm-home, --schedule, --executor virtual.");
 }
 
 void add_convert_command(CLI::App& program, ConvertCommand& command) {

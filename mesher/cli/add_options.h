@@ -41,5 +41,6 @@ void add_replay_command(CLI::App& program, ReplayCommand& command);
 void add_convert_command(CLI::App& program, ConvertCommand& command);
 void add_info_command(CLI::App& program, InfoCommand& command);
 void add_phantom_command(CLI::App& program, PhantomCommand& command);
+void add_view_command(CLI::App& program, ViewCommand& command);
 
 }  // namespace podm::cli

@@ -11,6 +11,7 @@
 #include "cli/commands.h"
 #include "cli/labelled_image.h"
 #include "cli/leaf_schedule_file.h"
+#include "cli/mesh_page.h"
 #include "cli/mesh_run.h"
 #include "cli/options_for_image.h"
 #include "cli/process_memory.h"
@@ -33,7 +34,7 @@ double timed(const Action& action) {
 }
 
 // Hours of meshing must not end at a misspelt folder.
-void check_outputs(const MeshCommand& command) {
+void check_outputs(const MeshCommand& command, const SignalThread& signals) {
   check_mesh_path(command.mesh_path, command.mesh_file);
   if (!command.surface_path.empty()) check_surface_path(command.surface_path);
   const Algorithm algorithm = command.meshing.algorithm;
@@ -44,6 +45,7 @@ void check_outputs(const MeshCommand& command) {
     const AtomicFile trial(command.schedule_path);
   }
   if (command.verify) check_verifier(command.mesh_path);
+  if (!command.page_path.empty()) check_page(command, signals);
 }
 
 // Once refinement has begun there is a mesh to keep.
@@ -78,7 +80,7 @@ void write_outputs(const MeshCommand& command, const TetMesh& mesh, std::vector<
 
 int run(const MeshCommand& command) {
   SignalThread signals;
-  check_outputs(command);
+  check_outputs(command, signals);
   std::optional<AppendedFile> records;
   if (!command.record_path.empty()) records.emplace(command.record_path);
   Crossover crossover = choose_crossover(command);
@@ -96,7 +98,7 @@ int run(const MeshCommand& command) {
               .mesh = {},
               .mesh_sha256 = {},
               .read_s = read_s,
-              .verdicts = {}};
+              .verification = nullptr};
   std::optional<OperationLogWriter> log;
   if (!command.log_path.empty()) run.options.log = &log.emplace(command.log_path);
   run.options.crossover = run.crossover.threads;
@@ -115,8 +117,10 @@ int run(const MeshCommand& command) {
     if (!command.schedule_path.empty()) write_schedule(run, command.schedule_path);
   });
   run.peak_rss_bytes = peak_resident_bytes();
-  if (command.verify && run.mesh.cells > 0) run.verdicts = verify_mesh(run, signals);
-  return tell(run, records);
+  if (command.verify && run.mesh.cells > 0) run.verification = verify_mesh(run, signals);
+  const int exit_code = tell(run, records);
+  if (!command.page_path.empty() && run.mesh.cells > 0) write_page(run, signals);
+  return exit_code;
 }
 
 }  // namespace podm::cli

@@ -58,7 +58,7 @@ class Run {
     gather_from_ranks(result, command_.meshing.team.threads, machines_, ranks_, run);
     std::array<std::uint64_t, 1> code{0};
     if (ranks_.rank() == 0) {
-      if (command_.verify && run.mesh.cells > 0) run.verdicts = verify_mesh(run, signals_);
+      if (command_.verify && run.mesh.cells > 0) run.verification = verify_mesh(run, signals_);
       code[0] = static_cast<std::uint64_t>(tell(run, records_));
     }
     ranks_.maximum(code);
@@ -114,7 +114,7 @@ class Run {
             .mesh = {},
             .mesh_sha256 = {},
             .read_s = ranks_.seconds() - start_s,
-            .verdicts = {},
+            .verification = nullptr,
             .program = "podm-mpi"};
   }
 

@@ -40,6 +40,14 @@ void MeshRun::take(MeshingReport&& finished, const TetMesh& made) {
   report.warnings.insert(report.warnings.end(), image.warnings.begin(), image.warnings.end());
 }
 
+std::map<std::string, std::string> MeshRun::verdicts() const {
+  std::map<std::string, std::string> verdicts;
+  if (verification.is_null()) return verdicts;
+  for (const auto& [claim, result] : verification.at("claims").items())
+    verdicts[claim] = result.at("verdict");
+  return verdicts;
+}
+
 std::vector<std::string> MeshRun::unmet() const {
   std::vector<std::string> sentences;
   const auto count = [&](std::uint64_t misses, const std::string& what) {
@@ -59,9 +67,9 @@ std::vector<std::string> MeshRun::unmet() const {
   count(misses.facet_vertices, "boundary facets with a vertex off the isosurface");
   count(misses.orientation, "cells that rounding made flat or turned over");
   count(misses.missing_labels, "labels of more than 1000 voxels without a cell");
-  if (command.verify && verdicts.empty() && mesh.cells > 0)
+  if (command.verify && verification.is_null() && mesh.cells > 0)
     sentences.push_back("podm-verify: ended early by a signal, so that no claim is decided");
-  for (const auto& [claim, verdict] : verdicts)
+  for (const auto& [claim, verdict] : verdicts())
     if (verdict != "pass") sentences.push_back(fmt::format("podm-verify: claim {}: {}", claim, verdict));
   return sentences;
 }

@@ -41,7 +41,7 @@ struct MeshRun {
   std::string mesh_sha256;  ///< empty: nobody has the whole mesh
   double read_s = 0, write_s = 0;
   std::uint64_t peak_rss_bytes = 0;
-  std::map<std::string, std::string> verdicts;  ///< podm-verify's by claim; empty: none were asked for
+  nlohmann::ordered_json verification = nullptr;  ///< what podm-verify reports; null: nothing
   std::string program = "podm";
   nlohmann::ordered_json ranks = nullptr;  ///< for the record; null: the mesh was made in one process
   std::string ranks_text = {};             ///< the same for the summary
@@ -54,6 +54,8 @@ struct MeshRun {
   /// writing, the drawing of a phantom, calibration, and R7 and optimisation, which that paper does not have.
   double cells_per_second() const;
   double refine_cells_per_second() const;
+  /// Those of podm-verify by claim; none where it reports nothing.
+  std::map<std::string, std::string> verdicts() const;
   /// One sentence for each guarantee or limit that is unmet; none: the run is a success.
   std::vector<std::string> unmet() const;
 };

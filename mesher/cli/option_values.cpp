@@ -46,15 +46,25 @@ std::pair<std::string, double> parse_label_length(const std::string& text, const
   return {label, parse_positive(text.substr(equals + 1), option + " " + label, "length in mm")};
 }
 
+std::vector<double> parse_numbers(const std::string& text, const std::string& option, std::size_t count,
+                                  const std::string& form) {
+  std::vector<double> numbers;
+  for (std::size_t begin = 0; begin <= text.size();) {
+    const std::size_t end = std::min(text.find(',', begin), text.size());
+    if (!read_all(text.substr(begin, end - begin), numbers.emplace_back()) || !std::isfinite(numbers.back()))
+      numbers.resize(count + 1);  // of no use, as too many are
+    begin = end + 1;
+  }
+  if (numbers.size() != count) throw InputError(fmt::format("{}: '{}' is not {}", option, text, form));
+  return numbers;
+}
+
 std::pair<double, double> parse_two_positive(const std::string& text, const std::string& option,
                                              const std::string& quantity) {
-  const std::size_t comma = std::min(text.find(','), text.size());
-  double first = 0, second = 0;
-  const bool are_read = comma < text.size() && read_all(text.substr(0, comma), first) &&
-                        read_all(text.substr(comma + 1), second);
-  if (!are_read || !std::isfinite(first) || !std::isfinite(second) || first <= 0 || second <= 0)
+  const std::vector<double> numbers = parse_numbers(text, option, 2, quantity);
+  if (numbers[0] <= 0 || numbers[1] <= 0)
     throw InputError(fmt::format("{}: '{}' is not {}", option, text, quantity));
-  return {first, second};
+  return {numbers[0], numbers[1]};
 }
 
 Target into(std::string& text) {

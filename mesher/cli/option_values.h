@@ -6,6 +6,7 @@
 #include <functional>
 #include <string>
 #include <utility>
+#include <vector>
 
 #include "podm/choices.h"
 #include "podm/errors.h"
@@ -39,6 +40,10 @@ Choice parse_choice(const std::string& text, const std::string& option) {
 
 /// "liver=2" or "7=0.5": a label, by name or value, and a length in mm.
 std::pair<std::string, double> parse_label_length(const std::string& text, const std::string& option);
+
+/// "0.5,-1,2": finite numbers, as many as asked for; `form` says what they should be.
+std::vector<double> parse_numbers(const std::string& text, const std::string& option, std::size_t count,
+                                  const std::string& form);
 
 /// "2,12.5": two positive numbers; `quantity` says what they should be.
 std::pair<double, double> parse_two_positive(const std::string& text, const std::string& option,

@@ -113,6 +113,7 @@ Command parse_command_line(std::vector<std::string> arguments, Program which) {
   ConvertCommand convert;
   InfoCommand info;
   PhantomCommand phantom;
+  ViewCommand view;
   const std::string name = which == Program::kPodmMpi ? "podm-mpi" : "podm";
   CLI::App program("Tetrahedral meshes with guarantees from segmented images.", name);
   program.formatter(std::make_shared<HelpFormatter>());
@@ -130,6 +131,7 @@ Command parse_command_line(std::vector<std::string> arguments, Program which) {
     add_convert_command(program, convert);
     add_info_command(program, info);
     add_phantom_command(program, phantom);
+    add_view_command(program, view);
   }
   try {
     std::reverse(arguments.begin(), arguments.end());  // CLI11 takes them from the back
@@ -149,6 +151,7 @@ Command parse_command_line(std::vector<std::string> arguments, Program which) {
   if (chosen == "replay") return replay;
   if (chosen == "convert") return convert;
   if (chosen == "info") return info;
+  if (chosen == "view") return view;
   return phantom;
 }
 

@@ -1,13 +1,16 @@
 // The command line as data. Parsing reads no file and prints nothing.
 #pragma once
 
+#include <array>
 #include <cstdint>
 #include <limits>
+#include <optional>
 #include <string>
 #include <utility>
 #include <variant>
 #include <vector>
 
+#include "podm/choices.h"
 #include "podm/image_io.h"
 #include "podm/mesh_image.h"
 #include "podm/mesh_io.h"
@@ -41,6 +44,7 @@ struct MeshCommand {
   std::string record_path;    ///< empty: no record
   std::string log_path;       ///< empty: no linearization log
   std::string schedule_path;  ///< empty: no schedule
+  std::string page_path;      ///< of --report; empty: no page
   std::string crossover;      ///< a number of threads or a file; empty: not asked
   MeshingOptions meshing;  ///< lacks crossover and the two fields below, which need files, image or machine
   std::vector<std::pair<std::string, double>> radius_of_mm;  ///< by label name or value
@@ -78,13 +82,37 @@ struct PhantomCommand {
   std::string output_path;
 };
 
+/// What colours the cells of a picture.
+enum class Colour { kLabel, kDihedral, kRatio, kSize };
+
+/// Where a picture cuts its mesh open: cells beyond, on the side that the normal points to, are left out.
+struct CutPlane {
+  std::array<double, 3> normal{0, 1, 0};  ///< of any length but 0
+  double place = 0.5;                     ///< along the normal
+  bool is_fraction = true;                ///< of the mesh's extent; else mm from the origin
+};
+
+/// podm view
+struct ViewCommand {
+  std::string mesh_path, output_path;
+  std::optional<CutPlane> cut = CutPlane();  ///< nothing: the mesh is whole
+  bool flip = false;                         ///< leave out the cells on the other side
+  std::vector<std::string> labels, hide;     ///< names or values; no labels: all
+  Colour colour = Colour::kLabel;
+  std::array<double, 2> camera_deg{20, 15};  ///< to the right of and above the direction that faces the cut
+  double zoom = 1;
+  std::array<int, 2> size{1600, 1200};  ///< pixels
+  std::string background = "#ffffff";
+  bool without_legend = false;
+};
+
 /// --help, --version: text for standard output.
 struct ShowText {
   std::string text;
 };
 
-using Command =
-    std::variant<MeshCommand, ReplayCommand, ConvertCommand, InfoCommand, PhantomCommand, ShowText>;
+using Command = std::variant<MeshCommand, ReplayCommand, ConvertCommand, InfoCommand, PhantomCommand, ViewCommand,
+                             ShowText>;
 
 /// podm-mpi has the command mesh alone. So has the Python package, without what is about files or a terminal:
 /// the image is no argument there.
@@ -94,3 +122,14 @@ enum class Program { kPodm, kPodmMpi, kPython };
 Command parse_command_line(std::vector<std::string> arguments, Program program = Program::kPodm);
 
 }  // namespace podm::cli
+
+namespace podm {
+
+template <>
+struct Names<cli::Colour> {
+  static constexpr std::array kAll{
+      std::pair{cli::Colour::kLabel, "label"}, std::pair{cli::Colour::kDihedral, "dihedral"},
+      std::pair{cli::Colour::kRatio, "ratio"}, std::pair{cli::Colour::kSize, "size"}};
+};
+
+}  // namespace podm

@@ -331,7 +331,7 @@ Json record(const MeshRun& run) {
       {"promised_dihedral_deg", promised_dihedral_of(report)},
       {"guarantees", guarantees_of(report.guarantees)},
       {"mesh_sha256", run.mesh_sha256.empty() ? Json() : Json(run.mesh_sha256)},
-      {"verdicts", run.verdicts},
+      {"verdicts", run.verdicts()},
       {"stop_reason", to_string(report.stop_reason)},
       {"warnings", report.warnings},
   };

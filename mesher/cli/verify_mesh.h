@@ -2,7 +2,7 @@
 #pragma once
 
 #include <functional>
-#include <map>
+#include <nlohmann/json.hpp>
 #include <string>
 #include <vector>
 
@@ -23,8 +23,8 @@ std::vector<std::string> claims_to_verify(const MeshRun& run,
 /// Runs the podm-verify beside this program on the mesh that `run` wrote: all claims but fidelity, which is
 /// promised only for cells about as small as voxels. The image goes with it as it is in its file, with the
 /// options that selected its labels; a phantom as a file beside the mesh, written for the purpose. The report
-/// for people goes to standard error unless the run is quiet. Returns the verdicts by claim, none where a
-/// signal has ended it or came before; throws InputError where the verifier is not there or tells nothing.
-std::map<std::string, std::string> verify_mesh(const MeshRun& run, const SignalThread& signals);
+/// for people goes to standard error unless the run is quiet. Returns that of podm-verify --json, null where
+/// a signal has ended it or came before; throws InputError where the verifier is not there or tells nothing.
+nlohmann::ordered_json verify_mesh(const MeshRun& run, const SignalThread& signals);
 
 }  // namespace podm::cli

@@ -9,11 +9,19 @@ if(SANITIZE)  # what links sanitized libraries must be sanitized as well
   set(flags -D CMAKE_CXX_FLAGS=-fsanitize=${SANITIZE})
 endif()
 run(${CMAKE_COMMAND} --install ${BUILD} --prefix ${SCRATCH}/prefix)
+run(${CMAKE_COMMAND} -E env DESTDIR=${SCRATCH}/staged ${CMAKE_COMMAND} --install ${BUILD} --prefix /usr)
 run(${CMAKE_COMMAND} -S ${EXAMPLE} -B ${SCRATCH}/build -D CMAKE_PREFIX_PATH=${SCRATCH}/prefix
     -D CMAKE_CXX_COMPILER=${COMPILER} -D CMAKE_BUILD_TYPE=Release ${flags})
 run(${CMAKE_COMMAND} --build ${SCRATCH}/build)
 run(${SCRATCH}/build/mesh_image phantom:spheres@24 5 ${SCRATCH}/example.vtu)
 run(${SCRATCH}/prefix/bin/podm mesh phantom:spheres@24 --radius 5 -o ${SCRATCH}/installed.vtu)
+if(EXISTS /usr/bin/xvfb-run)  # without the sources: what is installed runs wherever it is put
+  foreach(root ${SCRATCH}/prefix ${SCRATCH}/staged/usr)
+    run(${root}/bin/podm view ${SCRATCH}/installed.vtu -o ${SCRATCH}/installed.png --size 64x48)
+    run(${root}/bin/podm mesh phantom:spheres@24 --radius 5 --verify -o ${SCRATCH}/staged.vtu
+        --report ${SCRATCH}/staged.html)
+  endforeach()
+endif()
 
 # Nothing but the public headers is needed, so nothing else is installed.
 file(GLOB_RECURSE headers RELATIVE ${SCRATCH}/prefix/include ${SCRATCH}/prefix/include/*)

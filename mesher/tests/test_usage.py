@@ -13,11 +13,14 @@ OPTIONS = {
              "--max-seconds", "--max-memory-gib", "--threads", "--contention", "--algorithm", "--crossover", "--nodes",
              "--cores-per-node", "--initial-ratio", "--initial-threads", "--leaf-size", "--schedule", "--executor",
              "--virtual-cost", "--seed", "--log", "--begging", "--pin", "--oversubscribe", "--topology", "--stats",
-             "--verify", "--verify-fidelity", "--quiet", "--optimize", "--dihedral-bounds", "--gmsh-version"],
+             "--verify", "--verify-fidelity", "--report", "--quiet", "--optimize", "--dihedral-bounds",
+             "--gmsh-version"],
     "convert": ["--gmsh-version"],
     "replay": ["--labels", "--merge", "--drop", "--background", "--label-names"],
     "info": ["--labels", "--merge", "--drop", "--background", "--label-names", "--json"],
     "phantom": ["--size", "--output"],
+    "view": ["--output", "--cut", "--flip", "--labels", "--hide", "--colour", "--camera", "--zoom", "--size",
+             "--background", "--no-legend"],
 }
 
 

@@ -8,9 +8,11 @@ import json
 import sys
 from pathlib import Path
 
+from views.mesh import MeshError
+from views.read_mesh import read_mesh
+
 from .experiment_verdicts import HOW, VerdictsError, counts, read_experiment_verdicts
 from .load import RecordError, load
-from .mesh import MeshError, read_vtu
 from .outcome import make, readable_experiments, readable_verdicts
 from .schedule import ScheduleError, read_schedule
 from .write import markdown, write_figure, write_json, write_text
@@ -40,7 +42,7 @@ def add_inputs(parser):
                         help="report of `podm-verify --json`, for the histograms")
     parser.add_argument("--schedule", type=Path, metavar="JSONL",
                         help="schedule of a run of pdr or pdr-podm, for figure 2 (b)")
-    parser.add_argument("--mesh", type=Path, metavar="VTU", help="the mesh of that run, to be cut")
+    parser.add_argument("--mesh", type=Path, metavar="MESH", help="the mesh of that run, to be cut")
 
 
 def read_inputs(arguments):
@@ -50,7 +52,7 @@ def read_inputs(arguments):
 
     return load(arguments.records), {
         "report": given(arguments.verified, read_report), "schedule": given(arguments.schedule, read_schedule),
-        "mesh": given(arguments.mesh, read_vtu),
+        "mesh": given(arguments.mesh, read_mesh),
         "experiments": given(arguments.experiment_verdicts, read_experiment_verdicts)}
 
 

@@ -1,6 +1,6 @@
 """Figure 1: quality. Histograms from reports of podm-verify (`--json`); without one, the extremes that rows hold.
 
-The rendering of the mesh is scripts/render_mesh.py.
+The rendering of the mesh is made by `podm view`.
 """
 import numpy
 

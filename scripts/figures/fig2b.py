@@ -4,7 +4,7 @@ from matplotlib.collections import PolyCollection
 from matplotlib.patches import Patch, Rectangle
 
 from . import style
-from .mesh import plane_cut
+from .plane_cut import plane_cut
 from .schedule import active_pair, rings
 
 # Leaf, first ring, second ring of each of the two, as in the paper: green and red, paler outwards.

@@ -1,20 +1,19 @@
 """Files from tables and figures, whole or not at all."""
 import io
 import json
-import os
 import re
 import textwrap
 
 import matplotlib
 import pandas
 
+from views.whole_file import write_whole
+
 from . import style
 
 
 def write_text(path, text):
-    aside = path.with_name(path.name + ".part")
-    aside.write_text(text)
-    os.replace(aside, path)
+    write_whole(path, text.encode())
 
 
 def write_json(path, value):
@@ -28,9 +27,7 @@ def write_figure(figure, folder, name):
     for suffix, options in (("pdf", {"metadata": {"CreationDate": None}}), ("png", {"dpi": 160, "facecolor": "white"})):
         made = io.BytesIO()
         figure.savefig(made, format=suffix, **options)
-        aside = folder / f"{name}.{suffix}.part"
-        aside.write_bytes(made.getvalue())
-        os.replace(aside, folder / f"{name}.{suffix}")
+        write_whole(folder / f"{name}.{suffix}", made.getvalue())
 
 
 def svg_of(figure, name):

@@ -1,10 +1,43 @@
-"""Pieces of the page: tables, bars, folds. Every text is escaped here."""
+"""A page and its pieces: tables, bars, folds. Every text is escaped here."""
 from dataclasses import dataclass
 from html import escape
+from pathlib import Path
 
 import pandas
 
 from figures.table1 import MARKS
+
+
+STYLE = Path(__file__).with_name("page.css")
+
+
+def document(title, header, main, script):
+    """The whole page. Everything is inlined: it needs nothing but a browser."""
+    return f"""<!doctype html>
+<html lang="en">
+<head>
+<meta charset="utf-8">
+<meta name="viewport" content="width=device-width, initial-scale=1">
+<title>{escape(title)}</title>
+<link rel="icon" href="data:,">
+<style>{STYLE.read_text()}</style>
+</head>
+<body>
+<header>
+{header}
+</header>
+<main>
+{main}
+</main>
+{script}
+</body>
+</html>
+"""
+
+
+def section(name, title, content):
+    heading = f'<h2 id="{name}-title">{title}</h2>'
+    return f'<section id="{name}" aria-labelledby="{name}-title">{heading}\n{content}\n</section>'
 
 
 @dataclass(frozen=True)
@@ -42,6 +75,13 @@ def box(title, content):
 
 def fold(summary, content, is_open=False):
     return f"<details{' open' if is_open else ''}><summary>{escape(summary)}</summary>\n{content}</details>"
+
+
+def responsive(svg, title):
+    """The size comes from the page, the shape from the view box."""
+    head, rest = svg.split(">", 1)
+    kept = [part for part in head.replace("\n", " ").split(" ") if not part.startswith(("width=", "height="))]
+    return f'{" ".join(kept)} role="img" aria-label="{escape(title, quote=True)}">{rest}'
 
 
 def verdict_span(verdict):

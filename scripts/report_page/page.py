@@ -1,17 +1,15 @@
 """The page's HTML from an Outcome: four answers first, then everything they rest on. Everything is inlined."""
-import json
 from html import escape
-from pathlib import Path
 
 from figures import experiment_verdicts
 from figures.outcome import readable_experiments, readable_verdicts
 from figures.write import svg_of
 
 from .first_screen import first_screen
-from .html import box, fold, table_html, text_of
+from .html import box, document, fold, responsive, section, table_html, text_of
 from .limits import limits
+from .viewer import script, viewer_html
 
-HERE = Path(__file__).parent
 DOI = "https://doi.org/10.1016/j.proeng.2015.10.119"
 SECTIONS = {"claims": "Claims", "guarantees": "Guarantees", "tables": "Tables", "figures": "Figures",
             "simulated": "Simulated machine", "mesh": "Mesh", "environment": "Environment"}
@@ -53,38 +51,21 @@ MACHINE_TABLES = {"machine": "Machines described, and their constants",
 MACHINE_FIGURES = ("deviation", "lost")
 
 
-def page(records, outcome, mesh=None, mesh_fault=""):
+def page(records, outcome, mesh=None, mesh_fault="No mesh was given."):
     """`mesh`: of viewer.pack; without one, `mesh_fault` says why."""
     parts = {"claims": _claims(outcome), "guarantees": _guarantees(outcome), "tables": _tables(outcome),
              "figures": _figures(outcome, [name for name in FIGURE_TITLES if name not in MACHINE_FIGURES]),
-             "simulated": _machine(outcome), "mesh": _viewer(mesh, mesh_fault), "environment": _environment(records)}
-    body = "\n".join(_section(name, title, parts[name]) for name, title in SECTIONS.items())
+             "simulated": _machine(outcome), "mesh": viewer_html(mesh, mesh_fault),
+             "environment": _environment(records)}
+    body = "\n".join(section(name, title, parts[name]) for name, title in SECTIONS.items())
     links = " ".join(f'<a href="#{name}">{title}</a>' for name, title in SECTIONS.items())
-    script = f"<script>{(HERE / 'viewer.js').read_text()}</script>" if mesh else ""
-    return f"""<!doctype html>
-<html lang="en">
-<head>
-<meta charset="utf-8">
-<meta name="viewport" content="width=device-width, initial-scale=1">
-<title>PODMark: results</title>
-<link rel="icon" href="data:,">
-<style>{(HERE / "page.css").read_text()}</style>
-</head>
-<body>
-<header>
-<h1>Parallel Delaunay image-to-mesh: results</h1>
+    header = f"""<h1>Parallel Delaunay image-to-mesh: results</h1>
 <p class="faint">{_machines(records.frame)} Beside the values of <a href="{DOI}">Feng, Tsolakis, Chernikov and
-Chrisochoides, IMR24, 2015</a>. Published, measured and simulated values are never mixed.</p>
-</header>
-<main>
-{first_screen(records.frame, outcome)}
+Chrisochoides, IMR24, 2015</a>. Published, measured and simulated values are never mixed.</p>"""
+    main = f"""{first_screen(records.frame, outcome)}
 <nav aria-label="Sections">{links}</nav>
-{body}
-</main>
-{script}
-</body>
-</html>
-"""
+{body}"""
+    return document("PODMark: results", header, main, script(mesh))
 
 
 def _machines(frame):
@@ -93,11 +74,6 @@ def _machines(frame):
     fit = int(frame["headline"].sum())
     machines = " and ".join(escape(name) for name in frame["machine"].unique())
     return f"{len(frame)} trials on {machines}, {fit} of them verified and fit for numbers."
-
-
-def _section(name, title, content):
-    heading = f'<h2 id="{name}-title">{title}</h2>'
-    return f'<section id="{name}" aria-labelledby="{name}-title">{heading}\n{content}\n</section>'
 
 
 def _claims(outcome):
@@ -160,7 +136,7 @@ def _figures(outcome, names):
             made.append(f'<p class="faint">{title}: not drawn, {escape(outcome.missing[name])}.</p>')
             continue
         figure = outcome.figures[name]
-        picture = box(title, _responsive(svg_of(figure, name), title))
+        picture = box(title, responsive(svg_of(figure, name), title))
         made.append(f"<figure><h3>{title}</h3>{picture}<figcaption>{escape(figure.get_label())}</figcaption></figure>")
     return "\n".join(made)
 
@@ -170,33 +146,6 @@ def _machine(outcome):
     tables = [fold(title, table_html(outcome.tables[name][1], title), name != "lost")
               for name, title in MACHINE_TABLES.items() if name in outcome.tables]
     return "\n".join([limits(), *tables, _figures(outcome, MACHINE_FIGURES)])
-
-
-def _responsive(svg, title):
-    """The size comes from the page, the shape from the view box."""
-    head, rest = svg.split(">", 1)
-    kept = [part for part in head.replace("\n", " ").split(' ') if not part.startswith(("width=", "height="))]
-    return f'{" ".join(kept)} role="img" aria-label="{title}">{rest}'
-
-
-def _viewer(mesh, fault):
-    if mesh is None:
-        return f'<p class="faint">{escape(fault or "No mesh was given.")}</p>'
-    data = json.dumps(mesh).replace("<", "\\u003c")
-    return f"""<p>{mesh["cells"]:,} cells, cut open: those whose centres lie beyond the plane are left out. Drag to
-turn; wheel, two fingers, + and - zoom; arrow keys turn too.</p>
-<div id="viewer">
-<canvas tabindex="0" role="img" aria-label="The mesh in three dimensions, cells coloured by label"></canvas>
-<form>
-<div class="line"><label for="axis">across</label><select id="axis" name="axis"><option value="0">x</option>
-<option value="1" selected>y</option><option value="2">z</option></select></div>
-<div class="line"><label for="cut">cut</label>
-<input id="cut" name="cut" type="range" min="0" max="1" step="0.005" value="0.5"></div>
-<fieldset><legend>labels</legend><div data-labels></div></fieldset>
-</form>
-<p data-fault role="status"></p>
-</div>
-<script type="application/json" id="mesh-data">{data}</script>"""
 
 
 def _environment(records):

@@ -195,13 +195,13 @@ function steer(canvas, move) {
 
 // A switch for each label, of most cells first.
 function list(place, labels, toggle) {
-  for (const { value, colour, cells } of [...labels].sort((a, b) => b.cells - a.cells)) {
+  for (const { value, name, colour, cells } of [...labels].sort((a, b) => b.cells - a.cells)) {
     const [line, box, patch] = ["label", "input", "i"].map((name) => document.createElement(name));
     box.type = "checkbox";
     box.checked = true;
     box.addEventListener("input", () => toggle(value, box.checked));
     patch.style.background = colour;
-    line.append(box, patch, ` ${value}`);
+    line.append(box, patch, ` ${name}`);
     line.title = `${cells.toLocaleString()} cells`;
     place.append(line);
   }

@@ -1,14 +1,15 @@
-"""A mesh packed for viewer.js: zlib of points, cells and labels, in base64."""
+"""A mesh packed for viewer.js: zlib of points, cells and labels, in base64; and what stands around it in a page."""
 import base64
+import json
 import zlib
+from html import escape
+from pathlib import Path
 
 import numpy
+from views.colours import colours_of_labels
 
 MAX_CELLS = 200_000
-# The label of the greatest volume is pale, as scripts/render_mesh.py has it.
-PALE = "#ede3d1"
-PALETTE = ["#cc5c54", "#4582b5", "#f2b854", "#6ba36b", "#9473b3", "#e88c66", "#5cadb0", "#db8fad", "#9e8c59", "#8c9ed1",
-           "#b5c769", "#8f575c", "#4d6b78", "#d4c28c", "#b89cc9"]
+SCRIPT = Path(__file__).with_name("viewer.js")
 
 
 class TooManyCells(Exception):
@@ -21,15 +22,16 @@ def pack(mesh):
         raise TooManyCells(f"{len(mesh.cells):,} cells are too many for a page; give it a mesh of at most "
                            f"{MAX_CELLS:,}, for example of `podm mesh --target-elements 100000`")
     used, cells = numpy.unique(mesh.cells, return_inverse=True)
-    cells = _outward(mesh.points[used], cells.reshape(-1, 4))
+    cells = _outward(mesh, cells.reshape(-1, 4))
     points, low, step_mm = _quantized(mesh.points[used])
     values, labels = numpy.unique(mesh.labels, return_inverse=True)
+    colours = colours_of_labels(mesh)
     parts = [points.astype("<u2"), cells.astype("<u4"), labels.astype("<u2")]
     return {
         "points": len(points), "cells": len(cells), "low_mm": low.tolist(), "step_mm": step_mm,
         "size": points.max(axis=0).tolist(),
-        "labels": [{"value": int(value), "colour": colour, "cells": int(count)}
-                   for value, colour, count in zip(values, _colours(mesh), numpy.bincount(labels))],
+        "labels": [{"value": int(value), "name": mesh.name_of(value), "colour": colours[int(value)],
+                    "cells": int(count)} for value, count in zip(values, numpy.bincount(labels))],
         "data": base64.b64encode(zlib.compress(b"".join(part.tobytes() for part in parts), 9)).decode(),
     }
 
@@ -40,23 +42,33 @@ def _quantized(points):
     return numpy.round((points - low) / step_mm).astype(int), low, step_mm
 
 
-def _outward(points, cells):
+def _outward(mesh, cells):
     """Cells of positive volume, so that their facets face outwards."""
-    mirrored = _volumes(points, cells) < 0
+    mirrored = mesh.volumes_mm3() < 0
     cells[mirrored] = cells[mirrored][:, [1, 0, 2, 3]]
     return cells
 
 
-def _volumes(points, cells):
-    a, b, c, d = (points[cells[:, corner]] for corner in range(4))
-    return numpy.einsum("ij,ij->i", numpy.cross(b - a, c - a), d - a) / 6
+def viewer_html(packed, fault):
+    """`packed`: of pack(), or None, where `fault` says why. Needs script() at the end of the page."""
+    if packed is None:
+        return f'<p class="faint">{escape(fault)}</p>'
+    data = json.dumps(packed).replace("<", "\\u003c")
+    return f"""<p>{packed["cells"]:,} cells, cut open: those whose centres lie beyond the plane are left out. Drag to
+turn; wheel, two fingers, + and - zoom; arrow keys turn too.</p>
+<div id="viewer">
+<canvas tabindex="0" role="img" aria-label="The mesh in three dimensions, cells coloured by label"></canvas>
+<form>
+<div class="line"><label for="axis">across</label><select id="axis" name="axis"><option value="0">x</option>
+<option value="1" selected>y</option><option value="2">z</option></select></div>
+<div class="line"><label for="cut">cut</label>
+<input id="cut" name="cut" type="range" min="0" max="1" step="0.005" value="0.5"></div>
+<fieldset><legend>labels</legend><div data-labels></div></fieldset>
+</form>
+<p data-fault role="status"></p>
+</div>
+<script type="application/json" id="mesh-data">{data}</script>"""
 
 
-def _colours(mesh):
-    """One a label, in the order of label values, by rank of volume."""
-    _, labels = numpy.unique(mesh.labels, return_inverse=True)
-    volumes = numpy.bincount(labels, numpy.abs(_volumes(mesh.points, mesh.cells)))
-    colours = [""] * len(volumes)
-    for rank, label in enumerate(numpy.argsort(-volumes)):
-        colours[label] = PALE if rank == 0 and len(volumes) > 1 else PALETTE[(rank - 1) % len(PALETTE)]
-    return colours
+def script(packed):
+    return f"<script>{SCRIPT.read_text()}</script>" if packed else ""

@@ -10,9 +10,11 @@ import numpy
 import paths  # noqa: F401
 import synthetic
 from figures import fig2b
-from figures.mesh import Mesh, MeshError, plane_cut, read_vtu
+from figures.plane_cut import plane_cut
 from figures.schedule import ScheduleError, active_pair, read_schedule, rings
 from report_page import viewer
+from views.mesh import Mesh, MeshError
+from views.read_mesh import read_mesh
 
 
 def area(polygons):
@@ -87,13 +89,13 @@ class Files(unittest.TestCase):
     def test_reads_vtu_and_refuses_what_is_none(self):
         points, cells, labels = synthetic.box_mesh(side=2)
         synthetic.write_vtu(self.folder / "mesh.vtu", points, cells, labels)
-        mesh = read_vtu(self.folder / "mesh.vtu")
+        mesh = read_mesh(self.folder / "mesh.vtu")
         numpy.testing.assert_array_equal(mesh.points, points)
         numpy.testing.assert_array_equal(mesh.cells, cells)
         numpy.testing.assert_array_equal(mesh.labels, labels)
         (self.folder / "mesh.vtu").write_text("no mesh")
         with self.assertRaisesRegex(MeshError, "mesh.vtu: no cells"):
-            read_vtu(self.folder / "mesh.vtu")
+            read_mesh(self.folder / "mesh.vtu")
 
 
 class Packed(unittest.TestCase):

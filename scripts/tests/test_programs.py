@@ -82,7 +82,7 @@ class Programs(unittest.TestCase):
         for program, arguments, words in (
             ("make_figures", ["--records", self.folder / "none"], "none: no such file or folder"),
             ("make_figures", ["--records", newer], "newer.jsonl:1: schema 9"),
-            ("report", ["--records", fine, "--mesh", fine], "fine.jsonl: no cells"),
+            ("report", ["--records", fine, "--mesh", fine], "fine.jsonl: no mesh file that can be shown"),
             ("report", ["--records", fine, "--verified", fine], "fine.jsonl: not a report of schema podm-verify/1"),
             ("report", ["--records", fine, "--schedule", fine],
              "fine.jsonl: schema 4; this program reads podm-schedule/1"),

@@ -1,37 +1,5 @@
-"""Tetrahedra of a .vtu file, and plane cuts through them."""
-from dataclasses import dataclass
-
+"""Plane cuts through tetrahedra."""
 import numpy
-
-
-class MeshError(Exception):
-    """A mesh that cannot be read; the text names the file and the fault."""
-
-
-@dataclass(frozen=True)
-class Mesh:
-    points: numpy.ndarray  # n x 3, mm
-    cells: numpy.ndarray  # m x 4, indices of points
-    labels: numpy.ndarray  # m
-
-
-def read_vtu(path):
-    """Needs Debian's python3-vtk9. Raises MeshError."""
-    import vtk  # slow to load: only where a mesh is drawn
-    from vtk.util.numpy_support import vtk_to_numpy
-
-    vtk.vtkObject.GlobalWarningDisplayOff()  # failures are told in one line each
-    reader = vtk.vtkXMLUnstructuredGridReader()
-    reader.SetFileName(str(path))
-    reader.Update()
-    grid = reader.GetOutput()
-    if grid.GetNumberOfCells() == 0 or not grid.GetCellData().HasArray("label"):
-        raise MeshError(f"{path}: no cells with an array `label`")
-    if set(vtk_to_numpy(grid.GetCellTypesArray())) != {vtk.VTK_TETRA}:
-        raise MeshError(f"{path}: cells other than tetrahedra")
-    return Mesh(vtk_to_numpy(grid.GetPoints().GetData()).astype(float),
-                vtk_to_numpy(grid.GetCells().GetConnectivityArray()).reshape(-1, 4),
-                vtk_to_numpy(grid.GetCellData().GetArray("label")))
 
 
 def plane_cut(points, cells, height):

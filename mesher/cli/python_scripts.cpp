@@ -1,0 +1,27 @@
+#include "cli/python_scripts.h"
+
+#include <fmt/format.h>
+#include <unistd.h>
+
+#include <filesystem>
+
+#include "podm/errors.h"
+
+namespace podm::cli {
+namespace {
+
+constexpr const char* kPython = "/usr/bin/python3";  // Debian's modules belong to it
+
+}  // namespace
+
+std::vector<std::string> script_command(const std::string& script, const std::string& asked_by) {
+  const auto folder = std::filesystem::read_symlink("/proc/self/exe").parent_path().parent_path();
+  const std::string path = (folder / PODM_SHARE / script).string();
+  if (::access(kPython, X_OK) != 0)
+    throw InputError(fmt::format("{}: {} is not there; install Debian's python3", asked_by, kPython));
+  if (::access(path.c_str(), R_OK) != 0)
+    throw InputError(fmt::format("{}: {} is not there; podm is not installed whole", asked_by, path));
+  return {kPython, "-E", "-s", "-B", path};
+}
+
+}  // namespace podm::cli

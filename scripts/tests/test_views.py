@@ -1,0 +1,240 @@
+"""Meshes to look at: what is read, measured and drawn of them."""
+import io
+import json
+import random
+import struct
+import subprocess
+import tempfile
+import unittest
+from pathlib import Path
+
+import matplotlib.image
+import numpy
+import paths
+import synthetic
+from views import colours, cut, quality
+from views.mesh import Mesh, MeshError
+from views.read_mesh import read_mesh
+from views.view import plane_of
+
+XVFB = Path("/usr/bin/xvfb-run")
+NAMES = {1: "left half", 2: "right half"}
+
+
+def box(side=3):
+    return Mesh(*synthetic.box_mesh(side), NAMES)
+
+
+def labels_of_cells(mesh):
+    """By the cells' corners, in whatever order these come."""
+    return {tuple(sorted(map(tuple, corners))): label for corners, label in zip(mesh.corners(), mesh.labels)}
+
+
+def write_medit(path, mesh):
+    lines = ["MeshVersionFormatted 2", "# label 1 left half", "# label 2 right half", "Dimension 3", "Vertices",
+             str(len(mesh.points)), *(f"{x} {y} {z} 0" for x, y, z in mesh.points), "Tetrahedra", str(len(mesh.cells))]
+    lines += [" ".join(map(str, [*(cell + 1), label])) for cell, label in zip(mesh.cells, mesh.labels)]
+    path.write_text("\n".join([*lines, "End", ""]))
+
+
+def write_gmsh(path, mesh):
+    """Binary 4.1, a volume a label; tags of nodes descend, so that positions and tags differ."""
+    count = len(mesh.points)
+    parts = [b"$MeshFormat\n4.1 1 8\n", struct.pack("<i", 1), b"\n$EndMeshFormat\n$PhysicalNames\n2\n",
+             *(f'3 {value} "{name}"\n'.encode() for value, name in NAMES.items()),
+             b"$EndPhysicalNames\n$Entities\n", struct.pack("<4Q", 0, 0, 0, 2)]
+    parts += [struct.pack("<i6dQiQ", value + 10, *[0.0] * 6, 1, value, 0) for value in NAMES]
+    parts += [b"\n$EndEntities\n$Nodes\n", struct.pack("<4Q", 1, count, 1, count), struct.pack("<3iQ", 3, 11, 0, count),
+              numpy.arange(count, 0, -1).astype("<u8").tobytes(), mesh.points.astype("<f8").tobytes(),
+              b"\n$EndNodes\n$Elements\n", struct.pack("<4Q", 2, len(mesh.cells), 1, len(mesh.cells))]
+    for value in NAMES:
+        own = mesh.cells[mesh.labels == value]
+        rows = numpy.column_stack([numpy.arange(len(own)), count - own])
+        parts += [struct.pack("<3iQ", 3, value + 10, 4, len(own)), rows.astype("<u8").tobytes()]
+    path.write_bytes(b"".join([*parts, b"\n$EndElements\n"]))
+
+
+WRITERS = {"mesh.mesh": write_medit, "mesh.msh": write_gmsh,
+           "mesh.vtu": lambda path, mesh: synthetic.write_vtu(path, mesh.points, mesh.cells, mesh.labels)}
+
+
+class InFolder(unittest.TestCase):
+    def setUp(self):
+        folder = tempfile.TemporaryDirectory()
+        self.addCleanup(folder.cleanup)
+        self.folder = Path(folder.name)
+
+    def write(self, name, mesh):
+        WRITERS[name](self.folder / name, mesh)
+        return self.folder / name
+
+
+class Files(InFolder):
+    def test_formats_hold_the_same_mesh(self):
+        mesh = box()
+        for name in WRITERS:
+            with self.subTest(name=name):
+                back = read_mesh(self.write(name, mesh))
+                self.assertEqual(labels_of_cells(back), labels_of_cells(mesh))
+                if name != "mesh.vtu":  # as that writer tells no names
+                    self.assertEqual(back.names, NAMES)
+
+    def test_damaged_files_are_refused_or_read_and_nothing_else(self):
+        draw = random.Random(5)
+        refused = 0
+        for name in ("mesh.mesh", "mesh.msh"):
+            whole = self.write(name, box(1)).read_bytes()
+            for _ in range(400):
+                data = bytearray(whole[:draw.randrange(len(whole) + 1)] if draw.random() < 0.5 else whole)
+                for _ in range(draw.randrange(4)):
+                    if data:
+                        data[draw.randrange(len(data))] = draw.randrange(256)
+                (self.folder / name).write_bytes(data)
+                try:
+                    read_mesh(self.folder / name)
+                except MeshError as error:
+                    self.assertIn(name, str(error))
+                    refused += 1
+        self.assertGreater(refused, 400)
+
+    def test_what_cannot_be_shown_is_named(self):
+        for path, words in ((self.folder / "none.vtu", "none.vtu: No such file"),
+                            (self.folder / "mesh.inp", "mesh.inp: no mesh file that can be shown; convert it"),
+                            (self.folder, "no mesh file")):
+            with self.assertRaisesRegex(MeshError, words):
+                read_mesh(path)
+
+
+class Quality(unittest.TestCase):
+    def measured(self, *corners):
+        mesh = Mesh(numpy.array(corners, float), numpy.arange(4)[None], numpy.array([1]))
+        return {name: quality.measured(mesh, name)[0] for name in quality.MEASURES}
+
+    def test_a_regular_tetrahedron(self):
+        found = self.measured((1, 1, 1), (1, -1, -1), (-1, 1, -1), (-1, -1, 1))
+        self.assertAlmostEqual(found["dihedral"], numpy.degrees(numpy.arccos(1 / 3)))
+        self.assertAlmostEqual(found["ratio"], numpy.sqrt(3 / 8))
+        self.assertAlmostEqual(found["size"], numpy.sqrt(3))
+
+    def test_a_corner_of_a_cube(self):
+        angles = quality.dihedral_angles_deg(numpy.array([[(0, 0, 0), (1, 0, 0), (0, 1, 0), (0, 0, 1)]], float))
+        numpy.testing.assert_allclose(sorted(angles[0]), [numpy.degrees(numpy.arctan(numpy.sqrt(2)))] * 3 + [90] * 3)
+
+    def test_a_flat_cell_has_angles_and_no_circumradius(self):
+        found = self.measured((0, 0, 0), (1, 0, 0), (1, 1, 0), (0, 1, 0))
+        self.assertAlmostEqual(found["dihedral"], 0)
+        self.assertTrue(numpy.isnan(found["ratio"]) and numpy.isnan(found["size"]))
+
+    def test_blocks_do_not_matter(self):
+        mesh = box(4)
+        whole, block = quality.measured(mesh, "ratio"), quality.BLOCK
+        self.addCleanup(setattr, quality, "BLOCK", block)
+        quality.BLOCK = 7
+        numpy.testing.assert_array_equal(quality.measured(mesh, "ratio"), whole)
+
+
+class Cut(unittest.TestCase):
+    def plane(self, flip=False, **changes):
+        return plane_of({"normal": [1, 1, 0], "place": 0.4, "is_fraction": True, **changes}, flip)
+
+    def test_both_sides_make_up_the_mesh(self):
+        mesh = box()
+        for changes in ({}, {"place": 1.1, "is_fraction": False}, {"normal": [0, 0, 5]}):
+            sides = [cut.shown_cells(mesh, self.plane(flip, **changes), [], []) for flip in (False, True)]
+            numpy.testing.assert_array_equal(numpy.sort(numpy.concatenate(sides)), numpy.arange(len(mesh.cells)))
+            self.assertGreater(min(map(len, sides)), 0)
+
+    def test_no_cell_shown_has_its_centre_beyond(self):
+        mesh, plane = box(), self.plane(place=1.5, is_fraction=False)
+        centers = mesh.corners().mean(axis=1)
+        shown = cut.shown_cells(mesh, plane, [], [])
+        self.assertTrue((centers[shown, :2].sum(axis=1) <= 1.5 * numpy.sqrt(2)).all())
+
+    def test_labels_go_by_name_or_value(self):
+        mesh = box()
+        for names, hidden in ((["right half"], []), (["2"], []), ([], ["left half"]), (["1", "2"], ["1"])):
+            shown = cut.shown_cells(mesh, None, names, hidden)
+            numpy.testing.assert_array_equal(shown, numpy.flatnonzero(mesh.labels == 2))
+
+    def test_what_is_no_label_or_leaves_nothing_is_told(self):
+        mesh = box()
+        for plane, names, hidden, words in (
+            (None, ["rigt half"], [], "--labels: no label .* called 'rigt half', did you mean 'right half'"),
+            (None, [], ["7"], "--hide: no label .* called '7'; it has left half, right half"),
+            (None, ["1"], ["1"], "leave no cell"),
+            (self.plane(place=-9, is_fraction=False), [], [], "--cut: the plane leaves no cell"),
+        ):
+            with self.assertRaisesRegex(MeshError, words):
+                cut.shown_cells(mesh, plane, names, hidden)
+
+
+class Colours(unittest.TestCase):
+    def test_labels_differ_and_the_largest_is_pale(self):
+        count = 1 + 3 * len(colours.PALETTE)
+        mesh = box(4)
+        many = Mesh(mesh.points, mesh.cells, numpy.minimum(numpy.arange(len(mesh.cells)), count - 1))
+        table = colours.colours_of_labels(many)
+        self.assertEqual(len(set(table.values())), count)
+        self.assertEqual(table[count - 1], colours.PALE)
+
+    def test_a_single_label_is_not_pale(self):
+        mesh = box(1)
+        table = colours.colours_of_labels(Mesh(mesh.points, mesh.cells, mesh.labels * 0))
+        self.assertNotEqual(table, {0: colours.PALE})
+
+
+class Camera(unittest.TestCase):
+    def test_axes_are_right_handed_and_face_the_cut(self):
+        from views.picture import camera_axes
+        for towards in numpy.eye(3).tolist() + (-numpy.eye(3)).tolist() + [[0.6, 0, 0.8]]:
+            for angles in ((0, 0), (20, 15), (-70, 60)):
+                axes = camera_axes(numpy.array(towards), *angles)
+                numpy.testing.assert_allclose(axes @ axes.T, numpy.eye(3), atol=1e-12)
+                self.assertAlmostEqual(numpy.linalg.det(axes), 1)
+                turned = numpy.degrees(numpy.arccos(numpy.dot(axes[2], towards)))
+                if angles == (0, 0):
+                    self.assertAlmostEqual(turned, 0, places=5)
+                else:
+                    self.assertGreater(turned, 10)
+
+
+@unittest.skipUnless(XVFB.exists(), "xvfb is not installed")
+class Picture(InFolder):
+    REQUEST = {"cut": {"normal": [0, 1, 0], "place": 0.5, "is_fraction": True}, "flip": False, "labels": [], "hide": [],
+               "colour": "label", "camera_deg": [20, 15], "zoom": 1, "size": [320, 240], "background": "#ffffff",
+               "legend": False}
+
+    def draw(self, **changes):
+        """The picture, height x width x 3, from 0 to 255."""
+        path = self.write("mesh.mesh", box())
+        request = {**self.REQUEST, "mesh": str(path), "output": str(self.folder / "picture.png"), **changes}
+        done = subprocess.run([XVFB, "-a", "/usr/bin/python3", "-E", "-s", "-B", paths.SCRIPTS / "view",
+                               json.dumps(request)], capture_output=True, text=True)
+        self.assertEqual(done.returncode, 0, done.stderr)
+        data = (self.folder / "picture.png").read_bytes()
+        return numpy.round(255 * matplotlib.image.imread(io.BytesIO(data))[..., :3]).astype(int)
+
+    def share_of(self, picture, hue):
+        """Of pixels whose greatest channel is that one, by a margin."""
+        others = [channel for channel in range(3) if channel != hue]
+        return (picture[..., hue] > picture[..., others].max(axis=2) + 20).mean()
+
+    def test_labels_have_their_colours_and_can_be_hidden(self):
+        picture = self.draw()
+        self.assertEqual(picture.shape, (240, 320, 3))
+        self.assertTrue((picture[0, 0] == 255).all())
+        self.assertGreater(self.share_of(picture, 0), 0.05)  # red: the smaller label
+        self.assertGreater((picture[..., 0] < 255).mean(), 0.3)
+        self.assertLess(self.share_of(self.draw(hide=["left half"]), 0), 0.01)
+
+    def test_quality_background_and_legend_show(self):
+        picture = self.draw(colour="ratio", background="#102030")
+        self.assertEqual(picture[0, 0].tolist(), [0x10, 0x20, 0x30])
+        with_legend = self.draw(colour="ratio", background="#102030", legend=True, size=[640, 480])
+        strip = with_legend[:, 520:].reshape(-1, 3)
+        self.assertGreater((strip.min(axis=1) > 150).sum(), 10)  # its text
+        self.assertGreater(len(numpy.unique(strip, axis=0)), 30)  # its ramp
+
+
+if __name__ == "__main__":
+    unittest.main()
