@@ -75,7 +75,6 @@ class Optimization {
     parallel_for_ranges(bound, kChunk, workers_.size(), [&](std::size_t begin, std::size_t end, std::size_t) {
       std::uint64_t sum = 0;
       for (auto c = static_cast<CellId>(begin); c < end; ++c) {
-        if (c + kLookahead < bound) mesh_.prefetch_surroundings(c + kLookahead);
         if (!mesh_.cell(c).is_alive() || mesh_.label(c) == kBackground) continue;
         sum += share_of_interface_hash(mesh_, c, mesh_.label(c));
         visit(c);
@@ -91,8 +90,10 @@ class Optimization {
   // Nothing is allocated by threads of a parallel loop, which must not throw.
   Entries find_bad_cells(std::uint64_t& hash_of_interfaces) const {
     std::vector<std::uint8_t> is_bad(mesh_.cell_bound());
-    hash_of_interfaces =
-        hash_and_visit([&](CellId c) { is_bad[c] = cell_quality(mesh_, c, parameters_.aim.bounds()) < 1; });
+    hash_of_interfaces = hash_and_visit([&](CellId c) {
+      if (c + kLookahead < is_bad.size()) mesh_.prefetch_vertices(c + kLookahead);
+      is_bad[c] = cell_quality(mesh_, c, parameters_.aim.bounds()) < 1;
+    });
     Entries bad;
     for (CellId c = 0; c < is_bad.size(); ++c)
       if (is_bad[c] != 0) bad.push_back({c, mesh_.stamp(c)});
