@@ -111,7 +111,7 @@ int run(const MeshCommand& command) {
     // Beside the writing where there are threads for both.
     std::future<std::string> hash = std::async(threads == 1 ? std::launch::deferred : std::launch::async,
                                                [&] { return mesh_sha256(result.mesh); });
-    write_outputs(command, result.mesh, warnings);
+    write_outputs(command, result.mesh, run.report.warnings);
     run.mesh_sha256 = hash.get();
     if (log) finish_log(*log, run);
     if (!command.schedule_path.empty()) write_schedule(run, command.schedule_path);

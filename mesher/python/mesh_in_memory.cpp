@@ -24,7 +24,7 @@ MeshInMemory::MeshInMemory(cli::MeshCommand command, const Input& input, const P
            .report = {},
            .mesh = {},
            .mesh_sha256 = {},
-           .verdicts = {}} {
+           .verification = nullptr} {
   command_.image.path = input.path;
   command_.image.is_array = input.array.has_value();
   const std::uint64_t limit_bytes = cli::memory_limit_bytes(command_);
