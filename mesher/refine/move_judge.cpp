@@ -8,12 +8,6 @@
 
 namespace podm {
 
-namespace {
-
-constexpr double square(double x) { return x * x; }
-
-}  // namespace
-
 // Calls visit(CellId) for each, until it returns false.
 template <class Visit>
 bool MoveJudge::all_of_planned(const Visit& visit) const {
@@ -71,7 +65,7 @@ Ball MoveJudge::ball_of(CellId c) const {
 bool MoveJudge::reaches(CellId c, const Point& from) const {
   const Cell& cell = move_.cell(c);
   const double r2 = cell.squared_radius * (1 + 2 * kStoredSphereTolerance);
-  const double s2 = square(covered_from(from).radius);
+  const double s = covered_from(from).radius, s2 = s * s;
   const double beyond = squared_distance(cell.center, from) - r2 - s2;
   return !(beyond > 0 && beyond * beyond > 4 * r2 * s2);  // true where the radius is not certified, NaN
 }
