@@ -38,7 +38,7 @@ struct NetworkArguments {
 /// podm mesh
 struct MeshCommand {
   ImageArguments image;
-  std::string mesh_path;      ///< empty: the mesh stays in memory
+  std::string mesh_path;  ///< empty: the mesh stays in memory
   MeshFileOptions mesh_file;
   std::string surface_path;   ///< empty: no surfaces
   std::string record_path;    ///< empty: no record
@@ -111,8 +111,8 @@ struct ShowText {
   std::string text;
 };
 
-using Command = std::variant<MeshCommand, ReplayCommand, ConvertCommand, InfoCommand, PhantomCommand, ViewCommand,
-                             ShowText>;
+using Command = std::variant<MeshCommand, ReplayCommand, ConvertCommand, InfoCommand, PhantomCommand,
+                             ViewCommand, ShowText>;
 
 /// podm-mpi has the command mesh alone. So has the Python package, without what is about files or a terminal:
 /// the image is no argument there.
