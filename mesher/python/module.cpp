@@ -185,7 +185,8 @@ void define_mesh(py::module_& module) {
 
 // As exceptions of the package, in its terms.
 void translate(std::exception_ptr thrown) {
-  static const py::object package_errors = py::module_::import("podm.errors");
+  // Never released: the interpreter is gone when statics are.
+  static const py::handle package_errors = py::module_::import("podm.errors").release();
   const auto raise = [](const char* name, const std::string& text) {
     PyErr_SetString(package_errors.attr(name).ptr(), in_python_terms(text).c_str());
   };

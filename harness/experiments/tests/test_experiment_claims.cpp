@@ -110,6 +110,26 @@ const std::map<std::string, SetValue> kSetters = {
        mesh_of(row);
        row.process.bytes_per_cell_beyond_image = value;
      }},
+    {"dihedral_seconds",
+     [](Row& row, double value) {
+       mesh_of(row).phases_s = {{"perturb", value}};
+     }},
+    {"dihedral_cells_per_second",
+     [](Row& row, double value) {
+       mesh_of(row).cells = many(value);
+       mesh_of(row).phases_s = {{"perturb", kMuch}};
+     }},
+    {"poor_share_left",
+     [](Row& row, double value) {
+       PerturbedRecord& told = mesh_of(row).perturbed.emplace();
+       told.before.with_free_vertex = many(1);
+       told.after.with_free_vertex = many(value);
+     }},
+    {"beyond_bounds_per_million",
+     [](Row& row, double value) {
+       mesh_of(row).cells = many(1);
+       mesh_of(row).optimization.emplace().beyond_bounds = many(value / 1e6);
+     }},
     {"lost_seconds", [](Row& row, double value) { set_overhead(row, value, 0, 0); }},
     {"contention_seconds", [](Row& row, double value) { set_overhead(row, value, 0, 0); }},
     {"rollback_seconds", [](Row& row, double value) { set_overhead(row, 0, value, 0); }},
@@ -142,6 +162,20 @@ const std::map<std::string, SetValue> kSetters = {
     {"fidelity_proved",
      [](Row& row, double value) {
        mesh_of(row).verdicts = {{"fidelity", value == 1 ? Proof::kPass : Proof::kNotRun}};
+     }},
+    {"dihedral_proved",
+     [](Row& row, double value) {
+       mesh_of(row).verdicts = {{"dihedral", value == 1 ? Proof::kPass : Proof::kNotRun}};
+     }},
+    {"poisson_jacobi_iterations",
+     [](Row& row, double value) {
+       mesh_of(row);
+       row.solve.emplace().poisson.jacobi.iterations = many(value);
+     }},
+    {"elasticity_jacobi_iterations",
+     [](Row& row, double value) {
+       mesh_of(row);
+       row.solve.emplace().elasticity.jacobi.iterations = many(value);
      }},
     {"replay_equal",
      [](Row& row, double value) {
