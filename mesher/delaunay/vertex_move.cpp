@@ -8,7 +8,8 @@ namespace podm {
 
 void VertexMove::begin(VertexId v, const HoleFiller& hole) {
   v_ = v;
-  moved_ = mesh_.vertex(v);
+  moved_.point = mesh_.point(v);  // never its lock word, which others read at any time
+  moved_.kind = mesh_.vertex(v).kind;
   hole.list(mesh_, kFirstPlanned, cells_);
   num_in_hole_ = cells_.size();
   reglued_.clear();
