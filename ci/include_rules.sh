@@ -32,24 +32,27 @@ may_include() {
   esac
 }
 
-# The part of the tree that a file belongs to. Tests and benchmarks of the mesher see all of it.
-part_of() {
+# Sets `part` to the part of the tree that a file belongs to. Tests and benchmarks of the mesher see all of it.
+set_part_of() {
+  part=${1#*/}
+  part=${1%%/*}/${part%%/*}  # its first two folders
   case $1 in
-    mesher/include/podm/mesh_image.h | mesher/include/podm/meshing_*.h) echo podm ;;
-    mesher/*/tests/*) echo mesher/tests ;;
-    mesher/main*.cpp) echo mesher/cli ;;
-    mesher/cli/foreign_mesh.cpp) echo mesher/cli/foreign_mesh ;;  # alone reads with the verifier's readers
-    mesher/*/*) echo "$1" | cut -d/ -f1-2 ;;
-    examples/*) echo "$1" | cut -d/ -f1-2 ;;
-    *) echo "${1%%/*}" ;;
+    mesher/include/podm/mesh_image.h | mesher/include/podm/meshing_*.h) part=podm ;;
+    mesher/*/tests/*) part=mesher/tests ;;
+    mesher/main*.cpp) part=mesher/cli ;;
+    mesher/cli/foreign_mesh.cpp) part=mesher/cli/foreign_mesh ;;  # alone reads with the verifier's readers
+    mesher/*/* | examples/*) ;;
+    *) part=${1%%/*} ;;
   esac
 }
 
-# The file of ours that `#include "$2"` or <$2> in file $1 means; nothing when it is not ours.
-resolve() {
-  for folder in "$(dirname "$1")" "${1%%/*}" mesher mesher/include verifiers harness; do  # its own part's first
-    [ ! -f "$folder/$2" ] || { realpath --relative-to=. "$folder/$2"; return; }
+# Sets `target` to the file of ours that `#include "$2"` or <$2> in file $1 means; to nothing when it is not ours.
+set_target_of() {
+  for folder in "${1%/*}" "${1%%/*}" mesher mesher/include verifiers harness; do  # its own part's first
+    target=$folder/$2
+    [ ! -f "$target" ] || return 0
   done
+  target=""
 }
 
 is_allowed() {  # $1 includes $2, both parts of the tree
@@ -64,10 +67,13 @@ is_allowed() {  # $1 includes $2, both parts of the tree
 includes=$(git grep -nE '^[[:space:]]*#[[:space:]]*include[[:space:]]*["<]' -- '*.h' '*.cpp')
 violations=$(echo "$includes" | while IFS=: read -r file line text; do
   name=${text#*[\"<]}
-  target=$(resolve "$file" "${name%%[\">]*}")
+  name=${name%%[\">]*}
+  case $name in ../* | */../*) echo "$file:$line: a path that goes up: $name" ;; esac
+  set_target_of "$file" "$name"
   [ -n "$target" ] || continue
-  from=$(part_of "$file")
-  to=$(part_of "$target")
-  is_allowed "$from" "$to" || echo "$file:$line: $from may not include $target"
+  set_part_of "$file"
+  from=$part
+  set_part_of "$target"
+  is_allowed "$from" "$part" || echo "$file:$line: $from may not include $target"
 done)
 [ -z "$violations" ] || { echo "$violations"; exit 1; }
