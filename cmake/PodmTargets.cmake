@@ -37,6 +37,8 @@ function(podm_add_test name)
   add_executable(${name} EXCLUDE_FROM_ALL ${ARG_SOURCES})
   add_dependencies(tests ${name})
   target_link_libraries(${name} PRIVATE ${ARG_LIBS} podm_flags GTest::gtest_main)
+  # Most of the time to compile a test goes to headers that others have, too.
+  set_target_properties(${name} PROPERTIES UNITY_BUILD ${PODM_UNITE} UNITY_BUILD_BATCH_SIZE 8)
   include(GoogleTest)
   gtest_discover_tests(${name} PROPERTIES TIMEOUT 300 DISCOVERY_TIMEOUT 60)
 endfunction()

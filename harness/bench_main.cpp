@@ -34,25 +34,35 @@ void add_run(CLI::App& program, int& exit_code) {
                       PODM_LIKWID_GROUPS,
                       PODM_SOLVER};
   CLI::App& app = *program.add_subcommand("run", "run the trials of experiments that are not measured yet");
-  app.add_option("EXPERIMENT", command.experiment_paths, "files of experiments/")->required();
+  app.add_option("EXPERIMENT", command.experiment_paths, "files of experiments/")
+      ->option_text(" ")
+      ->required();
   app.add_option("--only", command.only,
-                 "run the trials of this name alone; * and ? match any [default: all]");
-  app.add_option("--tier", state->tier, "run this much: kick-tires, default or full [default: all]");
+                 "run the trials of this name alone; * and ? match any [default: all]")
+      ->option_text("PATTERN");
+  app.add_option("--tier", state->tier, "run this much: kick-tires, default or full [default: all]")
+      ->option_text("kick-tires|default|full");
   app.add_option("--image", command.images,
                  "a label image in place of all inputs; repeatable [default: the inputs]")
+      ->option_text("FILE")
       ->allow_extra_args(false);
   app.add_flag("--dry-run", state->is_dry, "print trials, time, memory and disk; run nothing [default: no]");
   app.add_flag("--again", command.again, "also run what is measured already [default: skip it]");
   app.add_flag("--keep", command.keep, "keep each trial's mesh and messages [default: delete them]");
   app.add_option("--order-seed", command.order_seed,
-                 fmt::format("draws the order within each round [default: {}]", command.order_seed));
+                 fmt::format("draws the order within each round [default: {}]", command.order_seed))
+      ->option_text("N");
   app.add_option("--results", command.results_folder,
-                 fmt::format("folder of the JSON lines [default: {}]", kResultsFolder));
-  app.add_option("--podm", command.programs.podm, "file of the mesher [default: podm beside this program]");
+                 fmt::format("folder of the JSON lines [default: {}]", kResultsFolder))
+      ->option_text("FOLDER");
+  app.add_option("--podm", command.programs.podm, "file of the mesher [default: podm beside this program]")
+      ->option_text("FILE");
   app.add_option("--verifier", command.programs.verifier,
-                 "file of the verifier, or none [default: podm-verify beside this program]");
+                 "file of the verifier, or none [default: podm-verify beside this program]")
+      ->option_text("FILE");
   app.add_option("--peers", command.programs.peers,
-                 "folder of other meshers [default: harness/peers of the sources]");
+                 "folder of other meshers [default: harness/peers of the sources]")
+      ->option_text("FOLDER");
   app.callback([state, &exit_code] {
     if (state->command.programs.verifier == "none") state->command.programs.verifier.clear();
     if (!state->tier.empty()) state->command.tier = parse_tier(state->tier);
@@ -63,7 +73,7 @@ void add_run(CLI::App& program, int& exit_code) {
 void add_list(CLI::App& program, int& exit_code) {
   const auto folder = std::make_shared<std::string>("experiments");
   CLI::App& app = *program.add_subcommand("list", "list experiments: title, trials, expected time");
-  app.add_option("FOLDER", *folder, fmt::format("where they are [default: {}]", *folder));
+  app.add_option("FOLDER", *folder, fmt::format("where they are [default: {}]", *folder))->option_text(" ");
   app.callback([folder, &exit_code] { exit_code = list(*folder); });
 }
 
@@ -74,10 +84,14 @@ void add_verdicts(CLI::App& program, int& exit_code) {
   };
   const auto state = std::make_shared<State>();
   CLI::App& app = *program.add_subcommand("verdicts", "judge the claims of experiments by their rows");
-  app.add_option("EXPERIMENT", state->experiment_paths, "files of experiments/")->required();
+  app.add_option("EXPERIMENT", state->experiment_paths, "files of experiments/")
+      ->option_text(" ")
+      ->required();
   app.add_option("--results", state->results_folder,
-                 fmt::format("folder of the JSON lines [default: {}]", kResultsFolder));
-  app.add_option("--json", state->json_path, "also write them as JSON to this file [default: none]");
+                 fmt::format("folder of the JSON lines [default: {}]", kResultsFolder))
+      ->option_text("FOLDER");
+  app.add_option("--json", state->json_path, "also write them as JSON to this file [default: none]")
+      ->option_text("FILE");
   app.callback([state, &exit_code] {
     exit_code = verdicts(state->experiment_paths, state->results_folder, state->json_path);
   });
@@ -86,7 +100,8 @@ void add_verdicts(CLI::App& program, int& exit_code) {
 void add_latency(CLI::App& program, int& exit_code) {
   const auto path = std::make_shared<std::string>();
   CLI::App& app = *program.add_subcommand("latency", "measure a load from each level of memory, Table 3");
-  app.add_option("--record", *path, "write it as JSON to this file [default: standard output]");
+  app.add_option("--record", *path, "write it as JSON to this file [default: standard output]")
+      ->option_text("FILE");
   app.callback([path, &exit_code] { exit_code = latency(*path); });
 }
 
@@ -94,8 +109,8 @@ void add_compare(CLI::App& program, int& exit_code) {
   const auto paths = std::make_shared<std::pair<std::string, std::string>>();
   CLI::App& app =
       *program.add_subcommand("compare", "compare two files of records; exits with 1 when B is worse");
-  app.add_option("A", paths->first, "JSON lines of the program before")->required();
-  app.add_option("B", paths->second, "JSON lines of the program after")->required();
+  app.add_option("A", paths->first, "JSON lines of the program before")->option_text(" ")->required();
+  app.add_option("B", paths->second, "JSON lines of the program after")->option_text(" ")->required();
   app.callback([paths, &exit_code] { exit_code = compare_files(paths->first, paths->second); });
 }
 
@@ -109,15 +124,19 @@ void add_gate(CLI::App& program, int& exit_code) {
   options.head = beside_this_program("podm");
   CLI::App& app =
       *program.add_subcommand("gate", "judge a change of the mesher; exits with 1 when it may not go in");
-  app.add_option("--head", options.head, "file of the mesher to judge [default: podm beside this program]");
-  app.add_option("--base", options.base,
-                 "file of the mesher before the change [default: compare no seconds]");
+  app.add_option("--head", options.head, "file of the mesher to judge [default: podm beside this program]")
+      ->option_text("FILE");
+  app.add_option("--base", options.base, "file of the mesher before the change [default: compare no seconds]")
+      ->option_text("FILE");
   app.add_option("--tier", options.tiers, "1 work, 2 seconds, 3 scaling; repeatable [default: all]")
+      ->option_text("1|2|3")
       ->check(CLI::Range(1, 3));
   app.add_option("--budgets", options.budgets_path,
-                 fmt::format("committed work [default: {}]", options.budgets_path));
+                 fmt::format("committed work [default: {}]", options.budgets_path))
+      ->option_text("FILE");
   app.add_option("--order-seed", options.order_seed,
-                 fmt::format("draws the order within each round [default: {}]", options.order_seed));
+                 fmt::format("draws the order within each round [default: {}]", options.order_seed))
+      ->option_text("N");
   app.add_flag("--renew", state->renews, "put what the head does into the file of budgets [default: judge]");
   app.callback([state, &exit_code] { exit_code = run_gate(state->options, state->renews); });
 }
@@ -125,6 +144,7 @@ void add_gate(CLI::App& program, int& exit_code) {
 int main_or_throw(int argc, char** argv) {
   CLI::App program("Runs mesher experiments, one process a trial, and records each as a JSON line.",
                    "podm-bench");
+  program.set_version_flag("--version", "podm-bench " PODM_VERSION);
   program.require_subcommand(1);
   program.footer("Exit codes: 0 success, 1 a trial failed or missed a guarantee, 2 bad usage or input.");
   int exit_code = 0;

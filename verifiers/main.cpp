@@ -65,7 +65,7 @@ void declare_inputs(CLI::App& app, Command& command) {
   app.add_option("--space", command.space,
                  "frame of the mesh's coordinates: RAS or LPS (mm), or voxel (indices)\n"
                  "[default: what its file says, else RAS]")
-      ->option_text("SPACE")
+      ->option_text("RAS|LPS|voxel")
       ->check(CLI::IsMember({"RAS", "LPS", "voxel"}));
   app.add_option("--schedule", options.schedule_path,
                  "leaf grid and schedule of a run, for the claim conformity [default: none]")

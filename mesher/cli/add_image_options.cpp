@@ -68,7 +68,7 @@ void add_info_command(CLI::App& program, InfoCommand& command) {
 
 void add_phantom_command(CLI::App& program, PhantomCommand& command) {
   CLI::App& app = add_command(program, "phantom", "write an analytic phantom as a label image");
-  require(add_one(app, "NAME", "", fmt::format("one of {}", fmt::join(phantom_names(), ", ")),
+  require(add_one(app, "NAME", fmt::format("{}", fmt::join(phantom_names(), "|")), "the phantom",
                   into(command.name)));
   add_one(app, "--size", "N", "voxels along the longest axis",
           {[&command](const std::string& text, const std::string& name) {

@@ -34,17 +34,17 @@ void add_sizing_options(CLI::App& app, MeshCommand& command) {
                "cells that the mesh may have more or fewer than that, in percent",
                into_positive(meshing.sizes.target_tolerance_percent, "percentage")),
        target);
+}
+
+void add_dihedral_options(CLI::App& app, MeshingOptions& meshing) {
+  OptimizeOptions& optimize = meshing.optimize;
+  begin_group(app, "Dihedral angles");
   add_one(app, "--min-dihedral", "DEG",
           fmt::format("at the end move vertices so that next to no cell has a dihedral angle below\n"
                       "this, degrees up to {:g}, or above {:g} less {:g} times this: all bounds are\n"
                       "kept, and the mesh stays Delaunay [default: nothing moves]",
                       kMostMinDihedral, max_dihedral_deg(0), max_dihedral_deg(0) - max_dihedral_deg(1)),
           into_positive(meshing.min_dihedral_deg, "angle in degrees"));
-}
-
-void add_optimize_options(CLI::App& app, MeshingOptions& meshing) {
-  OptimizeOptions& optimize = meshing.optimize;
-  begin_group(app, "Dihedral angles");
   CLI::Option* flag =
       add_flag(app, "--optimize", optimize.is_wanted,
                "better the worst cells of the finished mesh: all other bounds and the surfaces\n"
@@ -83,12 +83,12 @@ void add_limit_options(CLI::App& app, MeshCommand& command, Program which) {
 void add_algorithm_options(CLI::App& app, MeshCommand& command) {
   MeshingOptions& meshing = command.meshing;
   begin_group(app, "Algorithm");
-  add_one(app, "--algorithm", "NAME",
-          "podm: threads anywhere, with locks; pdr-podm: leaf by leaf of an octree,\n"
-          "by nodes of several threads; pdr: leaf by leaf, a thread each, no locks;\n"
-          "podm-home: podm by nodes of several threads, each in its own block of space;\n"
-          "auto: podm, or podm-home on threads pinned to several NUMA nodes",
-          into_choice(meshing.algorithm));
+  add_choice(app, "--algorithm",
+             "podm: threads anywhere, with locks; pdr-podm: leaf by leaf of an octree,\n"
+             "by nodes of several threads; pdr: leaf by leaf, a thread each, no locks;\n"
+             "podm-home: podm by nodes of several threads, each in its own block of space;\n"
+             "auto: podm, or podm-home on threads pinned to several NUMA nodes",
+             meshing.algorithm);
   add_one(app, "--crossover", "N|FILE",
           fmt::format("threads from which on auto is podm-home, or the file in which podm-bench stored\n"
                       "what it measured here [default: the file named by {}, if any]",
@@ -147,13 +147,11 @@ void add_run_options(CLI::App& app, MeshCommand& command, Program which) {
               : "threads of each rank, in all phases; with 1 as many ranks make the same mesh\n"
                 "every time [default: processors over the ranks of the machine; 1 in process]",
           into_threads(meshing.team.threads));
-  add_one(app, "--contention", "MANAGER",
-          "what a thread does that meets another's lock:\n" + names_of_choices<Contention>(),
-          into_choice(meshing.team.contention));
-  add_one(app, "--begging", "LIST",
-          "whom a thread with cells to spare serves first: random (the first to beg)\n"
-          "or hierarchical (the nearest in the machine)",
-          into_choice(meshing.team.begging));
+  add_choice(app, "--contention", "what a thread does that meets another's lock", meshing.team.contention);
+  add_choice(app, "--begging",
+             "whom a thread with cells to spare serves first: random (the first to beg)\n"
+             "or hierarchical (the nearest in the machine)",
+             meshing.team.begging);
   add_one(app, "--pin", "PLAN",
           "bind threads to processors: compact, scatter, none,\n"
           "or processors such as 0,2,4-7",
@@ -164,18 +162,17 @@ void add_run_options(CLI::App& app, MeshCommand& command, Program which) {
           "machine that the threads stand for: hwloc XML, or TOML that tells its costs, too\n"
           "(NAME.toml, see experiments/machines) [default: this machine]",
           into(meshing.team.topology_path));
-  add_one(app, "--executor", "EXECUTOR",
-          "threads, or virtual: one core plays any number of threads in virtual time,\n"
-          "the same for the same seed; times are simulated",
-          into_choice(meshing.team.executor));
-  add_one(app, "--virtual-cost", "COST", "time of an attempt: unit (1 us) or measured (by its work)",
-          into_choice(meshing.team.virtual_cost));
+  add_choice(app, "--executor",
+             "threads, or virtual: one core plays any number of threads in virtual time,\n"
+             "the same for the same seed; times are simulated",
+             meshing.team.executor);
+  add_choice(app, "--virtual-cost", "time of an attempt: unit (1 us) or measured (by its work)",
+             meshing.team.virtual_cost);
   add_seed_option(app, meshing, which);
 }
 
 void add_space_option(CLI::App& app, MeshingOptions& meshing) {
-  add_one(app, "--space", "SPACE", "frame of the coordinates: RAS or LPS (mm), or voxel (indices)",
-          into_choice(meshing.space));
+  add_choice(app, "--space", "frame of the coordinates: RAS or LPS (mm), or voxel (indices)", meshing.space);
 }
 
 void add_output_options(CLI::App& app, MeshCommand& command, bool is_on_ranks) {
@@ -218,9 +215,8 @@ void add_telling_options(CLI::App& app, MeshCommand& command) {
 }  // namespace
 
 void add_mesh_file_options(CLI::App& app, MeshFileOptions& options) {
-  add_one(app, "--gmsh-version", "VERSION",
-          "of a .msh file: " + names_of_choices<GmshVersion>() +
-              ", which FreeFem++ and SfePy read [default: 4.1]",
+  add_one(app, "--gmsh-version", type_of_choices<GmshVersion>(),
+          "of a .msh file; FreeFem++ and SfePy read 2.2 [default: 4.1]",
           {[&options](const std::string& text, const std::string& name) {
             options.gmsh_version = parse_choice<GmshVersion>(text, name);
           }});
@@ -234,7 +230,7 @@ void add_mesh_command(CLI::App& program, MeshCommand& command, Program which) {
   const bool is_in_python = which == Program::kPython;
   is_in_python ? add_label_options(app, command.image) : add_image_options(app, command.image);
   add_sizing_options(app, command);
-  add_optimize_options(app, command.meshing);
+  add_dihedral_options(app, command.meshing);
   add_limit_options(app, command, which);
   begin_group(app, "Output");
   is_in_python ? add_space_option(app, command.meshing) : add_output_options(app, command, is_on_ranks);

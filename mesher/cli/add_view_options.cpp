@@ -92,10 +92,10 @@ void add_cut_options(CLI::App& app, ViewCommand& command) {
 
 void add_look_options(CLI::App& app, ViewCommand& command) {
   begin_group(app, "How it is shown");
-  add_one(app, "--colour", "WHAT",
-          "label; or how good cells are, bad ones bright: dihedral (smallest angle),\n"
-          "ratio (circumradius over shortest edge) or size (circumradius)",
-          into_choice(command.colour));
+  add_choice(app, "--colour",
+             "label; or how good cells are, bad ones bright: dihedral (smallest angle),\n"
+             "ratio (circumradius over shortest edge) or size (circumradius)",
+             command.colour);
   add_one(app, "--camera", "DEG,DEG",
           "look from this far to the right of where one faces the cut, and from this\nfar above it, degrees",
           {[&command](const std::string& text, const std::string& name) {

@@ -30,6 +30,14 @@ std::string names_of_choices() {
   return names;
 }
 
+/// "aggressive|random|global|local": as help writes what an option takes, which shells complete.
+template <Named Choice>
+std::string type_of_choices() {
+  std::string names;
+  for (const auto& [value, name] : Names<Choice>::kAll) names.append(names.empty() ? "" : "|").append(name);
+  return names;
+}
+
 /// The choice of that name.
 template <Named Choice>
 Choice parse_choice(const std::string& text, const std::string& option) {

@@ -111,14 +111,14 @@ TEST(RatioOfMedians, IntervalsHoldTheTruthAboutAsOftenAsAskedFor) {
   for (const Sampling sampling : {Sampling::kPaired, Sampling::kIndependent}) {
     std::mt19937_64 random(5);
     int num_held = 0;
-    constexpr int kTries = 400;
-    for (int i = 0; i < kTries; ++i) {
+    constexpr int kSamples = 400;
+    for (int i = 0; i < kSamples; ++i) {
       const Samples a = noisy(1.5, 15, random), b = noisy(1, 15, random);
       const Ratio ratio = ratio_of_medians(a, b, sampling, {.num_resamples = 500, .seed = random()});
       num_held += ratio.low <= 1.5 && ratio.high >= 1.5;
     }
-    EXPECT_GT(num_held, 0.9 * kTries);
-    EXPECT_LT(num_held, kTries) << "an interval that never misses is too wide to be of use";
+    EXPECT_GT(num_held, 0.9 * kSamples);
+    EXPECT_LT(num_held, kSamples) << "an interval that never misses is too wide to be of use";
   }
 }
 

@@ -12,7 +12,7 @@
 namespace podm::test {
 namespace {
 
-constexpr int kNumNodes = 4;
+constexpr int kNodesOfMesh = 4;
 const std::vector<NodeIndex> kNodes{0, 0, 0, 1, 3};  // of workers; node 2 has none
 
 // A triangulation that workers of three nodes made in turn, with vertices and cells set free by others.
@@ -48,7 +48,7 @@ class Relocated : public testing::Test {
     return relocation;
   }
 
-  Mesh mesh_{kBox, 1 << 20, kNumNodes};
+  Mesh mesh_{kBox, 1 << 20, kNodesOfMesh};
   std::vector<Pool> pools_;
   std::vector<std::unique_ptr<Operation<NoLocks>>> operations_;
 };

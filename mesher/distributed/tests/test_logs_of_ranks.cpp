@@ -16,7 +16,7 @@
 namespace podm::test {
 namespace {
 
-struct Case {
+struct LoggedCase {
   std::string name;
   LabelImage image;
   double radius_mm;
@@ -34,7 +34,7 @@ struct LoggedRun {
 };
 
 // A rank may be stopped before it begins, while others go on.
-LoggedRun run(const Case& of, int stopped_rank = -1) {
+LoggedRun run(const LoggedCase& of, int stopped_rank = -1) {
   const ScratchFolder folder;
   MeshingOptions options;
   options.sizes.radius_mm = of.radius_mm;
@@ -69,7 +69,7 @@ LoggedRun run(const Case& of, int stopped_rank = -1) {
 }
 
 // "equal", "differs", or why they are refused.
-std::string verdict(const std::vector<LogOfRank>& logs, const Case& of) try {
+std::string verdict(const std::vector<LogOfRank>& logs, const LoggedCase& of) try {
   const OperationLog whole = merge_logs(logs);
   const TetMesh mesh = replay_operations(of.image, whole, of.space);
   return mesh_hash_text(mesh_hash(mesh)) == whole.head.mesh_hash ? "equal" : "differs";
@@ -77,7 +77,7 @@ std::string verdict(const std::vector<LogOfRank>& logs, const Case& of) try {
   return error.what();
 }
 
-class LogsOfRanks : public testing::TestWithParam<Case> {};
+class LogsOfRanks : public testing::TestWithParam<LoggedCase> {};
 
 TEST_P(LogsOfRanks, ReplayToTheSameMesh) {
   const LoggedRun logged = run(GetParam());
@@ -91,7 +91,7 @@ TEST_P(LogsOfRanks, ReplayToTheSameMesh) {
 }
 
 TEST(LogsOfRanksThatStop, ReplayToTheMeshOfTheFirst) {
-  const Case of{"", ball(20, 7), 1.2, 3};
+  const LoggedCase of{"", ball(20, 7), 1.2, 3};
   for (const int stopped_rank : {0, 1}) {
     const LoggedRun logged = run(of, stopped_rank);
     EXPECT_EQ(logged.stop_reason, StopReason::kCancelled);
@@ -106,8 +106,8 @@ LabelImage three_labels() {
   });
 }
 
-std::vector<Case> cases() {
-  std::vector<Case> cases;
+std::vector<LoggedCase> logged_cases() {
+  std::vector<LoggedCase> cases;
   for (const int num_ranks : {1, 2, 3, 5, 8})
     for (const int threads : {1, 2})
       cases.push_back({"labels_on_" + std::to_string(num_ranks) + "_with_" + std::to_string(threads),
@@ -125,7 +125,7 @@ std::vector<Case> cases() {
   return cases;
 }
 
-INSTANTIATE_TEST_SUITE_P(Ranks, LogsOfRanks, testing::ValuesIn(cases()),
+INSTANTIATE_TEST_SUITE_P(Ranks, LogsOfRanks, testing::ValuesIn(logged_cases()),
                          [](const auto& test) { return test.param.name; });
 
 // One run, of whose logs every test spoils its own copy.
@@ -135,8 +135,8 @@ class SpoiltLogs : public testing::Test {
     static const std::vector<LogOfRank> logs = run(of()).logs;
     return logs;
   }
-  static const Case& of() {
-    static const Case of{"", three_labels(), 1.2, 3};
+  static const LoggedCase& of() {
+    static const LoggedCase of{"", three_labels(), 1.2, 3};
     return of;
   }
 

@@ -67,6 +67,7 @@ inline std::vector<std::uint8_t> two_voxels() {
   voxels[1] = 5;
   return voxels;
 }
+inline const std::string kVoxels = bytes_of_values(two_voxels());
 
 /// The header of an INR image of 2 x 3 x 4 voxels with `fields` in front of the usual ones.
 inline std::string inr_header(const std::string& fields,

@@ -181,7 +181,7 @@ TEST(IsosurfaceDistance, NeverExceedsTheDistanceToAnySurfacePoint) {
   for (Phantom& phantom : smooth_phantoms()) images.push_back(std::move(phantom.image));
   for (const LabelImage& image : images) {
     const Isosurface isosurface(image, 1);
-    const std::vector<Point> surface = sample_isosurface(image, 4);
+    const std::vector<Point> surface = sample_isosurface(image, 3);
     for (int n = 0; n < 400; ++n) {
       const Point p = random_point(random, image, n % 10 == 0 ? 30 : 2);
       const double radius = uniform(random, 0, 3) * shortest_voxel_side(image);

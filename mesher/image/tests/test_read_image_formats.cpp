@@ -18,8 +18,6 @@ class ReadImage : public testing::Test {
   ScratchFolder folder_;
 };
 
-const std::string kVoxels = bytes_of_values(two_voxels());
-
 // Values 7 and 5 at the first two voxels, background elsewhere.
 void expect_two_voxels(const LabelImage& image) {
   EXPECT_EQ(image.size, (std::array<int, 3>{2, 3, 4}));

@@ -14,8 +14,6 @@
 namespace podm {
 namespace {
 
-const std::string kVoxels = bytes_of_values(two_voxels());
-
 struct BadFile {
   const char* fault;
   const char* name;

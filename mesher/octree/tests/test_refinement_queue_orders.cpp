@@ -26,10 +26,10 @@ namespace podm::test {
 namespace {
 
 constexpr unsigned kWork = 1000;
-constexpr std::pair<LeafOrder, const char*> kOrders[] = {{LeafOrder::kHome, "home"},
-                                                         {LeafOrder::kMostWork, "most work"},
-                                                         {LeafOrder::kMorton, "Morton"},
-                                                         {LeafOrder::kColoring, "coloring"}};
+constexpr std::pair<LeafOrder, const char*> kNamedOrders[] = {{LeafOrder::kHome, "home"},
+                                                              {LeafOrder::kMostWork, "most work"},
+                                                              {LeafOrder::kMorton, "Morton"},
+                                                              {LeafOrder::kColoring, "coloring"}};
 
 Octree ball(double diameter) {
   const Point center{diameter / 2, diameter / 2, diameter / 2};
@@ -122,7 +122,7 @@ TEST_P(Orders, HomeKeepsNodesBusyAndNear) {
   const unsigned num_nodes = GetParam();
   const unsigned num_together = octree.num_leaves() / 27;
   std::map<LeafOrder, Figures> figures;
-  for (const auto& [order, name] : kOrders) {
+  for (const auto& [order, name] : kNamedOrders) {
     const Figures& f = figures[order] = Simulation(octree, num_nodes, order).run();
     RecordProperty(name, testing::PrintToString(std::vector{f.busy, f.own, f.visits}));
   }

@@ -4,13 +4,11 @@
 #include <random>
 #include <set>
 
+#include "two_sockets.h"
 #include "workers/begging_list.h"
 
 namespace podm::test {
 namespace {
-
-// Two nodes of two sockets of three workers.
-const WorkerGroups kNested{{0, 0, 0, 1, 1, 1, 2, 2, 2, 3, 3, 3}, {0, 0, 0, 0, 0, 0, 1, 1, 1, 1, 1, 1}};
 
 TEST(BeggingList, OneListServesFirstComeFirst) {
   BeggingList list(4, {});

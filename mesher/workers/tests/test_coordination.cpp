@@ -5,6 +5,7 @@
 #include <atomic>
 #include <random>
 
+#include "two_sockets.h"
 #include "workers/coordination.h"
 #include "workers/real_time.h"
 #include "workers/virtual_time.h"
@@ -13,8 +14,6 @@ namespace podm::test {
 namespace {
 
 constexpr int kNumWorkers = 12, kNumHomes = 4;
-// Two nodes of two sockets of three workers.
-const WorkerGroups kNested{{0, 0, 0, 1, 1, 1, 2, 2, 2, 3, 3, 3}, {0, 0, 0, 0, 0, 0, 1, 1, 1, 1, 1, 1}};
 
 // One that meets others at random, and whose cells make more while there are any to be made.
 class Player {
@@ -69,7 +68,7 @@ class Coordinated : public testing::TestWithParam<std::tuple<Contention, bool, b
   // Players do what PODM's loop does, round after round of the master, as for one leaf after the other.
   template <class Time>
   void play(Time& time) {
-    constexpr int kRounds = 50, kCells = 3000;
+    constexpr int kRounds = 15, kCells = 3000;
     const auto [contention, is_nested, has_homes] = GetParam();
     std::atomic<int> num_left_to_make = 0, num_used = 0;
     std::vector<Player> players;

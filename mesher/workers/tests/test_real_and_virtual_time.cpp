@@ -13,13 +13,13 @@
 namespace podm::test {
 namespace {
 
-constexpr std::size_t kNumWorkers = 3;
+constexpr std::size_t kThree = 3;
 
 struct OnThreads {
-  static RealTime make(StopControl& stop) { return {stop, kNumWorkers, {}}; }
+  static RealTime make(StopControl& stop) { return {stop, kThree, {}}; }
 };
 struct InVirtualTime {
-  static VirtualTime make(StopControl& stop) { return {stop, kNumWorkers, VirtualCost::kUnit, 1}; }
+  static VirtualTime make(StopControl& stop) { return {stop, kThree, VirtualCost::kUnit, 1}; }
 };
 
 template <class Kind>
@@ -32,7 +32,7 @@ TYPED_TEST_SUITE(Times, Kinds);
 
 TYPED_TEST(Times, LetEveryWorkerWorkOnce) {
   auto time = TypeParam::make(this->stop_);
-  std::array<std::atomic<int>, kNumWorkers> calls{};
+  std::array<std::atomic<int>, kThree> calls{};
   time.run([&](WorkerId self) { ++calls[self]; });
   for (const auto& of_worker : calls) EXPECT_EQ(of_worker, 1);
 }
@@ -40,7 +40,7 @@ TYPED_TEST(Times, LetEveryWorkerWorkOnce) {
 // Who works in the second run sees what all did in the first, and time goes on.
 TYPED_TEST(Times, RunAgain) {
   auto time = TypeParam::make(this->stop_);
-  std::array<std::atomic<int>, kNumWorkers> calls{};
+  std::array<std::atomic<int>, kThree> calls{};
   time.run([&](WorkerId self) {
     ++calls[self];
     time.pause(self, 0.001);
@@ -61,11 +61,11 @@ TYPED_TEST(Times, ResumeWhoBlocks) {
   auto time = TypeParam::make(this->stop_);
   std::atomic<int> num_resumed = 0;
   time.run([&](WorkerId self) {
-    if (self + 1 < kNumWorkers) time.block(self, &Overhead::begging_s);
+    if (self + 1 < kThree) time.block(self, &Overhead::begging_s);
     ++num_resumed;
     if (self > 0) time.resume(self - 1);
   });
-  EXPECT_EQ(num_resumed, static_cast<int>(kNumWorkers));
+  EXPECT_EQ(num_resumed, static_cast<int>(kThree));
 }
 
 TYPED_TEST(Times, EndTheBlockingWhenTheRunIsOver) {
@@ -79,7 +79,7 @@ TYPED_TEST(Times, EndTheBlockingWhenTheRunIsOver) {
     }
     num_over += time.is_over();
   });
-  EXPECT_EQ(num_over, static_cast<int>(kNumWorkers));
+  EXPECT_EQ(num_over, static_cast<int>(kThree));
   EXPECT_EQ(this->stop_.reason(), StopReason::kTimeLimit);
 }
 
@@ -124,7 +124,7 @@ TYPED_TEST(Times, ChargePausesAndBlocks) {
 
 TEST(VirtualTime, ThatStandsStillIsAnError) {
   StopControl stop({}, {}, [](std::uint64_t) {});
-  VirtualTime time(stop, kNumWorkers, VirtualCost::kUnit, 1);
+  VirtualTime time(stop, kThree, VirtualCost::kUnit, 1);
   EXPECT_THROW(time.run([&](WorkerId self) { time.block(self, &Overhead::begging_s); }), InternalError);
 }
 
@@ -138,16 +138,16 @@ MachineModel slow_machine(double core_speed, double wake_s) {
 TEST(VirtualTime, OfSlowCoresTakesLonger) {
   StopControl stop({}, {}, [](std::uint64_t) {});
   const MachineModel machine = slow_machine(0.25, 0);
-  VirtualTime time(stop, kNumWorkers, VirtualCost::kMeasured, 1, &machine);
+  VirtualTime time(stop, kThree, VirtualCost::kMeasured, 1, &machine);
   time.run([&](WorkerId self) { time.spend(self, 1.0); });
   EXPECT_DOUBLE_EQ(time.now_s(), 4);
-  EXPECT_DOUBLE_EQ(time.spending().between_s, 4 * kNumWorkers);
+  EXPECT_DOUBLE_EQ(time.spending().between_s, 4 * kThree);
 }
 
 TEST(VirtualTime, WakesALittleLater) {
   StopControl stop({}, {}, [](std::uint64_t) {});
   const MachineModel machine = slow_machine(1, 0.125);
-  VirtualTime time(stop, kNumWorkers, VirtualCost::kMeasured, 1, &machine);
+  VirtualTime time(stop, kThree, VirtualCost::kMeasured, 1, &machine);
   time.run([&](WorkerId self) {
     if (self == 0) time.block(self, &Overhead::begging_s);
     if (self == 1) time.resume(0);
@@ -157,9 +157,9 @@ TEST(VirtualTime, WakesALittleLater) {
 
 TEST(VirtualTime, LetsOneWorkerAtATimeIntoASection) {
   StopControl stop({}, {}, [](std::uint64_t) {});
-  VirtualTime time(stop, kNumWorkers, VirtualCost::kMeasured, 1);
+  VirtualTime time(stop, kThree, VirtualCost::kMeasured, 1);
   const int one = 0, another = 0;
-  std::array<double, kNumWorkers> left_at{};
+  std::array<double, kThree> left_at{};
   time.run([&](WorkerId self) {
     time.spend_in(self == 2 ? &another : &one, self, 1.0);
     left_at[self] = time.now_s();

@@ -34,6 +34,7 @@ inline const std::array<double, 12> kUnitAffine{1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1,
 inline const std::array<double, 12> kAnisotropic{0.5, 0, 0, -20, 0, 0.8, 0, 30, 0, 0, 2.5, 7};
 inline const std::array<double, 12> kMirrored{-0.5, 0, 0, 20, 0, 0.8, 0, 30, 0, 0, 2.5, 7};
 inline const std::array<double, 12> kSheared{0.5, 0.3, 0, -20, 0, 0.8, 0, 30, 0, 0.4, 2.5, 7};
+inline const std::array<std::array<double, 12>, 4> kAffines{kUnitAffine, kAnisotropic, kMirrored, kSheared};
 
 /// A solid ball of label 1 with a ball of label 2 beside, in 13 x 11 x 9 voxels.
 inline std::uint32_t two_balls(int i, int j, int k) {

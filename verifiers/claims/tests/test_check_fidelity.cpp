@@ -11,8 +11,6 @@
 namespace podm::verify {
 namespace {
 
-const std::array<std::array<double, 12>, 4> kAffines{kUnitAffine, kAnisotropic, kMirrored, kSheared};
-
 ClaimResult fidelity_of(const Mesh& mesh, const Image& image, double bound = 1, int threads = 2) {
   Options options;
   options.threads = threads;

@@ -4,23 +4,16 @@
 #include <numbers>
 
 #include "claims/claims.h"
+#include "label_row.h"
 #include "meshed_voxels.h"
 
 namespace podm::verify {
 namespace {
 
-const std::array<std::array<double, 12>, 4> kAffines{kUnitAffine, kAnisotropic, kMirrored, kSheared};
-
 ClaimResult labels_of(const Mesh& mesh, const Image& image, int threads = 2) {
   Options options;
   options.threads = threads;
   return check_labels(mesh, image, options);
-}
-
-const nlohmann::json& row_of(const ClaimResult& result, LabelValue label) {
-  for (const auto& row : result.details.at("labels"))
-    if (row.at("label") == label) return row;
-  throw std::out_of_range("no such label in the table");
 }
 
 TEST(Labels, VoxelsCutIntoCellsPassInEveryFrame) {

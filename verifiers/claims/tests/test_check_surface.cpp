@@ -2,6 +2,7 @@
 
 #include "claims/claims.h"
 #include "image/image_topology.h"
+#include "label_row.h"
 #include "meshed_voxels.h"
 
 namespace podm::verify {
@@ -11,12 +12,6 @@ ClaimResult surface_of(const Mesh& mesh, const Image* image = nullptr, int threa
   Options options;
   options.threads = threads;
   return check_surface(mesh, mapped_adjacency(mesh), image, options);
-}
-
-const nlohmann::json& row_of(const ClaimResult& result, LabelValue label) {
-  for (const auto& row : result.details.at("labels"))
-    if (row.at("label") == label) return row;
-  throw std::out_of_range("no such label in the table");
 }
 
 Mesh without_cells(Mesh mesh, const std::vector<std::size_t>& cells) {

@@ -1,0 +1,65 @@
+"""Completion for bash, and for zsh by its bashcompinit: commands, options, and what an option takes."""
+
+import shlex
+
+FILES = {"FILE", "N|FILE", "FOLDER", "MESH", "PAGE", "PICTURE"}
+
+SCRIPT = """\
+# Completes {name} in bash; in zsh after `autoload -U +X bashcompinit && bashcompinit`. Made by scripts/make_manual.
+{function}() {{
+  local current=${{COMP_WORDS[COMP_CWORD]}} before=${{COMP_WORDS[COMP_CWORD - 1]}} command=
+  [ "$current" != = ] || current=
+  [ "$before" != = ] || before=${{COMP_WORDS[COMP_CWORD - 2]}}  # --option=value
+{find_command}
+  local offered= files=
+  case "$command $before" in
+{values}
+    *) case "$command" in
+{offered}
+      esac ;;
+  esac
+  [ -n "$files" ] && [ "${{current#-}}" = "$current" ] && COMPREPLY=($(compgen -f -- "$current")) || COMPREPLY=()
+  COMPREPLY+=($(compgen -W "$offered" -- "$current"))
+}}
+complete -o filenames -F {function} {name}
+"""
+
+FIND_COMMAND = """\
+  [ "$COMP_CWORD" -lt 2 ] || case "${{COMP_WORDS[1]}}" in {commands}) command=${{COMP_WORDS[1]}} ;; esac"""
+
+
+def action_of(entry):
+    if entry.choices:
+        return f"offered={shlex.quote(' '.join(entry.choices))}"
+    return "files=yes" if entry.type in FILES else ":"  # a number or a name: nothing to complete
+
+
+def value_cases(helps):
+    """What may follow the options that take a value, those that take the same together."""
+    patterns = {}
+    for command, told in helps.items():
+        for entry in told.entries:
+            if entry.is_option and entry.type:
+                names = [shlex.quote(f"{command} {name}") for name in entry.names]
+                patterns.setdefault(action_of(entry), []).extend(names)
+    return [f"    {'|'.join(names)}) {action} ;;" for action, names in patterns.items()]
+
+
+def word_case(command, help_text, commands=()):
+    """What may stand elsewhere: commands, options, and arguments."""
+    words = [*commands, *(name for entry in help_text.entries if entry.is_option for name in entry.names)]
+    arguments = help_text.group("Positionals").entries
+    words += [word for entry in arguments for word in entry.choices]
+    files = " files=yes" if any(not entry.choices for entry in arguments) else ""
+    return f"      {shlex.quote(command)}) offered={shlex.quote(' '.join(words))}{files} ;;"
+
+
+def script(program):
+    """The text of the file that bash reads for the program."""
+    helps = {"": program.help, **program.commands}
+    return SCRIPT.format(
+        name=program.name, function="_" + program.name.replace("-", "_"),
+        find_command=FIND_COMMAND.format(commands="|".join(program.commands)) if program.commands else "",
+        values="\n".join(value_cases(helps)),
+        offered="\n".join(word_case(command, told, program.commands if not command else ())
+                        for command, told in helps.items()))

@@ -1,0 +1,92 @@
+"""What --help prints, taken apart. Its form is CLI11's:
+
+    what the program does
+    Usage: podm mesh [OPTIONS] IMAGE
+
+    Positionals:
+      IMAGE                       what it is
+
+    Size of the cells:
+      -o,--output MESH            what it does
+                                  and more of it
+
+    What remains is the end.
+"""
+
+import dataclasses
+import re
+
+# An entry stands two columns in, what is said of it further.
+ENTRY = re.compile(r"^  (?P<names>\S+)(?: (?P<type>\S+))?(?:  +(?P<text>.*))?$")
+MORE = re.compile(r"^ {3,}(?P<text>\S.*)$")
+TITLE = re.compile(r"^(?P<title>\S.*):$")
+
+
+class HelpError(Exception):
+    """What a program printed is not of that form."""
+
+
+@dataclasses.dataclass
+class Entry:
+    """An option, an argument or a command."""
+    names: list  # "-o", "--output"; of an argument or command its own
+    type: str    # "MESH"; "a|b" where it is one of these; empty of a flag
+    text: str
+
+    @property
+    def is_option(self):
+        return self.names[0].startswith("-")
+
+    @property
+    def choices(self):
+        """The words that it takes, if it takes only these."""
+        words = self.type.split("|")
+        return words if len(words) > 1 and "FILE" not in words else []
+
+
+@dataclasses.dataclass
+class Group:
+    title: str
+    entries: list
+
+
+@dataclasses.dataclass
+class HelpText:
+    description: str
+    usage: str     # without "Usage: "
+    groups: list
+    end: list      # paragraphs
+
+    @property
+    def entries(self):
+        return [entry for group in self.groups for entry in group.entries]
+
+    def group(self, title):
+        return next((group for group in self.groups if group.title == title), Group(title, []))
+
+
+def parse(text):
+    """The HelpText of what was printed; HelpError names the line that is not understood."""
+    lines = text.rstrip("\n").split("\n")
+    if len(lines) < 2 or not lines[1].startswith("Usage: "):
+        raise HelpError(f"not the help of a program: {lines[0]!r}")
+    told = HelpText(lines[0], lines[1].removeprefix("Usage: "), [], [])
+    end = []
+    for number, line in enumerate(lines[2:], start=2):
+        follows = lines[number + 1] if number + 1 < len(lines) else ""
+        if title := TITLE.match(line) if follows.startswith("  ") else None:
+            told.groups.append(Group(title["title"], []))
+        elif told.groups and (entry := ENTRY.match(line)):
+            told.groups[-1].entries.append(
+                Entry(entry["names"].split(","), entry["type"] or "", entry["text"] or ""))
+        elif more := MORE.match(line):
+            if not told.entries:
+                raise HelpError(f"said of nothing: {line!r}")
+            last = told.groups[-1].entries[-1]
+            last.text = f"{last.text} {more['text']}".strip()
+        elif line.startswith(" "):
+            raise HelpError(f"neither an option nor a text: {line!r}")
+        else:
+            end.append(line)
+    told.end = [" ".join(lines.split("\n")) for lines in re.split(r"\n{2,}", "\n".join(end).strip("\n")) if lines]
+    return told

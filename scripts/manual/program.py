@@ -1,0 +1,34 @@
+"""A program as its help tells of it."""
+
+import dataclasses
+import subprocess
+
+from . import help_text
+from .help_text import HelpError
+
+COMMANDS = "Subcommands"
+
+
+def printed_by(*command):
+    process = subprocess.run(command, capture_output=True, text=True)
+    if process.returncode != 0 or not process.stdout:
+        raise HelpError(f"{' '.join(map(str, command))}: exit code {process.returncode}: {process.stderr.strip()}")
+    return process.stdout
+
+
+@dataclasses.dataclass
+class Program:
+    name: str
+    version: str    # "0.1.0"
+    help: help_text.HelpText
+    commands: dict  # their names and HelpTexts; none of a program without commands
+
+    @classmethod
+    def asked(cls, path):
+        """Asks the program at `path`; HelpError if it does not answer as expected."""
+        told = help_text.parse(printed_by(path, "--help"))
+        names = [entry.names[0] for entry in told.group(COMMANDS).entries]
+        return cls(name=path.name,
+                   version=printed_by(path, "--version").split("\n")[0].split()[-1],
+                   help=told,
+                   commands={name: help_text.parse(printed_by(path, name, "--help")) for name in names})

@@ -1,0 +1,127 @@
+"""Manual pages and shell completions of the built programs say what their --help says, and shells can use them."""
+import os
+import re
+import subprocess
+import tempfile
+import unittest
+from pathlib import Path
+
+import paths  # noqa: F401  # scripts/ on the path
+from manual import help_text
+
+BUILD = Path(os.environ["PODM_BUILD"])
+PROGRAMS = [path for path in (BUILD / "bin" / name for name in ("podm", "podm-mpi", "podm-verify", "podm-bench"))
+            if path.exists()]
+
+# Calls the function that the shell calls, for the words given, the last one as far as it is typed.
+COMPLETED_BY = {
+    "bash": ["bash", "-c", 'source "$1"; shift; function=$1; shift; COMP_WORDS=("$@"); COMP_CWORD=$(($# - 1)); '
+                           '$function; printf "%s\\n" "${COMPREPLY[@]}"', "bash"],
+    "zsh": ["zsh", "-fc", 'autoload -U compinit bashcompinit; compinit -uD; bashcompinit; source "$1"; shift; '
+                          'function=$1; shift; setopt kshglob noshglob bareglobqual ksharrays shwordsplit; '
+                          'COMP_WORDS=("$@"); COMP_CWORD=$(($# - 1)); $function; printf "%s\\n" "${COMPREPLY[@]}"',
+            "zsh"],
+}
+
+
+def printed_by(*command):
+    return subprocess.run(command, check=True, capture_output=True, text=True).stdout
+
+
+def helps_of(program):
+    """Of the program and each of its commands, the words that call it and what --help prints."""
+    told = printed_by(program, "--help")
+    commands = re.findall(r"^  (\w+)  ", told.partition("Subcommands:")[2], re.MULTILINE)
+    return [([], told), *(([command], printed_by(program, command, "--help")) for command in commands)]
+
+
+def options_in(told):
+    return re.findall(r"^  (?:-\w,)?(--[\w-]+)", told, re.MULTILINE)
+
+
+def plain(page):
+    """The text of a page, without the escapes of groff."""
+    return re.sub(r"\\f.|\\&", "", page).replace(r"\-", "-")
+
+
+class Pages(unittest.TestCase):
+    def page(self, program):
+        return (BUILD / "share/man/man1" / f"{program.name}.1").read_text()
+
+    def test_all_that_help_tells_is_in_them(self):
+        for program in PROGRAMS:
+            page = plain(self.page(program)).lower()
+            for called, told in helps_of(program):
+                for word in re.findall(r"\S+", re.sub(r"^(Usage: .*|[A-Z].*:)$", "", told, flags=re.MULTILINE)):
+                    if word not in ("Exit", "codes:"):
+                        for name in word.split(","):
+                            self.assertIn(name.rstrip(".").lower(), page, f"{program.name} {called}")
+
+    def test_they_tell_one_version(self):
+        told = {printed_by(program, "--version").splitlines()[0].split()[-1] for program in PROGRAMS}
+        self.assertEqual(len(told), 1)
+        for program in PROGRAMS:
+            self.assertIn(f'"podm {told.copy().pop()}"', self.page(program).splitlines()[0])
+
+    def test_groff_finds_no_fault(self):
+        for program in PROGRAMS:
+            process = subprocess.run(["groff", "-man", "-Tutf8", "-ww"], input=self.page(program),
+                                     capture_output=True, text=True)
+            self.assertEqual((process.returncode, process.stderr), (0, ""), program.name)
+
+
+class Completions(unittest.TestCase):
+    def complete(self, shell, *words, folder="/"):
+        file = BUILD / "share/bash-completion/completions" / words[0]
+        function = "_" + words[0].replace("-", "_")
+        process = subprocess.run([*COMPLETED_BY[shell], file, function, *words], cwd=folder,
+                                 capture_output=True, text=True)
+        self.assertEqual((process.returncode, process.stderr), (0, ""), words)
+        return {word for word in process.stdout.split() if word.startswith(words[-1])}  # as zsh does by itself
+
+    def test_every_option_and_command_is_offered(self):
+        for shell in COMPLETED_BY:
+            for program in PROGRAMS:
+                for called, told in helps_of(program):
+                    offered = self.complete(shell, program.name, *called, "--")
+                    self.assertEqual(offered, set(options_in(told)), (shell, program.name, called))
+            self.assertEqual(self.complete(shell, "podm", "m"), {"mesh"})
+
+    def test_what_an_option_takes(self):
+        for shell in COMPLETED_BY:
+            pdr = {"pdr", "pdr-podm"}
+            self.assertEqual(self.complete(shell, "podm", "mesh", "--algorithm", "pd"), pdr)
+            self.assertEqual(self.complete(shell, "podm", "mesh", "--algorithm", "=", "pd"), pdr)
+            self.assertEqual(self.complete(shell, "podm", "phantom", "t"), {"torus"})
+            self.assertEqual(self.complete(shell, "podm", "mesh", "--radius", ""), set())
+
+    def test_files_are_offered_where_files_are_taken(self):
+        with tempfile.TemporaryDirectory() as folder:
+            Path(folder, "liver.nii").touch()
+            for shell in COMPLETED_BY:
+                for words in (["podm", "mesh", "li"], ["podm", "mesh", "--record", "li"], ["podm-verify", "li"],
+                              ["podm", "mesh", "-o", "li"], ["podm", "mesh", "--record", "=", "li"]):
+                    self.assertEqual(self.complete(shell, *words, folder=folder), {"liver.nii"}, (shell, words))
+                self.assertEqual(self.complete(shell, "podm", "mesh", "--threads", "", folder=folder), set())
+
+
+class HelpText(unittest.TestCase):
+    def test_what_is_no_help_is_refused_with_the_line(self):
+        for text, fault in (("Segmentation fault\n", "Segmentation fault"),
+                            ("what\nUsage: p\n\nOptions:\n   --lost\n", "--lost"),
+                            ("what\nUsage: p\n\nOptions:\n  --in, in two words\n", "in two words")):
+            with self.assertRaisesRegex(help_text.HelpError, fault):
+                help_text.parse(text)
+
+    def test_entries(self):
+        told = help_text.parse("what it does\nUsage: p [OPTIONS]\n\nSome:\n  -o,--output MESH    a file\n"
+                               "                      of tets\n  --way a|b\n                      one\n  --flag\n\n"
+                               "The end,\nin two lines.\n\nExit codes: 0 ok.\n")
+        output, way, flag = told.group("Some").entries
+        self.assertEqual((output.names, output.type, output.text), (["-o", "--output"], "MESH", "a file of tets"))
+        self.assertEqual((way.choices, way.text, flag.type), (["a", "b"], "one", ""))
+        self.assertEqual(told.end, ["The end, in two lines.", "Exit codes: 0 ok."])
+
+
+if __name__ == "__main__":
+    unittest.main()
