@@ -284,8 +284,9 @@ class OtherCommands(PodmTestCase):
             time.sleep((part + rng.random()) / 8 * whole_s)
             end = end_of(process, signal.SIGINT)
             self.assertLessEqual(end.seconds, LONGEST_S)
-            self.assertEqual(self.files(), {image: whole if end.code == 0 else b"older"})
             self.assertIn(end.code, (0, -signal.SIGINT))
+            # A signal may come when the file is there already, and the process only has to say so.
+            self.assertIn(self.files(), [{image: whole}] + [{image: b"older"}] * (end.code != 0))
 
     def test_a_replay_ends_at_once(self):
         log = self.folder / "run.log"
