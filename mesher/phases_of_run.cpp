@@ -3,6 +3,7 @@
 #include <malloc.h>
 
 #include <algorithm>
+#include <new>
 
 #include "algorithms/memory_model.h"
 #include "cost_model.h"
@@ -150,11 +151,13 @@ void PhasesOfRun::optimize(Mesh& mesh, MeshingReport& report) const {
   const DihedralBounds bounds(asked.least_dihedral_deg, asked.largest_dihedral_deg);
   const OptimizerParameters parameters{CellQuality(aim_over(bounds)), bounds, size_field(image_, sizes_),
                                        sizes_.delta_mm};
-  report.optimization = optimize_mesh(mesh, parameters, team_.team(), stop,
-                                      [&](double fraction) { announce("optimize", fraction, 0); });
-  report.stop_reason = stop.reason();
-  if (options_.team.executor == Executor::kVirtual)
-    report.virtual_phases_s["optimize"] = report.optimization->simulated_s;
+  try {
+    report.optimization = optimize_mesh(mesh, parameters, team_.team(), stop,
+                                        [&](double fraction) { announce("optimize", fraction, 0); });
+    report.stop_reason = stop.reason();
+  } catch (const std::bad_alloc&) {  // before anything changed
+    report.stop_reason = StopReason::kMemoryLimit;
+  }
   report.phases_s["optimize"] = seconds_() - start_s;
 }
 

@@ -54,7 +54,8 @@ CLI::Validator angle_from(double least, double most) {
 
 void declare_inputs(CLI::App& app, Command& command) {
   Options& options = command.options;
-  app.add_option("MESH", options.mesh_path, "VTU, PVTU, legacy VTK, Medit, Gmsh 2.2 or 4.1, TetGen; also .gz")
+  app.add_option("MESH", options.mesh_path,
+                 "VTU, PVTU, legacy VTK, Medit, Gmsh 2.2 or 4.1, TetGen, Abaqus, Exodus II;\nalso .gz")
       ->option_text(" ")
       ->required();
   app.option_defaults()->group("Inputs");

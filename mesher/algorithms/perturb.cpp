@@ -1,5 +1,6 @@
 #include "algorithms/perturb.h"
 
+#include <new>
 #include <numeric>
 
 #include "algorithms/podm_impl.h"
@@ -25,6 +26,9 @@ class Phase {
     const std::uint64_t seed = construction.team().coordination.seed;
     for (const auto& worker : workers_)
       worker->perturb(*construction.problem().dihedral_bounds, seed + worker->id());
+  }
+  ~Phase() {
+    construction_.stop().observe_by([](std::uint64_t) {});  // whom it would ask is gone
   }
 
   Perturbed operator()() {
@@ -136,6 +140,7 @@ class Phase {
 void perturb(Construction& construction, const Parameters& parameters) {
   if (!construction.problem().dihedral_bounds || construction.stop().is_over()) return;
   construction.timed(kPerturb, [&] {
+    // Memory for lists between rounds may end as well as that of workers.
     const auto run = [&](auto& time) {
       using Time = std::remove_reference_t<decltype(time)>;
       if (construction.num_workers() > 1 || construction.team().executor == Executor::kVirtual) {
@@ -144,7 +149,11 @@ void perturb(Construction& construction, const Parameters& parameters) {
         construction.report(Phase<NoLocks, Time>(construction, parameters, time)());
       }
     };
-    construction.in_time(kPerturb, construction.num_workers(), run, kPerturb);
+    try {
+      construction.in_time(kPerturb, construction.num_workers(), run, kPerturb);
+    } catch (const std::bad_alloc&) {
+      construction.stop().end(StopReason::kMemoryLimit);
+    }
   });
   construction.sample_pages(kPerturb);
 }

@@ -123,8 +123,7 @@ void add_look_options(CLI::App& app, ViewCommand& command) {
 void add_view_command(CLI::App& program, ViewCommand& command) {
   CLI::App& app =
       add_command(program, "view", "draw a picture of a mesh, cut open, coloured by label or quality");
-  require(add_one(app, "MESH", "",
-                  "tetrahedra with labels: .vtu, .pvtu, .vtk, .mesh (medit) or .msh (Gmsh 4.1)",
+  require(add_one(app, "MESH", "", "tetrahedra with labels: a file that podm-verify reads",
                   into(command.mesh_path)));
   begin_group(app, "Options");
   require(add_one(app, "-o,--output", "PICTURE", "PNG file [required]",

@@ -119,7 +119,7 @@ int run(const MeshCommand& command) {
   run.peak_rss_bytes = peak_resident_bytes();
   if (command.verify && run.mesh.cells > 0) run.verification = verify_mesh(run, signals);
   const int exit_code = tell(run, records);
-  if (!command.page_path.empty() && run.mesh.cells > 0) write_page(run, signals);
+  if (!command.page_path.empty() && run.mesh.cells > 0) write_page(run, result.mesh, signals);
   return exit_code;
 }
 

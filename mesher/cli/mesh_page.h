@@ -6,12 +6,11 @@
 
 namespace podm::cli {
 
-/// Throws InputError where no page could be made of what `command` asks for, whatever the mesh: before hours
-/// of meshing.
+/// Throws InputError where no page could be made, whatever the mesh: before hours of meshing.
 void check_page(const MeshCommand& command, const SignalThread& signals);
 
-/// Writes the page, whole or not at all, of a run whose mesh is written and measured. Throws InputError where
-/// that fails or a signal asks for an end.
-void write_page(const MeshRun& run, const SignalThread& signals);
+/// Writes the page, whole or not at all, of a run whose mesh, canonical, is written and measured. Throws
+/// InputError where that fails or a signal asks for an end.
+void write_page(const MeshRun& run, const TetMesh& mesh, const SignalThread& signals);
 
 }  // namespace podm::cli

@@ -4,15 +4,15 @@
 #include <unistd.h>
 
 #include <filesystem>
+#include <vector>
 
+#include "cli/child_process.h"
 #include "podm/errors.h"
 
 namespace podm::cli {
 namespace {
 
 constexpr const char* kPython = "/usr/bin/python3";  // Debian's modules belong to it
-
-}  // namespace
 
 std::vector<std::string> script_command(const std::string& script, const std::string& asked_by) {
   const auto folder = std::filesystem::read_symlink("/proc/self/exe").parent_path().parent_path();
@@ -22,6 +22,17 @@ std::vector<std::string> script_command(const std::string& script, const std::st
   if (::access(path.c_str(), R_OK) != 0)
     throw InputError(fmt::format("{}: {} is not there; podm is not installed whole", asked_by, path));
   return {kPython, "-E", "-s", "-B", path};
+}
+
+}  // namespace
+
+ScriptResult run_script(const std::string& script, const std::string& argument, const std::string& asked_by,
+                        const SignalThread& signals) {
+  std::vector<std::string> command = script_command(script, asked_by);
+  command.push_back(argument);
+  ChildProcess process(command, asked_by, signals);
+  std::string output = process.read(signals);
+  return {std::move(output), process.exit_code()};
 }
 
 }  // namespace podm::cli

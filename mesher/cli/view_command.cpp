@@ -1,30 +1,40 @@
-// podm view: this process becomes the script that draws, on a display of its own that nobody sees.
-#include <fmt/format.h>
-#include <unistd.h>
-
-#include <cerrno>
-#include <csignal>
+// podm view: a script draws, on a display of its own that nobody sees.
 #include <nlohmann/json.hpp>
-#include <system_error>
 
 #include "cli/commands.h"
+#include "cli/foreign_mesh.h"
 #include "cli/json_text.h"
 #include "cli/python_scripts.h"
-#include "podm/errors.h"
+#include "files/atomic_file.h"
+#include "files/temporary_file.h"
+#include "podm/mesh_io.h"
 
 namespace podm::cli {
 namespace {
 
-constexpr const char* kWithDisplay = "/usr/bin/xvfb-run";  // Debian's VTK draws through X alone
+constexpr int kInternalError = 3;
 
-nlohmann::ordered_json request(const ViewCommand& command) {
+bool is_of_vtk(const std::string& path) {
+  return path.ends_with(".vtu") || path.ends_with(".pvtu") || path.ends_with(".vtk");
+}
+
+// What the script reads: the mesh itself, or a copy of it.
+std::string readable_mesh(const std::string& path, const TemporaryFolder& scratch) {
+  if (is_of_vtk(path)) return path;
+  ForeignMesh foreign = read_foreign_mesh(path);
+  canonicalize(foreign.mesh);
+  std::string copy = scratch / "mesh.vtu";
+  write_mesh(foreign.mesh, copy);
+  return copy;
+}
+
+nlohmann::ordered_json request(const ViewCommand& command, const std::string& mesh) {
   nlohmann::ordered_json cut = nullptr;
   if (command.cut)
     cut = {{"normal", command.cut->normal},
            {"place", command.cut->place},
            {"is_fraction", command.cut->is_fraction}};
-  return {{"mesh", command.mesh_path},
-          {"output", command.output_path},
+  return {{"mesh", mesh},
           {"cut", cut},
           {"flip", command.flip},
           {"labels", command.labels},
@@ -40,19 +50,15 @@ nlohmann::ordered_json request(const ViewCommand& command) {
 }  // namespace
 
 int run(const ViewCommand& command) {
-  std::vector<std::string> words{kWithDisplay, "-a"};
-  for (std::string& word : script_command("view", "view")) words.push_back(std::move(word));
-  words.push_back(json_line(request(command)));
-  if (::access(kWithDisplay, X_OK) != 0)
-    throw InputError(fmt::format("view: {} is not there; install Debian's xvfb and xauth", kWithDisplay));
-  std::vector<char*> arguments;
-  for (std::string& word : words) arguments.push_back(word.data());
-  arguments.push_back(nullptr);
-  std::signal(SIGXFSZ, SIG_DFL);
-  std::signal(SIGPIPE, SIG_DFL);
-  ::execv(arguments[0], arguments.data());
-  throw InputError(
-      fmt::format("view: {} cannot be run: {}", kWithDisplay, std::generic_category().message(errno)));
+  const SignalThread signals;  // leave no process and no part of a picture behind
+  AtomicFile picture(command.output_path);
+  const TemporaryFolder scratch(command.output_path);
+  const std::string mesh = readable_mesh(command.mesh_path, scratch);
+  const ScriptResult drawn = run_script("view", json_line(request(command, mesh)), "view", signals);
+  if (drawn.exit_code != 0) return drawn.exit_code == 2 ? 2 : kInternalError;
+  picture.write(drawn.output);
+  picture.publish();
+  return 0;
 }
 
 }  // namespace podm::cli

@@ -165,7 +165,8 @@ StepResult Operation<Locks>::plan_move(VertexId v, CellId seed) {
   if (const StepResult planned = plan_removal(v, seed); planned != StepResult::kDone) return planned;
   num_in_ball_ = region_.cells.size();
   collect_boundary();
-  if (!hole_.plan(mesh_, region_, nullptr)) return StepResult::kTooNear;
+  if (!hole_.plan(mesh_, region_, nullptr) || !VertexMove::has_ids_for(hole_.num_cells()))
+    return StepResult::kTooNear;
   move_.begin(v, hole_);
   counters_.planned_cells += hole_.num_cells();
   return StepResult::kDone;
@@ -197,6 +198,8 @@ StepResult Operation<Locks>::plan_move_to(const Point& p) {
       }
     }
   }
+  if (!VertexMove::has_ids_for(hole_.num_cells() + region_.boundary.size()))
+    return StepResult::kNotInConflict;
   for (const FacetId facet : region_.boundary) move_.add_star_facet(facet);
   counters_.planned_cells += region_.boundary.size();
   return StepResult::kDone;

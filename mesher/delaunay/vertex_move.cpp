@@ -82,6 +82,7 @@ void VertexMove::number_star() {
 
 void VertexMove::glue_star() {
   relies_.assign(cells_.size(), 0);
+  ids_.assign(cells_.size(), 0);  // fill() must not ask for memory
   number_star();
   facets_at_edges_.begin(static_cast<unsigned>(star_vertices_.size()));
   for (CellId c = first_of_star(); c < end(); ++c) {
@@ -106,7 +107,6 @@ std::size_t VertexMove::num_cells() const {
 
 void VertexMove::fill(Pool& pool, Region& region, VertexId moved) {
   pool.replace(region.cells, num_cells(), region.created);
-  ids_.assign(cells_.size(), 0);
   auto next = region.created.begin();
   for (std::size_t i = 0; i < cells_.size(); ++i) {
     if (is_dug(kFirstPlanned + static_cast<CellId>(i))) continue;

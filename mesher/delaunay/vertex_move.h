@@ -26,6 +26,10 @@ class VertexMove {
   /// Planned cells have ids from this on.
   static constexpr CellId kFirstPlanned = kMostStoredCells - HoleFiller::kMaxVertices;
   static constexpr bool is_planned(CellId c) { return c >= kFirstPlanned; }
+  /// Of more planned cells facets would have no numbers.
+  static constexpr bool has_ids_for(std::size_t num_planned) {
+    return num_planned <= kMostStoredCells - kFirstPlanned;
+  }
 
   explicit VertexMove(Mesh& mesh) : mesh_(mesh) {}
 

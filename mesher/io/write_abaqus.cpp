@@ -77,6 +77,7 @@ class AbaqusWriter {
 
   Losses write() {
     print_head();
+    tell_changed_names();
     print_nodes();
     for (std::size_t i = 0; i < sets_.volumes.size(); ++i) print_elements(i);
     print_surfaces();
@@ -91,22 +92,38 @@ class AbaqusWriter {
     text_.print(FMT_COMPILE("** space {}\n"), to_string(mesh_.space));
     for (const std::string& promise : promises_of(mesh_))
       text_.print(FMT_COMPILE("** promise {}\n"), promise);
-    std::size_t num_changed = 0;
-    std::string changed;  // the last of them
-    for (std::size_t i = 0; i < sets_.volumes.size(); ++i) {
-      const std::string& name = sets_.names[sets_.volumes[i]];
+    for (std::size_t i = 0; i < sets_.volumes.size(); ++i)
       text_.print(FMT_COMPILE("** label {} elset {} {}\n"), mesh_.labels[sets_.volumes[i]].value,
-                  volume_names_[i], name);
-      num_changed += volume_names_[i] != name;
-      if (volume_names_[i] != name) changed = fmt::format("'{}' is {}", name, volume_names_[i]);
-    }
-    if (num_changed > 0)
-      losses_.push_back(fmt::format("sets hold no such names as {} labels have: {}", num_changed, changed));
+                  volume_names_[i], sets_.names[sets_.volumes[i]]);
     for (std::size_t i = 0; i < sets_.pairs.size(); ++i) {
       const auto [a, b] = sets_.pairs[i];
       text_.print(FMT_COMPILE("** pair {} {} surface {} {}\n"), mesh_.labels[a].value, mesh_.labels[b].value,
                   surface_names_[i], sets_.names.of_pair(sets_.pairs[i]));
     }
+  }
+
+  // Names of pairs are joined by a dash wherever they are whole.
+  void tell_changed_names() {
+    std::size_t labels = 0, surfaces = 0;
+    std::string of_label, of_surface;  // the last of them
+    for (std::size_t i = 0; i < sets_.volumes.size(); ++i) {
+      const std::string& name = sets_.names[sets_.volumes[i]];
+      if (volume_names_[i] == name) continue;
+      ++labels;
+      of_label = fmt::format("'{}' is {}", name, volume_names_[i]);
+    }
+    for (std::size_t i = 0; i < sets_.pairs.size(); ++i) {
+      std::string name = sets_.names.of_pair(sets_.pairs[i]);
+      std::replace(name.begin(), name.end(), '|', '-');
+      if (surface_names_[i] == name) continue;
+      ++surfaces;
+      of_surface = fmt::format("'{}' is {}", name, surface_names_[i]);
+    }
+    if (labels > 0)
+      losses_.push_back(fmt::format("sets hold no such names as {} labels have: {}", labels, of_label));
+    if (surfaces > 0)
+      losses_.push_back(
+          fmt::format("surfaces hold no such names as {} pairs of labels have: {}", surfaces, of_surface));
   }
 
   void print_nodes() {

@@ -7,6 +7,8 @@
 
 #include "files/atomic_file.h"
 #include "io/mesh_formats.h"
+#include "io/write_vtu.h"
+#include "io/write_xdmf.h"
 #include "podm/errors.h"
 #include "podm/mesh_io.h"
 
@@ -20,21 +22,34 @@ Losses write_all(const TetMesh& mesh, const std::string& path) {
   return {};
 }
 
+// Of the files that are written with the one of that path.
+using Beside = std::vector<std::string> (*)(const std::string& path);
+std::vector<std::string> nothing(const std::string&) { return {}; }
+std::vector<std::string> facets(const std::string& path) { return {facets_path_of(path)}; }
+std::vector<std::string> arrays(const std::string& path) { return {hdf5_path_of(path)}; }
+std::vector<std::string> parts_of_tetgen(const std::string& path) {
+  std::vector<std::string> paths;
+  for (const char* part : {".node", ".ele", ".face"})
+    paths.push_back(std::filesystem::path(path).replace_extension(part).string());
+  return paths;
+}
+
 struct MeshFormat {
   std::string extension;
   Losses (*write)(const TetMesh&, const std::string&);
+  Beside beside;
 };
 
-const std::array<MeshFormat, 10> kMeshFormats{{{".vtu", write_all<write_vtu>},
-                                               {".mesh", write_all<write_medit>},
-                                               {".msh", write_all<write_gmsh>},
-                                               {".xdmf", write_all<write_xdmf>},
-                                               {".inp", write_abaqus},
-                                               {".e", write_exodus},
-                                               {".exo", write_exodus},
-                                               {".vtk", write_all<write_legacy_vtk>},
-                                               {".node", write_all<write_tetgen>},
-                                               {".ele", write_all<write_tetgen>}}};
+const std::array<MeshFormat, 10> kMeshFormats{{{".vtu", write_all<write_vtu>, facets},
+                                               {".mesh", write_all<write_medit>, nothing},
+                                               {".msh", write_all<write_gmsh>, nothing},
+                                               {".xdmf", write_all<write_xdmf>, arrays},
+                                               {".inp", write_abaqus, nothing},
+                                               {".e", write_exodus, nothing},
+                                               {".exo", write_exodus, nothing},
+                                               {".vtk", write_all<write_legacy_vtk>, facets},
+                                               {".node", write_all<write_tetgen>, parts_of_tetgen},
+                                               {".ele", write_all<write_tetgen>, parts_of_tetgen}}};
 
 std::string known_extensions() {
   std::string text;
@@ -61,6 +76,7 @@ void check_mesh_path(const std::string& path, const MeshFileOptions& options) {
   if (options.gmsh_version && format.extension != ".msh")
     throw InputError(fmt::format("cannot write {}: a version of Gmsh's format is for .msh alone", path));
   const AtomicFile trial(path);  // what writing will do first; it leaves nothing behind
+  for (const std::string& with_it : format.beside(path)) const AtomicFile trial_of_other(with_it);
 }
 
 std::vector<std::string> write_mesh(const TetMesh& mesh, const std::string& path,

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <atomic>
 #include <memory>
+#include <new>
 
 #include "optimize/interface_hash.h"
 #include "optimize/obstacles.h"
@@ -37,10 +38,31 @@ class Optimization {
       pools_.push_back(std::make_unique<Pool>(mesh, static_cast<NodeIndex>(node), num_workers));
       workers_.push_back(std::make_unique<Optimizer<Locks>>(mesh, parameters, id, *pools_[id]));
     }
+    for (const auto& [means, name] : Names<Means>::kAll) report_.successes[means] = 0;
+    for (const auto& [obstacle, name] : Names<OptimizationObstacle>::kAll) report_.obstacles[obstacle] = 0;
   }
 
   template <class Time>
-  OptimizationReport operator()(Time& time) {
+  OptimizationReport operator()(Time& time, StopControl& stop) {
+    try {
+      make_all(time);
+    } catch (const std::bad_alloc&) {  // for lists between passes
+      stop.end(StopReason::kMemoryLimit);
+      report_all_cells();
+    }
+    report_successes();
+    return std::move(report_);  // a copy would ask for memory
+  }
+  /// How much is done, while workers are at it. It falls a little where cells are tried again.
+  double fraction() const {
+    const auto taken = static_cast<double>(std::min(next_.load(), num_cells_.load()));
+    const double of_pass = num_cells_ == 0 ? 0 : taken / static_cast<double>(num_cells_);
+    return (num_passes_ + of_pass) / kPasses.size();
+  }
+
+ private:
+  template <class Time>
+  void make_all(Time& time) {
     std::uint64_t interfaces = 0;
     Entries bad = find_bad_cells(interfaces);
     report_.beyond_aim_before = bad.size();
@@ -53,17 +75,9 @@ class Optimization {
     for (const auto& worker : workers_) interfaces += worker->interface_change();
     if (interfaces != hash_of_interfaces())
       throw InternalError("optimisation changed facets between labels, other than by peels");
-    report(bad);
-    return report_;
-  }
-  /// How much is done, while workers are at it. It falls a little where cells are tried again.
-  double fraction() const {
-    const auto taken = static_cast<double>(std::min(next_.load(), num_cells_.load()));
-    const double of_pass = num_cells_ == 0 ? 0 : taken / static_cast<double>(num_cells_);
-    return (num_passes_ + of_pass) / kPasses.size();
+    report_cells(bad);
   }
 
- private:
   // Cells are found by chunks, and workers take shares: few of those that take long.
   static constexpr std::size_t kChunk = 1 << 12, kMostShared = 64;
 
@@ -92,7 +106,7 @@ class Optimization {
     std::vector<std::uint8_t> is_bad(mesh_.cell_bound());
     hash_of_interfaces = hash_and_visit([&](CellId c) {
       if (c + kLookahead < is_bad.size()) mesh_.prefetch_vertices(c + kLookahead);
-      is_bad[c] = cell_quality(mesh_, c, parameters_.aim.bounds()) < 1;
+      is_bad[c] = is_beyond_aim(c);
     });
     Entries bad;
     for (CellId c = 0; c < is_bad.size(); ++c)
@@ -147,6 +161,7 @@ class Optimization {
 
   static void append(Entries&& from, Entries& to) { to.insert(to.end(), from.begin(), from.end()); }
 
+  bool is_beyond_aim(CellId c) const { return cell_quality(mesh_, c, parameters_.aim.bounds()) < 1; }
   bool is_beyond_bounds(CellId c) const { return cell_quality(mesh_, c, parameters_.bound) < 1; }
   std::uint64_t num_beyond_bounds(const Entries& cells) const {
     return static_cast<std::uint64_t>(
@@ -154,17 +169,24 @@ class Optimization {
   }
 
   // Every bad cell that lives is among those left.
-  void report(const Entries& left) {
-    for (const Entry& entry : left) {
-      if (mesh_.stamp(entry.cell) != entry.stamp) continue;
-      ++report_.beyond_aim;
-      if (!is_beyond_bounds(entry.cell)) continue;
-      ++report_.beyond_bounds;
-      ++report_.obstacles[obstacle_of(mesh_, entry.cell, parameters_.bound)];
-    }
-    for (const auto& [means, name] : Names<Means>::kAll)
-      for (const auto& worker : workers_)
-        report_.successes[means] += worker->successes()[static_cast<std::size_t>(means)];
+  void report_cells(const Entries& left) {
+    for (const Entry& entry : left)
+      if (mesh_.stamp(entry.cell) == entry.stamp) report_bad_cell(entry.cell);
+  }
+  // Where the list is lost.
+  void report_all_cells() {
+    for (CellId c = 0; c < mesh_.cell_bound(); ++c)
+      if (mesh_.cell(c).is_alive() && mesh_.label(c) != kBackground && is_beyond_aim(c)) report_bad_cell(c);
+  }
+  void report_bad_cell(CellId c) {
+    ++report_.beyond_aim;
+    if (!is_beyond_bounds(c)) return;
+    ++report_.beyond_bounds;
+    ++report_.obstacles[obstacle_of(mesh_, c, parameters_.bound)];
+  }
+  void report_successes() {
+    for (auto& [means, count] : report_.successes)
+      for (const auto& worker : workers_) count += worker->successes()[static_cast<std::size_t>(means)];
   }
 
   Mesh& mesh_;
@@ -184,7 +206,7 @@ OptimizationReport optimize_in(Time& time, Mesh& mesh, const OptimizerParameters
   Optimization<Locks> optimization(mesh, parameters, team);
   double most = 0;
   stop.observe_by([&](std::uint64_t) { observe(most = std::max(most, optimization.fraction())); });
-  const OptimizationReport report = optimization(time);
+  OptimizationReport report = optimization(time, stop);
   stop.observe_by([](std::uint64_t) {});  // what it would be asked of is gone
   return report;
 }
@@ -210,7 +232,6 @@ OptimizationReport optimize_mesh(Mesh& mesh, const OptimizerParameters& paramete
   if (team.executor == Executor::kVirtual) {
     VirtualTime time(stop, num_workers, team.cost, team.coordination.seed);
     report = optimize_in(time, mesh, parameters, team, stop, observe);
-    report.simulated_s = time.now_s();
   } else {
     RealTime time(stop, num_workers, team.places);
     report = optimize_in(time, mesh, parameters, team, stop, observe);

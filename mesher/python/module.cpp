@@ -8,8 +8,10 @@
 #include <climits>
 #include <memory>
 #include <new>
+#include <optional>
 
 #include "cli/labelled_image.h"
+#include "cli/option_values.h"
 #include "cli/summary.h"
 #include "measure_quality.h"
 #include "podm/errors.h"
@@ -24,6 +26,20 @@ namespace {
 namespace py = pybind11;
 
 using Names = std::map<std::uint32_t, std::string>;
+
+// Bytes that are not UTF-8, which file and label names may hold, are replaced, as in the record.
+py::str text(const std::string& bytes) {
+  PyObject* const decoded =
+      PyUnicode_DecodeUTF8(bytes.data(), static_cast<Py_ssize_t>(bytes.size()), "replace");
+  if (decoded == nullptr) throw py::error_already_set();
+  return py::reinterpret_steal<py::str>(decoded);
+}
+
+std::vector<py::str> texts(const std::vector<std::string>& all) {
+  std::vector<py::str> decoded;
+  for (const std::string& bytes : all) decoded.push_back(text(bytes));
+  return decoded;
+}
 
 cli::Command parse(std::vector<std::string> arguments) {
   arguments.insert(arguments.begin(), "mesh");
@@ -120,17 +136,36 @@ py::dict qualities(const MeshInMemory& made) {
   return arrays;
 }
 
+// Bytes, as file names are.
+std::vector<py::bytes> claims(MeshInMemory& made, bool with_fidelity,
+                              const std::function<std::string()>& write_image) {
+  std::vector<py::bytes> arguments;
+  for (const std::string& argument : made.claims(with_fidelity, write_image))
+    arguments.emplace_back(argument);
+  return arguments;
+}
+
 // The value and the name of every label, the background first.
-std::vector<std::pair<std::uint32_t, std::string>> labels_of(const MeshInMemory& made) {
-  std::vector<std::pair<std::uint32_t, std::string>> labels;
-  for (const Label& label : made.mesh().labels) labels.emplace_back(label.value, cli::display_name(label));
+std::vector<std::pair<std::uint32_t, py::str>> labels_of(const MeshInMemory& made) {
+  std::vector<std::pair<std::uint32_t, py::str>> labels;
+  for (const Label& label : made.mesh().labels)
+    labels.emplace_back(label.value, text(cli::display_name(label)));
   return labels;
 }
 
-void save(const MeshInMemory& made, const std::string& path) {
-  check_mesh_path(path);
-  if (made.mesh().cells.empty()) throw InputError(path + ": the mesh has no cell, so that none is written");
-  write_mesh(made.mesh(), path);
+// Returns what write_mesh() does.
+std::vector<py::str> save(const MeshInMemory& made, const std::string& path,
+                          const std::optional<std::string>& gmsh_version) {
+  std::vector<std::string> losses;
+  {
+    const py::gil_scoped_release others_run;
+    MeshFileOptions options;
+    if (gmsh_version) options.gmsh_version = cli::parse_choice<GmshVersion>(*gmsh_version, "--gmsh-version");
+    check_mesh_path(path, options);
+    if (made.mesh().cells.empty()) throw InputError(path + ": the mesh has no cell, so that none is written");
+    losses = write_mesh(made.mesh(), path, options);
+  }
+  return texts(losses);
 }
 
 void save_surfaces(const MeshInMemory& made, const std::string& path) {
@@ -169,26 +204,26 @@ void define_mesh(py::module_& module) {
       .def_property_readonly("space", [](Self made) { return to_string(made->mesh().space); })
       .def_property_readonly("stop_reason",
                              [](Self made) { return to_string(made->run().report.stop_reason); })
-      .def_property_readonly("unmet", [](Self made) { return made->run().unmet(); })
-      .def_property_readonly("warnings", [](Self made) { return made->run().report.warnings; })
+      .def_property_readonly("unmet", [](Self made) { return texts(made->run().unmet()); })
+      .def_property_readonly("warnings", [](Self made) { return texts(made->run().report.warnings); })
       .def_property_readonly(
           "voxels", [](const py::object& self) { return column(self.cast<Self>()->image().voxels, self); })
       .def_property_readonly("image_size", [](Self made) { return made->image().size; })
       .def_property_readonly("voxel_to_ras", [](Self made) { return made->image().voxel_to_ras; })
       .def("record", &MeshInMemory::record, release)
-      .def("claims", &MeshInMemory::claims)
-      .def("summary", [](Self made) { return cli::summary(made->run()); })
+      .def("claims", &claims, py::arg("with_fidelity"), py::arg("write_image"))
+      .def("summary", [](Self made) { return text(cli::summary(made->run())); })
       .def("qualities", &qualities)
-      .def("save", &save, release)
-      .def("save_surfaces", &save_surfaces, release);
+      .def("save", &save, py::arg("path"), py::arg("gmsh_version"))
+      .def("save_surfaces", &save_surfaces, py::arg("path"), release);
 }
 
 // As exceptions of the package, in its terms.
 void translate(std::exception_ptr thrown) {
   // Never released: the interpreter is gone when statics are.
   static const py::handle package_errors = py::module_::import("podm.errors").release();
-  const auto raise = [](const char* name, const std::string& text) {
-    PyErr_SetString(package_errors.attr(name).ptr(), in_python_terms(text).c_str());
+  const auto raise = [](const char* name, const std::string& message) {
+    PyErr_SetObject(package_errors.attr(name).ptr(), text(in_python_terms(message)).ptr());
   };
   try {
     if (thrown) std::rethrow_exception(thrown);
@@ -206,12 +241,15 @@ void translate(std::exception_ptr thrown) {
 
 PYBIND11_MODULE(_podm, module) {
   using namespace podm::python;
-  pybind11::register_exception_translator(&translate);
+  namespace py = pybind11;
+  py::register_exception_translator(&translate);
   define_progress(module);
   define_mesh(module);
   module.attr("__version__") = PODM_VERSION;
   module.def("options_help", &options_help);
-  module.def("in_python_terms", &in_python_terms);
-  module.def("mesh_file", &mesh_file);
-  module.def("mesh_array", &mesh_array);
+  module.def("in_python_terms", &in_python_terms, py::arg("message"));
+  module.def("mesh_file", &mesh_file, py::arg("path"), py::arg("names"), py::arg("arguments"),
+             py::arg("progress"));
+  module.def("mesh_array", &mesh_array, py::arg("array"), py::arg("voxel_to_ras"), py::arg("names"),
+             py::arg("arguments"), py::arg("progress"));
 }

@@ -15,7 +15,7 @@ run(${CMAKE_COMMAND} -S ${EXAMPLE} -B ${SCRATCH}/build -D CMAKE_PREFIX_PATH=${SC
 run(${CMAKE_COMMAND} --build ${SCRATCH}/build)
 run(${SCRATCH}/build/mesh_image phantom:spheres@24 5 ${SCRATCH}/example.vtu)
 run(${SCRATCH}/prefix/bin/podm mesh phantom:spheres@24 --radius 5 -o ${SCRATCH}/installed.vtu)
-if(EXISTS /usr/bin/xvfb-run)  # without the sources: what is installed runs wherever it is put
+if(EXISTS /usr/bin/Xvfb)  # without the sources: what is installed runs wherever it is put
   foreach(root ${SCRATCH}/prefix ${SCRATCH}/staged/usr)
     run(${root}/bin/podm view ${SCRATCH}/installed.vtu -o ${SCRATCH}/installed.png --size 64x48)
     run(${root}/bin/podm mesh phantom:spheres@24 --radius 5 --verify -o ${SCRATCH}/staged.vtu

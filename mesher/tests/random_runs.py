@@ -27,6 +27,7 @@ class Run:
     selection: list  # options that `podm replay` needs, too
     options: list    # all but the selection and outputs
     limits: set      # reasons for which it may end early
+    optimizes: bool  # it is made once more, and optimised
 
     def foreground(self):
         """Which voxels have a label that is selected."""
@@ -182,5 +183,6 @@ def draw(seed, phantoms):
         options += ["--nodes", divisor(rng, threads)]
     if chance(rng, 0.4):
         options += ["--min-dihedral", f"{rng.uniform(2, 20):.3g}"]
+    optimizes = chance(rng, 0.3)
     return Run(seed, image, *files, algorithm, executor,
-               [str(option) for option in selection], [str(option) for option in options], limits)
+               [str(option) for option in selection], [str(option) for option in options], limits, optimizes)

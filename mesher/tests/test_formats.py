@@ -1,5 +1,9 @@
 """Every mesh format: what podm writes podm-verify proves, and podm convert carries from one to the other."""
 
+import json
+import re
+import shutil
+import subprocess
 import unittest
 
 from podm_process import PodmTestCase, run_podm
@@ -49,6 +53,7 @@ class FormatsTest(PodmTestCase):
     def test_abaqus_keeps_all_but_what_it_says(self):
         process = self.convert(self.mesh("a.vtu", "--merge", "1,2=big sphere"), "a.inp")
         self.assertIn("'big sphere' is big_sphere", process.stderr)
+        self.assertRegex(process.stderr, "surfaces hold no such names as 2 pairs of labels have: '.*' is .*big_sphere")
         self.convert(self.folder / "a.inp", "b.msh")
         text = (self.folder / "b.msh").read_bytes()
         self.assertIn(b'"big sphere|', text)
@@ -108,6 +113,57 @@ class FormatsTest(PodmTestCase):
         for place in range(4, 2000, 61):
             path.write_bytes(whole[:place] + b"\xff" + whole[place + 1:])
             self.assertIn(run_podm("convert", path, self.folder / "out.vtu").returncode, (0, 2), place)
+
+
+class OpenedByOthers(PodmTestCase):
+    """Programs that are not ours find all cells, sets and names."""
+
+    def mesh(self, name, *options):
+        path = self.folder / name
+        record = self.folder / "runs.jsonl"
+        self.assert_exit(run_podm("mesh", "phantom:spheres@24", "--radius", 8, "--quiet", "--merge", "1=big one",
+                                  "--record", record, "-o", path, *options), 0)
+        return path, json.loads(record.read_text().splitlines()[-1])
+
+    def test_vtk_reads_exodus(self):
+        try:
+            from vtkmodules.vtkIOExodus import vtkExodusIIReader
+        except ImportError:
+            self.skipTest("python3-vtk9 is not installed")
+        path, record = self.mesh("a.e")
+        reader = vtkExodusIIReader()
+        reader.SetFileName(str(path))
+        reader.UpdateInformation()
+        blocks, sides = reader.ELEM_BLOCK, reader.SIDE_SET
+        told = {kind: {reader.GetObjectName(kind, i): reader.GetNumberOfEntriesInObject(kind, i)
+                       for i in range(reader.GetNumberOfObjects(kind))} for kind in (blocks, sides)}
+        cells = {label["name"]: label["cells"] for label in record["labels"]}
+        self.assertEqual({name.split(" Type")[0].strip(): count for name, count in told[blocks].items()}, cells)
+        self.assertIn("big one", cells)
+        self.assertEqual(sum(told[sides].values()), record["boundary_facets"])
+        self.assertTrue(any("big one" in name for name in told[sides]))
+
+    @unittest.skipUnless(shutil.which("tetgen"), "tetgen is not installed")
+    def test_tetgen_reads_its_own_format(self):
+        path, record = self.mesh("a.ele")
+        process = subprocess.run(["tetgen", "-rNEF", path.with_suffix("")], capture_output=True, text=True)
+        self.assertEqual(process.returncode, 0, process.stdout)
+        found = re.search(r"Mesh tetrahedra: (\d+)", process.stdout)
+        self.assertEqual(int(found.group(1)), record["cells"], process.stdout)
+
+    @unittest.skipUnless(shutil.which("gmsh"), "gmsh is not installed")
+    def test_gmsh_reads_both_versions(self):
+        for version in ("4.1", "2.2"):
+            path, record = self.mesh(f"v{version[0]}.msh", "--gmsh-version", version)
+            process = subprocess.run(["gmsh", "-save", "-format", "msh22", "-o", self.folder / "back.msh", path],
+                                     capture_output=True, text=True)
+            self.assertEqual(process.returncode, 0, process.stdout)
+            self.assertIn(f"{record['vertices']} nodes", process.stdout)
+            text = (self.folder / "back.msh").read_text()
+            self.assertIn('"big one"', text)
+            elements = text.split("$Elements\n", 1)[1].split("\n")[1:]
+            self.assertEqual(sum(line.split(" ", 2)[1] == "4" for line in elements if line.count(" ") > 1),
+                             record["cells"])
 
 
 if __name__ == "__main__":

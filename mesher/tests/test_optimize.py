@@ -99,7 +99,7 @@ class Optimize(PodmTestCase):
     def test_a_run_that_ends_early_writes_a_sound_mesh(self):
         record = self.record_of("--radius", "2", "--optimize", "--max-seconds", "0.5", code=1,
                                 image="phantom:abdomen@96")
-        self.assertEqual(record["stop_reason"], "time limit")
+        self.assertEqual((record["stop_reason"], record["optimization"]), ("time limit", None))
         process, _ = self.verdicts("out.mesh", "--claims", "structure,surface")
         self.assertEqual(process.returncode, 0, process.stdout)
 

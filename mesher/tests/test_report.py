@@ -27,7 +27,7 @@ def setUpModule():
 
 class Report(PodmTestCase):
     def mesh(self, *more, name="a.vtu", **options):
-        return run_podm("mesh", "phantom:spheres@24", "--radius", "5", "--threads", "1", "--record",
+        return run_podm("mesh", "phantom:spheres@16", "--radius", "5", "--threads", "1", "--record",
                         self.folder / "a.jsonl", "-o", self.folder / name, "--report", self.folder / "a.html", *more,
                         **options)
 
@@ -53,7 +53,7 @@ class Report(PodmTestCase):
 
     def test_formats_give_the_same_numbers(self):
         tables = []
-        for name in ("a.vtu", "a.mesh", "a.msh"):
+        for name in ("a.vtu", "a.vtk", "a.inp", "a.xdmf"):
             self.assert_exit(self.mesh(name=name), 0)
             tables.append(re.search(r'<section id="labels".*?</section>', self.page(), re.DOTALL).group())
         self.assertEqual(len(set(tables)), 1)
@@ -90,10 +90,9 @@ class Report(PodmTestCase):
         self.assertIn("&lt;b&gt;1", self.page())
 
     def test_what_cannot_be_is_refused_before_meshing(self):
-        for report, mesh, word in (("a.htm", "a.vtu", "a.htm"), ("a.html", "a.xdmf", "a.xdmf"),
-                                   ("none/a.html", "a.vtu", "none/a.html")):
-            self.assert_refused(["mesh", "phantom:spheres@16", "-o", self.folder / mesh, "--report",
-                                 self.folder / report], word)
+        for report in "a.htm", "none/a.html":
+            self.assert_refused(["mesh", "phantom:spheres@16", "-o", self.folder / "a.vtu", "--report",
+                                 self.folder / report], report)
 
     def test_a_failure_leaves_the_mesh_and_the_page_before(self):
         (self.folder / "a.html").write_text("before")

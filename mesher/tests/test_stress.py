@@ -81,7 +81,7 @@ class Images(PodmTestCase):
 
 def record(**changes):
     sound = {"stop_reason": "complete", "cells": 10, "guarantees": {"radius": 0},
-             "verdicts": dict.fromkeys(["size", *stress.ALWAYS], "pass")}
+             "verdicts": dict.fromkeys(["size", *stress.ALWAYS], "pass"), "optimization": None}
     return sound | changes
 
 
@@ -126,7 +126,7 @@ class Faults(PodmTestCase):
         voxels[2:14, 2:14, 2:14] = 1
         image = random_images.RandomImage("cube", [], voxels, 2, numpy.eye(4), numpy.ones(3))
         self.run_drawn = random_runs.Run(7, image, "image.nii", "out.vtu", "podm", "virtual", [],
-                                         ["--radius", "3", "--threads", "2", "--oversubscribe"], set())
+                                         ["--radius", "3", "--threads", "2", "--oversubscribe"], set(), True)
 
     def fault_of(self, script):
         program = self.folder / "podm"

@@ -1,19 +1,29 @@
 """podm view: pictures of meshes in every format that can be shown."""
 
 import pathlib
+import signal
 import struct
+import subprocess
 import sys
+import time
 import unittest
 
-from podm_process import PodmTestCase, run_podm
+from ending_podm import end_of
+from podm_process import PodmTestCase, run_podm, start_podm
 
-NEEDED = [pathlib.Path("/usr/bin/xvfb-run"), pathlib.Path("/usr/lib/python3/dist-packages/vtkmodules")]
+NEEDED = [pathlib.Path("/usr/bin/Xvfb"), pathlib.Path("/usr/lib/python3/dist-packages/vtkmodules")]
 
 
 def setUpModule():
     if not all(path.exists() for path in NEEDED):
         print("skipped: xvfb or python3-vtk9 is not installed", file=sys.stderr)
         raise unittest.SkipTest("not installed")
+
+
+def processes_of_session(session):
+    """What runs still, zombies apart."""
+    told = subprocess.run(["ps", "-o", "stat=,comm=", "-s", str(session)], capture_output=True, text=True).stdout
+    return [line for line in told.splitlines() if not line.startswith("Z")]
 
 
 class View(PodmTestCase):
@@ -25,7 +35,7 @@ class View(PodmTestCase):
 
     def test_all_formats_give_the_same_picture(self):
         pictures = []
-        for name in ("a.vtu", "a.mesh", "a.msh"):
+        for name in ("a.vtu", "a.vtk", "a.msh", "a.ele"):
             picture = self.folder / (name + ".png")
             process = run_podm("view", self.mesh(name), "-o", picture, "--size", "200x100", "--cut", "z=-1mm")
             self.assert_exit(process, 0)
@@ -34,7 +44,8 @@ class View(PodmTestCase):
         self.assertEqual(pictures[0][:8], b"\x89PNG\r\n\x1a\n")
         self.assertEqual(struct.unpack(">II", pictures[0][16:24]), (200, 100))
         self.assertEqual(len(set(pictures)), 1)
-        self.assertEqual({path.suffix for path in self.folder.iterdir()}, {".vtu", ".mesh", ".msh", ".png"})
+        self.assertEqual({path.suffix for path in self.folder.iterdir()},
+                         {".vtu", ".vtk", ".msh", ".node", ".ele", ".face", ".png"})
 
     def test_what_is_asked_for_changes_the_picture(self):
         mesh, pictures = self.mesh("a.vtu"), []
@@ -44,6 +55,19 @@ class View(PodmTestCase):
             self.assert_exit(run_podm("view", mesh, "-o", self.folder / "a.png", "--size", "160x120", *arguments), 0)
             pictures.append((self.folder / "a.png").read_bytes())
         self.assertEqual(len(set(pictures)), len(pictures))
+
+    def test_a_signal_leaves_no_display_and_no_picture(self):
+        mesh, before = self.mesh("a.vtu"), self.files()
+        for wait_s in (0.1, 0.5, 1):
+            process = start_podm("view", mesh, "-o", self.folder / "a.png", "--size", "4000x4000",
+                                 start_new_session=True)
+            time.sleep(wait_s)
+            self.assertEqual(end_of(process, signal.SIGTERM).code, -signal.SIGTERM)
+            ended_s = time.monotonic()
+            while left := processes_of_session(process.pid):
+                self.assertLess(time.monotonic() - ended_s, 5, left)
+                time.sleep(0.05)
+            self.assertEqual(self.files(), before)
 
     def test_bad_words_are_refused_before_anything_is_read(self):
         out = ["view", self.folder / "none.vtu", "-o", self.folder / "a.png"]

@@ -19,7 +19,9 @@ void RealTime::run(const std::function<void(WorkerId)>& work) {
       threads.reserve(states_.size());
       for (WorkerId self = 1; self < states_.size(); ++self)
         threads.emplace_back([&, self] { work_on_thread(work, self); });
-    } catch (...) {  // a thread was not to be had: those that run already end now
+    } catch (const std::bad_alloc&) {  // those that run already end now
+      stop_.end(StopReason::kMemoryLimit);
+    } catch (...) {  // a thread was not to be had
       fail();
     }
     start_s_ += seconds_since(start);

@@ -7,9 +7,8 @@ import textwrap
 import matplotlib
 import pandas
 
-from views.whole_file import write_whole
-
 from . import style
+from .whole_file import write_whole
 
 
 def write_text(path, text):

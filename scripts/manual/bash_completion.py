@@ -18,8 +18,9 @@ SCRIPT = """\
 {offered}
       esac ;;
   esac
-  [ -n "$files" ] && [ "${{current#-}}" = "$current" ] && COMPREPLY=($(compgen -f -- "$current")) || COMPREPLY=()
-  COMPREPLY+=($(compgen -W "$offered" -- "$current"))
+  COMPREPLY=($(compgen -W "$offered" -- "$current"))
+  local IFS=$'\n'  # names of files may have blanks
+  [ -z "$files" ] || [ "${{current#-}}" != "$current" ] || COMPREPLY+=($(compgen -f -- "$current"))
 }}
 complete -o filenames -F {function} {name}
 """

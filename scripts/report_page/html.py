@@ -20,7 +20,7 @@ def document(title, header, main, script):
 <meta name="viewport" content="width=device-width, initial-scale=1">
 <title>{escape(title)}</title>
 <link rel="icon" href="data:,">
-<style>{STYLE.read_text()}</style>
+<style>{STYLE.read_text(encoding='utf-8')}</style>
 </head>
 <body>
 <header>

@@ -9,7 +9,7 @@ HEADING = "### Limits of the model"
 
 def limits():
     """Paragraphs and lists below the heading, as HTML."""
-    section = README.read_text().partition(HEADING)[2]
+    section = README.read_text(encoding="utf-8").partition(HEADING)[2]
     section = re.split(r"^#+ ", section, maxsplit=1, flags=re.MULTILINE)[0]
     return "<h3>Limits of the model</h3>\n" + "\n".join(map(_html, re.split(r"\n\n+", section.strip())))
 

@@ -28,15 +28,15 @@ GUARANTEES = {"radius_edge": f"cells have a radius-edge ratio below {BOUND_RATIO
 
 
 def page(request):
-    """`request`: mesh (a path), record, verification (null or podm-verify's report), unmet (sentences). Raises
-    MeshError."""
+    """`request`: mesh (the path of a VTK file), name (of the mesh's own file), record, verification (null or
+    podm-verify's report), unmet (sentences). Raises MeshError."""
     record, verification = request["record"], request["verification"]
     mesh = read_mesh(request["mesh"])
     quality = quality_of(mesh)
     packed = pack(mesh) if len(mesh.cells) <= MAX_CELLS else None
     parts = {"quality": _quality(mesh, quality), "mesh": _mesh(mesh, packed), "labels": _labels(mesh, quality, record),
              "claims": _claims(record, verification), "run": _run(record)}
-    name = Path(request["mesh"]).name
+    name = request["name"]
     header = f"""<h1>{escape(name)}</h1>
 <p class="faint">{record["cells"]:,} tetrahedra, {record["vertices"]:,} vertices, {record["boundary_facets"]:,} facets
 on surfaces, of {escape(record["input"]["path"])}, by {escape(record["program"])}.</p>"""
@@ -165,7 +165,8 @@ def _run(record):
 def main(arguments):
     """The exit code: 0 the page is on standard output, 2 bad input."""
     try:
-        sys.stdout.write(page(json.loads(Path(arguments[0]).read_text())))
+        text = page(json.loads(Path(arguments[0]).read_text(encoding="utf-8")))
+        sys.stdout.buffer.write(text.encode())  # whatever the locale is: VTK's reader may have changed it
     except (MeshError, OSError) as error:
         print(f"podm: {error}", file=sys.stderr)
         return 2

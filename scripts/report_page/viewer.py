@@ -71,4 +71,4 @@ turn; wheel, two fingers, + and - zoom; arrow keys turn too.</p>
 
 
 def script(packed):
-    return f"<script>{SCRIPT.read_text()}</script>" if packed else ""
+    return f"<script>{SCRIPT.read_text(encoding='utf-8')}</script>" if packed else ""

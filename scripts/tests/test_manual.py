@@ -77,7 +77,8 @@ class Completions(unittest.TestCase):
         process = subprocess.run([*COMPLETED_BY[shell], file, function, *words], cwd=folder,
                                  capture_output=True, text=True)
         self.assertEqual((process.returncode, process.stderr), (0, ""), words)
-        return {word for word in process.stdout.split() if word.startswith(words[-1])}  # as zsh does by itself
+        offered = process.stdout.splitlines()
+        return {word for word in offered if word and word.startswith(words[-1])}  # as zsh does by itself
 
     def test_every_option_and_command_is_offered(self):
         for shell in COMPLETED_BY:
@@ -97,11 +98,11 @@ class Completions(unittest.TestCase):
 
     def test_files_are_offered_where_files_are_taken(self):
         with tempfile.TemporaryDirectory() as folder:
-            Path(folder, "liver.nii").touch()
+            Path(folder, "my liver.nii").touch()
             for shell in COMPLETED_BY:
-                for words in (["podm", "mesh", "li"], ["podm", "mesh", "--record", "li"], ["podm-verify", "li"],
-                              ["podm", "mesh", "-o", "li"], ["podm", "mesh", "--record", "=", "li"]):
-                    self.assertEqual(self.complete(shell, *words, folder=folder), {"liver.nii"}, (shell, words))
+                for words in (["podm", "mesh", "my"], ["podm", "mesh", "--record", "my"], ["podm-verify", "my"],
+                              ["podm", "mesh", "-o", "my"], ["podm", "mesh", "--record", "=", "my"]):
+                    self.assertEqual(self.complete(shell, *words, folder=folder), {"my liver.nii"}, (shell, words))
                 self.assertEqual(self.complete(shell, "podm", "mesh", "--threads", "", folder=folder), set())
 
 

@@ -1,8 +1,6 @@
 """Meshes to look at: what is read, measured and drawn of them."""
 import io
 import json
-import random
-import struct
 import subprocess
 import tempfile
 import unittest
@@ -17,7 +15,7 @@ from views.mesh import Mesh, MeshError
 from views.read_mesh import read_mesh
 from views.view import plane_of
 
-XVFB = Path("/usr/bin/xvfb-run")
+XVFB = Path("/usr/bin/Xvfb")
 NAMES = {1: "left half", 2: "right half"}
 
 
@@ -30,72 +28,22 @@ def labels_of_cells(mesh):
     return {tuple(sorted(map(tuple, corners))): label for corners, label in zip(mesh.corners(), mesh.labels)}
 
 
-def write_medit(path, mesh):
-    lines = ["MeshVersionFormatted 2", "# label 1 left half", "# label 2 right half", "Dimension 3", "Vertices",
-             str(len(mesh.points)), *(f"{x} {y} {z} 0" for x, y, z in mesh.points), "Tetrahedra", str(len(mesh.cells))]
-    lines += [" ".join(map(str, [*(cell + 1), label])) for cell, label in zip(mesh.cells, mesh.labels)]
-    path.write_text("\n".join([*lines, "End", ""]))
-
-
-def write_gmsh(path, mesh):
-    """Binary 4.1, a volume a label; tags of nodes descend, so that positions and tags differ."""
-    count = len(mesh.points)
-    parts = [b"$MeshFormat\n4.1 1 8\n", struct.pack("<i", 1), b"\n$EndMeshFormat\n$PhysicalNames\n2\n",
-             *(f'3 {value} "{name}"\n'.encode() for value, name in NAMES.items()),
-             b"$EndPhysicalNames\n$Entities\n", struct.pack("<4Q", 0, 0, 0, 2)]
-    parts += [struct.pack("<i6dQiQ", value + 10, *[0.0] * 6, 1, value, 0) for value in NAMES]
-    parts += [b"\n$EndEntities\n$Nodes\n", struct.pack("<4Q", 1, count, 1, count), struct.pack("<3iQ", 3, 11, 0, count),
-              numpy.arange(count, 0, -1).astype("<u8").tobytes(), mesh.points.astype("<f8").tobytes(),
-              b"\n$EndNodes\n$Elements\n", struct.pack("<4Q", 2, len(mesh.cells), 1, len(mesh.cells))]
-    for value in NAMES:
-        own = mesh.cells[mesh.labels == value]
-        rows = numpy.column_stack([numpy.arange(len(own)), count - own])
-        parts += [struct.pack("<3iQ", 3, value + 10, 4, len(own)), rows.astype("<u8").tobytes()]
-    path.write_bytes(b"".join([*parts, b"\n$EndElements\n"]))
-
-
-WRITERS = {"mesh.mesh": write_medit, "mesh.msh": write_gmsh,
-           "mesh.vtu": lambda path, mesh: synthetic.write_vtu(path, mesh.points, mesh.cells, mesh.labels)}
-
-
 class InFolder(unittest.TestCase):
     def setUp(self):
         folder = tempfile.TemporaryDirectory()
         self.addCleanup(folder.cleanup)
         self.folder = Path(folder.name)
 
-    def write(self, name, mesh):
-        WRITERS[name](self.folder / name, mesh)
-        return self.folder / name
+    def write(self, mesh):
+        path = self.folder / "mesh.vtu"
+        synthetic.write_vtu(path, mesh.points, mesh.cells, mesh.labels)
+        return path
 
 
 class Files(InFolder):
-    def test_formats_hold_the_same_mesh(self):
+    def test_a_file_holds_the_mesh(self):
         mesh = box()
-        for name in WRITERS:
-            with self.subTest(name=name):
-                back = read_mesh(self.write(name, mesh))
-                self.assertEqual(labels_of_cells(back), labels_of_cells(mesh))
-                if name != "mesh.vtu":  # as that writer tells no names
-                    self.assertEqual(back.names, NAMES)
-
-    def test_damaged_files_are_refused_or_read_and_nothing_else(self):
-        draw = random.Random(5)
-        refused = 0
-        for name in ("mesh.mesh", "mesh.msh"):
-            whole = self.write(name, box(1)).read_bytes()
-            for _ in range(400):
-                data = bytearray(whole[:draw.randrange(len(whole) + 1)] if draw.random() < 0.5 else whole)
-                for _ in range(draw.randrange(4)):
-                    if data:
-                        data[draw.randrange(len(data))] = draw.randrange(256)
-                (self.folder / name).write_bytes(data)
-                try:
-                    read_mesh(self.folder / name)
-                except MeshError as error:
-                    self.assertIn(name, str(error))
-                    refused += 1
-        self.assertGreater(refused, 400)
+        self.assertEqual(labels_of_cells(read_mesh(self.write(mesh))), labels_of_cells(mesh))
 
     def test_what_cannot_be_shown_is_named(self):
         for path, words in ((self.folder / "none.vtu", "none.vtu: No such file"),
@@ -206,13 +154,11 @@ class Picture(InFolder):
 
     def draw(self, **changes):
         """The picture, height x width x 3, from 0 to 255."""
-        path = self.write("mesh.mesh", box())
-        request = {**self.REQUEST, "mesh": str(path), "output": str(self.folder / "picture.png"), **changes}
-        done = subprocess.run([XVFB, "-a", "/usr/bin/python3", "-E", "-s", "-B", paths.SCRIPTS / "view",
-                               json.dumps(request)], capture_output=True, text=True)
+        request = {**self.REQUEST, "mesh": str(self.write(box())), **changes}
+        done = subprocess.run(["/usr/bin/python3", "-E", "-s", "-B", paths.SCRIPTS / "view", json.dumps(request)],
+                              capture_output=True)
         self.assertEqual(done.returncode, 0, done.stderr)
-        data = (self.folder / "picture.png").read_bytes()
-        return numpy.round(255 * matplotlib.image.imread(io.BytesIO(data))[..., :3]).astype(int)
+        return numpy.round(255 * matplotlib.image.imread(io.BytesIO(done.stdout))[..., :3]).astype(int)
 
     def share_of(self, picture, hue):
         """Of pixels whose greatest channel is that one, by a margin."""
@@ -225,7 +171,7 @@ class Picture(InFolder):
         self.assertTrue((picture[0, 0] == 255).all())
         self.assertGreater(self.share_of(picture, 0), 0.05)  # red: the smaller label
         self.assertGreater((picture[..., 0] < 255).mean(), 0.3)
-        self.assertLess(self.share_of(self.draw(hide=["left half"]), 0), 0.01)
+        self.assertLess(self.share_of(self.draw(hide=["1"]), 0), 0.01)
 
     def test_quality_background_and_legend_show(self):
         picture = self.draw(colour="ratio", background="#102030")

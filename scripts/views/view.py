@@ -1,21 +1,21 @@
 """What `podm view` runs: a request, which podm has checked, into a picture."""
 import json
 import sys
-from pathlib import Path
 
 import numpy
 
 from .cut import Plane, shown_cells
+from .display import hidden_display
 from .mesh import MeshError
 from .read_mesh import read_mesh
-from .whole_file import write_whole
 
 DEFAULT_TOWARDS = (0.0, 1.0, 0.0)  # without a cut: from the front, in RAS
 
 
-def view(request):
-    """Raises MeshError and OSError. `request` holds, in the words of `podm view --help`: mesh, output, cut (null, or
-    normal and place with is_fraction), flip, labels, hide, colour, camera_deg, zoom, size, background, legend."""
+def picture_of(request):
+    """The bytes of a PNG file. Raises MeshError. `request` holds, in the words of `podm view --help`: mesh (a VTK
+    file), cut (null, or normal and place with is_fraction), flip, labels, hide, colour, camera_deg, zoom, size,
+    background, legend."""
     from .picture import Look, png_of  # VTK is slow to load
 
     mesh = read_mesh(request["mesh"])
@@ -26,7 +26,8 @@ def view(request):
     cells = shown_cells(mesh, plane, request["labels"], request["hide"])
     look = Look(towards, request["colour"], tuple(request["camera_deg"]), request["zoom"], tuple(request["size"]),
                 request["background"], request["legend"])
-    write_whole(Path(request["output"]), png_of(mesh, cells, look))
+    with hidden_display():
+        return png_of(mesh, cells, look)
 
 
 def plane_of(cut, is_flipped):
@@ -39,14 +40,10 @@ def plane_of(cut, is_flipped):
 
 
 def main(arguments):
-    """The exit code: 0 drawn, 2 bad input."""
-    request = json.loads(arguments[0])
+    """The exit code: 0 the picture is on standard output, 2 bad input."""
     try:
-        view(request)
+        sys.stdout.buffer.write(picture_of(json.loads(arguments[0])))
     except MeshError as error:
         print(f"podm: {error}", file=sys.stderr)
-    except OSError as error:
-        print(f"podm: cannot write {request['output']}: {error.strerror}", file=sys.stderr)
-    else:
-        return 0
-    return 2
+        return 2
+    return 0

@@ -23,14 +23,16 @@ struct Setup {
   Executor executor;
   int num_workers;
   int numa_nodes = 1;
+  bool is_perturbed = false;
 };
 const std::vector<Setup> kSetups{
-    {Algorithm::kPodm, Executor::kThreads, 1},        {Algorithm::kPodm, Executor::kThreads, 4},
-    {Algorithm::kPodm, Executor::kVirtual, 6},        {Algorithm::kPdr, Executor::kThreads, 2},
-    {Algorithm::kPdr, Executor::kVirtual, 4},         {Algorithm::kPdrPodm, Executor::kThreads, 4},
-    {Algorithm::kPdrPodm, Executor::kVirtual, 6},     {Algorithm::kPdrPodm, Executor::kThreads, 4, 2},
-    {Algorithm::kPdrPodm, Executor::kVirtual, 6, 2},  {Algorithm::kPodmHome, Executor::kThreads, 4, 2},
-    {Algorithm::kPodmHome, Executor::kVirtual, 6, 2},
+    {Algorithm::kPodm, Executor::kThreads, 1},          {Algorithm::kPodm, Executor::kThreads, 4},
+    {Algorithm::kPodm, Executor::kVirtual, 6},          {Algorithm::kPdr, Executor::kThreads, 2},
+    {Algorithm::kPdr, Executor::kVirtual, 4},           {Algorithm::kPdrPodm, Executor::kThreads, 4},
+    {Algorithm::kPdrPodm, Executor::kVirtual, 6},       {Algorithm::kPdrPodm, Executor::kThreads, 4, 2},
+    {Algorithm::kPdrPodm, Executor::kVirtual, 6, 2},    {Algorithm::kPodmHome, Executor::kThreads, 4, 2},
+    {Algorithm::kPodmHome, Executor::kVirtual, 6, 2},   {Algorithm::kPodm, Executor::kThreads, 1, 1, true},
+    {Algorithm::kPodm, Executor::kThreads, 4, 1, true}, {Algorithm::kPdr, Executor::kVirtual, 4, 1, true},
 };
 
 Topology machine_of_nodes(int num_nodes) {
@@ -61,7 +63,8 @@ class Faults : public testing::TestWithParam<Setup> {
                           .sizes = sizes_,
                           .cell_capacity = cell_capacity,
                           .memory_bytes = memory_bytes,
-                          .most_numbered_cells = most_numbered};
+                          .most_numbered_cells = most_numbered,
+                          .dihedral_bounds = dihedral_bounds()};
     const Team team{.executor = GetParam().executor,
                     .coordination = {.num_workers = num_workers, .seed = 3},
                     .num_nodes = algorithm == Algorithm::kPdr ? num_workers : 2,
@@ -73,6 +76,9 @@ class Faults : public testing::TestWithParam<Setup> {
     const LeafOptions leaves{.initial_ratio = 2, .size_mm = 4};
     return algorithm == Algorithm::kPdr ? pdr(problem, team, leaves, stop)
                                         : pdr_podm(problem, team, leaves, stop);
+  }
+  static std::optional<DihedralBounds> dihedral_bounds() {
+    return GetParam().is_perturbed ? std::optional(DihedralBounds(15, 155)) : std::nullopt;
   }
   static StopControl patient() {
     return {{}, {}, [](std::uint64_t) {}};
@@ -242,7 +248,8 @@ INSTANTIATE_TEST_SUITE_P(Executors, RelocationFaults, testing::Values(Executor::
 INSTANTIATE_TEST_SUITE_P(Setups, Faults, testing::ValuesIn(kSetups), [](const auto& test) {
   const Setup& setup = test.param;
   std::string name = to_string(setup.algorithm) + to_string(setup.executor) +
-                     std::to_string(setup.num_workers) + "on" + std::to_string(setup.numa_nodes);
+                     std::to_string(setup.num_workers) + "on" + std::to_string(setup.numa_nodes) +
+                     (setup.is_perturbed ? "perturbed" : "");
   std::erase(name, '-');
   return name;
 });

@@ -16,6 +16,7 @@
 
 #include "algorithms/perturb.h"
 #include "algorithms/podm.h"
+#include "algorithms/tests/broken_rule.h"
 #include "algorithms/tests/in_own_process.h"
 #include "cost_model.h"
 #include "delaunay/planted_fault.h"
@@ -53,6 +54,12 @@ struct Scene {
   Scene(LabelImage of, double radius)
       : image(std::move(of)), radius_mm(radius), delta_mm(default_delta_mm(image, radius)) {}
   double spacing_mm() const { return std::min(delta_mm, radius_mm / std::sqrt(2 + std::sqrt(3.0))); }
+  Parameters parameters() const {
+    return {.delta_mm = delta_mm,
+            .sizes = sizes,
+            .clamp_box = clamp_box(foreground_bounds(image), delta_mm),
+            .spacing_mm = spacing_mm()};
+  }
 
   LabelImage image;
   double radius_mm, delta_mm;
@@ -151,9 +158,10 @@ class Schedules : public testing::Test {
     StopControl stop = patient();
     const Refinement refinement = refine(scene, static_cast<std::uint64_t>(seed), stop, &log);
     if (refinement.stop_reason != StopReason::kComplete) return "the run is not complete";
-    const Mesh& mesh = *refinement.mesh;
+    Mesh& mesh = *refinement.mesh;
     std::string fault;
     if (!is_valid(mesh, &fault) || !holds_invariants(mesh, scene.spacing_mm(), 1e-6, &fault)) return fault;
+    if (fault = broken_rule(mesh, scene.isosurface, scene.parameters()); !fault.empty()) return fault;
     if (!remembers_right_labels(mesh, scene.isosurface)) return "the label of another cell is remembered";
     const auto& [low, high] = mesh.box();
     log.finish({{low.x, low.y, low.z, high.x, high.y, high.z}, "", "RAS", ""});
@@ -213,6 +221,11 @@ TEST_F(Schedules, FindThatNoLockIsTooFew) {
 
 TEST_F(Schedules, FindThatThreeLocksAreTooFewToReplace) {
   plant_fault({.to_replace = 3});
+  expect_found();
+}
+
+TEST_F(Schedules, FindThatThreeLocksAreTooFewToMove) {
+  plant_fault({.to_move = 3});
   expect_found();
 }
 

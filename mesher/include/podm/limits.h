@@ -9,7 +9,8 @@ namespace podm {
 /// bits.
 inline constexpr std::uint64_t kMostStoredCells = (std::uint64_t{1} << 30) - 1;
 
-/// Each ends a run early, with a valid Delaunay mesh that says what is unmet. 0: no limit.
+/// Each ends a run early, with a valid mesh, Delaunay unless it was being optimised, that says what is unmet.
+/// 0: no limit.
 struct Limits {
   std::uint64_t max_elements = 0;
   double max_seconds = 0;

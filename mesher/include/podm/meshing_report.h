@@ -104,7 +104,6 @@ struct OptimizationReport {
   std::uint64_t beyond_bounds_before = 0, beyond_bounds = 0;
   std::map<OptimizationObstacle, std::uint64_t> obstacles;  ///< of the cells that are beyond the bounds
   std::map<OptimizationMeans, std::uint64_t> successes;     ///< operations that made cells better
-  double simulated_s = 0;                                   ///< of all passes, under Executor::kVirtual
 };
 
 struct MeshingReport {

@@ -178,6 +178,14 @@ TEST(CheckPath, RefusesUnknownExtensionsAndUnwritablePlaces) {
   EXPECT_EQ(folder.files(), std::set<std::string>{});
 }
 
+TEST(CheckPath, RefusesFilesThatHaveNoPlaceForWhatComesWithThem) {
+  const ScratchFolder folder;
+  for (const std::string name : {"a_facets.vtu", "b_facets.vtk", "c.h5", "d.face", "d.node"})
+    std::filesystem::create_directory(folder / name);
+  for (const std::string name : {"a.vtu", "b.vtk", "c.xdmf", "d.ele", "d.node"})
+    EXPECT_THROW(check_mesh_path(folder / name), InputError) << name;
+}
+
 TEST(CheckPath, AVersionOfGmshIsForItsFilesAlone) {
   const ScratchFolder folder;
   const MeshFileOptions options{GmshVersion::k2_2};

@@ -2,6 +2,7 @@
 #include <gtest/gtest.h>
 
 #include "algorithms/tests/failing_allocator.h"
+#include "delaunay/tests/cells_by_points.h"
 #include "optimize/tests/optimized_mesh.h"
 
 namespace podm::test {
@@ -14,13 +15,20 @@ TEST(OptimizationFaults, OfMemoryLeaveASoundMesh) {
       MeshToOptimize optimized(
           make_image({12, 12, 12}, {1, 1, 1}, 2, [](int i, int, int) { return i < 6 ? 1 : 2; }), 1.5, 1);
       const double worst = optimized.worst_quality();
+      const auto cells_before = cells_by_points(optimized.mesh());
       StopControl stop({}, {}, [](std::uint64_t) {});
       allocations_left = after;
+      bool is_thrown = false;
       try {
         optimized.optimize(executor, num_workers, 1, stop);
-      } catch (const std::bad_alloc&) {  // before workers ran, or after
+      } catch (const std::bad_alloc&) {
+        is_thrown = true;
       }
-      allocations_left = -1;
+      const bool has_failed = allocations_left.exchange(-1) < 0;
+      EXPECT_EQ(stop.reason(), has_failed && !is_thrown ? StopReason::kMemoryLimit : StopReason::kComplete);
+      if (is_thrown) {
+        EXPECT_EQ(cells_by_points(optimized.mesh()), cells_before);
+      }
       std::string fault;
       EXPECT_TRUE(is_triangulation(optimized.mesh(), &fault)) << fault;
       EXPECT_EQ(optimized.num_over_bounds(), 0);

@@ -7,23 +7,35 @@ import os
 from collections.abc import Iterable, Mapping
 from typing import Any
 
-from .errors import Error
+from .checks import expect, is_bool, is_label_value, is_number, path_bytes, text_bytes
 
 OPTION_OF = {"keep": "labels", "names": "label-names"}
 """Where the keyword is not the option's name."""
 
+FLAGS = {"optimize", "oversubscribe"}
+"""Options without a value."""
 
-def command_line(keywords: Mapping[str, Any]) -> list[str]:
+_PATHS = {"names", "topology", "crossover"}
+
+
+def command_line(keywords: Mapping[str, Any]) -> list[bytes]:
     """The options that stand for keywords; those that are None are left to the program."""
     return [argument for keyword, value in keywords.items() if value is not None
             for argument in _arguments(keyword, value)]
 
 
-def _arguments(keyword: str, value: Any) -> list[str]:
-    option = "--" + OPTION_OF.get(keyword, keyword.replace("_", "-"))
-    if isinstance(value, bool):
+def _arguments(keyword: str, value: Any) -> list[bytes]:
+    option = b"--" + OPTION_OF.get(keyword, keyword.replace("_", "-")).encode()
+    if keyword in FLAGS:
+        expect(is_bool(value), keyword, "True or False", value)
         return [option] if value else []
-    return [f"{option}={text}" for text in _TEXTS_OF.get(keyword, _one_text)(keyword, value)]
+    encoded = path_bytes if keyword in _PATHS else text_bytes
+    return [option + b"=" + encoded(keyword, text) for text in _TEXTS_OF.get(keyword, _one_text)(keyword, value)]
+
+
+def number_or_text(keyword: str, value: Any) -> bytes:
+    """As an option has it."""
+    return text_bytes(keyword, *_one_text(keyword, value))
 
 
 def _text(value: Any) -> str:
@@ -32,16 +44,11 @@ def _text(value: Any) -> str:
         return str(int(value))
     if isinstance(value, numbers.Real):
         return repr(float(value))
-    return os.fspath(value)
-
-
-def _expect(is_expected: bool, keyword: str, expected: str, value: Any) -> None:
-    if not is_expected:
-        raise Error(f"{keyword}: {expected} is expected, not {value!r}")
+    return os.fsdecode(value)
 
 
 def _one_text(keyword: str, value: Any) -> list[str]:
-    _expect(isinstance(value, (numbers.Real, str, os.PathLike)), keyword, "a number or a text", value)
+    expect(is_number(value) or isinstance(value, (str, os.PathLike)), keyword, "a number or a text", value)
     return [_text(value)]
 
 
@@ -49,33 +56,39 @@ def _two_texts(keyword: str, value: Any) -> list[str]:
     if isinstance(value, str):
         return [value]
     values = list(value) if isinstance(value, Iterable) else []
-    are_numbers = len(values) == 2 and all(isinstance(number, numbers.Real) for number in values)
-    _expect(are_numbers, keyword, "a pair of numbers", value)
+    expect(len(values) == 2 and all(map(is_number, values)), keyword, "a pair of numbers", value)
     return [",".join(map(_text, values))]
 
 
 def _length_of_labels(keyword: str, value: Any) -> list[str]:
-    _expect(isinstance(value, Mapping), keyword, 'a dict from names or values of labels to mm, as {"liver": 2},', value)
+    expect(isinstance(value, Mapping), keyword, 'a dict from names or values of labels to mm, as {"liver": 2},', value)
     for label, length in value.items():
-        is_label = isinstance(label, (str, numbers.Integral)) and not isinstance(label, bool)
-        _expect(is_label, keyword, "a label's name or value", label)
-        _expect(isinstance(length, numbers.Real), keyword, f"a length in mm for {label!r}", length)
+        expect(isinstance(label, str) or is_label_value(label), keyword, "a label's name or value", label)
+        expect(is_number(length), keyword, f"a length in mm for {label!r}", length)
     return [f"{label}={_text(length)}" for label, length in value.items()]
 
 
 def _label_values(keyword: str, value: Any) -> list[str]:
     if isinstance(value, str):
         return [value]
-    values = [value] if isinstance(value, numbers.Integral) else list(value) if isinstance(value, Iterable) else [None]
-    are_values = all(isinstance(label, numbers.Integral) for label in values)
-    _expect(are_values, keyword, 'label values, as [1, 3, 4] or "1,3-4",', value)
-    return [",".join(map(_text, values))] if values else []
+    values = list(value) if isinstance(value, Iterable) else [value]
+    are_values = bool(values) and all(map(is_label_value, values))
+    expect(are_values, keyword, 'one or some label values, 0 to 2^32 - 1, as [1, 3, 4] or "1,3-4",', value)
+    return [",".join(map(_text, values))]
 
 
 def _merges(keyword: str, value: Any) -> list[str]:
-    _expect(isinstance(value, Mapping), keyword, 'a dict from names to label values, as {"kidney": [2, 3]},', value)
+    expect(isinstance(value, Mapping), keyword, 'a dict from names to label values, as {"kidney": [2, 3]},', value)
+    for name in value:
+        expect(isinstance(name, str), keyword, "a name", name)
     return [f"{text}={name}" for name, values in value.items() for text in _label_values(keyword, values)]
 
 
+def _file_of_names(keyword: str, value: Any) -> list[str]:
+    is_file = isinstance(value, (str, os.PathLike))
+    expect(is_file, keyword, 'a dict from label values to names, as {1: "liver"}, or the name of a file', value)
+    return [_text(value)]
+
+
 _TEXTS_OF = {"radius_of": _length_of_labels, "keep": _label_values, "drop": _label_values, "merge": _merges,
-             "dihedral_bounds": _two_texts}
+             "dihedral_bounds": _two_texts, "names": _file_of_names}

@@ -7,6 +7,7 @@ from typing import Any
 
 import numpy as np
 
+from .checks import is_bool
 from .errors import Error
 
 _MM_OF_UNIT = {"meter": 1000.0, "micron": 0.001}
@@ -37,7 +38,10 @@ def _affine_of_nibabel(image: Any) -> np.ndarray:
 
 
 def _voxels(labels: Any) -> np.ndarray:
-    array = np.asanyarray(labels)
+    try:
+        array = np.asanyarray(labels)
+    except (TypeError, ValueError) as error:
+        raise Error(f"labels: a 3-D array of integers is expected; numpy makes none of this: {error}") from error
     if isinstance(array, np.ma.MaskedArray):
         raise Error("labels: an array without a mask is expected; fill it with the background, as labels.filled(0)")
     if array.dtype == bool:
@@ -55,6 +59,8 @@ def _numbers(keyword: str, value: Any, shape: tuple[int, ...], expected: str) ->
         raise Error(f"{keyword}: {expected} is expected, not {value!r}") from None
     if array.shape != shape:
         raise Error(f"{keyword}: {expected} is expected, not an array of shape {array.shape}")
+    if any(map(is_bool, np.asarray(value, dtype=object).flat)):
+        raise Error(f"{keyword}: {expected} is expected, not {value!r}")
     return array
 
 

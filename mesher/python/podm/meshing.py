@@ -10,6 +10,7 @@ from typing import TYPE_CHECKING, Any
 
 from . import _podm
 from .arguments import command_line
+from .checks import expect, is_label_value, path_bytes, text_bytes
 from .errors import Error, Interrupted
 from .images import is_file, voxels_and_affine
 from .result import Mesh
@@ -65,26 +66,24 @@ def mesh(labels: npt.ArrayLike | StrPath, *, affine: npt.ArrayLike | None = None
     mesh misses, and what is odd about an image, is told by warnings.warn().
     """
     options = {keyword: value for keyword, value in locals().items()
-               if keyword not in ("labels", "affine", "spacing", "names", "progress")}
-    if names is not None and not isinstance(names, Mapping):
-        options["names"] = os.fspath(names)
+               if keyword not in ("labels", "affine", "spacing", "progress")}
+    name_of = _name_of(options.pop("names")) if isinstance(names, Mapping) else {}
     arguments = command_line(options)
-    name_of = _checked_names(names) if isinstance(names, Mapping) else {}
     if is_file(labels):
         if affine is not None or spacing is not None:
             raise Error("labels: a file tells where its voxels lie, so that neither affine nor spacing is expected")
-        made, exception = _podm.mesh_file(os.fspath(labels), name_of, arguments, progress)
+        made, exception = _podm.mesh_file(path_bytes("labels", labels), name_of, arguments, progress)
     else:
         voxels, matrix = voxels_and_affine(labels, affine, spacing)
         made, exception = _podm.mesh_array(voxels, matrix, name_of, arguments, progress)
     return _result(made, exception)
 
 
-def _checked_names(names: Mapping[Any, Any]) -> dict[int, str]:
+def _name_of(names: Mapping[Any, Any]) -> dict[int, bytes]:
     for value, name in names.items():
-        if not (isinstance(name, str) and hasattr(value, "__index__") and 0 <= value < 2**32):
-            raise Error(f'names: label values and their names are expected, as {{1: "liver"}}, not {value!r}: {name!r}')
-    return {int(value): name for value, name in names.items()}
+        is_named = isinstance(name, str) and is_label_value(value)
+        expect(is_named, "names", 'a dict from label values to names, as {1: "liver"},', {value: name})
+    return {int(value): text_bytes("names", name) for value, name in names.items()}
 
 
 def _result(made: _podm.MeshInMemory | None, exception: BaseException | None) -> Mesh:

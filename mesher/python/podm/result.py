@@ -5,12 +5,15 @@ from __future__ import annotations
 import functools
 import json
 import os
+import warnings
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
 import numpy.typing as npt
 
 from . import _podm, verification
+from .arguments import number_or_text
+from .checks import path_bytes
 from .verification import Verification
 
 if TYPE_CHECKING:
@@ -21,8 +24,9 @@ if TYPE_CHECKING:
 class Mesh:
     """A tetrahedral mesh with labels.
 
-    Its arrays are views of the mesher's memory, read-only, and keep it alive. Points, cells and facets are in the
-    canonical order of the program, so that the same mesh has the same arrays.
+    Its arrays are read-only. `points`, `cells` and `facets` are views of the mesher's memory and keep it alive;
+    `labels` and `facet_labels` are made once, when first asked for. Points, cells and facets are in the canonical order
+    of the program, so that the same mesh has the same arrays.
     """
 
     def __init__(self, made: _podm.MeshInMemory) -> None:
@@ -44,7 +48,7 @@ class Mesh:
     @functools.cached_property
     def labels(self) -> npt.NDArray[np.uint32]:
         """The label of each cell, a value of the image, shape (m,)."""
-        return self._values[self._made.label_of_cell]
+        return self._values_of(self._made.label_of_cell)
 
     @property
     def facets(self) -> npt.NDArray[np.uint32]:
@@ -58,7 +62,7 @@ class Mesh:
         """The labels on both sides of each facet, values of the image, shape (k, 2).
 
         The first is the background's where the outside is on that side."""
-        return self._values[self._made.labels_of_facet]
+        return self._values_of(self._made.labels_of_facet)
 
     @functools.cached_property
     def names(self) -> dict[int, str]:
@@ -110,15 +114,19 @@ class Mesh:
         voxel or 2 delta of each other, which a mesh much coarser than a structure may miss."""
         return verification.verify(self, self._made, fidelity)
 
-    def save(self, path: str | os.PathLike[str]) -> None:
+    def save(self, path: str | os.PathLike[str], *, gmsh_version: str | float | None = None) -> None:
         """Writes the mesh, in the format of the name's extension: those of `podm mesh --output`.
 
-        The file appears whole or not at all: podm.Error says what is in the way."""
-        self._made.save(os.fspath(path))
+        The file appears whole or not at all: podm.Error says what is in the way. What the format does not hold of the
+        mesh, as characters of names in .inp, is told by warnings.warn(). `gmsh_version`: of a .msh file alone, "4.1" or
+        "2.2", as `podm mesh --gmsh-version`; None is the program's default."""
+        version = None if gmsh_version is None else number_or_text("gmsh_version", gmsh_version)
+        for loss in self._made.save(path_bytes("path", path), version):
+            warnings.warn(f"{os.fsdecode(path)}: {loss}", stacklevel=2)
 
     def save_surfaces(self, path: str | os.PathLike[str]) -> None:
         """Writes the closed surface of each label as .stl or .ply: "s.stl" becomes s_VALUE[_NAME].stl."""
-        self._made.save_surfaces(os.fspath(path))
+        self._made.save_surfaces(path_bytes("path", path))
 
     def to_meshio(self) -> meshio.Mesh:
         """A meshio.Mesh with blocks of cells and of facets, which needs the package meshio.
@@ -148,10 +156,11 @@ class Mesh:
         grid.GetCellData().SetScalars(labels)
         return grid
 
-    @functools.cached_property
-    def _values(self) -> npt.NDArray[np.uint32]:
-        """The image's value of each label, by the mesher's number of it."""
-        return np.array([value for value, _ in self._made.labels], dtype=np.uint32)
+    def _values_of(self, labels: npt.NDArray[np.uint16]) -> npt.NDArray[np.uint32]:
+        """The image's values of labels that the mesher has numbered, read-only."""
+        values = np.array([value for value, _ in self._made.labels], dtype=np.uint32)[labels]
+        values.setflags(write=False)
+        return values
 
     def __repr__(self) -> str:
         names = list(self.names.values())

@@ -51,7 +51,8 @@ def verify(mesh: Mesh, made: MeshInMemory, fidelity: bool) -> Verification:
         path = os.path.join(folder, "mesh.vtu")
         mesh.save(path)
         claims = made.claims(fidelity, lambda: _write_image(made, os.path.join(folder, "image.nrrd")))
-        process = subprocess.run([program, path, "--json", "-", *claims], capture_output=True, text=True, check=False)
+        process = subprocess.run([program, path, "--json", "-", *claims], capture_output=True, encoding="utf-8",
+                                 errors="replace", check=False)
     if process.returncode not in (0, _CLAIM_FAILED):
         raise Error(f"{program}: {process.stderr.strip() or f'it ended with {process.returncode}'}")
     details = json.loads(process.stdout)
@@ -67,8 +68,8 @@ def _verifier() -> str:
     return program
 
 
-def _write_image(made: MeshInMemory, path: str) -> str:
-    """As NRRD, whose header holds the affine to the last bit."""
+def _write_image(made: MeshInMemory, path: str) -> bytes:
+    """As NRRD, whose header holds the affine to the last bit. Returns the file's name."""
     values = np.array([value for value, _ in made.labels], dtype="<u4")
     rows = np.reshape(made.voxel_to_ras, (3, 4))
     vectors = ["(" + ",".join(map(repr, column.tolist())) + ")" for column in rows.T]
@@ -80,4 +81,4 @@ def _write_image(made: MeshInMemory, path: str) -> str:
         file.write(header.encode())
         for voxels in slices:
             file.write(values[voxels].tobytes())
-    return path
+    return os.fsencode(path)

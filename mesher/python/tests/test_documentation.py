@@ -1,13 +1,18 @@
 """What help(podm) says is what there is."""
 
+import ast
 import inspect
+import pathlib
 import pydoc
 import re
 import typing
 import unittest
 
+import numpy as np
+import numpy.typing
+
 import podm
-from podm import _podm
+from podm import _podm, arguments
 
 OF_THE_IMAGE = {"labels", "affine", "spacing", "progress"}  # no option of the program
 
@@ -15,6 +20,18 @@ OF_THE_IMAGE = {"labels", "affine", "spacing", "progress"}  # no option of the p
 def option_keywords():
     options = set(re.findall(r"^  --([a-z-]+)", _podm.options_help(), re.MULTILINE))
     return {_podm.in_python_terms("--" + option) for option in options}
+
+
+def signature_told(function):
+    """The definition that the first line of pybind11's docstring is."""
+    return ast.parse(f"def {function.__doc__.splitlines()[0]}: ...").body[0]
+
+
+def signature_of(definition):
+    """Names of parameters, the number of defaults, and the outermost type that is returned: list of List[str]."""
+    given = definition.args
+    names = [parameter.arg for parameter in given.posonlyargs + given.args + given.kwonlyargs]
+    return names, len(given.defaults), ast.unparse(definition.returns).partition("[")[0].lower()
 
 
 class DocumentationTest(unittest.TestCase):
@@ -25,6 +42,12 @@ class DocumentationTest(unittest.TestCase):
         """They are the program's: a keyword's own default only says that it was not given."""
         defaults = {parameter.default for parameter in inspect.signature(podm.mesh).parameters.values()}
         self.assertEqual(defaults, {inspect.Parameter.empty, None, False})
+
+    def test_flags_are_the_options_without_a_value(self):
+        flags = re.findall(r"^  --([a-z-]+)(?:  |$)", _podm.options_help(), re.MULTILINE)
+        self.assertEqual({_podm.in_python_terms("--" + flag) for flag in flags} - {"help"}, arguments.FLAGS)
+        parameters = inspect.signature(podm.mesh).parameters.values()
+        self.assertEqual({parameter.name for parameter in parameters if parameter.default is False}, arguments.FLAGS)
 
     def test_help_tells_of_every_option_with_its_default(self):
         text = podm.mesh.__doc__
@@ -47,19 +70,39 @@ class DocumentationTest(unittest.TestCase):
         self.assertEqual(podm.Mesh.__module__, "podm")
 
     def test_hints_name_types_that_there_are(self):
-        import numpy.typing
         names = {"npt": numpy.typing, "StrPath": str, "LabelValues": int}
         self.assertEqual(typing.get_type_hints(podm.mesh, localns=names)["return"], podm.Mesh)
 
     def test_the_stub_declares_what_the_extension_module_has(self):
-        import ast
-        import pathlib
-        tree = ast.parse(pathlib.Path(podm.__file__).with_name("_podm.pyi").read_text())
+        stub = ast.parse(pathlib.Path(podm.__file__).with_name("_podm.pyi").read_text())
+        self.assert_declared(stub, _podm)
+
+    def assert_declared(self, tree, owner):
+        """Names, signatures and what is a property are those of the module or class."""
         declared = {node.name: node for node in tree.body if isinstance(node, (ast.ClassDef, ast.FunctionDef))}
-        self.assertEqual(set(declared), {name for name in vars(_podm) if not name.startswith("_")})
-        for name in ("MeshInMemory", "Progress"):
-            members = {node.name for node in declared[name].body if isinstance(node, ast.FunctionDef)}
-            self.assertEqual(members, {member for member in vars(getattr(_podm, name)) if not member.startswith("_")})
+        members = {name: member for name, member in vars(owner).items() if not name.startswith("_")}
+        self.assertEqual(set(declared), set(members))
+        for name, node in declared.items():
+            if isinstance(node, ast.ClassDef):
+                self.assert_declared(node, members[name])
+            elif node.decorator_list:
+                self.assertEqual([decorator.id for decorator in node.decorator_list], ["property"], name)
+                self.assertIsInstance(members[name], property, name)
+            else:
+                self.assertEqual(signature_of(node), signature_of(signature_told(members[name])), name)
+
+    def test_properties_have_the_types_that_the_stub_tells(self):
+        stub = ast.parse(pathlib.Path(podm.__file__).with_name("_podm.pyi").read_text())
+        made = podm.mesh("phantom:spheres@24", radius=5)._made
+        names = {"np": np, "npt": np.typing}
+        [mesh_in_memory] = [node for node in stub.body if getattr(node, "name", None) == "MeshInMemory"]
+        for node in mesh_in_memory.body:
+            if node.decorator_list:
+                declared = eval(ast.unparse(node.returns), names)
+                value = getattr(made, node.name)
+                self.assertIsInstance(value, typing.get_origin(declared) or declared, node.name)
+                if isinstance(value, np.ndarray):
+                    self.assertEqual(np.dtype(typing.get_args(typing.get_args(declared)[1])[0]), value.dtype, node.name)
 
     def test_options_in_messages_are_keywords(self):
         for message, expected in (("--radius-of liver: '0'", "radius_of liver: '0'"),

@@ -111,6 +111,13 @@ class ImagesTest(TestCase):
             self.assertEqual(podm.mesh(labels, drop=3).names, {7: "label 7"})
             self.assertEqual(podm.mesh(labels, merge={"both": [3, 7]}).names, {3: "both"})
 
+    def test_numpys_numbers_and_truth_are_as_good_as_pythons(self):
+        expected = hash_of(podm.mesh(balls(), radius=1.5, keep=[3], optimize=True))
+        found = podm.mesh(balls(), radius=np.float32(1.5), keep=np.array([3], np.uint8), optimize=np.True_,
+                          oversubscribe=np.False_)
+        self.assertEqual(hash_of(found), expected)
+        self.assertNotEqual(hash_of(podm.mesh(balls(), radius=1.5, keep=np.uint8(3), optimize=np.False_)), expected)
+
     def test_another_background_is_outside(self):
         image = balls()
         mesh = podm.mesh(image[4:16, 4:19, 3:11], background=3)

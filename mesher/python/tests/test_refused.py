@@ -34,6 +34,7 @@ class RefusedTest(TestCase):
             self.assert_refused("labels", "integers is expected", labels=np.ones((4, 4, 4)).astype(dtype))
         for labels in (None, 5, {"a": 1}, [[["x"]]]):
             self.assert_refused("labels", labels=np.array(labels, dtype=object) if labels is None else labels)
+        self.assert_refused("labels", "3-D array of integers", labels=[[[1, 2], [3]]])
         self.assert_refused("without a mask", labels=np.ma.masked_equal(balls(), 0))
 
     def test_affines_that_place_nothing(self):
@@ -47,6 +48,7 @@ class RefusedTest(TestCase):
         self.assert_refused("spacing", "three", spacing=(1, 2))
         self.assert_refused("spacing", "positive", spacing=(1, 2, 0))
         self.assert_refused("spacing", "three", spacing="isotropic")
+        self.assert_refused("spacing", "three", "True", spacing=(1, 1, True))
         self.assert_refused("one of them", affine=AFFINE, spacing=(1, 1, 1))
 
     def test_a_file_has_an_affine_of_its_own(self):
@@ -61,6 +63,17 @@ class RefusedTest(TestCase):
         (self.folder / "short.nii").write_bytes(self.nifti().read_bytes()[:-10])
         self.assert_refused("short.nii", labels=self.folder / "short.nii")
         self.assert_refused("nobody.txt", names=self.folder / "nobody.txt")
+        self.assert_refused("names", '{1: "liver"}', "name of a file", "['liver']", names=["liver"])
+
+    def test_texts_that_would_name_another_file_or_label(self):
+        for text in ("no\0pe", "no\ud800pe"):
+            self.assert_refused("labels: the name of a file, without NUL", repr(text), labels=text)
+            for keyword in ("names", "topology", "crossover"):
+                self.assert_refused(f"{keyword}: the name of a file, without NUL", repr(text), **{keyword: text})
+            for keyword, value in (("names", {3: text}), ("radius_of", {text: 2}), ("merge", {text: [3]}),
+                                   ("keep", text), ("algorithm", text)):
+                self.assert_refused(f"{keyword}: a text, without NUL", **{keyword: value})
+        self.assert_refused("names: a text, without NUL", names={3: "\udcff"})
 
     def test_names_of_no_label(self):
         self.assert_refused("labels: no label 'livr'", "did you mean 'liver'", names={3: "liver"},
@@ -68,9 +81,16 @@ class RefusedTest(TestCase):
         self.assert_refused("names", '{1: "liver"}', names={"liver": 3})
         self.assert_refused("names", names={3: 7})
         self.assert_refused("names", names={-1: "liver"})
+        self.assert_refused("names", names={True: "liver"})
         self.assert_refused("keep", "label 5", keep=[5])
         self.assert_refused("keep", "label values", keep=2.5)
+        for values in ([], (), np.array([], int), [-1], -1, [2**32], [True], True, np.True_, ["3"]):
+            self.assert_refused("keep: one or some label values", keep=values)
+            self.assert_refused("drop: one or some label values", drop=values)
+            self.assert_refused("merge: one or some label values", merge={"both": values})
         self.assert_refused("merge", merge=[3, 7])
+        self.assert_refused("merge: a name is expected, not 5", merge={5: [3, 7]})
+        self.assert_refused("radius_of", "name or value", radius_of={-1: 2})
         self.assert_refused("label 3 is the background", keep=[3], background=3)
 
     def test_options_out_of_range(self):
@@ -91,18 +111,41 @@ class RefusedTest(TestCase):
         self.assert_refused("1000 workers", "oversubscribe", threads=1000)
         self.assert_refused("max_memory_gib", radius=1e-3)
 
+    def test_truth_is_for_flags_alone_and_flags_are_for_truth(self):
+        for value in (True, False, np.True_):
+            self.assert_refused(f"radius: a number or a text is expected, not {value!r}", radius=value)
+            self.assert_refused("background: a number", background=value)
+            self.assert_refused("dihedral_bounds: a pair of numbers", dihedral_bounds=(value, 165))
+            self.assert_refused("radius_of: a length", radius_of={3: value})
+        for value in ("yes", "", 1, 0, [True]):
+            for keyword in ("optimize", "oversubscribe"):
+                self.assert_refused(f"{keyword}: True or False is expected, not {value!r}", **{keyword: value})
+
     def test_a_keyword_that_is_none(self):
         with self.assertRaises(TypeError):
             podm.mesh(balls(), raduis=3)
 
     def test_a_mesh_is_written_whole_or_not_at_all(self):
         mesh = podm.mesh(balls())
-        for path, *words in (("mesh.obj", "mesh.obj"), ("nowhere/mesh.vtu", "nowhere/mesh.vtu")):
+        for path, *words in (("mesh.obj", "mesh.obj"), ("nowhere/mesh.vtu", "nowhere/mesh")):
             with self.assertRaises(podm.Error) as refusal:
                 mesh.save(self.folder / path)
             self.assertIn(*words, str(refusal.exception))
         with self.assertRaises(podm.Error):
             mesh.save_surfaces(self.folder / "surface.vtu")
+        for save in (mesh.save, mesh.save_surfaces):
+            for path in (f"{self.folder}/precious\0.vtu", f"{self.folder}/\ud800.vtu", 5, None):
+                with self.assertRaisesRegex(podm.Error, "path: the name of a file, without NUL"):
+                    save(path)
+        self.assertEqual(list(self.folder.iterdir()), [])
+
+    def test_versions_that_gmsh_has_not_and_files_that_are_not_its(self):
+        mesh = podm.mesh(balls())
+        for name, version, words in (("mesh.msh", 3, "gmsh_version: '3' is not one of 4.1 or 2.2"),
+                                     ("mesh.msh", True, "gmsh_version: a number or a text is expected, not True"),
+                                     ("mesh.vtu", 2.2, "a version of Gmsh's format is for .msh alone")):
+            with self.assertRaisesRegex(podm.Error, words):
+                mesh.save(self.folder / name, gmsh_version=version)
         self.assertEqual(list(self.folder.iterdir()), [])
 
 

@@ -2,13 +2,15 @@
 
 import gc
 import json
+import re
+import subprocess
 import unittest
 import warnings
 import weakref
 
 import numpy as np
 
-from balls import AFFINE, TestCase, balls, podm
+from balls import AFFINE, PROGRAM, TestCase, balls, podm
 
 
 class ResultTest(TestCase):
@@ -40,20 +42,97 @@ class ResultTest(TestCase):
         mesh = podm.mesh(balls(), radius=1.5)
         self.assertTrue(np.shares_memory(mesh.points, mesh.points))
         self.assertTrue(np.shares_memory(mesh.cells, mesh.cells))
-        with self.assertRaises(ValueError):
-            mesh.points[0] = 0
+        for array in (mesh.points, mesh.cells, mesh.facets):
+            with self.assertRaises(ValueError):
+                array[0] = 0
         points, expected = mesh.points, mesh.points.copy()
         del mesh
         gc.collect()
         podm.mesh(balls(), radius=1)  # would take the memory
         np.testing.assert_array_equal(points, expected)
 
+    def test_labels_are_made_once_and_read_only(self):
+        for name in ("labels", "facet_labels"):
+            array = getattr(self.mesh, name)
+            self.assertIs(getattr(self.mesh, name), array)
+            with self.assertRaises(ValueError):
+                array[:] = 77
+
+    def converted(self, name):
+        """The file as .vtu, by the program: those cells and the facets beside them."""
+        path = self.folder / "converted.vtu"
+        subprocess.run([PROGRAM, "convert", self.folder / name, path], capture_output=True, check=True)
+        return self.files_of(path)
+
+    def files_of(self, vtu):
+        return vtu.read_bytes(), vtu.with_name(vtu.stem + "_facets.vtu").read_bytes()
+
     def test_every_format_of_the_program_is_written(self):
-        for name in ("mesh.vtu", "mesh.mesh", "mesh.msh", "mesh.xdmf"):
-            self.mesh.save(self.folder / name)
-            self.assertGreater((self.folder / name).stat().st_size, 0)
+        with self.assertRaises(podm.Error) as refusal:
+            self.mesh.save("mesh.obj")
+        known = set(re.findall(r"\.[a-z]+(?=,| or|$)", str(refusal.exception).partition("expected")[2]))
+        lossless = {".vtu", ".vtk", ".msh", ".mesh", ".e", ".exo", ".node", ".ele"}
+        self.assertEqual(known, lossless | {".xdmf", ".inp"})
+        self.mesh.save(self.folder / "own.vtu")
+        for extension in sorted(lossless):
+            with warnings.catch_warnings():
+                warnings.simplefilter("error")
+                self.mesh.save(self.folder / f"mesh{extension}")
+            self.assertEqual(self.converted(f"mesh{extension}"), self.files_of(self.folder / "own.vtu"), extension)
+
+    def test_the_arrays_beside_an_xdmf_are_the_meshs(self):
+        self.mesh.save(self.folder / "mesh.xdmf")
+        self.assertIn("mesh.h5:/cell_labels", (self.folder / "mesh.xdmf").read_text())
+        held = (self.folder / "mesh.h5").read_bytes()
+        for array in (self.mesh.points, self.mesh.cells, self.mesh.labels, self.mesh.facets):
+            self.assertTrue(array.tobytes() in held)
+
+    def test_abaqus_has_the_mesh_but_for_names_and_digits(self):
+        import meshio
+        with self.assertWarnsRegex(UserWarning, "'label 7' is label_7"):
+            self.mesh.save(self.folder / "mesh.inp")
+        self.converted("mesh.inp")
+        read = meshio.read(self.folder / "converted.vtu")
+        np.testing.assert_array_equal(read.cells_dict["tetra"], self.mesh.cells)
+        np.testing.assert_array_equal(read.cell_data_dict["label"]["tetra"].ravel(), self.mesh.labels)
+        np.testing.assert_allclose(read.points, self.mesh.points, rtol=1e-12)
+
+    def test_what_a_format_loses_is_told(self):
+        named = podm.mesh(balls(), names={3: "Leber (links)"})
+        for mesh, name, loss in ((named, "loss.inp", "sets hold no such names"),
+                                 (podm.mesh(balls(), names={3: "l" * 256}), "loss.exo", "cut to 255 bytes")):
+            with self.assertWarnsRegex(UserWarning, rf"{name}: .*{loss}") as told:
+                mesh.save(self.folder / name)
+            self.assertEqual(told.filename, __file__)
+        with warnings.catch_warnings():
+            warnings.simplefilter("error")
+            named.save(self.folder / "loss.exo")
+
+    def test_the_version_of_gmsh_is_the_programs(self):
+        for version, first in ((None, "4.1 1 8"), (4.1, "4.1 1 8"), ("2.2", "2.2 0 8"), (2.2, "2.2 0 8")):
+            self.mesh.save(self.folder / "mesh.msh", gmsh_version=version)
+            self.assertTrue((self.folder / "mesh.msh").read_bytes().startswith(f"$MeshFormat\n{first}".encode()))
+        self.mesh.save(self.folder / "own.vtu")
+        self.assertEqual(self.converted("mesh.msh"), self.files_of(self.folder / "own.vtu"))
+
+    def test_surfaces_are_written_by_label(self):
         self.mesh.save_surfaces(str(self.folder / "surface.stl"))
         self.assertTrue((self.folder / "surface_3_liver.stl").exists())
+
+    def test_names_of_files_need_not_be_utf_8(self):
+        path = self.folder / "\udcff.nii"
+        self.nifti().rename(path)
+        named = self.folder / "\udcfe.txt"
+        named.write_bytes("3 Säule\n".encode("latin-1"))
+        mesh = podm.mesh(path, names=named)
+        self.assertEqual(mesh.names[3], "S\ufffdule")
+        self.assertIn("S\ufffdule", str(mesh))
+        self.assertTrue(mesh.verify())
+        mesh.save(self.folder / "\udcff.vtu")
+        mesh.save_surfaces(self.folder / "\udcff.stl")
+        self.assertTrue((self.folder / "\udcff.vtu").exists() and (self.folder / "\udcff_7.stl").exists())
+        with self.assertRaisesRegex(podm.Error, "\ufffd.obj: unknown mesh extension"):
+            mesh.save(self.folder / "\udcff.obj")
 
     def test_quality_has_the_extremes_of_the_record(self):
         quality, extremes = self.mesh.quality(), self.mesh.record["quality"]

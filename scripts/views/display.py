@@ -1,0 +1,52 @@
+"""A display that nobody sees: VTK, as Debian builds it, draws through X alone."""
+import contextlib
+import ctypes
+import os
+import secrets
+import signal
+import struct
+import subprocess
+import tempfile
+from pathlib import Path
+
+from .mesh import MeshError
+
+SERVER = "/usr/bin/Xvfb"
+PR_SET_PDEATHSIG = 1  # of linux/prctl.h
+FAMILY_WILD = 0xFFFF  # of any display
+
+
+@contextlib.contextmanager
+def hidden_display():
+    """Programs of this process draw there, and those of nobody else: it asks for a cookie. It ends with this process,
+    however that ends. Raises MeshError where there is no such server."""
+    if not os.access(SERVER, os.X_OK):
+        raise MeshError(f"view: {SERVER} is not there; install Debian's xvfb")
+    with tempfile.TemporaryDirectory() as folder:
+        cookie = Path(folder) / "cookie"
+        cookie.write_bytes(_authority(secrets.token_bytes(16)))
+        told, tells = os.pipe()
+        server = subprocess.Popen(
+            [SERVER, "-displayfd", str(tells), "-screen", "0", "64x64x24", "-nolisten", "tcp", "-auth", cookie],
+            pass_fds=[tells], stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL, preexec_fn=_end_with_parent)
+        os.close(tells)
+        try:
+            with open(told) as pipe:  # it chooses a number that is free
+                number = pipe.readline().strip()
+            if not number:
+                raise MeshError(f"view: {SERVER} does not start")
+            os.environ.update(DISPLAY=f":{number}", XAUTHORITY=str(cookie))
+            yield
+        finally:
+            server.terminate()
+            server.wait()
+
+
+def _authority(cookie):
+    """An entry of an Xauthority file: family, then address, number, name and data, each after its length."""
+    fields = (b"", b"", b"MIT-MAGIC-COOKIE-1", cookie)
+    return struct.pack(">H", FAMILY_WILD) + b"".join(struct.pack(">H", len(field)) + field for field in fields)
+
+
+def _end_with_parent():
+    ctypes.CDLL(None).prctl(PR_SET_PDEATHSIG, signal.SIGTERM)
