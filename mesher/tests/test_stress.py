@@ -146,7 +146,7 @@ class Faults(PodmTestCase):
 
     def fault_of_no_cell(self, delta_mm):
         empty = json.dumps({"stop_reason": "complete", "cells": 0, "guarantees": {}, "verdicts": {},
-                            "used": {"delta_mm": delta_mm}})
+                            "optimization": None, "used": {"delta_mm": delta_mm}})
         return self.fault_of(
             f"""case "$*" in
             *run.jsonl*) while [ "$1" != --record ]; do shift; done; echo '{empty}' > "$2"; exit 1;;
