@@ -26,7 +26,7 @@ done
 
 cmake -S . -B $build -G Ninja -DCMAKE_C_COMPILER=clang -DCMAKE_CXX_COMPILER=clang++ \
   -DCMAKE_CXX_FLAGS="-include $PWD/ci/itk_with_clang.h" -DCMAKE_BUILD_TYPE=RelWithDebInfo \
-  -DPODM_BUILD_FUZZERS=ON -DPODM_SANITIZE=address,undefined
+  -DPODM_BUILD_FUZZERS=ON -DPODM_UNITE=ON -DPODM_SANITIZE=address,undefined
 cmake --build $build --target "$@"
 
 # Files of the readers in memory; allocations are told with few frames, which is faster.

@@ -53,7 +53,8 @@ function(podm_add_python_test name)
   find_program(PODM_SYSTEM_PYTHON python3 PATHS /usr/bin NO_DEFAULT_PATH REQUIRED)
   add_test(NAME ${name} COMMAND ${PODM_SYSTEM_PYTHON} -B ${ARG_COMMAND}
            WORKING_DIRECTORY ${CMAKE_CURRENT_SOURCE_DIR})
-  set_tests_properties(${name} PROPERTIES TIMEOUT ${ARG_TIMEOUT} ENVIRONMENT "${ARG_ENVIRONMENT}"
+  # The longest tests: they start first, so that none is left for the end.
+  set_tests_properties(${name} PROPERTIES TIMEOUT ${ARG_TIMEOUT} COST 100 ENVIRONMENT "${ARG_ENVIRONMENT}"
                                           SKIP_REGULAR_EXPRESSION "${PODM_SKIPPED}")
 endfunction()
 
