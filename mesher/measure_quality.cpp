@@ -254,7 +254,7 @@ void measure_quality(const TetMesh& mesh, const LabelImage& image, const SizeFie
 }
 
 CellQualities qualities_of_cells(const TetMesh& mesh, int threads) {
-  constexpr std::size_t kChunk = 1 << 14;
+  constexpr std::size_t kCellsAtATime = 1 << 14;
   const std::vector<double> zeros(mesh.cells.size());
   CellQualities all{zeros, zeros, zeros, zeros, zeros};
   const auto tell = [&](std::size_t cell, const Corners& corners, CellMeasures m) {
@@ -266,7 +266,7 @@ CellQualities qualities_of_cells(const TetMesh& mesh, int threads) {
     all.volume[cell] = m.dihedral.determinant / 6;
   };
   parallel_for_ranges(
-      mesh.cells.size(), kChunk, num_threads(threads),
+      mesh.cells.size(), kCellsAtATime, num_threads(threads),
       [&](std::size_t begin, std::size_t end, std::size_t) { for_each_measured(mesh, begin, end, tell); });
   return all;
 }
