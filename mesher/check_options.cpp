@@ -43,6 +43,12 @@ void check_dihedral(double min_dihedral_deg) {
         fmt::format("the least dihedral angle must be more than 0 and at most {} degrees", kMostMinDihedral));
 }
 
+// The image bounds it, too: smooth_interfaces.h.
+void check_smoothing(double smoothing_mm) {
+  if (!is_positive_or_zero(smoothing_mm))
+    throw InputError("the width by which interfaces are smoothed must be a positive number of mm");
+}
+
 void check_optimization(const MeshingOptions& options) {
   const OptimizeOptions& optimize = options.optimize;
   if (!optimize.is_wanted) return;
@@ -74,6 +80,7 @@ void check_options(const LabelImage& image, const MeshingOptions& options) {
   check_affine(image);
   check_sizes(image, options.sizes);
   check_dihedral(options.min_dihedral_deg);
+  check_smoothing(options.smoothing_mm);
   check_team_size(options.team, options.algorithm);
   check_leaves(options.leaves);
   check_optimization(options);

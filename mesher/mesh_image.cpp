@@ -5,6 +5,7 @@
 #include "check_options.h"
 #include "default_sizes.h"
 #include "extract_mesh.h"
+#include "image/smooth_interfaces.h"
 #include "phases_of_run.h"
 #include "replay.h"
 
@@ -71,7 +72,9 @@ MeshingResult mesh_image(const LabelImage& image, const MeshingOptions& options,
 
 TetMesh replay_operations(const LabelImage& image, const OperationLog& log, Space space) {
   const std::unique_ptr<Mesh> refined = replay(log);
-  const Isosurface isosurface(image, 0);
+  const double smoothing_mm = log.head.smoothing_mm;
+  const Isosurface isosurface(
+      image, 0, smoothing_mm > 0 ? smooth_interfaces(image, smoothing_mm, 0).strengths : nullptr);
   std::uint64_t facets_off_isosurface = 0;
   const bool is_voxel = space == Space::kVoxel;
   TetMesh mesh = extract_mesh(*refined, isosurface, is_voxel ? Space::kRas : space, 0, facets_off_isosurface);

@@ -1,5 +1,6 @@
 #include "phases_of_run.h"
 
+#include <fmt/format.h>
 #include <malloc.h>
 
 #include <algorithm>
@@ -9,6 +10,7 @@
 #include "cost_model.h"
 #include "default_sizes.h"
 #include "extract_mesh.h"
+#include "image/smooth_interfaces.h"
 #include "measure_quality.h"
 #include "optimize/optimize_mesh.h"
 #include "podm/operation_log.h"
@@ -37,6 +39,21 @@ std::optional<std::array<double, 2>> dihedral_bounds_kept(const MeshingReport& r
   return std::nullopt;
 }
 
+SmoothingReport report_on_smoothing(const LabelImage& image, double width_mm,
+                                    const SmoothInterfaces& smoothed, int threads) {
+  std::vector<std::uint64_t> voxels(image.labels.size());
+  for (const LabelIndex label : image.voxels) ++voxels[label];
+  const std::vector<double> volumes = volumes_mm3(image, *smoothed.strengths, threads);
+  const double voxel_mm3 = image.spacing[0] * image.spacing[1] * image.spacing[2];
+  SmoothingReport report{.width_mm = width_mm, .labels = {}};
+  for (std::size_t label = 1; label < image.labels.size(); ++label) {
+    const bool is_thin = std::binary_search(smoothed.labels_lost.begin(), smoothed.labels_lost.end(), label);
+    report.labels.push_back(
+        {image.labels[label].value, static_cast<double>(voxels[label]) * voxel_mm3, volumes[label], is_thin});
+  }
+  return report;
+}
+
 }  // namespace
 
 PhasesOfRun::PhasesOfRun(const LabelImage& image, const MeshingOptions& options,
@@ -60,7 +77,8 @@ void PhasesOfRun::announce(const char* phase, double fraction, std::uint64_t cel
 }
 
 void PhasesOfRun::transform(MeshingReport& report) {
-  transform(report, [&] { return std::make_shared<const Isosurface>(image_, loop_threads_); });
+  const auto strengths = options_.smoothing_mm > 0 ? smooth(report) : nullptr;
+  transform(report, [&] { return std::make_shared<const Isosurface>(image_, loop_threads_, strengths); });
 }
 
 void PhasesOfRun::transform(MeshingReport& report,
@@ -72,6 +90,21 @@ void PhasesOfRun::transform(MeshingReport& report,
   expected_cells_ = estimate(image_, options_).cells * share_of_cells_;
   report.phases_s["transform"] = seconds_() - start_s;
   team_.locate_memory(image_, isosurface_->transform());
+}
+
+std::shared_ptr<const VoxelStrengths> PhasesOfRun::smooth(MeshingReport& report) const {
+  announce("smooth", 0, 0);
+  const double start_s = seconds_();
+  const SmoothInterfaces smoothed = smooth_interfaces(image_, options_.smoothing_mm, loop_threads_);
+  report.smoothing = report_on_smoothing(image_, options_.smoothing_mm, smoothed, loop_threads_);
+  for (const SmoothingReport::OfLabel& label : report.smoothing->labels)
+    if (label.is_thin)
+      report.warnings.push_back(fmt::format(
+          "label {} ({:.4g} mm^3) is thin for a blur of {:g} mm, which would lose most of it: it was "
+          "blurred by less",
+          label.value, label.voxels_mm3, options_.smoothing_mm));
+  report.phases_s["smooth"] = seconds_() - start_s;
+  return smoothed.strengths;
 }
 
 void PhasesOfRun::refine(const SizeOptions& sizes, const Refine& refine) {
@@ -175,6 +208,7 @@ void PhasesOfRun::finish(TetMesh& mesh, MeshingReport& report) const {
   measure_quality(mesh, image_, size_field(image_, sizes_), loop_threads_, report);
   report.phases_s["measure"] = seconds_() - start_s;
   mesh.is_optimized = report.optimization.has_value();
+  mesh.smoothing_mm = options_.smoothing_mm;
   if (options_.space != Space::kVoxel) {  // angles are others there
     mesh.dihedral_bounds_deg = report.promised_dihedral_deg = dihedral_bounds_kept(report);
     return;

@@ -49,6 +49,7 @@ class PhasesOfRun {
   using Clock = std::chrono::steady_clock;
 
   std::optional<DihedralBounds> dihedral_bounds() const;
+  std::shared_ptr<const VoxelStrengths> smooth(MeshingReport& report) const;
   void announce(const char* phase, double fraction, std::uint64_t cells) const;
   void simulate(const Refinement& refinement, MeshingReport& report) const;
 

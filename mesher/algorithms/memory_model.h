@@ -29,6 +29,8 @@ inline constexpr double kTransformBytesPerVoxel = 1;
 
 /// Buffers of files, the record, code not yet touched.
 inline constexpr std::uint64_t kBytesOfOutput = 6 << 20;
+/// The strength of a voxel, and its place in a list while it is found.
+inline constexpr std::uint64_t kBytesPerSmoothedVoxel = 4;
 /// A cell of a store that is full takes itself, a quarter of a vertex at most, the entries of a list that is
 /// due for cleaning, and what extraction takes more.
 inline constexpr std::uint64_t kBytesPerStoredCell =

@@ -36,6 +36,15 @@ void add_sizing_options(CLI::App& app, MeshCommand& command) {
        target);
 }
 
+void add_surface_options(CLI::App& app, MeshingOptions& meshing) {
+  begin_group(app, "Surfaces");
+  add_one(app, "--smooth", "MM",
+          "lay interfaces where labels tie that are blurred by a Gaussian of this width, mm,\n"
+          "some 1.5 voxels, instead of on the stairs of voxels, which keep their labels;\n"
+          "thin parts are blurred by less [default: stairs]",
+          into_length(meshing.smoothing_mm));
+}
+
 void add_dihedral_options(CLI::App& app, MeshingOptions& meshing) {
   OptimizeOptions& optimize = meshing.optimize;
   begin_group(app, "Dihedral angles");
@@ -230,6 +239,7 @@ void add_mesh_command(CLI::App& program, MeshCommand& command, Program which) {
   const bool is_in_python = which == Program::kPython;
   is_in_python ? add_label_options(app, command.image) : add_image_options(app, command.image);
   add_sizing_options(app, command);
+  add_surface_options(app, command.meshing);
   add_dihedral_options(app, command.meshing);
   add_limit_options(app, command, which);
   begin_group(app, "Output");
@@ -240,8 +250,8 @@ void add_mesh_command(CLI::App& program, MeshCommand& command, Program which) {
   if (!is_in_python) add_telling_options(app, command);
   if (is_on_ranks)
     end_help(app,
-             "Not on ranks yet, and refused: --target-elements, --min-dihedral, --surface, --optimize,\n"
-             "--report, --algorithm podm-home, --schedule, --executor virtual.");
+             "Not on ranks yet, and refused: --target-elements, --smooth, --min-dihedral, --surface,\n"
+             "--optimize, --report, --algorithm podm-home, --schedule, --executor virtual.");
 }
 
 void add_convert_command(CLI::App& program, ConvertCommand& command) {

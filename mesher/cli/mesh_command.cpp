@@ -65,7 +65,8 @@ void finish_log(OperationLogWriter& log, const MeshRun& run) {
   log.finish({.box = run.report.virtual_box,
               .image_sha256 = label_image_sha256(run.image),
               .space = to_string(run.options.space),
-              .mesh_sha256 = run.mesh_sha256});
+              .mesh_sha256 = run.mesh_sha256,
+              .smoothing_mm = run.options.smoothing_mm});
   log.publish();
 }
 

@@ -52,9 +52,10 @@ void refuse_what_cannot_fit(const std::string& image_path, const LabelImage& ima
 
 // What program, image and transform leave of the limit.
 std::uint64_t bytes_for_mesh(std::uint64_t limit_bytes, const std::string& image_path,
-                             const LabelImage& image, int threads) {
-  const std::uint64_t others =
-      resident_bytes() + transform_bytes(image, limit_bytes, threads) + kBytesOfOutput;
+                             const LabelImage& image, const MeshingOptions& options) {
+  std::uint64_t others =
+      resident_bytes() + transform_bytes(image, limit_bytes, loop_threads(options.team)) + kBytesOfOutput;
+  if (options.smoothing_mm > 0) others += image.num_voxels() * kBytesPerSmoothedVoxel;
   if (others + kLeastBytesForMesh <= limit_bytes) return limit_bytes - others;
   throw InputError(fmt::format(
       "{}: the image takes {:.3g} GiB, which leaves no room for a mesh below the limit of {:.3g} GiB",
@@ -79,8 +80,7 @@ MeshingOptions options_for_image(const MeshCommand& command, const LabelImage& i
   options.sizes.radius_of_mm = lengths_by_value(command.radius_of_mm, image, command.image.path);
   refuse_coarse_sampling(command, image);
   refuse_what_cannot_fit(command.image.path, image, options, limit_bytes, num_ranks);
-  options.limits.max_memory_bytes =
-      bytes_for_mesh(limit_bytes, command.image.path, image, loop_threads(options.team));
+  options.limits.max_memory_bytes = bytes_for_mesh(limit_bytes, command.image.path, image, options);
   return options;
 }
 

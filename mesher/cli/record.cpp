@@ -47,6 +47,7 @@ Json options_of(const MeshRun& run) {
           {"optimize", optimize_of(options.optimize)},
           {"space", to_string(options.space)},
           {"min_dihedral_deg", options.min_dihedral_deg},
+          {"smoothing_mm", options.smoothing_mm},
           {"max_elements", options.limits.max_elements},
           {"max_seconds", options.limits.max_seconds},
           {"max_memory_bytes", run.command.max_memory_bytes},
@@ -204,6 +205,18 @@ Json counts_of(const std::map<Choice, std::uint64_t>& counts) {
   return json;
 }
 
+// Null where interfaces were left as they are.
+Json smoothing_of(const MeshingReport& report) {
+  if (!report.smoothing) return nullptr;
+  Json labels = Json::array();
+  for (const SmoothingReport::OfLabel& label : report.smoothing->labels)
+    labels.push_back({{"value", label.value},
+                      {"voxels_mm3", label.voxels_mm3},
+                      {"smoothed_mm3", label.smoothed_mm3},
+                      {"is_thin", label.is_thin}});
+  return {{"width_mm", report.smoothing->width_mm}, {"labels", labels}};
+}
+
 Json optimization_of(const MeshingReport& report) {
   if (!report.optimization) return nullptr;
   const OptimizationReport& done = *report.optimization;
@@ -327,6 +340,7 @@ Json record(const MeshRun& run) {
       {"workers", workers_of(report)},
       {"quality", quality_of(report.quality)},
       {"perturbed", perturbed_of(report)},
+      {"smoothing", smoothing_of(report)},
       {"optimization", optimization_of(report)},
       {"promised_dihedral_deg", promised_dihedral_of(report)},
       {"guarantees", guarantees_of(report.guarantees)},

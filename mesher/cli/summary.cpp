@@ -103,6 +103,21 @@ std::string optimization_text(const MeshingReport& report) {
   return text;
 }
 
+std::string smoothing_text(const MeshRun& run) {
+  if (!run.report.smoothing) return "";
+  const SmoothingReport& done = *run.report.smoothing;
+  std::string text = fmt::format(
+      "smoothed   by {:g} mm; labels by volume in mm^3, of their voxels and smoothed\n", done.width_mm);
+  std::vector<SmoothingReport::OfLabel> labels = done.labels;
+  std::stable_sort(labels.begin(), labels.end(),
+                   [](const auto& a, const auto& b) { return a.voxels_mm3 > b.voxels_mm3; });
+  for (std::size_t i = 0; i < std::min(labels.size(), kLongestList); ++i)
+    text += fmt::format("  {:>14.6g} {:>14.6g} {:>+7.2f} %  label {}{}\n", labels[i].voxels_mm3,
+                        labels[i].smoothed_mm3, 100 * (labels[i].smoothed_mm3 / labels[i].voxels_mm3 - 1),
+                        labels[i].value, labels[i].is_thin ? ", thin" : "");
+  return text + more(labels.size(), "labels");
+}
+
 std::string calibration_text(const MeshingReport& report) {
   if (!report.calibration) return "";
   const Calibration& calibration = *report.calibration;
@@ -135,8 +150,8 @@ std::string summary(const MeshRun& run) {
   std::string text =
       fmt::format("{}{} cells, {} vertices, {} boundary facets; {} space\n", place, run.mesh.cells,
                   run.mesh.vertices, run.mesh.boundary_facets, to_string(run.options.space));
-  text += labels_text(run) + facets_text(run) + quality_text(report.quality) + perturbed_text(report) +
-          optimization_text(report);
+  text += labels_text(run) + smoothing_text(run) + facets_text(run) + quality_text(report.quality) +
+          perturbed_text(report) + optimization_text(report);
   text += fmt::format("sizes      radius {}, delta {:.4g} mm\n",
                       report.radius_mm > 0 ? fmt::format("{:.4g} mm", report.radius_mm) : "unbounded",
                       report.delta_mm);

@@ -30,6 +30,7 @@ void check_options_on_ranks(const MeshingOptions& options) {
   refuse(options.team.executor == Executor::kVirtual, "virtual workers");
   refuse(options.sizes.target_elements > 0, "a target number of elements");
   refuse(options.min_dihedral_deg > 0, "a least dihedral angle");
+  refuse(options.smoothing_mm > 0, "smooth interfaces");
   refuse(options.optimize.is_wanted, "optimisation");
   refuse(options.leaves.with_schedule, "a schedule of leaves");
 }

@@ -21,9 +21,10 @@ constexpr double kSomewhatMore = 1 + 1e-9;
 
 template <class Reads>
 Oracle<Reads>::Oracle(const LabelImage& image, std::shared_ptr<const FeatureTransform> transform,
-                      const Reads& reads)
+                      std::shared_ptr<const VoxelStrengths> strengths, const Reads& reads)
     : image_(&image),
       transform_(std::move(transform)),
+      strengths_(std::move(strengths)),
       grid_(image, reads),
       features_(*transform_, reads),
       from_voxels_(voxels_to_working(image)),
@@ -32,7 +33,9 @@ Oracle<Reads>::Oracle(const LabelImage& image, std::shared_ptr<const FeatureTran
       inverse_spacing_{1 / spacing_.x, 1 / spacing_.y, 1 / spacing_.z},
       end_{image.size[0] - 0.5, image.size[1] - 0.5, image.size[2] - 0.5},
       half_diagonal_mm_(0.5 * std::sqrt(squared_length(spacing_))),
-      shortest_side_mm_(std::min({spacing_.x, spacing_.y, spacing_.z})) {}
+      shortest_side_mm_(std::min({spacing_.x, spacing_.y, spacing_.z})),
+      to_surface_voxel_mm_(strengths_ != nullptr ? 2 * half_diagonal_mm_ : half_diagonal_mm_),
+      beyond_bricks_mm_(to_surface_voxel_mm_ - half_diagonal_mm_) {}
 
 // Which corners of u's block differ from v is known; where there are two labels their weights decide, and no
 // label of the block has to be read unless the other one wins.
@@ -45,7 +48,9 @@ LabelIndex Oracle<Reads>::label_by_neighborhood(const Point& u, const Voxel& v, 
   if (own == Features<Reads>::kUntold || (others != 0 && !around.has_two_labels())) return label_by_block(u);
   if (others == 0) return own;
   const Point f = u - center(block);
-  const double of_own = weight(~others & kAllCorners, f), of_other = weight(others, f);
+  const auto [of_own, of_other] = with_strengths(block, [&](const auto& strengths) {
+    return std::pair(weight(~others & kAllCorners, f, strengths), weight(others, f, strengths));
+  });
   if (of_own > of_other) return own;
   const auto c = std::countr_zero(others);
   const LabelIndex other = grid_.label({block.i + (c & 1), block.j + (c >> 1 & 1), block.k + (c >> 2)});
@@ -55,7 +60,19 @@ LabelIndex Oracle<Reads>::label_by_neighborhood(const Point& u, const Voxel& v, 
 template <class Reads>
 LabelIndex Oracle<Reads>::label_by_block(const Point& u) const {
   const Voxel block = block_of(u);
-  return winner(grid_.block(block), u - center(block)).label;
+  return with_strengths(block, [&](const auto& strengths) {
+    return winner(grid_.block(block), u - center(block), strengths).label;
+  });
+}
+
+// Its block may still have several labels, but only if a surface voxel is beside v.
+template <class Reads>
+LabelIndex Oracle<Reads>::label_off_surface(const Point& u, const Voxel& v, Brick brick) const {
+  const std::optional<Voxel> offset = features_.offset_to_nearest(brick, v);
+  const auto is_beside = [](int steps) { return steps >= -1 && steps <= 1; };
+  if (offset && is_beside(offset->i) && is_beside(offset->j) && is_beside(offset->k))
+    return label_by_block(u);
+  return brick.label() == Brick::kMixed ? grid_.label_inside(v) : brick.label();
 }
 
 template <class Reads>
@@ -80,30 +97,33 @@ double Oracle<Reads>::bound_from_outside(const Point& u, double radius) const {
 
 // The lemma says that every isosurface point is within half a voxel of a surface voxel: within the bricks
 // that have some, and within half a diagonal of a surface voxel's centre, of which none is nearer to v's than
-// its feature.
+// its feature. Where interfaces are smoothed it is half a voxel, and half a diagonal, more.
 template <class Reads>
 double Oracle<Reads>::bound_by_feature(const Point& u, const Voxel& v, double radius) const {
   const Brick brick = features_.brick_of(v);
   const std::optional<Voxel> offset = features_.offset_to_nearest(brick, v);
-  const double from_center = length_mm(u - center(v)) + half_diagonal_mm_;
+  const double from_center = length_mm(u - center(v)) + to_surface_voxel_mm_;
   if (offset) return length_mm(center(*offset)) - from_center;
-  const double bound =
-      brick.is_near() ? features_.reach_mm() - from_center : features_.distance_from_far(brick);
+  const double bound = brick.is_near() ? features_.reach_mm() - from_center
+                                       : features_.distance_from_far(brick) - beyond_bricks_mm_;
   if (bound > radius || is_empty()) return bound;
-  const double reach = (radius + half_diagonal_mm_) * kSomewhatMore;
-  return features_.is_surface_within(u, reach) ? bound : reach - half_diagonal_mm_;
+  const double reach = (radius + to_surface_voxel_mm_) * kSomewhatMore;
+  return features_.is_surface_within(u, reach) ? bound : reach - to_surface_voxel_mm_;
 }
 
 // Members are spread over files, each of which makes its own for both oracles.
-template Oracle<NoReads>::Oracle(const LabelImage&, std::shared_ptr<const FeatureTransform>, const NoReads&);
+template Oracle<NoReads>::Oracle(const LabelImage&, std::shared_ptr<const FeatureTransform>,
+                                 std::shared_ptr<const VoxelStrengths>, const NoReads&);
 template Oracle<CountedReads>::Oracle(const LabelImage&, std::shared_ptr<const FeatureTransform>,
-                                      const CountedReads&);
+                                      std::shared_ptr<const VoxelStrengths>, const CountedReads&);
 template LabelIndex Oracle<NoReads>::label_by_neighborhood(const Point&, const Voxel&, Brick,
                                                            LabelIndex) const;
 template LabelIndex Oracle<CountedReads>::label_by_neighborhood(const Point&, const Voxel&, Brick,
                                                                 LabelIndex) const;
 template LabelIndex Oracle<NoReads>::label_by_block(const Point&) const;
 template LabelIndex Oracle<CountedReads>::label_by_block(const Point&) const;
+template LabelIndex Oracle<NoReads>::label_off_surface(const Point&, const Voxel&, Brick) const;
+template LabelIndex Oracle<CountedReads>::label_off_surface(const Point&, const Voxel&, Brick) const;
 template Point Oracle<NoReads>::clamped_to_grid(const Point&) const;
 template Point Oracle<CountedReads>::clamped_to_grid(const Point&) const;
 template double Oracle<NoReads>::distance_lower_bound(const Point&, double) const;

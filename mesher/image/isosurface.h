@@ -10,6 +10,12 @@
 // three neighbours in the block, and that label's weight, (1-y)(1-z) + (1-x)(y(1-z) + z(1-y)), does not
 // grow with x, y or z, hence is at least its value 1/2 at (1/2,1/2,1/2), and exceeds 1/2 elsewhere. So s is
 // the block's centre, as near to all corners, and some corner is a surface voxel.
+//
+// Where interfaces are smoothed, voxels weigh as much as they are strong (voxel_strengths.h). A block with
+// one label still has it throughout, as all other weights are 0. So an isosurface point lies in a block with
+// an edge between two labels, whose ends are surface voxels: within *one* voxel, along every axis, of a
+// surface voxel's centre. Half a voxel beyond the grid background still ties, as voxels there are as strong
+// as their neighbours inside.
 #pragma once
 
 #include <algorithm>
@@ -22,6 +28,7 @@
 #include "geometry/point.h"
 #include "image/feature_transform.h"
 #include "image/isosurface_block.h"
+#include "image/voxel_strengths.h"
 #include "podm/label_image.h"
 
 namespace podm {
@@ -49,8 +56,9 @@ struct Cover {
 template <class Reads>
 class Oracle {
  public:
-  /// Keeps a reference to `image`, whose transform is given.
-  Oracle(const LabelImage& image, std::shared_ptr<const FeatureTransform> transform, const Reads& reads);
+  /// Keeps a reference to `image`, whose transform is given, and the strengths of its voxels if they differ.
+  Oracle(const LabelImage& image, std::shared_ptr<const FeatureTransform> transform,
+         std::shared_ptr<const VoxelStrengths> strengths, const Reads& reads);
   const LabelImage& image() const { return *image_; }
   const FeatureTransform& transform() const { return *transform_; }
 
@@ -91,6 +99,7 @@ class Oracle {
  protected:
   const LabelImage* image_;
   std::shared_ptr<const FeatureTransform> transform_;
+  std::shared_ptr<const VoxelStrengths> strengths_;  // null: all are equally strong
 
  private:
   struct LabelChange {
@@ -124,6 +133,15 @@ class Oracle {
   /// `v` is the surface voxel nearest to u, in `brick`.
   LabelIndex label_by_neighborhood(const Point& u, const Voxel& v, Brick brick, LabelIndex own) const;
   LabelIndex label_by_block(const Point& u) const;
+  /// `v`, nearest to u, is no surface voxel.
+  LabelIndex label_off_surface(const Point& u, const Voxel& v, Brick brick) const;
+  /// ask(strengths) of a block's corners.
+  template <class Ask>
+  auto with_strengths(const Voxel& block, const Ask& ask) const {
+    if (strengths_ != nullptr) [[unlikely]]
+      return ask(strengths_->block(block));
+    return ask(EquallyStrong{});
+  }
   /// The nearest point of the box of all voxel centres; (0,0,0) for NaN.
   Point clamped_to_grid(const Point& u) const;
   bool is_empty() const { return features_.is_empty(); }
@@ -139,6 +157,7 @@ class Oracle {
                                              const BlockLabels& labels, LabelIndex label) const;
   struct Nearest;
   class Sheet;
+  double share_to_change(const Voxel& from, unsigned edge) const;
   std::optional<EightVoxels> features_around(const Point& u) const;
   Nearest nearest_midpoint(const EightVoxels& surface_voxels, const Point& u) const;
   bool find_nearer_midpoint(const Point& u, Nearest& best) const;
@@ -155,17 +174,22 @@ class Oracle {
   Vector spacing_, inverse_spacing_;            // mm a voxel, voxels a mm
   Point end_;                                   // half a voxel beyond the last
   double half_diagonal_mm_, shortest_side_mm_;  // a voxel's
+  double to_surface_voxel_mm_;                  // from an isosurface point, at most
+  double beyond_bricks_mm_;  // by which the isosurface may leave the bricks of surface voxels
 };
 
 /// The oracle as most ask it: nobody counts.
 class Isosurface : public Oracle<NoReads> {
  public:
-  /// Runs the feature transform on `threads` threads (0: all cores). Keeps a reference to `image`.
-  /// Throws InputError if the image has more than 2^31 - 1 voxels.
-  Isosurface(const LabelImage& image, int threads)
-      : Oracle(image, std::make_shared<FeatureTransform>(image, threads), {}) {}
-  /// The same answers, by one whose reads are counted.
-  Oracle<CountedReads> counted(const CountedReads& reads) const { return {*image_, transform_, reads}; }
+  /// Runs the feature transform on `threads` threads (0: all cores). Keeps a reference to `image`;
+  /// `strengths` are null unless its interfaces are smoothed. Throws InputError if the image has more than
+  /// 2^31 - 1 voxels.
+  Isosurface(const LabelImage& image, int threads, std::shared_ptr<const VoxelStrengths> strengths = nullptr)
+      : Oracle(image, std::make_shared<FeatureTransform>(image, threads), std::move(strengths), {}) {}
+  /// The same answers, by one whose reads are counted; strengths are not.
+  Oracle<CountedReads> counted(const CountedReads& reads) const {
+    return {*image_, transform_, strengths_, reads};
+  }
 };
 
 template <class Reads>
@@ -175,6 +199,8 @@ inline LabelIndex Oracle<Reads>::label_at_voxels(const Point& u) const {
   const Voxel v = nearest_voxel(u);
   const Brick brick = features_.brick_of(v);
   if (const auto own = features_.label_if_surface(brick, v)) return label_by_neighborhood(u, v, brick, *own);
+  if (strengths_ != nullptr) [[unlikely]]
+    return label_off_surface(u, v, brick);
   // The lemma leaves only a tie at the block's centre to take the label from a voxel off the surface.
   constexpr double kNotCenter = 1.5 - 1e-9;
   const Vector offset = u - center(v);

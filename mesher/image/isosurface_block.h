@@ -1,6 +1,7 @@
 // Labels by voxel and by block. A *block* is the box between eight voxel centres; inside it every label has a
-// trilinear weight, and the greatest weight wins. Coordinates here are in voxels: voxel (i,j,k) is centred at
-// (i,j,k), and block (i,j,k) reaches from there to (i+1,j+1,k+1).
+// trilinear weight, of corners that are 1 or as strong as their voxels, and the greatest weight wins.
+// Coordinates here are in voxels: voxel (i,j,k) is centred at (i,j,k), and block (i,j,k) reaches from there
+// to (i+1,j+1,k+1).
 #pragma once
 
 #include <array>
@@ -102,17 +103,35 @@ class Trilinear {
   double value_, x_, y_, z_, xy_, xz_, yz_, xyz_;
 };
 
+/// Of corners of a block that are equally strong, 1 each.
+struct EquallyStrong {
+  constexpr CornerValues of(CornerMask mask) const { return indicator(mask); }
+};
+/// Of corners each with a strength of its own (voxel_strengths.h).
+struct CornerStrengths {
+  CornerValues values;
+
+  /// Of the corners of the set; 0 elsewhere.
+  CornerValues of(CornerMask mask) const {
+    CornerValues v = indicator(mask);
+    for (std::size_t c = 0; c < 8; ++c) v[c] *= values[c];
+    return v;
+  }
+};
+
 /// The weight of the corners `a` less that of the corners `b`.
-constexpr Trilinear weight_difference(CornerMask a, CornerMask b) {
-  CornerValues v = indicator(a);
-  const CornerValues w = indicator(b);
+template <class Strengths = EquallyStrong>
+constexpr Trilinear weight_difference(CornerMask a, CornerMask b, const Strengths& strengths = {}) {
+  CornerValues v = strengths.of(a);
+  const CornerValues w = strengths.of(b);
   for (std::size_t c = 0; c < 8; ++c) v[c] -= w[c];
   return Trilinear(v);
 }
 
 /// The weight of the corners `mask` at f.
-inline double weight(CornerMask mask, const Point& f) {
-  const CornerValues v = indicator(mask);
+template <class Strengths = EquallyStrong>
+double weight(CornerMask mask, const Point& f, const Strengths& strengths = {}) {
+  const CornerValues v = strengths.of(mask);
   std::array<double, 4> plane;
   for (std::size_t c = 0; c < 4; ++c) plane[c] = v[c] * (1 - f.z) + v[c + 4] * f.z;
   return (plane[0] * (1 - f.x) + plane[1] * f.x) * (1 - f.y) + (plane[2] * (1 - f.x) + plane[3] * f.x) * f.y;
@@ -123,7 +142,11 @@ struct Winner {
   double weight;
 };
 /// The label of greatest weight at `f`, ties to the smaller label.
-Winner winner(const BlockLabels& labels, const Point& f);
+template <class Strengths = EquallyStrong>
+Winner winner(const BlockLabels& labels, const Point& f, const Strengths& strengths = {});
+
+extern template Winner winner(const BlockLabels&, const Point&, const EquallyStrong&);
+extern template Winner winner(const BlockLabels&, const Point&, const CornerStrengths&);
 
 /// Labels of an image, background outside. Keeps a reference to its voxels. `Reads` is told of each piece of
 /// a row that is read.

@@ -1,5 +1,6 @@
 // The isosurface point nearest to a point u. Start: the midpoint of two neighbouring voxels of different
-// labels is on the isosurface; take the nearest one beside the features of the eight voxels around u. Then
+// labels is on the isosurface, or of such that are not as strong a point between; take the one whose midpoint
+// is nearest beside the features of the eight voxels around u. Then
 // descend: step along the tangent plane towards the foot of u, pull the result back to the isosurface, and
 // keep it if it is nearer to u, otherwise try a shorter step.
 #include <algorithm>
@@ -107,14 +108,14 @@ class Oracle<Reads>::Sheet {
       at_ = u - podm::center(block);
       return true;
     }
-    if (!is_beside_center(block) && !recenter(u)) return false;
+    if (!is_beside_center(block) && !recenter(u, block)) return false;
     const CornerMask others =
         around_.differing_corners(block.i - center_.i, block.j - center_.j, block.k - center_.k);
     if (others == 0) return false;
     at_ = u - podm::center(block);
     block_ = block;
     // Between several labels the lead is a point's, not the block's.
-    lead_ = around_.has_two_labels() ? &kBalances[others] : lead_of_many(block, others);
+    lead_ = around_.has_two_labels() ? lead_of(others) : lead_of_many(block, others);
     return true;
   }
   const Voxel& center() const { return center_; }
@@ -130,14 +131,30 @@ class Oracle<Reads>::Sheet {
     };
     return is_beside(block.i, center_.i) && is_beside(block.j, center_.j) && is_beside(block.k, center_.k);
   }
-  bool recenter(const Point& u) {
+  bool recenter(const Point& u, const Voxel& block) {
     if (!oracle_.is_inside(u)) return false;
-    const Voxel nearest = nearest_voxel(u);
-    const std::optional<Neighborhood> around = oracle_.features_.neighborhood_if_surface(nearest);
+    return recenter(nearest_voxel(u)) || (oracle_.strengths_ != nullptr && recenter_on_corner(block));
+  }
+  bool recenter(const Voxel& v) {
+    const std::optional<Neighborhood> around = oracle_.features_.neighborhood_if_surface(v);
     if (!around) return false;
-    center_ = nearest;
+    center_ = v;
     around_ = *around;
     return true;
+  }
+  // The voxel nearest to a point of a smoothed interface may be none of the surface's.
+  bool recenter_on_corner(const Voxel& block) {
+    for (int c = 0; c < 8; ++c) {
+      const Voxel corner{block.i + (c & 1), block.j + (c >> 1 & 1), block.k + (c >> 2)};
+      if (oracle_.grid_.contains(corner) && recenter(corner)) return true;
+    }
+    return false;
+  }
+  // Of the block that was moved to, where all other corners have one label.
+  const Trilinear* lead_of(CornerMask others) {
+    if (oracle_.strengths_ == nullptr) return &kBalances[others];
+    lead_here_ = weight_difference(others, ~others & kAllCorners, oracle_.strengths_->block(block_));
+    return &lead_here_;
   }
   // Null if more than two labels meet in the block; the lead at_ is then `lead_here_`.
   const Trilinear* lead_of_many(const Voxel& block, CornerMask others) {
@@ -146,15 +163,18 @@ class Oracle<Reads>::Sheet {
     double greatest = -1;
     for (CornerMask rest = others; rest != 0;) {
       const CornerMask corners = labels.mask(labels.first(rest));
-      if (corners == others) return &kBalances[others];
+      if (corners == others) return lead_of(others);
       rest &= ~corners;
-      const double w = weight(corners, at_);
+      const double w = oracle_.with_strengths(
+          block, [&](const auto& strengths) { return weight(corners, at_, strengths); });
       if (w > greatest) {
         greatest = w;
         strongest = corners;
       }
     }
-    lead_here_ = weight_difference(strongest, ~others & kAllCorners);
+    lead_here_ = oracle_.with_strengths(block, [&](const auto& strengths) {
+      return weight_difference(strongest, ~others & kAllCorners, strengths);
+    });
     return nullptr;
   }
 
@@ -175,10 +195,23 @@ auto Oracle<Reads>::nearest_midpoint(const EightVoxels& surface_voxels, const Po
   Nearest best{surface_voxels[voxel]};
   const std::size_t axis = axis_of(edge);
   const double half = half_of(edge);
-  best.u =
-      center(best.surface_voxel) + Vector{axis == 0 ? half : 0, axis == 1 ? half : 0, axis == 2 ? half : 0};
+  const Voxel v = best.surface_voxel;
+  const double step = 2 * half * share_to_change(v, edge);
+  best.u = center(v) + Vector{axis == 0 ? step : 0, axis == 1 ? step : 0, axis == 2 ? step : 0};
   best.squared_mm = squared_length(to_mm(best.u - u));
   return best;
+}
+
+// How far the label of `from` reaches along the edge, whose other end has another label.
+template <class Reads>
+double Oracle<Reads>::share_to_change(const Voxel& from, unsigned edge) const {
+  if (strengths_ == nullptr) return 0.5;
+  const int step = half_of(edge) > 0 ? 1 : -1;
+  const std::size_t axis = axis_of(edge);
+  const Voxel to{from.i + (axis == 0 ? step : 0), from.j + (axis == 1 ? step : 0),
+                 from.k + (axis == 2 ? step : 0)};
+  const double strength = strengths_->strength(from);
+  return strength / (strength + strengths_->strength(to));
 }
 
 // None if the words do not tell all: u is deep.
@@ -266,7 +299,7 @@ void Oracle<Reads>::descend(Sheet& sheet, const Point& u, Nearest& best) const {
 template <class Reads>
 std::optional<NearPoint> Oracle<Reads>::foot(const Nearest& midpoint, const Point& u, double radius) const {
   // Of a million descents on CT and MR images none gained more than 0.86 of half a voxel's diagonal.
-  if (midpoint.squared_mm > square(radius + half_diagonal_mm_)) return std::nullopt;
+  if (midpoint.squared_mm > square(radius + to_surface_voxel_mm_)) return std::nullopt;
   Nearest best = midpoint;
   Sheet sheet(*this, best.surface_voxel);
   descend(sheet, u, best);
@@ -284,7 +317,7 @@ std::optional<NearPoint> Oracle<Reads>::near_point(const Point& p, double radius
   std::optional<EightVoxels> around = features_around(u);
   const bool is_told = around && is_inside(u);
   if (!around) {
-    const auto nearest = features_.nearest(u, radius + 2 * half_diagonal_mm_);
+    const auto nearest = features_.nearest(u, radius + 2 * to_surface_voxel_mm_);
     if (!nearest) return std::nullopt;
     around = EightVoxels::all(*nearest);
   }

@@ -102,6 +102,7 @@ class Reader {
       json.at("space").get_to(head.space);
       json.at("mesh_sha256").get_to(head.mesh_sha256);
       if (json.contains("ranks")) take_ranks(json["ranks"], head);
+      if (json.contains("smoothing_mm")) take_smoothing(json["smoothing_mm"], head);
       return head;
     } catch (const nlohmann::ordered_json::exception& error) {
       fail(fmt::format("the description of the run: {}", error.what()));
@@ -114,6 +115,11 @@ class Reader {
     json.at("mesh_hash").get_to(head.mesh_hash);
     if (head.rank < 0 || head.rank >= head.num_ranks)
       fail(fmt::format("there is no rank {} of {}", head.rank, head.num_ranks));
+  }
+
+  void take_smoothing(const nlohmann::ordered_json& json, OperationLogHead& head) const {
+    json.get_to(head.smoothing_mm);
+    if (!(head.smoothing_mm > 0)) fail(fmt::format("smoothed by {} mm", head.smoothing_mm));
   }
 
   void sort(OperationBatch& all) const {
@@ -196,6 +202,7 @@ void OperationLogWriter::finish(const OperationLogHead& head) {
                               {"mesh_sha256", head.mesh_sha256}};
   if (!head.mesh_hash.empty())
     json["ranks"] = {{"number", head.num_ranks}, {"rank", head.rank}, {"mesh_hash", head.mesh_hash}};
+  if (head.smoothing_mm > 0) json["smoothing_mm"] = head.smoothing_mm;
   file_->file->put(BatchSizes{});
   file_->file->write(json.dump() + "\n");
   file_->file->finish();

@@ -1,5 +1,6 @@
 // What mesh files say of what a mesh keeps: of an optimised one, what it does not of what every other mesh
-// does; and bounds on dihedral angles, where they were asked for and reached. Other files say nothing.
+// does; bounds on dihedral angles, where they were asked for and reached; and the width by which interfaces
+// were smoothed. Other files say nothing.
 #pragma once
 
 #include <fmt/format.h>
@@ -11,13 +12,14 @@
 
 namespace podm {
 
-/// Words such as "unclaimed delaunay" and "dihedral 8 165", in the words of podm-verify.
+/// Words such as "unclaimed delaunay", "dihedral 8 165" and "smoothed 1.5", in the words of podm-verify.
 inline std::vector<std::string> promises_of(const TetMesh& mesh) {
   std::vector<std::string> promises;
   if (mesh.is_optimized) promises.emplace_back("unclaimed delaunay");
   if (mesh.dihedral_bounds_deg)
     promises.push_back(
         fmt::format("dihedral {} {}", (*mesh.dihedral_bounds_deg)[0], (*mesh.dihedral_bounds_deg)[1]));
+  if (mesh.smoothing_mm > 0) promises.push_back(fmt::format("smoothed {}", mesh.smoothing_mm));
   return promises;
 }
 

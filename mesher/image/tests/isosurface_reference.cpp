@@ -61,6 +61,13 @@ LabelImage random_image(Random& random, std::array<int, 3> size, std::array<doub
   return image;
 }
 
+std::shared_ptr<const VoxelStrengths> random_strengths(Random& random, const LabelImage& image) {
+  auto strengths = std::make_shared<VoxelStrengths>(image.size);
+  for (std::size_t v = 0; v < image.num_voxels(); ++v)
+    strengths->at(v) = static_cast<std::uint16_t>(1 + random() % VoxelStrengths::kMost);
+  return strengths;
+}
+
 std::vector<Phantom> smooth_phantoms() {
   const auto radius = [](const Point& p) { return std::sqrt(squared_length(p)); };
   return {
@@ -98,7 +105,7 @@ Point random_point(Random& random, const LabelImage& image, double margin) {
   return {x, y, z};
 }
 
-ReferenceLabel reference_label(const LabelImage& image, const Point& p) {
+ReferenceLabel reference_label(const LabelImage& image, const Point& p, const VoxelStrengths* strengths) {
   const std::array<double, 3> u = {p.x / image.spacing[0], p.y / image.spacing[1], p.z / image.spacing[2]};
   std::array<int, 3> base;
   std::array<double, 3> f;
@@ -109,8 +116,10 @@ ReferenceLabel reference_label(const LabelImage& image, const Point& p) {
   std::map<LabelIndex, double> weights;
   for (int c = 0; c < 8; ++c) {
     const int i = c & 1, j = c >> 1 & 1, k = c >> 2;
-    weights[label_of_voxel(image, base[0] + i, base[1] + j, base[2] + k)] +=
-        (i ? f[0] : 1 - f[0]) * (j ? f[1] : 1 - f[1]) * (k ? f[2] : 1 - f[2]);
+    const Voxel v{base[0] + i, base[1] + j, base[2] + k};
+    weights[label_of_voxel(image, v.i, v.j, v.k)] += (strengths != nullptr ? strengths->strength(v) : 1) *
+                                                     (i ? f[0] : 1 - f[0]) * (j ? f[1] : 1 - f[1]) *
+                                                     (k ? f[2] : 1 - f[2]);
   }
   ReferenceLabel best{0, -1};
   double weight = -1, next = 0;
@@ -127,9 +136,10 @@ ReferenceLabel reference_label(const LabelImage& image, const Point& p) {
   return best;
 }
 
-std::vector<Point> sample_isosurface(const LabelImage& image, int per_voxel) {
+std::vector<Point> sample_isosurface(const LabelImage& image, int per_voxel,
+                                     const VoxelStrengths* strengths) {
   std::vector<Point> points;
-  const auto label = [&](const Point& p) { return reference_label(image, p).label; };
+  const auto label = [&](const Point& p) { return reference_label(image, p, strengths).label; };
   const auto add_changes = [&](const Point& a, const Point& b) {
     if (label(a) == label(b)) return;
     Point low = a, high = b;
@@ -162,13 +172,14 @@ double distance_to_nearest(const std::vector<Point>& points, const Point& p) {
   return std::sqrt(squared);
 }
 
-bool is_on_isosurface(const LabelImage& image, const Point& p, double voxels) {
-  std::set<LabelIndex> labels{reference_label(image, p).label};
+bool is_on_isosurface(const LabelImage& image, const Point& p, double voxels,
+                      const VoxelStrengths* strengths) {
+  std::set<LabelIndex> labels{reference_label(image, p, strengths).label};
   for (int i = -1; i <= 1; ++i)
     for (int j = -1; j <= 1; ++j)
       for (int k = -1; k <= 1; ++k) {
         const Vector d{i * image.spacing[0], j * image.spacing[1], k * image.spacing[2]};
-        labels.insert(reference_label(image, p + voxels * d).label);
+        labels.insert(reference_label(image, p + voxels * d, strengths).label);
       }
   return labels.size() > 1;
 }

@@ -2,11 +2,13 @@
 #pragma once
 
 #include <array>
+#include <memory>
 #include <random>
 #include <string>
 #include <vector>
 
 #include "geometry/point.h"
+#include "image/voxel_strengths.h"
 #include "podm/label_image.h"
 
 namespace podm::test {
@@ -21,6 +23,9 @@ LabelImage empty_image(std::array<int, 3> size, std::array<double, 3> spacing);
 /// voxel copies its predecessor along a random axis.
 LabelImage random_image(Random& random, std::array<int, 3> size, std::array<double, 3> spacing,
                         unsigned num_labels, double coherence);
+
+/// As strong as chance will have it, from one voxel to the next.
+std::shared_ptr<const VoxelStrengths> random_strengths(Random& random, const LabelImage& image);
 
 struct Phantom {
   std::string name;
@@ -37,15 +42,19 @@ struct ReferenceLabel {
   LabelIndex label;
   double lead;  // its weight less that of the next
 };
-/// The definition: weights of the eight voxels around p added up by label.
-ReferenceLabel reference_label(const LabelImage& image, const Point& p);
+/// The definition: weights of the eight voxels around p added up by label. `strengths` are null where all are
+/// 1, here and below.
+ReferenceLabel reference_label(const LabelImage& image, const Point& p,
+                               const VoxelStrengths* strengths = nullptr);
 
 /// Points of the isosurface: the label changes along lines of a lattice `per_voxel` lines a voxel.
-std::vector<Point> sample_isosurface(const LabelImage& image, int per_voxel);
+std::vector<Point> sample_isosurface(const LabelImage& image, int per_voxel,
+                                     const VoxelStrengths* strengths = nullptr);
 
 double distance_to_nearest(const std::vector<Point>& points, const Point& p);
 
 /// Whether the label changes within `voxels` of p.
-bool is_on_isosurface(const LabelImage& image, const Point& p, double voxels);
+bool is_on_isosurface(const LabelImage& image, const Point& p, double voxels,
+                      const VoxelStrengths* strengths = nullptr);
 
 }  // namespace podm::test

@@ -71,6 +71,9 @@ struct MeshingOptions {
   /// above max_dihedral_deg() of it (rule R7). All guarantees are kept, and this is none: the report tells
   /// what is left, and if nothing is the file promises it.
   double min_dihedral_deg = 0;
+  /// When positive: interfaces lie where labels tie that are blurred by a Gaussian of this width, mm, instead
+  /// of on the stairs of voxels. Voxels keep their labels.
+  double smoothing_mm = 0;
   Space space = Space::kRas;
   Algorithm algorithm = Algorithm::kPodm;
   /// Threads from which on kAuto is kPodmHome. 0: it is where pins make as many on each of several NUMA

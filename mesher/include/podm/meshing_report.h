@@ -106,11 +106,23 @@ struct OptimizationReport {
   std::map<OptimizationMeans, std::uint64_t> successes;     ///< operations that made cells better
 };
 
+/// What smoothing made of the image, by label.
+struct SmoothingReport {
+  double width_mm = 0;
+  struct OfLabel {
+    std::uint32_t value = 0;
+    double voxels_mm3 = 0,
+           smoothed_mm3 = 0;  ///< the volume of its voxels, and within its smoothed interfaces
+    bool is_thin = false;     ///< the whole width would have lost most of it: narrower ones were taken
+  };
+  std::vector<OfLabel> labels;  ///< but the background
+};
+
 struct MeshingReport {
-  /// Seconds of the mesh that is returned. "transform"; "allocate": store, pools, workers and threads made
-  /// ready; "initial", "octree", "refine", "closing" (of kPodm and kPodmHome "refine" alone); "perturb" where
-  /// R7 was asked for; "optimize"; "extract"; "measure": quality and guarantees. And "calibrate": all that
-  /// finding the radius of a target cost.
+  /// Seconds of the mesh that is returned. "smooth" where that was asked for; "transform"; "allocate": store,
+  /// pools, workers and threads made ready; "initial", "octree", "refine", "closing" (of kPodm and kPodmHome
+  /// "refine" alone); "perturb" where R7 was asked for; "optimize"; "extract"; "measure": quality and
+  /// guarantees. And "calibrate": all that finding the radius of a target cost.
   std::map<std::string, double> phases_s;
   double radius_mm = 0;                    ///< the one used; 0 when unbounded
   double delta_mm = 0;                     ///< the one used
@@ -124,6 +136,7 @@ struct MeshingReport {
   Algorithm algorithm = Algorithm::kPodm;  ///< the one used
   int computing_nodes = 1;                 ///< the number used
   std::uint64_t num_leaves = 0;
+  std::optional<SmoothingReport> smoothing;        ///< there is one where that was asked for
   std::optional<OptimizationReport> optimization;  ///< there is one of a mesh that was optimised
   /// Least and largest dihedral angle that all cells keep, as the file promises, if R7 or optimisation were
   /// asked for that and reached it, and the mesh is in mm.

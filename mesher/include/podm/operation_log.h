@@ -60,6 +60,7 @@ struct OperationLogHead {
   std::string mesh_sha256;      ///< canonical, of the mesh as written; empty: see the next
   std::string mesh_hash = {};   ///< of a mesh that ranks made, mesh_hash_text() of the whole; else empty
   int rank = 0, num_ranks = 1;  ///< whose log of how many
+  double smoothing_mm = 0;      ///< by which interfaces were smoothed
 };
 
 struct OperationLog {

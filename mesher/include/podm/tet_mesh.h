@@ -25,6 +25,8 @@ struct TetMesh {
   Space space = Space::kRas;
   /// The cells were optimised: they are no Delaunay triangulation.
   bool is_optimized = false;
+  /// The width, mm, by which the interfaces of the image were smoothed; 0: they were not.
+  double smoothing_mm = 0;
   /// Least and largest dihedral angle, degrees, that all cells keep, if that was asked for and reached.
   std::optional<std::array<double, 2>> dihedral_bounds_deg = {};
 };

@@ -1,0 +1,42 @@
+#include <algorithm>
+#include <cstdint>
+
+#include "image/isosurface_block.h"
+#include "image/smooth_interfaces.h"
+#include "runtime/parallel_for.h"
+
+namespace podm {
+
+// Of each block eight points, the centres of its eighths: the nearest voxel of each is another.
+std::vector<double> volumes_mm3(const LabelImage& image, const VoxelStrengths& strengths, int threads) {
+  const LabelGrid<NoReads> grid(image, {});
+  std::vector<std::vector<std::uint64_t>> counts(num_threads(threads),
+                                                 std::vector<std::uint64_t>(image.labels.size()));
+  const auto count_slice = [&](std::size_t slice, std::size_t thread) {
+    std::vector<std::uint64_t>& of_thread = counts[thread];
+    for (int j = -1; j < image.size[1]; ++j) {
+      for (int i = -1; i < image.size[0]; ++i) {
+        const Voxel block{i, j, static_cast<int>(slice) - 1};
+        const BlockLabels labels = grid.block(block);
+        if (labels.is_uniform(labels.corner[0])) {
+          of_thread[labels.corner[0]] += 8;
+          continue;
+        }
+        const CornerStrengths corners = strengths.block(block);
+        for (unsigned c = 0; c < 8; ++c) {
+          const Point f{c & 1 ? 0.75 : 0.25, c & 2 ? 0.75 : 0.25, c & 4 ? 0.75 : 0.25};
+          ++of_thread[winner(labels, f, corners).label];
+        }
+      }
+    }
+  };
+  parallel_for(static_cast<std::size_t>(image.size[2]) + 1, counts.size(), count_slice);
+  const double eighth_mm3 = image.spacing[0] * image.spacing[1] * image.spacing[2] / 8;
+  std::vector<double> volumes(image.labels.size());
+  for (const auto& of_thread : counts)
+    for (std::size_t label = 0; label < volumes.size(); ++label)
+      volumes[label] += static_cast<double>(of_thread[label]) * eighth_mm3;
+  return volumes;
+}
+
+}  // namespace podm

@@ -1,0 +1,50 @@
+// Interfaces without the stairs of voxels: the strengths (voxel_strengths.h) that lay them where blurred
+// labels tie.
+//
+// The weight of a label, its indicator w, is blurred to 2 G_s w - G_2s w, with G_s the Gaussian of width s.
+// A surface of curvature c moves inward by s^2 c / 2 under G_s, and its slope there is 1/s: it sinks by s c,
+// to first order, so that twice the one less the other keeps it in place, and with it the volume. At a voxel
+// of label l
+//
+//   d = s sqrt(2 pi) / 3 (w_l - the greatest of another label)
+//
+// is the distance to where l ties, by the slope of the blur of a plane. Where structures are thin it says
+// that l has lost its own voxel. One that lies more than a quarter of a voxel beyond its interface is lost to
+// a blur of that width: all voxels within 2 s of it, along each axis, take half the width, and so on; below
+// half a voxel stairs remain. (Distances scale with widths, so that a plane passes on smoothly.) What is
+// nearer to the interface, or not lost by more, takes the least distance, a twentieth of a voxel. Last, a
+// voxel that is alone along an axis is at least as strong as the geometric mean of its two neighbours, which
+// keeps it a voxel thick.
+//
+// A voxel here is the side of a cube of its volume. Beyond the grid the image goes on as at its border. Taps
+// of a Gaussian reach three widths and are normalised.
+#pragma once
+
+#include <memory>
+#include <vector>
+
+#include "image/voxel_strengths.h"
+#include "podm/label_image.h"
+
+namespace podm {
+
+inline constexpr double kMostWidth = 8;  // of voxels' shortest sides
+
+struct SmoothInterfaces {
+  std::shared_ptr<const VoxelStrengths> strengths;
+  /// Labels that a blur of the whole width would have lost, from smallest to largest; narrower ones keep
+  /// them.
+  std::vector<LabelIndex> labels_lost;
+};
+
+/// Smooths by a blur of that width, on `threads` threads (0: all cores); the result is the same for any
+/// number. Beside the strengths it takes some bytes for each voxel beside another label, and some MB a
+/// thread. Throws InputError if the width is not positive, at most kMostWidth and below the image's shortest
+/// side.
+SmoothInterfaces smooth_interfaces(const LabelImage& image, double width_mm, int threads);
+
+/// The volume of each label in an image with such strengths, mm^3, by index in LabelImage::labels: of points
+/// half a voxel apart.
+std::vector<double> volumes_mm3(const LabelImage& image, const VoxelStrengths& strengths, int threads);
+
+}  // namespace podm
