@@ -3,6 +3,7 @@
 #pragma once
 
 #include <array>
+#include <cstddef>
 #include <vector>
 
 #include "image/voxel.h"
@@ -34,27 +35,48 @@ class InterfaceBlur {
  private:
   // Of a Gaussian along one axis: taps for -reach to reach, of sum 1.
   struct Taps {
-    int reach = 0;
-    std::vector<double> weights;
+    explicit Taps(double width_voxels);
+    std::size_t count() const { return weights.size(); }
+    // Of those for -reach to position - reach, the last not among them.
+    double sum_before(int position) const;
+
+    int reach;
+    std::vector<double> weights, sums;
   };
-  static Taps taps(double width_voxels);
+  using Gaussian = std::array<Taps, 3>;  // by axis
+  static Gaussian gaussian(const LabelImage& image, double width_mm);
   void read_window(const Voxel& first, Desk& desk) const;
-  void blur(const std::array<Taps, 3>& gaussian, double factor, Desk& desk) const;
+  void blur_rows(LabelIndex label, const Gaussian& gaussian, Desk& desk) const;
+  void blur(LabelIndex label, const Gaussian& gaussian, double factor, Desk& desk) const;
+  void weigh(LabelIndex label, Desk& desk) const;
+  void compare(LabelIndex label, Desk& desk) const;
 
   const LabelImage& image_;
   double width_mm_;
   double mm_per_lead_;                    // of distance, by the lead of a weight
-  std::array<Taps, 3> narrow_, wide_;     // by axis, of the width and of twice the width
+  Gaussian narrow_, wide_;                // of the width and of twice the width
   std::array<int, 3> halo_{}, window_{};  // voxels around a tile, with it
 };
 
 class InterfaceBlur::Desk {
  private:
   friend class InterfaceBlur;
-  std::vector<LabelIndex> window, labels;                     // labels: each once
-  std::vector<float> indicator;                               // of a label, in the window
-  std::vector<double> by_z, by_yz;                            // blurred along these axes
-  std::array<double, kTileVoxels> weight, of_own, of_others;  // of_others: the greatest
+  struct Run {  // of voxels of one label, in a row of the window
+    LabelIndex label;
+    int begin, end;
+  };
+  struct Presence {
+    LabelIndex label;
+    std::size_t voxels;  // of the window
+  };
+  using Row = std::array<double, kTileSide>;  // along x, in the tile
+
+  std::vector<Run> runs;
+  std::vector<std::size_t> first_run;  // by row of the window, and one more
+  std::vector<Presence> labels;        // from the rarest on
+  std::vector<Row> by_x, by_xz;        // of a label, blurred along these axes
+  std::vector<bool> has_label;         // by row of by_x
+  std::array<double, kTileVoxels> weight, sum_of_weights, of_own, of_others;  // of_others: the greatest
   std::array<double, kTileVoxels> distances;
 };
 

@@ -86,6 +86,7 @@ class Smoothing {
                            v.k < image_.size[2];
     return is_inside ? image_.voxels[index(v)] : kBackground;
   }
+  bool is_uniform(const Tile& tile) const;
   bool is_beside_another(const Voxel& v) const;
   std::uint16_t strength_of_thin(const Voxel& v) const;
   void find_sides(Tile& tile) const;
@@ -137,7 +138,28 @@ bool Smoothing::is_beside_another(const Voxel& v) const {
   return false;
 }
 
+// With the voxels around it; those outside the grid are background.
+bool Smoothing::is_uniform(const Tile& tile) const {
+  const Voxel low{std::max(tile.first.i - 1, 0), std::max(tile.first.j - 1, 0),
+                  std::max(tile.first.k - 1, 0)};
+  const Voxel end{std::min(tile.end.i + 1, image_.size[0]), std::min(tile.end.j + 1, image_.size[1]),
+                  std::min(tile.end.k + 1, image_.size[2])};
+  const bool is_at_border = low.i == tile.first.i || low.j == tile.first.j || low.k == tile.first.k ||
+                            end.i == tile.end.i || end.j == tile.end.j || end.k == tile.end.k;
+  const LabelIndex first = is_at_border ? kBackground : label(low);
+  for (int k = low.k; k < end.k; ++k) {
+    for (int j = low.j; j < end.j; ++j) {
+      const LabelIndex* row = &image_.voxels[image_.index(0, j, k)];
+      unsigned differing = 0;  // added up without a branch, which many voxels at a time can be
+      for (int i = low.i; i < end.i; ++i) differing |= static_cast<unsigned>(row[i] ^ first);
+      if (differing != 0) return false;
+    }
+  }
+  return true;
+}
+
 void Smoothing::find_sides(Tile& tile) const {
+  if (is_uniform(tile)) return;
   tile.for_each_voxel([&](Place place) {
     if (is_beside_another(tile.voxel(place))) tile.left.push_back(place);
   });
@@ -215,6 +237,7 @@ std::uint16_t Smoothing::strength_of_thin(const Voxel& v) const {
 
 // All are found before any is changed.
 void Smoothing::find_thin(Tile& tile) const {
+  if (is_uniform(tile)) return;
   tile.for_each_voxel([&](Place place) {
     const Voxel v = tile.voxel(place);
     const std::uint16_t present = strengths_->at(index(v));
