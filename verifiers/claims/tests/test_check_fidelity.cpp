@@ -143,9 +143,9 @@ TEST(IsosurfaceDistance, IsNeverBelowTheTrueOneAndMostlyNear) {
       return (i - 4) * (i - 4) + (j - 4) * (j - 4) + (k - 4) * (k - 4) <= 8 ? 1U : 0U;
     });
     const ImageFrame frame(image, Space::kRas);
-    const Midpoints midpoints(image, frame);
-    const IsosurfaceDistance distance(image, frame, midpoints);
     const LabelFunction label(image);
+    const Midpoints midpoints(image, frame, label);
+    const IsosurfaceDistance distance(image, frame, midpoints, label);
     const double grid = std::hypot(image.spacing[0], image.spacing[1], image.spacing[2]) / kFine;  // mm
     const double longest = *std::max_element(image.spacing.begin(), image.spacing.end());
     std::vector<Point> surface;
