@@ -75,7 +75,7 @@ void declare_inputs(CLI::App& app, Command& command) {
 
 // Those of `podm mesh`, for a mesh of a part of the image's labels.
 void declare_selection(CLI::App& app, Command& command) {
-  app.option_defaults()->group("Labels of the image that were meshed, as podm mesh was told");
+  app.option_defaults()->group("What was meshed of the image, as podm mesh was told");
   CLI::Option* image = app.get_option("--image");
   app.add_option("--labels", command.labels, "these label values only, e.g. 1,3-7 [default: all]")
       ->option_text("RANGES")
@@ -93,6 +93,13 @@ void declare_selection(CLI::App& app, Command& command) {
                              "reported as VALUE [default: {}]",
                              command.options.selection.background))
       ->option_text("VALUE");
+  app.add_option(
+         "--smooth", command.options.smooth_mm,
+         "width by which interfaces of the image were smoothed [default: as the mesh file says, else\n"
+         "none]")
+      ->option_text("MM")
+      ->check(positive())
+      ->needs(image);
 }
 
 void declare_claims(CLI::App& app, Command& command) {

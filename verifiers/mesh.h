@@ -40,7 +40,8 @@ struct Mesh {
   Space space = Space::kUnstated;
   std::set<std::string> unclaimed;  ///< claims that its maker does not make
   std::optional<std::array<double, 2>>
-      promised_dihedral_deg;  ///< least and largest dihedral angle, as promised
+      promised_dihedral_deg;           ///< least and largest dihedral angle, as promised
+  std::optional<double> smoothing_mm;  ///< the width that the image was smoothed by before it was meshed
 };
 
 }  // namespace podm::verify

@@ -15,6 +15,7 @@ struct Options {
   std::string mesh_path;
   std::string image_path;           ///< empty: claims about the image are not run
   LabelSelection selection;         ///< what was meshed of the image
+  std::optional<double> smooth_mm;  ///< overrides what the mesh's file states of the image's smoothing
   std::string schedule_path;        ///< leaf grid and schedule of a PDR or PDR.PODM run; empty: none
   std::vector<std::string> claims;  ///< names asked for; empty: all
   double radius_edge_bound = 1.93;

@@ -10,6 +10,7 @@
 
 #include "claims/claims.h"
 #include "errors.h"
+#include "image/smoothing.h"
 #include "readers/read_mesh.h"
 
 namespace podm::verify {
@@ -126,6 +127,8 @@ Inputs read_inputs(const Options& options) {
   if (options.space) inputs.mesh.space = *options.space;
   if (!options.image_path.empty()) inputs.image = read_image(options.image_path);
   if (inputs.image && options.selection != LabelSelection{}) select_labels(*inputs.image, options.selection);
+  const std::optional<double> width = options.smooth_mm ? options.smooth_mm : inputs.mesh.smoothing_mm;
+  if (inputs.image && width) inputs.image->smoothing = smooth(*inputs.image, *width, options.threads);
   if (options.selection.background != 0) move_background(inputs.mesh, options.selection.background);
   if (!options.schedule_path.empty()) inputs.schedule = read_schedule(options.schedule_path);
   return inputs;

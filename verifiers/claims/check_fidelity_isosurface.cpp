@@ -27,7 +27,7 @@ std::vector<std::uint32_t> first_ids(std::size_t count) {
 }  // namespace
 
 // Voxels outside the grid are background: a pair may have one of them.
-Midpoints::Midpoints(const Image& image, const ImageFrame& frame) {
+Midpoints::Midpoints(const Image& image, const ImageFrame& frame, const LabelFunction& label_function) {
   const std::array<std::size_t, 3> stride{
       1, static_cast<std::size_t>(image.size[0]),
       static_cast<std::size_t>(image.size[0]) * static_cast<std::size_t>(image.size[1])};
@@ -35,8 +35,10 @@ Midpoints::Midpoints(const Image& image, const ImageFrame& frame) {
   const auto add = [&](const std::array<int, 3>& upper, std::size_t axis, std::uint32_t below,
                        std::uint32_t above) {
     if (below == above) return;
-    Point u{static_cast<double>(upper[0]), static_cast<double>(upper[1]), static_cast<double>(upper[2])};
-    u[axis] -= 0.5;
+    std::array<int, 3> lower = upper;
+    --lower[axis];
+    Point u{static_cast<double>(lower[0]), static_cast<double>(lower[1]), static_cast<double>(lower[2])};
+    u[axis] += label_function.change_after(lower, axis);
     midpoints_.push_back({frame.voxels_to_world(u), {below, above}, static_cast<std::uint8_t>(axis)});
   };
   std::array<int, 3> v{};
@@ -62,10 +64,10 @@ struct IsosurfaceDistance::Region {
 };
 
 IsosurfaceDistance::IsosurfaceDistance(const Image& image, const ImageFrame& frame,
-                                       const Midpoints& midpoints)
+                                       const Midpoints& midpoints, const LabelFunction& label_function)
     : frame_(frame),
       midpoints_(midpoints),
-      label_function_(image),
+      label_function_(label_function),
       tree_(midpoints, first_ids(midpoints.all().size())) {
   for (std::size_t axis = 0; axis < 3; ++axis)
     for (const double sign : {-1.0, 1.0}) {

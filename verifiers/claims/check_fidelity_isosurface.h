@@ -1,12 +1,12 @@
 // Distance from a point to the image's isosurface (image/label_function.h), in the world's mm.
 //
 // Between the centres of two voxels of different labels that share a face, only these two labels have weight:
-// the label changes midway. These midpoints are the known points of the isosurface, less than a voxel from
-// each other along it. From the nearest one a search goes on to nearer points: wherever a segment's ends have
-// different labels, a point of the isosurface lies between, and bisection finds it. The search tries the
-// segment to the midpoint, a voxel's length along each axis, and the normals of the surface found. Every
-// answer is a point of the isosurface to 1e-5 of a voxel, so that the distance is never taken too small; it
-// may be taken too large, by little.
+// the label changes midway, or of a smoothed image where their strengths say. These midpoints are the known
+// points of the isosurface: one lies in each block that it passes through. From the nearest one a search goes
+// on to nearer points: wherever a segment's ends have different labels, a point of the isosurface lies
+// between, and bisection finds it. The search tries the segment to the midpoint, a voxel's length along each
+// axis, and the normals of the surface found. Every answer is a point of the isosurface to 1e-5 of a voxel,
+// so that the distance is never taken too small; it may be taken too large, by little.
 #pragma once
 
 #include <map>
@@ -18,6 +18,7 @@
 
 namespace podm::verify {
 
+/// Where the label changes between two voxels that share a face.
 struct Midpoint {
   Point world{};
   std::array<std::uint32_t, 2> labels{};  ///< of the two voxels
@@ -26,7 +27,7 @@ struct Midpoint {
 
 class Midpoints {
  public:
-  Midpoints(const Image& image, const ImageFrame& frame);
+  Midpoints(const Image& image, const ImageFrame& frame, const LabelFunction& label_function);
   const std::vector<Midpoint>& all() const { return midpoints_; }
   Point closest(std::uint32_t i, const Point&) const { return midpoints_[i].world; }
   void bounds(std::uint32_t i, Point& low, Point& high) const { low = high = midpoints_[i].world; }
@@ -37,8 +38,9 @@ class Midpoints {
 
 class IsosurfaceDistance {
  public:
-  /// Keeps references.
-  IsosurfaceDistance(const Image& image, const ImageFrame& frame, const Midpoints& midpoints);
+  /// Keeps references to frame and midpoints, which are those of `label_function`.
+  IsosurfaceDistance(const Image& image, const ImageFrame& frame, const Midpoints& midpoints,
+                     const LabelFunction& label_function);
 
   struct Answer {
     Point point{};

@@ -1,12 +1,13 @@
 // Claim labels.
 //   Statements  each cell's label is the image's label at its circumcentre: of the eight voxels around that
 //               point the label with the greatest trilinear weight, ties to the smaller, background (0)
-//               outside the grid. Of a mesh that does not claim to be Delaunay, whose flat cells have their
-//               circumcentres far away: it is the image's at the cell's centroid, or there is a voxel of that
-//               label within reach, a voxel's diagonal more than 2 delta (--delta) or another diagonal,
-//               whichever is longer; interfaces of mesh and image are no nearer each other than that. Each
-//               label of the mesh is one of the image's. Each label that has more than 1000 voxels in the
-//               image has a cell.
+//               outside the grid; of an image that is smoothed, weights count the voxels' strengths
+//               (image/smoothing.h). Of a mesh that does not claim to be Delaunay, whose flat cells have
+//               their circumcentres far away: it is the image's at the cell's centroid, or there is a voxel
+//               of that label within reach, a voxel's diagonal more than 2 delta (--delta) or another
+//               diagonal, whichever is longer; interfaces of mesh and image are no nearer each other than
+//               that. Each label of the mesh is one of the image's. Each label that has more than 1000 voxels
+//               in the image has a cell.
 //   Rests on    weights that are continuous and change by at most 1 a voxel along each axis, so that two
 //               weights' order at a point holds for all points nearer than half their difference
 //               (label_function.h). The circumcentre is known up to a bound (check_labels_circumcenter.h).
@@ -14,7 +15,9 @@
 //               of the written coordinates. A cell with another label than that one is none the less right if
 //               its label wins within the bound: a mesher computes a circumcentre in rounded arithmetic, and
 //               maybe in other coordinates than the file's. Such cells are counted ("within_rounding") and
-//               not judged.
+//               not judged. The bound allows for slopes of 1 a voxel; where strengths of S make them as
+//               small, it forgives up to 1/S times the rounding. Strengths are taken to be right: what makes
+//               them is smoothing.cpp, tested against its definition.
 //   Cost        linear in the cells, and a pass over the voxels; 24 bytes a vertex, 8 a voxel of the mesh's
 //               box.
 //   Not proved  that the label is the image's elsewhere in the cell. Volume and overlap (Dice, by voxel

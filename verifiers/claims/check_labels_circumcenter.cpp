@@ -154,10 +154,12 @@ std::optional<std::uint32_t> ExactCircumcenterLabel::operator()(CellId cell) con
     factors[axis][1] = u - floor;
     factors[axis][0] = 1 - factors[axis][1];
   }
-  const auto corners = LabelFunction(image_).corners(block);
-  std::map<std::uint32_t, mpq_class> weights;  // ascending: the first of the greatest wins
+  const LabelFunction function(image_);
+  const auto corners = function.corners(block);
+  const auto strengths = function.strengths(block);
+  std::map<std::uint32_t, mpq_class> weights;  // in 65535ths; ascending: the first of the greatest wins
   for (std::size_t c = 0; c < 8; ++c)
-    weights[corners[c]] += factors[0][c & 1] * factors[1][c >> 1 & 1] * factors[2][c >> 2];
+    weights[corners[c]] += strengths[c] * factors[0][c & 1] * factors[1][c >> 1 & 1] * factors[2][c >> 2];
   auto best = weights.begin();
   for (auto w = weights.begin(); w != weights.end(); ++w)
     if (w->second > best->second) best = w;

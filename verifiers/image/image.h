@@ -3,12 +3,20 @@
 
 #include <array>
 #include <cstdint>
+#include <optional>
 #include <string>
 #include <vector>
 
 #include "mesh.h"
 
 namespace podm::verify {
+
+/// That interfaces of the image are smoothed: smoothing.h.
+struct Smoothing {
+  double width_mm = 0;
+  std::vector<std::uint16_t> strengths;  ///< of the voxels, in 65535ths
+};
+inline constexpr std::uint16_t kFullStrength = 65535;
 
 /// Voxels x fastest. Outside the grid every voxel is background (0).
 struct Image {
@@ -18,6 +26,7 @@ struct Image {
   std::array<double, 12> voxel_to_ras{};   ///< row-major 3x4, voxel indices to world mm
   std::vector<std::uint32_t> voxels;       ///< label values
   std::vector<std::string> warnings = {};  ///< what is odd about the file
+  std::optional<Smoothing> smoothing = {};
 };
 
 /// NIfTI, NRRD, MetaImage, INRIMAGE, ".gz" of NIfTI and INR. Throws InputError.

@@ -13,6 +13,12 @@ double corner_weight(std::size_t corner, const Point& f) {
          ((corner & 4) != 0 ? f[2] : 1 - f[2]);
 }
 
+std::array<double, 8> all_corner_weights(const Point& f) {
+  std::array<double, 8> weights;
+  for (std::size_t c = 0; c < 8; ++c) weights[c] = corner_weight(c, f);
+  return weights;
+}
+
 bool is_uniform(const std::array<std::uint32_t, 8>& corners) {
   return std::all_of(corners.begin() + 1, corners.end(), [&](std::uint32_t l) { return l == corners[0]; });
 }
@@ -33,7 +39,13 @@ std::size_t LabelWeights::best() const {
 }
 
 LabelFunction::LabelFunction(const Image& image)
+    : LabelFunction(image, image.smoothing ? &*image.smoothing : nullptr) {}
+
+LabelFunction LabelFunction::of_voxels(const Image& image) { return {image, nullptr}; }
+
+LabelFunction::LabelFunction(const Image& image, const Smoothing* smoothing)
     : image_(image),
+      smoothing_(smoothing),
       row_(static_cast<std::size_t>(image.size[0])),
       slice_(row_ * static_cast<std::size_t>(image.size[1])) {}
 
@@ -72,6 +84,36 @@ std::array<std::uint32_t, 8> LabelFunction::corners(const std::array<int, 3>& b)
   return labels;
 }
 
+std::array<std::uint16_t, 8> LabelFunction::strengths(const std::array<int, 3>& b) const {
+  std::array<std::uint16_t, 8> strengths{};
+  for (int c = 0; c < 8; ++c)
+    strengths[static_cast<std::size_t>(c)] = strength({b[0] + (c & 1), b[1] + (c >> 1 & 1), b[2] + (c >> 2)});
+  return strengths;
+}
+
+// Beyond the grid that of the nearest voxel inside.
+std::uint16_t LabelFunction::strength(const std::array<int, 3>& voxel) const {
+  if (smoothing_ == nullptr) return kFullStrength;
+  const auto inside = [&](std::size_t axis) {
+    return static_cast<std::size_t>(std::clamp(voxel[axis], 0, image_.size[axis] - 1));
+  };
+  return smoothing_->strengths[inside(2) * slice_ + inside(1) * row_ + inside(0)];
+}
+
+double LabelFunction::change_after(const std::array<int, 3>& voxel, std::size_t axis) const {
+  std::array<int, 3> next = voxel;
+  ++next[axis];
+  const double first = strength(voxel), second = strength(next);
+  return first / (first + second);
+}
+
+std::array<double, 8> LabelFunction::smoothed(std::array<double, 8> corner_weights,
+                                              const std::array<int, 3>& block) const {
+  const auto strengths = this->strengths(block);
+  for (std::size_t c = 0; c < 8; ++c) corner_weights[c] *= strengths[c] / double{kFullStrength};
+  return corner_weights;
+}
+
 std::uint32_t LabelFunction::label_at(const Point& u) const {
   const LabelWeights weights = weights_at(u);
   return weights.labels[weights.best()];
@@ -92,11 +134,13 @@ LabelWeights LabelFunction::weights_at(const Point& u) const {
     result.count = 1;
     return result;
   }
+  std::array<double, 8> weights = all_corner_weights(p.f);
+  if (smoothing_ != nullptr) weights = smoothed(weights, p.block);
   for (std::size_t c = 0; c < 8; ++c) {
     std::size_t i = 0;
     while (i < result.count && result.labels[i] != labels[c]) ++i;
     if (i == result.count) result.labels[result.count++] = labels[c];
-    result.weights[i] += corner_weight(c, p.f);
+    result.weights[i] += weights[c];
   }
   return result;
 }
@@ -106,14 +150,16 @@ Point LabelFunction::gradient_of_difference(const Point& u, std::uint32_t a, std
   if (!is_near(u)) return gradient;
   const Place p = place(u);
   const auto labels = corners(p.block);
+  std::array<double, 8> at_corners{1, 1, 1, 1, 1, 1, 1, 1};
+  if (smoothing_ != nullptr) at_corners = smoothed(at_corners, p.block);
   for (std::size_t c = 0; c < 8; ++c) {
-    const double sign = labels[c] == a ? 1 : labels[c] == b ? -1 : 0;
-    if (sign == 0) continue;
+    const double slope = labels[c] == a ? at_corners[c] : labels[c] == b ? -at_corners[c] : 0;
+    if (slope == 0) continue;
     for (std::size_t axis = 0; axis < 3; ++axis) {
       Point unit = p.f;
       const bool is_high = (c >> axis & 1) != 0;
-      unit[axis] = is_high ? 1 : 0;  // this axis's factor becomes 1, the slope of it is the sign
-      gradient[axis] += (is_high ? sign : -sign) * corner_weight(c, unit);
+      unit[axis] = is_high ? 1 : 0;  // this axis's factor becomes 1
+      gradient[axis] += (is_high ? slope : -slope) * corner_weight(c, unit);
     }
   }
   return gradient;

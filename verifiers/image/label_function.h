@@ -2,8 +2,10 @@
 // voxels around it, ties to the smaller label; outside the grid every voxel is background. The isosurface is
 // where that label changes.
 //
-// A label's weight is the trilinear interpolation of its indicator (1 at its voxels, 0 elsewhere), so it is
-// continuous, and along each axis it changes by at most 1 a voxel.
+// A label's weight is the trilinear interpolation of its indicator: at its voxels 1, or of a smoothed image
+// their strengths (smoothing.h), which are above 0 and at most 1, and 0 elsewhere. So it is continuous, and
+// along each axis it changes by at most 1 a voxel. Between the centres of two voxels that share a face only
+// their labels have weight, and change once.
 #pragma once
 
 #include <array>
@@ -13,7 +15,8 @@
 
 namespace podm::verify {
 
-/// The labels of the eight voxels around a point, each once, and their weights, which sum to 1.
+/// The labels of the eight voxels around a point, each once, and their weights. These sum to 1, of a smoothed
+/// image to at most 1; where there is one label it has weight 1.
 struct LabelWeights {
   std::array<std::uint32_t, 8> labels{};
   std::array<double, 8> weights{};
@@ -27,11 +30,14 @@ struct LabelWeights {
 /// Points are in voxel indices. Keeps a reference to the image.
 class LabelFunction {
  public:
-  /// What a weight is wrong by at most, coordinates taken as they are: three factors in [0,1], each off by
-  /// 2^-53, and at most eight terms.
+  /// What a weight is wrong by at most, coordinates taken as they are: three factors in [0,1] and a strength,
+  /// each off by 2^-53, three products and at most eight terms that sum to at most 1.
   static constexpr double kWeightError = 0x1p-49;
 
+  /// Of the image as it is, smoothed or not.
   explicit LabelFunction(const Image& image);
+  /// Of a smoothed image as it was before.
+  static LabelFunction of_voxels(const Image& image);
 
   std::uint32_t label_at(const Point& u) const;
   LabelWeights weights_at(const Point& u) const;
@@ -40,16 +46,25 @@ class LabelFunction {
 
   /// Labels of the eight voxels of the block whose first is `block`: voxel + (x,y,z) at x + 2y + 4z.
   std::array<std::uint32_t, 8> corners(const std::array<int, 3>& block) const;
+  /// Their strengths, in 65535ths.
+  std::array<std::uint16_t, 8> strengths(const std::array<int, 3>& block) const;
+  /// Where between the two voxels the label changes, if their labels differ: 0 at the first, 1 at the one
+  /// after it along `axis`. One of them may lie a voxel beyond the grid.
+  double change_after(const std::array<int, 3>& voxel, std::size_t axis) const;
 
  private:
   struct Place {
     std::array<int, 3> block{};
     Point f{};  // in [0,1]
   };
+  LabelFunction(const Image& image, const Smoothing* smoothing);
   bool is_near(const Point& u) const;
   static Place place(const Point& u);
+  std::uint16_t strength(const std::array<int, 3>& voxel) const;
+  std::array<double, 8> smoothed(std::array<double, 8> corner_weights, const std::array<int, 3>& block) const;
 
   const Image& image_;
+  const Smoothing* smoothing_;  // null: none
   std::size_t row_, slice_;
 };
 

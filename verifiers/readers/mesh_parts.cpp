@@ -5,6 +5,7 @@
 #include <array>
 #include <cctype>
 #include <charconv>
+#include <cmath>
 
 namespace podm::verify {
 namespace {
@@ -21,6 +22,20 @@ constexpr std::array kLabelArrays{"label",         "labels",          "cell_labe
                                   "attributes",    "cell_tags",       "tetgen:ref",       "tags",
                                   "tag",           "marker",          "markers",          "ref",
                                   "reference",     "elementblockids", "gmsh:geometrical", "scalars"};
+
+// Exactly so many numbers, a blank between them; none where there are others.
+template <std::size_t N>
+std::optional<std::array<double, N>> numbers_of(std::string_view text) {
+  std::array<double, N> numbers{};
+  const char *at = text.data(), *const end = at + text.size();
+  for (std::size_t i = 0; i < N; ++i) {
+    if (i > 0 && (at == end || *at++ != ' ')) return std::nullopt;
+    const auto [after, error] = std::from_chars(at, end, numbers[i]);
+    if (error != std::errc()) return std::nullopt;
+    at = after;
+  }
+  return at == end ? std::optional(numbers) : std::nullopt;
+}
 
 }  // namespace
 
@@ -50,19 +65,20 @@ void read_promise(const MeshFile& file, const std::string& place, std::string_vi
     mesh.unclaimed.emplace(*claim);
     return;
   }
-  std::array<double, 2> bounds{};
-  auto angles = after_prefix(words, "dihedral ");
-  bool is_read = angles.has_value();
-  for (double& bound : bounds) {
-    if (!is_read) break;
-    const char *const begin = angles->data(), *const end = begin + angles->size();
-    const auto [after, error] = std::from_chars(begin, end, bound);
-    is_read = error == std::errc() && bound >= 0 && bound <= 180;
-    angles->remove_prefix(std::min<std::size_t>(angles->size(), static_cast<std::size_t>(after - begin) + 1));
+  if (const auto angles = after_prefix(words, "dihedral ")) {
+    const auto bounds = numbers_of<2>(*angles);
+    if (bounds && (*bounds)[0] >= 0 && (*bounds)[0] <= 90 && (*bounds)[1] >= 90 && (*bounds)[1] <= 180) {
+      mesh.promised_dihedral_deg = bounds;
+      return;
+    }
+  } else if (const auto width = after_prefix(words, "smoothed ")) {
+    const auto mm = numbers_of<1>(*width);
+    if (mm && (*mm)[0] > 0 && std::isfinite((*mm)[0])) {
+      mesh.smoothing_mm = (*mm)[0];
+      return;
+    }
   }
-  if (!is_read || bounds[0] > 90 || bounds[1] < 90)
-    file.refuse(place, fmt::format("the promise '{}' is none that is known", words));
-  mesh.promised_dihedral_deg = bounds;
+  file.refuse(place, fmt::format("the promise '{}' is none that is known", words));
 }
 
 std::optional<std::string_view> after_prefix(std::string_view text, std::string_view prefix) {

@@ -38,7 +38,8 @@ std::optional<std::size_t> label_array_rank(std::string_view name);
 /// The space that our mesher's word names; none for any other word.
 std::optional<Space> space_of(std::string_view word);
 
-/// Our mesher's words on what the mesh is to keep and what not: "unclaimed delaunay", "dihedral 8 165".
+/// Our mesher's words on what the mesh is to keep and what not: "unclaimed delaunay", "dihedral 8 165",
+/// "smoothed 1.5".
 /// Throws InputError at `place` for others.
 void read_promise(const MeshFile& file, const std::string& place, std::string_view words, Mesh& mesh);
 

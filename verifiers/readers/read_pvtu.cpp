@@ -32,6 +32,8 @@ std::string text_of(const Point& point) { return fmt::format("({}, {}, {})", poi
 // Two pieces of one mesh name the same labels and the same space.
 void check_labels_and_space(const MeshFile& file, const Mesh& piece, const Mesh& first) {
   if (piece.space != first.space) file.refuse("FieldData", "the space is not that of the first piece");
+  if (piece.smoothing_mm != first.smoothing_mm)
+    file.refuse("FieldData", "the width of smoothing is not that of the first piece");
   for (const auto* names : {&piece.label_names, &first.label_names}) {
     for (const auto& [value, name] : *names) {
       const auto here = piece.label_names.find(value), there = first.label_names.find(value);
@@ -60,6 +62,7 @@ class PieceMerger {
       whole_.label_names = grid.mesh.label_names;
       whole_.unclaimed = grid.mesh.unclaimed;
       whole_.promised_dihedral_deg = grid.mesh.promised_dihedral_deg;
+      whole_.smoothing_mm = grid.mesh.smoothing_mm;
     }
     check_labels_and_space(file, grid.mesh, whole_);
     for (std::size_t i = 0; i < grid.point_ids.size(); ++i) add_point(file, grid, i);

@@ -43,6 +43,7 @@ Json file_of(const std::string& path) {
 Json image_of(const Inputs& inputs, const Options& options) {
   Json json = file_of(options.image_path);
   if (inputs.image && !inputs.image->warnings.empty()) json["warnings"] = inputs.image->warnings;
+  if (inputs.image && inputs.image->smoothing) json["smoothed_mm"] = inputs.image->smoothing->width_mm;
   return json;
 }
 
@@ -94,6 +95,7 @@ Json options_of(const Options& options) {
   return {{"claims", options.claims.empty() ? Json(nullptr) : Json(options.claims)},
           {"space", options.space ? Json(describe(*options.space)) : Json(nullptr)},
           {"selection", selection_of(options.selection)},
+          {"smooth_mm", options.smooth_mm ? Json(*options.smooth_mm) : Json(nullptr)},
           {"radius_edge_bound", options.radius_edge_bound},
           {"angle_bound_deg", options.angle_bound_deg},
           {"radius_mm", options.radius_mm ? Json(*options.radius_mm) : Json(nullptr)},
@@ -128,6 +130,7 @@ std::string json_report(const Inputs& inputs, const Options& options, const std:
   mesh_json["unclaimed"] = mesh.unclaimed;
   mesh_json["promised_dihedral_deg"] =
       mesh.promised_dihedral_deg ? Json(*mesh.promised_dihedral_deg) : Json(nullptr);
+  mesh_json["smoothing_mm"] = mesh.smoothing_mm ? Json(*mesh.smoothing_mm) : Json(nullptr);
   const Json report{{"schema", "podm-verify/1"},
                     {"program", "podm-verify " PODM_VERSION},
                     {"mesh", mesh_json},

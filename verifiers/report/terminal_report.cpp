@@ -51,6 +51,9 @@ std::string terminal_report(const Inputs& inputs, const Options& options,
                                  mesh.cells.size(), mesh.vertices.size());
   for (const auto& [name, count] : mesh.other_cells)
     text += fmt::format("  also holds {} {}, not checked\n", count, name);
+  if (inputs.image && inputs.image->smoothing)
+    text += fmt::format("  image smoothed by {} mm, as {} says\n", inputs.image->smoothing->width_mm,
+                        options.smooth_mm ? "--smooth" : "the mesh's file");
   if (inputs.image)
     for (const std::string& warning : inputs.image->warnings) text += fmt::format("  warning: {}\n", warning);
   std::size_t num_passed = 0;

@@ -578,6 +578,24 @@ def half_voxel_shift(shop):
 
 
 @operator("labels")
+def called_smoothed(shop):
+    """a mesh of the image's voxels that is said to be of the smoothed image; harmless: not said"""
+    mesh = shop.base.copy()
+    mesh.comments = [*mesh.comments, "# promise smoothed 6.5\n"]
+    return Mutant(Case(mesh, shop.with_image), Case(shop.base, shop.with_image))
+
+
+@operator(None, exit_code=2)
+def smoothed_by_nothing(_):
+    """a file that says its image was smoothed by 0 mm; harmless: by 1.5"""
+    def smoothed(width):
+        mesh = tetrahedron(REGULAR)
+        mesh.comments = [f"# promise smoothed {width}\n"]
+        return Case(mesh)
+    return Mutant(smoothed("0"), smoothed("1.5"))
+
+
+@operator("labels")
 def mirrored_axis(shop):
     """x mirrored, cells turned back; harmless: coordinates in LPS and said so"""
     mirrored, lps = shop.base.copy(), shop.base.copy()

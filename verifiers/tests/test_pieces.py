@@ -150,6 +150,8 @@ class PiecesTest(unittest.TestCase):
 
     def test_spaces_and_labels_that_differ(self):
         for field, fault in (({"space:LPS": 1}, "the space is not that of the first piece"),
+                             ({"space:RAS": 1, "promise:smoothed 2": 1},
+                              "the width of smoothing is not that of the first piece"),
                              ({"space:RAS": 1, "label:liver": 1}, "label 1 is 'liver', in the first piece not named")):
             self.pieces.pieces[1].field = field
             self.write_and_refuse("m_1.vtu: FieldData: " + fault)

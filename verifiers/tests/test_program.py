@@ -150,6 +150,37 @@ class ProgramTest(unittest.TestCase):
                 self.verify(*claims)
                 self.assertNotEqual(self.read_overlaps(), {1}, "all labels of the image are other ones")
 
+    def test_smoothing_is_as_the_option_says_or_else_the_file(self):
+        voxels = np.zeros((8, 9, 10), dtype=np.uint8)
+        voxels[2:6, 2:7, 2:7] = 1
+        image = self.folder / "image.inr"
+        write_inr(image, voxels, offset=0.5)
+        mesh = meshed_voxels(voxels, {0: None})
+        claims = ["--claims", "labels,fidelity", "--json", self.report, "--image", image]
+        for comments, options, width in (([], [], None), ([], ["--smooth", "1.25"], 1.25),
+                                         (["# promise smoothed 0.75\n"], [], 0.75),
+                                         (["# promise smoothed 0.75\n"], ["--smooth", "1.25"], 1.25)):
+            mesh.comments = comments
+            mesh.write(self.mesh)
+            process = self.verify(*claims, *options)
+            self.assert_exit(process, 0)
+            report = self.read_report()
+            self.assertEqual(report["image"].get("smoothed_mm"), width)
+            self.assertEqual(report["options"]["smooth_mm"], 1.25 if options else None)
+            self.assertEqual(report["mesh"]["smoothing_mm"], 0.75 if comments else None)
+            self.assertEqual("mesh_to_voxels" in report["claims"]["fidelity"]["details"], width is not None)
+            told = f"image smoothed by {width} mm, as " + ("--smooth says" if options else "the mesh's file says")
+            self.assertEqual(told in process.stdout, width is not None, process.stdout)
+        for width, fault in (("8.5", "image.inr: cannot be smoothed by 8.5 mm"), ("8", "less than 8 mm"),
+                             ("0", "--smooth"), ("nan", "--smooth"), ("-1", "--smooth")):
+            process = self.verify(*claims, "--smooth", width)
+            self.assert_exit(process, 2)
+            self.assertIn(fault, process.stderr)
+        mesh.comments = ["# promise smoothed 20\n"]
+        mesh.write(self.mesh)
+        self.assert_exit(self.verify(*claims), 2)
+        self.assert_exit(self.verify("--claims", "radius_edge"), 0)  # without the image nothing is smoothed
+
     def test_a_meta_image_whose_header_tells_an_old_stream_size_is_read_with_a_warning(self):
         voxels = np.random.default_rng(5).choice([1, 2], size=(6, 7, 8)).astype(np.uint8)
         meshed_voxels(voxels, {}).write(self.mesh)
@@ -181,6 +212,7 @@ class ProgramTest(unittest.TestCase):
                                  (["--radius-of", "3"], "LABEL=MM"),
                                  (["--radius-of", "3=inf"], "LABEL=MM"),
                                  (["--labels", "1"], "--image"),
+                                 (["--smooth", "1"], "--image"),
                                  (["--image", "absent.nii", "--labels", "7-3"], "--labels: the range '7-3'"),
                                  (["--image", "absent.nii", "--merge", "2,3"], "--merge: '2,3' is not VALUES=NAME"),
                                  (["--background", "-1"], "--background"),

@@ -11,6 +11,7 @@
 #include "geometry/adjacency.h"
 #include "image/image.h"
 #include "image/image_frame.h"
+#include "image/label_function.h"
 #include "mesh.h"
 
 namespace podm::verify {
@@ -92,6 +93,21 @@ inline Mesh kuhn_mesh(const Image& image, Space space = Space::kRas) {
     if (det < 0) std::swap(cell[2], cell[3]);
   }
   return mesh;
+}
+
+/// A mesh that has the image's label function at all circumcentres: of voxels a third as long.
+inline Mesh fine_mesh(const Image& image) {
+  const LabelFunction function(image);
+  const auto coarse = [](int i) { return (i - 1) / 3.0; };
+  std::array<double, 12> affine = image.voxel_to_ras;
+  for (std::size_t row = 0; row < 3; ++row) {
+    for (std::size_t axis = 0; axis < 3; ++axis) affine[4 * row + axis] /= 3;
+    for (std::size_t axis = 0; axis < 3; ++axis) affine[4 * row + 3] -= affine[4 * row + axis];
+  }
+  return kuhn_mesh(
+      make_image({3 * image.size[0], 3 * image.size[1], 3 * image.size[2]}, affine, [&](int i, int j, int k) {
+        return function.label_at({coarse(i), coarse(j), coarse(k)});
+      }));
 }
 
 /// Moves all vertices by a vector in voxels.

@@ -6,6 +6,7 @@
 #include "claims/check_fidelity_facets.h"
 #include "claims/check_fidelity_isosurface.h"
 #include "claims/claims.h"
+#include "image/smoothing.h"
 #include "meshed_voxels.h"
 
 namespace podm::verify {
@@ -125,6 +126,24 @@ TEST(Fidelity, WithoutCellsLabelsOrInterfaceItIsNotRun) {
   EXPECT_EQ(fidelity_of(mesh, image).verdict, Verdict::kNotRun);
 }
 
+TEST(Fidelity, OfASmoothedImageIsToItsSmoothInterface) {
+  for (const auto& affine : {kUnitAffine, kAnisotropic}) {
+    const Image stairs = make_image({13, 11, 9}, affine, two_balls);
+    Image round = stairs;
+    round.smoothing =
+        smooth(stairs, *std::min_element(stairs.spacing.begin(), stairs.spacing.end()) * 1.5, 2);
+    const Mesh mesh = fine_mesh(round);
+    const ClaimResult by_round = fidelity_of(mesh, round), by_stairs = fidelity_of(mesh, stairs);
+    EXPECT_EQ(by_round.verdict, Verdict::kPass) << by_round.reason;
+    EXPECT_LT(number(by_round, "mesh_to_image", "mean_mm"), number(by_stairs, "mesh_to_image", "mean_mm"));
+    // No further than a diagonal of the voxels that the mesh is made of.
+    EXPECT_LT(number(by_round, "mesh_to_image", "max_voxels"), std::sqrt(3.0) / 3);
+    // What is reported of the image before it was smoothed is what it gives by itself.
+    EXPECT_EQ(by_round.details.at("mesh_to_voxels"), by_stairs.details.at("mesh_to_image"));
+    EXPECT_FALSE(by_stairs.details.contains("mesh_to_voxels"));
+  }
+}
+
 TEST(Fidelity, ThreadsDoNotMatter) {
   const Image image = make_image({13, 11, 9}, kSheared, two_balls);
   const Mesh mesh = moved(kuhn_mesh(image), image, {0.4, 0.3, 0.2});
@@ -138,14 +157,16 @@ TEST(Fidelity, ThreadsDoNotMatter) {
 // Brute force is the nearest of the places where the label changes on the lines of a fine grid.
 TEST(IsosurfaceDistance, IsNeverBelowTheTrueOneAndMostlyNear) {
   constexpr int kFine = 20;
-  for (const auto& affine : {kUnitAffine, kAnisotropic}) {
-    const Image image = make_image({9, 9, 9}, affine, [](int i, int j, int k) {
+  for (const auto& [affine, width_mm] :
+       {std::pair{kUnitAffine, 0.0}, {kAnisotropic, 0.0}, {kUnitAffine, 1.5}}) {
+    Image image = make_image({9, 9, 9}, affine, [](int i, int j, int k) {
       return (i - 4) * (i - 4) + (j - 4) * (j - 4) + (k - 4) * (k - 4) <= 8 ? 1U : 0U;
     });
+    if (width_mm > 0) image.smoothing = smooth(image, width_mm, 1);
     const ImageFrame frame(image, Space::kRas);
-    const Midpoints midpoints(image, frame);
-    const IsosurfaceDistance distance(image, frame, midpoints);
     const LabelFunction label(image);
+    const Midpoints midpoints(image, frame, label);
+    const IsosurfaceDistance distance(image, frame, midpoints, label);
     const double grid = std::hypot(image.spacing[0], image.spacing[1], image.spacing[2]) / kFine;  // mm
     const double longest = *std::max_element(image.spacing.begin(), image.spacing.end());
     std::vector<Point> surface;

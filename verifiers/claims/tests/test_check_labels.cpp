@@ -3,7 +3,9 @@
 #include <cmath>
 #include <numbers>
 
+#include "claims/check_labels_circumcenter.h"
 #include "claims/claims.h"
+#include "image/smoothing.h"
 #include "label_row.h"
 #include "meshed_voxels.h"
 
@@ -158,6 +160,51 @@ TEST(Labels, ThreadsDoNotMatter) {
   ASSERT_EQ(one.worst.size(), five.worst.size());
   for (std::size_t i = 0; i < one.worst.size(); ++i) EXPECT_EQ(one.worst[i].cells, five.worst[i].cells);
   for (const LabelValue label : {1, 2}) EXPECT_EQ(row_of(one, label)["dice"], row_of(five, label)["dice"]);
+}
+
+Image smoothed(Image image, double width_mm) {
+  image.smoothing = smooth(image, width_mm, 2);
+  return image;
+}
+
+TEST(Labels, AMeshOfASmoothedImageIsJudgedByThatAlone) {
+  for (const auto& affine : {kUnitAffine, kSheared}) {
+    const Image stairs = make_image({13, 11, 9}, affine, two_balls), round = smoothed(stairs, 1);
+    for (const Image* meshed : {&stairs, &round})
+      for (const Image* image : {&stairs, &round}) {
+        const ClaimResult result = labels_of(fine_mesh(*meshed), *image);
+        EXPECT_EQ(result.verdict, meshed == image ? Verdict::kPass : Verdict::kFail) << result.reason;
+        EXPECT_EQ(result.num_violations == 0, meshed == image);
+      }
+  }
+}
+
+TEST(Labels, ASmoothedTieIsDecidedExactly) {
+  // The image is its own mirror image, so that both sides are as strong: the tie is midway, and the
+  // smaller's.
+  const Image image =
+      smoothed(make_image({12, 7, 7}, kUnitAffine, [](int i, int, int) { return i < 6 ? 3U : 7U; }), 1);
+  const ClaimResult result = labels_of(moved(kuhn_mesh(image), image, {-0.5, 0, 0}), image);
+  EXPECT_GT(result.num_exact, 0U);
+  EXPECT_GT(result.details["within_rounding"], 0);
+  EXPECT_EQ(result.verdict, Verdict::kPass);
+}
+
+TEST(Labels, TheExactLabelChangesWhereStrengthsSay) {
+  Image image = make_image({4, 4, 4}, kUnitAffine, [](int i, int, int) { return i < 2 ? 3U : 7U; });
+  image.smoothing = Smoothing{1, std::vector<std::uint16_t>(image.voxels.size())};
+  for (std::size_t v = 0; v < image.voxels.size(); ++v)
+    image.smoothing->strengths[v] = image.voxels[v] == 3 ? 20000 : 50001;
+  // The label changes 20000/70001 of the way from 1 to 2; a cell about a point that is 2^-40 off it.
+  const double unit = 0x1p-40, change = std::floor((1 + 20000.0 / 70001) / unit) * unit;
+  for (const double center : {change, change + unit}) {
+    Mesh mesh;
+    mesh.space = Space::kVoxel;
+    for (const auto& [x, y, z] : {Point{1, 1, 1}, {1, -1, -1}, {-1, 1, -1}, {-1, -1, 1}})
+      mesh.vertices.push_back({center + 0.125 * x, 1.5 + 0.125 * y, 1.5 + 0.125 * z});
+    mesh.cells = {{0, 1, 2, 3}};
+    EXPECT_EQ(ExactCircumcenterLabel(mesh, image, Space::kVoxel)(0), center == change ? 3U : 7U);
+  }
 }
 
 TEST(Labels, VolumeAndDiceOfAShiftedBox) {

@@ -2,6 +2,7 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <map>
 #include <random>
@@ -22,31 +23,75 @@ Image random_image(unsigned seed, unsigned labels) {
   return image;
 }
 
+Image with_random_strengths(Image image) {
+  std::mt19937 random(7);
+  image.smoothing.emplace();
+  for (std::size_t i = 0; i < image.voxels.size(); ++i)
+    image.smoothing->strengths.push_back(static_cast<std::uint16_t>(1 + random() % kFullStrength));
+  return image;
+}
+
+// Of the nearest voxel of the grid.
+double strength(const Image& image, std::array<int, 3> v) {
+  if (!image.smoothing) return 1;
+  for (std::size_t axis = 0; axis < 3; ++axis) v[axis] = std::clamp(v[axis], 0, image.size[axis] - 1);
+  return image.smoothing
+             ->strengths[static_cast<std::size_t>((v[2] * image.size[1] + v[1]) * image.size[0] + v[0])] /
+         65535.0;
+}
+
 std::uint32_t voxel(const Image& image, int i, int j, int k) {
   if (i < 0 || j < 0 || k < 0 || i >= image.size[0] || j >= image.size[1] || k >= image.size[2]) return 0;
   return image.voxels[static_cast<std::size_t>((k * image.size[1] + j) * image.size[0] + i)];
 }
 
-TEST(LabelFunction, IsTheGreatestSumOfHatFunctions) {
+void expect_hat_functions(const Image& image) {
   std::mt19937 random(3);
   std::uniform_real_distribution<double> anywhere(-2, 6);
-  const Image image = random_image(1, 4);
   const LabelFunction function(image);
   for (int trial = 0; trial < 20000; ++trial) {
     const Point u{anywhere(random), anywhere(random), anywhere(random)};
     std::map<std::uint32_t, double> weights;
     for (int k = -3; k < 8; ++k)
       for (int j = -3; j < 8; ++j)
-        for (int i = -3; i < 8; ++i)
-          weights[voxel(image, i, j, k)] += std::max(0.0, 1 - std::abs(u[0] - i)) *
-                                            std::max(0.0, 1 - std::abs(u[1] - j)) *
-                                            std::max(0.0, 1 - std::abs(u[2] - k));
+        for (int i = -3; i < 8; ++i) {
+          const double weight = std::max(0.0, 1 - std::abs(u[0] - i)) *
+                                std::max(0.0, 1 - std::abs(u[1] - j)) * std::max(0.0, 1 - std::abs(u[2] - k));
+          if (weight > 0) weights[voxel(image, i, j, k)] += weight * strength(image, {i, j, k});
+        }
     const LabelWeights found = function.weights_at(u);
+    if (weights.size() == 1) weights.begin()->second = 1;  // nothing to weigh
     for (const auto& [label, weight] : weights) {
       EXPECT_NEAR(found.weight_of(label), weight, 1e-12);
       EXPECT_LE(weight, weights[function.label_at(u)] + 1e-12);
     }
   }
+}
+
+TEST(LabelFunction, IsTheGreatestSumOfHatFunctions) { expect_hat_functions(random_image(1, 4)); }
+
+TEST(LabelFunction, IsTheGreatestSumOfHatFunctionsInStrengths) {
+  expect_hat_functions(with_random_strengths(random_image(1, 4)));
+}
+
+TEST(LabelFunction, ChangesOnceBetweenTwoVoxels) {
+  const Image image = with_random_strengths(random_image(1, 4));
+  const LabelFunction function(image), of_voxels = LabelFunction::of_voxels(image);
+  for (int k = -1; k < image.size[2]; ++k)
+    for (int j = 0; j < image.size[1]; ++j)
+      for (int i = 0; i < image.size[0]; ++i) {
+        const std::uint32_t first = voxel(image, i, j, k), second = voxel(image, i, j, k + 1);
+        if (first == second) continue;
+        const auto label_after = [&](const LabelFunction& f, double way) {
+          return f.label_at({static_cast<double>(i), static_cast<double>(j), k + way});
+        };
+        for (const LabelFunction* f : {&function, &of_voxels}) {
+          const double change = f->change_after({i, j, k}, 2);
+          EXPECT_EQ(label_after(*f, change - 1e-9), first);
+          EXPECT_EQ(label_after(*f, change + 1e-9), second);
+        }
+        EXPECT_EQ(of_voxels.change_after({i, j, k}, 2), 0.5);
+      }
 }
 
 TEST(LabelFunction, TiesGoToTheSmallerLabelAndOutsideIsBackground) {
@@ -60,10 +105,9 @@ TEST(LabelFunction, TiesGoToTheSmallerLabelAndOutsideIsBackground) {
   EXPECT_EQ(function.label_at({1e300, -1e300, 1}), 0U);
 }
 
-TEST(LabelFunction, GradientIsThatOfTheWeights) {
+void expect_gradients(const Image& image) {
   std::mt19937 random(5);
   std::uniform_real_distribution<double> fraction(0.1, 0.9);
-  const Image image = random_image(2, 3);
   const LabelFunction function(image);
   constexpr double kStep = 1e-6;
   for (int trial = 0; trial < 1000; ++trial) {
@@ -82,6 +126,11 @@ TEST(LabelFunction, GradientIsThatOfTheWeights) {
       EXPECT_NEAR(gradient[axis], (difference(high) - difference(low)) / (2 * kStep), 1e-8);
     }
   }
+}
+
+TEST(LabelFunction, GradientIsThatOfTheWeights) {
+  expect_gradients(random_image(2, 3));
+  expect_gradients(with_random_strengths(random_image(2, 3)));
 }
 
 TEST(ImageFrame, GoesThereAndBackInEverySpace) {

@@ -2,6 +2,8 @@
 #include <fmt/format.h>
 #include <gtest/gtest.h>
 
+#include <map>
+
 #include "readers/read_mesh.h"
 #include "readers/tests/mesh_writers.h"
 #include "readers/tests/small_mesh.h"
@@ -182,6 +184,43 @@ TEST_F(ReadMesh, GmshElementsWithoutPhysicalGroupHaveTheirEntityAsLabel) {
   EXPECT_EQ(mesh.cell_label_array, "gmsh:geometrical");
   EXPECT_TRUE(mesh.label_names.empty());
   EXPECT_EQ(mesh.other_cells, (std::map<std::string, std::size_t>{{"vertices", 1}}));
+}
+
+std::string inserted(std::string text, const std::string& before, const std::string& words) {
+  return text.insert(text.find(before), words);
+}
+
+// Our mesher's words in every format that has a place for them; netCDF's is tried by the tests of the
+// program.
+TEST_F(ReadMesh, TheWidthOfSmoothingThatItsMakerTells) {
+  const auto files_that_say = [&](const std::string& words) {
+    const std::string comment = "# promise " + words + "\n",
+                      gmsh = "$Comments\npromise " + words + "\n$EndComments\n";
+    std::string in_name = words;
+    for (std::size_t i; (i = in_name.find(' ')) != std::string::npos;) in_name.replace(i, 1, "%20");
+    write_bytes(folder_ / "a.node", tetgen_nodes(written_, 0));
+    return std::map<std::string, std::string>{
+        {"a.vtu", inserted(vtu_text(written_, {}), "<Piece",
+                           "<FieldData><DataArray type=\"Int32\" Name=\"promise:" + words +
+                               "\" NumberOfTuples=\"1\" format=\"ascii\">1</DataArray></FieldData>")},
+        {"a.vtk", inserted(legacy_vtk_text(written_, false, false), "POINTS",
+                           "FIELD FieldData 1\npromise:" + in_name + " 1 1 int\n1\n")},
+        {"a.mesh", inserted(medit_text(written_), "Dimension", comment)},
+        {"2.msh", inserted(gmsh_v2_text(written_), "$Nodes", gmsh)},
+        {"4.msh", inserted(gmsh_v4_text(written_), "$Nodes", gmsh)},
+        {"a.ele", comment + tetgen_elements(written_, 0)},
+        {"a.inp", "** promise " + words +
+                      "\n*NODE\n1, 0, 0, 0\n2, 1, 0, 0\n3, 0, 1, 0\n4, 0, 0, 1\n*ELEMENT, TYPE=C3D4\n1, 1, "
+                      "2, 3, 4\n"}};
+  };
+  for (const auto& [name, bytes] : files_that_say("smoothed 1.5"))
+    EXPECT_EQ(read(name, bytes).smoothing_mm, 1.5) << name;
+  for (const auto& [name, bytes] : files_that_say("unclaimed delaunay"))
+    EXPECT_EQ(read(name, bytes).smoothing_mm, std::nullopt) << name;
+  for (const char* words : {"smoothed -1.5", "smoothed 0", "smoothed nan", "smoothed inf", "smoothed much",
+                            "smoothed", "smoothed 1.5mm", "smoothed 1 2", "smooth 1"})
+    for (const auto& [name, bytes] : files_that_say(words))
+      expect_refused(folder_, name, bytes, {"promise", words});
 }
 
 TEST_F(ReadMesh, VtuArraysOfTextAreNoLabels) {

@@ -147,6 +147,28 @@ TEST_P(ReadOurMesh, AFacetsFileOfAnotherMeshIsRefused) {
   EXPECT_NE(message.find("do not belong together"), std::string::npos) << message;
 }
 
+// An information record of an Exodus file has 80 bytes, of which "space RAS" leaves most empty.
+TEST(ReadOurExodus, TellsTheWidthOfSmoothing) {
+  const TestFolder folder;
+  const std::string path = folder / "a.exo";
+  ASSERT_EQ(
+      std::system(
+          fmt::format("{} mesh phantom:spheres@24 --quiet --threads 1 -o {}", PODM_PROGRAM, path).c_str()),
+      0);
+  EXPECT_EQ(read_mesh(path).smoothing_mm, std::nullopt);
+  std::string bytes = read_bytes(path);
+  const std::size_t record = bytes.find("space RAS");
+  ASSERT_NE(record, std::string::npos);
+  for (const std::string words : {"promise smoothed 1.5", "promise smoothed -1."}) {
+    write_bytes(path, bytes.replace(record, words.size(), words));
+    if (words.ends_with("1.5")) {
+      EXPECT_EQ(read_mesh(path).smoothing_mm, 1.5);
+    } else {
+      EXPECT_NE(refusal_of(path).find("info_records: the promise 'smoothed -1.'"), std::string::npos);
+    }
+  }
+}
+
 INSTANTIATE_TEST_SUITE_P(Spaces, ReadOurMesh,
                          testing::Values(std::pair("RAS", Space::kRas), std::pair("LPS", Space::kLps),
                                          std::pair("voxel", Space::kVoxel)),

@@ -1,0 +1,60 @@
+// A box of voxels, and a copy of what a grid holds in and around it.
+#pragma once
+
+#include <algorithm>
+#include <array>
+#include <cstddef>
+#include <vector>
+
+namespace podm::verify {
+
+struct VoxelBox {
+  std::array<int, 3> first{}, size{};
+
+  int end(std::size_t axis) const { return first[axis] + size[axis]; }
+  bool empty() const { return size[0] <= 0 || size[1] <= 0 || size[2] <= 0; }
+  std::size_t count() const {
+    return static_cast<std::size_t>(size[0]) * static_cast<std::size_t>(size[1]) *
+           static_cast<std::size_t>(size[2]);
+  }
+  VoxelBox grown(const std::array<int, 3>& reach) const {
+    VoxelBox box = *this;
+    for (std::size_t axis = 0; axis < 3; ++axis) {
+      box.first[axis] -= reach[axis];
+      box.size[axis] += 2 * reach[axis];
+    }
+    return box;
+  }
+  VoxelBox common(const VoxelBox& other) const {
+    VoxelBox box;
+    for (std::size_t axis = 0; axis < 3; ++axis) {
+      box.first[axis] = std::max(first[axis], other.first[axis]);
+      box.size[axis] = std::min(end(axis), other.end(axis)) - box.first[axis];
+    }
+    return box;
+  }
+  /// Place of voxel (i,j,k) among those of the box, x fastest.
+  std::size_t at(int i, int j, int k) const {
+    return (static_cast<std::size_t>(k - first[2]) * static_cast<std::size_t>(size[1]) +
+            static_cast<std::size_t>(j - first[1])) *
+               static_cast<std::size_t>(size[0]) +
+           static_cast<std::size_t>(i - first[0]);
+  }
+};
+
+/// Copies values of a grid of that size, x fastest, in the box; beyond the grid it goes on as at its border.
+template <class Value>
+void copy_box(const std::vector<Value>& grid, const std::array<int, 3>& size, const VoxelBox& box,
+              std::vector<Value>& copy) {
+  const VoxelBox all{{}, size};
+  const auto inside = [&](int index, std::size_t axis) { return std::clamp(index, 0, size[axis] - 1); };
+  copy.resize(box.count());
+  auto to = copy.begin();
+  for (int k = box.first[2]; k < box.end(2); ++k)
+    for (int j = box.first[1]; j < box.end(1); ++j) {
+      const Value* row = grid.data() + all.at(0, inside(j, 1), inside(k, 2));
+      for (int i = box.first[0]; i < box.end(0); ++i) *to++ = row[inside(i, 0)];
+    }
+}
+
+}  // namespace podm::verify
