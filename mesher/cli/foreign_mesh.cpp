@@ -122,6 +122,7 @@ class MeshBuilder {
       foreign_.warnings.push_back(path_ + ": no frame of coordinates is told: RAS is taken for it");
     mesh_.is_optimized = file_.unclaimed.contains("delaunay");
     mesh_.dihedral_bounds_deg = file_.promised_dihedral_deg;
+    mesh_.smoothing_mm = file_.smoothing_mm.value_or(0);
   }
 
   void orient_cells() {
