@@ -38,6 +38,10 @@ void add_label_options(CLI::App& app, ImageArguments& image) {
            [&image](const std::string& text, const std::string&) {
              image.selection.merges.push_back(parse_merge(text));
            });
+  add_one(app, "--drop-islands", "MM3",
+          "give components of a label (voxels joined by faces) that are smaller than this, mm^3,\n"
+          "to the neighbour that they touch most, background or label [default: none]",
+          into_positive(image.selection.drop_islands_mm3, "volume in mm^3"));
   add_one(app, "--background", "VALUE", "label value of the background",
           {[&image](const std::string& text, const std::string& name) {
              image.selection.background = static_cast<std::uint32_t>(
