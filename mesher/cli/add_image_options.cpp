@@ -68,6 +68,11 @@ void add_info_command(CLI::App& program, InfoCommand& command) {
   CLI::App& app = add_command(program, "info", "print size, spacing (mm), affine and labels of an image");
   add_image_options(app, command.image);
   add_flag(app, "--json", command.json, "print one JSON object [default: text]");
+  CLI::Option* plan =
+      add_flag(app, "--plan", command.plan,
+               "also what podm mesh will cost and lose with the options below: cells by label,\n"
+               "memory, seconds, what delta is too coarse for, components [default: no]");
+  add_planned_options(app, command.planned, plan);
 }
 
 void add_phantom_command(CLI::App& program, PhantomCommand& command) {
