@@ -10,6 +10,7 @@
 #include "cli/labelled_image.h"
 #include "cli/options_for_image.h"
 #include "cli/process_memory.h"
+#include "cost_model.h"
 #include "geometry/affine.h"
 #include "image/isosurface.h"
 
@@ -47,7 +48,9 @@ Plan make_plan(const MeshCommand& command, const LabelImage& image, double read_
   double others_bytes = 0;
   {
     const WorkTimer timer(threads);
-    const Isosurface isosurface(image, threads);
+    const Isosurface isosurface(image, threads);  // and what else is the phase's
+    foreground_bounds(image, threads);
+    estimate(image, options);
     plan.transform_s = timer.seconds();
     others_bytes = static_cast<double>(resident_bytes());
     plan.memory_bytes = static_cast<double>(peak_resident_bytes());
