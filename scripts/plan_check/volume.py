@@ -11,7 +11,8 @@ _NRRD = {"uint8": "u1", "unsigned char": "u1", "uchar": "u1", "short": "<i2", "i
 
 def read_volume(path):
     """Raises ValueError for formats and byte orders that it does not know."""
-    data = (gzip.open if str(path).endswith(".gz") else open)(path, "rb").read()
+    with (gzip.open if str(path).endswith(".gz") else open)(path, "rb") as file:
+        data = file.read()
     for ending, read in ((".nii", _nifti), (".nrrd", _nrrd), (".inr", _inr)):
         if str(path).removesuffix(".gz").endswith(ending):
             size, kind, voxels = read(data)
