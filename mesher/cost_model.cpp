@@ -50,6 +50,32 @@ std::uint64_t count_sides(const LabelImage& image, std::size_t axis, int lag, in
   return after + (position < lag ? foreground : 0);
 }
 
+// Adds sides by label, the background's too, of the same pairs of voxels.
+void add_sides(const LabelImage& image, std::size_t axis, int lag, int j, int k,
+               std::vector<std::uint64_t>& sides) {
+  const int size = image.size[0], position = axis == 0 ? 0 : axis == 1 ? j : k;
+  const LabelIndex* const row = &image.voxels[image.index(0, j, k)];
+  const auto add = [&](LabelIndex a, LabelIndex b) {
+    if (a == b) return;
+    ++sides[a];
+    ++sides[b];
+  };
+  if (axis == 0) {
+    for (int i = 0; i < size; ++i) {
+      add(row[i], i + lag < size ? row[i + lag] : kBackground);
+      if (i < lag) add(row[i], kBackground);
+    }
+    return;
+  }
+  const std::size_t step =
+      image.index(0, axis == 1 ? 1 : 0, axis == 1 ? 0 : 1) * static_cast<std::size_t>(lag);
+  const bool is_last = position + lag >= image.size[axis];
+  for (int i = 0; i < size; ++i) {
+    add(row[i], is_last ? kBackground : row[static_cast<std::size_t>(i) + step]);
+    if (position < lag) add(row[i], kBackground);
+  }
+}
+
 // Sums what `count(counts, j, k)` adds for all rows along x; `none` is the sum of no row.
 template <class Counts, class Count>
 Counts sum_over_rows(const LabelImage& image, int threads, const Counts& none, const Count& count) {
@@ -130,30 +156,87 @@ double CostModel::area_along_mm2(std::size_t axis, std::size_t lag) const {
   return *known;
 }
 
-double CostModel::area_mm2(double distance_mm) const {
-  double area_mm2 = 0;
+template <class Add>
+void CostModel::interpolate(double distance_mm, const Add& add) const {
   for (std::size_t axis = 0; axis < 3; ++axis) {
     const double lag = std::clamp(distance_mm / image_.spacing[axis], 1.0, static_cast<double>(kLags.back()));
     std::size_t low = 0;
     while (low + 2 < kLags.size() && lag >= kLags[low + 1]) ++low;
     const double share = (lag - kLags[low]) / (kLags[low + 1] - kLags[low]);
-    area_mm2 += (1 - share) * area_along_mm2(axis, low);
-    if (share > 0) area_mm2 += share * area_along_mm2(axis, low + 1);
+    add(axis, low, 1 - share);
+    if (share > 0) add(axis, low + 1, share);
   }
+}
+
+double CostModel::area_mm2(double distance_mm) const {
+  double area_mm2 = 0;
+  interpolate(distance_mm, [&](std::size_t axis, std::size_t lag, double share) {
+    area_mm2 += share * area_along_mm2(axis, lag);
+  });
   return area_mm2;
 }
+
+std::vector<double> CostModel::areas_along_mm2(std::size_t axis, std::size_t lag) const {
+  const VoxelCounts none{std::vector<std::uint64_t>(image_.labels.size())};
+  const auto sides = sum_over_rows(image_, threads_, none, [&](VoxelCounts& counts, int j, int k) {
+    add_sides(image_, axis, kLags[lag], j, k, counts.of_label);
+  });
+  const double face_mm2 = image_.spacing[(axis + 1) % 3] * image_.spacing[(axis + 2) % 3];
+  std::vector<double> areas_mm2;
+  for (const std::uint64_t n : sides.of_label)
+    areas_mm2.push_back(static_cast<double>(n) / kLags[lag] * face_mm2);
+  return areas_mm2;
+}
+
+std::vector<double> CostModel::areas_by_label_mm2(double distance_mm) const {
+  std::vector<double> areas_mm2(image_.labels.size());
+  interpolate(distance_mm, [&](std::size_t axis, std::size_t lag, double share) {
+    const std::vector<double> along = areas_along_mm2(axis, lag);
+    for (std::size_t label = 0; label < areas_mm2.size(); ++label) areas_mm2[label] += share * along[label];
+  });
+  return areas_mm2;
+}
+
+namespace {
+
+double radius_mm(const SizeOptions& sizes, const Label& label) {
+  const auto own = sizes.radius_of_mm.find(label.value);
+  return own != sizes.radius_of_mm.end() ? own->second : sizes.radius_mm;
+}
+
+}  // namespace
 
 double CostModel::cells(const SizeOptions& sizes) const {
   const double area = area_mm2(kSeenOverDelta * sizes.delta_mm);
   double cells = kSurfaceCells * area / (sizes.delta_mm * sizes.delta_mm);
   for (std::size_t i = 1; i < image_.labels.size(); ++i) {
-    const auto own = sizes.radius_of_mm.find(image_.labels[i].value);
-    const double radius = own != sizes.radius_of_mm.end() ? own->second : sizes.radius_mm;
+    const double radius = radius_mm(sizes, image_.labels[i]);
     if (radius <= 0 || volume_of_label_mm3_[i] == 0) continue;
     const double core = std::max(0.0, 1 - kGradedOverRadius * radius * area / (3 * volume_mm3_));
     cells += kVolumeCells * volume_of_label_mm3_[i] * core * core * core / (radius * radius * radius);
   }
   return cells;
+}
+
+std::vector<double> CostModel::cells_by_label(const SizeOptions& sizes) const {
+  const std::vector<double> areas_mm2 = areas_by_label_mm2(kSeenOverDelta * sizes.delta_mm);
+  std::vector<double> by_label(image_.labels.size());
+  for (std::size_t i = 1; i < by_label.size(); ++i) {
+    const double volume_mm3 = volume_of_label_mm3_[i], radius = radius_mm(sizes, image_.labels[i]);
+    if (volume_mm3 == 0) continue;
+    by_label[i] = kSurfaceCells * areas_mm2[i] / (sizes.delta_mm * sizes.delta_mm);
+    if (radius <= 0) continue;
+    const double core = std::max(0.0, 1 - kGradedOverRadius * radius * areas_mm2[i] / (3 * volume_mm3));
+    by_label[i] += kVolumeCells * volume_mm3 * core * core * core / (radius * radius * radius);
+  }
+  const double sum = std::accumulate(by_label.begin(), by_label.end(), 0.0), all = cells(sizes);
+  for (double& of_label : by_label) of_label *= sum > 0 ? all / sum : 0;
+  return by_label;
+}
+
+double CostModel::background_cells(const SizeOptions& sizes) const {
+  return kOutsideCells * areas_by_label_mm2(kSeenOverDelta * sizes.delta_mm)[kBackground] /
+         (sizes.delta_mm * sizes.delta_mm);
 }
 
 double CostModel::cells(double volume_mm3, double area_mm2, double radius_mm, double delta_mm) {

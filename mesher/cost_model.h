@@ -35,17 +35,29 @@ class CostModel {
 
   /// The cells that these radii and this delta, which is not 0, make.
   double cells(const SizeOptions& sizes) const;
+  /// The same by label: each label's own volume and interfaces; together they are cells(). What is thinner
+  /// than delta is put down to the wrong label more often: of labels of 1000 cells and more, in 24 meshes of
+  /// eight segmentations, nine in ten were predicted within 15 %, the root mean square was 10 %.
+  std::vector<double> cells_by_label(const SizeOptions& sizes) const;
+  /// Cells of the background that the mesh is made with, those outside of the object among them:
+  /// kOutsideCells times its area in cells of delta, within 25 %.
+  double background_cells(const SizeOptions& sizes) const;
   /// Of a part of a label, and of the interface at it, where the layer is thin. `radius_mm`: 0 if unbounded.
   static double cells(double volume_mm3, double area_mm2, double radius_mm, double delta_mm);
 
  private:
-  static constexpr double kVolumeCells = 4.82, kSurfaceCells = 1.57;
+  static constexpr double kVolumeCells = 4.82, kSurfaceCells = 1.57, kOutsideCells = 2.55;
   static constexpr double kGradedOverRadius = 0.555;  // thickness of the layer
   static constexpr double kSeenOverDelta = 1.6;       // distance of the voxels compared
   // Areas are found at these distances, in voxels, and interpolated between them.
   static constexpr std::array<int, 13> kLags{1, 2, 3, 4, 6, 8, 12, 16, 24, 32, 48, 64, 96};
 
+  // Calls add(axis, lag, share): by which areas of lags are interpolated.
+  template <class Add>
+  void interpolate(double distance_mm, const Add& add) const;
   double area_mm2(double distance_mm) const;
+  std::vector<double> areas_by_label_mm2(double distance_mm) const;  // the background's, too
+  std::vector<double> areas_along_mm2(std::size_t axis, std::size_t lag) const;
   double area_along_mm2(std::size_t axis, std::size_t lag) const;
 
   const LabelImage& image_;

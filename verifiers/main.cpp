@@ -88,6 +88,11 @@ void declare_selection(CLI::App& app, Command& command) {
       ->option_text("VALUES=NAME")
       ->allow_extra_args(false)
       ->needs(image);
+  app.add_option("--drop-islands", command.options.selection.drop_islands_mm3,
+                 "components of a label below this, mm^3, are their neighbours' [default: none]")
+      ->option_text("MM3")
+      ->check(positive())
+      ->needs(image);
   app.add_option("--background", command.options.selection.background,
                  fmt::format("label value of the background in mesh and image; a foreground label 0 is then\n"
                              "reported as VALUE [default: {}]",

@@ -19,11 +19,11 @@ constexpr std::uint64_t kBytesHeldPerThread = 3 << 18, kMostThreadsThatHold = 16
 constexpr std::uint64_t kLeastCells = 1 << 12;
 static_assert(4 * kMostStoredCells - 1 < kNoFacet);
 
+}  // namespace
+
 std::uint64_t bytes_of_threads(std::uint64_t threads) {
   return threads * kBytesPerWorker + std::min(threads, kMostThreadsThatHold) * kBytesHeldPerThread;
 }
-
-}  // namespace
 
 std::uint64_t transform_bytes(const LabelImage& image, std::uint64_t limit_bytes, int threads) {
   constexpr std::uint64_t kLittle = 32;  // a part of the limit that need not be known

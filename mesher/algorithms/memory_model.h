@@ -17,6 +17,9 @@ namespace podm {
 /// Peak of the process for each cell of the mesh that comes out, as measured, cells of the background and all
 /// else included.
 inline constexpr double kPeakBytesPerMeshCell = 110;
+/// The peak of refinement, extraction and writing for each cell of the store, the background's among them:
+/// 70 to 80 between meshes of 0.1, 0.5 and 2 million cells of eight segmentations.
+inline constexpr double kPeakBytesPerStoredCell = 73;
 /// Cells of the store, the background's among them, for each of the mesh. Measured: 1.7 of 36 thousand cells,
 /// 1.39 of 0.25, 1.27 of 0.8, 1.13 of 5.1 million. Less than all these, so that what can be numbered is not
 /// refused.
@@ -41,6 +44,8 @@ inline constexpr std::uint64_t kBytesPerCube = 32, kBytesPerLeaf = 160;
 /// Leaves of a size that was asked for may take so much of the memory of a run; the mesh has the rest.
 inline constexpr double kMostMemoryOfLeaves = 0.5;
 
+/// What workers that are threads take, and what the allocator holds back of theirs.
+std::uint64_t bytes_of_threads(std::uint64_t threads);
 /// What the feature transform will take, or the most that it can where that is little of the limit.
 std::uint64_t transform_bytes(const LabelImage& image, std::uint64_t limit_bytes, int threads);
 /// What a run may take beside image and transform: as asked for, else all the machine has.

@@ -38,6 +38,10 @@ void add_label_options(CLI::App& app, ImageArguments& image) {
            [&image](const std::string& text, const std::string&) {
              image.selection.merges.push_back(parse_merge(text));
            });
+  add_one(app, "--drop-islands", "MM3",
+          "give components of a label (voxels joined by faces) that are smaller than\n"
+          "this, mm^3, to the neighbour that they touch most [default: none]",
+          into_positive(image.selection.drop_islands_mm3, "volume in mm^3"));
   add_one(app, "--background", "VALUE", "label value of the background",
           {[&image](const std::string& text, const std::string& name) {
              image.selection.background = static_cast<std::uint32_t>(
@@ -64,6 +68,11 @@ void add_info_command(CLI::App& program, InfoCommand& command) {
   CLI::App& app = add_command(program, "info", "print size, spacing (mm), affine and labels of an image");
   add_image_options(app, command.image);
   add_flag(app, "--json", command.json, "print one JSON object [default: text]");
+  CLI::Option* plan =
+      add_flag(app, "--plan", command.plan,
+               "also what podm mesh will cost and lose with the options below: cells by\n"
+               "label, memory, seconds, what delta is too coarse for, components [default: no]");
+  add_planned_options(app, command.planned, plan);
 }
 
 void add_phantom_command(CLI::App& program, PhantomCommand& command) {

@@ -13,9 +13,14 @@
 namespace podm::cli {
 namespace {
 
+constexpr const char* kSizeGroup = "Size of the cells";
+constexpr const char* kDihedralGroup = "Dihedral angles";
+constexpr const char* kAlgorithmGroup = "Algorithm";
+constexpr const char* kRunGroup = "Run";
+
 void add_sizing_options(CLI::App& app, MeshCommand& command) {
   MeshingOptions& meshing = command.meshing;
-  begin_group(app, "Size of the cells");
+  begin_group(app, kSizeGroup);
   CLI::Option* radius = add_one(app, "--radius", "MM",
                                 "largest circumradius of a cell, mm [default: unbounded, the surface drives]",
                                 into_length(meshing.sizes.radius_mm));
@@ -47,7 +52,7 @@ void add_surface_options(CLI::App& app, MeshingOptions& meshing) {
 
 void add_dihedral_options(CLI::App& app, MeshingOptions& meshing) {
   OptimizeOptions& optimize = meshing.optimize;
-  begin_group(app, "Dihedral angles");
+  begin_group(app, kDihedralGroup);
   add_one(app, "--min-dihedral", "DEG",
           fmt::format("at the end move vertices so that next to no cell has a dihedral angle below\n"
                       "this, degrees up to {:g}, or above {:g} less {:g} times this: all bounds are\n"
@@ -89,15 +94,19 @@ void add_limit_options(CLI::App& app, MeshCommand& command, Program which) {
           });
 }
 
-void add_algorithm_options(CLI::App& app, MeshCommand& command) {
-  MeshingOptions& meshing = command.meshing;
-  begin_group(app, "Algorithm");
+void add_algorithm_option(CLI::App& app, MeshingOptions& meshing) {
   add_choice(app, "--algorithm",
              "podm: threads anywhere, with locks; pdr-podm: leaf by leaf of an octree,\n"
              "by nodes of several threads; pdr: leaf by leaf, a thread each, no locks;\n"
              "podm-home: podm by nodes of several threads, each in its own block of space;\n"
              "auto: podm, or podm-home on threads pinned to several NUMA nodes",
              meshing.algorithm);
+}
+
+void add_algorithm_options(CLI::App& app, MeshCommand& command) {
+  MeshingOptions& meshing = command.meshing;
+  begin_group(app, kAlgorithmGroup);
+  add_algorithm_option(app, meshing);
   add_one(app, "--crossover", "N|FILE",
           fmt::format("threads from which on auto is podm-home, or the file in which podm-bench stored\n"
                       "what it measured here [default: the file named by {}, if any]",
@@ -146,9 +155,7 @@ void add_seed_option(CLI::App& app, MeshingOptions& meshing, Program which) {
            std::to_string(meshing.team.seed)});
 }
 
-void add_run_options(CLI::App& app, MeshCommand& command, Program which) {
-  MeshingOptions& meshing = command.meshing;
-  if (which == Program::kPodmMpi) add_rank_options(app, command);
+void add_threads_option(CLI::App& app, MeshingOptions& meshing, Program which) {
   add_one(app, "--threads", "N",
           which != Program::kPodmMpi
               ? "threads of all phases; 1 makes the same mesh every time\n"
@@ -156,6 +163,12 @@ void add_run_options(CLI::App& app, MeshCommand& command, Program which) {
               : "threads of each rank, in all phases; with 1 as many ranks make the same mesh\n"
                 "every time [default: processors over the ranks of the machine; 1 in process]",
           into_threads(meshing.team.threads));
+}
+
+void add_run_options(CLI::App& app, MeshCommand& command, Program which) {
+  MeshingOptions& meshing = command.meshing;
+  if (which == Program::kPodmMpi) add_rank_options(app, command);
+  add_threads_option(app, meshing, which);
   add_choice(app, "--contention", "what a thread does that meets another's lock", meshing.team.contention);
   add_choice(app, "--begging",
              "whom a thread with cells to spare serves first: random (the first to beg)\n"
@@ -245,13 +258,24 @@ void add_mesh_command(CLI::App& program, MeshCommand& command, Program which) {
   begin_group(app, "Output");
   is_in_python ? add_space_option(app, command.meshing) : add_output_options(app, command, is_on_ranks);
   add_algorithm_options(app, command);
-  begin_group(app, "Run");
+  begin_group(app, kRunGroup);
   add_run_options(app, command, which);
   if (!is_in_python) add_telling_options(app, command);
   if (is_on_ranks)
     end_help(app,
              "Not on ranks yet, and refused: --target-elements, --smooth, --min-dihedral, --surface,\n"
              "--optimize, --report, --algorithm podm-home, --schedule, --executor virtual.");
+}
+
+void add_planned_options(CLI::App& app, MeshCommand& command, CLI::Option* plan) {
+  add_sizing_options(app, command);
+  add_dihedral_options(app, command.meshing);
+  begin_group(app, kAlgorithmGroup);
+  add_algorithm_option(app, command.meshing);
+  begin_group(app, kRunGroup);
+  add_threads_option(app, command.meshing, Program::kPodm);
+  for (const char* group : {kSizeGroup, kDihedralGroup, kAlgorithmGroup, kRunGroup})
+    need_in_group(app, group, plan);
 }
 
 void add_convert_command(CLI::App& program, ConvertCommand& command) {

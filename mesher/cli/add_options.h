@@ -37,11 +37,16 @@ void exclude(CLI::Option* option, CLI::Option* other);
 /// `option` may be given only with `other`.
 void need(CLI::Option* option, CLI::Option* other);
 
+/// The same for all options of a group.
+void need_in_group(CLI::App& app, const std::string& title, CLI::Option* other);
+
 /// IMAGE and what is kept of its labels.
 void add_image_options(CLI::App& app, ImageArguments& image);
 void add_label_options(CLI::App& app, ImageArguments& image);
 /// How a mesh file is written, beside what its extension says.
 void add_mesh_file_options(CLI::App& app, MeshFileOptions& options);
+/// Of `podm mesh`, what a plan depends on; all of these need `plan`.
+void add_planned_options(CLI::App& app, MeshCommand& command, CLI::Option* plan);
 void add_mesh_command(CLI::App& program, MeshCommand& command, Program which);
 void add_replay_command(CLI::App& program, ReplayCommand& command);
 void add_convert_command(CLI::App& program, ConvertCommand& command);

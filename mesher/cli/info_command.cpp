@@ -3,10 +3,13 @@
 
 #include <cmath>
 #include <nlohmann/json.hpp>
+#include <optional>
 
+#include "algorithms/team_size.h"
 #include "cli/commands.h"
 #include "cli/json_text.h"
 #include "cli/labelled_image.h"
+#include "cli/plan.h"
 #include "cli/standard_output.h"
 #include "geometry/affine.h"
 
@@ -25,7 +28,7 @@ std::string note_on_background(const LabelImage& image, const std::vector<std::u
       image.labels[kBackground].value);
 }
 
-std::string as_text(const std::string& path, const LabelImage& image) {
+std::string as_text(const std::string& path, const LabelImage& image, const std::optional<Plan>& plan) {
   const auto& affine = image.voxel_to_ras;
   const double voxel_mm3 = voxel_volume_mm3(image);
   const auto counts = count_voxels(image);
@@ -44,10 +47,11 @@ std::string as_text(const std::string& path, const LabelImage& image) {
     text += fmt::format("{:>10} {:>12} {:>16.6g}  {}\n", image.labels[i].value, counts[i],
                         static_cast<double>(counts[i]) * voxel_mm3,
                         i == kBackground ? "background" : image.labels[i].name);
-  return text + note_on_background(image, counts);
+  return text + note_on_background(image, counts) + (plan ? plan_text(*plan, image) : "");
 }
 
-nlohmann::ordered_json as_json(const std::string& path, const LabelImage& image) {
+nlohmann::ordered_json as_json(const std::string& path, const LabelImage& image,
+                               const std::optional<Plan>& plan) {
   const double voxel_mm3 = voxel_volume_mm3(image);
   const auto counts = count_voxels(image);
   nlohmann::ordered_json labels = nlohmann::ordered_json::array();
@@ -56,23 +60,35 @@ nlohmann::ordered_json as_json(const std::string& path, const LabelImage& image)
                       {"name", image.labels[i].name},
                       {"voxels", counts[i]},
                       {"volume_mm3", static_cast<double>(counts[i]) * voxel_mm3}});
-  return {{"path", path},
-          {"size", image.size},
-          {"spacing_mm", image.spacing},
-          {"affine", affine_rows(image)},
-          {"voxel_volume_mm3", voxel_mm3},
-          {"background", {{"value", image.labels[kBackground].value}, {"voxels", counts[kBackground]}}},
-          {"labels", labels},
-          {"warnings", image.warnings}};
+  nlohmann::ordered_json told = {
+      {"path", path},
+      {"size", image.size},
+      {"spacing_mm", image.spacing},
+      {"affine", affine_rows(image)},
+      {"voxel_volume_mm3", voxel_mm3},
+      {"background", {{"value", image.labels[kBackground].value}, {"voxels", counts[kBackground]}}},
+      {"labels", labels},
+      {"warnings", image.warnings}};
+  if (plan) told["plan"] = plan_json(*plan, image);
+  return told;
 }
 
 }  // namespace
 
 int run(const InfoCommand& command) {
-  const LabelImage image = read_labelled_image(command.image);
+  const int threads = loop_threads(command.planned.meshing.team);
+  const WorkTimer timer(threads);
+  const LabelImage image = read_labelled_image(command.image, threads);
+  const double read_s = timer.seconds();
   for (const std::string& warning : image.warnings) fmt::print(stderr, "warning: {}\n", warning);
-  write_standard_output(command.json ? json_line(as_json(command.image.path, image))
-                                     : as_text(command.image.path, image));
+  std::optional<Plan> plan;
+  if (command.plan) {
+    MeshCommand planned = command.planned;
+    planned.image = command.image;
+    plan = make_plan(planned, image, read_s);
+  }
+  write_standard_output(command.json ? json_line(as_json(command.image.path, image, plan))
+                                     : as_text(command.image.path, image, plan));
   return 0;
 }
 

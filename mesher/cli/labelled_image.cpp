@@ -25,10 +25,12 @@ LabelImage read_labelled_image(const ImageArguments& arguments, int threads, std
 }
 
 void name_labels(LabelImage& image, const std::map<std::uint32_t, std::string>& names) {
-  for (Label& label : image.labels) {
+  const auto name = [&](Label& label) {
     const auto named = names.find(label.value);
     if (label.name.empty() && named != names.end()) label.name = named->second;
-  }
+  };
+  for (Label& label : image.labels) name(label);
+  for (DroppedIslands& dropped : image.dropped_islands) name(dropped.label);
 }
 
 std::map<std::uint32_t, double> lengths_by_value(

@@ -62,6 +62,11 @@ CLI::Option* add_flag(CLI::App& app, const std::string& names, bool& target, con
   return app.add_flag(names, target, description);
 }
 
+void need_in_group(CLI::App& app, const std::string& title, CLI::Option* other) {
+  for (CLI::Option* option : app.get_options([&](const CLI::Option* o) { return o->get_group() == title; }))
+    option->needs(other);
+}
+
 void end_help(CLI::App& app, const std::string& text) { app.footer(text); }
 void require(CLI::Option* option) { option->required(); }
 

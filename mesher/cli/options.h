@@ -73,6 +73,8 @@ struct ConvertCommand {
 struct InfoCommand {
   ImageArguments image;
   bool json = false;
+  bool plan = false;  ///< also tell of the run below, which has no image of its own
+  MeshCommand planned;
 };
 
 /// podm phantom

@@ -23,7 +23,19 @@ Json selection_of(const LabelSelection& selection) {
   return {{"background", selection.background},
           {"keep", ranges(selection.keep)},
           {"drop", ranges(selection.drop)},
-          {"merge", merges}};
+          {"merge", merges},
+          {"drop_islands_mm3", selection.drop_islands_mm3}};
+}
+
+Json dropped_islands_of(const LabelImage& image) {
+  Json dropped = Json::array();
+  for (const DroppedIslands& of : image.dropped_islands)
+    dropped.push_back({{"value", of.label.value},
+                       {"name", of.label.name},
+                       {"islands", of.number},
+                       {"volume_mm3", of.volume_mm3},
+                       {"is_whole_label", of.is_whole_label}});
+  return dropped;
 }
 
 // Of the bounds asked for; null: the mesh was left as it was.
@@ -307,6 +319,7 @@ Json record(const MeshRun& run) {
         {"sha256", input_sha256(input, run.image)},
         {"affine", affine_rows(run.image)}}},
       {"options", options_of(run)},
+      {"dropped_islands", dropped_islands_of(run.image)},
       {"used", {{"radius_mm", report.radius_mm}, {"delta_mm", report.delta_mm}}},
       {"seed", run.options.team.seed},
       {"threads",

@@ -6,6 +6,7 @@
 #include <set>
 #include <string_view>
 
+#include "image/islands.h"
 #include "image/raw_image.h"
 #include "image/stretches.h"
 #include "podm/errors.h"
@@ -166,6 +167,7 @@ void select_labels(LabelImage& image, const LabelSelection& selection, const std
       replacement[i] = new_index.at(label->second.value);
   replace_voxels(image.voxels, replacement, threads);
   image.labels = std::move(labels);
+  if (selection.drop_islands_mm3 != 0) drop_islands(image, selection.drop_islands_mm3, path);
 }
 
 }  // namespace podm

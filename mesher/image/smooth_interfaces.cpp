@@ -105,7 +105,7 @@ class Smoothing {
   std::array<int, 3> num_tiles_{};
   std::vector<Tile> tiles_;
   std::shared_ptr<VoxelStrengths> strengths_;
-  // By thread and label: voxels beside another label that keep their own under the whole width, less others.
+  // By thread and label: voxels beside another label that the whole width keeps, less those lost.
   std::vector<std::vector<std::int64_t>> lead_of_kept_;
 };
 
@@ -185,8 +185,9 @@ void Smoothing::blur_tile(Tile& tile, const InterfaceBlur& blur, InterfaceBlur::
   for (const Place place : tile.left) {
     const double d = distances_mm[place];
     const std::size_t voxel = index(tile.voxel(place));
-    if (d < -kLost * voxel_mm_) tile.lost.push_back(place);
-    if (blur.width_mm() == width_mm_) lead_of_kept[image_.voxels[voxel]] += d > 0 ? 1 : -1;
+    const bool is_lost = d < -kLost * voxel_mm_;
+    if (is_lost) tile.lost.push_back(place);
+    if (blur.width_mm() == width_mm_) lead_of_kept[image_.voxels[voxel]] += is_lost ? -1 : 1;
     strengths_->at(voxel) = parts(d);
   }
 }

@@ -29,7 +29,7 @@ MeshInMemory::MeshInMemory(cli::MeshCommand command, const Input& input, const P
   command_.image.is_array = input.array.has_value();
   const std::uint64_t limit_bytes = cli::memory_limit_bytes(command_);
   const auto start = std::chrono::steady_clock::now();
-  image_ = read(input, limit_bytes);
+  image_ = read_input(input, command_, limit_bytes);
   run_.read_s = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
   run_.options = cli::options_for_image(command_, image_, limit_bytes);
   run_.options.crossover = run_.crossover.threads;
@@ -41,19 +41,19 @@ MeshInMemory::MeshInMemory(cli::MeshCommand command, const Input& input, const P
   run_.peak_rss_bytes = cli::peak_resident_bytes();
 }
 
-LabelImage MeshInMemory::read(const Input& input, std::uint64_t limit_bytes) const {
-  const int threads = loop_threads(command_.meshing.team);
+LabelImage read_input(const Input& input, const cli::MeshCommand& command, std::uint64_t limit_bytes) {
+  const int threads = loop_threads(command.meshing.team);
   const std::uint64_t most_bytes = cli::bytes_for_image(limit_bytes);
   LabelImage image;
   if (input.array) {
-    image = image_of_array(*input.array, input.voxel_to_ras, input.path, command_.image.selection, threads,
+    image = image_of_array(*input.array, input.voxel_to_ras, input.path, command.image.selection, threads,
                            most_bytes);
   } else {
-    image = cli::read_labelled_image(command_.image, threads, most_bytes);
+    image = cli::read_labelled_image(command.image, threads, most_bytes);
   }
   auto names = input.names;
-  if (input.array && !command_.image.label_names_path.empty())
-    names.merge(read_label_names(command_.image.label_names_path));
+  if (input.array && !command.image.label_names_path.empty())
+    names.merge(read_label_names(command.image.label_names_path));
   cli::name_labels(image, names);
   return image;
 }

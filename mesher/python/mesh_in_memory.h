@@ -25,6 +25,9 @@ struct Input {
   std::map<std::uint32_t, std::string> names = {};
 };
 
+/// The image as `podm mesh` reads it with these options; `command` knows its path. Throws InputError.
+LabelImage read_input(const Input& input, const cli::MeshCommand& command, std::uint64_t limit_bytes);
+
 class MeshInMemory {
  public:
   /// Meshes as `podm mesh` does with these options, and throws what that throws.
@@ -45,8 +48,6 @@ class MeshInMemory {
   std::vector<std::string> claims(bool with_fidelity, const std::function<std::string()>& write_image);
 
  private:
-  LabelImage read(const Input& input, std::uint64_t limit_bytes) const;
-
   cli::MeshCommand command_;
   LabelImage image_;
   TetMesh mesh_;

@@ -10,8 +10,12 @@
 #include <new>
 #include <optional>
 
+#include "algorithms/team_size.h"
+#include "cli/json_text.h"
 #include "cli/labelled_image.h"
 #include "cli/option_values.h"
+#include "cli/options_for_image.h"
+#include "cli/plan.h"
 #include "cli/summary.h"
 #include "measure_quality.h"
 #include "podm/errors.h"
@@ -94,6 +98,30 @@ py::tuple mesh_array(const py::array& array, const std::array<double, 12>& voxel
                      std::vector<std::string> arguments, const py::object& progress) {
   return mesh({.path = "labels", .array = voxel_array(array), .voxel_to_ras = voxel_to_ras, .names = names},
               std::move(arguments), progress);
+}
+
+// JSON: what podm info --plan has of a run with these options of podm mesh.
+std::string plan(const Input& input, std::vector<std::string> arguments) {
+  cli::MeshCommand command = std::get<cli::MeshCommand>(parse(std::move(arguments)));
+  const py::gil_scoped_release others_run;
+  command.image.path = input.path;
+  command.image.is_array = input.array.has_value();
+  const WorkTimer timer(loop_threads(command.meshing.team));
+  const LabelImage image = read_input(input, command, cli::memory_limit_bytes(command));
+  const double read_s = timer.seconds();
+  nlohmann::ordered_json told = cli::plan_json(cli::make_plan(command, image, read_s), image);
+  told["warnings"] = image.warnings;
+  return cli::json_line(told);
+}
+
+std::string plan_file(const std::string& path, const Names& names, std::vector<std::string> arguments) {
+  return plan({.path = path, .names = names}, std::move(arguments));
+}
+
+std::string plan_array(const py::array& array, const std::array<double, 12>& voxel_to_ras, const Names& names,
+                       std::vector<std::string> arguments) {
+  return plan({.path = "labels", .array = voxel_array(array), .voxel_to_ras = voxel_to_ras, .names = names},
+              std::move(arguments));
 }
 
 py::array read_only(py::array array) {
@@ -252,4 +280,7 @@ PYBIND11_MODULE(_podm, module) {
              py::arg("progress"));
   module.def("mesh_array", &mesh_array, py::arg("array"), py::arg("voxel_to_ras"), py::arg("names"),
              py::arg("arguments"), py::arg("progress"));
+  module.def("plan_file", &plan_file, py::arg("path"), py::arg("names"), py::arg("arguments"));
+  module.def("plan_array", &plan_array, py::arg("array"), py::arg("voxel_to_ras"), py::arg("names"),
+             py::arg("arguments"));
 }

@@ -8,7 +8,7 @@ from podm_process import PROGRAM, PodmTestCase, run_podm
 
 OPTIONS = {
     "mesh": ["--output", "--radius", "--radius-of", "--delta", "--target-elements", "--target-tolerance",
-             "--min-dihedral", "--labels",
+             "--min-dihedral", "--labels", "--drop-islands",
              "--merge", "--drop", "--background", "--label-names", "--space", "--surface", "--record", "--max-elements",
              "--max-seconds", "--max-memory-gib", "--threads", "--contention", "--algorithm", "--crossover", "--nodes",
              "--cores-per-node", "--initial-ratio", "--initial-threads", "--leaf-size", "--schedule", "--executor",
@@ -16,8 +16,10 @@ OPTIONS = {
              "--verify", "--verify-fidelity", "--report", "--quiet", "--optimize", "--dihedral-bounds",
              "--gmsh-version"],
     "convert": ["--gmsh-version"],
-    "replay": ["--labels", "--merge", "--drop", "--background", "--label-names"],
-    "info": ["--labels", "--merge", "--drop", "--background", "--label-names", "--json"],
+    "replay": ["--labels", "--merge", "--drop", "--background", "--label-names", "--drop-islands"],
+    "info": ["--labels", "--merge", "--drop", "--background", "--label-names", "--drop-islands", "--json", "--plan",
+             "--radius", "--radius-of", "--delta", "--target-elements", "--target-tolerance", "--min-dihedral",
+             "--optimize", "--dihedral-bounds", "--algorithm", "--threads"],
     "phantom": ["--size", "--output"],
     "view": ["--output", "--cut", "--flip", "--labels", "--hide", "--colour", "--camera", "--zoom", "--size",
              "--background", "--no-legend"],

@@ -9,6 +9,7 @@
 #include <string_view>
 
 #include "errors.h"
+#include "image/islands.h"
 #include "image/raw_image.h"
 
 namespace podm::verify {
@@ -106,8 +107,10 @@ void select_labels(Image& image, const LabelSelection& selection) {
   if (becomes.empty()) refuse(image.path, "no voxel has a label that is selected");
   for (std::uint32_t& voxel : image.voxels) {
     const auto found = becomes.find(voxel);
-    voxel = found == becomes.end() ? 0 : with_background_moved(found->second, selection.background);
+    voxel = found == becomes.end() ? selection.background : found->second;
   }
+  if (selection.drop_islands_mm3 > 0) drop_islands(image, selection.background, selection.drop_islands_mm3);
+  for (std::uint32_t& voxel : image.voxels) voxel = with_background_moved(voxel, selection.background);
 }
 
 void move_background(Mesh& mesh, std::uint32_t background) {

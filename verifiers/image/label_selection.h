@@ -17,6 +17,7 @@ struct LabelSelection {
   std::uint32_t background = 0;                      ///< its value in the mesh and the image
   Ranges keep{}, drop{};                             ///< no range to keep: all are kept
   std::vector<std::vector<std::uint32_t>> merges{};  ///< each to one label, with the first of its values
+  double drop_islands_mm3 = 0;                       ///< see image/islands.h; 0: none are dropped
 
   bool operator==(const LabelSelection&) const = default;
 };
@@ -29,7 +30,7 @@ std::vector<std::uint32_t> parse_merge(const std::string& text);
 /// Labels that are dropped or not kept become background, 0; of the rest, those merged become one. A
 /// background of another value and 0 change places, as in `move_background`. Throws InputError when a value
 /// asked for by itself has no voxel or is the background, when one is merged twice, and when no label is
-/// left.
+/// left, islands dropped.
 void select_labels(Image& image, const LabelSelection& selection);
 
 /// Makes 0 the background in a mesh whose file gives it the value `background`: the two change places.

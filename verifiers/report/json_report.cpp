@@ -86,7 +86,8 @@ Json selection_of(const LabelSelection& selection) {
   return {{"background", selection.background},
           {"labels", selection.keep},
           {"drop", selection.drop},
-          {"merge", selection.merges}};
+          {"merge", selection.merges},
+          {"drop_islands_mm3", selection.drop_islands_mm3}};
 }
 
 Json options_of(const Options& options) {

@@ -23,6 +23,8 @@ struct LabelSelection {
     std::string name;
   };
   std::vector<Merge> merges;
+  /// Components of what is then a label, joined by faces, are given to a neighbour if smaller; 0: none are.
+  double drop_islands_mm3 = 0;
 };
 
 /// Parses "1,3-7". Throws InputError naming `option` and the fault.

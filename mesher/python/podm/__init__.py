@@ -12,17 +12,18 @@ A segmentation in, as a numpy array, a nibabel image or a file name, and a mesh 
 Every mesh of a finished run keeps the bounds of the program `podm`: cells have a radius-edge ratio below 1.93 and are
 Delaunay; boundary and interface facets have angles above 30 degrees and vertices on the surface between the labels.
 
-`mesh` is the mesher, `Mesh` what it returns, `Verification` what proves it; `Error`, `InternalError` and `Interrupted`
-are raised, and `Progress` is what a callback is told.
+`plan` tells what a mesh will cost and lose, `mesh` is the mesher, `Mesh` what it returns, `Verification` what proves
+it; `Error`, `InternalError` and `Interrupted` are raised, and `Progress` is what a callback is told.
 """
 
 from ._podm import Progress, __version__
 from .errors import Error, InternalError, Interrupted
-from .meshing import mesh
+from .meshing import mesh, plan
 from .result import Mesh
 from .verification import Verification
 
-__all__ = ["Error", "InternalError", "Interrupted", "Mesh", "Progress", "Verification", "__version__", "mesh"]
+__all__ = ["Error", "InternalError", "Interrupted", "Mesh", "Progress", "Verification", "__version__", "mesh",
+           "plan"]
 
-for _public in (Error, InternalError, Interrupted, Mesh, Progress, Verification, mesh):
+for _public in (Error, InternalError, Interrupted, Mesh, Progress, Verification, mesh, plan):
     _public.__module__ = "podm"

@@ -1,7 +1,8 @@
-"""podm.mesh: an image in, a mesh out."""
+"""podm.mesh and podm.plan: an image in, a mesh out, or what it will be."""
 
 from __future__ import annotations
 
+import json
 import os
 import re
 import warnings
@@ -25,7 +26,8 @@ if TYPE_CHECKING:
 def mesh(labels: npt.ArrayLike | StrPath, *, affine: npt.ArrayLike | None = None,
          spacing: npt.ArrayLike | None = None, names: Mapping[int, str] | StrPath | None = None,
          keep: LabelValues | None = None, drop: LabelValues | None = None,
-         merge: Mapping[str, LabelValues] | None = None, background: int | None = None,
+         merge: Mapping[str, LabelValues] | None = None, drop_islands: float | None = None,
+         background: int | None = None,
          radius: float | None = None, radius_of: Mapping[str | int, float] | None = None, delta: float | None = None,
          target_elements: int | None = None, target_tolerance: float | None = None, smooth: float | None = None,
          min_dihedral: float | None = None, optimize: bool = False, dihedral_bounds: tuple[float, float] | None = None,
@@ -67,16 +69,45 @@ def mesh(labels: npt.ArrayLike | StrPath, *, affine: npt.ArrayLike | None = None
     """
     options = {keyword: value for keyword, value in locals().items()
                if keyword not in ("labels", "affine", "spacing", "progress")}
-    name_of = _name_of(options.pop("names")) if isinstance(names, Mapping) else {}
-    arguments = command_line(options)
+    made, exception = _of_image(_podm.mesh_file, _podm.mesh_array, labels, affine, spacing, options, progress)
+    return _result(made, exception)
+
+
+def plan(labels: npt.ArrayLike | StrPath, *, affine: npt.ArrayLike | None = None,
+         spacing: npt.ArrayLike | None = None, names: Mapping[int, str] | StrPath | None = None,
+         keep: LabelValues | None = None, drop: LabelValues | None = None,
+         merge: Mapping[str, LabelValues] | None = None, drop_islands: float | None = None,
+         background: int | None = None,
+         radius: float | None = None, radius_of: Mapping[str | int, float] | None = None, delta: float | None = None,
+         target_elements: int | None = None, min_dihedral: float | None = None, optimize: bool = False,
+         algorithm: str | None = None, threads: int | None = None) -> dict[str, Any]:
+    """Tells what mesh() of the same image and options will cost and lose, without meshing it.
+
+    Returns what `podm info --plan --json` has under "plan": "cells", "memory_bytes" (the peak of this process),
+    "seconds" on this machine, "labels" (of each its cells, and the volumes of its components, mm^3, the largest first)
+    and "thin_parts" (what delta is too coarse for: label, kind, thickness_mm, volume_mm3, place_mm in RAS). "kind" is
+    "whole" for all of a component, "bridge" for what joins parts that stay, "detail" for fins, tips and edges.
+
+    Raises podm.Error, as mesh() does. What is odd about the image is told by warnings.warn().
+    """
+    options = {keyword: value for keyword, value in locals().items() if keyword not in ("labels", "affine", "spacing")}
+    told: dict[str, Any] = json.loads(_of_image(_podm.plan_file, _podm.plan_array, labels, affine, spacing, options))
+    for text in told.pop("warnings"):
+        warnings.warn(_podm.in_python_terms(text), stacklevel=2)
+    return told
+
+
+def _of_image(of_file: Callable[..., Any], of_array: Callable[..., Any], labels: Any, affine: Any, spacing: Any,
+              options: dict[str, Any], *more: Any) -> Any:
+    """What one of two functions of the extension returns, the one that takes such an image."""
+    names = options.pop("names") if isinstance(options["names"], Mapping) else {}
+    name_of, arguments = _name_of(names), command_line(options)
     if is_file(labels):
         if affine is not None or spacing is not None:
             raise Error("labels: a file tells where its voxels lie, so that neither affine nor spacing is expected")
-        made, exception = _podm.mesh_file(path_bytes("labels", labels), name_of, arguments, progress)
-    else:
-        voxels, matrix = voxels_and_affine(labels, affine, spacing)
-        made, exception = _podm.mesh_array(voxels, matrix, name_of, arguments, progress)
-    return _result(made, exception)
+        return of_file(path_bytes("labels", labels), name_of, arguments, *more)
+    voxels, matrix = voxels_and_affine(labels, affine, spacing)
+    return of_array(voxels, matrix, name_of, arguments, *more)
 
 
 def _name_of(names: Mapping[Any, Any]) -> dict[int, bytes]:

@@ -1,0 +1,200 @@
+#include "image/thin_parts.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <set>
+
+#include "image/components.h"
+#include "runtime/parallel_for.h"
+
+namespace podm {
+
+namespace {
+
+constexpr double kDepthOverDelta = 0.7;
+// Of the shortest side of a voxel: so much larger balls reach the steps of an oblique surface. Below a half
+// no centre of another label is as near.
+constexpr double kSlackOverSide = 0.4;
+float squared(float x) { return x * x; }
+
+constexpr float kInfinite = std::numeric_limits<float>::infinity();
+
+// A number for each voxel, changed line by line along one axis after the other.
+class VoxelField {
+ public:
+  VoxelField(const LabelImage& image, float value, int threads)
+      : image_(image), threads_(num_threads(threads)), values_(image.voxels.size(), value) {}
+
+  float& operator[](std::size_t voxel) { return values_[voxel]; }
+
+  /// Calls change(labels, before, i, spacing in mm) for each foreground voxel i of each line, along x, then
+  /// y, then z: its new value.
+  template <class Change>
+  void sweep(const Change& change) {
+    for (std::size_t axis = 0; axis < 3; ++axis) sweep(axis, change);
+  }
+
+ private:
+  template <class Change>
+  void sweep(std::size_t axis, const Change& change) {
+    const auto length = static_cast<std::size_t>(image_.size[axis]);
+    const std::size_t across = axis == 0 ? 1 : 0, along = axis == 2 ? 1 : 2;
+    const std::array<std::size_t, 3> stride{1, image_.index(0, 1, 0), image_.index(0, 0, 1)};
+    const auto sheets = static_cast<std::size_t>(image_.size[along]);
+    parallel_for(sheets, threads_, [&](std::size_t sheet, std::size_t) {
+      std::vector<LabelIndex> labels(length);
+      std::vector<float> before(length);
+      for (std::size_t line = 0; line < static_cast<std::size_t>(image_.size[across]); ++line) {
+        const std::size_t begin = sheet * stride[along] + line * stride[across];
+        bool is_empty = true;
+        for (std::size_t i = 0; i < length; ++i) {
+          labels[i] = image_.voxels[begin + i * stride[axis]];
+          before[i] = values_[begin + i * stride[axis]];
+          is_empty = is_empty && labels[i] == kBackground;
+        }
+        if (is_empty) continue;
+        for (std::size_t i = 0; i < length; ++i)
+          if (labels[i] != kBackground)
+            values_[begin + i * stride[axis]] = change(labels, before, i, image_.spacing[axis]);
+      }
+    });
+  }
+
+  const LabelImage& image_;
+  std::size_t threads_;
+  std::vector<float> values_;
+};
+
+// Squared depths, mm^2, up to that of `most_mm`.
+void find_depths(VoxelField& depths, double most_mm) {
+  depths.sweep([&](const std::vector<LabelIndex>& labels, const std::vector<float>& before, std::size_t i,
+                   double spacing_mm) {
+    float least = before[i];
+    const auto look = [&](std::size_t at, float cost) {
+      const bool is_own = at < labels.size() && labels[at] == labels[i];  // before the first wraps around
+      least = std::min(least, (is_own ? before[at] : 0) + cost);
+    };
+    for (std::size_t n = 1; (static_cast<double>(n) - 0.5) * spacing_mm < most_mm; ++n) {
+      const double box_mm = (static_cast<double>(n) - 0.5) * spacing_mm;
+      const auto cost = static_cast<float>(box_mm * box_mm);
+      if (cost >= least) break;
+      look(i - n, cost);
+      look(i + n, cost);
+    }
+    return least;
+  });
+}
+
+// Turns minus the squared radii of balls, infinity where there is none, into numbers that are positive beyond
+// all balls. A ball stays within its label, and so does the way along the axes from its centre.
+void unite_balls(VoxelField& balls, double most_mm) {
+  balls.sweep([&](const std::vector<LabelIndex>&, const std::vector<float>& before, std::size_t i,
+                  double spacing_mm) {
+    float least = before[i];
+    for (std::size_t n = 1; static_cast<double>(n) * spacing_mm < most_mm; ++n) {
+      const double far_mm = static_cast<double>(n) * spacing_mm;
+      const auto cost = static_cast<float>(far_mm * far_mm);
+      if (i >= n) least = std::min(least, before[i - n] + cost);
+      if (i + n < before.size()) least = std::min(least, before[i + n] + cost);
+    }
+    return least;
+  });
+}
+
+class ThinParts {
+ public:
+  ThinParts(const LabelImage& image, double delta_mm, int threads)
+      : image_(image),
+        longest_mm_(*std::max_element(image.spacing.begin(), image.spacing.end())),
+        slack_mm_(kSlackOverSide * *std::min_element(image.spacing.begin(), image.spacing.end())),
+        least_mm_(kDepthOverDelta * std::max(delta_mm, longest_mm_)),
+        depths_(image, static_cast<float>(most_mm() * most_mm()), threads) {
+    find_depths(depths_, most_mm());
+    split_image(threads);
+  }
+
+  std::vector<ThinPart> sorted() {
+    const Components all(image_), thin(thin_), kept(kept_);
+    std::vector<int> pieces(all.size());
+    for (Components::Id c = 0; c < kept.size(); ++c)
+      if (kept[c].label != kBackground) ++pieces[all.of(kept[c].first)];
+    std::vector<ThinPart> parts(thin.size());
+    std::vector<std::set<Components::Id>> beside(thin.size());
+    thin.for_each_run([&](Components::Id part, const Voxel& first, int length) {
+      if (thin[part].label == kBackground) return;
+      for (Voxel v = first; v.i < first.i + length; ++v.i) {
+        deepen(parts[part], v);
+        if (pieces[all.of(v)] > 1) add_kept_beside(kept, v, beside[part]);
+      }
+    });
+    std::vector<ThinPart> sorted;
+    for (Components::Id part = 0; part < thin.size(); ++part) {
+      if (thin[part].label == kBackground) continue;
+      ThinPart& told = parts[part];
+      told.label = thin[part].label;
+      told.num_voxels = thin[part].num_voxels;
+      told.kind = pieces[all.of(thin[part].first)] == 0 ? ThinKind::kWhole
+                  : beside[part].size() > 1             ? ThinKind::kBridge
+                                                        : ThinKind::kDetail;
+      sorted.push_back(told);
+    }
+    std::stable_sort(sorted.begin(), sorted.end(), [](const ThinPart& a, const ThinPart& b) {
+      return std::pair(a.kind, b.num_voxels) < std::pair(b.kind, a.num_voxels);
+    });
+    return sorted;
+  }
+
+ private:
+  // A depth grows by no more than a side from voxel to voxel: balls of greater ones add nothing near a
+  // surface.
+  double most_mm() const { return least_mm_ + longest_mm_; }
+
+  // Thin voxels and those kept, each an image in which the others are background.
+  void split_image(int threads) {
+    constexpr float kRounding = 1e-5F;
+    VoxelField balls(image_, kInfinite, threads);
+    const auto squared_least = static_cast<float>(least_mm_ * least_mm_ * (1 - kRounding));
+    for (std::size_t i = 0; i < image_.voxels.size(); ++i)
+      if (image_.voxels[i] != kBackground && depths_[i] >= squared_least)
+        balls[i] = -squared(std::sqrt(depths_[i]) + static_cast<float>(slack_mm_));
+    unite_balls(balls, most_mm() + slack_mm_);
+    thin_.size = kept_.size = image_.size;
+    thin_.voxels = kept_.voxels = image_.voxels;
+    const float beyond = kRounding * squared_least;
+    for (std::size_t i = 0; i < image_.voxels.size(); ++i)
+      (balls[i] > beyond ? kept_ : thin_).voxels[i] = kBackground;
+  }
+
+  void deepen(ThinPart& part, const Voxel& v) {
+    const double thickness_mm = 2 * std::sqrt(static_cast<double>(depths_[image_.index(v.i, v.j, v.k)]));
+    if (thickness_mm <= part.thickness_mm) return;
+    part.thickness_mm = thickness_mm;
+    part.deepest = v;
+  }
+
+  void add_kept_beside(const Components& kept, const Voxel& v, std::set<Components::Id>& pieces) const {
+    const LabelIndex label = image_.voxels[image_.index(v.i, v.j, v.k)];
+    for (const Voxel& step : {Voxel{1, 0, 0}, Voxel{0, 1, 0}, Voxel{0, 0, 1}})
+      for (const int sign : {-1, 1}) {
+        const Voxel other{v.i + sign * step.i, v.j + sign * step.j, v.k + sign * step.k};
+        const bool is_inside = other.i >= 0 && other.j >= 0 && other.k >= 0 && other.i < image_.size[0] &&
+                               other.j < image_.size[1] && other.k < image_.size[2];
+        if (is_inside && kept_.voxels[image_.index(other.i, other.j, other.k)] == label)
+          pieces.insert(kept.of(other));
+      }
+  }
+
+  const LabelImage& image_;
+  double longest_mm_, slack_mm_, least_mm_;
+  VoxelField depths_;
+  LabelImage thin_, kept_;
+};
+
+}  // namespace
+
+std::vector<ThinPart> find_thin_parts(const LabelImage& image, double delta_mm, int threads) {
+  return ThinParts(image, delta_mm, threads).sorted();
+}
+
+}  // namespace podm

@@ -1,0 +1,1 @@
+"""Predictions of podm info --plan compared with runs of podm mesh."""

@@ -1,0 +1,118 @@
+"""Plans and runs of images at several sizes: a JSON line each on standard output, a table on standard error."""
+import argparse
+import json
+import os
+import subprocess
+import sys
+import tempfile
+from pathlib import Path
+
+import numpy
+
+from views.read_mesh import read_mesh
+
+from .lost import image_components, pieces_of_components
+from .volume import read_volume
+
+
+def plan_of(program, image, options):
+    """What podm info --plan tells of the image and of the run."""
+    command = [program, "info", image, "--json", "--plan", *options]
+    return json.loads(subprocess.run(command, check=True, stdout=subprocess.PIPE).stdout)
+
+
+def processor_seconds(command):
+    """Of a process, and its exit code."""
+    _, status, usage = os.wait4(subprocess.Popen(command, stdout=subprocess.DEVNULL).pid, 0)
+    return usage.ru_utime + usage.ru_stime, os.waitstatus_to_exitcode(status)
+
+
+def run(program, image, options, mesh, repeats):
+    """The record of a run, with the least processor seconds of some, less what the program takes to start."""
+    best = None
+    for _ in range(repeats):
+        with tempfile.NamedTemporaryFile() as record:
+            command = [program, "mesh", image, "-o", mesh, *options, "--quiet", "--record", record.name]
+            seconds, exit_code = processor_seconds(command)
+            if exit_code not in (0, 1):  # 1: a label that the sizes are too coarse for
+                raise RuntimeError(f"{' '.join(command)} ended with {exit_code}")
+            row = json.loads(Path(record.name).read_text())
+        row["processor_s"] = seconds - processor_seconds([program, "--version"])[0]
+        if best is None or row["processor_s"] < best["processor_s"]:
+            best = row
+    return best
+
+
+def lost_row(info, image, mesh_path):
+    """Components that the mesh lost or cut, and those of them that no thin part was told of."""
+    volume, affine = read_volume(image), numpy.array(info["affine"])
+    number, labels = image_components(volume)
+    pieces = pieces_of_components(volume, number, len(labels), affine, read_mesh(mesh_path))
+    said, whole = numpy.zeros(len(labels), bool), numpy.zeros(len(labels), bool)
+    for part in info["plan"]["thin_parts"]:
+        component = number[tuple(part["voxel"])]
+        said[component] = True
+        whole[component] |= part["kind"] == "whole"
+    is_lost, is_cut = pieces == 0, pieces > 1
+    return {"components": len(labels), "lost": int(is_lost.sum()), "cut": int(is_cut.sum()),
+            "missed": int(((is_lost | is_cut) & ~said).sum()), "lost_not_said_whole": int((is_lost & ~whole).sum()),
+            "said": int(said.sum()), "said_whole": int(whole.sum()),
+            "said_whole_and_lost_or_cut": int((whole & (is_lost | is_cut)).sum())}
+
+
+def compare(program, image, options, threads, repeats):
+    info = plan_of(program, image, options)
+    plan = info["plan"]
+    # A run of the sizes that were planned: to look for others is not part of it.
+    fixed = ["--radius", repr(plan["radius_mm"])] if plan["radius_mm"] > 0 else []
+    fixed += ["--delta", repr(plan["delta_mm"]), "--threads", str(threads)]
+    with tempfile.TemporaryDirectory() as folder:
+        mesh = os.path.join(folder, "m.vtu")
+        record = run(program, image, fixed, mesh, repeats)
+        lost = lost_row(info, image, mesh)
+    seconds = record["processor_s"] if threads == 1 else sum(record["phases_s"].values())
+    cells = {label["value"]: label["cells"] for label in record["labels"]}
+    errors = {label["value"]: label["cells"] / cells[label["value"]] - 1 for label in plan["labels"]
+              if cells.get(label["value"], 0) >= 1000}
+    return {"image": Path(image).name, "options": options, "threads": threads,
+            "radius_mm": plan["radius_mm"], "delta_mm": plan["delta_mm"],
+            "cells": record["cells"], "planned_cells": plan["cells"],
+            "memory_bytes": record["peak_rss_bytes"], "planned_memory_bytes": plan["memory_bytes"],
+            "seconds": seconds, "wall_s": sum(record["phases_s"].values()), "planned_s": plan["seconds"],
+            "planned_phases_s": plan["phases_s"], "phases_s": record["phases_s"],
+            "store_cells": record["counters"]["store_cells"], "label_errors": errors, "load": os.getloadavg()[0],
+            **lost}
+
+
+def line(row):
+    def percent(planned, measured):
+        return f"{100 * (row[planned] / row[measured] - 1):+6.1f} %"
+    errors = numpy.abs(list(row["label_errors"].values()) or [0])
+    return (f"{row['image'][:20]:20} {row['cells']:8} cells {percent('planned_cells', 'cells')}  "
+            f"labels {100 * (errors <= 0.15).mean():3.0f} % within 15 %  "
+            f"memory {row['memory_bytes'] / 2**20:5.0f} MiB {percent('planned_memory_bytes', 'memory_bytes')}  "
+            f"{row['seconds']:6.2f} s {percent('planned_s', 'seconds')}  components {row['components']:5}: "
+            f"lost {row['lost']}, cut {row['cut']}, missed {row['missed']}; said whole {row['said_whole']}, of them "
+            f"lost or cut {row['said_whole_and_lost_or_cut']}; load {row['load']:.1f}")
+
+
+def main():
+    parser = argparse.ArgumentParser(prog="scripts/check_plan", description=__doc__)
+    parser.add_argument("images", nargs="+", help="NIfTI, NRRD or INR")
+    parser.add_argument("--program", default="podm", help="[default: podm]")
+    parser.add_argument("--cells", default="100000,500000,2000000", help="targets [default: 100000,500000,2000000]")
+    parser.add_argument("--threads", type=int, default=1,
+                        help="of one processor time is compared, of more the wall's [default: 1]")
+    parser.add_argument("--repeats", type=int, default=2, help="of each run; the fastest counts [default: 2]")
+    asked = parser.parse_args()
+    for image in asked.images:
+        for cells in asked.cells.split(","):
+            options = ["--target-elements", cells, "--threads", str(asked.threads)]
+            row = compare(asked.program, image, options, asked.threads, asked.repeats)
+            print(json.dumps(row), flush=True)
+            print(line(row), file=sys.stderr, flush=True)
+    return 0
+
+
+if __name__ == "__main__":
+    sys.exit(main())
