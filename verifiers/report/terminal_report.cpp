@@ -53,6 +53,8 @@ std::string terminal_report(const Inputs& inputs, const Options& options,
     text += fmt::format("  also holds {} {}, not checked\n", count, name);
   if (inputs.image)
     for (const std::string& warning : inputs.image->warnings) text += fmt::format("  warning: {}\n", warning);
+  if (inputs.sizes)
+    for (const std::string& warning : inputs.sizes->warnings) text += fmt::format("  warning: {}\n", warning);
   std::size_t num_passed = 0;
   for (const ClaimResult& result : results) {
     num_passed += result.verdict == Verdict::kPass;

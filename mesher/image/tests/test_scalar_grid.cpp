@@ -79,7 +79,7 @@ TEST(ScalarGrid, FindsTheRangeInABoxAndWhetherTheyMeet) {
   EXPECT_GE(range.least, 3) << "one node more than has a weight";
   EXPECT_GE(range.most, 6);
   EXPECT_LE(range.most, 7);
-  EXPECT_EQ(grid.range_in({{-9, 2, 2}, {-3, 4, 4}}).least, 1) << "0 is none";
+  EXPECT_EQ(grid.range_in({{-9, 2, 2}, {-1, 4, 4}}).least, 1) << "0 is none";
   EXPECT_TRUE(grid.meets({{18.9, 0, 0}, {30, 5, 5}}));
   EXPECT_FALSE(grid.meets({{19.1, 0, 0}, {30, 5, 5}}));
   EXPECT_FALSE(grid.meets({{0, 0, -9}, {5, 5, -1.1}}));
@@ -89,8 +89,8 @@ TEST(ScalarGrid, MeetsNoBoxBesideAGridThatIsTurned) {
   const double r = std::sqrt(0.5);  // by 45 degrees about z
   const ScalarGrid grid =
       grid_of({10, 10, 10}, std::vector<float>(1000, 1), {r, r, 0, 0, -r, r, 0, 0, 0, 0, 1, 0});
-  EXPECT_TRUE(grid.meets({{5, -1, 0}, {7, 1, 1}}));
-  EXPECT_FALSE(grid.meets({{5, -9, 0}, {7, -7, 1}})) << "within the bounds of the turned grid";
+  EXPECT_TRUE(grid.meets({{-1, 5, 0}, {1, 7, 1}}));
+  EXPECT_FALSE(grid.meets({{5, 0, 0}, {7, 1, 1}})) << "within the bounds of the turned grid";
 }
 
 }  // namespace
