@@ -15,6 +15,33 @@ namespace {
 
 bool is_positive_or_zero(double x) { return std::isfinite(x) && x >= 0; }
 
+void check_near(const LabelImage& image, const std::vector<SizeNear>& near) {
+  for (const SizeNear& each : near) {
+    if (!(std::isfinite(each.radius_mm) && each.radius_mm > 0) ||
+        !(std::isfinite(each.width_mm) && each.width_mm > 0))
+      throw InputError("the size near an interface and its width must be positive numbers of mm");
+    for (const auto& side : each.labels)
+      for (const std::uint32_t value : side) {
+        const auto has_value = [value](const Label& label) { return label.value == value; };
+        if (std::none_of(image.labels.begin(), image.labels.end(), has_value))
+          throw InputError(fmt::format("size near label {}: the image has no such label", value));
+      }
+  }
+}
+
+// Readers see to it; others may not have.
+void check_size_image(const SizeImage& image) {
+  std::size_t voxels = 1;
+  for (const int n : image.size) voxels *= static_cast<std::size_t>(std::max(n, 0));
+  if (voxels == 0 || voxels != image.radius_mm.size())
+    throw InputError(image.path + ": the size image has not as many radii as voxels");
+  if (!(std::abs(determinant(image.voxel_to_ras)) > 0))
+    throw InputError(image.path + ": the affine is singular");
+  for (const float radius : image.radius_mm)
+    if (!is_positive_or_zero(radius))
+      throw InputError(image.path + ": radii must be finite, and not negative");
+}
+
 void check_sizes(const LabelImage& image, const SizeOptions& sizes) {
   if (!is_positive_or_zero(sizes.radius_mm)) throw InputError("radius must be a positive number of mm");
   if (!is_positive_or_zero(sizes.delta_mm)) throw InputError("delta must be a positive number of mm");
@@ -25,6 +52,11 @@ void check_sizes(const LabelImage& image, const SizeOptions& sizes) {
     if (!(std::isfinite(radius) && radius > 0))
       throw InputError("radius of label " + std::to_string(value) + " must be a positive number of mm");
   }
+  check_near(image, sizes.near);
+  if (const auto& by_place = sizes.image) check_size_image(*by_place);
+  if (!(std::isfinite(sizes.image_factor) && sizes.image_factor > 0))
+    throw InputError("the factor of a size image must be a positive number");
+  if (!is_positive_or_zero(sizes.grade)) throw InputError("grade must be a positive number");
   if (sizes.target_elements > 0 && sizes.radius_mm > 0)
     throw InputError("a target number of elements excludes a radius");
   if (!(sizes.target_tolerance_percent > 0 && sizes.target_tolerance_percent <= 100))

@@ -5,11 +5,13 @@
 #include <iterator>
 #include <limits>
 #include <numeric>
+#include <utility>
 
 #include "algorithms/memory_model.h"
 #include "algorithms/team_size.h"
 #include "default_sizes.h"
 #include "image/working_frame.h"
+#include "make_size_grid.h"
 #include "runtime/parallel_for.h"
 
 namespace podm {
@@ -137,7 +139,8 @@ std::vector<std::uint64_t> count_voxels(const LabelImage& image, int threads) {
   return sum_over_rows(image, threads, none, add_row).of_label;
 }
 
-CostModel::CostModel(const LabelImage& image, int threads) : image_(image), threads_(threads) {
+CostModel::CostModel(const LabelImage& image, int threads, std::optional<SizeCensus> census)
+    : image_(image), threads_(threads), census_(std::move(census)) {
   for (const std::uint64_t n : count_voxels(image, threads))
     volume_of_label_mm3_.push_back(static_cast<double>(n) * image.spacing[0] * image.spacing[1] *
                                    image.spacing[2]);
@@ -206,11 +209,35 @@ double radius_mm(const SizeOptions& sizes, const Label& label) {
 
 }  // namespace
 
+// The radius that makes as many cells of the label as its places make with theirs; 0: unbounded.
+double CostModel::mean_radius_mm(LabelIndex label, double radius_mm, double factor) const {
+  if (!census_) return radius_mm;
+  const double of_label = radius_mm > 0 ? radius_mm : std::numeric_limits<double>::infinity();
+  double density = 0;
+  for (const SizeCensus::Places& places : census_->places())
+    if (places.label == label)
+      density += places.volume * std::pow(std::min(of_label, places.radius_mm(factor)), -3);
+  return density > 0 ? std::cbrt(1 / density) : 0;
+}
+
+// How many times as many cells stand on the interfaces as where delta alone decides.
+double CostModel::surface_growth(const SizeOptions& sizes) const {
+  if (!census_) return 1;
+  double growth = 0, shares = 0;
+  for (const SizeCensus::Places& places : census_->places()) {
+    const double ratio = sizes.delta_mm / (kSpacingOverRadius * places.radius_mm(sizes.image_factor));
+    growth += places.surface * std::max(1.0, ratio * ratio);
+    shares += places.surface;
+  }
+  return shares > 0 ? growth : 1;
+}
+
 double CostModel::cells(const SizeOptions& sizes) const {
   const double area = area_mm2(kSeenOverDelta * sizes.delta_mm);
-  double cells = kSurfaceCells * area / (sizes.delta_mm * sizes.delta_mm);
+  double cells = kSurfaceCells * area / (sizes.delta_mm * sizes.delta_mm) * surface_growth(sizes);
   for (std::size_t i = 1; i < image_.labels.size(); ++i) {
-    const double radius = radius_mm(sizes, image_.labels[i]);
+    const double of_label = radius_mm(sizes, image_.labels[i]);
+    const double radius = mean_radius_mm(static_cast<LabelIndex>(i), of_label, sizes.image_factor);
     if (radius <= 0 || volume_of_label_mm3_[i] == 0) continue;
     const double core = std::max(0.0, 1 - kGradedOverRadius * radius * area / (3 * volume_mm3_));
     cells += kVolumeCells * volume_of_label_mm3_[i] * core * core * core / (radius * radius * radius);
@@ -247,14 +274,22 @@ double CostModel::cells(double volume_mm3, double area_mm2, double radius_mm, do
 }
 
 Estimate estimate(const LabelImage& image, const MeshingOptions& options) {
-  double cells = static_cast<double>(options.sizes.target_elements);
+  return estimate(image, options, make_size_grid(image, options.sizes, loop_threads(options.team)).get());
+}
+
+Estimate estimate(const LabelImage& image, const MeshingOptions& options, const SizeGrid* grid) {
+  double cells = static_cast<double>(options.sizes.target_elements), delta_mm = options.sizes.delta_mm;
   if (options.sizes.target_elements == 0) {
     SizeOptions sizes = options.sizes;
-    sizes.delta_mm = delta_mm_for(image, sizes);
-    cells = CostModel(image, loop_threads(options.team)).cells(sizes);
+    const CostModel model(image, loop_threads(options.team), census_of(image, sizes, grid));
+    delta_mm = sizes.delta_mm = delta_mm_for(image, sizes, model.census());
+    cells = model.cells(sizes);
   }
-  return {cells, cells * kPeakBytesPerMeshCell + static_cast<double>(image.num_voxels()) *
-                                                     (sizeof(LabelIndex) + kTransformBytesPerVoxel)};
+  return {cells,
+          cells * kPeakBytesPerMeshCell +
+              static_cast<double>(image.num_voxels()) * (sizeof(LabelIndex) + kTransformBytesPerVoxel) +
+              static_cast<double>(bytes_of_size_grid(image, options.sizes)),
+          delta_mm};
 }
 
 Box foreground_bounds(const LabelImage& image, int threads) {

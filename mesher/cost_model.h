@@ -8,7 +8,8 @@
 
 #include "geometry/box.h"
 #include "podm/label_image.h"
-#include "podm/meshing_options.h"
+#include "podm/mesh_image.h"
+#include "size_census.h"
 
 namespace podm {
 
@@ -30,10 +31,15 @@ Box foreground_bounds(const LabelImage& image, int threads = 1);
 /// 18 %, and with other deltas within 34 %.
 class CostModel {
  public:
-  /// The image must outlive the model, which looks at its interfaces as they are asked for.
-  CostModel(const LabelImage& image, int threads);
+  /// The image must outlive the model, which looks at its interfaces as they are asked for. `census`: of
+  /// sizes by place; none, and those of labels are all.
+  CostModel(const LabelImage& image, int threads, std::optional<SizeCensus> census = std::nullopt);
 
-  /// The cells that these radii and this delta, which is not 0, make.
+  /// Null: there are no sizes by place.
+  const SizeCensus* census() const { return census_ ? &*census_ : nullptr; }
+
+  /// The cells that these radii and this delta, which is not 0, make; places have those of
+  /// the census, with the factor that these have for the image.
   double cells(const SizeOptions& sizes) const;
   /// The same by label: each label's own volume and interfaces; together they are cells(). What is thinner
   /// than delta is put down to the wrong label more often: of labels of 1000 cells and more, in 24 meshes of
@@ -49,6 +55,7 @@ class CostModel {
   static constexpr double kVolumeCells = 4.82, kSurfaceCells = 1.57, kOutsideCells = 2.55;
   static constexpr double kGradedOverRadius = 0.555;  // thickness of the layer
   static constexpr double kSeenOverDelta = 1.6;       // distance of the voxels compared
+  static constexpr double kSpacingOverRadius = 0.7;   // of surface samples where cells are small
   // Areas are found at these distances, in voxels, and interpolated between them.
   static constexpr std::array<int, 13> kLags{1, 2, 3, 4, 6, 8, 12, 16, 24, 32, 48, 64, 96};
 
@@ -59,12 +66,18 @@ class CostModel {
   std::vector<double> areas_by_label_mm2(double distance_mm) const;  // the background's, too
   std::vector<double> areas_along_mm2(std::size_t axis, std::size_t lag) const;
   double area_along_mm2(std::size_t axis, std::size_t lag) const;
+  double mean_radius_mm(LabelIndex label, double radius_mm, double factor) const;
+  double surface_growth(const SizeOptions& sizes) const;
 
   const LabelImage& image_;
   int threads_;
   std::vector<double> volume_of_label_mm3_;
+  std::optional<SizeCensus> census_;
   double volume_mm3_ = 0;
   mutable std::array<std::array<std::optional<double>, kLags.size()>, 3> area_along_mm2_;  // by axis and lag
 };
+
+/// estimate() where the grid of the options' sizes is made already; null: there is none.
+Estimate estimate(const LabelImage& image, const MeshingOptions& options, const SizeGrid* grid);
 
 }  // namespace podm

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <utility>
 
 namespace podm {
 
@@ -24,17 +25,22 @@ double smallest_radius_mm(const SizeOptions& sizes) {
   return std::isinf(smallest) ? 0 : smallest;
 }
 
-double delta_mm_for(const LabelImage& image, const SizeOptions& sizes) {
-  return sizes.delta_mm > 0 ? sizes.delta_mm : default_delta_mm(image, smallest_radius_mm(sizes));
+double delta_mm_for(const LabelImage& image, const SizeOptions& sizes, const SizeCensus* census) {
+  if (sizes.delta_mm > 0) return sizes.delta_mm;
+  const double of_labels = smallest_radius_mm(sizes);
+  if (census == nullptr || std::isinf(census->largest_mm())) return default_delta_mm(image, of_labels);
+  return default_delta_mm(image,
+                          of_labels > 0 ? std::min(of_labels, census->largest_mm()) : census->largest_mm());
 }
 
-SizeField size_field(const LabelImage& image, const SizeOptions& sizes) {
+SizeField size_field(const LabelImage& image, const SizeOptions& sizes,
+                     std::shared_ptr<const SizeGrid> grid) {
   std::vector<double> radius(image.labels.size(), sizes.radius_mm > 0 ? sizes.radius_mm : kInfinity);
   for (std::size_t i = 1; i < image.labels.size(); ++i) {
     const auto own = sizes.radius_of_mm.find(image.labels[i].value);
     if (own != sizes.radius_of_mm.end()) radius[i] = own->second;
   }
-  return SizeField(std::move(radius));
+  return SizeField(std::move(radius), std::move(grid));
 }
 
 }  // namespace podm

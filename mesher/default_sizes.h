@@ -4,6 +4,7 @@
 
 #include "podm/mesh_image.h"
 #include "refine/size_field.h"
+#include "size_census.h"
 
 namespace podm {
 
@@ -11,9 +12,12 @@ namespace podm {
 double smallest_radius_mm(const SizeOptions& sizes);
 
 /// The sampling distance that the options give, else the default of this image and the least radius, mm.
-double delta_mm_for(const LabelImage& image, const SizeOptions& sizes);
+/// Surfaces follow small cells wherever these are asked for, so that sizes by place count by the largest that
+/// a place has, if all have one. `census`: of these sizes by place; null: there are none.
+double delta_mm_for(const LabelImage& image, const SizeOptions& sizes, const SizeCensus* census);
 
-/// The radius of each label, where the options bound it.
-SizeField size_field(const LabelImage& image, const SizeOptions& sizes);
+/// What the options ask for, label by label and, of the grid that make_size_grid() makes of them, by place.
+SizeField size_field(const LabelImage& image, const SizeOptions& sizes,
+                     std::shared_ptr<const SizeGrid> grid = nullptr);
 
 }  // namespace podm

@@ -9,6 +9,7 @@
 #include "geometry/dihedral.h"
 #include "geometry/predicates.h"
 #include "geometry/tetrahedron.h"
+#include "image/working_frame.h"
 #include "runtime/parallel_for.h"
 
 namespace podm {
@@ -174,15 +175,36 @@ void for_each_measured(const TetMesh& mesh, std::size_t begin, std::size_t end, 
   }
 }
 
-void add_cells(const TetMesh& mesh, const SizeField& sizes, std::size_t begin, std::size_t end,
+// The size field where the mesh is.
+class Bounds {
+ public:
+  Bounds(const SizeField& sizes, const LabelImage& image, Space space)
+      : sizes_(sizes), to_working_(inverse(working_to_world(image))) {
+    if (space == Space::kLps)
+      for (const std::size_t row : {0, 1, 2})
+        for (const std::size_t axis : {0, 1}) to_working_[4 * row + axis] *= -1;
+  }
+  // Whoever is no larger than the least bound need not know where its circumcentre is.
+  double squared_radius(const Corners& p, const CellMeasures& m, LabelIndex label) const {
+    if (!sizes_.has_grid() || m.squared_radius <= sizes_.smallest_squared_radius())
+      return sizes_.squared_radius_of_label(label);
+    return sizes_.squared_radius(label, map(to_working_, circumsphere(p[0], p[1], p[2], p[3], 0).center));
+  }
+
+ private:
+  const SizeField& sizes_;
+  Affine to_working_;
+};
+
+void add_cells(const TetMesh& mesh, const Bounds& bounds, std::size_t begin, std::size_t end,
                CellTally& tally) {
   for_each_measured(mesh, begin, end, [&](std::size_t cell, const Corners& corners, const CellMeasures& m) {
     const LabelIndex label = mesh.cell_labels[cell];
-    tally.add(corners, m, label, sizes.squared_radius(label));
+    tally.add(corners, m, label, bounds.squared_radius(corners, m, label));
   });
 }
 
-CellTally measure_cells(const TetMesh& mesh, const SizeField& sizes, int threads, MeshingReport& report) {
+CellTally measure_cells(const TetMesh& mesh, const Bounds& bounds, int threads, MeshingReport& report) {
   CellTally none;
   none.labels.resize(mesh.labels.size());
   // No more than what lets the sums of all labels take 4 bytes a cell.
@@ -190,7 +212,7 @@ CellTally measure_cells(const TetMesh& mesh, const SizeField& sizes, int threads
       std::clamp<std::size_t>(mesh.cells.size() / (4 * mesh.labels.size()), 1, kMostSlices);
   CellTally tally = tally_up(mesh.cells.size(), num_slices, threads, none,
                              [&](CellTally& slice, std::size_t begin, std::size_t end) {
-                               add_cells(mesh, sizes, begin, end, slice);
+                               add_cells(mesh, bounds, begin, end, slice);
                              });
   report.guarantees.orientation = tally.bad_orientation;
   report.guarantees.radius_edge = tally.bad_radius_edge;
@@ -243,7 +265,7 @@ void measure_facets(const TetMesh& mesh, int threads, MeshingReport& report) {
 
 void measure_quality(const TetMesh& mesh, const LabelImage& image, const SizeField& sizes, int threads,
                      MeshingReport& report) {
-  const CellTally cells = measure_cells(mesh, sizes, threads, report);
+  const CellTally cells = measure_cells(mesh, Bounds(sizes, image, mesh.space), threads, report);
   measure_facets(mesh, threads, report);
   for (std::size_t label = 1; label < mesh.labels.size(); ++label) {
     const CellTally::OfLabel& of_label = cells.labels[label];

@@ -3,7 +3,6 @@
 
 #include "calibrate.h"
 #include "check_options.h"
-#include "default_sizes.h"
 #include "extract_mesh.h"
 #include "image/smooth_interfaces.h"
 #include "phases_of_run.h"
@@ -45,7 +44,7 @@ class Run {
                               report);
     }
     SizeOptions sizes = options_.sizes;
-    sizes.delta_mm = delta_mm_for(image_, sizes);
+    sizes.delta_mm = phases_.delta_mm();
     return refine_with(sizes);
   }
 

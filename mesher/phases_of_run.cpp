@@ -11,6 +11,7 @@
 #include "default_sizes.h"
 #include "extract_mesh.h"
 #include "image/smooth_interfaces.h"
+#include "make_size_grid.h"
 #include "measure_quality.h"
 #include "optimize/optimize_mesh.h"
 #include "podm/operation_log.h"
@@ -87,7 +88,8 @@ void PhasesOfRun::transform(MeshingReport& report,
   const double start_s = seconds_();
   isosurface_ = make();
   object_ = foreground_bounds(image_, loop_threads_);
-  expected_cells_ = estimate(image_, options_).cells * share_of_cells_;
+  asked_grid_ = make_size_grid(image_, options_.sizes, loop_threads_);
+  expected_ = estimate(image_, options_, asked_grid_.get());
   report.phases_s["transform"] = seconds_() - start_s;
   team_.locate_memory(image_, isosurface_->transform());
 }
@@ -109,8 +111,11 @@ std::shared_ptr<const VoxelStrengths> PhasesOfRun::smooth(MeshingReport& report)
 
 void PhasesOfRun::refine(const SizeOptions& sizes, const Refine& refine) {
   sizes_ = sizes;
+  const bool is_as_asked = options_.sizes.target_elements == 0;
+  size_field_ =
+      size_field(image_, sizes, is_as_asked ? asked_grid_ : make_size_grid(image_, sizes, loop_threads_));
   const auto observe = [&](std::uint64_t cells) {
-    announce("refine", static_cast<double>(cells) / expected_cells_, cells);
+    announce("refine", static_cast<double>(cells) / (share_of_cells_ * expected_.cells), cells);
   };
   StopControl stop_control(options_.limits, stop_, observe, start_);
   if (options_.log != nullptr) options_.log->restart();
@@ -121,7 +126,7 @@ void PhasesOfRun::refine(const SizeOptions& sizes, const Refine& refine) {
   const Problem problem{.isosurface = *isosurface_,
                         .object = object_,
                         .delta_mm = sizes.delta_mm,
-                        .sizes = size_field(image_, sizes),
+                        .sizes = *size_field_,
                         .cell_capacity = cell_capacity(bytes, num_workers, options_.team.executor),
                         .memory_bytes = bytes,
                         .dihedral_bounds = dihedral_bounds(),
@@ -139,6 +144,7 @@ std::optional<DihedralBounds> PhasesOfRun::dihedral_bounds() const {
 void PhasesOfRun::report_refinement(Refinement& refinement, MeshingReport& report) const {
   report.radius_mm = sizes_.radius_mm;
   report.delta_mm = sizes_.delta_mm;
+  report.size_image_factor = sizes_.image_factor;
   report.phases_s.merge(refinement.phases_s);
   report.stop_reason = refinement.stop_reason;
   report.counters = refinement.counters;
@@ -182,8 +188,7 @@ void PhasesOfRun::optimize(Mesh& mesh, MeshingReport& report) const {
   StopControl stop(
       {.max_elements = 0, .max_seconds = options_.limits.max_seconds}, stop_, [](std::uint64_t) {}, start_);
   const DihedralBounds bounds(asked.least_dihedral_deg, asked.largest_dihedral_deg);
-  const OptimizerParameters parameters{CellQuality(aim_over(bounds)), bounds, size_field(image_, sizes_),
-                                       sizes_.delta_mm};
+  const OptimizerParameters parameters{CellQuality(aim_over(bounds)), bounds, *size_field_, sizes_.delta_mm};
   try {
     report.optimization = optimize_mesh(mesh, parameters, team_.team(), stop,
                                         [&](double fraction) { announce("optimize", fraction, 0); });
@@ -205,7 +210,7 @@ void PhasesOfRun::extract(const std::function<void(Space)>& extract, MeshingRepo
 void PhasesOfRun::finish(TetMesh& mesh, MeshingReport& report) const {
   announce("measure", 0, 0);
   const double start_s = seconds_();
-  measure_quality(mesh, image_, size_field(image_, sizes_), loop_threads_, report);
+  measure_quality(mesh, image_, *size_field_, loop_threads_, report);
   report.phases_s["measure"] = seconds_() - start_s;
   mesh.is_optimized = report.optimization.has_value();
   mesh.smoothing_mm = options_.smoothing_mm;

@@ -5,6 +5,7 @@
 #include <chrono>
 #include <functional>
 #include <memory>
+#include <optional>
 #include <stop_token>
 
 #include "algorithms/podm.h"
@@ -30,6 +31,8 @@ class PhasesOfRun {
   void transform(MeshingReport& report);
   const Isosurface& isosurface() const { return *isosurface_; }
   const TeamOfRun& team() const { return team_; }
+  /// What surfaces are sampled at unless a target number of elements decides, mm.
+  double delta_mm() const { return expected_.delta_mm; }
   int loop_threads() const { return loop_threads_; }
 
   /// Calls refine() with what these sizes ask for, in which delta is not 0. The last call is told of.
@@ -62,9 +65,11 @@ class PhasesOfRun {
   const double share_of_cells_;
   const Seconds seconds_;
   std::shared_ptr<const Isosurface> isosurface_;
-  SizeOptions sizes_;  // the last mesh has these
-  Box object_{};       // bounds of the foreground
-  double expected_cells_ = 1;
+  SizeOptions sizes_;                           // the last mesh has these
+  std::optional<SizeField> size_field_;         // these
+  std::shared_ptr<const SizeGrid> asked_grid_;  // of the sizes that were asked for
+  Box object_{};                                // bounds of the foreground
+  Estimate expected_;                           // of all processes together
   const Clock::time_point start_ = Clock::now();
 };
 

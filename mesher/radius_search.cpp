@@ -4,10 +4,12 @@
 #include <cmath>
 #include <utility>
 
+#include "make_size_grid.h"
+
 namespace podm {
 
 RadiusSearch::RadiusSearch(const LabelImage& image, const SizeOptions& asked, int threads)
-    : model_(image, threads),
+    : model_(image, threads, census_of(image, asked, make_size_grid(image, asked, threads).get())),
       asked_(asked),
       largest_mm_(std::hypot(image.size[0] * image.spacing[0], image.size[1] * image.spacing[1],
                              image.size[2] * image.spacing[2])),
@@ -16,6 +18,8 @@ RadiusSearch::RadiusSearch(const LabelImage& image, const SizeOptions& asked, in
 SizeOptions RadiusSearch::at(double radius_mm) const {
   SizeOptions sizes = asked_;
   sizes.radius_mm = radius_mm;
+  const double largest = sizes.image != nullptr ? model_.census()->largest_of_image_mm() : 0;
+  if (largest > 0) sizes.image_factor = radius_mm / largest;
   if (sizes.delta_mm <= 0) sizes.delta_mm = radius_mm / 2;
   return sizes;
 }

@@ -13,7 +13,7 @@ class RadiusSearch {
   RadiusSearch(const LabelImage& image, const SizeOptions& asked, int threads);
 
   double radius_mm() const { return radius_mm_; }
-  /// What was asked for, with this radius and its delta.
+  /// What was asked for, with this radius, its delta, and the factor by which it is the size image's largest.
   SizeOptions sizes() const { return at(radius_mm_); }
   /// A mesh with this radius has so many cells: changes the radius accordingly. False where it cannot: a
   /// larger radius than the image changes nothing, as where the surfaces alone take more cells than the

@@ -133,6 +133,17 @@ void declare_claims(CLI::App& app, Command& command) {
                  "the same for one label value; repeatable [default: --radius]")
       ->option_text("LABEL=MM")
       ->allow_extra_args(false);
+  CLI::Option* size_image =
+      app.add_option("--size-image", options.size_image_path,
+                     "size: bounds by place, a volume of mm as podm mesh was given it [default: none]")
+          ->option_text("FILE");
+  app.add_option(
+         "--size-factor", options.size_factor,
+         fmt::format("these times this, as podm mesh records of a target (size_image_factor) [default: {}]",
+                     options.size_factor))
+      ->option_text("X")
+      ->check(positive())
+      ->needs(size_image);
   app.add_option("--min-dihedral", options.min_dihedral_deg,
                  "dihedral: least angle between facets of a cell [default: as the file promises]")
       ->option_text("DEGREES")
@@ -185,7 +196,8 @@ void refuse_to_overwrite_inputs(const Options& options) {
   namespace fs = std::filesystem;
   std::error_code error;
   for (const std::string& output : {options.json_path, options.extract_bad_path})
-    for (const std::string& input : {options.mesh_path, options.image_path, options.schedule_path})
+    for (const std::string& input :
+         {options.mesh_path, options.image_path, options.schedule_path, options.size_image_path})
       if (!output.empty() && !input.empty() && fs::equivalent(output, input, error))
         throw InputError(fmt::format("{}: is an input, and would be written over", output));
 }

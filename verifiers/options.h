@@ -22,6 +22,8 @@ struct Options {
   double angle_bound_deg = 30;
   std::optional<double> radius_mm;         ///< circumradius bound r_t of every label not in `radius_of`
   std::map<LabelValue, double> radius_of;  ///< label -> mm
+  std::string size_image_path;             ///< bounds by place; empty: none
+  double size_factor = 1;                  ///< of all of them
   std::optional<double> min_dihedral_deg, max_dihedral_deg;
   /// Fidelity: 95 % of either surface lies within this many voxels of the other, and all of the mesh's within
   /// sqrt(3) times as many of the image's.

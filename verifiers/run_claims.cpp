@@ -24,7 +24,7 @@ bool is_given(Needs needs, const Options& options, const Mesh& mesh) {
     case Needs::kImage:
       return !options.image_path.empty();
     case Needs::kBound:
-      return options.radius_mm || !options.radius_of.empty();
+      return options.radius_mm || !options.radius_of.empty() || !options.size_image_path.empty();
     case Needs::kDihedralBound:
       return options.min_dihedral_deg || options.max_dihedral_deg || mesh.promised_dihedral_deg;
   }
@@ -87,7 +87,7 @@ const std::vector<Claim>& all_claims() {
       {"structure", Needs::kNothing, [](I i, A a, O o) { return check_structure(i.mesh, a, o); }},
       {"radius_edge", Needs::kNothing, [](I i, A, O o) { return check_radius_edge(i.mesh, o); }},
       {"boundary_angles", Needs::kNothing, [](I i, A a, O o) { return check_boundary_angles(i.mesh, a, o); }},
-      {"size", Needs::kBound, [](I i, A, O o) { return check_size(i.mesh, o); }},
+      {"size", Needs::kBound, [](I i, A, O o) { return check_size(i.mesh, pointer(i.sizes), o); }},
       {"dihedral", Needs::kDihedralBound, [](I i, A, O o) { return check_dihedral(i.mesh, o); }},
       {"delaunay", Needs::kNothing, [](I i, A a, O o) { return check_delaunay(i.mesh, a, o); }},
       {"conformity", Needs::kNothing,
@@ -123,9 +123,10 @@ std::vector<std::string> chosen_claims(const Options& options, const Mesh& mesh)
 }
 
 Inputs read_inputs(const Options& options) {
-  Inputs inputs{read_mesh(options.mesh_path), std::nullopt, std::nullopt};
+  Inputs inputs{read_mesh(options.mesh_path), std::nullopt, std::nullopt, std::nullopt};
   if (options.space) inputs.mesh.space = *options.space;
   if (!options.image_path.empty()) inputs.image = read_image(options.image_path);
+  if (!options.size_image_path.empty()) inputs.sizes = read_size_image(options.size_image_path);
   if (inputs.image && options.selection != LabelSelection{}) select_labels(*inputs.image, options.selection);
   const std::optional<double> width = options.smooth_mm ? options.smooth_mm : inputs.mesh.smoothing_mm;
   if (inputs.image && width) inputs.image->smoothing = smooth(*inputs.image, *width, options.threads);

@@ -9,6 +9,7 @@
 #include "claim.h"
 #include "geometry/adjacency.h"
 #include "image/image.h"
+#include "image/size_image.h"
 #include "options.h"
 #include "schedule.h"
 
@@ -26,6 +27,7 @@ std::vector<std::string> chosen_claims(const Options& options, const Mesh& mesh)
 struct Inputs {
   Mesh mesh;
   std::optional<Image> image;
+  std::optional<SizeImage> sizes;
   std::optional<Schedule> schedule;
 };
 

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <vector>
 
 #include "algorithms/memory_model.h"
@@ -12,16 +13,54 @@
 
 namespace podm {
 
-Radii radii_of(const Problem& problem) {
-  Radii radii{};
+namespace {
+
+double radius_or_delta(const Problem& problem, double squared_radius) {
+  return std::isinf(squared_radius) ? 2 * problem.delta_mm : std::sqrt(squared_radius);
+}
+
+Radii radii_of_labels(const Problem& problem) {
+  Radii radii{std::numeric_limits<double>::infinity(), 0};
   for (std::size_t label = 1; label < problem.sizes.num_labels(); ++label) {
-    const double squared = problem.sizes.squared_radius(static_cast<LabelIndex>(label));
-    radii.of_label.push_back(std::isinf(squared) ? 2 * problem.delta_mm : std::sqrt(squared));
+    const double radius =
+        radius_or_delta(problem, problem.sizes.squared_radius_of_label(static_cast<LabelIndex>(label)));
+    radii = {std::min(radii.least, radius), std::max(radii.most, radius)};
   }
-  const auto [least, most] = std::minmax_element(radii.of_label.begin(), radii.of_label.end());
-  radii.least = *least;
-  radii.most = *most;
   return radii;
+}
+
+// Calls use(p, label) for the points of a grid in the box, so many an axis, that have a label.
+template <class Use>
+void for_each_sample(const Problem& problem, const Point& low, const Point& high, int num_samples,
+                     const Use& use) {
+  const auto at = [&](int k, double from, double to) { return from + (k + 0.5) / num_samples * (to - from); };
+  for (int i = 0; i < num_samples * num_samples * num_samples; ++i) {
+    const Point p{at(i % num_samples, low.x, high.x), at(i / num_samples % num_samples, low.y, high.y),
+                  at(i / num_samples / num_samples, low.z, high.z)};
+    const LabelIndex label = problem.isosurface.label_at(p);
+    if (label != kBackground) use(p, label);
+  }
+}
+
+}  // namespace
+
+double radius_at(const Problem& problem, LabelIndex label, const Point& p) {
+  return radius_or_delta(problem, problem.sizes.squared_radius(label, p));
+}
+
+double least_radius_of_labels(const Problem& problem) { return radii_of_labels(problem).least; }
+
+Radii radii_of(const Problem& problem) {
+  constexpr int kSamples = 32;
+  const Radii of_labels = radii_of_labels(problem);
+  if (!problem.sizes.has_grid()) return of_labels;
+  Radii radii{std::numeric_limits<double>::infinity(), 0};
+  for_each_sample(problem, problem.object.low, problem.object.high, kSamples,
+                  [&](const Point& p, LabelIndex label) {
+                    const double radius = radius_at(problem, label, p);
+                    radii = {std::min(radii.least, radius), std::max(radii.most, radius)};
+                  });
+  return radii.most > 0 ? radii : of_labels;
 }
 
 namespace {
@@ -31,18 +70,14 @@ namespace {
 // at 2, 10 % at 1.4. See experiments/leaf_size.toml.
 constexpr double kLeafSizeOverRadius = 2;
 
-// The largest bound of a label in the cube, by samples: leaves shorter than the coarse cells in them would
+// The largest bound in the cube, by samples: leaves shorter than the coarse cells in them would
 // defer most of their operations.
 double radius_in_cube(const Problem& problem, const Radii& radii, const Point& low, const Point& high) {
   constexpr int kSamples = 5;
   double radius = 0;
-  for (int i = 0; i < kSamples * kSamples * kSamples; ++i) {
-    const auto at = [&](int k, double from, double to) { return from + (k + 0.5) / kSamples * (to - from); };
-    const LabelIndex label = problem.isosurface.label_at({at(i % kSamples, low.x, high.x),
-                                                          at(i / kSamples % kSamples, low.y, high.y),
-                                                          at(i / kSamples / kSamples, low.z, high.z)});
-    if (label != kBackground) radius = std::max(radius, radii.of_label[label - 1u]);
-  }
+  for_each_sample(problem, low, high, kSamples, [&](const Point& p, LabelIndex label) {
+    radius = std::max(radius, radius_at(problem, label, p));
+  });
   return radius > 0 ? radius : radii.most;
 }
 

@@ -10,12 +10,16 @@
 
 namespace podm {
 
-/// Circumradius bounds of the labels, mm; twice delta where only the surface drives.
+/// The circumradius bound of a label at p, mm; twice delta where only the surface drives.
+double radius_at(const Problem& problem, LabelIndex label, const Point& p);
+
+/// The least and the largest of them in the object, by samples where they are not those of the labels alone.
 struct Radii {
-  std::vector<double> of_label;
   double least, most;
 };
 Radii radii_of(const Problem& problem);
+/// The least of the labels alone, mm.
+double least_radius_of_labels(const Problem& problem);
 
 /// What leaves of the size that was asked for take at most, bytes. 0: no size was asked for, and they are
 /// few. Throws InputError where they take more than their share of the memory: leaves of such a size fill the

@@ -73,7 +73,8 @@ Parameters parameters_for(const Problem& problem, double ratio, const Box& clamp
 
 TwoLevels two_levels(const Problem& problem, double initial_ratio) {
   constexpr double kShellOverRadius = 2;  // large balls outside reach over the shell only if they are empty
-  const double radius_mm = initial_ratio * radii_of(problem).least, shell_mm = kShellOverRadius * radius_mm;
+  const double radius_mm = initial_ratio * least_radius_of_labels(problem),
+               shell_mm = kShellOverRadius * radius_mm;
   const Box clamp = grown(problem.object, std::max(2 * initial_ratio * problem.delta_mm, shell_mm));
   TwoLevels levels{clamp, parameters_for(problem, initial_ratio, clamp), parameters_for(problem, 1, clamp)};
   levels.initial.shell_mm = shell_mm;

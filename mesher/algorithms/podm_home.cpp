@@ -29,7 +29,6 @@ constexpr std::size_t kSamplesPerHome = 256;
 // (M. Roberts, "The unreasonable effectiveness of quasirandom sequences", 2018.)
 std::vector<Homes::Work> expected_work(const Problem& problem, std::size_t num_samples) {
   constexpr double kG = 1.2207440846057596;
-  const Radii radii = radii_of(problem);
   const Point& low = problem.object.low;
   const Vector extent = problem.object.high - low;
   const auto fraction = [](double x) { return x - std::floor(x); };
@@ -40,7 +39,7 @@ std::vector<Homes::Work> expected_work(const Problem& problem, std::size_t num_s
                                  extent.z * fraction(0.5 + n / (kG * kG * kG))};
     const LabelIndex label = problem.isosurface.label_at(p);
     if (label == kBackground) continue;
-    const double radius = radii.of_label[label - 1u];
+    const double radius = radius_at(problem, label, p);
     work.push_back({p, 1 / (radius * radius * radius)});
   }
   return work;

@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <span>
 
 #include "cli/nearest_name.h"
 #include "podm/errors.h"
@@ -12,6 +13,20 @@ namespace {
 
 bool is_called(const Label& label, const std::string& name_or_value) {
   return label.name == name_or_value || fmt::format("{}", label.value) == name_or_value;
+}
+
+std::vector<std::uint32_t> values_called(const std::string& name_or_value, std::span<const Label> labels,
+                                         const std::string& image_path) {
+  std::vector<std::uint32_t> values;
+  std::vector<std::string> names;
+  for (const Label& label : labels) {
+    names.push_back(label.name);
+    if (is_called(label, name_or_value)) values.push_back(label.value);
+  }
+  if (values.empty())
+    throw InputError(
+        fmt::format("{}: no label '{}'{}", image_path, name_or_value, did_you_mean(name_or_value, names)));
+  return values;
 }
 
 }  // namespace
@@ -36,21 +51,22 @@ void name_labels(LabelImage& image, const std::map<std::uint32_t, std::string>& 
 std::map<std::uint32_t, double> lengths_by_value(
     const std::vector<std::pair<std::string, double>>& lengths_mm, const LabelImage& image,
     const std::string& image_path) {
+  const std::span<const Label> labels = std::span(image.labels).subspan(1);
   std::map<std::uint32_t, double> by_value;
-  for (const auto& [name_or_value, length_mm] : lengths_mm) {
-    bool found = false;
-    std::vector<std::string> names;
-    for (const Label& label : image.labels) {
-      if (&label == &image.labels[kBackground]) continue;
-      names.push_back(label.name);
-      if (!is_called(label, name_or_value)) continue;
-      by_value[label.value] = length_mm;
-      found = true;
-    }
-    if (!found)
-      throw InputError(
-          fmt::format("{}: no label '{}'{}", image_path, name_or_value, did_you_mean(name_or_value, names)));
-  }
+  for (const auto& [name_or_value, length_mm] : lengths_mm)
+    for (const std::uint32_t value : values_called(name_or_value, labels, image_path))
+      by_value[value] = length_mm;
+  return by_value;
+}
+
+std::vector<SizeNear> near_by_value(const std::vector<NearLabels>& near, const LabelImage& image,
+                                    const std::string& image_path) {
+  std::vector<SizeNear> by_value;
+  for (const NearLabels& asked : near)
+    by_value.push_back({.labels = {values_called(asked.labels[0], image.labels, image_path),
+                                   values_called(asked.labels[1], image.labels, image_path)},
+                        .radius_mm = asked.radius_mm,
+                        .width_mm = asked.width_mm});
   return by_value;
 }
 

@@ -10,6 +10,7 @@
 
 #include "cli/options.h"
 #include "podm/label_image.h"
+#include "podm/meshing_options.h"
 
 namespace podm::cli {
 
@@ -26,6 +27,10 @@ void name_labels(LabelImage& image, const std::map<std::uint32_t, std::string>& 
 std::map<std::uint32_t, double> lengths_by_value(
     const std::vector<std::pair<std::string, double>>& lengths_mm, const LabelImage& image,
     const std::string& image_path);
+
+/// Labels by value, the background among them. Throws as lengths_by_value() does.
+std::vector<SizeNear> near_by_value(const std::vector<NearLabels>& near, const LabelImage& image,
+                                    const std::string& image_path);
 
 /// Voxels of every label, by its position in `labels`.
 std::vector<std::uint64_t> count_voxels(const LabelImage& image);

@@ -33,6 +33,8 @@ void refuse(const std::string& path, const char* option) {
 void check_command(const MeshCommand& command) {
   refuse(command.surface_path, "--surface");
   refuse(command.schedule_path, "--schedule");
+  refuse(command.size_image_path, "--size-image");
+  refuse(command.size_near.empty() ? "" : command.size_near[0].labels[0], "--size-near");
   check_options_on_ranks(command.meshing);
   check_pieces_path(command.mesh_path);
   if (command.verify) check_verifier(command.mesh_path);

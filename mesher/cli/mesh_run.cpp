@@ -38,6 +38,8 @@ void MeshRun::take(MeshingReport&& finished, const TetMesh& made) {
   mesh = numbers_of(made);
   if (!crossover.warning.empty()) report.warnings.push_back(crossover.warning);
   report.warnings.insert(report.warnings.end(), image.warnings.begin(), image.warnings.end());
+  if (const auto& sizes = options.sizes.image)
+    report.warnings.insert(report.warnings.end(), sizes->warnings.begin(), sizes->warnings.end());
 }
 
 std::map<std::string, std::string> MeshRun::verdicts() const {

@@ -46,6 +46,21 @@ std::pair<std::string, double> parse_label_length(const std::string& text, const
   return {label, parse_positive(text.substr(equals + 1), option + " " + label, "length in mm")};
 }
 
+NearLabels parse_near_labels(const std::string& text, const std::string& option) {
+  const std::size_t equals = text.rfind('='), comma = text.substr(0, equals).find(',');
+  if (equals == std::string::npos || comma == std::string::npos || comma == 0 || comma + 1 == equals)
+    throw InputError(fmt::format("{}: '{}' is not A,B=MM or A,B=MM:WIDTH, as in liver,0=1:3", option, text));
+  const std::string labels = text.substr(0, equals);
+  const std::string lengths = text.substr(equals + 1);
+  const std::size_t colon = lengths.find(':');
+  NearLabels near{.labels = {labels.substr(0, comma), labels.substr(comma + 1)}};
+  near.radius_mm = parse_positive(lengths.substr(0, colon), option + " " + labels, "length in mm");
+  near.width_mm = colon == std::string::npos
+                      ? near.radius_mm
+                      : parse_positive(lengths.substr(colon + 1), option + " " + labels, "width in mm");
+  return near;
+}
+
 std::vector<double> parse_numbers(const std::string& text, const std::string& option, std::size_t count,
                                   const std::string& form) {
   std::vector<double> numbers;

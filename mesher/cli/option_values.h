@@ -49,6 +49,15 @@ Choice parse_choice(const std::string& text, const std::string& option) {
 /// "liver=2" or "7=0.5": a label, by name or value, and a length in mm.
 std::pair<std::string, double> parse_label_length(const std::string& text, const std::string& option);
 
+/// A bound on cells near the interface of two labels.
+struct NearLabels {
+  std::array<std::string, 2> labels;  ///< by name or value
+  double radius_mm = 0, width_mm = 0;
+};
+/// "liver,0=1" or "3,4=0.5:2": labels, a length in mm and a width, which is that length where it is not
+/// given.
+NearLabels parse_near_labels(const std::string& text, const std::string& option);
+
 /// "0.5,-1,2": finite numbers, as many as asked for; `form` says what they should be.
 std::vector<double> parse_numbers(const std::string& text, const std::string& option, std::size_t count,
                                   const std::string& form);

@@ -10,6 +10,7 @@
 #include <variant>
 #include <vector>
 
+#include "cli/option_values.h"
 #include "podm/choices.h"
 #include "podm/image_io.h"
 #include "podm/mesh_image.h"
@@ -46,8 +47,10 @@ struct MeshCommand {
   std::string schedule_path;  ///< empty: no schedule
   std::string page_path;      ///< of --report; empty: no page
   std::string crossover;      ///< a number of threads or a file; empty: not asked
-  MeshingOptions meshing;  ///< lacks crossover and the two fields below, which need files, image or machine
+  MeshingOptions meshing;  ///< lacks crossover and the four fields below, which need files, image or machine
   std::vector<std::pair<std::string, double>> radius_of_mm;  ///< by label name or value
+  std::string size_image_path;                               ///< empty: none
+  std::vector<NearLabels> size_near;
   std::uint64_t max_memory_bytes = 0;  ///< what the process may take; 0: as the machine has
   int ranks_in_process = 0;            ///< podm-mpi's, and none of MPI's; 0: MPI's
   NetworkArguments network;            ///< between ranks in process

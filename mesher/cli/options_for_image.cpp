@@ -10,7 +10,9 @@
 #include "algorithms/team_size.h"
 #include "cli/labelled_image.h"
 #include "cli/process_memory.h"
+#include "make_size_grid.h"
 #include "podm/errors.h"
+#include "podm/image_io.h"
 
 namespace podm::cli {
 namespace {
@@ -50,11 +52,11 @@ void refuse_what_cannot_fit(const std::string& image_path, const LabelImage& ima
         image_path, stored_cells, num_ranks > 1 ? " a rank" : ""));
 }
 
-// What program, image and transform leave of the limit.
+// What program, image, transform and sizes by place leave of the limit.
 std::uint64_t bytes_for_mesh(std::uint64_t limit_bytes, const std::string& image_path,
                              const LabelImage& image, const MeshingOptions& options) {
-  std::uint64_t others =
-      resident_bytes() + transform_bytes(image, limit_bytes, loop_threads(options.team)) + kBytesOfOutput;
+  std::uint64_t others = resident_bytes() + transform_bytes(image, limit_bytes, loop_threads(options.team)) +
+                         bytes_of_size_grid(image, options.sizes) + kBytesOfOutput;
   if (options.smoothing_mm > 0) others += image.num_voxels() * kBytesPerSmoothedVoxel;
   if (others + kLeastBytesForMesh <= limit_bytes) return limit_bytes - others;
   throw InputError(fmt::format(
@@ -77,6 +79,10 @@ std::uint64_t bytes_for_image(std::uint64_t limit_bytes) {
 MeshingOptions options_as_given(const MeshCommand& command, const LabelImage& image) {
   MeshingOptions options = command.meshing;
   options.sizes.radius_of_mm = lengths_by_value(command.radius_of_mm, image, command.image.path);
+  options.sizes.near = near_by_value(command.size_near, image, command.image.path);
+  if (!command.size_image_path.empty())
+    options.sizes.image = std::make_shared<const SizeImage>(
+        read_size_image(command.size_image_path, bytes_for_image(limit_bytes)));
   refuse_coarse_sampling(command, image);
   return options;
 }

@@ -45,6 +45,19 @@ Json optimize_of(const OptimizeOptions& optimize) {
           {"largest_dihedral_deg", optimize.largest_dihedral_deg}};
 }
 
+Json size_image_of(const MeshRun& run) {
+  const std::string& path = run.command.size_image_path;
+  if (path.empty()) return nullptr;
+  return {{"path", path}, {"sha256", file_sha256(path)}};
+}
+
+Json size_near_of(const SizeOptions& sizes) {
+  Json all = Json::array();
+  for (const SizeNear& near : sizes.near)
+    all.push_back({{"labels", near.labels}, {"radius_mm", near.radius_mm}, {"width_mm", near.width_mm}});
+  return all;
+}
+
 // The options that were asked for; 0 means what it means in MeshingOptions.
 Json options_of(const MeshRun& run) {
   const MeshingOptions& options = run.options;
@@ -53,6 +66,9 @@ Json options_of(const MeshRun& run) {
     radius_of[std::to_string(value)] = radius_mm;
   return {{"radius_mm", options.sizes.radius_mm},
           {"radius_of_mm", radius_of},
+          {"size_image", size_image_of(run)},
+          {"size_near", size_near_of(options.sizes)},
+          {"grade", options.sizes.grade},
           {"delta_mm", options.sizes.delta_mm},
           {"target_elements", options.sizes.target_elements},
           {"target_tolerance_percent", options.sizes.target_tolerance_percent},
@@ -320,7 +336,10 @@ Json record(const MeshRun& run) {
         {"affine", affine_rows(run.image)}}},
       {"options", options_of(run)},
       {"dropped_islands", dropped_islands_of(run.image)},
-      {"used", {{"radius_mm", report.radius_mm}, {"delta_mm", report.delta_mm}}},
+      {"used",
+       {{"radius_mm", report.radius_mm},
+        {"size_image_factor", report.size_image_factor},
+        {"delta_mm", report.delta_mm}}},
       {"seed", run.options.team.seed},
       {"threads",
        {{"asked", run.options.team.threads},

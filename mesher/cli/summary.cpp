@@ -1,6 +1,7 @@
 #include "cli/summary.h"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <algorithm>
 
@@ -128,6 +129,18 @@ std::string calibration_text(const MeshingReport& report) {
       dropped > 0 ? fmt::format(" with {} mesh{} that missed", dropped, dropped > 1 ? "es" : "") : "");
 }
 
+std::string sizes_by_place_text(const MeshRun& run) {
+  const SizeOptions& sizes = run.options.sizes;
+  std::vector<std::string> parts;
+  if (sizes.image != nullptr)
+    parts.push_back(fmt::format("at most {:.4g} times {}", run.report.size_image_factor, sizes.image->path));
+  for (const SizeNear& near : sizes.near)
+    parts.push_back(fmt::format("{:.4g} mm within {:.4g} mm of labels {} | {}", near.radius_mm, near.width_mm,
+                                fmt::join(near.labels[0], ", "), fmt::join(near.labels[1], ", ")));
+  if (sizes.grade > 0) parts.push_back(fmt::format("growing by at most {:.4g} mm a mm", sizes.grade));
+  return parts.empty() ? "" : fmt::format("           {}\n", fmt::join(parts, ";\n           "));
+}
+
 std::string time_text(const MeshRun& run) {
   const auto phases = run.phases_s();
   std::string text = "time      ";
@@ -155,7 +168,7 @@ std::string summary(const MeshRun& run) {
   text += fmt::format("sizes      radius {}, delta {:.4g} mm\n",
                       report.radius_mm > 0 ? fmt::format("{:.4g} mm", report.radius_mm) : "unbounded",
                       report.delta_mm);
-  text += time_text(run) + run.ranks_text;
+  text += sizes_by_place_text(run) + time_text(run) + run.ranks_text;
   text += fmt::format("memory     {:.3f} GiB at most\n",
                       static_cast<double>(run.peak_rss_bytes) / (1024.0 * 1024 * 1024));
   if (!run.mesh_sha256.empty()) text += fmt::format("sha256     {}\n", run.mesh_sha256);

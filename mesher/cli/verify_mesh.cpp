@@ -59,7 +59,8 @@ std::vector<std::string> claims_to_verify(const MeshRun& run,
   if (run.report.promised_dihedral_deg) claims += ",dihedral";
   const double radius_mm = run.report.radius_mm;
   const auto& radius_of = run.options.sizes.radius_of_mm;
-  if (radius_mm > 0 || !radius_of.empty()) claims += ",size";
+  const std::string& size_image = run.command.size_image_path;
+  if (radius_mm > 0 || !radius_of.empty() || !size_image.empty()) claims += ",size";
   if (run.command.verify_fidelity) claims += ",fidelity";
   if (run.command.verify_fidelity || !is_delaunay) {
     options.insert(options.end(), {"--delta", fmt::format("{}", run.report.delta_mm)});
@@ -68,6 +69,11 @@ std::vector<std::string> claims_to_verify(const MeshRun& run,
   const auto image = image_options(run, write_image);
   options.insert(options.end(), image.begin(), image.end());
   if (radius_mm > 0) options.insert(options.end(), {"--radius", fmt::format("{}", radius_mm)});
+  if (!size_image.empty()) {
+    options.insert(options.end(), {"--size-image", size_image});
+    if (const double factor = run.report.size_image_factor; factor != 1)
+      options.insert(options.end(), {"--size-factor", fmt::format("{}", factor)});
+  }
   // A foreground label 0 goes by the background's value there.
   const std::uint32_t background = run.command.image.selection.background;
   for (const auto& [label, radius] : radius_of)

@@ -5,7 +5,6 @@
 #include <numeric>
 
 #include "check_options.h"
-#include "default_sizes.h"
 #include "distributed/pieces.h"
 #include "distributed/report_of_ranks.h"
 #include "distributed/together.h"
@@ -29,6 +28,9 @@ void check_options_on_ranks(const MeshingOptions& options) {
   refuse(options.algorithm == Algorithm::kPodmHome, "algorithm " + to_string(options.algorithm));
   refuse(options.team.executor == Executor::kVirtual, "virtual workers");
   refuse(options.sizes.target_elements > 0, "a target number of elements");
+  refuse(options.sizes.image != nullptr, "a size image");
+  refuse(!options.sizes.near.empty(), "a size near interfaces");
+  refuse(options.sizes.grade > 0, "a grade of sizes");
   refuse(options.min_dihedral_deg > 0, "a least dihedral angle");
   refuse(options.smoothing_mm > 0, "smooth interfaces");
   refuse(options.optimize.is_wanted, "optimisation");
@@ -118,7 +120,7 @@ class RunOnRank {
 
   void refine(MeshingReport& own) {
     SizeOptions sizes = options_.sizes;
-    sizes.delta_mm = delta_mm_for(image_, sizes);
+    sizes.delta_mm = phases_.delta_mm();
     phases_.refine(sizes, [&](const Problem& problem, const Team& team, StopControl& stop) {
       if (ranks_.size() == 1) return refine_alone(problem, team, stop);
       const double start_s = ranks_.seconds();

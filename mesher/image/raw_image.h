@@ -17,6 +17,7 @@ struct RawImage {
   std::string path;       ///< for messages
   std::vector<int> size;  ///< voxels per axis, as many axes as the file has
   VoxelType type = VoxelType::kUint8;
+  double slope = 1, intercept = 0;         ///< a value is slope * voxel + intercept
   std::array<double, 12> voxel_to_ras{};   ///< row-major 3x4, mm
   std::vector<unsigned char> bytes;        ///< voxels, x fastest, this machine's byte order
   std::vector<std::string> warnings = {};  ///< become those of LabelImage

@@ -20,13 +20,6 @@ bool has_ending(const std::string& path, std::initializer_list<const char*> endi
                      [&](const char* ending) { return path.ends_with(ending); });
 }
 
-RawImage read_raw(const std::string& path, std::uint64_t most_bytes) {
-  if (has_ending(path, {".inr", ".inr.gz"})) return read_inr(path, most_bytes);
-  if (has_ending(path, {".nii", ".nii.gz"})) return read_nifti(path, most_bytes);
-  if (has_ending(path, {".nrrd", ".nhdr", ".mha", ".mhd"})) return read_with_itk(path, most_bytes);
-  refuse(path, "unknown image format (known: .nii .nii.gz .nrrd .nhdr .mha .mhd .inr .inr.gz, phantom:NAME)");
-}
-
 // Labels by value: the background is not known yet.
 LabelImage index_array(const VoxelArray& array, std::array<double, 12> voxel_to_ras, const std::string& path,
                        std::size_t threads) {
@@ -41,6 +34,8 @@ LabelImage index_array(const VoxelArray& array, std::array<double, 12> voxel_to_
 
 LabelImage read_file(const std::string& path, std::size_t threads, std::uint64_t most_bytes) {
   const RawImage raw = read_raw(path, most_bytes);
+  if (raw.slope != 1 || raw.intercept != 0)
+    refuse(path, "a label image is needed (the header scales the voxels: scl_slope, scl_inter)");
   LabelImage image = index_array(array_of(raw), raw.voxel_to_ras, path, threads);
   image.warnings = raw.warnings;
   return image;
@@ -58,6 +53,13 @@ LabelImage read_phantom(const std::string& spec, int threads) {
 }
 
 }  // namespace
+
+RawImage read_raw(const std::string& path, std::uint64_t most_bytes) {
+  if (has_ending(path, {".inr", ".inr.gz"})) return read_inr(path, most_bytes);
+  if (has_ending(path, {".nii", ".nii.gz"})) return read_nifti(path, most_bytes);
+  if (has_ending(path, {".nrrd", ".nhdr", ".mha", ".mhd"})) return read_with_itk(path, most_bytes);
+  refuse(path, "unknown image format (known: .nii .nii.gz .nrrd .nhdr .mha .mhd .inr .inr.gz, phantom:NAME)");
+}
 
 LabelImage read_image(const std::string& path, const LabelSelection& selection, int threads,
                       std::uint64_t most_bytes) {

@@ -113,8 +113,10 @@ RawImage read_nifti(const std::string& path, std::uint64_t most_bytes) {
   raw.path = path;
   raw.size = sizes(header, path);
   raw.type = voxel_type(path, header.datatype);
-  const bool is_scaled = header.scl_slope != 0 && (header.scl_slope != 1 || header.scl_inter != 0);
-  if (is_scaled) refuse(path, "a label image is needed (the header scales the voxels: scl_slope, scl_inter)");
+  if (header.scl_slope != 0) {  // 0: voxels are not scaled
+    raw.slope = header.scl_slope;
+    raw.intercept = header.scl_inter;
+  }
   const mat44 a = affine(header, path);
   for (std::size_t row = 0; row < 3; ++row)
     for (std::size_t column = 0; column < 4; ++column)

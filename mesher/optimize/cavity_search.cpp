@@ -58,8 +58,8 @@ double CavitySearch::six_volumes(const LocalCell& c) const {
   return determinant(p[c[0]], p[c[1]], p[c[2]], p[c[3]]);
 }
 
-void CavitySearch::begin(double squared_radius) {
-  squared_radius_ = squared_radius;
+void CavitySearch::begin(const LabelBound& bound) {
+  bound_ = bound;
   begun_at_ = ++calls_;
 }
 
@@ -234,7 +234,7 @@ float CavitySearch::find_quality(const std::array<Local, 4>& v) const {
   CellPoints cell{p[v[0]], p[v[1]], p[v[2]], p[v[3]]};
   const bool is_positive = determinant(cell.a, cell.b, cell.c, cell.d) > 0;
   if (!is_positive) std::swap(cell.a, cell.b);
-  const double quality = quality_.of_new(cell, squared_radius_);
+  const double quality = quality_.of_new(cell, bound_);
   return static_cast<float>(is_positive ? quality : -quality);
 }
 

@@ -25,7 +25,7 @@ class CavitySearch {
 
   /// Points that are given from now on have nothing to do with those before. Until then each has the same
   /// number whenever it is given.
-  void begin(double squared_radius);
+  void begin(const LabelBound& bound);
   /// Fills the inside of the boundary, whose facets turn counter-clockwise seen from there, with cells that
   /// are better than `floor`. False: there are none, or they were not found in so many steps. The points are
   /// `points` and, if there is one, `added`, which is numbered as the last.
@@ -69,7 +69,8 @@ class CavitySearch {
   const CellQuality& quality_;
   std::vector<Point> points_;
   std::vector<char> is_on_boundary_;
-  double squared_radius_ = 0, floor_ = 0, volume_ = 0, filled_ = 0;
+  LabelBound bound_;
+  double floor_ = 0, volume_ = 0, filled_ = 0;
   unsigned max_steps_ = 0, num_steps_ = 0;
   std::size_t num_kept_ = 0;  // points that are no added one
   std::uint32_t calls_ = 0, begun_at_ = 0;

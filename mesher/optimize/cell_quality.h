@@ -5,6 +5,7 @@
 #include "geometry/circumsphere.h"
 #include "geometry/dihedral.h"
 #include "podm/bounds.h"
+#include "refine/size_field.h"
 
 namespace podm {
 
@@ -25,16 +26,18 @@ class CellQuality {
   double of(const CellPoints& p) const { return bounds_.quality(p.dihedral()); }
   /// The same of a cell that keeps the bounds on ratio and circumradius, in rounded arithmetic with a margin;
   /// 0 of one that does not.
-  double of_new(const CellPoints& p, double squared_radius_bound) const {
+  double of_new(const CellPoints& p, const LabelBound& bound) const {
     const Vector e1 = p.a - p.d, e2 = p.b - p.d, e3 = p.c - p.d;
     const double s1 = squared_length(e1), s2 = squared_length(e2), s3 = squared_length(e3);
     const double shortest2 = std::min(
         {s1, s2, s3, squared_distance(p.a, p.b), squared_distance(p.a, p.c), squared_distance(p.b, p.c)});
-    const double radius2 = squared_length(relative_sphere(e1, e2, e3, s1, s2, s3).center);
+    const Vector to_center = relative_sphere(e1, e2, e3, s1, s2, s3).center;
+    const double radius2 = squared_length(to_center);
     // Not a number where the cell is flat.
     if (!(radius2 <
-          kMargin * std::min(kRadiusEdgeBound * kRadiusEdgeBound * shortest2, squared_radius_bound)))
+          kMargin * std::min(kRadiusEdgeBound * kRadiusEdgeBound * shortest2, bound.most_squared())))
       return 0;
+    if (!bound.allows(radius2, p.d + to_center)) return 0;
     return of(p);
   }
 

@@ -6,20 +6,20 @@ namespace podm {
 
 // The worse of the two cells over and under it.
 double EdgeRemoval::quality_of_triangle(unsigned i, unsigned k, unsigned j) const {
-  const double over = quality_.of_new({points_[i], points_[k], points_[j], top_}, squared_radius_);
+  const double over = quality_.of_new({points_[i], points_[k], points_[j], top_}, bound_);
   if (over <= floor_) return 0;
-  const double under = quality_.of_new({points_[i], points_[j], points_[k], bottom_}, squared_radius_);
+  const double under = quality_.of_new({points_[i], points_[j], points_[k], bottom_}, bound_);
   return under <= floor_ ? 0 : std::min(over, under);
 }
 
 // best_[i][j]: of the part of the ring from i to j that the chord ij cuts off.
-double EdgeRemoval::plan(const std::vector<Point>& points, const EdgeRing& ring, double squared_radius,
+double EdgeRemoval::plan(const std::vector<Point>& points, const EdgeRing& ring, const LabelBound& bound,
                          double floor) {
   const unsigned n = ring.size;
   for (unsigned i = 0; i < n; ++i) points_[i] = points[ring.vertices[i]];
   bottom_ = points[ring.bottom];
   top_ = points[ring.top];
-  squared_radius_ = squared_radius;
+  bound_ = bound;
   floor_ = floor;
   for (unsigned i = 0; i + 1 < n; ++i) best_[i][i + 1] = std::numeric_limits<double>::infinity();
   for (unsigned length = 2; length < n; ++length) {

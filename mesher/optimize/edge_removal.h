@@ -24,8 +24,8 @@ class EdgeRemoval {
   explicit EdgeRemoval(const CellQuality& quality) : quality_(quality) {}
 
   /// Finds the triangulation whose worst cell is best: returns its quality, 0 if all have cells that break a
-  /// bound or are no better than `floor`. `squared_radius` bounds the new cells.
-  double plan(const std::vector<Point>& points, const EdgeRing& ring, double squared_radius, double floor);
+  /// bound or are no better than `floor`. `bound` is that of the new cells.
+  double plan(const std::vector<Point>& points, const EdgeRing& ring, const LabelBound& bound, double floor);
   /// The cells of the plan, of that ring.
   void list_cells(const EdgeRing& ring, std::vector<LocalCell>& cells) const;
 
@@ -36,7 +36,8 @@ class EdgeRemoval {
   const CellQuality& quality_;
   std::array<Point, EdgeRing::kMax> points_{};
   Point bottom_, top_;
-  double squared_radius_ = 0, floor_ = 0;
+  LabelBound bound_;
+  double floor_ = 0;
   std::array<std::array<double, EdgeRing::kMax>, EdgeRing::kMax> best_{};
   std::array<std::array<std::uint8_t, EdgeRing::kMax>, EdgeRing::kMax> apex_{};
 };

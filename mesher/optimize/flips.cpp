@@ -65,7 +65,7 @@ template <class Locks>
 StepResult Flips<Locks>::plan_edge(const Subject& subject, unsigned edge) {
   if (const StepResult walked = walk_ring(subject, edge); walked != StepResult::kDone) return walked;
   const double floor = std::max(best_.quality, step_over(cavity_.worst(quality_)));
-  const double quality = edge_removal_.plan(cavity_.points(), ring_, subject.squared_radius, floor);
+  const double quality = edge_removal_.plan(cavity_.points(), ring_, subject.bound, floor);
   if (quality > floor) best_ = {quality, true, edge};
   return StepResult::kDone;
 }
@@ -113,9 +113,8 @@ StepResult Flips<Locks>::plan_facet(const Subject& subject, unsigned facet) {
 template <class Locks>
 StepResult Flips<Locks>::plan_side(const Subject& subject, const Side& side, double& quality) {
   constexpr int kMaxDepth = 2;
-  quality =
-      quality_.of_new({mesh_.point(bottom_), mesh_.point(top_), mesh_.point(side.x), mesh_.point(side.y)},
-                      subject.squared_radius);
+  quality = quality_.of_new(
+      {mesh_.point(bottom_), mesh_.point(top_), mesh_.point(side.x), mesh_.point(side.y)}, subject.bound);
   const std::size_t num_around = around_.size(), num_cells = on_facets_.size();
   if (quality < 1 && side.depth < kMaxDepth) {
     double of_two = 0;

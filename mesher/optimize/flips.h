@@ -15,7 +15,7 @@ namespace podm {
 struct Subject {
   CellId cell = 0;
   LabelIndex label = kBackground;
-  double squared_radius = 0;  // bounds new cells
+  LabelBound bound;  // on new cells
 
   LabelIndex label_of(const Mesh& mesh, CellId c) const { return c == cell ? label : mesh.label(c); }
 };

@@ -69,7 +69,7 @@ Outcome Optimizer<Locks>::attempt_next() {
 template <class Locks>
 StepResult Optimizer<Locks>::better(CellId c) {
   const LabelIndex label = mesh_.label(c);
-  subject_ = {c, label, parameters_.sizes.squared_radius(label)};
+  subject_ = {c, label, {parameters_.sizes, label}};
   if (const StepResult added = cavity_.add(c); added != StepResult::kDone) return added;
   if (pass_.is_for_cells_beyond_bound && cell_quality(mesh_, c, parameters_.bound) >= 1)
     return StepResult::kNotBetter;
@@ -134,8 +134,7 @@ StepResult Optimizer<Locks>::move(VertexId v) {
   }
   Point to = cavity_.point(center);
   const double floor = step_over(cavity_.worst(parameters_.aim));
-  if (!smoothing_.move(cavity_.points(), boundary_, subject_.squared_radius, floor, to))
-    return StepResult::kNotBetter;
+  if (!smoothing_.move(cavity_.points(), boundary_, subject_.bound, floor, to)) return StepResult::kNotBetter;
   const Local moved = cavity_.add_point(to);
   new_cells_.clear();
   for (const LocalFacet& f : boundary_) new_cells_.push_back({f[0], f[1], f[2], moved});
@@ -153,7 +152,7 @@ StepResult Optimizer<Locks>::search(OptimizationMeans means, bool adds_vertex) {
   } else {
     candidates_.assign(1, std::nullopt);
   }
-  search_.begin(subject_.squared_radius);
+  search_.begin(subject_.bound);
   const bool is_within = cell_quality(mesh_, subject_.cell, parameters_.bound) >= 1;
   for (const std::size_t size :
        std::span(kSearchSizes).first(is_within ? kNumSizesWithinBounds : kSearchSizes.size())) {
@@ -256,7 +255,7 @@ StepResult Optimizer<Locks>::peel_to(LabelIndex label) {
     if (const StepResult walked = flips_.walk_ring(subject_, peel.edge()); walked != StepResult::kDone)
       return walked;
   }
-  subject_ = {subject_.cell, label, parameters_.sizes.squared_radius(label)};
+  subject_ = {subject_.cell, label, {parameters_.sizes, label}};
   if (label != kBackground) {
     const StepResult flipped = flip(OptimizationMeans::kPeels);
     if (flipped == StepResult::kDone || flipped == StepResult::kLockConflict) return flipped;

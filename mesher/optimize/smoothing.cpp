@@ -56,8 +56,8 @@ Vector Smoothing::ascent(const Point& at, double scale) {
 }
 
 bool Smoothing::move(const std::vector<Point>& points, const std::vector<LocalFacet>& facets,
-                     double squared_radius, double floor, Point& at) {
-  squared_radius_ = squared_radius;
+                     const LabelBound& bound, double floor, Point& at) {
+  bound_ = bound;
   triangles_.clear();
   double shortest2 = std::numeric_limits<double>::infinity();
   for (const LocalFacet& f : facets) {

@@ -17,7 +17,7 @@ class Smoothing {
 
   /// The vertex at `at` has these facets opposite it, each counter-clockwise seen from it. Moves it to where
   /// the worst cell is better than `floor`, or returns false.
-  bool move(const std::vector<Point>& points, const std::vector<LocalFacet>& facets, double squared_radius,
+  bool move(const std::vector<Point>& points, const std::vector<LocalFacet>& facets, const LabelBound& bound,
             double floor, Point& at);
 
  private:
@@ -25,7 +25,7 @@ class Smoothing {
 
   double cell(std::size_t i, const Point& at) const {
     const Triangle& t = triangles_[i];
-    return quality_.of_new({t.a, t.b, t.c, at}, squared_radius_);
+    return quality_.of_new({t.a, t.b, t.c, at}, bound_);
   }
   double worst(const Point& at, double floor) const;  // if it is better than that
   Vector ascent(const Point& at, double scale);
@@ -34,7 +34,7 @@ class Smoothing {
     Point a, b, c;
   };
   const CellQuality& quality_;
-  double squared_radius_ = 0;
+  LabelBound bound_;
   std::vector<Triangle> triangles_;
   std::vector<double> values_;
   std::vector<Vector> gradients_;

@@ -32,7 +32,7 @@ bool MoveJudge::keeps_spacing(const Point& from) const {
 
 // Labels are asked for where something depends on them.
 std::optional<double> MoveJudge::quality(double least) {
-  const double smallest = parameters_.sizes.smallest_squared_radius() * (1 - kMargin);
+  const double smallest = parameters_.sizes.smallest_squared_radius() * (1 - kGridMargin);
   double lowest = std::numeric_limits<double>::infinity();
   const bool is_good = all_of_planned([&](CellId c) {
     const double quality = cell_quality(move_, c, bounds_);
@@ -44,7 +44,8 @@ std::optional<double> MoveJudge::quality(double least) {
     const LabelIndex label = rules_.label_of(c);
     if (label == kBackground) return true;
     lowest = std::min(lowest, quality);
-    return quality >= least && !has_poor_ratio && !rules_.is_large(squared_radius, label);
+    return quality >= least && !has_poor_ratio &&
+           !rules_.is_large(squared_radius, label, move_.cell(c).center);
   });
   return is_good ? std::optional(lowest) : std::nullopt;
 }

@@ -193,15 +193,18 @@ bool RulesOn<Cells>::has_poor_ratio(CellId c, double squared_radius) const {
 }
 
 template <class Cells>
-bool RulesOn<Cells>::is_large(double squared_radius, LabelIndex label) const {
-  return squared_radius > parameters_.sizes.squared_radius(label) * (1 - kMargin);
+bool RulesOn<Cells>::is_large(double squared_radius, LabelIndex label, const Point& center) const {
+  const SizeField& sizes = parameters_.sizes;
+  if (squared_radius > sizes.squared_radius_of_label(label) * (1 - kMargin)) return true;
+  return sizes.has_grid() && squared_radius > sizes.smallest_squared_radius() * (1 - kGridMargin) &&
+         squared_radius > sizes.squared_radius_of_grid(center) * (1 - kGridMargin);
 }
 
 template <class Cells>
 std::optional<Rule> RulesOn<Cells>::volume_rule(const Examination& t) const {
   if (t.label == kBackground) return is_large_in_shell(t) ? std::optional(Rule::kR5) : std::nullopt;
   if (has_poor_ratio(t.cell, t.squared_radius)) return Rule::kR4;
-  if (is_large(t.squared_radius, t.label)) return Rule::kR5;
+  if (is_large(t.squared_radius, t.label, t.center)) return Rule::kR5;
   return std::nullopt;
 }
 
@@ -213,15 +216,22 @@ bool RulesOn<Cells>::is_sound(CellId c) const {
 
 template <class Cells>
 bool RulesOn<Cells>::is_large_in_shell(const Examination& t) const {
-  return parameters_.shell_mm > 0 && t.squared_radius > square(parameters_.shell_radius_mm) &&
-         is_in(parameters_.clamp_box, t.center) &&
-         distance_lower_bound(t.center, parameters_.shell_mm) < parameters_.shell_mm;
+  if (parameters_.shell_mm == 0) return false;
+  double share = 1;
+  if (parameters_.sizes.has_grid())
+    share = std::min(
+        1.0, std::sqrt(parameters_.sizes.squared_radius_of_grid(t.center)) / parameters_.shell_radius_mm);
+  const double reach_mm = share * parameters_.shell_mm;
+  return t.squared_radius > square(share * parameters_.shell_radius_mm) &&
+         is_in(parameters_.clamp_box, t.center) && distance_lower_bound(t.center, reach_mm) < reach_mm;
 }
 
 template <class Cells>
 bool RulesOn<Cells>::r6_removes(VertexId v, const Point& z) const {
-  return mesh_.vertex(v).kind == VertexKind::kCircumcenter &&
-         squared_distance(mesh_.point(v), z) < squared_two_delta_;
+  if (mesh_.vertex(v).kind != VertexKind::kCircumcenter) return false;
+  const double squared = squared_distance(mesh_.point(v), z);
+  return squared < squared_two_delta_ &&
+         (!parameters_.sizes.has_grid() || squared < parameters_.sizes.squared_radius_of_grid(z));
 }
 
 template class RulesOn<Mesh>;

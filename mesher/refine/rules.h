@@ -8,10 +8,15 @@
 //       or an angle of at most 30 degrees
 //   R4  insert c if it is inside and radius-edge >= 1.93
 //   R5  insert c if it is inside and r > r_t
-//   R6  after R1 and R3, whose point is z: remove circumcentre vertices closer than 2 delta to z
-// Spacing. Let q = 1.93, k = sqrt(2 + sqrt(3)) = 1.93185, s = min(delta, r_t / k), and m the least distance
-// of two isosurface vertices, or s where that is less. Isosurface vertices stay, so m never grows.
-//   I2, I3  All other pairs are q m apart: R2 keeps 2 delta from every vertex, R6 from free ones; R5 keeps
+//   R6  after R1 and R3, whose point is z: remove circumcentre vertices closer than 2 delta to z, or than r_t
+//   is
+//       there, where a grid asks for small cells (size_grid.h)
+// r_t is the label's, and at most what a grid asks for at c. Of the proof it needs but its least value in the
+// object, where all of R4's, R5's and R6's points are: call that r_t, and the rest stands as it is for a
+// constant. Spacing. Let q = 1.93, k = sqrt(2 + sqrt(3)) = 1.93185, s = min(delta, r_t / k), and m the least
+// distance of two isosurface vertices, or s where that is less. Isosurface vertices stay, so m never grows.
+//   I2, I3  All other pairs are q m apart: R2 keeps 2 delta from every vertex, R6 that or r_t from free ones;
+//   R5 keeps
 //           r_t >= k s, and R4 q times an edge, none of which is shorter than m.
 //   I1      m >= s, but for what q < k costs. R1 keeps delta >= s. R3's ball is empty and no smaller than its
 //           facet's circumcircle, whose radius is no less than a side if the facet has a small angle, and
@@ -21,8 +26,8 @@
 // So the published 1.93, k rounded down, lets R4 insert a vertex up to 0.1 % nearer than k s (one in a
 // thousand of R4's is), and R3 beside it a sample up to 0.09 % nearer than s, but only if three lengths are
 // within 0.3 % of their least. The floor of worker.cpp ends any chain of these. Without such, m = s. So the
-// process ends, on non-manifold interfaces too. Rules are tightened by kMargin, which is more than rounded
-// arithmetic errs, unless the object is a million radii from the origin.
+// process ends, on non-manifold interfaces too. Rules are tightened by kMargin (R5 by kGridMargin on a grid),
+// which is more than rounded arithmetic errs, unless the object is a million radii from the origin.
 #pragma once
 
 #include <concepts>
@@ -45,7 +50,8 @@ struct Parameters {
   Box clamp_box;          // circumcentres beyond it are moved onto it, see virtual_box.h
   double spacing_mm = 0;  // s
   /// The initial mesh of PDR also bounds cells around the object: R5 holds outside too, with
-  /// `shell_radius_mm`, for circumcentres up to `shell_mm` from the isosurface. 0: there is no such shell.
+  /// `shell_radius_mm`, for circumcentres up to `shell_mm` from the isosurface; both are less where a grid of
+  /// sizes asks for smaller cells. 0: there is no such shell.
   double shell_mm = 0, shell_radius_mm = 0;
 };
 
@@ -96,7 +102,7 @@ class RulesOn {
   std::optional<Rule> volume_rule(const Examination& t) const;
   /// What R4 and R5 ask of a cell inside.
   bool has_poor_ratio(CellId c, double squared_radius) const;
-  bool is_large(double squared_radius, LabelIndex label) const;
+  bool is_large(double squared_radius, LabelIndex label, const Point& center) const;
   /// Whether the cell asks for nothing. False may be said of one whose R1 sample is covered farther away.
   bool is_sound(CellId c) const;
   /// Whether R6 removes v when z is inserted.

@@ -129,7 +129,7 @@ LocatedPoint CircumcenterLocator::centroid(CellId cell) const {
 }
 
 ExactCircumcenterLabel::ExactCircumcenterLabel(const Mesh& mesh, const Image& image, Space space)
-    : mesh_(mesh), image_(image), mesh_to_voxels_(exact_mesh_to_voxels(image, space)) {}
+    : mesh_(mesh), image_(image), mesh_to_voxels_(exact_mesh_to_voxels(image.voxel_to_ras, space)) {}
 
 std::optional<std::uint32_t> ExactCircumcenterLabel::operator()(CellId cell) const {
   std::array<Vector<mpq_class>, 4> v;

@@ -4,6 +4,7 @@
 #include "claim.h"
 #include "geometry/adjacency.h"
 #include "image/image.h"
+#include "image/size_image.h"
 #include "options.h"
 #include "schedule.h"
 
@@ -14,7 +15,8 @@ ClaimResult check_structure(const Mesh& mesh, const Adjacency& adjacency, const 
 ClaimResult check_delaunay(const Mesh& mesh, const Adjacency& adjacency, const Options& options);
 ClaimResult check_radius_edge(const Mesh& mesh, const Options& options);
 ClaimResult check_boundary_angles(const Mesh& mesh, const Adjacency& adjacency, const Options& options);
-ClaimResult check_size(const Mesh& mesh, const Options& options);
+/// `sizes` null: bounds are those of labels.
+ClaimResult check_size(const Mesh& mesh, const SizeImage* sizes, const Options& options);
 ClaimResult check_dihedral(const Mesh& mesh, const Options& options);
 /// `schedule` null: only what can be said without one, that label interfaces match.
 ClaimResult check_conformity(const Mesh& mesh, const Adjacency& adjacency, const Schedule* schedule,

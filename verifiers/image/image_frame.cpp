@@ -55,18 +55,18 @@ ExactMatrix exact_mesh_to_world(const Image& image, Space space) {
 
 }  // namespace
 
-std::array<mpq_class, 12> exact_mesh_to_voxels(const Image& image, Space space) {
+std::array<mpq_class, 12> exact_mesh_to_voxels(const std::array<double, 12>& voxel_to_ras, Space space) {
   if (space == Space::kVoxel) return exact(kIdentity);
-  const ExactMatrix from_ras = inverse(exact(image.voxel_to_ras));
+  const ExactMatrix from_ras = inverse(exact(voxel_to_ras));
   return space == Space::kLps ? with_flipped_input(from_ras) : from_ras;
 }
 
 ImageFrame::ImageFrame(const Image& image, Space space)
     : space_(space),
-      mesh_to_voxels_(rounded(exact_mesh_to_voxels(image, space))),
+      mesh_to_voxels_(rounded(exact_mesh_to_voxels(image.voxel_to_ras, space))),
       mesh_to_world_(rounded(exact_mesh_to_world(image, space))),
       voxels_to_world_(rounded(exact(image.voxel_to_ras))),
-      world_to_voxels_(rounded(exact_mesh_to_voxels(image, Space::kRas))) {}
+      world_to_voxels_(rounded(exact_mesh_to_voxels(image.voxel_to_ras, Space::kRas))) {}
 
 Point ImageFrame::voxels_to_mesh(const Point& u) const {
   if (space_ == Space::kVoxel) return u;

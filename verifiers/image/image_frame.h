@@ -12,7 +12,7 @@ namespace podm::verify {
 
 /// Row-major 3x4 from the coordinates of a mesh in `space` to voxel indices, exactly. A mesh that states no
 /// space is taken to be RAS.
-std::array<mpq_class, 12> exact_mesh_to_voxels(const Image& image, Space space);
+std::array<mpq_class, 12> exact_mesh_to_voxels(const std::array<double, 12>& voxel_to_ras, Space space);
 
 class ImageFrame {
  public:

@@ -1,9 +1,11 @@
 // An image as its file stores it, what every format's reader gives, and the checks they share.
 #pragma once
 
+#include <algorithm>
 #include <array>
 #include <cstddef>
 #include <cstdint>
+#include <cstring>
 #include <string>
 #include <vector>
 
@@ -19,6 +21,7 @@ struct RawImage {
   std::vector<std::int64_t> size;  ///< voxels per axis, as many axes as the file has
   VoxelType type = VoxelType::kUint8;
   bool is_swapped = false;                 ///< voxels are in the byte order that is not this machine's
+  double slope = 1, intercept = 0;         ///< a value is slope * voxel + intercept
   std::array<double, 12> voxel_to_ras{};   ///< row-major 3x4, mm
   std::vector<unsigned char> bytes;        ///< voxels, x fastest
   std::vector<std::string> warnings = {};  ///< of Image
@@ -32,6 +35,47 @@ struct RawImage {
 /// when the file can hold that much.
 void read_voxels(const std::string& path, RawImage& raw, ByteSource& source);
 
+/// The voxel spacing, mm. An affine that is orthogonal but for the rounding of a header is made exactly so,
+/// in place. Throws InputError where it is singular or not finite.
+std::array<double, 3> settle_affine(const std::string& path, std::array<double, 12>& voxel_to_ras);
+
+/// Calls use(number, value) for every voxel, with the value in the type that the file has it in.
+template <class Use>
+void for_each_voxel(RawImage& raw, const Use& use) {
+  const auto each = [&]<class Voxel>(Voxel) {
+    for (std::size_t i = 0; i < raw.bytes.size() / sizeof(Voxel); ++i) {
+      unsigned char* const bytes = raw.bytes.data() + i * sizeof(Voxel);
+      if (raw.is_swapped) std::reverse(bytes, bytes + sizeof(Voxel));
+      Voxel voxel;
+      std::memcpy(&voxel, bytes, sizeof voxel);
+      use(i, voxel);
+    }
+  };
+  switch (raw.type) {
+    case VoxelType::kUint8:
+      return each(std::uint8_t());
+    case VoxelType::kInt8:
+      return each(std::int8_t());
+    case VoxelType::kUint16:
+      return each(std::uint16_t());
+    case VoxelType::kInt16:
+      return each(std::int16_t());
+    case VoxelType::kUint32:
+      return each(std::uint32_t());
+    case VoxelType::kInt32:
+      return each(std::int32_t());
+    case VoxelType::kUint64:
+      return each(std::uint64_t());
+    case VoxelType::kInt64:
+      return each(std::int64_t());
+    case VoxelType::kFloat:
+      return each(float());
+    case VoxelType::kDouble:
+      return each(double());
+  }
+}
+
+RawImage read_raw(const std::string& path);    ///< by the format that the name tells
 RawImage read_inr(const std::string& path);    ///< INRIMAGE-4
 RawImage read_nifti(const std::string& path);  ///< NIfTI-1 in one file, any affine
 RawImage read_nrrd(const std::string& path);   ///< attached or detached, raw or gzip

@@ -2,7 +2,6 @@
 // checked.
 #include <algorithm>
 #include <cmath>
-#include <cstring>
 
 #include "image/image.h"
 #include "image/raw_image.h"
@@ -13,17 +12,6 @@ namespace {
 
 using Matrix = std::array<std::array<double, 3>, 3>;  // by rows
 
-RawImage read_raw(const std::string& path) {
-  const auto ends_in = [&](std::initializer_list<const char*> endings) {
-    return std::any_of(endings.begin(), endings.end(), [&](const char* e) { return path.ends_with(e); });
-  };
-  if (ends_in({".nii", ".nii.gz"})) return read_nifti(path);
-  if (ends_in({".nrrd", ".nhdr"})) return read_nrrd(path);
-  if (ends_in({".mha", ".mhd"})) return read_meta(path);
-  if (ends_in({".inr", ".inr.gz"})) return read_inr(path);
-  refuse(path, "unknown image format (known: .nii .nii.gz .nrrd .nhdr .mha .mhd .inr .inr.gz)");
-}
-
 template <class Voxel>
 std::uint32_t label_value(const std::string& path, Voxel voxel) {
   constexpr double kEnd = 4294967296.0;
@@ -32,45 +20,6 @@ std::uint32_t label_value(const std::string& path, Voxel voxel) {
     refuse(path, "a label image is needed: value " + std::to_string(value) +
                      " is no label (integers, 0 to 2^32-1)");
   return static_cast<std::uint32_t>(value);
-}
-
-template <class Voxel>
-std::vector<std::uint32_t> labels_from(const std::string& path, RawImage& raw) {
-  std::vector<std::uint32_t> labels(raw.bytes.size() / sizeof(Voxel));
-  for (std::size_t i = 0; i < labels.size(); ++i) {
-    unsigned char* const bytes = raw.bytes.data() + i * sizeof(Voxel);
-    if (raw.is_swapped) std::reverse(bytes, bytes + sizeof(Voxel));
-    Voxel voxel;
-    std::memcpy(&voxel, bytes, sizeof voxel);
-    labels[i] = label_value(path, voxel);
-  }
-  return labels;
-}
-
-std::vector<std::uint32_t> labels_from(const std::string& path, RawImage& raw) {
-  switch (raw.type) {
-    case VoxelType::kUint8:
-      return labels_from<std::uint8_t>(path, raw);
-    case VoxelType::kInt8:
-      return labels_from<std::int8_t>(path, raw);
-    case VoxelType::kUint16:
-      return labels_from<std::uint16_t>(path, raw);
-    case VoxelType::kInt16:
-      return labels_from<std::int16_t>(path, raw);
-    case VoxelType::kUint32:
-      return labels_from<std::uint32_t>(path, raw);
-    case VoxelType::kInt32:
-      return labels_from<std::int32_t>(path, raw);
-    case VoxelType::kUint64:
-      return labels_from<std::uint64_t>(path, raw);
-    case VoxelType::kInt64:
-      return labels_from<std::int64_t>(path, raw);
-    case VoxelType::kFloat:
-      return labels_from<float>(path, raw);
-    case VoxelType::kDouble:
-      break;
-  }
-  return labels_from<double>(path, raw);
 }
 
 double determinant(const Matrix& m) {
@@ -102,30 +51,41 @@ double distance_to_orthonormal(const Matrix& m) {
   return largest;
 }
 
+}  // namespace
+
 // Headers state directions in single precision or six digits. A direction that is orthonormal but for that
 // is meant to be so, and taken as the nearest that is: nothing else says where voxels are to 1e-7 of the
 // image's width. Further from orthonormal it is shear, and kept.
-void settle_affine(const std::string& path, Image& image) {
+std::array<double, 3> settle_affine(const std::string& path, std::array<double, 12>& a) {
   constexpr double kHeaderRounding = 1e-5, kSmallestDeterminant = 1e-6;
-  auto& a = image.voxel_to_ras;
+  std::array<double, 3> spacing{};
   Matrix direction{};
   for (std::size_t axis = 0; axis < 3; ++axis) {
-    image.spacing[axis] = std::hypot(a[axis], a[4 + axis], a[8 + axis]);
-    if (!(image.spacing[axis] > 0) || !std::isfinite(image.spacing[axis]) || !std::isfinite(a[4 * axis + 3]))
+    spacing[axis] = std::hypot(a[axis], a[4 + axis], a[8 + axis]);
+    if (!(spacing[axis] > 0) || !std::isfinite(spacing[axis]) || !std::isfinite(a[4 * axis + 3]))
       refuse(path, "the voxel spacing is not positive or the affine not finite (axis " +
                        std::to_string(axis) + ")");
-    for (std::size_t row = 0; row < 3; ++row) direction[row][axis] = a[4 * row + axis] / image.spacing[axis];
+    for (std::size_t row = 0; row < 3; ++row) direction[row][axis] = a[4 * row + axis] / spacing[axis];
   }
   if (!(std::abs(determinant(direction)) > kSmallestDeterminant))
     refuse(path, "the affine is singular (its axes lie in a plane)");
-  if (distance_to_orthonormal(direction) >= kHeaderRounding) return;
+  if (distance_to_orthonormal(direction) >= kHeaderRounding) return spacing;
   for (int step = 0; step < 3; ++step) direction = step_to_orthonormal(direction);
   for (std::size_t row = 0; row < 3; ++row)
-    for (std::size_t axis = 0; axis < 3; ++axis)
-      a[4 * row + axis] = direction[row][axis] * image.spacing[axis];
+    for (std::size_t axis = 0; axis < 3; ++axis) a[4 * row + axis] = direction[row][axis] * spacing[axis];
+  return spacing;
 }
 
-}  // namespace
+RawImage read_raw(const std::string& path) {
+  const auto ends_in = [&](std::initializer_list<const char*> endings) {
+    return std::any_of(endings.begin(), endings.end(), [&](const char* e) { return path.ends_with(e); });
+  };
+  if (ends_in({".nii", ".nii.gz"})) return read_nifti(path);
+  if (ends_in({".nrrd", ".nhdr"})) return read_nrrd(path);
+  if (ends_in({".mha", ".mhd"})) return read_meta(path);
+  if (ends_in({".inr", ".inr.gz"})) return read_inr(path);
+  refuse(path, "unknown image format (known: .nii .nii.gz .nrrd .nhdr .mha .mhd .inr .inr.gz)");
+}
 
 Image read_image(const std::string& path) {
   RawImage raw = read_raw(path);
@@ -134,8 +94,11 @@ Image read_image(const std::string& path) {
   image.warnings = raw.warnings;
   for (std::size_t axis = 0; axis < 3; ++axis) image.size[axis] = static_cast<int>(raw.size[axis]);
   image.voxel_to_ras = raw.voxel_to_ras;
-  settle_affine(path, image);
-  image.voxels = labels_from(path, raw);
+  image.spacing = settle_affine(path, image.voxel_to_ras);
+  if (raw.slope != 1 || raw.intercept != 0)
+    refuse(path, "a label image is needed (the header scales the voxels: scl_slope, scl_inter)");
+  image.voxels.resize(raw.bytes.size() / bytes_of(raw.type));
+  for_each_voxel(raw, [&](std::size_t i, auto voxel) { image.voxels[i] = label_value(path, voxel); });
   return image;
 }
 

@@ -163,8 +163,10 @@ RawImage read_nifti(const std::string& path) {
   raw.size.assign(size.begin(), size.end());
   raw.type = voxel_type(path, header);
   const float slope = header.at<float>(kSclSlope), inter = header.at<float>(kSclInter);
-  if (slope != 0 && (slope != 1 || inter != 0))
-    refuse(path, "a label image is needed (the header scales the voxels: scl_slope, scl_inter)");
+  if (slope != 0) {  // 0: voxels are as they are
+    raw.slope = slope;
+    raw.intercept = inter;
+  }
   raw.voxel_to_ras = voxel_to_world(path, header);
   for (double& entry : raw.voxel_to_ras) entry *= unit_mm(header);
   source.skip(gap_after(path, header));

@@ -47,6 +47,12 @@ Json image_of(const Inputs& inputs, const Options& options) {
   return json;
 }
 
+Json size_image_of(const Inputs& inputs, const Options& options) {
+  Json json = file_of(options.size_image_path);
+  if (inputs.sizes && !inputs.sizes->warnings.empty()) json["warnings"] = inputs.sizes->warnings;
+  return json;
+}
+
 Json witness_of(const Witness& witness) {
   Json points = Json::array();
   for (const Point& p : witness.points) points.push_back({finite(p[0]), finite(p[1]), finite(p[2])});
@@ -101,6 +107,7 @@ Json options_of(const Options& options) {
           {"angle_bound_deg", options.angle_bound_deg},
           {"radius_mm", options.radius_mm ? Json(*options.radius_mm) : Json(nullptr)},
           {"radius_of_mm", radius_of},
+          {"size_factor", options.size_factor},
           {"min_dihedral_deg", options.min_dihedral_deg ? Json(*options.min_dihedral_deg) : Json(nullptr)},
           {"max_dihedral_deg", options.max_dihedral_deg ? Json(*options.max_dihedral_deg) : Json(nullptr)},
           {"fidelity_bound_voxels", options.fidelity_bound_voxels},
@@ -137,6 +144,7 @@ std::string json_report(const Inputs& inputs, const Options& options, const std:
                     {"mesh", mesh_json},
                     {"image", image_of(inputs, options)},
                     {"schedule", file_of(options.schedule_path)},
+                    {"size_image", size_image_of(inputs, options)},
                     {"options", options_of(options)},
                     {"claims", claims},
                     {"seconds", seconds},

@@ -56,6 +56,8 @@ std::string terminal_report(const Inputs& inputs, const Options& options,
                         options.smooth_mm ? "--smooth" : "the mesh's file");
   if (inputs.image)
     for (const std::string& warning : inputs.image->warnings) text += fmt::format("  warning: {}\n", warning);
+  if (inputs.sizes)
+    for (const std::string& warning : inputs.sizes->warnings) text += fmt::format("  warning: {}\n", warning);
   std::size_t num_passed = 0;
   for (const ClaimResult& result : results) {
     num_passed += result.verdict == Verdict::kPass;

@@ -552,6 +552,22 @@ def radius_over_its_label(_):
                   Case(tetrahedron(REGULAR), ["--radius", "9", "--radius-of", "2=1.7"]))
 
 
+@operator("size")
+def radius_over_its_place(shop):
+    """a cell over the size image's mean at its circumcentre by a thousandth; harmless: under it"""
+    def by_place(name, last):
+        voxels = np.ones((2, 2, 2))
+        voxels[1] = last
+        path = shop.folder / name
+        path.write_bytes(b"ObjectType = Image\nNDims = 3\nBinaryData = True\nBinaryDataByteOrderMSB = False\n"
+                         b"TransformMatrix = 1 0 0 0 1 0 0 0 1\nOffset = -1 -1 -1\nElementSpacing = 2 2 2\n"
+                         b"DimSize = 2 2 2\nElementType = MET_DOUBLE\nElementDataFile = LOCAL\n" + voxels.tobytes())
+        return ["--size-image", str(path)]
+    middle = 2 * math.sqrt(3) - 1  # makes the mean sqrt(3), where the regular cell has its centre
+    return Mutant(Case(tetrahedron(REGULAR), by_place("over.mha", middle - 0.001)),
+                  Case(tetrahedron(REGULAR), by_place("under.mha", middle + 0.001)))
+
+
 @operator("labels")
 def swapped_labels(shop):
     """two labels swapped; harmless: as they were"""

@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "podm/label_image.h"
+#include "podm/size_image.h"
 
 namespace podm {
 
@@ -41,6 +42,12 @@ std::map<std::uint32_t, std::string> read_label_names(const std::string& path);
 /// `most_bytes`: what a file's voxels and their labels may take together while they are read.
 LabelImage read_image(const std::string& path, const LabelSelection& selection = {}, int threads = 0,
                       std::uint64_t most_bytes = std::numeric_limits<std::uint64_t>::max());
+
+/// Reads a size image, of the same formats and any type of voxel; values that are not above 0, or infinite,
+/// are no bounds. Throws InputError naming the file and the fault: it is not 3-D, a voxel is not a number,
+/// none has a bound.
+SizeImage read_size_image(const std::string& path,
+                          std::uint64_t most_bytes = std::numeric_limits<std::uint64_t>::max());
 
 enum class VoxelType { kUint8, kInt8, kUint16, kInt16, kUint32, kInt32, kUint64, kInt64, kFloat, kDouble };
 

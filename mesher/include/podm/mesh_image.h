@@ -20,6 +20,8 @@ struct OperationLog;
 struct Estimate {
   double cells = 0;
   double memory_bytes = 0;  ///< peak of the whole process
+  double delta_mm =
+      0;  ///< the surface sampling distance; 0 where it follows from a target number of elements
 };
 
 struct Progress {

@@ -3,26 +3,49 @@
 // check_options.cpp refuses what is senseless.
 #pragma once
 
+#include <array>
 #include <cstdint>
 #include <map>
+#include <memory>
 #include <string>
+#include <vector>
 
 #include "podm/choices.h"
 #include "podm/limits.h"
+#include "podm/size_image.h"
 
 namespace podm {
 
 class OperationLogWriter;
 
-/// How large cells are.
+/// A bound on cells whose circumcentre is within a width of the interface of some labels and others: of the
+/// faces between their voxels. Labels are given by value, the background by its own.
+struct SizeNear {
+  std::array<std::vector<std::uint32_t>, 2> labels;  ///< on either side, one or more
+  double radius_mm = 0;                              ///< largest circumradius, mm
+  double width_mm = 0;                               ///< mm
+};
+
+/// How large cells are: what bounds a cell at its circumcentre is the least of all that follows.
 struct SizeOptions {
   /// Largest circumradius r_t of a cell, mm. 0: unbounded, the surface alone drives.
   double radius_mm = 0;
   /// r_t of single labels by label *value*, mm; these override `radius_mm`.
   std::map<std::uint32_t, double> radius_of_mm = {};
-  /// Surface sampling distance, mm. 0: default_delta_mm().
+  /// Radii by place; null: none.
+  std::shared_ptr<const SizeImage> image = nullptr;
+  /// All of its radii are multiplied by this. With a target number of elements it follows from that.
+  double image_factor = 1;
+  std::vector<SizeNear> near = {};
+  /// By how much bounds may grow, mm a mm of the way. 0: at once. Distances are those of voxels: a bound is
+  /// the largest that grows no faster from voxel to voxel, or less by at most a tenth of the growth
+  /// (image/graded_grid.h).
+  double grade = 0;
+  /// Surface sampling distance, mm. 0: default_delta_mm() of the least radius, that of places counting where
+  /// it is bounded everywhere, by its largest.
   double delta_mm = 0;
-  /// When positive: radius_mm, which must be 0, is chosen so that the mesh has about so many cells.
+  /// When positive: radius_mm, which must be 0, is chosen so that the mesh has about so many cells; and the
+  /// factor of the image so that its largest radius in the object is the same.
   std::uint64_t target_elements = 0;
   /// How far from the target the number of cells may be, in percent of it.
   double target_tolerance_percent = 5;

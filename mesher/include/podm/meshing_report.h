@@ -126,6 +126,7 @@ struct MeshingReport {
   std::map<std::string, double> phases_s;
   double radius_mm = 0;                    ///< the one used; 0 when unbounded
   double delta_mm = 0;                     ///< the one used
+  double size_image_factor = 1;            ///< that of all its radii
   std::optional<Calibration> calibration;  ///< there is one where a number of cells was the target
   StopReason stop_reason = StopReason::kComplete;
   Guarantees guarantees;

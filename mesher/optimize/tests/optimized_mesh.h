@@ -73,8 +73,9 @@ class MeshToOptimize {
       double shortest2 = 1e300;
       for (const auto& [x, y] : {std::pair{a, b}, {a, p}, {a, d}, {b, p}, {b, d}, {p, d}})
         shortest2 = std::min(shortest2, squared_distance(x, y));
-      count += radius2 >= kRadiusEdgeBound * kRadiusEdgeBound * shortest2 ||
-               radius2 > parameters_.sizes.squared_radius(mesh_->label(c));
+      count +=
+          radius2 >= kRadiusEdgeBound * kRadiusEdgeBound * shortest2 ||
+          radius2 > parameters_.sizes.squared_radius(mesh_->label(c), circumsphere(a, b, p, d, 0).center);
     });
     return count;
   }

@@ -12,7 +12,7 @@ ClaimResult size_of(const Mesh& mesh, std::optional<double> radius,
   Options options = two_threads();
   options.radius_mm = radius;
   options.radius_of = std::move(radius_of);
-  return check_size(mesh, options);
+  return check_size(mesh, nullptr, options);
 }
 
 TEST(Size, IsNotRunWithoutABound) {
@@ -41,7 +41,82 @@ TEST(Size, HoldsEachLabelToItsOwnBound) {
   EXPECT_EQ(one_label.num_checked, 1) << "label 2 has no bound";
 }
 
+// Of a corner of edges 2, 2, 2: circumcentre (1, 1, 1), circumradius sqrt(3).
+constexpr double kRadius = 1.7320508075688772;  // rounded: its square is below 3
+
+SizeImage sizes_of(std::array<int, 3> size, std::vector<float> radius_mm) {
+  return {.path = "sizes.nii",
+          .size = size,
+          .voxel_to_ras = {2, 0, 0, 0, 0, 2, 0, 0, 0, 0, 2, 0},
+          .radius_mm = std::move(radius_mm)};
+}
+
+ClaimResult size_by(const SizeImage& sizes, const Mesh& mesh = corner(2, 2, 2), double factor = 1,
+                    std::optional<double> radius = std::nullopt) {
+  Options options = two_threads();
+  options.size_factor = factor;
+  options.radius_mm = radius;
+  return check_size(mesh, &sizes, options);
+}
+
+TEST(Size, IsBoundedByThePlaceOfTheCircumcenter) {
+  // Voxels 2 mm apart, the first at the origin: the circumcentre is in the middle of eight.
+  EXPECT_EQ(size_by(sizes_of({2, 2, 2}, std::vector<float>(8, 1.8F))).verdict, Verdict::kPass);
+  EXPECT_EQ(size_by(sizes_of({2, 2, 2}, std::vector<float>(8, 1.7F))).verdict, Verdict::kFail);
+  EXPECT_EQ(size_by(sizes_of({2, 2, 2}, {1, 1, 1, 1, 2.5F, 2.5F, 2.5F, 2.5F})).verdict, Verdict::kPass)
+      << "mean 1.75";
+  EXPECT_EQ(size_by(sizes_of({2, 2, 2}, {1, 1, 1, 1, 2.4F, 2.4F, 2.4F, 2.4F})).verdict, Verdict::kFail)
+      << "mean 1.7";
+}
+
+TEST(Size, LeavesOutVoxelsWithoutABound) {
+  EXPECT_EQ(size_by(sizes_of({2, 2, 2}, {0, 0, 0, 0, 0, 0, 0, 1.8F})).verdict, Verdict::kPass);
+  EXPECT_EQ(size_by(sizes_of({2, 2, 2}, {0, 0, 0, 0, 0, 0, 0, 1.7F})).verdict, Verdict::kFail);
+  EXPECT_EQ(size_by(sizes_of({2, 2, 2}, std::vector<float>(8, 0))).verdict, Verdict::kPass);
+}
+
+TEST(Size, ReachesHalfAVoxelBeyondTheCenters) {
+  const SizeImage one = sizes_of({1, 1, 1}, {0.1F});
+  EXPECT_EQ(size_by(one).verdict, Verdict::kFail) << "the circumcentre is a corner of the voxel";
+  EXPECT_EQ(size_by(one, shifted(corner(2, 2, 2), {1e-9, 0, 0})).verdict, Verdict::kPass) << "and now beyond";
+  EXPECT_EQ(size_by(one, shifted(corner(2, 2, 2), {-2, -2, -2})).verdict, Verdict::kFail);
+  EXPECT_EQ(size_by(one, shifted(corner(2, 2, 2), {-2, -2, -2.0000001})).verdict, Verdict::kPass);
+}
+
+TEST(Size, DecidesTiesExactly) {
+  const Mesh mesh = corner(1, 2, 2);  // circumradius 3/2, circumcentre (1/2, 1, 1)
+  EXPECT_EQ(size_by(sizes_of({2, 2, 2}, std::vector<float>(8, 1.5F)), mesh).verdict, Verdict::kPass);
+  EXPECT_EQ(size_by(sizes_of({2, 2, 2}, std::vector<float>(8, std::nextafter(1.5F, 1.0F))), mesh).verdict,
+            Verdict::kFail);
+  EXPECT_EQ(size_by(sizes_of({2, 2, 2}, {1, 3, 1, 3, 1, 3, 1, 3}), mesh).verdict, Verdict::kPass)
+      << "1 + 2/4";
+  EXPECT_EQ(size_by(sizes_of({2, 2, 2}, {1, 3, 1, 3, 1, 3, 1, 2.999F}), mesh).verdict, Verdict::kFail);
+}
+
+TEST(Size, IsBoundedByTheLeastOfLabelAndPlaceAndByItsFactor) {
+  const SizeImage sizes = sizes_of({2, 2, 2}, std::vector<float>(8, 1));
+  EXPECT_EQ(size_by(sizes, corner(2, 2, 2), 1.8).verdict, Verdict::kPass);
+  EXPECT_EQ(size_by(sizes, corner(2, 2, 2), 1.7).verdict, Verdict::kFail);
+  EXPECT_EQ(size_by(sizes, corner(2, 2, 2), 1.8, 1.7).verdict, Verdict::kFail);
+  EXPECT_EQ(size_by(sizes, corner(2, 2, 2), kRadius * (1 + 1e-9), 1.8).verdict, Verdict::kPass);
+}
+
+TEST(Size, FollowsTheSpaceOfTheMesh) {
+  const SizeImage sizes = sizes_of({2, 2, 2}, {1, 9, 9, 9, 9, 9, 9, 9});
+  const Mesh at_first = shifted(corner(2, 2, 2), {-1, -1, -1});
+  EXPECT_EQ(size_by(sizes, at_first).verdict, Verdict::kFail);
+  Mesh lps = at_first;
+  for (Point& p : lps.vertices) p[0] = -p[0], p[1] = -p[1];
+  lps.space = Space::kLps;
+  EXPECT_EQ(size_by(sizes, lps).verdict, Verdict::kFail);
+  Mesh voxels = at_first;
+  voxels.space = Space::kVoxel;
+  EXPECT_EQ(size_by(sizes, voxels).verdict, Verdict::kNotRun);
+}
+
 TEST(Size, RejectsFlatCells) {
+  EXPECT_EQ(size_by(sizes_of({2, 2, 2}, std::vector<float>(8, 100)), two_cells({0.5, 0.5, 0})).num_violations,
+            1);
   EXPECT_EQ(size_of(two_cells({0.5, 0.5, 0}), 1e9).num_violations, 1);
   EXPECT_EQ(size_of(mesh_of({{1, 1, 1}}, {{0, 0, 0, 0}}), 1e9).num_violations, 1);
 }

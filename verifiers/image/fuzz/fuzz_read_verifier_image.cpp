@@ -1,10 +1,12 @@
-// Any bytes under any format's name either are an image or are refused with an InputError that names the
-// file.
+// Any bytes under any format's name either are an image, of labels or of sizes, or are refused with an
+// InputError that names the file.
 #include <array>
+#include <limits>
 
 #include "errors.h"
 #include "fuzz_scratch.h"
 #include "image/image.h"
+#include "image/size_image.h"
 
 namespace podm::verify {
 namespace {
@@ -20,6 +22,23 @@ void check_image(const Image& image) {
   check(image.voxels.size() == voxels);
 }
 
+void check_image(const SizeImage& image) {
+  std::size_t voxels = 1;
+  for (const int n : image.size) voxels *= static_cast<std::size_t>(n);
+  check(image.radius_mm.size() == voxels);
+  for (const float radius : image.radius_mm)
+    check(radius >= 0 && radius < std::numeric_limits<float>::infinity());
+}
+
+template <class Read>
+void expect_image_or_refusal(const std::string& path, const Read& read) {
+  try {
+    check_image(read());
+  } catch (const InputError& error) {
+    check(std::string_view(error.what()).starts_with(path + ": "));
+  }
+}
+
 }  // namespace
 }  // namespace podm::verify
 
@@ -33,10 +52,7 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
   if (size == 0) return 0;
   const std::size_t format = data[0] % kNames.size();
   const std::string path = folders[format].write(kNames[format], fuzz::text_of(data + 1, size - 1));
-  try {
-    verify::check_image(verify::read_image(path));
-  } catch (const verify::InputError& error) {
-    verify::check(std::string_view(error.what()).starts_with(path + ": "));
-  }
+  verify::expect_image_or_refusal(path, [&] { return verify::read_image(path); });
+  verify::expect_image_or_refusal(path, [&] { return verify::read_size_image(path); });
   return 0;
 }

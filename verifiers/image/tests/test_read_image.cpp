@@ -11,6 +11,7 @@
 
 #include "image/image.h"
 #include "image/image_frame.h"
+#include "image/size_image.h"
 #include "made_files.h"
 
 namespace podm::verify {
@@ -204,6 +205,39 @@ TEST(ReadVerifierImage, BytesOfTheOtherOrder) {
   const std::string meta = replaced(replaced(kMetaHeader, "UCHAR", "USHORT"), "MSB = False", "MSB = True") +
                            "ElementDataFile = LOCAL\n";
   expect_small_image(folder.write("a.mha", meta + bytes), kFromLps);
+}
+
+TEST(ReadVerifierSizeImage, TakesAnyNumberScaledAsTheHeaderSays) {
+  const Folder folder;
+  std::vector<double> values(24);
+  for (std::size_t i = 0; i < values.size(); ++i) values[i] = static_cast<double>(i) - 3;
+  values[20] = std::numeric_limits<double>::infinity();
+  const std::string bytes = bytes_of_values(values);
+  const auto scaled = [](auto& h) { h.datatype = DT_FLOAT64, h.scl_slope = 0.5F, h.scl_inter = 0.25F; };
+  const SizeImage image = read_size_image(folder.write("a.nii", nifti_file(bytes, scaled)));
+  EXPECT_EQ(image.size, (std::array<int, 3>{2, 3, 4}));
+  ASSERT_EQ(image.radius_mm.size(), 24);
+  EXPECT_EQ(image.radius_mm[0], 0) << "a negative number is no bound";
+  EXPECT_EQ(image.radius_mm[3], 0.25F);
+  EXPECT_EQ(image.radius_mm[23], 10.25F);
+  EXPECT_EQ(image.radius_mm[20], 0) << "nor is infinity";
+  EXPECT_THROW(read_image(folder.write("b.nii", nifti_file(bytes, scaled))), InputError);
+}
+
+TEST(ReadVerifierSizeImage, NamesTheVoxelThatIsNotANumber) {
+  const Folder folder;
+  std::vector<float> values(24, 1);
+  values[1 + 2 * (2 + 3 * 3)] = std::numeric_limits<float>::quiet_NaN();
+  const auto floats = [](auto& h) { h.datatype = DT_FLOAT32; };
+  try {
+    read_size_image(folder.write("a.nii", nifti_file(bytes_of_values(values), floats)));
+    FAIL() << "was read";
+  } catch (const InputError& error) {
+    EXPECT_NE(
+        std::string(error.what()).find("a.nii: a size image is needed: voxel (1, 2, 3) is not a number"),
+        std::string::npos)
+        << error.what();
+  }
 }
 
 struct Measured {

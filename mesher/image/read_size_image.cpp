@@ -1,0 +1,76 @@
+// A path becomes a size image: values of any type, as the header scales them, become radii in mm.
+#include <cmath>
+#include <cstring>
+
+#include "image/read_formats.h"
+#include "podm/image_io.h"
+
+namespace podm {
+
+namespace {
+
+[[noreturn]] void refuse_voxel(const RawImage& raw, std::size_t voxel) {
+  const auto nx = static_cast<std::size_t>(raw.size[0]), ny = static_cast<std::size_t>(raw.size[1]);
+  refuse(raw.path, "a size in mm is needed at every voxel, 0 for none: voxel (" + std::to_string(voxel % nx) +
+                       ", " + std::to_string(voxel / nx % ny) + ", " + std::to_string(voxel / nx / ny) +
+                       ") is not a number");
+}
+
+template <class Voxel>
+std::vector<float> radii_from(const RawImage& raw) {
+  std::vector<float> radii(raw.bytes.size() / sizeof(Voxel));
+  for (std::size_t i = 0; i < radii.size(); ++i) {
+    Voxel voxel;
+    std::memcpy(&voxel, raw.bytes.data() + i * sizeof voxel, sizeof voxel);
+    const double value = raw.slope * static_cast<double>(voxel) + raw.intercept;
+    if (std::isnan(value)) refuse_voxel(raw, i);
+    const auto radius = static_cast<float>(value);
+    radii[i] = radius > 0 && std::isfinite(radius) ? radius : 0;
+  }
+  return radii;
+}
+
+std::vector<float> radii_from(const RawImage& raw) {
+  switch (raw.type) {
+    case VoxelType::kUint8:
+      return radii_from<std::uint8_t>(raw);
+    case VoxelType::kInt8:
+      return radii_from<std::int8_t>(raw);
+    case VoxelType::kUint16:
+      return radii_from<std::uint16_t>(raw);
+    case VoxelType::kInt16:
+      return radii_from<std::int16_t>(raw);
+    case VoxelType::kUint32:
+      return radii_from<std::uint32_t>(raw);
+    case VoxelType::kInt32:
+      return radii_from<std::int32_t>(raw);
+    case VoxelType::kUint64:
+      return radii_from<std::uint64_t>(raw);
+    case VoxelType::kInt64:
+      return radii_from<std::int64_t>(raw);
+    case VoxelType::kFloat:
+      return radii_from<float>(raw);
+    case VoxelType::kDouble:
+      break;
+  }
+  return radii_from<double>(raw);
+}
+
+}  // namespace
+
+SizeImage read_size_image(const std::string& path, std::uint64_t most_bytes) {
+  RawImage raw = read_raw(path, most_bytes);
+  check_room(path, raw.bytes.size() + raw.bytes.size() / bytes_of(raw.type) * sizeof(float), most_bytes);
+  checked_spacing(path, raw.voxel_to_ras);
+  check_distance(path, raw.size, raw.voxel_to_ras);
+  SizeImage image{.path = path,
+                  .size = {raw.size[0], raw.size[1], raw.size[2]},
+                  .voxel_to_ras = raw.voxel_to_ras,
+                  .radius_mm = radii_from(raw),
+                  .warnings = raw.warnings};
+  for (const float radius : image.radius_mm)
+    if (radius > 0) return image;
+  refuse(path, "no voxel has a size above 0 mm, so that nothing is bounded");
+}
+
+}  // namespace podm

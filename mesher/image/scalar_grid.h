@@ -1,0 +1,74 @@
+// Positive numbers at the nodes of a grid, and between them; a node may have none.
+//
+// Between nodes the number is the mean of those of the eight nodes around that have one, by their trilinear
+// weights. The cells at the border reach half a cell beyond the nodes, and the number there is that of the
+// nearest place between nodes. Elsewhere, and where none of the eight has a number with a weight, there is
+// none.
+//
+// Where some nodes lack a number the mean may jump between two cells. Within kSlack of a cell's side it is
+// the least of both sides, so that nobody who computes the same point with other rounding finds less.
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <limits>
+#include <memory>
+#include <vector>
+
+#include "geometry/affine.h"
+#include "geometry/box.h"
+
+namespace podm {
+
+class ScalarGrid {
+ public:
+  using Values = std::shared_ptr<const std::vector<float>>;
+  static constexpr double kNone = std::numeric_limits<double>::infinity();
+
+  /// `values`: x fastest, finite; 0 where a node has none. `to_nodes` maps points to node indices, and is not
+  /// singular.
+  ScalarGrid(const std::array<int, 3>& size, const Affine& to_nodes, Values values);
+
+  /// The number at p, kNone where there is none.
+  double at(const Point& p) const;
+
+  struct Range {
+    double least = kNone, most = 0;
+  };
+  /// Of the nodes that have a number and a weight at some point of the box, or are near to that.
+  Range range_in(const Box& box) const;
+  /// Whether the grid, half a cell around included, and the box have a point in common. True may be said of
+  /// some that pass each other at an angle.
+  bool meets(const Box& box) const;
+
+  const std::array<int, 3>& size() const { return size_; }
+  const Affine& to_nodes() const { return to_nodes_; }
+  const std::vector<float>& values() const { return *values_; }
+  std::size_t index(int i, int j, int k) const {
+    return static_cast<std::size_t>(i) + static_cast<std::size_t>(j) * steps_[1] +
+           static_cast<std::size_t>(k) * steps_[2];
+  }
+
+ private:
+  static constexpr double kSlack = 1e-7;  // of a cell
+
+  // A cell by its first node, and a place in it, 0 to 1 along each axis; of a point beyond all nodes, the
+  // nearest place.
+  struct Place {
+    std::array<int, 3> cell;
+    std::array<double, 3> fraction;
+    std::array<bool, 3> is_beyond;
+  };
+
+  double mean(const Place& place) const;
+  double least_around(const Place& place) const;
+  std::array<std::array<double, 2>, 3> node_bounds(const Box& box) const;
+
+  std::array<int, 3> size_;
+  Affine to_nodes_;
+  Values values_;
+  std::array<std::size_t, 3> steps_;   // between nodes along the axes
+  std::array<std::size_t, 3> across_;  // the same, 0 along an axis of one node
+};
+
+}  // namespace podm
