@@ -65,15 +65,23 @@ LabelFunction::Place LabelFunction::place(const Point& u) {
   return p;
 }
 
+bool LabelFunction::is_inside(const std::array<int, 3>& b) const {
+  const auto& n = image_.size;
+  return b[0] >= 0 && b[1] >= 0 && b[2] >= 0 && b[0] < n[0] - 1 && b[1] < n[1] - 1 && b[2] < n[2] - 1;
+}
+
+template <class Value>
+std::array<Value, 8> LabelFunction::eight(const std::vector<Value>& grid, const std::array<int, 3>& b) const {
+  const Value* first = grid.data() + static_cast<std::size_t>(b[2]) * slice_ +
+                       static_cast<std::size_t>(b[1]) * row_ + static_cast<std::size_t>(b[0]);
+  return {first[0],      first[1],          first[row_],          first[row_ + 1],
+          first[slice_], first[slice_ + 1], first[slice_ + row_], first[slice_ + row_ + 1]};
+}
+
 std::array<std::uint32_t, 8> LabelFunction::corners(const std::array<int, 3>& b) const {
+  if (is_inside(b)) return eight(image_.voxels, b);
   std::array<std::uint32_t, 8> labels{};
   const auto& n = image_.size;
-  if (b[0] >= 0 && b[1] >= 0 && b[2] >= 0 && b[0] < n[0] - 1 && b[1] < n[1] - 1 && b[2] < n[2] - 1) {
-    const std::uint32_t* first = image_.voxels.data() + static_cast<std::size_t>(b[2]) * slice_ +
-                                 static_cast<std::size_t>(b[1]) * row_ + static_cast<std::size_t>(b[0]);
-    return {first[0],      first[1],          first[row_],          first[row_ + 1],
-            first[slice_], first[slice_ + 1], first[slice_ + row_], first[slice_ + row_ + 1]};
-  }
   for (int c = 0; c < 8; ++c) {
     const int i = b[0] + (c & 1), j = b[1] + (c >> 1 & 1), k = b[2] + (c >> 2);
     if (i >= 0 && j >= 0 && k >= 0 && i < n[0] && j < n[1] && k < n[2])
@@ -85,6 +93,7 @@ std::array<std::uint32_t, 8> LabelFunction::corners(const std::array<int, 3>& b)
 }
 
 std::array<std::uint16_t, 8> LabelFunction::strengths(const std::array<int, 3>& b) const {
+  if (smoothing_ != nullptr && is_inside(b)) return eight(smoothing_->strengths, b);
   std::array<std::uint16_t, 8> strengths{};
   for (int c = 0; c < 8; ++c)
     strengths[static_cast<std::size_t>(c)] = strength({b[0] + (c & 1), b[1] + (c >> 1 & 1), b[2] + (c >> 2)});
@@ -110,7 +119,7 @@ double LabelFunction::change_after(const std::array<int, 3>& voxel, std::size_t 
 std::array<double, 8> LabelFunction::smoothed(std::array<double, 8> corner_weights,
                                               const std::array<int, 3>& block) const {
   const auto strengths = this->strengths(block);
-  for (std::size_t c = 0; c < 8; ++c) corner_weights[c] *= strengths[c] / double{kFullStrength};
+  for (std::size_t c = 0; c < 8; ++c) corner_weights[c] *= strengths[c] * (1.0 / kFullStrength);
   return corner_weights;
 }
 

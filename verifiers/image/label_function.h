@@ -31,7 +31,7 @@ struct LabelWeights {
 class LabelFunction {
  public:
   /// What a weight is wrong by at most, coordinates taken as they are: three factors in [0,1] and a strength,
-  /// each off by 2^-53, three products and at most eight terms that sum to at most 1.
+  /// off by 2^-53 and twice that, three products and at most eight terms that sum to at most 1.
   static constexpr double kWeightError = 0x1p-49;
 
   /// Of the image as it is, smoothed or not.
@@ -59,6 +59,9 @@ class LabelFunction {
   };
   LabelFunction(const Image& image, const Smoothing* smoothing);
   bool is_near(const Point& u) const;
+  bool is_inside(const std::array<int, 3>& block) const;  // all eight voxels are in the grid
+  template <class Value>
+  std::array<Value, 8> eight(const std::vector<Value>& grid, const std::array<int, 3>& block) const;
   static Place place(const Point& u);
   std::uint16_t strength(const std::array<int, 3>& voxel) const;
   std::array<double, 8> smoothed(std::array<double, 8> corner_weights, const std::array<int, 3>& block) const;
