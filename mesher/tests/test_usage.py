@@ -7,7 +7,8 @@ import unittest
 from podm_process import PROGRAM, PodmTestCase, run_podm
 
 OPTIONS = {
-    "mesh": ["--output", "--radius", "--radius-of", "--delta", "--target-elements", "--target-tolerance",
+    "mesh": ["--output", "--radius", "--radius-of", "--size-image", "--size-near", "--grade", "--delta",
+             "--target-elements", "--target-tolerance",
              "--min-dihedral", "--labels",
              "--merge", "--drop", "--background", "--label-names", "--space", "--surface", "--record", "--max-elements",
              "--max-seconds", "--max-memory-gib", "--threads", "--contention", "--algorithm", "--crossover", "--nodes",

@@ -26,7 +26,10 @@ def mesh(labels: npt.ArrayLike | StrPath, *, affine: npt.ArrayLike | None = None
          spacing: npt.ArrayLike | None = None, names: Mapping[int, str] | StrPath | None = None,
          keep: LabelValues | None = None, drop: LabelValues | None = None,
          merge: Mapping[str, LabelValues] | None = None, background: int | None = None,
-         radius: float | None = None, radius_of: Mapping[str | int, float] | None = None, delta: float | None = None,
+         radius: float | None = None, radius_of: Mapping[str | int, float] | None = None,
+         size_image: StrPath | None = None,
+         size_near: Mapping[tuple[str | int, str | int], float | tuple[float, float]] | None = None,
+         grade: float | None = None, delta: float | None = None,
          target_elements: int | None = None, target_tolerance: float | None = None, min_dihedral: float | None = None,
          optimize: bool = False, dihedral_bounds: tuple[float, float] | None = None,
          max_elements: int | None = None, max_seconds: float | None = None, max_memory_gib: float | None = None,
@@ -54,6 +57,10 @@ def mesh(labels: npt.ArrayLike | StrPath, *, affine: npt.ArrayLike | None = None
         origin. Without either they are 1 mm.
     names
         Names of labels, as {1: "liver"}; or a file of them, an ITK-SNAP table or lines "value name".
+    size_image
+        The name of a file; of an array, write it first, e.g. with nibabel.
+    size_near
+        A dict from pairs of labels to mm, or to mm and a width, as {("liver", 0): 1, ("liver", "vein"): (0.5, 3)}.
     progress
         Is called with a podm.Progress some times a second, by the thread that called mesh(). What it raises ends the
         run and is raised by mesh().
