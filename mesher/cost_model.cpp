@@ -210,13 +210,14 @@ double radius_mm(const SizeOptions& sizes, const Label& label) {
 }  // namespace
 
 // The radius that makes as many cells of the label as its places make with theirs; 0: unbounded.
-double CostModel::mean_radius_mm(LabelIndex label, double radius_mm, double factor) const {
-  if (!census_) return radius_mm;
-  const double of_label = radius_mm > 0 ? radius_mm : std::numeric_limits<double>::infinity();
+double CostModel::mean_radius_mm(LabelIndex label, const SizeOptions& sizes) const {
+  const double asked_mm = radius_mm(sizes, image_.labels[label]);
+  if (!census_) return asked_mm;
+  const double of_label = asked_mm > 0 ? asked_mm : std::numeric_limits<double>::infinity();
   double density = 0;
   for (const SizeCensus::Places& places : census_->places())
     if (places.label == label)
-      density += places.volume * std::pow(std::min(of_label, places.radius_mm(factor)), -3);
+      density += places.volume * std::pow(std::min(of_label, places.radius_mm(sizes.image_factor)), -3);
   return density > 0 ? std::cbrt(1 / density) : 0;
 }
 
@@ -236,8 +237,7 @@ double CostModel::cells(const SizeOptions& sizes) const {
   const double area = area_mm2(kSeenOverDelta * sizes.delta_mm);
   double cells = kSurfaceCells * area / (sizes.delta_mm * sizes.delta_mm) * surface_growth(sizes);
   for (std::size_t i = 1; i < image_.labels.size(); ++i) {
-    const double of_label = radius_mm(sizes, image_.labels[i]);
-    const double radius = mean_radius_mm(static_cast<LabelIndex>(i), of_label, sizes.image_factor);
+    const double radius = mean_radius_mm(static_cast<LabelIndex>(i), sizes);
     if (radius <= 0 || volume_of_label_mm3_[i] == 0) continue;
     const double core = std::max(0.0, 1 - kGradedOverRadius * radius * area / (3 * volume_mm3_));
     cells += kVolumeCells * volume_of_label_mm3_[i] * core * core * core / (radius * radius * radius);
@@ -249,7 +249,8 @@ std::vector<double> CostModel::cells_by_label(const SizeOptions& sizes) const {
   const std::vector<double> areas_mm2 = areas_by_label_mm2(kSeenOverDelta * sizes.delta_mm);
   std::vector<double> by_label(image_.labels.size());
   for (std::size_t i = 1; i < by_label.size(); ++i) {
-    const double volume_mm3 = volume_of_label_mm3_[i], radius = radius_mm(sizes, image_.labels[i]);
+    const double volume_mm3 = volume_of_label_mm3_[i];
+    const double radius = mean_radius_mm(static_cast<LabelIndex>(i), sizes);
     if (volume_mm3 == 0) continue;
     by_label[i] = kSurfaceCells * areas_mm2[i] / (sizes.delta_mm * sizes.delta_mm);
     if (radius <= 0) continue;

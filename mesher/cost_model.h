@@ -66,7 +66,7 @@ class CostModel {
   std::vector<double> areas_by_label_mm2(double distance_mm) const;  // the background's, too
   std::vector<double> areas_along_mm2(std::size_t axis, std::size_t lag) const;
   double area_along_mm2(std::size_t axis, std::size_t lag) const;
-  double mean_radius_mm(LabelIndex label, double radius_mm, double factor) const;
+  double mean_radius_mm(LabelIndex label, const SizeOptions& sizes) const;
   double surface_growth(const SizeOptions& sizes) const;
 
   const LabelImage& image_;

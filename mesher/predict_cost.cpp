@@ -9,6 +9,7 @@
 #include "check_options.h"
 #include "cost_model.h"
 #include "default_sizes.h"
+#include "make_size_grid.h"
 #include "podm/image_io.h"
 #include "radius_search.h"
 
@@ -30,10 +31,10 @@ double work_of(double cells, double stored_cells) {
   return cells + kBackgroundOverMesh * (stored_cells - cells);
 }
 
-SizeOptions resolved(const LabelImage& image, const SizeOptions& asked, int threads) {
+SizeOptions resolved(const LabelImage& image, const SizeOptions& asked, const CostModel& model, int threads) {
   if (asked.target_elements > 0) return RadiusSearch(image, asked, threads).sizes();
   SizeOptions sizes = asked;
-  sizes.delta_mm = delta_mm_for(image, asked);
+  sizes.delta_mm = delta_mm_for(image, asked, model.census());
   return sizes;
 }
 
@@ -43,6 +44,7 @@ double trial_seconds_of_work(const MeshingOptions& options) {
   const LabelImage phantom = make_phantom(kPhantom, kPhantomSize, loop_threads(options.team));
   MeshingOptions trial = options;
   trial.log = nullptr;
+  trial.smoothing_mm = 0;  // mm of another image
   trial.limits = {};
   const auto cells =
       kTrialCellsPerThread * static_cast<std::uint64_t>(std::min(threads, kMostThreadsOfTrial));
@@ -70,9 +72,10 @@ double WorkTimer::now_s() const {
 Cost predict_cost(const LabelImage& image, const MeshingOptions& options) {
   check_options(image, options);
   const int threads = loop_threads(options.team);
-  const CostModel model(image, threads);
+  const auto grid = make_size_grid(image, options.sizes, threads);
+  const CostModel model(image, threads, census_of(image, options.sizes, grid.get()));
   Cost cost;
-  cost.sizes = resolved(image, options.sizes, threads);
+  cost.sizes = resolved(image, options.sizes, model, threads);
   cost.cells_of_label = model.cells_by_label(cost.sizes);
   cost.cells = std::accumulate(cost.cells_of_label.begin(), cost.cells_of_label.end(), 0.0);
   cost.stored_cells = cost.cells + model.background_cells(cost.sizes);

@@ -14,6 +14,7 @@ namespace podm::cli {
 namespace {
 
 constexpr const char* kSizeGroup = "Size of the cells";
+constexpr const char* kSurfaceGroup = "Surfaces";
 constexpr const char* kDihedralGroup = "Dihedral angles";
 constexpr const char* kAlgorithmGroup = "Algorithm";
 constexpr const char* kRunGroup = "Run";
@@ -30,24 +31,24 @@ void add_sizing_options(CLI::App& app, MeshCommand& command) {
              command.radius_of_mm.push_back(parse_label_length(text, name));
            });
   add_one(app, "--size-image", "FILE",
-          "bounds on circumradii by place: a volume of mm on a grid of its own, in an image format;\n"
-          "values not above 0 are no bounds [default: none]",
+          "bounds on circumradii by place: a volume of mm, on a grid of its own; values not\n"
+          "above 0 are no bounds [default: none]",
           into(command.size_image_path));
   add_many(app, "--size-near", "A,B=MM[:WIDTH]",
-           "bound within WIDTH mm of the interface of two labels, by name or value, the background by\n"
-           "its own, e.g. liver,0=1:3; repeatable [default: nowhere; WIDTH: MM]",
+           "bound within WIDTH mm of where two labels meet, by name or value, the background\n"
+           "by its own, e.g. liver,0=1:3; repeatable [default: nowhere; WIDTH: MM]",
            [&command](const std::string& text, const std::string& name) {
              command.size_near.push_back(parse_near_labels(text, name));
            });
   add_one(app, "--grade", "G",
-          "bounds of labels, --size-image and --size-near grow by no more than G mm a mm of the way,\n"
-          "along and across labels [default: at once]",
+          "bounds of labels and by place grow by no more than G mm a mm of the way\n"
+          "[default: at once]",
           into_positive(meshing.sizes.grade, "number"));
   add_one(app, "--delta", "MM", "sampling distance of the surfaces, mm [default: from voxel size and radius]",
           into_length(meshing.sizes.delta_mm));
   CLI::Option* target =
       add_one(app, "--target-elements", "N",
-              "choose the radius, and a factor of --size-image, for this many cells [default: none]",
+              "choose the radius, and a factor of --size-image, for this many cells\n[default: none]",
               into_count(meshing.sizes.target_elements));
   exclude(target, radius);
   need(add_one(app, "--target-tolerance", "PERCENT",
@@ -57,7 +58,7 @@ void add_sizing_options(CLI::App& app, MeshCommand& command) {
 }
 
 void add_surface_options(CLI::App& app, MeshingOptions& meshing) {
-  begin_group(app, "Surfaces");
+  begin_group(app, kSurfaceGroup);
   add_one(app, "--smooth", "MM",
           "lay interfaces where labels tie that are blurred by a Gaussian of this width, mm,\n"
           "some 1.5 voxels, instead of on the stairs of voxels, which keep their labels;\n"
@@ -285,12 +286,13 @@ void add_mesh_command(CLI::App& program, MeshCommand& command, Program which) {
 
 void add_planned_options(CLI::App& app, MeshCommand& command, CLI::Option* plan) {
   add_sizing_options(app, command);
+  add_surface_options(app, command.meshing);
   add_dihedral_options(app, command.meshing);
   begin_group(app, kAlgorithmGroup);
   add_algorithm_option(app, command.meshing);
   begin_group(app, kRunGroup);
   add_threads_option(app, command.meshing, Program::kPodm);
-  for (const char* group : {kSizeGroup, kDihedralGroup, kAlgorithmGroup, kRunGroup})
+  for (const char* group : {kSizeGroup, kSurfaceGroup, kDihedralGroup, kAlgorithmGroup, kRunGroup})
     need_in_group(app, group, plan);
 }
 

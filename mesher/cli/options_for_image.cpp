@@ -76,7 +76,8 @@ std::uint64_t bytes_for_image(std::uint64_t limit_bytes) {
   return limit_bytes - std::min(limit_bytes, resident_bytes() + kBytesOfOutput);
 }
 
-MeshingOptions options_as_given(const MeshCommand& command, const LabelImage& image) {
+MeshingOptions options_as_given(const MeshCommand& command, const LabelImage& image,
+                                std::uint64_t limit_bytes) {
   MeshingOptions options = command.meshing;
   options.sizes.radius_of_mm = lengths_by_value(command.radius_of_mm, image, command.image.path);
   options.sizes.near = near_by_value(command.size_near, image, command.image.path);
@@ -89,7 +90,7 @@ MeshingOptions options_as_given(const MeshCommand& command, const LabelImage& im
 
 MeshingOptions options_for_image(const MeshCommand& command, const LabelImage& image,
                                  std::uint64_t limit_bytes, int num_ranks) {
-  MeshingOptions options = options_as_given(command, image);
+  MeshingOptions options = options_as_given(command, image, limit_bytes);
   refuse_what_cannot_fit(command.image.path, image, options, limit_bytes, num_ranks);
   options.limits.max_memory_bytes = bytes_for_mesh(limit_bytes, command.image.path, image, options);
   return options;

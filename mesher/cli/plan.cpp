@@ -13,6 +13,7 @@
 #include "cost_model.h"
 #include "geometry/affine.h"
 #include "image/isosurface.h"
+#include "image/smooth_interfaces.h"
 
 namespace podm::cli {
 namespace {
@@ -40,7 +41,7 @@ std::vector<std::vector<double>> components_mm3(const LabelImage& image) {
 }  // namespace
 
 Plan make_plan(const MeshCommand& command, const LabelImage& image, double read_s) {
-  const MeshingOptions options = options_as_given(command, image);
+  const MeshingOptions options = options_as_given(command, image, memory_limit_bytes(command));
   const int threads = loop_threads(options.team);
   Plan plan;
   plan.threads = num_workers(options.team);
@@ -48,7 +49,10 @@ Plan make_plan(const MeshCommand& command, const LabelImage& image, double read_
   double others_bytes = 0;
   {
     const WorkTimer timer(threads);
-    const Isosurface isosurface(image, threads);  // and what else is the phase's
+    const auto strengths = options.smoothing_mm > 0
+                               ? smooth_interfaces(image, options.smoothing_mm, threads).strengths
+                               : nullptr;
+    const Isosurface isosurface(image, threads, strengths);  // and what else is the phase's
     foreground_bounds(image, threads);
     estimate(image, options);
     plan.transform_s = timer.seconds();

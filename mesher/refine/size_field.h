@@ -65,6 +65,7 @@ class SizeField {
 class LabelBound {
  public:
   LabelBound() = default;
+  explicit constexpr LabelBound(double squared_radius) : squared_(squared_radius) {}
   LabelBound(const SizeField& sizes, LabelIndex label)
       : squared_(sizes.squared_radius_of_label(label)), sizes_(sizes.has_grid() ? &sizes : nullptr) {}
 

@@ -7,8 +7,8 @@ import unittest
 from podm_process import PROGRAM, PodmTestCase, run_podm
 
 OPTIONS = {
-    "mesh": ["--output", "--radius", "--radius-of", "--delta", "--target-elements", "--target-tolerance",
-             "--min-dihedral", "--labels", "--drop-islands",
+    "mesh": ["--output", "--radius", "--radius-of", "--size-image", "--size-near", "--grade", "--delta",
+             "--target-elements", "--target-tolerance", "--smooth", "--min-dihedral", "--labels", "--drop-islands",
              "--merge", "--drop", "--background", "--label-names", "--space", "--surface", "--record", "--max-elements",
              "--max-seconds", "--max-memory-gib", "--threads", "--contention", "--algorithm", "--crossover", "--nodes",
              "--cores-per-node", "--initial-ratio", "--initial-threads", "--leaf-size", "--schedule", "--executor",
@@ -18,8 +18,8 @@ OPTIONS = {
     "convert": ["--gmsh-version"],
     "replay": ["--labels", "--merge", "--drop", "--background", "--label-names", "--drop-islands"],
     "info": ["--labels", "--merge", "--drop", "--background", "--label-names", "--drop-islands", "--json", "--plan",
-             "--radius", "--radius-of", "--delta", "--target-elements", "--target-tolerance", "--min-dihedral",
-             "--optimize", "--dihedral-bounds", "--algorithm", "--threads"],
+             "--radius", "--radius-of", "--size-image", "--size-near", "--grade", "--delta", "--target-elements",
+             "--target-tolerance", "--smooth", "--min-dihedral", "--optimize", "--dihedral-bounds", "--algorithm", "--threads"],
     "phantom": ["--size", "--output"],
     "view": ["--output", "--cut", "--flip", "--labels", "--hide", "--colour", "--camera", "--zoom", "--size",
              "--background", "--no-legend"],

@@ -41,7 +41,7 @@ class Ranks {
     sizes_.delta_mm = of.delta_mm;
     problem.emplace(Problem{.isosurface = isosurface_,
                             .object = foreground_bounds(of.image),
-                            .delta_mm = delta_mm_for(of.image, sizes_),
+                            .delta_mm = delta_mm_for(of.image, sizes_, nullptr),
                             .sizes = size_field(of.image, sizes_),
                             .cell_capacity = 1 << 22});
     run_ranks(

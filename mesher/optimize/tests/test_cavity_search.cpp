@@ -12,7 +12,7 @@ namespace podm::test {
 namespace {
 
 const CellQuality kQuality(DihedralBounds(8, 165));
-constexpr double kAnySize = 1e300;
+constexpr LabelBound kAnySize(1e300);
 
 double six_volumes(const std::vector<Point>& p, const LocalCell& c) {
   return dot(cross(p[c[1]] - p[c[0]], p[c[2]] - p[c[0]]), p[c[3]] - p[c[0]]);
@@ -114,7 +114,7 @@ TEST(CavitySearch, KeepsTheBoundOnSize) {
       six_volumes(points, {0, 1, 2, 3}) > 0 ? LocalCell{0, 1, 2, 3} : LocalCell{1, 0, 2, 3};
   CavitySearch search(kQuality);
   for (const bool is_large : {true, false}) {
-    search.begin(is_large ? 3.01 : 2.99);  // the squared radius is 3
+    search.begin(LabelBound(is_large ? 3.01 : 2.99));  // the squared radius is 3
     EXPECT_EQ(search.fill(points, {}, boundary_of({whole}), 0, 1000), is_large);
   }
 }

@@ -15,7 +15,7 @@ OPTION_OF = {"keep": "labels", "names": "label-names"}
 FLAGS = {"optimize", "oversubscribe"}
 """Options without a value."""
 
-_PATHS = {"names", "topology", "crossover"}
+_PATHS = {"names", "size_image", "topology", "crossover"}
 
 
 def command_line(keywords: Mapping[str, Any]) -> list[bytes]:
@@ -68,6 +68,25 @@ def _length_of_labels(keyword: str, value: Any) -> list[str]:
     return [f"{label}={_text(length)}" for label, length in value.items()]
 
 
+def _sizes_near_labels(keyword: str, value: Any) -> list[str]:
+    expect(isinstance(value, Mapping), keyword, 'a dict from pairs of labels to mm, as {("liver", 0): 1},', value)
+    texts = []
+    for pair, size in value.items():
+        are_labels = isinstance(pair, tuple) and len(pair) == 2 and all(isinstance(label, str) or is_label_value(label)
+                                                                        for label in pair)
+        expect(are_labels, keyword, "a pair of labels, by name or value,", pair)
+        lengths = size if isinstance(size, tuple) else (size,)
+        are_lengths = len(lengths) in (1, 2) and all(map(is_number, lengths))
+        expect(are_lengths, keyword, f"a length in mm, or one and a width, for {pair!r}", size)
+        texts.append(",".join(map(str, pair)) + "=" + ":".join(map(_text, lengths)))
+    return texts
+
+
+def _file_of_sizes(keyword: str, value: Any) -> list[str]:
+    expect(isinstance(value, (str, os.PathLike)), keyword, "the name of a file", value)
+    return [_text(value)]
+
+
 def _label_values(keyword: str, value: Any) -> list[str]:
     if isinstance(value, str):
         return [value]
@@ -90,5 +109,6 @@ def _file_of_names(keyword: str, value: Any) -> list[str]:
     return [_text(value)]
 
 
-_TEXTS_OF = {"radius_of": _length_of_labels, "keep": _label_values, "drop": _label_values, "merge": _merges,
+_TEXTS_OF = {"radius_of": _length_of_labels, "size_image": _file_of_sizes, "size_near": _sizes_near_labels,
+             "keep": _label_values, "drop": _label_values, "merge": _merges,
              "dihedral_bounds": _two_texts, "names": _file_of_names}

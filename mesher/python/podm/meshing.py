@@ -27,10 +27,12 @@ def mesh(labels: npt.ArrayLike | StrPath, *, affine: npt.ArrayLike | None = None
          spacing: npt.ArrayLike | None = None, names: Mapping[int, str] | StrPath | None = None,
          keep: LabelValues | None = None, drop: LabelValues | None = None,
          merge: Mapping[str, LabelValues] | None = None, drop_islands: float | None = None,
-         background: int | None = None,
-         radius: float | None = None, radius_of: Mapping[str | int, float] | None = None, delta: float | None = None,
-         target_elements: int | None = None, target_tolerance: float | None = None, smooth: float | None = None,
-         min_dihedral: float | None = None, optimize: bool = False, dihedral_bounds: tuple[float, float] | None = None,
+         background: int | None = None, radius: float | None = None,
+         radius_of: Mapping[str | int, float] | None = None, size_image: StrPath | None = None,
+         size_near: Mapping[tuple[str | int, str | int], float | tuple[float, float]] | None = None,
+         grade: float | None = None, delta: float | None = None, target_elements: int | None = None,
+         target_tolerance: float | None = None, smooth: float | None = None, min_dihedral: float | None = None,
+         optimize: bool = False, dihedral_bounds: tuple[float, float] | None = None,
          max_elements: int | None = None, max_seconds: float | None = None, max_memory_gib: float | None = None,
          space: str | None = None, algorithm: str | None = None, crossover: int | StrPath | None = None,
          nodes: int | None = None, cores_per_node: int | None = None, initial_ratio: float | None = None,
@@ -56,6 +58,10 @@ def mesh(labels: npt.ArrayLike | StrPath, *, affine: npt.ArrayLike | None = None
         origin. Without either they are 1 mm.
     names
         Names of labels, as {1: "liver"}; or a file of them, an ITK-SNAP table or lines "value name".
+    size_image
+        The name of a file; of an array, write it first, e.g. with nibabel.
+    size_near
+        A dict from pairs of labels to mm, or to mm and a width, as {("liver", 0): 1, ("liver", "vein"): (0.5, 3)}.
     progress
         Is called with a podm.Progress some times a second, by the thread that called mesh(). What it raises ends the
         run and is raised by mesh().
@@ -77,9 +83,11 @@ def plan(labels: npt.ArrayLike | StrPath, *, affine: npt.ArrayLike | None = None
          spacing: npt.ArrayLike | None = None, names: Mapping[int, str] | StrPath | None = None,
          keep: LabelValues | None = None, drop: LabelValues | None = None,
          merge: Mapping[str, LabelValues] | None = None, drop_islands: float | None = None,
-         background: int | None = None,
-         radius: float | None = None, radius_of: Mapping[str | int, float] | None = None, delta: float | None = None,
-         target_elements: int | None = None, min_dihedral: float | None = None, optimize: bool = False,
+         background: int | None = None, radius: float | None = None,
+         radius_of: Mapping[str | int, float] | None = None, size_image: StrPath | None = None,
+         size_near: Mapping[tuple[str | int, str | int], float | tuple[float, float]] | None = None,
+         grade: float | None = None, delta: float | None = None, target_elements: int | None = None,
+         smooth: float | None = None, min_dihedral: float | None = None, optimize: bool = False,
          algorithm: str | None = None, threads: int | None = None) -> dict[str, Any]:
     """Tells what mesh() of the same image and options will cost and lose, without meshing it.
 

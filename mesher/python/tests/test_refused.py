@@ -68,7 +68,7 @@ class RefusedTest(TestCase):
     def test_texts_that_would_name_another_file_or_label(self):
         for text in ("no\0pe", "no\ud800pe"):
             self.assert_refused("labels: the name of a file, without NUL", repr(text), labels=text)
-            for keyword in ("names", "topology", "crossover"):
+            for keyword in ("names", "size_image", "topology", "crossover"):
                 self.assert_refused(f"{keyword}: the name of a file, without NUL", repr(text), **{keyword: text})
             for keyword, value in (("names", {3: text}), ("radius_of", {text: 2}), ("merge", {text: [3]}),
                                    ("keep", text), ("algorithm", text)):
@@ -100,6 +100,15 @@ class RefusedTest(TestCase):
         self.assert_refused("radius_of", "length in mm", radius_of={3: "wide"})
         self.assert_refused("radius_of", "dict", radius_of=2)
         self.assert_refused("radius_of 7", "not a positive length", radius_of={7: 0})
+        self.assert_refused("grade: '0' is not a positive number", grade=0)
+        self.assert_refused("size_image", "name of a file", size_image=3)
+        self.assert_refused("nowhere.nii", size_image=self.folder / "nowhere.nii")
+        self.assert_refused("size_near", "dict from pairs", size_near=[3, 7])
+        for pair in (3, "liver", (3,), (3, 7, 1), (3, -1)):
+            self.assert_refused("size_near: a pair of labels", size_near={pair: 1})
+        for size in ("wide", (1, 2, 3), (1, "wide"), True):
+            self.assert_refused("size_near: a length in mm", size_near={(3, 7): size})
+        self.assert_refused("size_near 3,7", "not a positive width", size_near={(3, 7): (1, 0)})
         self.assert_refused("target_elements", "radius", radius=1, target_elements=1000)
         self.assert_refused("target_tolerance", "target_elements", target_tolerance=3)
         self.assert_refused("target_elements: '2.5' is not an integer", target_elements=2.5)

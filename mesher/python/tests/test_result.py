@@ -8,6 +8,7 @@ import unittest
 import warnings
 import weakref
 
+import nibabel
 import numpy as np
 
 from balls import AFFINE, PROGRAM, TestCase, balls, podm
@@ -155,9 +156,17 @@ class ResultTest(TestCase):
         self.assertIn("labels", str(report))
         self.assertEqual(set(report.details["claims"]), set(report.verdicts))
 
+    def sizes(self):
+        path = self.folder / "sizes.nii"
+        affine = [[100, 0, 0, -150], [0, 100, 0, -150], [0, 0, 100, -150], [0, 0, 0, 1]]
+        nibabel.save(nibabel.Nifti1Image(np.linspace(8, 30, 64, dtype=np.float32).reshape(4, 4, 4), affine), path)
+        return path
+
     def test_the_verifier_proves_meshes_of_files_phantoms_and_chosen_labels(self):
         for labels, keywords in ((self.nifti(), {"keep": [3]}), (balls(), {"merge": {"both": [3, 7]}}),
                                  ("phantom:spheres@24", {"radius_of": {1: 3}}),
+                                 ("phantom:spheres@24", {"size_image": self.sizes(), "grade": 0.3,
+                                                         "size_near": {("shell", 0): (3, 5), (1, 2): 4}}),
                                  (balls(), {"optimize": True, "radius": 1.5})):
             mesh = podm.mesh(labels, **keywords)
             self.assertTrue(mesh.verify(), mesh.verify().text)
