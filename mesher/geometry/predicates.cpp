@@ -1,21 +1,62 @@
 #include "geometry/predicates.h"
 
-#include <CGAL/Exact_predicates_inexact_constructions_kernel.h>
 #include <CGAL/Exact_rational.h>
 #include <CGAL/Simple_cartesian.h>
 
 #include <algorithm>
 #include <array>
+#include <cmath>
+#include <optional>
 
 namespace podm {
 
 namespace {
 
-using Kernel = CGAL::Exact_predicates_inexact_constructions_kernel;
 using ExactKernel = CGAL::Simple_cartesian<CGAL::Exact_rational>;
 
-Kernel::Point_3 convert(const Point& p) { return {p.x, p.y, p.z}; }
 ExactKernel::Point_3 convert_exactly(const Point& p) { return {p.x, p.y, p.z}; }
+
+// Bounds of the errors of determinants in rounded arithmetic, over the sum of the sizes of their products:
+// Shewchuk, Discrete & Computational Geometry 18 (1997) 305-363, stage A. Unlike intervals they need no
+// rounding mode, which tools that simulate a processor ignore.
+constexpr double kEpsilon = 0x1p-53;
+constexpr double kOrientationError = (7 + 56 * kEpsilon) * kEpsilon;
+constexpr double kSphereError = (16 + 224 * kEpsilon) * kEpsilon;
+constexpr double kUnderflow = 1e-290;  // far above what products that underflow can add
+
+// A sum of products, and the sum of their sizes.
+struct Sum {
+  double value = 0, size = 0;
+
+  std::optional<int> sign(double relative_error) const {
+    const double error = relative_error * size + kUnderflow;
+    if (value > error) return 1;
+    if (-value > error) return -1;
+    return std::nullopt;
+  }
+};
+
+// a x b, along one axis.
+Sum minor(double a, double b, double c, double d) {
+  const double first = a * d, second = b * c;
+  return {first - second, std::fabs(first) + std::fabs(second)};
+}
+
+// dot(cross(u, v), w)
+Sum determinant(const Vector& u, const Vector& v, const Vector& w) {
+  const Sum x = minor(u.y, u.z, v.y, v.z), y = minor(u.z, u.x, v.z, v.x), z = minor(u.x, u.y, v.x, v.y);
+  return {w.x * x.value + w.y * y.value + w.z * z.value,
+          std::fabs(w.x) * x.size + std::fabs(w.y) * y.size + std::fabs(w.z) * z.size};
+}
+
+// The power of p, the origin of all four, against the circumsphere of a positive cell: above 0 inside.
+Sum power(const Vector& a, const Vector& b, const Vector& c, const Vector& d) {
+  const Sum without_a = determinant(b, c, d), without_b = determinant(a, c, d),
+            without_c = determinant(a, b, d), without_d = determinant(a, b, c);
+  const double a2 = squared_length(a), b2 = squared_length(b), c2 = squared_length(c), d2 = squared_length(d);
+  return {(a2 * without_a.value - b2 * without_b.value) + (c2 * without_c.value - d2 * without_d.value),
+          a2 * without_a.size + b2 * without_b.size + c2 * without_c.size + d2 * without_d.size};
+}
 
 // The sign of p's power against the cell once every height is perturbed. With barycentric coordinates
 // lambda_i of p it is sign(sum lambda_i eps_i - eps_p): the largest point with a non-zero factor decides.
@@ -36,12 +77,14 @@ bool in_perturbed_circumsphere(const std::array<const Point*, 4>& cell, const Po
 }  // namespace
 
 int orientation(const Point& a, const Point& b, const Point& c, const Point& d) {
-  return CGAL::orientation(convert(a), convert(b), convert(c), convert(d));
+  if (const auto sign = determinant(b - a, c - a, d - a).sign(kOrientationError)) return *sign;
+  return CGAL::orientation(convert_exactly(a), convert_exactly(b), convert_exactly(c), convert_exactly(d));
 }
 
 bool in_circumsphere(const Point& a, const Point& b, const Point& c, const Point& d, const Point& p) {
-  const CGAL::Oriented_side side =
-      CGAL::side_of_oriented_sphere(convert(a), convert(b), convert(c), convert(d), convert(p));
+  if (const auto sign = power(a - p, b - p, c - p, d - p).sign(kSphereError)) return *sign > 0;
+  const CGAL::Oriented_side side = CGAL::side_of_oriented_sphere(
+      convert_exactly(a), convert_exactly(b), convert_exactly(c), convert_exactly(d), convert_exactly(p));
   if (side != CGAL::ON_ORIENTED_BOUNDARY) return side == CGAL::ON_POSITIVE_SIDE;
   if (p == a || p == b || p == c || p == d) return false;
   return in_perturbed_circumsphere({&a, &b, &c, &d}, p);

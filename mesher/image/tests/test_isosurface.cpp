@@ -56,7 +56,8 @@ std::vector<Sample> noisy_samples() {
 // Phantoms as they are and smoothed.
 std::vector<Sample> smooth_samples() {
   std::vector<Sample> samples;
-  for (const Phantom& phantom : smooth_phantoms()) {
+  for (Phantom& phantom : smooth_phantoms()) {
+    phantom.image.labels.resize(3);
     samples.push_back({phantom.image, nullptr});
     samples.push_back({phantom.image, smooth_interfaces(phantom.image, 1.5, 1).strengths});
   }

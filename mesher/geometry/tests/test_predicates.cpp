@@ -1,0 +1,102 @@
+#include "geometry/predicates.h"
+
+#include <CGAL/Exact_rational.h>
+#include <CGAL/Simple_cartesian.h>
+#include <gtest/gtest.h>
+
+#include <array>
+#include <cmath>
+#include <random>
+
+namespace podm {
+namespace {
+
+using Exact = CGAL::Simple_cartesian<CGAL::Exact_rational>;
+using Five = std::array<Point, 5>;
+
+Exact::Point_3 exact(const Point& p) { return {p.x, p.y, p.z}; }
+
+// Points of a lattice and of a sphere, a few of whose coordinates are off by their last bits: next to all are
+// almost, or just, coplanar or cospherical.
+class NearlyDegenerate {
+ public:
+  Five next(bool is_on_sphere) {
+    Five points;
+    const double scale = std::exp2(random_() % 41) * 1e-6, shift = random_() % 2 == 0 ? 0 : 1e3 * scale;
+    for (Point& p : points) {
+      p = is_on_sphere ? on_sphere() : on_plane();
+      for (double* x : {&p.x, &p.y, &p.z}) {
+        *x = *x * scale + shift;
+        if (random_() % 8 == 0) *x = std::nextafter(*x, random_() % 2 == 0 ? -1e300 : 1e300);
+      }
+    }
+    return points;
+  }
+
+ private:
+  double digit() { return static_cast<double>(random_() % 7) - 3; }
+  Point on_plane() {
+    const double x = digit(), y = digit();
+    return {x, y, x + 2 * y};
+  }
+  // (3,4,0) and the like, of radius 5.
+  Point on_sphere() {
+    static constexpr std::array<std::array<double, 3>, 3> kPoints{{{3, 4, 0}, {0, 5, 0}, {4, 0, 3}}};
+    auto p = kPoints[random_() % kPoints.size()];
+    std::shuffle(p.begin(), p.end(), random_);
+    for (double& x : p) x *= random_() % 2 == 0 ? -1 : 1;
+    return {p[0], p[1], p[2]};
+  }
+
+  std::mt19937_64 random_{17};
+};
+
+TEST(Predicates, OrientationIsTheSignOfTheExactDeterminant) {
+  NearlyDegenerate points;
+  std::array<int, 3> count{};
+  for (int n = 0; n < 20'000; ++n) {
+    const auto [a, b, c, d, p] = points.next(n % 2 == 0);
+    const int sign = orientation(a, b, c, d);
+    ASSERT_EQ(sign, CGAL::orientation(exact(a), exact(b), exact(c), exact(d)));
+    ++count[static_cast<std::size_t>(sign + 1)];
+  }
+  for (const int of_sign : count) EXPECT_GT(of_sign, 100);
+}
+
+TEST(Predicates, PointsInSpheresAreThoseOfTheExactPower) {
+  NearlyDegenerate points;
+  std::array<int, 3> count{};
+  for (int n = 0; n < 20'000; ++n) {
+    auto [a, b, c, d, p] = points.next(n % 4 != 0);
+    const int sign = orientation(a, b, c, d);
+    if (sign == 0) continue;
+    if (sign < 0) std::swap(a, b);
+    const CGAL::Oriented_side side =
+        CGAL::side_of_oriented_sphere(exact(a), exact(b), exact(c), exact(d), exact(p));
+    ++count[static_cast<std::size_t>(side + 1)];
+    if (side != CGAL::ON_ORIENTED_BOUNDARY) {
+      ASSERT_EQ(in_circumsphere(a, b, c, d, p), side == CGAL::ON_POSITIVE_SIDE);
+    }
+  }
+  for (const int of_side : count) EXPECT_GT(of_side, 100);
+}
+
+// Of five cospherical points the two Delaunay triangulations of the perturbed heights are one.
+TEST(Predicates, CosphericalPointsAreToldApartAlikeFromAllSides) {
+  NearlyDegenerate points;
+  int num_cospherical = 0;
+  for (int n = 0; n < 40'000; ++n) {
+    const auto [a, b, c, d, p] = points.next(true);
+    if (orientation(a, b, c, d) <= 0 || orientation(p, b, d, c) <= 0)
+      continue;  // p beyond the facet of b, c and d
+    if (CGAL::side_of_oriented_sphere(exact(a), exact(b), exact(c), exact(d), exact(p)) !=
+        CGAL::ON_ORIENTED_BOUNDARY)
+      continue;
+    ++num_cospherical;
+    ASSERT_EQ(in_circumsphere(a, b, c, d, p), in_circumsphere(p, b, d, c, a));
+  }
+  EXPECT_GT(num_cospherical, 100);
+}
+
+}  // namespace
+}  // namespace podm
