@@ -60,9 +60,9 @@ void add_sizing_options(CLI::App& app, MeshCommand& command) {
 void add_surface_options(CLI::App& app, MeshingOptions& meshing) {
   begin_group(app, kSurfaceGroup);
   add_one(app, "--smooth", "MM",
-          "lay interfaces where labels tie that are blurred by a Gaussian this wide, mm (some\n"
-          "1.5 voxels), instead of on the stairs of voxels, which keep their labels; thin\n"
-          "parts are blurred by less [default: stairs]",
+          "lay interfaces where labels tie that are blurred by a Gaussian this wide, mm,\n"
+          "instead of on the stairs of voxels, which keep their labels; some 1.5 voxels;\n"
+          "thin parts are blurred by less [default: stairs]",
           into_length(meshing.smoothing_mm));
 }
 

@@ -35,8 +35,8 @@ class Smooth(PodmTestCase):
         for algorithm in (["podm", "--threads", 2], ["pdr-podm", "--nodes", 2, "--cores-per-node", 1],
                           ["podm-home", "--nodes", 2]):
             log = self.folder / "run.log"
-            record = self.record_of("--smooth", 1.5 * self.voxel_mm(), "--algorithm", *algorithm, "--oversubscribe", "--log",
-                                    log, "--verify-fidelity", image=image)
+            record = self.record_of("--smooth", 1.5 * self.voxel_mm(), "--algorithm", *algorithm, "--oversubscribe",
+                                    "--log", log, "--verify-fidelity", image=image)
             self.assertEqual(set(record["verdicts"].values()), {"pass"}, algorithm)
             self.assertIn("fidelity", record["verdicts"])
             self.assertEqual(set(record["guarantees"].values()), {0})
