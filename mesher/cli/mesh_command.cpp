@@ -44,7 +44,7 @@ void check_outputs(const MeshCommand& command, const SignalThread& signals) {
                                    command.schedule_path, to_string(algorithm)));
     const AtomicFile trial(command.schedule_path);
   }
-  if (command.verify) check_verifier(command.mesh_path);
+  if (command.verify) check_verifier(command);
   if (!command.page_path.empty()) check_page(command, signals);
 }
 

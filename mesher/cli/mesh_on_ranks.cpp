@@ -37,7 +37,7 @@ void check_command(const MeshCommand& command) {
   refuse(command.size_near.empty() ? "" : command.size_near[0].labels[0], "--size-near");
   check_options_on_ranks(command.meshing);
   check_pieces_path(command.mesh_path);
-  if (command.verify) check_verifier(command.mesh_path);
+  if (command.verify) check_verifier(command);
 }
 
 class Run {

@@ -99,7 +99,10 @@ std::vector<std::string> verifier_command(const MeshRun& run, std::optional<Temp
 
 }  // namespace
 
-void check_verifier(const std::string& mesh_path) {
+void check_verifier(const MeshCommand& command) {
+  const std::string& mesh_path = command.mesh_path;
+  if (!command.size_image_path.empty() && command.meshing.space == Space::kVoxel)
+    throw InputError("--verify: podm-verify does not judge sizes of --size-image in --space voxel");
   if (mesh_path.ends_with(".xdmf"))
     throw InputError(fmt::format(
         "--verify: podm-verify does not read {}; it reads all other formats that are written", mesh_path));

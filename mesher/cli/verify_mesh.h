@@ -11,8 +11,8 @@
 
 namespace podm::cli {
 
-/// Throws InputError where there is no podm-verify that can be run.
-void check_verifier(const std::string& mesh_path);
+/// Throws InputError where there is no podm-verify that can be run, or none that can judge what is asked for.
+void check_verifier(const MeshCommand& command);
 
 /// The options of podm-verify by which it checks what the run promises of its mesh. Image and labels are
 /// those of the image's file; if it has none `write_image` is called, which writes it, with its labels

@@ -65,13 +65,13 @@ LabelIndex Oracle<Reads>::label_by_block(const Point& u) const {
   });
 }
 
-// Its block may still have several labels, but only if a surface voxel is beside v.
+// Its block may still have several labels, but only if a surface voxel is beside v: the nearest, which may be
+// another where voxels are long, is then no farther than a diagonal.
 template <class Reads>
 LabelIndex Oracle<Reads>::label_off_surface(const Point& u, const Voxel& v, Brick brick) const {
   const std::optional<Voxel> offset = features_.offset_to_nearest(brick, v);
-  const auto is_beside = [](int steps) { return steps >= -1 && steps <= 1; };
-  if (offset && is_beside(offset->i) && is_beside(offset->j) && is_beside(offset->k))
-    return label_by_block(u);
+  const double diagonal_mm = 2 * half_diagonal_mm_ * kSomewhatMore;
+  if (offset && length_mm(center(*offset)) <= diagonal_mm) return label_by_block(u);
   return brick.label() == Brick::kMixed ? grid_.label_inside(v) : brick.label();
 }
 

@@ -15,6 +15,8 @@
 // nearer to the interface, or not lost by more, takes the least distance, a twentieth of a voxel. Last, a
 // voxel that is alone along an axis is at least as strong as the geometric mean of its two neighbours, which
 // keeps it a voxel thick.
+// Parts of one to two and a half widths are not kept as well: at 1.5 voxels slabs of 2 and 3 voxels grow by
+// 19 and 17 %, at 2 voxels one of 3 by 23 %, and a round rod of 4 loses 36 %.
 //
 // A voxel here is the side of a cube of its volume. Beyond the grid the image goes on as at its border. Taps
 // of a Gaussian reach three widths and are normalised.
@@ -43,8 +45,8 @@ struct SmoothInterfaces {
 /// side.
 SmoothInterfaces smooth_interfaces(const LabelImage& image, double width_mm, int threads);
 
-/// The volume of each label in an image with such strengths, mm^3, by index in LabelImage::labels: of points
-/// half a voxel apart.
+/// The volume of each label in an image with such strengths, mm^3, by index in LabelImage::labels: of 64
+/// points a voxel.
 std::vector<double> volumes_mm3(const LabelImage& image, const VoxelStrengths& strengths, int threads);
 
 }  // namespace podm

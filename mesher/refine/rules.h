@@ -8,16 +8,14 @@
 //       or an angle of at most 30 degrees
 //   R4  insert c if it is inside and radius-edge >= 1.93
 //   R5  insert c if it is inside and r > r_t
-//   R6  after R1 and R3, whose point is z: remove circumcentre vertices closer than 2 delta to z, or than r_t
-//   is
-//       there, where a grid asks for small cells (size_grid.h)
-// r_t is the label's, and at most what a grid asks for at c. Of the proof it needs but its least value in the
-// object, where all of R4's, R5's and R6's points are: call that r_t, and the rest stands as it is for a
-// constant. Spacing. Let q = 1.93, k = sqrt(2 + sqrt(3)) = 1.93185, s = min(delta, r_t / k), and m the least
-// distance of two isosurface vertices, or s where that is less. Isosurface vertices stay, so m never grows.
+//   R6  after R1 and R3, whose point is z: remove circumcentre vertices closer than 2 delta to z, or than
+//       r_t is there, where a grid asks for small cells (size_grid.h)
+// r_t is the label's, and at most what a grid asks for at c. What follows needs but its least value in the
+// object, where all points of R4, R5 and R6 are: r_t from here on.
+// Spacing. Let q = 1.93, k = sqrt(2 + sqrt(3)) = 1.93185, s = min(delta, r_t / k), and m the least distance
+// of two isosurface vertices, or s where that is less. Isosurface vertices stay, so m never grows.
 //   I2, I3  All other pairs are q m apart: R2 keeps 2 delta from every vertex, R6 that or r_t from free ones;
-//   R5 keeps
-//           r_t >= k s, and R4 q times an edge, none of which is shorter than m.
+//           R5 keeps r_t >= k s, and R4 q times an edge, none of which is shorter than m.
 //   I1      m >= s, but for what q < k costs. R1 keeps delta >= s. R3's ball is empty and no smaller than its
 //           facet's circumcircle, whose radius is no less than a side if the facet has a small angle, and
 //           q m / sqrt(3) if two of its vertices are free. If one is, the sides are at least q m, q m and m.

@@ -122,6 +122,8 @@ class SizesByPlace(PodmTestCase):
             self.assert_refused(self.refused("--size-near", near), "--size-near")
         self.assert_refused(self.refused("--size-near", "1,1=2"), "labels 1 and 1: 1 is on both sides")
         self.assert_refused(self.refused("--size-near", "1,9=2"), "no label '9'")
+        in_voxels = ("--size-image", self.ramp, "--space", "voxel", "--verify")
+        self.assert_refused(self.refused(*in_voxels), "podm-verify does not judge", "--space voxel")
 
 
 if __name__ == "__main__":

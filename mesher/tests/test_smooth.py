@@ -50,7 +50,7 @@ class Smooth(PodmTestCase):
         meshed = {label["value"]: label["volume_mm3"] for label in record["labels"]}
         for label in smoothing["labels"]:
             if label["voxels_mm3"] > 500 * self.voxel_mm() ** 3:
-                self.assertAlmostEqual(label["smoothed_mm3"] / label["voxels_mm3"], 1, delta=0.04)
+                self.assertAlmostEqual(label["smoothed_mm3"] / label["voxels_mm3"], 1, delta=0.1)
         whole = sum(label["smoothed_mm3"] for label in smoothing["labels"])
         self.assertAlmostEqual(sum(meshed.values()) / whole, 1, delta=0.02)
         self.assertIsNone(self.record_of()["smoothing"])

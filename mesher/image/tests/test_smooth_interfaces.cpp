@@ -260,31 +260,50 @@ TEST(SmoothInterfaces, HalveErrorsOfNormalsAndKeepVolumes) {
       const Isosurface isosurface(shape.image, 1, smoothed.strengths);
       EXPECT_LE(normal_error_deg(shape, isosurface), (voxels > 1 ? 0.4 : 0.55) * stairs_deg) << voxels;
       const double volume = volumes_mm3(shape.image, *smoothed.strengths, 1)[1];
-      EXPECT_NEAR(volume / shape.volume_mm3, 1, 0.005) << voxels;
+      EXPECT_NEAR(volume / shape.volume_mm3, 1, voxels > 1.5 ? 0.006 : 0.005) << voxels;
       EXPECT_TRUE(smoothed.labels_lost.empty());
     }
   }
 }
 
-// Sheets and rods, the label and its gap, at most two voxels thick.
+double volume_mm3(const LabelImage& image, double width_mm) {
+  return volumes_mm3(image, *smooth_interfaces(image, width_mm, 1).strengths, 1)[1];
+}
+
+double volume_of_stairs_mm3(const LabelImage& image) {
+  VoxelStrengths equal(image.size);
+  for (std::size_t v = 0; v < image.num_voxels(); ++v) equal.at(v) = VoxelStrengths::kMost;
+  return volumes_mm3(image, equal, 1)[1];
+}
+
+// All of label 1, or of background, but for a sheet or a rod of the other.
+LabelImage image_with_thin(int thickness, bool is_rod, LabelIndex label) {
+  LabelImage image = empty_image({24, 24, 24}, {1, 1, 1});
+  image.labels.resize(2);
+  for (int k = 0; k < 24; ++k)
+    for (int j = 0; j < 24; ++j)
+      for (int i = 0; i < 24; ++i) {
+        const bool is_thin = i >= 11 && i < 11 + thickness && (!is_rod || (j >= 11 && j < 11 + thickness));
+        image.voxels[image.index(i, j, k)] = is_thin == (label == 1);
+      }
+  return image;
+}
+
+// Sheets and rods, of the label or a gap in it, at most two voxels thick, are those of the stairs.
 TEST(SmoothInterfaces, KeepThinPartsByVolume) {
+  const LabelImage full = image_with_thin(0, false, 0);
   for (const int thickness : {1, 2}) {
     for (const bool is_rod : {false, true}) {
-      for (const LabelIndex inner : {LabelIndex{0}, LabelIndex{1}}) {
-        LabelImage image = empty_image({24, 24, 24}, {1, 1, 1});
-        image.labels.resize(2);
-        std::fill(image.voxels.begin(), image.voxels.end(), LabelIndex(1 - inner));
-        for (int k = 0; k < 24; ++k)
-          for (int j = 0; j < 24; ++j)
-            for (int i = 11; i < 11 + thickness; ++i)
-              if (!is_rod || (j >= 11 && j < 11 + thickness)) image.voxels[image.index(i, j, k)] = inner;
-        const double exact = thickness * (is_rod ? thickness : 24) * 24;
+      for (const LabelIndex label : {LabelIndex{0}, LabelIndex{1}}) {
+        const LabelImage image = image_with_thin(thickness, is_rod, label);
+        // A gap is what is missing of an object that is round at the edges of the grid.
+        const auto of_thin = [&](const auto& volume) {
+          return label == 1 ? volume(image) : volume(full) - volume(image);
+        };
+        const double stairs = of_thin(volume_of_stairs_mm3);
         for (const double width : {1.0, 2.0, 3.0}) {
-          const auto smoothed = smooth_interfaces(image, width, 1);
-          const auto volume = volumes_mm3(image, *smoothed.strengths, 1)[inner];
-          // Outside the grid all is background.
-          const double grown = inner == 0 ? volume - 25 * 25 * 25 + 24 * 24 * 24 : volume;
-          EXPECT_NEAR(grown / exact, 1, is_rod ? 0.3 : 0.2) << thickness << ' ' << is_rod << ' ' << width;
+          const double smoothed = of_thin([&](const LabelImage& of) { return volume_mm3(of, width); });
+          EXPECT_NEAR(smoothed / stairs, 1, 0.25) << thickness << ' ' << is_rod << ' ' << width;
         }
       }
     }
