@@ -15,17 +15,21 @@ namespace {
 
 bool is_positive_or_zero(double x) { return std::isfinite(x) && x >= 0; }
 
+using Labels = std::vector<Label>;
+
+bool has_value(Labels::const_iterator begin, Labels::const_iterator end, std::uint32_t value) {
+  return std::any_of(begin, end, [value](const Label& label) { return label.value == value; });
+}
+
 void check_near(const LabelImage& image, const std::vector<SizeNear>& near) {
   for (const SizeNear& each : near) {
     if (!(std::isfinite(each.radius_mm) && each.radius_mm > 0) ||
         !(std::isfinite(each.width_mm) && each.width_mm > 0))
       throw InputError("the size near an interface and its width must be positive numbers of mm");
     for (const auto& side : each.labels)
-      for (const std::uint32_t value : side) {
-        const auto has_value = [value](const Label& label) { return label.value == value; };
-        if (std::none_of(image.labels.begin(), image.labels.end(), has_value))
+      for (const std::uint32_t value : side)
+        if (!has_value(image.labels.begin(), image.labels.end(), value))
           throw InputError(fmt::format("size near label {}: the image has no such label", value));
-      }
   }
 }
 
@@ -46,8 +50,7 @@ void check_sizes(const LabelImage& image, const SizeOptions& sizes) {
   if (!is_positive_or_zero(sizes.radius_mm)) throw InputError("radius must be a positive number of mm");
   if (!is_positive_or_zero(sizes.delta_mm)) throw InputError("delta must be a positive number of mm");
   for (const auto& [value, radius] : sizes.radius_of_mm) {
-    const auto has_value = [v = value](const Label& label) { return label.value == v; };
-    if (std::none_of(image.labels.begin() + 1, image.labels.end(), has_value))
+    if (!has_value(image.labels.begin() + 1, image.labels.end(), value))
       throw InputError("radius of label " + std::to_string(value) + ": the image has no such label");
     if (!(std::isfinite(radius) && radius > 0))
       throw InputError("radius of label " + std::to_string(value) + " must be a positive number of mm");

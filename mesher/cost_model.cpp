@@ -200,18 +200,9 @@ std::vector<double> CostModel::areas_by_label_mm2(double distance_mm) const {
   return areas_mm2;
 }
 
-namespace {
-
-double radius_mm(const SizeOptions& sizes, const Label& label) {
-  const auto own = sizes.radius_of_mm.find(label.value);
-  return own != sizes.radius_of_mm.end() ? own->second : sizes.radius_mm;
-}
-
-}  // namespace
-
 // The radius that makes as many cells of the label as its places make with theirs; 0: unbounded.
 double CostModel::mean_radius_mm(LabelIndex label, const SizeOptions& sizes) const {
-  const double asked_mm = radius_mm(sizes, image_.labels[label]);
+  const double asked_mm = radius_mm_of(sizes, image_.labels[label]);
   if (!census_) return asked_mm;
   const double of_label = asked_mm > 0 ? asked_mm : std::numeric_limits<double>::infinity();
   double density = 0;

@@ -19,6 +19,18 @@ double default_delta_mm(const LabelImage& image, double radius_mm) {
   return radius_mm > 0 ? std::min(kMaxDeltaVoxels * voxel, radius_mm / 2) : voxel;
 }
 
+double radius_mm_of(const SizeOptions& sizes, const Label& label) {
+  const auto own = sizes.radius_of_mm.find(label.value);
+  return own != sizes.radius_of_mm.end() ? own->second : sizes.radius_mm;
+}
+
+std::vector<double> radii_of_labels_mm(const LabelImage& image, const SizeOptions& sizes) {
+  std::vector<double> radii(image.labels.size(), kInfinity);
+  for (std::size_t i = 1; i < radii.size(); ++i)
+    if (const double radius = radius_mm_of(sizes, image.labels[i]); radius > 0) radii[i] = radius;
+  return radii;
+}
+
 double smallest_radius_mm(const SizeOptions& sizes) {
   double smallest = sizes.radius_mm > 0 ? sizes.radius_mm : kInfinity;
   for (const auto& [value, radius] : sizes.radius_of_mm) smallest = std::min(smallest, radius);
@@ -35,12 +47,7 @@ double delta_mm_for(const LabelImage& image, const SizeOptions& sizes, const Siz
 
 SizeField size_field(const LabelImage& image, const SizeOptions& sizes,
                      std::shared_ptr<const SizeGrid> grid) {
-  std::vector<double> radius(image.labels.size(), sizes.radius_mm > 0 ? sizes.radius_mm : kInfinity);
-  for (std::size_t i = 1; i < image.labels.size(); ++i) {
-    const auto own = sizes.radius_of_mm.find(image.labels[i].value);
-    if (own != sizes.radius_of_mm.end()) radius[i] = own->second;
-  }
-  return SizeField(std::move(radius), std::move(grid));
+  return SizeField(radii_of_labels_mm(image, sizes), std::move(grid));
 }
 
 }  // namespace podm

@@ -8,6 +8,11 @@
 
 namespace podm {
 
+/// The radius that the options give a label, mm; 0: unbounded.
+double radius_mm_of(const SizeOptions& sizes, const Label& label);
+/// The same of all labels, by index, the background unbounded; infinity: unbounded.
+std::vector<double> radii_of_labels_mm(const LabelImage& image, const SizeOptions& sizes);
+
 /// The least radius of all labels, mm; 0: unbounded.
 double smallest_radius_mm(const SizeOptions& sizes);
 

@@ -7,6 +7,7 @@
 #include <utility>
 
 #include "cost_model.h"
+#include "default_sizes.h"
 #include "image/graded_grid.h"
 #include "image/interface_distance.h"
 #include "image/working_frame.h"
@@ -137,11 +138,7 @@ void for_each_voxel(const std::array<int, 3>& size, const Use& use) {
 }
 
 void bound_by_labels(const LabelImage& image, const SizeOptions& sizes, Graded& graded) {
-  std::vector<double> radius_of(image.labels.size(),
-                                sizes.radius_mm > 0 ? sizes.radius_mm : ScalarGrid::kNone);
-  for (std::size_t label = 1; label < radius_of.size(); ++label)
-    if (const auto own = sizes.radius_of_mm.find(image.labels[label].value); own != sizes.radius_of_mm.end())
-      radius_of[label] = own->second;
+  const std::vector<double> radius_of = radii_of_labels_mm(image, sizes);
   for_each_voxel(image.size, [&](const std::array<double, 3>& voxel, std::size_t number) {
     const LabelIndex label = image.voxels[number];
     if (label != kBackground && std::isfinite(radius_of[label])) graded.bound(voxel, radius_of[label]);

@@ -42,8 +42,7 @@ std::optional<std::array<double, 2>> dihedral_bounds_kept(const MeshingReport& r
 
 SmoothingReport report_on_smoothing(const LabelImage& image, double width_mm,
                                     const SmoothInterfaces& smoothed, int threads) {
-  std::vector<std::uint64_t> voxels(image.labels.size());
-  for (const LabelIndex label : image.voxels) ++voxels[label];
+  const std::vector<std::uint64_t> voxels = count_voxels(image, threads);
   const std::vector<double> volumes = volumes_mm3(image, *smoothed.strengths, threads);
   const double voxel_mm3 = image.spacing[0] * image.spacing[1] * image.spacing[2];
   SmoothingReport report{.width_mm = width_mm, .labels = {}};

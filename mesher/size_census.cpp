@@ -7,6 +7,7 @@
 #include <tuple>
 #include <utility>
 
+#include "image/isosurface_block.h"
 #include "image/working_frame.h"
 
 namespace podm {
@@ -25,15 +26,12 @@ double radius_of(int number) {
   return number == kNoRadius ? ScalarGrid::kNone : std::exp2(number / kClassesAnOctave);
 }
 
-bool is_at_interface(const LabelImage& image, const std::array<int, 3>& v) {
-  const LabelIndex own = image.voxels[image.index(v[0], v[1], v[2])];
-  for (std::size_t axis = 0; axis < 3; ++axis)
-    for (const int step : {-1, 1}) {
-      std::array<int, 3> beside = v;
-      beside[axis] += step;
-      if (beside[axis] < 0 || beside[axis] >= image.size[axis]) return true;
-      if (image.voxels[image.index(beside[0], beside[1], beside[2])] != own) return true;
-    }
+bool is_at_interface(const LabelGrid<NoReads>& grid, const Voxel& v) {
+  const LabelIndex own = grid.label(v);
+  for (const int step : {-1, 1})
+    for (const Voxel& beside :
+         {Voxel{v.i + step, v.j, v.k}, Voxel{v.i, v.j + step, v.k}, Voxel{v.i, v.j, v.k + step}})
+      if (grid.label(beside) != own) return true;
   return false;
 }
 
@@ -53,6 +51,7 @@ double SizeCensus::Places::radius_mm(double factor) const { return std::min(fact
 // What is graded belongs to the image where there is one: a prediction need not tell them apart.
 SizeCensus::SizeCensus(const LabelImage& image, const SizeOptions& sizes, const SizeGrid& grid) {
   const Affine to_working = voxels_to_working(image);
+  const LabelGrid<NoReads> voxels(image, {});
   int stride = 1;
   while (image.num_voxels() / (static_cast<std::size_t>(stride) * static_cast<std::size_t>(stride) *
                                static_cast<std::size_t>(stride)) >
@@ -73,7 +72,7 @@ SizeCensus::SizeCensus(const LabelImage& image, const SizeOptions& sizes, const 
         if (sizes.image == nullptr) fixed = std::min(fixed, std::exchange(of_image, ScalarGrid::kNone));
         if (std::isfinite(of_image)) largest_of_image_mm_ = std::max(largest_of_image_mm_, of_image);
         Counts& of_places = counts[{label, class_of(of_image), class_of(fixed)}];
-        const double is_beside = is_at_interface(image, {i, j, k}) ? 1 : 0;
+        const double is_beside = is_at_interface(voxels, {i, j, k}) ? 1 : 0;
         ++of_places.voxels;
         of_places.at_interface += is_beside;
         ++of_label[label];

@@ -8,13 +8,13 @@
 // make.
 //
 //   Safety is PODM's, and so is the end of the run: see workers/coordination.h for cells on their way.
-#include <cmath>
 #include <optional>
 #include <vector>
 
 #include "algorithms/leaf_size.h"
 #include "algorithms/perturb.h"
 #include "algorithms/podm.h"
+#include "geometry/spread_point.h"
 #include "refine/virtual_box.h"
 #include "workers/work_cost.h"
 
@@ -24,19 +24,14 @@ namespace {
 
 constexpr std::size_t kSamplesPerHome = 256;
 
-// Cells are expected where the object is, as many in a volume as its bound makes. The samples are those of an
-// additive recurrence with the powers of g, g^4 = g + 1, which leave no large gaps and share no coordinate.
-// (M. Roberts, "The unreasonable effectiveness of quasirandom sequences", 2018.)
+// Cells are expected where the object is, as many in a volume as its bound makes.
 std::vector<Homes::Work> expected_work(const Problem& problem, std::size_t num_samples) {
-  constexpr double kG = 1.2207440846057596;
   const Point& low = problem.object.low;
   const Vector extent = problem.object.high - low;
-  const auto fraction = [](double x) { return x - std::floor(x); };
   std::vector<Homes::Work> work;
   for (std::size_t i = 0; i < num_samples; ++i) {
-    const auto n = static_cast<double>(i);
-    const Point p = low + Vector{extent.x * fraction(0.5 + n / kG), extent.y * fraction(0.5 + n / (kG * kG)),
-                                 extent.z * fraction(0.5 + n / (kG * kG * kG))};
+    const Point share = spread_point(i);
+    const Point p = low + Vector{extent.x * share.x, extent.y * share.y, extent.z * share.z};
     const LabelIndex label = problem.isosurface.label_at(p);
     if (label == kBackground) continue;
     const double radius = radius_at(problem, label, p);

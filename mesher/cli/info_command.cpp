@@ -1,7 +1,6 @@
 // podm info: what an image is, and how much of it each label fills.
 #include <fmt/format.h>
 
-#include <cmath>
 #include <nlohmann/json.hpp>
 #include <optional>
 
@@ -11,13 +10,9 @@
 #include "cli/labelled_image.h"
 #include "cli/plan.h"
 #include "cli/standard_output.h"
-#include "geometry/affine.h"
 
 namespace podm::cli {
 namespace {
-
-// The product of the spacings only where the axes are orthogonal.
-double voxel_volume_mm3(const LabelImage& image) { return std::abs(determinant(image.voxel_to_ras)); }
 
 // All of such an image is meshed: rarely what its maker wanted.
 std::string note_on_background(const LabelImage& image, const std::vector<std::uint64_t>& counts) {

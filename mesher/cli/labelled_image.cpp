@@ -3,9 +3,11 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cmath>
 #include <span>
 
 #include "cli/nearest_name.h"
+#include "geometry/affine.h"
 #include "podm/errors.h"
 
 namespace podm::cli {
@@ -69,6 +71,8 @@ std::vector<SizeNear> near_by_value(const std::vector<NearLabels>& near, const L
                         .width_mm = asked.width_mm});
   return by_value;
 }
+
+double voxel_volume_mm3(const LabelImage& image) { return std::abs(determinant(image.voxel_to_ras)); }
 
 std::vector<std::uint64_t> count_voxels(const LabelImage& image) {
   std::vector<std::uint64_t> counts(image.labels.size());

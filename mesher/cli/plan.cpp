@@ -22,8 +22,6 @@ using Json = nlohmann::ordered_json;
 
 constexpr std::size_t kMostPartsInText = 20;  // JSON holds them all
 
-double voxel_mm3(const LabelImage& image) { return std::abs(determinant(image.voxel_to_ras)); }
-
 std::array<double, 3> place_mm(const LabelImage& image, const Voxel& v) {
   const Point p = map(image.voxel_to_ras, center(v));
   return {p.x, p.y, p.z};
@@ -33,7 +31,8 @@ std::vector<std::vector<double>> components_mm3(const LabelImage& image) {
   std::vector<std::vector<double>> volumes(image.labels.size());
   const Components components(image);
   for (Components::Id c = 0; c < components.size(); ++c)
-    volumes[components[c].label].push_back(static_cast<double>(components[c].num_voxels) * voxel_mm3(image));
+    volumes[components[c].label].push_back(static_cast<double>(components[c].num_voxels) *
+                                           voxel_volume_mm3(image));
   for (auto& of_label : volumes) std::sort(of_label.begin(), of_label.end(), std::greater());
   return volumes;
 }
@@ -49,9 +48,7 @@ Plan make_plan(const MeshCommand& command, const LabelImage& image, double read_
   double others_bytes = 0;
   {
     const WorkTimer timer(threads);
-    const auto strengths = options.smoothing_mm > 0
-                               ? smooth_interfaces(image, options.smoothing_mm, threads).strengths
-                               : nullptr;
+    const auto strengths = strengths_of(image, options.smoothing_mm, threads);
     const Isosurface isosurface(image, threads, strengths);  // and what else is the phase's
     foreground_bounds(image, threads);
     estimate(image, options);
@@ -77,7 +74,7 @@ nlohmann::ordered_json plan_json(const Plan& plan, const LabelImage& image) {
     thin.push_back({{"label", image.labels[part.label].value},
                     {"kind", to_string(part.kind)},
                     {"thickness_mm", part.thickness_mm},
-                    {"volume_mm3", static_cast<double>(part.num_voxels) * voxel_mm3(image)},
+                    {"volume_mm3", static_cast<double>(part.num_voxels) * voxel_volume_mm3(image)},
                     {"place_mm", place_mm(image, part.deepest)},
                     {"voxel", {part.deepest.i, part.deepest.j, part.deepest.k}}});
   return {{"radius_mm", plan.cost.sizes.radius_mm},
@@ -134,10 +131,11 @@ std::string thin_text(const Plan& plan, const LabelImage& image) {
   for (std::size_t n = 0; n < std::min(plan.thin_parts.size(), kMostPartsInText); ++n) {
     const ThinPart& part = plan.thin_parts[n];
     const auto at = place_mm(image, part.deepest);
-    text += fmt::format(
-        "{:>10} {:>8} {:>14.4g} {:>14.6g}  {:<30}  {}\n", image.labels[part.label].value,
-        to_string(part.kind), part.thickness_mm, static_cast<double>(part.num_voxels) * voxel_mm3(image),
-        fmt::format("{:.6g} {:.6g} {:.6g}", at[0], at[1], at[2]), image.labels[part.label].name);
+    text +=
+        fmt::format("{:>10} {:>8} {:>14.4g} {:>14.6g}  {:<30}  {}\n", image.labels[part.label].value,
+                    to_string(part.kind), part.thickness_mm,
+                    static_cast<double>(part.num_voxels) * voxel_volume_mm3(image),
+                    fmt::format("{:.6g} {:.6g} {:.6g}", at[0], at[1], at[2]), image.labels[part.label].name);
   }
   if (plan.thin_parts.size() > kMostPartsInText)
     text += fmt::format("           ... and {} more (--json has all)\n",

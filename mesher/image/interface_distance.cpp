@@ -9,6 +9,7 @@
 #include <cmath>
 #include <limits>
 
+#include "image/isosurface_block.h"
 #include "runtime/parallel_for.h"
 
 namespace podm {
@@ -60,15 +61,14 @@ class Part {
   Part(const LabelImage& image, const std::vector<unsigned char>& side_of_label,
        const std::array<int, 3>& first, const std::array<int, 3>& size, double reach_mm)
       : image_(image),
+        grid_(image, {}),
         side_of_label_(side_of_label),
         first_(first),
         size_(size),
         squared_reach_(static_cast<float>(reach_mm * reach_mm)) {}
 
   unsigned char side(const std::array<int, 3>& v) const {
-    for (std::size_t axis = 0; axis < 3; ++axis)
-      if (v[axis] < 0 || v[axis] >= image_.size[axis]) return side_of_label_[kBackground];
-    return side_of_label_[image_.voxels[image_.index(v[0], v[1], v[2])]];
+    return side_of_label_[grid_.label({v[0], v[1], v[2]})];
   }
   // Whether a face of the interface is between the voxel and the one before it along the axis.
   bool has_face_before(std::array<int, 3> v, std::size_t axis) const {
@@ -147,6 +147,7 @@ class Part {
   }
 
   const LabelImage& image_;
+  const LabelGrid<NoReads> grid_;
   const std::vector<unsigned char>& side_of_label_;
   const std::array<int, 3> first_, size_;
   const float squared_reach_;

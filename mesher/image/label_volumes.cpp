@@ -1,8 +1,7 @@
-#include <algorithm>
 #include <array>
-#include <cmath>
 #include <cstdint>
 
+#include "geometry/spread_point.h"
 #include "image/isosurface_block.h"
 #include "image/smooth_interfaces.h"
 #include "runtime/parallel_for.h"
@@ -11,24 +10,19 @@ namespace podm {
 
 namespace {
 
-// Points of a block, spread evenly along every direction, so that no plane passes many at once: multiples of
-// powers of the root of x^4 = x + 1 (Roberts's sequence in three dimensions).
+// Of a block: no plane passes many of them at once.
 constexpr std::size_t kPoints = 64;
-std::array<Point, kPoints> spread_points() {
+
+std::array<Point, kPoints> points_of_block() {
   std::array<Point, kPoints> points;
-  const auto place = [](double step, std::size_t n) {
-    const double at = 0.5 + step * static_cast<double>(n);
-    return at - std::floor(at);
-  };
-  for (std::size_t n = 0; n < kPoints; ++n)
-    points[n] = {place(0.8191725133961645, n), place(0.6710436067037893, n), place(0.5497004779019703, n)};
+  for (std::size_t n = 0; n < kPoints; ++n) points[n] = spread_point(n);
   return points;
 }
 
 }  // namespace
 
 std::vector<double> volumes_mm3(const LabelImage& image, const VoxelStrengths& strengths, int threads) {
-  static const std::array<Point, kPoints> points = spread_points();
+  static const std::array<Point, kPoints> points = points_of_block();
   const LabelGrid<NoReads> grid(image, {});
   std::vector<std::vector<std::uint64_t>> counts(num_threads(threads),
                                                  std::vector<std::uint64_t>(image.labels.size()));

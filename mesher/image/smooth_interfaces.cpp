@@ -81,11 +81,6 @@ class Smoothing {
     return static_cast<std::uint16_t>(std::min(parts, double{VoxelStrengths::kMost}));
   }
   std::size_t index(const Voxel& v) const { return image_.index(v.i, v.j, v.k); }
-  LabelIndex label(const Voxel& v) const {
-    const bool is_inside = v.i >= 0 && v.j >= 0 && v.k >= 0 && v.i < image_.size[0] && v.j < image_.size[1] &&
-                           v.k < image_.size[2];
-    return is_inside ? image_.voxels[index(v)] : kBackground;
-  }
   bool is_uniform(const Tile& tile) const;
   bool is_beside_another(const Voxel& v) const;
   std::uint16_t strength_of_thin(const Voxel& v) const;
@@ -100,6 +95,7 @@ class Smoothing {
   std::vector<LabelIndex> labels_lost() const;
 
   const LabelImage& image_;
+  const LabelGrid<NoReads> grid_;
   const std::size_t threads_;
   const double width_mm_, voxel_mm_, parts_per_mm_;
   std::array<int, 3> num_tiles_{};
@@ -111,6 +107,7 @@ class Smoothing {
 
 Smoothing::Smoothing(const LabelImage& image, double width_mm, std::size_t threads)
     : image_(image),
+      grid_(image, {}),
       threads_(threads),
       width_mm_(width_mm),
       voxel_mm_(std::cbrt(image.spacing[0] * image.spacing[1] * image.spacing[2])),
@@ -130,11 +127,11 @@ Smoothing::Smoothing(const LabelImage& image, double width_mm, std::size_t threa
 }
 
 bool Smoothing::is_beside_another(const Voxel& v) const {
-  const LabelIndex own = label(v);
+  const LabelIndex own = grid_.label(v);
   for (int k = -1; k <= 1; ++k)
     for (int j = -1; j <= 1; ++j)
       for (int i = -1; i <= 1; ++i)
-        if (label({v.i + i, v.j + j, v.k + k}) != own) return true;
+        if (grid_.label({v.i + i, v.j + j, v.k + k}) != own) return true;
   return false;
 }
 
@@ -146,7 +143,7 @@ bool Smoothing::is_uniform(const Tile& tile) const {
                   std::min(tile.end.k + 1, image_.size[2])};
   const bool is_at_border = low.i == tile.first.i || low.j == tile.first.j || low.k == tile.first.k ||
                             end.i == tile.end.i || end.j == tile.end.j || end.k == tile.end.k;
-  const LabelIndex first = is_at_border ? kBackground : label(low);
+  const LabelIndex first = is_at_border ? kBackground : grid_.label(low);
   for (int k = low.k; k < end.k; ++k) {
     for (int j = low.j; j < end.j; ++j) {
       const LabelIndex* row = &image_.voxels[image_.index(0, j, k)];
@@ -275,6 +272,10 @@ SmoothInterfaces smooth_interfaces(const LabelImage& image, double width_mm, int
                     "voxel, which is {:g} mm here, and below the shortest side of the image, {:g} mm",
                     width_mm, kMostWidth, most_mm, side_mm));
   return Smoothing(image, width_mm, num_threads(threads))();
+}
+
+std::shared_ptr<const VoxelStrengths> strengths_of(const LabelImage& image, double width_mm, int threads) {
+  return width_mm > 0 ? smooth_interfaces(image, width_mm, threads).strengths : nullptr;
 }
 
 }  // namespace podm

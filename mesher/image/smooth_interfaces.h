@@ -14,9 +14,8 @@
 // half a voxel stairs remain. (Distances scale with widths, so that a plane passes on smoothly.) What is
 // nearer to the interface, or not lost by more, takes the least distance, a twentieth of a voxel. Last, a
 // voxel that is alone along an axis is at least as strong as the geometric mean of its two neighbours, which
-// keeps it a voxel thick.
-// Parts of one to two and a half widths are not kept as well: at 1.5 voxels slabs of 2 and 3 voxels grow by
-// 19 and 17 %, at 2 voxels one of 3 by 23 %, and a round rod of 4 loses 36 %.
+// keeps it a voxel thick. Parts of one to two and a half widths are not kept as well: at 1.5 voxels slabs of
+// 2 and 3 voxels grow by 19 and 17 %, at 2 voxels one of 3 by 23 %, and a round rod of 4 loses 36 %.
 //
 // A voxel here is the side of a cube of its volume. Beyond the grid the image goes on as at its border. Taps
 // of a Gaussian reach three widths and are normalised.
@@ -44,6 +43,9 @@ struct SmoothInterfaces {
 /// thread. Throws InputError if the width is not positive, at most kMostWidth and below the image's shortest
 /// side.
 SmoothInterfaces smooth_interfaces(const LabelImage& image, double width_mm, int threads);
+
+/// The strengths alone; null for a width of 0, where nothing is smoothed.
+std::shared_ptr<const VoxelStrengths> strengths_of(const LabelImage& image, double width_mm, int threads);
 
 /// The volume of each label in an image with such strengths, mm^3, by index in LabelImage::labels: of 64
 /// points a voxel.

@@ -1,8 +1,7 @@
 // Claim size.
 //   Statement   every cell's circumradius is at most its label's bound r_t (--radius, --radius-of), and at
-//   most
-//               what a size image (--size-image, times --size-factor) has at the circumcentre: size_field.h
-//               says what that is between voxels.
+//               most what a size image (--size-image, times --size-factor) has at the circumcentre:
+//               size_field.h says what that is between voxels.
 //   Rests on    the bounds as doubles, the image's radii as floats: R^2 <= r_t^2, and in which voxels the
 //               circumcentre lies, are decided in intervals, then in rationals. A flat cell has no
 //               circumsphere and is a violation.

@@ -1,0 +1,21 @@
+// Points that fill a cube evenly, however many are taken.
+#pragma once
+
+#include <cmath>
+#include <cstddef>
+
+#include "geometry/point.h"
+
+namespace podm {
+
+/// The n-th point of an additive recurrence in the unit cube with the powers of g, g^4 = g + 1, which leaves
+/// no large gaps; no two points share a coordinate. (M. Roberts, "The unreasonable effectiveness of
+/// quasirandom sequences", 2018.)
+inline Point spread_point(std::size_t n) {
+  constexpr double kG = 1.2207440846057596;
+  const auto step = static_cast<double>(n);
+  const auto fraction = [](double x) { return x - std::floor(x); };
+  return {fraction(0.5 + step / kG), fraction(0.5 + step / (kG * kG)), fraction(0.5 + step / (kG * kG * kG))};
+}
+
+}  // namespace podm
