@@ -1,8 +1,8 @@
 add_library(podm_isosurface STATIC brick_distances.cpp brick_features.cpp feature_transform.cpp graded_grid.cpp
-                                   interface_blur.cpp interface_distance.cpp isosurface.cpp isosurface_block.cpp
-                                   isosurface_closest.cpp isosurface_cubic.cpp isosurface_trace.cpp label_volumes.cpp
-                                   scalar_grid.cpp smooth_interfaces.cpp surface_masks.cpp surface_tree.cpp
-                                   working_frame.cpp)
+                                   interface_blur.cpp interface_distance.cpp interface_shift.cpp isosurface.cpp
+                                   isosurface_block.cpp isosurface_closest.cpp isosurface_cubic.cpp isosurface_trace.cpp
+                                   label_volumes.cpp scalar_grid.cpp smooth_interfaces.cpp surface_masks.cpp
+                                   surface_tree.cpp working_frame.cpp)
 target_link_libraries(podm_isosurface PUBLIC podm_geometry podm_runtime Threads::Threads
                       PRIVATE fmt::fmt podm_flags)
 

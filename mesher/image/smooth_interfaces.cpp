@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "image/interface_blur.h"
+#include "image/interface_shift.h"
 #include "podm/errors.h"
 #include "runtime/parallel_for.h"
 
@@ -16,23 +17,21 @@ namespace podm {
 namespace {
 
 // All of a voxel's side.
-constexpr double kLost = 0.25;         // how far beyond its interface a voxel is lost
-constexpr double kLeast = 0.05;        // distance that is taken
-constexpr double kStairs = 0.5;        // distance from stairs, and the width at which they remain
-constexpr double kLostReach = 2;       // widths
+constexpr double kLost = 0.25;     // how far beyond its interface a voxel is lost
+constexpr double kLeast = 0.05;    // distance that is taken
+constexpr double kStairs = 0.5;    // distance from stairs, and the width at which they remain
+constexpr double kLostReach = 2;   // widths
+constexpr double kShiftReach = 2;  // widths
+constexpr int kTimesKept = 2;
 constexpr double kMostDistance = 1.1;  // widths: weights lead by 1.2 at most, distances are 0.84 of that
 
 using Place = std::uint16_t;  // in a tile
 
 struct Tile {
-  Voxel first, end;         // of its voxels
-  std::vector<Place> left;  // voxels beside another label for which no width has been found yet
-  std::vector<Place> lost;  // those of them that are lost to the present width
-  struct Thin {
-    Place place;
-    std::uint16_t strength;  // that it has to have
-  };
-  std::vector<Thin> thin;  // voxels alone along an axis
+  Voxel first, end;                 // of its voxels
+  std::vector<Place> left;          // voxels beside another label for which no width has been found yet
+  std::vector<Place> lost;          // those of them that are lost to the present width
+  std::vector<std::uint16_t> kept;  // strengths that keep volumes, of voxels that have one, x fastest
 
   static Place place(const Voxel& from_first) {
     return static_cast<Place>(place_in_tile(from_first.i, from_first.j, from_first.k));
@@ -62,8 +61,7 @@ class Smoothing {
       }
       blur_by(width_mm);
     }
-    for_each_tile([&](Tile& tile, std::size_t) { find_thin(tile); });
-    for_each_tile([&](Tile& tile, std::size_t) { strengthen_thin(tile); });
+    for (int time = 0; time < kTimesKept; ++time) keep_volumes();
     return {strengths_, labels_lost()};
   }
 
@@ -83,15 +81,16 @@ class Smoothing {
   std::size_t index(const Voxel& v) const { return image_.index(v.i, v.j, v.k); }
   bool is_uniform(const Tile& tile) const;
   bool is_beside_another(const Voxel& v) const;
-  std::uint16_t strength_of_thin(const Voxel& v) const;
   void find_sides(Tile& tile) const;
   void blur_by(double width_mm);
   void blur_tile(Tile& tile, const InterfaceBlur& blur, InterfaceBlur::Desk& desk,
                  std::vector<std::int64_t>& lead_of_kept);
   void leave_near_lost(Tile& tile, const std::array<int, 3>& reach);
   void leave_stairs(Tile& tile);
-  void find_thin(Tile& tile) const;
-  void strengthen_thin(Tile& tile);
+  std::array<int, 3> voxels_within(double distance_mm) const;
+  template <class Visit>
+  void for_each_told(const Tile& tile, const Visit& visit) const;
+  void keep_volumes();
   std::vector<LabelIndex> labels_lost() const;
 
   const LabelImage& image_;
@@ -168,9 +167,7 @@ void Smoothing::blur_by(double width_mm) {
   std::vector<InterfaceBlur::Desk> desks(threads_);
   for_each_tile(
       [&](Tile& tile, std::size_t thread) { blur_tile(tile, blur, desks[thread], lead_of_kept_[thread]); });
-  std::array<int, 3> reach{};
-  for (std::size_t a = 0; a < 3; ++a)
-    reach[a] = static_cast<int>(std::ceil(kLostReach * width_mm / image_.spacing[a]));
+  const std::array<int, 3> reach = voxels_within(kLostReach * width_mm);
   for_each_tile([&](Tile& tile, std::size_t) { leave_near_lost(tile, reach); });
 }
 
@@ -218,35 +215,40 @@ void Smoothing::leave_stairs(Tile& tile) {
   for (const Place place : tile.left) strengths_->at(index(tile.voxel(place))) = parts(kStairs * voxel_mm_);
 }
 
-// 0 unless the voxel differs from both its neighbours along an axis, which are in the grid as well.
-std::uint16_t Smoothing::strength_of_thin(const Voxel& v) const {
-  const std::array<std::size_t, 3> stride{1, image_.index(0, 1, 0), image_.index(0, 0, 1)};
-  const std::array<int, 3> place{v.i, v.j, v.k};
-  const std::size_t at = index(v);
-  double strongest = 0;
-  for (std::size_t a = 0; a < 3; ++a) {
-    if (place[a] == 0 || place[a] == image_.size[a] - 1) continue;
-    const std::size_t below = at - stride[a], above = at + stride[a];
-    if (image_.voxels[below] == image_.voxels[at] || image_.voxels[above] == image_.voxels[at]) continue;
-    strongest = std::max(strongest, std::sqrt(1.0 * strengths_->at(below) * strengths_->at(above)));
-  }
-  return static_cast<std::uint16_t>(std::round(strongest));
+std::array<int, 3> Smoothing::voxels_within(double distance_mm) const {
+  std::array<int, 3> voxels{};
+  for (std::size_t a = 0; a < 3; ++a)
+    voxels[a] = static_cast<int>(std::ceil(distance_mm / image_.spacing[a]));
+  return voxels;
 }
 
-// All are found before any is changed.
-void Smoothing::find_thin(Tile& tile) const {
+template <class Visit>
+void Smoothing::for_each_told(const Tile& tile, const Visit& visit) const {
   if (is_uniform(tile)) return;
   tile.for_each_voxel([&](Place place) {
-    const Voxel v = tile.voxel(place);
-    const std::uint16_t present = strengths_->at(index(v));
-    if (present == VoxelStrengths::kUntold) return;
-    const std::uint16_t strength = strength_of_thin(v);
-    if (strength > present) tile.thin.push_back({place, strength});
+    const std::size_t voxel = index(tile.voxel(place));
+    if (strengths_->at(voxel) != VoxelStrengths::kUntold) visit(place, voxel);
   });
 }
 
-void Smoothing::strengthen_thin(Tile& tile) {
-  for (const Tile::Thin& thin : tile.thin) strengths_->at(index(tile.voxel(thin.place))) = thin.strength;
+// All are found before any is changed.
+void Smoothing::keep_volumes() {
+  const InterfaceShift shift(image_, *strengths_, voxels_within(kShiftReach * width_mm_));
+  std::vector<InterfaceShift::Desk> desks(threads_);
+  const double least = parts(0);
+  for_each_tile([&](Tile& tile, std::size_t thread) {
+    const std::array<double, kTileVoxels>* shifts = nullptr;
+    for_each_told(tile, [&](Place place, std::size_t voxel) {
+      if (shifts == nullptr) shifts = &shift.shifts(tile.first, desks[thread]);
+      const double kept = std::round(strengths_->at(voxel) - (*shifts)[place]);
+      tile.kept.push_back(static_cast<std::uint16_t>(std::clamp(kept, least, double{VoxelStrengths::kMost})));
+    });
+  });
+  for_each_tile([&](Tile& tile, std::size_t) {
+    auto kept = tile.kept.begin();
+    for_each_told(tile, [&](Place, std::size_t voxel) { strengths_->at(voxel) = *kept++; });
+    tile.kept.clear();
+  });
 }
 
 std::vector<LabelIndex> Smoothing::labels_lost() const {

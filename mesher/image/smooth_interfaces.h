@@ -12,10 +12,13 @@
 // that l has lost its own voxel. One that lies more than a quarter of a voxel beyond its interface is lost to
 // a blur of that width: all voxels within 2 s of it, along each axis, take half the width, and so on; below
 // half a voxel stairs remain. (Distances scale with widths, so that a plane passes on smoothly.) What is
-// nearer to the interface, or not lost by more, takes the least distance, a twentieth of a voxel. Last, a
-// voxel that is alone along an axis is at least as strong as the geometric mean of its two neighbours, which
-// keeps it a voxel thick. Parts of one to two and a half widths are not kept as well: at 1.5 voxels slabs of
-// 2 and 3 voxels grow by 19 and 17 %, at 2 voxels one of 3 by 23 %, and a round rod of 4 loses 36 %.
+// nearer to the interface, or not lost by more, takes the least distance, a twentieth of a voxel.
+//
+// Last, volumes are kept: where a blur is as wide as a part is thick, its label has grown or shrunk, and what
+// its interface has moved, on average over all faces of its voxels within 2 s along each axis
+// (interface_shift.h), is taken from the distances of its voxels; and once more, as labels share interfaces.
+// So slabs and rods of any thickness keep their volume, and a sheet of one voxel is one voxel thick. Stairs
+// do not come back: s smooths none that are longer than these averages.
 //
 // A voxel here is the side of a cube of its volume. Beyond the grid the image goes on as at its border. Taps
 // of a Gaussian reach three widths and are normalised.

@@ -6,6 +6,7 @@
 #include <numbers>
 
 #include "image/label_blur.h"
+#include "image/label_growth.h"
 #include "image/raw_image.h"
 #include "image/voxel_box.h"
 #include "parallel.h"
@@ -14,7 +15,6 @@ namespace podm::verify {
 
 namespace {
 
-constexpr int kTileSide = 32;  // voxels; what is blurred at once fits a processor's cache
 constexpr double kMostSpacings = 8;
 
 void check_width(const Image& image, double width_mm) {
@@ -27,16 +27,6 @@ void check_width(const Image& image, double width_mm) {
                "cannot be smoothed by {} mm: the width is above 0, at most {:.6g} mm (8 times the shortest "
                "side of a voxel) and less than {:.6g} mm (the image's shortest side)",
                width_mm, kMostSpacings * shortest, side));
-}
-
-std::vector<VoxelBox> tiles_of(const std::array<int, 3>& size) {
-  std::vector<VoxelBox> tiles;
-  std::array<int, 3> at{};
-  for (at[2] = 0; at[2] < size[2]; at[2] += kTileSide)
-    for (at[1] = 0; at[1] < size[1]; at[1] += kTileSide)
-      for (at[0] = 0; at[0] < size[0]; at[0] += kTileSide)
-        tiles.push_back(VoxelBox{at, {kTileSide, kTileSide, kTileSide}}.common({{}, size}));
-  return tiles;
 }
 
 // Marks of the box, given those of the box grown by `reach`: where there is one within reach along each axis.
@@ -77,7 +67,9 @@ class Smoother {
       keep_open_near_lost(width);
     }
     close_as_stairs();
-    return with_thin_parts();
+    for (int time = 0; time < 2; ++time)
+      strengths_ = LabelGrowth(image_, strengths_, width_mm, threads_).taken_back(strength_of(0));
+    return std::move(strengths_);
   }
 
  private:
@@ -200,33 +192,6 @@ class Smoother {
     });
     is_open_ = {};
     is_lost_ = {};
-  }
-
-  // No voxel's strength here depends on what becomes of its neighbours'.
-  std::vector<std::uint16_t> with_thin_parts() const {
-    std::vector<std::uint16_t> result = strengths_;
-    const std::array<std::size_t, 3> stride{1, grid_.at(0, 1, 0), grid_.at(0, 0, 1)};
-    const auto in_row = static_cast<std::size_t>(image_.size[0]);
-    parallel_ranges(result.size() / in_row, threads_, [&](std::size_t begin, std::size_t end, std::size_t) {
-      for (std::size_t row = begin; row < end; ++row)
-        for (int i = 0; i < image_.size[0]; ++i) {
-          const std::size_t at = row * in_row + static_cast<std::size_t>(i);
-          const std::array<int, 3> v{i, static_cast<int>(row % static_cast<std::size_t>(image_.size[1])),
-                                     static_cast<int>(row / static_cast<std::size_t>(image_.size[1]))};
-          for (std::size_t axis = 0; axis < 3; ++axis)
-            if (v[axis] > 0 && v[axis] + 1 < image_.size[axis])
-              result[at] = std::max(result[at], between(at - stride[axis], at, at + stride[axis]));
-        }
-    });
-    return result;
-  }
-
-  // What a voxel between two others is worth at least.
-  std::uint16_t between(std::size_t below, std::size_t at, std::size_t above) const {
-    const std::uint32_t label = image_.voxels[at];
-    if (image_.voxels[below] == label || image_.voxels[above] == label) return 0;
-    return static_cast<std::uint16_t>(std::round(
-        std::sqrt(static_cast<double>(strengths_[below]) * static_cast<double>(strengths_[above]))));
   }
 
   const Image& image_;

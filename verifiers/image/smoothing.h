@@ -11,10 +11,13 @@
 // so on, until none is lost or s < h/2, where all that are left have the depth h/2: the stairs of voxels. No
 // depth is less than h/20.
 //   The strength is the depth over the greatest that is told apart, 1.1 W or h/2 if that is more, rounded to
-// 65535ths. A sheet or rod of one voxel has too little depth to keep its thickness when its neighbours are
-// deep: a voxel whose two neighbours along an axis both have other labels has at least the strength of their
-// geometric mean. Voxels outside U have strength 1, which counts nowhere; those beyond the grid have the
-// strength of the nearest inside.
+// 65535ths. Where that lets a label grow or shrink it is taken back. The faces of a voxel of U are those to
+// neighbours of other labels in the grid; a face across an axis counts round(256 * the shortest spacing / the
+// axis's), and at least 1. Over all faces of voxels of the same label within ceil(2 W / spacing) of a voxel
+// of U, along each axis, the mean of half the lead in strength, that of the voxel less that of the neighbour,
+// is subtracted from its strength, and the difference rounded; the least is that of depth h/20, the greatest
+// 65535. That is done twice. Voxels outside U have strength 1, which counts nowhere; those beyond the grid
+// have the strength of the nearest inside.
 #pragma once
 
 #include "image/image.h"

@@ -42,6 +42,18 @@ struct VoxelBox {
   }
 };
 
+/// The grid in boxes of 32 voxels a side, so that what is computed of one fits a processor's cache.
+inline std::vector<VoxelBox> tiles_of(const std::array<int, 3>& size) {
+  constexpr int kSide = 32;
+  std::vector<VoxelBox> tiles;
+  std::array<int, 3> at{};
+  for (at[2] = 0; at[2] < size[2]; at[2] += kSide)
+    for (at[1] = 0; at[1] < size[1]; at[1] += kSide)
+      for (at[0] = 0; at[0] < size[0]; at[0] += kSide)
+        tiles.push_back(VoxelBox{at, {kSide, kSide, kSide}}.common({{}, size}));
+  return tiles;
+}
+
 /// Copies values of a grid of that size, x fastest, in the box; beyond the grid it goes on as at its border.
 template <class Value>
 void copy_box(const std::vector<Value>& grid, const std::array<int, 3>& size, const VoxelBox& box,

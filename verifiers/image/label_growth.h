@@ -1,0 +1,39 @@
+// The last step of smoothing.h: by how much a label has grown near a voxel, and strengths without that.
+#pragma once
+
+#include <cstdint>
+#include <vector>
+
+#include "image/image.h"
+#include "image/voxel_box.h"
+
+namespace podm::verify {
+
+class LabelGrowth {
+ public:
+  /// Keeps references to the image and to the strengths of its voxels.
+  LabelGrowth(const Image& image, const std::vector<std::uint16_t>& strengths, double width_mm, int threads);
+
+  /// The strengths, no less than `least` where a voxel has another label among its 26 neighbours. All sums
+  /// are of integers, so that no order of theirs matters.
+  std::vector<std::uint16_t> taken_back(std::uint16_t least) const;
+
+ private:
+  class Tables;
+  struct Faces {
+    std::int64_t area = 0, lead = 0;  // of all; each lead times the face's area
+  };
+  Faces faces_of(const std::array<int, 3>& v) const;
+  bool is_at_interface(const std::array<int, 3>& v) const;
+  std::uint32_t label(const std::array<int, 3>& v) const;
+  std::uint16_t strength_without(const Faces& near, std::uint16_t strength, std::uint16_t least) const;
+
+  const Image& image_;
+  const std::vector<std::uint16_t>& strengths_;
+  int threads_;
+  VoxelBox grid_;
+  std::array<int, 3> reach_{};
+  std::array<std::int64_t, 3> area_{};  // of a face across each axis
+};
+
+}  // namespace podm::verify
