@@ -1,19 +1,37 @@
 #include "radius_search.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <cmath>
 #include <utility>
 
 #include "make_size_grid.h"
+#include "podm/errors.h"
 
 namespace podm {
+
+namespace {
+
+// By how much the model may err before a target is refused, or cells of one mesh are believed for the next.
+constexpr double kErrorAllowed = 1.3, kMostCorrection = 10;
+
+bool has_fixed_sizes(const SizeOptions& sizes) { return !sizes.near.empty() || !sizes.radius_of_mm.empty(); }
+
+}  // namespace
 
 RadiusSearch::RadiusSearch(const LabelImage& image, const SizeOptions& asked, int threads)
     : model_(image, threads, census_of(image, asked, make_size_grid(image, asked, threads).get())),
       asked_(asked),
       largest_mm_(std::hypot(image.size[0] * image.spacing[0], image.size[1] * image.spacing[1],
                              image.size[2] * image.spacing[2])),
-      radius_mm_(radius_for(static_cast<double>(asked.target_elements))) {}
+      radius_mm_(radius_for(static_cast<double>(asked.target_elements))) {
+  const double least = model_.cells(at(largest_mm_));
+  if (has_fixed_sizes(asked) && least > kErrorAllowed * static_cast<double>(asked.target_elements))
+    throw InputError(fmt::format(
+        "a target of {} elements: sizes near interfaces and those of single labels ask for some {:.2g} alone",
+        asked.target_elements, least));
+}
 
 SizeOptions RadiusSearch::at(double radius_mm) const {
   SizeOptions sizes = asked_;
@@ -51,7 +69,8 @@ bool RadiusSearch::learn(double cells) {
     radius_mm_ *= to_target(std::clamp(exponent_between(*before, mesh), -4.0, -0.5));
     radius_mm_ = std::min(radius_mm_, largest_mm_);
   } else {
-    radius_mm_ = radius_for(target / cells * model_.cells(at(radius_mm_)));
+    const double correction = std::clamp(target / cells, 1 / kMostCorrection, kMostCorrection);
+    radius_mm_ = radius_for(correction * model_.cells(at(radius_mm_)));
   }
   return radius_mm_ != mesh.radius_mm;
 }

@@ -9,7 +9,8 @@ namespace podm {
 class RadiusSearch {
  public:
   /// `asked` gives the target, radii of single labels, and delta; where that is 0 it follows the radius, or
-  /// the interfaces alone could exceed the target. `threads`: 0 for all cores.
+  /// the interfaces alone could exceed the target. `threads`: 0 for all cores. Throws InputError where sizes
+  /// near interfaces and of single labels ask for more cells, however large all others are.
   RadiusSearch(const LabelImage& image, const SizeOptions& asked, int threads);
 
   double radius_mm() const { return radius_mm_; }

@@ -5,6 +5,7 @@
 
 #include <cmath>
 
+#include "podm/errors.h"
 #include "tests/images.h"
 
 namespace podm::test {
@@ -39,6 +40,27 @@ TEST(RadiusSearch, FindsATargetOnASteepSlope) {
   for (; std::abs(cells_at(search.radius_mm()) / 50000 - 1) > 0.045; ++num_meshes)
     search.learn(cells_at(search.radius_mm()));
   EXPECT_LE(num_meshes, 4);
+}
+
+// No radius of the other cells mends that, and to look for one would make ever larger meshes.
+TEST(RadiusSearch, RefusesATargetBelowWhatFixedSizesAskFor) {
+  const LabelImage image = ball(40, 15);
+  SizeOptions sizes{.target_elements = 1000};
+  const std::uint32_t value = image.labels[1].value;
+  sizes.near.push_back({.labels = {{{0}, {value}}}, .radius_mm = 0.5, .width_mm = 2});
+  EXPECT_THROW(RadiusSearch(image, sizes, 1), InputError);
+  sizes.target_elements = 2'000'000;
+  EXPECT_NO_THROW(RadiusSearch(image, sizes, 1));
+  sizes = {.radius_of_mm = {{value, 0.5}}, .target_elements = 1000};
+  EXPECT_THROW(RadiusSearch(image, sizes, 1), InputError);
+}
+
+// A mesh that all but missed the object tells nothing of the next.
+TEST(RadiusSearch, BelievesNoMeshThatIsFarOff) {
+  RadiusSearch search(ball(40, 15), kAsked, 1);
+  const double first = search.radius_mm();
+  search.learn(3);
+  EXPECT_GT(search.radius_mm(), first / 3);
 }
 
 TEST(RadiusSearch, DeltaFollowsTheRadiusUnlessGiven) {
