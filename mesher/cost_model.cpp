@@ -200,16 +200,16 @@ std::vector<double> CostModel::areas_by_label_mm2(double distance_mm) const {
   return areas_mm2;
 }
 
-// The radius that makes as many cells of the label as its places make with theirs; 0: unbounded.
+// The radius that makes as many cells of the label as its places make with theirs; infinity: unbounded.
 double CostModel::mean_radius_mm(LabelIndex label, const SizeOptions& sizes) const {
   const double asked_mm = radius_mm_of(sizes, image_.labels[label]);
-  if (!census_) return asked_mm;
   const double of_label = asked_mm > 0 ? asked_mm : std::numeric_limits<double>::infinity();
+  if (!census_) return of_label;
   double density = 0;
   for (const SizeCensus::Places& places : census_->places())
     if (places.label == label)
       density += places.volume * std::pow(std::min(of_label, places.radius_mm(sizes.image_factor)), -3);
-  return density > 0 ? std::cbrt(1 / density) : 0;
+  return std::cbrt(1 / density);
 }
 
 // How many times as many cells stand on the interfaces as where delta alone decides.
@@ -225,44 +225,51 @@ double CostModel::surface_growth(const SizeOptions& sizes) const {
 }
 
 double CostModel::cells(const SizeOptions& sizes) const {
-  const double area = area_mm2(kSeenOverDelta * sizes.delta_mm);
-  double cells = kSurfaceCells * area / (sizes.delta_mm * sizes.delta_mm) * surface_growth(sizes);
-  for (std::size_t i = 1; i < image_.labels.size(); ++i) {
-    const double radius = mean_radius_mm(static_cast<LabelIndex>(i), sizes);
-    if (radius <= 0 || volume_of_label_mm3_[i] == 0) continue;
-    const double core = std::max(0.0, 1 - kGradedOverRadius * radius * area / (3 * volume_mm3_));
-    cells += kVolumeCells * volume_of_label_mm3_[i] * core * core * core / (radius * radius * radius);
-  }
+  const double delta = sizes.delta_mm, area = area_mm2(kSeenOverDelta * delta);
+  double cells = kSurfaceCells * area / (delta * delta) * surface_growth(sizes);
+  for (std::size_t i = 1; i < image_.labels.size(); ++i)
+    if (const double volume_mm3 = volume_of_label_mm3_[i]; volume_mm3 > 0)
+      cells += volume_mm3 / volume_mm3_ *
+               volume_cells(volume_mm3_, area, mean_radius_mm(static_cast<LabelIndex>(i), sizes), delta);
   return cells;
 }
 
 std::vector<double> CostModel::cells_by_label(const SizeOptions& sizes) const {
   const std::vector<double> areas_mm2 = areas_by_label_mm2(kSeenOverDelta * sizes.delta_mm);
   std::vector<double> by_label(image_.labels.size());
-  for (std::size_t i = 1; i < by_label.size(); ++i) {
-    const double volume_mm3 = volume_of_label_mm3_[i];
-    const double radius = mean_radius_mm(static_cast<LabelIndex>(i), sizes);
-    if (volume_mm3 == 0) continue;
-    by_label[i] = kSurfaceCells * areas_mm2[i] / (sizes.delta_mm * sizes.delta_mm);
-    if (radius <= 0) continue;
-    const double core = std::max(0.0, 1 - kGradedOverRadius * radius * areas_mm2[i] / (3 * volume_mm3));
-    by_label[i] += kVolumeCells * volume_mm3 * core * core * core / (radius * radius * radius);
-  }
+  for (std::size_t i = 1; i < by_label.size(); ++i)
+    if (const double volume_mm3 = volume_of_label_mm3_[i]; volume_mm3 > 0)
+      by_label[i] = CostModel::cells(volume_mm3, areas_mm2[i],
+                                     mean_radius_mm(static_cast<LabelIndex>(i), sizes), sizes.delta_mm);
   const double sum = std::accumulate(by_label.begin(), by_label.end(), 0.0), all = cells(sizes);
   for (double& of_label : by_label) of_label *= sum > 0 ? all / sum : 0;
   return by_label;
 }
 
 double CostModel::background_cells(const SizeOptions& sizes) const {
-  return kOutsideCells * areas_by_label_mm2(kSeenOverDelta * sizes.delta_mm)[kBackground] /
+  return kOutsideCells * areas_by_label_mm2(kSeenOutsideOverDelta * sizes.delta_mm)[kBackground] /
          (sizes.delta_mm * sizes.delta_mm);
 }
 
 double CostModel::cells(double volume_mm3, double area_mm2, double radius_mm, double delta_mm) {
-  const double on_surface = kSurfaceCells * area_mm2 / (delta_mm * delta_mm);
-  if (radius_mm <= 0) return on_surface;
-  const double core_mm3 = std::max(0.0, volume_mm3 - kGradedOverRadius * radius_mm * area_mm2);
-  return on_surface + kVolumeCells * core_mm3 / (radius_mm * radius_mm * radius_mm);
+  return kSurfaceCells * area_mm2 / (delta_mm * delta_mm) +
+         volume_cells(volume_mm3, area_mm2, radius_mm, delta_mm);
+}
+
+// At a depth z of the ball there are A (1 - z / depth)^2 dz, and cells of a radius u = first + kGrowth z:
+// what is integrated is (a - b u)^2 / u^3.
+double CostModel::volume_cells(double volume_mm3, double area_mm2, double radius_mm, double delta_mm) {
+  const double first = std::min(radius_mm, kFirstOverDelta * delta_mm);
+  if (area_mm2 == 0) return kVolumeCells * volume_mm3 / std::pow(radius_mm, 3);
+  const double growth_to_center = kGrowth * 3 * volume_mm3 / area_mm2;
+  const double last = std::min(radius_mm, first + growth_to_center);
+  const double a = 1 + first / growth_to_center, b = 1 / growth_to_center;
+  const auto integral_to = [&](double u) {
+    return -a * a / (2 * u * u) + 2 * a * b / u + b * b * std::log(u);
+  };
+  const double core = 1 - (last - first) / growth_to_center;
+  return kVolumeCells * (area_mm2 / kGrowth * (integral_to(last) - integral_to(first)) +
+                         volume_mm3 * std::pow(core / last, 3));
 }
 
 Estimate estimate(const LabelImage& image, const MeshingOptions& options) {

@@ -89,8 +89,7 @@ std::vector<std::uint64_t> predicted_cells(const Mesh& mesh, const Problem& prob
     for (unsigned k = 0; k < 4; ++k)
       if (cell.mirrors[k] == kNoFacet || labels[cell_of(cell.mirrors[k])] != label)
         area_mm2 += area_of_facet(mesh, cell, k);
-    const double squared_radius = problem.sizes.squared_radius(label, cell.center);
-    const double radius_mm = std::isinf(squared_radius) ? 0 : std::sqrt(squared_radius);
+    const double radius_mm = std::sqrt(problem.sizes.squared_radius(label, cell.center));
     cells[grid.cube_at(cell.center)] += static_cast<std::uint64_t>(
         kParts * CostModel::cells(volume_of(mesh, cell), area_mm2, radius_mm, problem.delta_mm));
   }

@@ -33,7 +33,7 @@ TEST_P(Calibrated, MeetsTheTargetWithTheMeshOfTheRadiusThatItNames) {
   const Calibration& calibration = *found.report.calibration;
   EXPECT_NEAR(static_cast<double>(found.mesh.cells.size()), static_cast<double>(GetParam()),
               0.05 * static_cast<double>(GetParam()));
-  EXPECT_LE(calibration.meshes.size(), 1u);
+  EXPECT_LE(calibration.meshes.size(), 2u);
   EXPECT_EQ(calibration.target_elements, GetParam());
   EXPECT_EQ(calibration.radius_mm, found.report.radius_mm);
   EXPECT_TRUE(found.report.warnings.empty());
@@ -48,7 +48,13 @@ TEST_P(Calibrated, MeetsTheTargetWithTheMeshOfTheRadiusThatItNames) {
 
 INSTANTIATE_TEST_SUITE_P(Targets, Calibrated, testing::Values(5000, 20000, 100000));
 
-// An image whose first mesh misses: noise, unlike what the model was fitted to.
+// Within a thousandth, which a first mesh misses.
+MeshingOptions exact_target(std::uint64_t cells) {
+  MeshingOptions options = target(cells);
+  options.sizes.target_tolerance_percent = 0.1;
+  return options;
+}
+
 LabelImage noise() {
   std::mt19937 random(4);
   return make_image({24, 24, 24}, {1, 1, 1}, 3,
@@ -57,7 +63,7 @@ LabelImage noise() {
 
 TEST(Calibration, PhasesAreThoseOfTheLastMeshAlone) {
   const auto start = std::chrono::steady_clock::now();
-  const MeshingReport report = mesh_image(noise(), target(120000)).report;
+  const MeshingReport report = mesh_image(noise(), exact_target(120000)).report;
   const std::chrono::duration<double> wall = std::chrono::steady_clock::now() - start;
   const Calibration& calibration = report.calibration.value();
   ASSERT_FALSE(calibration.meshes.empty()) << "nothing to tell apart";
@@ -65,7 +71,7 @@ TEST(Calibration, PhasesAreThoseOfTheLastMeshAlone) {
   double meshes_s = 0;
   for (const Calibration::TrialMesh& mesh : calibration.meshes) {
     meshes_s += mesh.seconds;
-    EXPECT_GT(std::abs(static_cast<double>(mesh.cells) / 120000 - 1), 0.04);
+    EXPECT_GT(std::abs(static_cast<double>(mesh.cells) / 120000 - 1), 0.0008);
     EXPECT_NE(mesh.radius_mm, calibration.radius_mm);
   }
   EXPECT_GT(meshes_s, 0);
@@ -74,7 +80,7 @@ TEST(Calibration, PhasesAreThoseOfTheLastMeshAlone) {
 }
 
 TEST(Calibration, VirtualSecondsAreThoseOfTheLastMeshAlone) {
-  MeshingOptions options = target(120000);
+  MeshingOptions options = exact_target(120000);
   options.team.threads = 8;
   options.team.executor = Executor::kVirtual;
   for (const Algorithm algorithm : {Algorithm::kPodm, Algorithm::kPdr}) {
