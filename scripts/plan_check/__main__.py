@@ -60,6 +60,14 @@ def lost_row(info, image, mesh_path):
             "said_whole_and_lost_or_cut": int((whole & (is_lost | is_cut)).sum())}
 
 
+def options_of_sizes(program, image, cells, radii):
+    """Targets and radii, which are in sides of a cube of a voxel's volume, as options of podm."""
+    command = [program, "info", image, "--json"]
+    info = json.loads(subprocess.run(command, check=True, stdout=subprocess.PIPE).stdout)
+    side_mm = info["voxel_volume_mm3"] ** (1 / 3)
+    return [["--target-elements", n] for n in cells] + [["--radius", f"{float(r) * side_mm:.4g}"] for r in radii]
+
+
 def compare(program, image, options, threads, repeats):
     info = plan_of(program, image, options)
     plan = info["plan"]
@@ -84,6 +92,10 @@ def compare(program, image, options, threads, repeats):
             **lost}
 
 
+def numbers(text):
+    return [n for n in text.split(",") if float(n) > 0] if text else []
+
+
 def line(row):
     def percent(planned, measured):
         return f"{100 * (row[planned] / row[measured] - 1):+6.1f} %"
@@ -100,15 +112,17 @@ def main():
     parser = argparse.ArgumentParser(prog="scripts/check_plan", description=__doc__)
     parser.add_argument("images", nargs="+", help="NIfTI, NRRD or INR")
     parser.add_argument("--program", default="podm", help="[default: podm]")
-    parser.add_argument("--cells", default="100000,500000,2000000", help="targets [default: 100000,500000,2000000]")
+    parser.add_argument("--cells", default="100000,500000,2000000", type=numbers,
+                        help="targets, or nothing [default: 100000,500000,2000000]")
+    parser.add_argument("--radii", default="", type=numbers,
+                        help="radii, with their default delta, in sides of a cube of a voxel's volume [default: none]")
     parser.add_argument("--threads", type=int, default=1,
                         help="of one processor time is compared, of more the wall's [default: 1]")
     parser.add_argument("--repeats", type=int, default=2, help="of each run; the fastest counts [default: 2]")
     asked = parser.parse_args()
     for image in asked.images:
-        for cells in asked.cells.split(","):
-            options = ["--target-elements", cells, "--threads", str(asked.threads)]
-            row = compare(asked.program, image, options, asked.threads, asked.repeats)
+        for size in options_of_sizes(asked.program, image, asked.cells, asked.radii):
+            row = compare(asked.program, image, [*size, "--threads", str(asked.threads)], asked.threads, asked.repeats)
             print(json.dumps(row), flush=True)
             print(line(row), file=sys.stderr, flush=True)
     return 0
