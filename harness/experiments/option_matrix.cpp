@@ -53,8 +53,8 @@ constexpr std::array kOfHarness{kMesher, kSchedule, kReplay,  kFidelity, kImageG
                                 kCopies, kCounters, kMeasure, kRanks,    kCarrier};
 
 // What podm does, or the harness with one process of it, and not ranks.
-constexpr std::array kNotOnRanks{kSchedule, kReplay,   kImageGrows,  kCopies,
-                                 kCounters, kOptimize, kMinDihedral, kSolve};
+constexpr std::array kNotOnRanks{kSchedule,    kReplay, kImageGrows, kCopies, kCounters, kOptimize,
+                                 kMinDihedral, kSmooth, kSizeImage,  kGrade,  kSolve};
 
 // Every mesher takes these.
 constexpr std::array kOfAll{kMesher, "radius_mm", "delta_mm", kTargetElements, kPerThread, "threads", kSolve};
@@ -85,6 +85,9 @@ constexpr MesherOption kMesherOptions[] = {
     {"leaf_size", Kind::kPositive},
     {"seed", Kind::kSeed},
     {"topology", Kind::kFile},
+    {kSmooth, Kind::kPositive},
+    {kSizeImage, Kind::kFile},
+    {kGrade, Kind::kPositive},
     {kMinDihedral, Kind::kPositive},
     {kOptimize, Kind::kFlag},
     {kSchedule, Kind::kFlag},

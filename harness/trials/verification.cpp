@@ -56,12 +56,12 @@ std::optional<DihedralRecord> dihedral_angles_of(const VerifierReport& report) {
   return {};
 }
 
-std::string claims_of(const Trial& trial, const MeshRecord& record, bool has_radius) {
+std::string claims_of(const Trial& trial, const MeshRecord& record, bool has_size) {
   std::string claims = "structure,radius_edge,boundary_angles,conformity,surface,labels";
   const bool is_optimized = trial.options.value(kOptimize, false);
   if (!is_optimized) claims += ",delaunay";
   if (is_optimized || record.promised_dihedral_deg) claims += ",dihedral";
-  if (has_radius) claims += ",size";
+  if (has_size) claims += ",size";
   if (trial.options.value(kFidelity, false)) claims += ",fidelity";
   return claims;
 }
@@ -93,8 +93,11 @@ Verification verify_mesh(const Trial& trial, const std::string& image, const Mes
   };
   const UsedSizes used = record.used.value_or(UsedSizes{});
   const double radius_mm = used.radius_mm.value_or(0);
-  add("--claims", claims_of(trial, record, radius_mm > 0));
+  const std::string size_image = trial.options.value(kSizeImage, "");
+  add("--claims", claims_of(trial, record, radius_mm > 0 || !size_image.empty()));
   if (radius_mm > 0) add("--radius", fmt::format("{}", radius_mm));
+  if (!size_image.empty()) add("--size-image", size_image);
+  if (trial.options.contains(kGrade)) add("--grade", fmt::format("{}", trial.options[kGrade].get<double>()));
   if (used.delta_mm) add("--delta", fmt::format("{}", *used.delta_mm));
   if (trial.options.value(kSchedule, false)) add("--schedule", folder + kScheduleName);
   const ProcessOutcome outcome = ask(command, timeout_of_proof_s(trial), stop_requested).outcome;

@@ -100,6 +100,17 @@ TEST_F(TrialTest, OptimisedMeshesAreAskedForAnglesAndNotForDelaunay) {
   EXPECT_NE(promised.find("dihedral"), std::string::npos) << promised;
 }
 
+TEST_F(TrialTest, SizesByPlaceAreTheVerifiersToo) {
+  Trial trial = some_trial();
+  trial.options.update({{"size_image", "sizes.nrrd"}, {"grade", 0.25}});
+  const std::string verifier = folder_.script("podm-verify", "echo \"$@\" > \"$(dirname \"$0\")/asked\"");
+  TrialRunner({fake_mesher(folder_, write_record(kGoodRecord)), verifier})
+      .run(trial, prepared(trial), folder_.path());
+  const std::string asked = read_tail(folder_ / "asked", 1000);
+  for (const char* words : {"--size-image sizes.nrrd", "--grade 0.25", ",size"})
+    EXPECT_NE(asked.find(words), std::string::npos) << asked;
+}
+
 class SolvingTest : public TrialTest {
  protected:
   // Runs a trial whose mesh a solver, a script, is handed.
