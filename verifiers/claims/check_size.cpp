@@ -32,6 +32,7 @@
 
 #include <limits>
 #include <optional>
+#include <utility>
 #include <vector>
 
 #include "claims/circumsphere.h"
@@ -85,17 +86,11 @@ class SizeBounds {
     return needs_sphere() && is_over_by_sphere(p, num_exact);
   }
 
-  // The least of a cell's bounds, rounded, where it is below `limit`; else `limit`.
-  double least(CellId c, const CellPoints& p, double limit) const {
-    double least = std::min(limit, of_label(c).value_or(kUnbounded));
-    if (field_) least = std::min(least, field_->bound_at_center(p));
-    const auto sphere = needs_sphere() ? circumsphere(p, *to_voxels_) : std::nullopt;
-    if (!sphere) return least;
-    std::uint64_t num_exact = 0;
-    for (const InterfaceFaces& faces : near_)
-      if (faces.near().radius_mm < least && faces.contains(p, *sphere, *to_voxels_, num_exact))
-        least = faces.near().radius_mm;
-    return graded_ ? graded_->bound_at(sphere->voxel, least) : least;
+  // The circumradius over the least bound, rounded; 0 where it is not above `known`.
+  double severity(CellId c, const CellPoints& p, double radius, double known) const {
+    constexpr double kRounding = 1e-12;
+    const double limit = radius / known * (1 + kRounding), bound = least(c, p, limit);
+    return bound < limit ? radius / bound : 0;
   }
 
  private:
@@ -112,7 +107,20 @@ class SizeBounds {
       if (verify::is_over(p, faces.near().radius_mm, num_exact) &&
           faces.contains(p, *sphere, *to_voxels_, num_exact))
         return true;
-    return graded_ && graded_->bound_at(sphere->voxel, sphere->radius) < sphere->radius;
+    return graded_ && graded_->is_exceeded_at(sphere->voxel, sphere->radius);
+  }
+
+  // The least of a cell's bounds, rounded, where it is below `limit`; else `limit`.
+  double least(CellId c, const CellPoints& p, double limit) const {
+    double least = std::min(limit, of_label(c).value_or(kUnbounded));
+    if (field_) least = std::min(least, field_->bound_at_center(p));
+    const auto sphere = needs_sphere() ? circumsphere(p, *to_voxels_) : std::nullopt;
+    if (!sphere) return least;
+    std::uint64_t num_exact = 0;
+    for (const InterfaceFaces& faces : near_)
+      if (faces.near().radius_mm < least && faces.contains(p, *sphere, *to_voxels_, num_exact))
+        least = faces.near().radius_mm;
+    return graded_ ? graded_->bound_at(sphere->voxel, least) : least;
   }
 
   const Mesh& mesh_;
@@ -197,15 +205,11 @@ ClaimResult check_size(const Mesh& mesh, const Image* image, const SizeImage* si
         t.bins[0].add(radius);
         if (!bounds.has_any(c)) return;
         ++t.num_checked;
-        const auto witness = [&](double severity) {
-          return cell_witness(mesh, c, "circumradius within the bound", radius, severity);
-        };
-        if (bounds.is_over(c, p, t.num_exact)) {
-          t.violation(witness(radius / bounds.least(c, p, kUnbounded)));
-        } else if (const double severity = radius / bounds.least(c, p, radius / t.closest.least_kept());
-                   t.closest.wants(severity)) {
-          t.closest.add(witness(severity));
-        }
+        const bool is_over = bounds.is_over(c, p, t.num_exact);
+        const double severity = bounds.severity(c, p, radius, (is_over ? t.worst : t.closest).least_kept());
+        if (!is_over && !t.closest.wants(severity)) return;
+        Witness witness = cell_witness(mesh, c, "circumradius within the bound", radius, severity);
+        is_over ? t.violation(std::move(witness)) : t.closest.add(std::move(witness));
       });
   return result_of(tally, bounds, options);
 }

@@ -132,24 +132,36 @@ GradedSizes::GradedSizes(const Image& image, const SizeImage* sizes, const std::
   slack_of_interfaces_mm_ = slack_of_voxels_mm_ + of_growth_mm;
 }
 
+double GradedSizes::bound_of_voxels(const Point& voxel, double limit_mm, double enough_mm) const {
+  const auto without_slack = [&](double radius) { return (radius - slack_of_voxels_mm_) / (1 + rounding_); };
+  const double limit = without_slack(limit_mm);
+  const double found = voxels_.least_at(voxel, limit, without_slack(enough_mm));
+  return found < limit ? found * (1 + rounding_) + slack_of_voxels_mm_ : limit_mm;
+}
+
+double GradedSizes::bound_of_interface(const InterfaceFaces& faces, const Point& voxel,
+                                       double limit_mm) const {
+  const double radius_mm = faces.near().radius_mm, width_mm = faces.near().width_mm;
+  const double slack_mm = slack_of_interfaces_mm_ + rounding_ * slope_ * width_mm;
+  const double room_mm = (limit_mm - slack_mm) / (1 + rounding_) - radius_mm;
+  if (room_mm <= 0) return limit_mm;
+  const double reach_mm = width_mm + room_mm / slope_;
+  const double distance_mm = faces.distance_mm(voxel, reach_mm);
+  if (distance_mm >= reach_mm) return limit_mm;
+  return (radius_mm + slope_ * std::max(0.0, distance_mm - width_mm)) * (1 + rounding_) + slack_mm;
+}
+
 double GradedSizes::bound_at(const Point& voxel, double limit_mm) const {
-  double least_mm = limit_mm;
-  // Calls find(limit) for the least radius below a limit, which is what it returns where there is none.
-  const auto lower = [&](double slack_mm, const auto& find) {
-    const double limit = (least_mm - slack_mm) / (1 + rounding_);
-    if (const double found = find(limit); found < limit) least_mm = found * (1 + rounding_) + slack_mm;
-  };
-  lower(slack_of_voxels_mm_, [&](double limit) { return voxels_.least_at(voxel, limit); });
-  for (const InterfaceFaces& faces : near_) {
-    const double radius_mm = faces.near().radius_mm, width_mm = faces.near().width_mm;
-    lower(slack_of_interfaces_mm_ + rounding_ * slope_ * width_mm, [&](double limit) {
-      if (limit <= radius_mm) return limit;
-      const double reach_mm = width_mm + (limit - radius_mm) / slope_;
-      const double distance_mm = faces.distance_mm(voxel, reach_mm);
-      return distance_mm < reach_mm ? radius_mm + slope_ * std::max(0.0, distance_mm - width_mm) : limit;
-    });
-  }
+  double least_mm = bound_of_voxels(voxel, limit_mm, 0);
+  for (const InterfaceFaces& faces : near_) least_mm = bound_of_interface(faces, voxel, least_mm);
   return least_mm;
+}
+
+bool GradedSizes::is_exceeded_at(const Point& voxel, double radius_mm) const {
+  return bound_of_voxels(voxel, radius_mm, radius_mm) < radius_mm ||
+         std::any_of(near_.begin(), near_.end(), [&](const InterfaceFaces& faces) {
+           return bound_of_interface(faces, voxel, radius_mm) < radius_mm;
+         });
 }
 
 }  // namespace podm::verify

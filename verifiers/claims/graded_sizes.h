@@ -24,11 +24,17 @@ class GradedSizes {
 
   /// The bound at a place, in voxels, slack included, where it is below `limit_mm`; else `limit_mm`.
   double bound_at(const Point& voxel, double limit_mm) const;
+  /// Whether it is below `radius_mm`.
+  bool is_exceeded_at(const Point& voxel, double radius_mm) const;
   /// By how much a cell may be over what grows from voxels, and from interfaces; rounding apart.
   double slack_of_voxels_mm() const { return slack_of_voxels_mm_; }
   double slack_of_interfaces_mm() const { return slack_of_interfaces_mm_; }
 
  private:
+  // The bound of voxels alone, as by bound_at(); one below `enough_mm` may be another than the least.
+  double bound_of_voxels(const Point& voxel, double limit_mm, double enough_mm) const;
+  double bound_of_interface(const InterfaceFaces& faces, const Point& voxel, double limit_mm) const;
+
   double slope_;
   const std::vector<InterfaceFaces>& near_;
   MinimaPyramid voxels_;

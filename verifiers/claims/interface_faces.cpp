@@ -135,15 +135,16 @@ bool InterfaceFaces::contains(const CellPoints& p, const Circumsphere& sphere, c
   const Point center = in_mm(sphere.voxel);
   const double width_mm = near_.width_mm;
   const double margin_mm = 1e-6 * (spacing_[0] + spacing_[1] + spacing_[2]) + 1e-9 * width_mm;
+  double limit_mm = width_mm + margin_mm;
   bool is_found = false;
-  tree_.for_each_near(
-      [&](const Bounds& box) { return !is_found && distance(box, center) <= width_mm + margin_mm; },
+  tree_.for_each_within(
+      limit_mm, [&](const Bounds& box) { return distance(box, center); },
       [&](std::uint32_t i) {
-        if (is_found) return;
         const double found_mm = distance(box_of(faces_[i]), center);
-        if (found_mm > width_mm + margin_mm) return;
+        if (found_mm > limit_mm) return;
         is_found = found_mm < width_mm - margin_mm ||
                    sign_of([&]<class T>(T) { return excess<T>(faces_[i], p, to_voxels); }, num_exact) >= 0;
+        if (is_found) limit_mm = -1;
       });
   return is_found;
 }
@@ -151,8 +152,8 @@ bool InterfaceFaces::contains(const CellPoints& p, const Circumsphere& sphere, c
 double InterfaceFaces::distance_mm(const Point& voxel, double limit_mm) const {
   const Point p = in_mm(voxel);
   double least_mm = limit_mm;
-  tree_.for_each_near(
-      [&](const Bounds& box) { return distance(box, p) < least_mm; },
+  tree_.for_each_within(
+      least_mm, [&](const Bounds& box) { return distance(box, p); },
       [&](std::uint32_t i) { least_mm = std::min(least_mm, distance(box_of(faces_[i]), p)); });
   return least_mm;
 }

@@ -54,7 +54,9 @@ double MinimaPyramid::grown(std::size_t level, const Block& block, const Point& 
 }
 
 // The half of the block that the place is nearer to comes first.
-void MinimaPyramid::lower(std::size_t level, const Block& block, const Point& place, double& least) const {
+void MinimaPyramid::lower(std::size_t level, const Block& block, const Point& place, double enough,
+                          double& least) const {
+  if (least < enough) return;
   const double own = grown(level, block, place);
   if (!(own < least)) return;
   if (level == 0) {
@@ -74,12 +76,12 @@ void MinimaPyramid::lower(std::size_t level, const Block& block, const Point& pl
       half[axis] = 2 * block[axis] + (first[axis] ^ static_cast<int>(turn >> axis & 1));
       is_in_grid = is_in_grid && half[axis] < halves.size[axis];
     }
-    if (is_in_grid) lower(level - 1, half, place, least);
+    if (is_in_grid) lower(level - 1, half, place, enough, least);
   }
 }
 
-double MinimaPyramid::least_at(const Point& place, double limit) const {
-  lower(levels_.size() - 1, {0, 0, 0}, place, limit);
+double MinimaPyramid::least_at(const Point& place, double limit, double enough) const {
+  lower(levels_.size() - 1, {0, 0, 0}, place, enough, limit);
   return limit;
 }
 

@@ -18,8 +18,9 @@ class MinimaPyramid {
   MinimaPyramid(const std::array<int, 3>& size, const std::array<double, 3>& spacing, double slope,
                 std::vector<float> values);
 
-  /// The least at a place, in nodes, where it is below `limit`; else `limit`.
-  double least_at(const Point& place, double limit) const;
+  /// The least at a place, in nodes, where it is below `limit`; else `limit`. A number below `enough` may be
+  /// another than the least.
+  double least_at(const Point& place, double limit, double enough = 0) const;
 
  private:
   struct Level {
@@ -31,7 +32,7 @@ class MinimaPyramid {
   static float minimum(const Level& level, const Block& block);
   static Level halved(const Level& level);
   double grown(std::size_t level, const Block& block, const Point& place) const;
-  void lower(std::size_t level, const Block& block, const Point& place, double& least) const;
+  void lower(std::size_t level, const Block& block, const Point& place, double enough, double& least) const;
 
   std::array<double, 3> spacing_;
   double slope_;
