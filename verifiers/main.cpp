@@ -26,7 +26,7 @@ constexpr int kSuccess = 0, kClaimNotMet = 1, kBadInput = 2, kInternal = 3;
 
 struct Command {
   Options options;
-  std::vector<std::string> radius_of, merges;
+  std::vector<std::string> radius_of, size_near, merges;
   std::string claims, space, labels, drop;
   bool quiet = false;
 };
@@ -144,6 +144,20 @@ void declare_claims(CLI::App& app, Command& command) {
       ->option_text("X")
       ->check(positive())
       ->needs(size_image);
+  CLI::Option* image = app.get_option("--image");
+  app.add_option("--size-near", command.size_near,
+                 "size: largest circumradius within WIDTH mm of where labels A and B meet, by\n"
+                 "value, 0 being background, several of a side joined by +; repeatable\n"
+                 "[default: none; WIDTH: MM]")
+      ->option_text("A,B=MM:WIDTH")
+      ->allow_extra_args(false)
+      ->needs(image);
+  app.add_option("--grade", options.grade,
+                 "size: bounds of labels and by place grow by no more than G mm a mm of the way;\n"
+                 "within a slack that the report tells [default: at once]")
+      ->option_text("G")
+      ->check(positive())
+      ->needs(image);
   app.add_option("--min-dihedral", options.min_dihedral_deg,
                  "dihedral: least angle between facets of a cell [default: as the file promises]")
       ->option_text("DEGREES")
@@ -219,6 +233,7 @@ void finish_options(Command& command) {
       throw InputError(fmt::format("--radius-of: '{}' is not LABEL=MM, as in 7=0.5", text));
     options.radius_of[label] = radius;
   }
+  for (const std::string& text : command.size_near) options.size_near.push_back(parse_size_near(text));
   if (!command.labels.empty()) options.selection.keep = parse_label_ranges(command.labels, "--labels");
   if (!command.drop.empty()) options.selection.drop = parse_label_ranges(command.drop, "--drop");
   for (const std::string& text : command.merges) options.selection.merges.push_back(parse_merge(text));

@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "image/label_selection.h"
+#include "image/size_near.h"
 #include "mesh.h"
 
 namespace podm::verify {
@@ -24,6 +25,8 @@ struct Options {
   std::map<LabelValue, double> radius_of;  ///< label -> mm
   std::string size_image_path;             ///< bounds by place; empty: none
   double size_factor = 1;                  ///< of all of them
+  std::vector<SizeNear> size_near;         ///< bounds near interfaces of the image
+  std::optional<double> grade;             ///< by how much bounds may grow, mm a mm of the way; none: at once
   std::optional<double> min_dihedral_deg, max_dihedral_deg;
   /// Fidelity: 95 % of either surface lies within this many voxels of the other, and all of the mesh's within
   /// sqrt(3) times as many of the image's.
@@ -34,6 +37,12 @@ struct Options {
   std::optional<Space> space;               ///< overrides what the file states
   int threads = 0;                          ///< 0: all cores
   std::string json_path, extract_bad_path;  ///< empty: not written; json_path "-": standard output
+
+  /// The bound on cells of a label, if any.
+  std::optional<double> radius_of_label(LabelValue label) const {
+    const auto own = radius_of.find(label);
+    return own != radius_of.end() ? own->second : radius_mm;
+  }
 };
 
 }  // namespace podm::verify

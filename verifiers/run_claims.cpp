@@ -24,7 +24,8 @@ bool is_given(Needs needs, const Options& options, const Mesh& mesh) {
     case Needs::kImage:
       return !options.image_path.empty();
     case Needs::kBound:
-      return options.radius_mm || !options.radius_of.empty() || !options.size_image_path.empty();
+      return options.radius_mm || !options.radius_of.empty() || !options.size_image_path.empty() ||
+             !options.size_near.empty();
     case Needs::kDihedralBound:
       return options.min_dihedral_deg || options.max_dihedral_deg || mesh.promised_dihedral_deg;
   }
@@ -87,7 +88,8 @@ const std::vector<Claim>& all_claims() {
       {"structure", Needs::kNothing, [](I i, A a, O o) { return check_structure(i.mesh, a, o); }},
       {"radius_edge", Needs::kNothing, [](I i, A, O o) { return check_radius_edge(i.mesh, o); }},
       {"boundary_angles", Needs::kNothing, [](I i, A a, O o) { return check_boundary_angles(i.mesh, a, o); }},
-      {"size", Needs::kBound, [](I i, A, O o) { return check_size(i.mesh, pointer(i.sizes), o); }},
+      {"size", Needs::kBound,
+       [](I i, A, O o) { return check_size(i.mesh, pointer(i.image), pointer(i.sizes), o); }},
       {"dihedral", Needs::kDihedralBound, [](I i, A, O o) { return check_dihedral(i.mesh, o); }},
       {"delaunay", Needs::kNothing, [](I i, A a, O o) { return check_delaunay(i.mesh, a, o); }},
       {"conformity", Needs::kNothing,

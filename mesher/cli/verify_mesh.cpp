@@ -47,6 +47,38 @@ std::vector<std::string> image_options(const MeshRun& run, const std::function<s
   return options;
 }
 
+// The verifier calls the background 0, and a foreground label 0 by the background's value.
+std::uint32_t called_by_verifier(std::uint32_t label, std::uint32_t background) {
+  return label == 0 ? background : label == background ? 0 : label;
+}
+
+// The bounds on circumradii; none: there are none.
+std::vector<std::string> size_options(const MeshRun& run) {
+  std::vector<std::string> options;
+  const auto add = [&](const char* name, const std::string& value) {
+    options.insert(options.end(), {name, value});
+  };
+  const SizeOptions& sizes = run.options.sizes;
+  const std::uint32_t background = run.command.image.selection.background;
+  const auto text_of_side = [&](std::vector<std::uint32_t> labels) {
+    for (std::uint32_t& label : labels) label = called_by_verifier(label, background);
+    return fmt::format("{}", fmt::join(labels, "+"));
+  };
+  if (run.report.radius_mm > 0) add("--radius", fmt::format("{}", run.report.radius_mm));
+  for (const auto& [label, radius] : sizes.radius_of_mm)
+    add("--radius-of", fmt::format("{}={}", called_by_verifier(label, background), radius));
+  if (const std::string& size_image = run.command.size_image_path; !size_image.empty()) {
+    add("--size-image", size_image);
+    if (const double factor = run.report.size_image_factor; factor != 1)
+      add("--size-factor", fmt::format("{}", factor));
+  }
+  for (const SizeNear& near : sizes.near)
+    add("--size-near", fmt::format("{},{}={}:{}", text_of_side(near.labels[0]), text_of_side(near.labels[1]),
+                                   near.radius_mm, near.width_mm));
+  if (sizes.grade > 0 && !options.empty()) add("--grade", fmt::format("{}", sizes.grade));
+  return options;
+}
+
 }  // namespace
 
 std::vector<std::string> claims_to_verify(const MeshRun& run,
@@ -57,10 +89,8 @@ std::vector<std::string> claims_to_verify(const MeshRun& run,
   const bool is_delaunay = !run.report.optimization;
   if (is_delaunay) claims += ",delaunay";
   if (run.report.promised_dihedral_deg) claims += ",dihedral";
-  const double radius_mm = run.report.radius_mm;
-  const auto& radius_of = run.options.sizes.radius_of_mm;
-  const std::string& size_image = run.command.size_image_path;
-  if (radius_mm > 0 || !radius_of.empty() || !size_image.empty()) claims += ",size";
+  const std::vector<std::string> sizes = size_options(run);
+  if (!sizes.empty()) claims += ",size";
   if (run.command.verify_fidelity) claims += ",fidelity";
   if (run.command.verify_fidelity || !is_delaunay) {
     options.insert(options.end(), {"--delta", fmt::format("{}", run.report.delta_mm)});
@@ -68,17 +98,7 @@ std::vector<std::string> claims_to_verify(const MeshRun& run,
   options.insert(options.end(), {"--claims", claims});
   const auto image = image_options(run, write_image);
   options.insert(options.end(), image.begin(), image.end());
-  if (radius_mm > 0) options.insert(options.end(), {"--radius", fmt::format("{}", radius_mm)});
-  if (!size_image.empty()) {
-    options.insert(options.end(), {"--size-image", size_image});
-    if (const double factor = run.report.size_image_factor; factor != 1)
-      options.insert(options.end(), {"--size-factor", fmt::format("{}", factor)});
-  }
-  // A foreground label 0 goes by the background's value there.
-  const std::uint32_t background = run.command.image.selection.background;
-  for (const auto& [label, radius] : radius_of)
-    options.insert(options.end(),
-                   {"--radius-of", fmt::format("{}={}", label == 0 ? background : label, radius)});
+  options.insert(options.end(), sizes.begin(), sizes.end());
   return options;
 }
 
@@ -97,12 +117,21 @@ std::vector<std::string> verifier_command(const MeshRun& run, std::optional<Temp
   return command;
 }
 
+// Null where sizes are those of labels.
+const char* option_of_sizes_by_place(const MeshCommand& command) {
+  if (!command.size_image_path.empty()) return "--size-image";
+  if (!command.size_near.empty()) return "--size-near";
+  return command.meshing.sizes.grade > 0 ? "--grade" : nullptr;
+}
+
 }  // namespace
 
 void check_verifier(const MeshCommand& command) {
   const std::string& mesh_path = command.mesh_path;
-  if (!command.size_image_path.empty() && command.meshing.space == Space::kVoxel)
-    throw InputError("--verify: podm-verify does not judge sizes of --size-image in --space voxel");
+  if (const char* option = option_of_sizes_by_place(command);
+      option != nullptr && command.meshing.space == Space::kVoxel)
+    throw InputError(
+        fmt::format("--verify: podm-verify does not judge sizes of {} in --space voxel", option));
   if (mesh_path.ends_with(".xdmf"))
     throw InputError(fmt::format(
         "--verify: podm-verify does not read {}; it reads all other formats that are written", mesh_path));

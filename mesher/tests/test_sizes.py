@@ -8,7 +8,7 @@ import subprocess
 import unittest
 
 from podm_process import PROGRAM, PodmTestCase, run_podm
-from small_images import FLOAT32, write_nifti
+from small_images import FLOAT32, voxels_of, write_nifti
 
 VERIFIER = os.path.join(os.path.dirname(PROGRAM), "podm-verify")
 IMAGE = "phantom:spheres@48"
@@ -100,6 +100,37 @@ class SizesByPlace(PodmTestCase):
         self.assertGreater(graded["core"], sharp["core"])
         self.assertLess(sharp["neighbour"], 1.2 * plain["neighbour"], "the core is not beside it")
 
+    def test_no_cell_is_over_its_bound_near_an_interface_or_over_its_grade(self):
+        near = ("--radius", 14, "--size-near", "core,shell=2:5", "--size-near", "neighbour,0=3", "--grade", 0.15)
+        for options in ((), ("--threads", 2), ("--algorithm", "pdr-podm", "--threads", 2), ("--optimize",),
+                        ("--space", "LPS"), ("--smooth", 6), ("--radius-of", "neighbour=4"),
+                        ("--size-image", self.ramp)):
+            with self.subTest(options=options):
+                record = self.record_of(*near, "--verify", "--oversubscribe", *options)
+                self.assertEqual(record["verdicts"]["size"], "pass")
+        image = self.folder / "spheres.nii"
+        self.assert_exit(run_podm("phantom", "spheres", "--size", 48, "-o", image), 0)
+        record = self.record_of(*near)
+        for radius, width, grade, verdict in ((2, 5, 0.15, "pass"), (1.9, 5, 0.15, "fail"), (2, 9, 0.15, "fail"),
+                                              (2, 5, 0.05, "fail")):
+            claim = self.verdict_on_size("--image", image, "--radius", 14, "--size-near", f"2,1={radius}:{width}",
+                                         "--size-near", "3,0=3", "--grade", grade)
+            self.assertEqual((claim["verdict"], claim["num_checked"]), (verdict, record["cells"]))
+
+    def test_labels_near_which_sizes_hold_reach_the_verifier_by_their_values(self):
+        image, names = self.folder / "slabs.nii", self.folder / "names.txt"
+        write_nifti(image, voxels_of(12, lambda i, j, k: [2, 0, 3, 1][i // 3] if 1 < j < 10 and 1 < k < 10 else 1))
+        names.write_text("2 slab\n3 slab\n0 gap\n")
+        for near, labels in (("slab,gap=0.5:1", "2+3,1"), ("gap,1=0.5:1", "1,0"), ("2,1=0.5:1", "2,0")):
+            with self.subTest(near=near):
+                record = self.record_of("--background", 1, "--label-names", names, "--radius", 3, "--size-near", near,
+                                        "--verify", image=image)
+                self.assertEqual(record["verdicts"]["size"], "pass")
+                for bounds, verdict in ("0.5:1", "pass"), ("0.45:1", "fail"), ("0.5:3", "fail"):
+                    claim = self.verdict_on_size("--image", image, "--background", 1,
+                                                 "--size-near", f"{labels}={bounds}")
+                    self.assertEqual(claim["verdict"], verdict, bounds)
+
     def refused(self, *options):
         return ("mesh", IMAGE, "-o", self.mesh_path, *options)
 
@@ -122,8 +153,9 @@ class SizesByPlace(PodmTestCase):
             self.assert_refused(self.refused("--size-near", near), "--size-near")
         self.assert_refused(self.refused("--size-near", "1,1=2"), "labels 1 and 1: 1 is on both sides")
         self.assert_refused(self.refused("--size-near", "1,9=2"), "no label '9'")
-        in_voxels = ("--size-image", self.ramp, "--space", "voxel", "--verify")
-        self.assert_refused(self.refused(*in_voxels), "podm-verify does not judge", "--space voxel")
+        for option, value in (("--size-image", self.ramp), ("--size-near", "1,0=2"), ("--grade", 0.5)):
+            self.assert_refused(self.refused(option, value, "--space", "voxel", "--verify"),
+                                f"podm-verify does not judge sizes of {option} in --space voxel")
 
 
 if __name__ == "__main__":

@@ -1,17 +1,44 @@
 // Claim size.
-//   Statement   every cell's circumradius is at most its label's bound r_t (--radius, --radius-of), and at
-//               most what a size image (--size-image, times --size-factor) has at the circumcentre:
+//   Statement   every cell's circumradius R is at most its label's bound r_t (--radius, --radius-of), and at
+//               most what a size image (--size-image, times --size-factor) has at the circumcentre p:
 //               size_field.h says what that is between voxels.
-//   Rests on    the bounds as doubles, the image's radii as floats: R^2 <= r_t^2, and in which voxels the
-//               circumcentre lies, are decided in intervals, then in rationals. A flat cell has no
-//               circumsphere and is a violation.
-//   Cost        linear, about 0.2 us a cell, and 2 us with an image.
+//               With --size-near A,B=MM:WIDTH, R is at most MM where p is within WIDTH of the interface: of
+//               the faces between voxels of A and of B, background outside the image.
+//               With --grade G, R is at most f + G |p - q| + slack for every bound f at a place q: its
+//               label's at the centre of each voxel; what the size image has there; MM wherever it holds near
+//               an interface; and f + 3 G d at the voxel whose centre is nearest to one of the size image's
+//               own, f, at a distance d. Lengths are mm along the axes of the image.
+//   Slack       what a mesher may lose that keeps grown bounds at nodes, one a voxel, or one every s voxels
+//               along an axis where one every s - 1 were more than 2^26, and interpolates between them. With
+//               D a voxel's diagonal and [s/2] rounded down, the node n nearest to a voxel q is within [s/2]
+//               D and has f + G |q - n|. Nodes grow no faster than G, and the mean over those around p of
+//               their distances from n is at most |p - n| + s D / 2: by Jensen's inequality, as the mean of a
+//               squared distance from p is at most a quarter of the squared step along each axis. So it
+//               grants f + G (2 [s/2] D + |p - q| + s D / 2), and the slack is (2 [s/2] + s/2) G D: half a
+//               diagonal where s is 1. A place near an interface has its voxel within D / 2 of it, whose
+//               bound is as much more, and the way is that much longer: the slack is G D more. One of the
+//               size image's own may go to any node that is nearest, by a way of no more than d + [s/2] D
+//               there and back. A place beyond all nodes counts as the nearest between them, which is no
+//               further from any. Single precision adds (m + 8) 2^-24 of f + G |p - q|, and of G WIDTH, where
+//               m is the most voxels along an axis, and so the most steps of a way.
+//   Rests on    the bounds as doubles, the image's radii as floats: R^2 <= r_t^2, in which voxels p lies, and
+//               whether it is within WIDTH, are decided in intervals, then in rationals. What grows is
+//               compared in doubles, whose rounding is far below the slack. A flat cell has no circumsphere
+//               and is a violation.
+//   Cost        linear, about 0.2 us a cell, 2 us with sizes by place, and 0.1 us a voxel with a grade; about
+//               80 bytes a face of an interface while they are found, and 5 a voxel with a grade.
 //   Not proved  that the cells are no smaller than needed.
 #include <fmt/format.h>
 
 #include <limits>
+#include <optional>
+#include <utility>
+#include <vector>
 
+#include "claims/circumsphere.h"
 #include "claims/claims.h"
+#include "claims/graded_sizes.h"
+#include "claims/interface_faces.h"
 #include "claims/size_field.h"
 #include "claims/tally.h"
 #include "geometry/measures.h"
@@ -21,14 +48,6 @@ namespace podm::verify {
 namespace {
 
 constexpr double kUnbounded = std::numeric_limits<double>::infinity();
-
-std::optional<double> bound_of(const Mesh& mesh, CellId c, const Options& options) {
-  if (!mesh.cell_labels.empty()) {
-    const auto own = options.radius_of.find(mesh.cell_labels[c]);
-    if (own != options.radius_of.end()) return own->second;
-  }
-  return options.radius_mm;
-}
 
 bool is_over(const CellPoints& p, double bound, std::uint64_t& num_exact) {
   const auto excess = [&]<class T>(T) {
@@ -40,12 +59,85 @@ bool is_over(const CellPoints& p, double bound, std::uint64_t& num_exact) {
   return orientation(p[0], p[1], p[2], p[3], num_exact) == 0;
 }
 
+// All bounds on the cells of a mesh.
+class SizeBounds {
+ public:
+  SizeBounds(const Mesh& mesh, const Image* image, const SizeImage* sizes, const Options& options)
+      : mesh_(mesh), options_(options) {
+    if (sizes != nullptr) field_.emplace(*sizes, options.size_factor, mesh.space);
+    for (const SizeNear& near : options.size_near) near_.emplace_back(*image, near);
+    if (options.grade) graded_.emplace(*image, sizes, near_, options);
+    if (image != nullptr) to_voxels_.emplace(image->voxel_to_ras, mesh.space);
+  }
+  // `near_` is referred to.
+  SizeBounds(const SizeBounds&) = delete;
+  SizeBounds& operator=(const SizeBounds&) = delete;
+
+  const std::vector<InterfaceFaces>& near() const { return near_; }
+  const std::optional<GradedSizes>& graded() const { return graded_; }
+  bool has_any(CellId c) const { return is_by_place() || of_label(c); }
+
+  bool is_over(CellId c, const CellPoints& p, std::uint64_t& num_exact) const {
+    const auto radius = of_label(c);
+    if (radius && verify::is_over(p, *radius, num_exact)) return true;
+    if (!is_by_place()) return false;
+    if (orientation(p[0], p[1], p[2], p[3], num_exact) == 0) return true;
+    if (field_ && field_->is_over(p, num_exact)) return true;
+    return needs_sphere() && is_over_by_sphere(p, num_exact);
+  }
+
+  // The circumradius over the least bound, rounded; 0 where it is not above `known`.
+  double severity(CellId c, const CellPoints& p, double radius, double known) const {
+    constexpr double kRounding = 1e-12;
+    const double limit = radius / known * (1 + kRounding), bound = least(c, p, limit);
+    return bound < limit ? radius / bound : 0;
+  }
+
+ private:
+  std::optional<double> of_label(CellId c) const {
+    return mesh_.cell_labels.empty() ? options_.radius_mm : options_.radius_of_label(mesh_.cell_labels[c]);
+  }
+  bool needs_sphere() const { return !near_.empty() || graded_; }
+  bool is_by_place() const { return field_ || needs_sphere(); }
+
+  bool is_over_by_sphere(const CellPoints& p, std::uint64_t& num_exact) const {
+    const auto sphere = circumsphere(p, *to_voxels_);
+    if (!sphere) return true;
+    for (const InterfaceFaces& faces : near_)
+      if (verify::is_over(p, faces.near().radius_mm, num_exact) &&
+          faces.contains(p, *sphere, *to_voxels_, num_exact))
+        return true;
+    return graded_ && graded_->is_exceeded_at(sphere->voxel, sphere->radius);
+  }
+
+  // The least of a cell's bounds, rounded, where it is below `limit`; else `limit`.
+  double least(CellId c, const CellPoints& p, double limit) const {
+    double least = std::min(limit, of_label(c).value_or(kUnbounded));
+    if (field_) least = std::min(least, field_->bound_at_center(p));
+    const auto sphere = needs_sphere() ? circumsphere(p, *to_voxels_) : std::nullopt;
+    if (!sphere) return least;
+    std::uint64_t num_exact = 0;
+    for (const InterfaceFaces& faces : near_)
+      if (faces.near().radius_mm < least && faces.contains(p, *sphere, *to_voxels_, num_exact))
+        least = faces.near().radius_mm;
+    return graded_ ? graded_->bound_at(sphere->voxel, least) : least;
+  }
+
+  const Mesh& mesh_;
+  const Options& options_;
+  std::optional<SizeField> field_;
+  std::optional<VoxelMap> to_voxels_;
+  std::vector<InterfaceFaces> near_;
+  std::optional<GradedSizes> graded_;
+};
+
 Tally empty_tally(const Options& options, const SizeImage* sizes) {
   double largest = options.radius_mm.value_or(0);
   if (sizes != nullptr)
     for (const float radius : sizes->radius_mm)
       largest = std::max(largest, options.size_factor * static_cast<double>(radius));
   for (const auto& [label, radius] : options.radius_of) largest = std::max(largest, radius);
+  for (const SizeNear& near : options.size_near) largest = std::max(largest, near.radius_mm);
   Tally empty;
   empty.bins.emplace_back("circumradius", "mm", 0, largest, 50);
   return empty;
@@ -58,47 +150,68 @@ ClaimResult not_run(const std::string& reason) {
   return result;
 }
 
-// Whether either bound is exceeded; where there is none, and in a flat cell, the field's is not.
-bool is_over(const CellPoints& p, std::optional<double> of_label, const std::optional<SizeField>& field,
-             std::uint64_t& num_exact) {
-  if (of_label && is_over(p, *of_label, num_exact)) return true;
-  return field && (field->is_over(p, num_exact) || orientation(p[0], p[1], p[2], p[3], num_exact) == 0);
+std::optional<std::string> why_not_run(const Mesh& mesh, const Image* image, const SizeImage* sizes,
+                                       const Options& options) {
+  if (!options.radius_mm && options.radius_of.empty() && options.size_near.empty() && sizes == nullptr)
+    return "no bound given (--radius, --radius-of, --size-image, --size-near)";
+  const bool needs_image = !options.size_near.empty() || options.grade;
+  if (needs_image && image == nullptr) return "no image given (--image), which --size-near and --grade need";
+  if (mesh.space != Space::kVoxel) return std::nullopt;
+  if (sizes != nullptr) return "coordinates are voxel indices, of another image than the sizes' perhaps";
+  if (needs_image) return "coordinates are voxel indices, and bounds near interfaces and grades are in mm";
+  return std::nullopt;
+}
+
+nlohmann::json details_of(const SizeBounds& bounds, const Options& options) {
+  nlohmann::json details = nlohmann::json::object();
+  for (const InterfaceFaces& faces : bounds.near())
+    details["size_near"].push_back({{"labels", faces.near().labels},
+                                    {"radius_mm", faces.near().radius_mm},
+                                    {"width_mm", faces.near().width_mm},
+                                    {"faces", faces.size()}});
+  if (const auto& graded = bounds.graded())
+    details["grade"] = {{"mm_a_mm", *options.grade},
+                        {"slack_of_voxels_mm", graded->slack_of_voxels_mm()},
+                        {"slack_of_interfaces_mm", graded->slack_of_interfaces_mm()}};
+  return details;
+}
+
+ClaimResult result_of(const Tally& tally, const SizeBounds& bounds, const Options& options) {
+  ClaimResult result = result_of("size", tally);
+  result.method = "interval arithmetic, then rationals";
+  result.reason = fmt::format("{} of {} cells over their bound; largest circumradius {:.6g} mm",
+                              result.num_violations, result.num_checked, result.histograms[0].maximum);
+  if (const auto& graded = bounds.graded()) {
+    result.method += "; what grows in doubles";
+    result.reason +=
+        fmt::format("; grade to within {:.3g} mm of voxels' bounds", graded->slack_of_voxels_mm());
+    if (!bounds.near().empty())
+      result.reason += fmt::format(", {:.3g} mm of those near interfaces", graded->slack_of_interfaces_mm());
+  }
+  result.details = details_of(bounds, options);
+  return result;
 }
 
 }  // namespace
 
-ClaimResult check_size(const Mesh& mesh, const SizeImage* sizes, const Options& options) {
-  if (!options.radius_mm && options.radius_of.empty() && sizes == nullptr)
-    return not_run("no bound given (--radius, --radius-of, --size-image)");
-  if (sizes != nullptr && mesh.space == Space::kVoxel)
-    return not_run("coordinates are voxel indices, of another image than the sizes' perhaps");
-  std::optional<SizeField> field;
-  if (sizes != nullptr) field.emplace(*sizes, options.size_factor, mesh.space);
+ClaimResult check_size(const Mesh& mesh, const Image* image, const SizeImage* sizes, const Options& options) {
+  if (const auto reason = why_not_run(mesh, image, sizes, options)) return not_run(*reason);
+  const SizeBounds bounds(mesh, image, sizes, options);
   const Tally tally = tally_over(
       mesh.cells.size(), options.threads, empty_tally(options, sizes), [&](std::size_t i, Tally& t) {
         const auto c = static_cast<CellId>(i);
         const CellPoints p = points_of(mesh, c);
         const double radius = circumradius(p);
         t.bins[0].add(radius);
-        const auto of_label = bound_of(mesh, c, options);
-        if (!of_label && !field) return;
+        if (!bounds.has_any(c)) return;
         ++t.num_checked;
-        const double severity =
-            radius / std::min(of_label.value_or(kUnbounded), field ? field->bound_at_center(p) : kUnbounded);
-        const auto witness = [&] {
-          return cell_witness(mesh, c, "circumradius within the bound", radius, severity);
-        };
-        if (is_over(p, of_label, field, t.num_exact)) {
-          t.violation(witness());
-        } else if (t.closest.wants(severity)) {
-          t.closest.add(witness());
-        }
+        const bool is_over = bounds.is_over(c, p, t.num_exact);
+        const double severity = bounds.severity(c, p, radius, (is_over ? t.worst : t.closest).least_kept());
+        if (!is_over && !t.closest.wants(severity)) return;
+        Witness witness = cell_witness(mesh, c, "circumradius within the bound", radius, severity);
+        is_over ? t.violation(std::move(witness)) : t.closest.add(std::move(witness));
       });
-  ClaimResult result = result_of("size", tally);
-  result.method = "interval arithmetic, then rationals";
-  result.reason = fmt::format("{} of {} cells over their bound; largest circumradius {:.6g} mm",
-                              result.num_violations, result.num_checked, result.histograms[0].maximum);
-  return result;
+  return result_of(tally, bounds, options);
 }
 
 }  // namespace podm::verify

@@ -15,8 +15,9 @@ ClaimResult check_structure(const Mesh& mesh, const Adjacency& adjacency, const 
 ClaimResult check_delaunay(const Mesh& mesh, const Adjacency& adjacency, const Options& options);
 ClaimResult check_radius_edge(const Mesh& mesh, const Options& options);
 ClaimResult check_boundary_angles(const Mesh& mesh, const Adjacency& adjacency, const Options& options);
-/// `sizes` null: bounds are those of labels.
-ClaimResult check_size(const Mesh& mesh, const SizeImage* sizes, const Options& options);
+/// `image` null: the claim is not run where bounds near interfaces or a grade are asked for. `sizes` null: no
+/// bounds are by place.
+ClaimResult check_size(const Mesh& mesh, const Image* image, const SizeImage* sizes, const Options& options);
 ClaimResult check_dihedral(const Mesh& mesh, const Options& options);
 /// `schedule` null: only what can be said without one, that label interfaces match.
 ClaimResult check_conformity(const Mesh& mesh, const Adjacency& adjacency, const Schedule* schedule,

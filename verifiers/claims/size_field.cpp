@@ -3,22 +3,13 @@
 #include <cmath>
 #include <limits>
 
-#include "image/image_frame.h"
+#include "geometry/circumcenter.h"
 
 namespace podm::verify {
 
 namespace {
 
-std::array<Constant, 12> constants(const std::array<mpq_class, 12>& m) {
-  const auto at = [&](std::size_t i) { return Constant(Rational(m[i].get_mpq_t())); };
-  return {at(0), at(1), at(2), at(3), at(4), at(5), at(6), at(7), at(8), at(9), at(10), at(11)};
-}
-
-// Bounds on a number of any of the types.
-double low(double x) { return x; }
-double high(double x) { return x; }
-double low(const Interval& x) { return x.inf(); }
-double high(const Interval& x) { return x.sup(); }
+constexpr double kUnbounded = std::numeric_limits<double>::infinity();
 
 // Where a coordinate lies among `size` voxel centres: the first of two, and how far it is to the second.
 template <class T>
@@ -54,39 +45,10 @@ std::optional<Place<Rational>> place_of(const Rational& u, int size) {
   return Place<Rational>{first, u - Rational(first)};
 }
 
-// The circumcentre is p[3] + sum / (2 determinant), with the terms of squared_circumradius().
-template <class T>
-std::optional<Vector<T>> circumcenter(const CellPoints& p) {
-  const Vector<T> a = difference<T>(p[0], p[3]), b = difference<T>(p[1], p[3]), c = difference<T>(p[2], p[3]);
-  const Vector<T> bc = cross(b, c), ca = cross(c, a), ab = cross(a, b);
-  const T a2 = dot(a, a), b2 = dot(b, b), c2 = dot(c, c), twice = T(2) * dot(a, bc);
-  if constexpr (std::is_same_v<T, Interval>) {
-    if (low(twice) <= 0 && high(twice) >= 0) return std::nullopt;
-  } else {
-    if (twice == T(0)) return std::nullopt;
-  }
-  Vector<T> center;
-  for (std::size_t i = 0; i < 3; ++i) center[i] = T(p[3][i]) + (a2 * bc[i] + b2 * ca[i] + c2 * ab[i]) / twice;
-  return center;
-}
-
 }  // namespace
 
 SizeField::SizeField(const SizeImage& image, double factor, Space space)
-    : image_(image),
-      factor_(Rational(factor)),
-      to_voxels_(constants(exact_mesh_to_voxels(image.voxel_to_ras, space))) {}
-
-template <class T>
-Vector<T> SizeField::to_voxels(const Vector<T>& point) const {
-  Vector<T> voxel;
-  for (std::size_t row = 0; row < 3; ++row) {
-    voxel[row] = to_voxels_[4 * row + 3].template in<T>();
-    for (std::size_t i = 0; i < 3; ++i)
-      voxel[row] = voxel[row] + to_voxels_[4 * row + i].template in<T>() * point[i];
-  }
-  return voxel;
-}
+    : image_(image), factor_(Rational(factor)), to_voxels_(image.voxel_to_ras, space) {}
 
 template <class T>
 std::optional<SizeField::Mean<T>> SizeField::mean_at(const Vector<T>& voxel) const {
@@ -119,7 +81,7 @@ std::optional<SizeField::Mean<T>> SizeField::mean_at(const Vector<T>& voxel) con
 template <class T>
 T SizeField::excess(const CellPoints& p) const {
   const auto center = circumcenter<T>(p);
-  const auto mean = center ? mean_at<T>(to_voxels(*center)) : std::nullopt;
+  const auto mean = center ? mean_at<T>(to_voxels_(*center)) : std::nullopt;
   if constexpr (std::is_same_v<T, Interval>) {
     if (!mean) return {-1, 1};
     if (low(mean->weights) <= 0 && high(mean->weights) > 0) return {-1, 1};
@@ -136,17 +98,18 @@ bool SizeField::is_over(const CellPoints& p, std::uint64_t& num_exact) const {
   return sign_of([&]<class T>(T) { return excess<T>(p); }, num_exact) > 0;
 }
 
+double SizeField::bound_at(const Point& voxel) const {
+  if (!std::isfinite(voxel[0] + voxel[1] + voxel[2])) return kUnbounded;
+  const auto mean = mean_at<double>(voxel);
+  return mean->weights > 0 ? CGAL::to_double(factor_.in<Interval>()) * mean->sum / mean->weights : kUnbounded;
+}
+
 double SizeField::bound_at_center(const CellPoints& p) const {
-  constexpr double kUnbounded = std::numeric_limits<double>::infinity();
   const CGAL::Protect_FPU_rounding<true> rounding_upwards;
   const auto center = circumcenter<Interval>(p);
   if (!center) return kUnbounded;
-  Vector<double> middle;
-  const Vector<Interval> voxel = to_voxels(*center);
-  for (std::size_t i = 0; i < 3; ++i) middle[i] = CGAL::to_double(voxel[i]);
-  if (!std::isfinite(middle[0] + middle[1] + middle[2])) return kUnbounded;
-  const auto mean = mean_at<double>(middle);
-  return mean->weights > 0 ? CGAL::to_double(factor_.in<Interval>()) * mean->sum / mean->weights : kUnbounded;
+  const Vector<Interval> voxel = to_voxels_(*center);
+  return bound_at({CGAL::to_double(voxel[0]), CGAL::to_double(voxel[1]), CGAL::to_double(voxel[2])});
 }
 
 }  // namespace podm::verify

@@ -1,9 +1,9 @@
 // The bound that a size image gives at a cell's circumcentre, over any field that exact.h computes in.
 #pragma once
 
-#include <array>
 #include <optional>
 
+#include "claims/voxel_map.h"
 #include "geometry/measures.h"
 #include "image/size_image.h"
 
@@ -21,6 +21,7 @@ class SizeField {
   bool is_over(const CellPoints& p, std::uint64_t& num_exact) const;
   /// Rounded; infinite where there is none.
   double bound_at_center(const CellPoints& p) const;
+  double bound_at(const Point& voxel) const;
 
  private:
   template <class T>
@@ -31,13 +32,11 @@ class SizeField {
   template <class T>
   std::optional<Mean<T>> mean_at(const Vector<T>& voxel) const;
   template <class T>
-  Vector<T> to_voxels(const Vector<T>& point) const;
-  template <class T>
   T excess(const CellPoints& p) const;
 
   const SizeImage& image_;
   Constant factor_;
-  std::array<Constant, 12> to_voxels_;
+  VoxelMap to_voxels_;
 };
 
 }  // namespace podm::verify

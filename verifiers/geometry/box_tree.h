@@ -55,6 +55,35 @@ class BoxTree {
     }
   }
 
+  /// Calls visit(i) once for every box i of the leaves whose box's `distance` is at most `limit`, which a
+  /// visit may lower; `distance` is no more of a box than of one that it holds. Of two branches the nearer
+  /// one is first.
+  template <class Distance, class Visit>
+  void for_each_within(const double& limit, const Distance& distance, const Visit& visit) const {
+    if (nodes_.empty()) return;
+    struct Branch {
+      std::uint32_t index;
+      double distance;
+    };
+    const auto branch = [&](std::uint32_t index) { return Branch{index, distance(nodes_[index].box)}; };
+    std::array<Branch, 64> stack;  // one entry a level, and levels halve
+    std::size_t size = 0;
+    stack[size++] = branch(0);
+    while (size > 0) {
+      const auto [index, far] = stack[--size];
+      if (far > limit) continue;
+      const Node& node = nodes_[index];
+      if (node.right == 0) {
+        for (std::uint32_t i = node.begin; i < node.end; ++i) visit(ids_[i]);
+      } else {
+        const Branch left = branch(index + 1), right = branch(node.right);
+        const bool is_left_nearer = left.distance < right.distance;
+        stack[size++] = is_left_nearer ? right : left;
+        stack[size++] = is_left_nearer ? left : right;
+      }
+    }
+  }
+
  private:
   static constexpr std::uint32_t kLeafSize = 16;
   struct Node {

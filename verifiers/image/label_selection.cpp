@@ -6,7 +6,6 @@
 #include <charconv>
 #include <map>
 #include <set>
-#include <string_view>
 
 #include "errors.h"
 #include "image/islands.h"
@@ -15,14 +14,6 @@
 namespace podm::verify {
 
 namespace {
-
-std::uint32_t parse_value(std::string_view text, const std::string& option) {
-  std::uint32_t value = 0;
-  const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
-  if (error != std::errc{} || end != text.data() + text.size())
-    throw InputError(fmt::format("{}: '{}' is no label (an integer, 0 to 2^32-1)", option, text));
-  return value;
-}
 
 template <class Visit>
 void for_each_part(std::string_view text, const Visit& visit) {
@@ -71,12 +62,20 @@ void check_selection(const Image& image, const std::set<std::uint32_t>& present,
 
 }  // namespace
 
+std::uint32_t parse_label(std::string_view text, const std::string& option) {
+  std::uint32_t value = 0;
+  const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
+  if (error != std::errc{} || end != text.data() + text.size())
+    throw InputError(fmt::format("{}: '{}' is no label (an integer, 0 to 2^32-1)", option, text));
+  return value;
+}
+
 LabelSelection::Ranges parse_label_ranges(const std::string& text, const std::string& option) {
   LabelSelection::Ranges ranges;
   for_each_part(text, [&](std::string_view part) {
     const std::size_t dash = std::min(part.find('-'), part.size());
-    const std::uint32_t first = parse_value(part.substr(0, dash), option);
-    const std::uint32_t last = dash == part.size() ? first : parse_value(part.substr(dash + 1), option);
+    const std::uint32_t first = parse_label(part.substr(0, dash), option);
+    const std::uint32_t last = dash == part.size() ? first : parse_label(part.substr(dash + 1), option);
     if (last < first) throw InputError(fmt::format("{}: the range '{}' runs backwards", option, part));
     ranges.emplace_back(first, last);
   });
@@ -89,7 +88,7 @@ std::vector<std::uint32_t> parse_merge(const std::string& text) {
     throw InputError(fmt::format("--merge: '{}' is not VALUES=NAME, as in 2,3=kidney", text));
   std::vector<std::uint32_t> values;
   for_each_part(std::string_view(text).substr(0, equals),
-                [&](std::string_view part) { values.push_back(parse_value(part, "--merge")); });
+                [&](std::string_view part) { values.push_back(parse_label(part, "--merge")); });
   return values;
 }
 

@@ -4,6 +4,7 @@
 
 #include <cstdint>
 #include <string>
+#include <string_view>
 #include <utility>
 #include <vector>
 
@@ -22,6 +23,8 @@ struct LabelSelection {
   bool operator==(const LabelSelection&) const = default;
 };
 
+/// Parses "7". Throws InputError that names `option`.
+std::uint32_t parse_label(std::string_view text, const std::string& option);
 /// Parses "1,3-7". Throws InputError that names `option`.
 LabelSelection::Ranges parse_label_ranges(const std::string& text, const std::string& option);
 /// Parses "2,3=kidney"; the name is not kept, since no claim is about names. Throws InputError.

@@ -11,6 +11,7 @@ import subprocess
 
 import numpy as np
 
+from inr_image import write_inr
 from medit_mesh import MeditMesh, kuhn_cubes, read_medit, signed_volumes
 from pvtu_mesh import MeshInPieces
 
@@ -566,6 +567,40 @@ def radius_over_its_place(shop):
     middle = 2 * math.sqrt(3) - 1  # makes the mean sqrt(3), where the regular cell has its centre
     return Mutant(Case(tetrahedron(REGULAR), by_place("over.mha", middle - 0.001)),
                   Case(tetrahedron(REGULAR), by_place("under.mha", middle + 0.001)))
+
+
+def voxel_halves(shop):
+    """Unit voxels of label 1 around the regular cell's circumcentre, and of 2 from 1.5 mm beside it on."""
+    voxels = np.ones((4, 4, 8))
+    voxels[:, :, 4:] = 2
+    path = shop.folder / "halves.inr"
+    write_inr(path, voxels, offset=-2)
+    return ["--image", str(path)]
+
+
+@operator("size")
+def radius_over_the_bound_near(shop):
+    """a cell over its bound at the very width from an interface; harmless: an ulp less wide"""
+    def near(width):
+        return Case(tetrahedron(REGULAR), [*voxel_halves(shop), "--size-near", f"1,2=1.7:{width!r}"])
+    return Mutant(near(1.5), near(float(np.nextafter(1.5, 0))))
+
+
+@operator("size")
+def radius_over_its_grade(shop):
+    """a cell over what grows from 2 mm beside, and over the slack, by a thousandth; harmless: under it"""
+    def growing(radius):
+        return Case(tetrahedron(REGULAR), [*voxel_halves(shop), "--radius-of", f"2={radius!r}", "--grade", "0.25"])
+    bound = math.sqrt(3) - 0.25 * (2 + math.sqrt(3) / 2)
+    return Mutant(growing(bound - 0.001), growing(bound + 0.001))
+
+
+@operator(None, exit_code=2)
+def near_a_label_that_is_not_there(shop):
+    """a bound near a label that the image does not have; harmless: near one that it has"""
+    def near(label):
+        return Case(tetrahedron(REGULAR), [*voxel_halves(shop), "--size-near", f"1,{label}=9"])
+    return Mutant(near(3), near(2))
 
 
 @operator("labels")

@@ -181,6 +181,40 @@ class ProgramTest(unittest.TestCase):
         self.assert_exit(self.verify(*claims), 2)
         self.assert_exit(self.verify("--claims", "radius_edge"), 0)  # without the image nothing is smoothed
 
+    def test_sizes_near_interfaces_and_grades_are_those_of_the_labels_selected(self):
+        voxels = np.ones((4, 4, 12), dtype=np.uint8)
+        voxels[:, :, 6:9], voxels[:, :, 9:] = 2, 3
+        image = self.folder / "image.inr"
+        write_inr(image, voxels, offset=0.5)
+        meshed_voxels(voxels, {}).write(self.mesh)  # circumradii sqrt(3) / 2, at 6 mm labels 1 and 2 meet
+        size = ["--claims", "size", "--json", self.report, "--image", image]
+        for options, num_over in ((["--size-near", "1,2=0.8:1"], 2 * 96),
+                                  (["--size-near", "1,2=0.8"], 2 * 96),
+                                  (["--size-near", "1,2=0.8:1.5"], 4 * 96),
+                                  (["--size-near", "1,2=0.9:1.5"], 0),
+                                  (["--size-near", "1,2=0.8:1", "--size-near", "3,2=0.8:1"], 4 * 96),
+                                  (["--size-near", "1+3,2=0.8:1"], 4 * 96),
+                                  (["--size-near", "1,2=0.8:1", "--merge", "2,3=both"], 2 * 96),
+                                  (["--size-near", "1,0=0.8:1", "--drop", "2"], 6 * 96),
+                                  (["--radius-of", "2=0.1", "--grade", "0.3"], 5 * 96),
+                                  (["--radius-of", "2=0.1", "--grade", "9"], 3 * 96),
+                                  (["--size-near", "1,2=0.1:0.5", "--grade", "0.2"], 4 * 96)):
+            with self.subTest(options=options):
+                process = self.verify(*size, *options)
+                self.assert_exit(process, 1 if num_over else 0)
+                claim = self.read_report()["claims"]["size"]
+                self.assertEqual((claim["num_violations"], claim["num_checked"]), (num_over, 12 * 96))
+                self.assertEqual("grade to within" in process.stdout, "--grade" in options)
+                self.assertEqual(set(claim["details"]),
+                                 {option[2:].replace("-", "_") for option in options[::2]} & {"size_near", "grade"})
+        for near, fault in (("1,7=1", "no voxel has label 7"), ("1,1=1", "label 1 is on both sides"),
+                            ("1,3=1", "no voxels of the two sides touch")):
+            process = self.verify(*size, "--size-near", near)
+            self.assert_exit(process, 2)
+            self.assertIn(f"image.inr: --size-near {near}: {fault}", process.stderr)
+        self.assert_exit(self.verify(*size, "--size-near", "1,2=9", "--space", "voxel"), 1)
+        self.assertEqual(self.read_report()["claims"]["size"]["verdict"], "not_run")
+
     def test_a_meta_image_whose_header_tells_an_old_stream_size_is_read_with_a_warning(self):
         voxels = np.random.default_rng(5).choice([1, 2], size=(6, 7, 8)).astype(np.uint8)
         meshed_voxels(voxels, {}).write(self.mesh)
@@ -213,6 +247,13 @@ class ProgramTest(unittest.TestCase):
                                  (["--radius-of", "3=inf"], "LABEL=MM"),
                                  (["--labels", "1"], "--image"),
                                  (["--smooth", "1"], "--image"),
+                                 (["--grade", "1"], "--image"),
+                                 (["--size-near", "1,2=1"], "--image"),
+                                 (["--image", "absent.nii", "--grade", "0"], "--grade"),
+                                 (["--image", "absent.nii", "--grade", "inf"], "--grade"),
+                                 (["--image", "absent.nii", "--size-near", "1=2"], "--size-near: '1=2' is not"),
+                                 (["--image", "absent.nii", "--size-near", "liver,0=2"], "'liver' is no label"),
+                                 (["--image", "absent.nii", "--size-near", "1,0=2:0"], "--size-near 1,0=2:0: '0'"),
                                  (["--image", "absent.nii", "--labels", "7-3"], "--labels: the range '7-3'"),
                                  (["--image", "absent.nii", "--merge", "2,3"], "--merge: '2,3' is not VALUES=NAME"),
                                  (["--background", "-1"], "--background"),

@@ -12,7 +12,7 @@ ClaimResult size_of(const Mesh& mesh, std::optional<double> radius,
   Options options = two_threads();
   options.radius_mm = radius;
   options.radius_of = std::move(radius_of);
-  return check_size(mesh, nullptr, options);
+  return check_size(mesh, nullptr, nullptr, options);
 }
 
 TEST(Size, IsNotRunWithoutABound) {
@@ -56,7 +56,7 @@ ClaimResult size_by(const SizeImage& sizes, const Mesh& mesh = corner(2, 2, 2), 
   Options options = two_threads();
   options.size_factor = factor;
   options.radius_mm = radius;
-  return check_size(mesh, &sizes, options);
+  return check_size(mesh, nullptr, &sizes, options);
 }
 
 TEST(Size, IsBoundedByThePlaceOfTheCircumcenter) {

@@ -1,0 +1,19 @@
+// A cell's circumsphere in an image, rounded, however flat the cell is.
+#pragma once
+
+#include <optional>
+
+#include "claims/voxel_map.h"
+#include "geometry/measures.h"
+
+namespace podm::verify {
+
+struct Circumsphere {
+  Point voxel;    ///< the circumcentre: each coordinate errs by less than 1e-9, or by an ulp
+  double radius;  ///< of the mesh's coordinates; errs by less than 1e-9 of itself
+};
+
+/// Nothing: the cell is flat, or its circumsphere beyond all doubles.
+std::optional<Circumsphere> circumsphere(const CellPoints& p, const VoxelMap& to_voxels);
+
+}  // namespace podm::verify

@@ -1,0 +1,21 @@
+// A bound on cells near the interface of some labels and others, as an option tells it.
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <string>
+#include <vector>
+
+namespace podm::verify {
+
+struct SizeNear {
+  std::string text;                                  ///< of the option
+  std::array<std::vector<std::uint32_t>, 2> labels;  ///< on either side, one or more; 0 is the background
+  double radius_mm = 0, width_mm = 0;
+};
+
+/// Parses "3,0=1" or "2+3,4=0.5:2": labels of either side, a length in mm and a width, which is that length
+/// where it is not given. Throws InputError.
+SizeNear parse_size_near(const std::string& text);
+
+}  // namespace podm::verify
