@@ -417,6 +417,7 @@ constexpr Measure kMeasures[] = {
     {"least_step_between_levels", "", kMore, kClock, least_step_between_levels},
     {"memory_over_last_cache", "", kMore, kClock, memory_over_last_cache},
     {"other_node_over_own", "", kMore, kClock, other_node_over_own},
+    {"cells", "", kMore, kCost, cells},
     {"guarantee_misses", "", kLess, kFaults, guarantee_misses},
     {"unproved_claims", "", kLess, kFaults, unproved_claims},
     {"poisson_jacobi_iterations", "", kLess, kFaults,

@@ -53,6 +53,13 @@ Json size_image_of(const Inputs& inputs, const Options& options) {
   return json;
 }
 
+Json size_near_of(const Options& options) {
+  Json json = Json::array();
+  for (const SizeNear& near : options.size_near)
+    json.push_back({{"labels", near.labels}, {"radius_mm", near.radius_mm}, {"width_mm", near.width_mm}});
+  return json;
+}
+
 Json witness_of(const Witness& witness) {
   Json points = Json::array();
   for (const Point& p : witness.points) points.push_back({finite(p[0]), finite(p[1]), finite(p[2])});
@@ -108,6 +115,8 @@ Json options_of(const Options& options) {
           {"radius_mm", options.radius_mm ? Json(*options.radius_mm) : Json(nullptr)},
           {"radius_of_mm", radius_of},
           {"size_factor", options.size_factor},
+          {"size_near", size_near_of(options)},
+          {"grade", options.grade ? Json(*options.grade) : Json(nullptr)},
           {"min_dihedral_deg", options.min_dihedral_deg ? Json(*options.min_dihedral_deg) : Json(nullptr)},
           {"max_dihedral_deg", options.max_dihedral_deg ? Json(*options.max_dihedral_deg) : Json(nullptr)},
           {"fidelity_bound_voxels", options.fidelity_bound_voxels},

@@ -74,6 +74,10 @@ const std::map<std::string, SetValue> kSetters = {
      [](Row& row, double value) {
        mesh_of(row).phases_s = {{"refine", value}};
      }},
+    {"cells",  // in millions, as they are whole numbers: ratios stay
+     [](Row& row, double value) {
+       mesh_of(row).cells = static_cast<std::uint64_t>(std::llround(1e6 * value));
+     }},
     {"cells_per_second", set_rate},
     {"cells_per_second_and_core",
      [](Row& row, double value) { set_rate(row, value * row.asked["threads"].get<double>()); }},

@@ -148,6 +148,7 @@ TEST(Measures, AreWhatTheTableSays) {
       {"least_step_between_levels", 3, take_own_memory},
       {"memory_over_last_cache", 4, take_own_memory},
       {"other_node_over_own", 1.5, take_own_memory},
+      {"cells", 1200, take_mesh},
       {"guarantee_misses", 3, take_mesh},
       {"unproved_claims", 2, take_verdicts},
       {"poisson_jacobi_iterations", 120, take_solve},
