@@ -29,7 +29,7 @@ bool is_near(std::uint64_t cells, const SizeOptions& sizes) {
 
 }  // namespace
 
-// Most predicted radii meet the target with the first mesh; where one does not, its cells tell how the
+// Where a predicted radius does not meet the target with the first mesh, its cells tell how the
 // prediction errs, and it is made again.
 Refinement refine_to_target(const LabelImage& image, const Isosurface& isosurface, const SizeOptions& sizes,
                             int threads, const MakeMesh& make_mesh, MeshingReport& report) {

@@ -226,7 +226,7 @@ double CostModel::surface_growth(const SizeOptions& sizes) const {
 
 double CostModel::cells(const SizeOptions& sizes) const {
   const double delta = sizes.delta_mm, area = area_mm2(kSeenOverDelta * delta);
-  double cells = kSurfaceCells * area / (delta * delta) * surface_growth(sizes);
+  double cells = kSurfaceCells * squares(sizes);
   for (std::size_t i = 1; i < image_.labels.size(); ++i)
     if (const double volume_mm3 = volume_of_label_mm3_[i]; volume_mm3 > 0)
       cells += volume_mm3 / volume_mm3_ *
@@ -246,6 +246,11 @@ std::vector<double> CostModel::cells_by_label(const SizeOptions& sizes) const {
   return by_label;
 }
 
+double CostModel::squares(const SizeOptions& sizes) const {
+  return area_mm2(kSeenOverDelta * sizes.delta_mm) / (sizes.delta_mm * sizes.delta_mm) *
+         surface_growth(sizes);
+}
+
 double CostModel::background_cells(const SizeOptions& sizes) const {
   return kOutsideCells * areas_by_label_mm2(kSeenOutsideOverDelta * sizes.delta_mm)[kBackground] /
          (sizes.delta_mm * sizes.delta_mm);
@@ -262,6 +267,8 @@ double CostModel::volume_cells(double volume_mm3, double area_mm2, double radius
   const double first = std::min(radius_mm, kFirstOverDelta * delta_mm);
   if (area_mm2 == 0) return kVolumeCells * volume_mm3 / std::pow(radius_mm, 3);
   const double growth_to_center = kGrowth * 3 * volume_mm3 / area_mm2;
+  if (growth_to_center < 1e-3 * first)  // where what is integrated would cancel out
+    return kVolumeCells * std::max(volume_mm3, 0.0) / std::pow(first, 3);
   const double last = std::min(radius_mm, first + growth_to_center);
   const double a = 1 + first / growth_to_center, b = 1 / growth_to_center;
   const auto integral_to = [&](double u) {

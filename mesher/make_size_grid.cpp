@@ -60,7 +60,10 @@ InterfaceDistances distances_to(const LabelImage& image, const SizeNear& near, i
                                        image.labels[label].value));
         side_of_label[label] = static_cast<unsigned char>(side + 1);
       }
-  auto distances = interface_distances(image, side_of_label, near.width_mm + diagonal_mm(image), threads);
+  // So far that the outermost voxels of the part, but for those at the image's border, are beyond the width
+  // from any point around them.
+  const double reach_mm = near.width_mm + 2 * diagonal_mm(image);
+  auto distances = interface_distances(image, side_of_label, reach_mm, threads);
   if (!distances)
     throw InputError(fmt::format("size near labels {} and {}: no voxels of theirs touch",
                                  text_of(near.labels[0]), text_of(near.labels[1])));

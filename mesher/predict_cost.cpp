@@ -25,10 +25,11 @@ constexpr int kMostThreadsOfTrial = 16;  // its mesh grows so far with the threa
 // What any run takes besides, fitted to processor seconds: files made, hashes begun, memory given back.
 constexpr double kSecondsOfAnyRun = 0.08;
 
-// A cell of the background costs so much of one of the mesh: fitted to processor seconds of 24 runs.
-double work_of(double cells, double stored_cells) {
-  constexpr double kBackgroundOverMesh = 0.45;
-  return cells + kBackgroundOverMesh * (stored_cells - cells);
+// A cell of the background, and a square of delta of an interface, cost so much of a cell of the mesh: fitted
+// to processor seconds of 28 runs.
+double work_of(double cells, double stored_cells, double squares) {
+  constexpr double kBackgroundOverMesh = 0.93, kSquareOverMesh = 0.98;
+  return cells + kBackgroundOverMesh * (stored_cells - cells) + kSquareOverMesh * squares;
 }
 
 SizeOptions resolved(const LabelImage& image, const SizeOptions& asked, const CostModel& model, int threads) {
@@ -50,12 +51,13 @@ double trial_seconds_of_work(const MeshingOptions& options) {
       kTrialCellsPerThread * static_cast<std::uint64_t>(std::min(threads, kMostThreadsOfTrial));
   trial.sizes = RadiusSearch(phantom, {.target_elements = cells}, threads).sizes();
   trial.sizes.target_elements = 0;
+  const double squares = CostModel(phantom, threads).squares(trial.sizes);
   double best_s = 0;
   for (int n = 0; n < kTrials; ++n) {
     const WorkTimer timer(threads);
     const MeshingResult made = mesh_image(phantom, trial);
     const double seconds = timer.seconds() / work_of(static_cast<double>(made.mesh.cells.size()),
-                                                     static_cast<double>(made.report.store_cells));
+                                                     static_cast<double>(made.report.store_cells), squares);
     best_s = n == 0 ? seconds : std::min(best_s, seconds);
   }
   return best_s;
@@ -82,7 +84,8 @@ Cost predict_cost(const LabelImage& image, const MeshingOptions& options) {
   cost.mesh_bytes =
       kPeakBytesPerStoredCell * cost.stored_cells + static_cast<double>(kBytesOfOutput) +
       static_cast<double>(bytes_of_threads(static_cast<std::uint64_t>(num_workers(options.team))));
-  cost.mesh_s = kSecondsOfAnyRun + trial_seconds_of_work(options) * work_of(cost.cells, cost.stored_cells);
+  cost.mesh_s = kSecondsOfAnyRun + trial_seconds_of_work(options) *
+                                       work_of(cost.cells, cost.stored_cells, model.squares(cost.sizes));
   return cost;
 }
 

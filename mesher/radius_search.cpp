@@ -29,8 +29,8 @@ RadiusSearch::RadiusSearch(const LabelImage& image, const SizeOptions& asked, in
   const double least = model_.cells(at(largest_mm_));
   if (has_fixed_sizes(asked) && least > kErrorAllowed * static_cast<double>(asked.target_elements))
     throw InputError(fmt::format(
-        "a target of {} elements: sizes near interfaces and those of single labels ask for some {:.2g} alone",
-        asked.target_elements, least));
+        "a target of {} elements: sizes near interfaces and of single labels{} ask for some {:.0f} alone",
+        asked.target_elements, asked.delta_mm > 0 ? ", with this delta," : "", least));
 }
 
 SizeOptions RadiusSearch::at(double radius_mm) const {

@@ -37,10 +37,11 @@ struct InputOfMesher {
 };
 
 struct UsedSizes {
-  std::optional<double> radius_mm, delta_mm;
+  std::optional<double> radius_mm, size_image_factor, delta_mm;
   Json as_written = Json::object();
   static constexpr auto fields() {
     return std::tuple{field_if_any("radius_mm", &UsedSizes::radius_mm),
+                      field_if_any("size_image_factor", &UsedSizes::size_image_factor),
                       field_if_any("delta_mm", &UsedSizes::delta_mm)};
   }
 };

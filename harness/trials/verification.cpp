@@ -96,7 +96,10 @@ Verification verify_mesh(const Trial& trial, const std::string& image, const Mes
   const std::string size_image = trial.options.value(kSizeImage, "");
   add("--claims", claims_of(trial, record, radius_mm > 0 || !size_image.empty()));
   if (radius_mm > 0) add("--radius", fmt::format("{}", radius_mm));
-  if (!size_image.empty()) add("--size-image", size_image);
+  if (!size_image.empty()) {
+    add("--size-image", size_image);
+    add("--size-factor", fmt::format("{}", used.size_image_factor.value_or(1)));
+  }
   if (trial.options.contains(kGrade)) add("--grade", fmt::format("{}", trial.options[kGrade].get<double>()));
   if (used.delta_mm) add("--delta", fmt::format("{}", *used.delta_mm));
   if (trial.options.value(kSchedule, false)) add("--schedule", folder + kScheduleName);

@@ -10,6 +10,7 @@
 #include "cli/labelled_image.h"
 #include "cli/plan.h"
 #include "cli/standard_output.h"
+#include "cost_model.h"
 
 namespace podm::cli {
 namespace {
@@ -26,7 +27,7 @@ std::string note_on_background(const LabelImage& image, const std::vector<std::u
 std::string as_text(const std::string& path, const LabelImage& image, const std::optional<Plan>& plan) {
   const auto& affine = image.voxel_to_ras;
   const double voxel_mm3 = voxel_volume_mm3(image);
-  const auto counts = count_voxels(image);
+  const auto counts = count_voxels(image, 0);
   std::string text = fmt::format(
       "image      {}\n"
       "size       {} x {} x {} voxels\n"
@@ -48,7 +49,7 @@ std::string as_text(const std::string& path, const LabelImage& image, const std:
 nlohmann::ordered_json as_json(const std::string& path, const LabelImage& image,
                                const std::optional<Plan>& plan) {
   const double voxel_mm3 = voxel_volume_mm3(image);
-  const auto counts = count_voxels(image);
+  const auto counts = count_voxels(image, 0);
   nlohmann::ordered_json labels = nlohmann::ordered_json::array();
   for (std::size_t i = 1; i < image.labels.size(); ++i)
     labels.push_back({{"value", image.labels[i].value},

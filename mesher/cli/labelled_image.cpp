@@ -74,12 +74,6 @@ std::vector<SizeNear> near_by_value(const std::vector<NearLabels>& near, const L
 
 double voxel_volume_mm3(const LabelImage& image) { return std::abs(determinant(image.voxel_to_ras)); }
 
-std::vector<std::uint64_t> count_voxels(const LabelImage& image) {
-  std::vector<std::uint64_t> counts(image.labels.size());
-  for (const LabelIndex label : image.voxels) ++counts[label];
-  return counts;
-}
-
 std::string display_name(const Label& label) {
   return label.name.empty() ? fmt::format("label {}", label.value) : label.name;
 }

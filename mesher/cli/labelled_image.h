@@ -32,11 +32,9 @@ std::map<std::uint32_t, double> lengths_by_value(
 std::vector<SizeNear> near_by_value(const std::vector<NearLabels>& near, const LabelImage& image,
                                     const std::string& image_path);
 
-/// Of a voxel in the world: the product of the spacings only where the axes are orthogonal.
+/// Returns the volume of a voxel in the world: the product of the spacings only where the axes are
+/// orthogonal.
 double voxel_volume_mm3(const LabelImage& image);
-
-/// Voxels of every label, by its position in `labels`.
-std::vector<std::uint64_t> count_voxels(const LabelImage& image);
 
 /// The name of a label, or "label 7" by its value where it has none.
 std::string display_name(const Label& label);

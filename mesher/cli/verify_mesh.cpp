@@ -52,7 +52,7 @@ std::uint32_t called_by_verifier(std::uint32_t label, std::uint32_t background) 
   return label == 0 ? background : label == background ? 0 : label;
 }
 
-// The bounds on circumradii; none: there are none.
+// Returns the bounds on circumradii, nothing where there are none.
 std::vector<std::string> size_options(const MeshRun& run) {
   std::vector<std::string> options;
   const auto add = [&](const char* name, const std::string& value) {

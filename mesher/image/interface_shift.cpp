@@ -84,7 +84,7 @@ void InterfaceShift::read_window(const Voxel& first, Desk& desk) const {
   }
 }
 
-// In the box around every voxel of the tile, an axis after the other.
+// Adds up what is in the box around each voxel of the tile, an axis after the other.
 void InterfaceShift::add_up(LabelIndex label, Desk& desk) const {
   const std::array<std::size_t, 3> window{unsigned_of(window_[0]), unsigned_of(window_[1]),
                                           unsigned_of(window_[2])};

@@ -26,7 +26,7 @@ class InterfaceShift {
   /// What one thread works in; goes from tile to tile.
   class Desk;
   /// By place, in parts of VoxelStrengths::kMost, positive where the label has grown; 0 where no strength is
-  /// told. `first` is the tile's lowest voxel.
+  /// told, or no face is within reach. `first` is the tile's lowest voxel.
   const std::array<double, kTileVoxels>& shifts(const Voxel& first, Desk& desk) const;
 
  private:

@@ -21,10 +21,21 @@ double between(double a, double b, double f) { return a + f * (b - a); }
 
 double ScalarGrid::at(const Point& p) const {
   const std::array<double, 3> u = map(to_nodes_, std::array<double, 3>{p.x, p.y, p.z});
+  for (std::size_t axis = 0; axis < 3; ++axis)
+    if (!(u[axis] >= -0.5 - kSlack && u[axis] <= size_[axis] - 0.5 + kSlack)) return kNone;
+  return between_nodes(u);
+}
+
+double ScalarGrid::at_nearest(const Point& p) const {
+  const std::array<double, 3> u = map(to_nodes_, std::array<double, 3>{p.x, p.y, p.z});
+  const auto is_finite = [](double x) { return std::isfinite(x); };
+  return std::all_of(u.begin(), u.end(), is_finite) ? between_nodes(u) : kNone;
+}
+
+double ScalarGrid::between_nodes(const std::array<double, 3>& u) const {
   Place place;
   for (std::size_t axis = 0; axis < 3; ++axis) {
     const double last = size_[axis] - 1;
-    if (!(u[axis] >= -0.5 - kSlack && u[axis] <= last + 0.5 + kSlack)) return kNone;
     const double inside = std::clamp(u[axis], 0.0, last);
     place.cell[axis] = std::min(static_cast<int>(inside), std::max(size_[axis] - 2, 0));
     place.fraction[axis] = inside - place.cell[axis];

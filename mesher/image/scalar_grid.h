@@ -31,6 +31,8 @@ class ScalarGrid {
 
   /// The number at p, kNone where there is none.
   double at(const Point& p) const;
+  /// The same at the place between nodes that is nearest to p, along the axes of the grid.
+  double at_nearest(const Point& p) const;
 
   struct Range {
     double least = kNone, most = 0;
@@ -60,6 +62,7 @@ class ScalarGrid {
     std::array<bool, 3> is_beyond;
   };
 
+  double between_nodes(const std::array<double, 3>& u) const;
   double mean(const Place& place) const;
   double least_around(const Place& place) const;
   std::array<std::array<double, 2>, 3> node_bounds(const Box& box) const;

@@ -15,8 +15,9 @@
 // nearer to the interface, or not lost by more, takes the least distance, a twentieth of a voxel.
 //
 // Last, volumes are kept: where a blur is as wide as a part is thick, its label has grown or shrunk, and what
-// its interface has moved, on average over all faces of its voxels within 2 s along each axis
-// (interface_shift.h), is taken from the distances of its voxels; and once more, as labels share interfaces.
+// its interface has moved, on average over all faces of its voxels within twice the whole width along each
+// axis (interface_shift.h), is taken from the distances of its voxels, which stay within the least and the
+// greatest that is told apart; and once more, as labels share interfaces.
 // So slabs and rods of any thickness keep their volume, and a sheet of one voxel is one voxel thick. Stairs
 // do not come back: s smooths none that are longer than these averages.
 //

@@ -1,4 +1,5 @@
-// How strong each voxel is in the label function: as strong as the smoothed interface is far from its centre.
+// How strong each voxel is in the label function: about as strong as the smoothed interface is far from its
+// centre.
 //
 // The weight of a label at a point is the trilinear interpolation of the strengths of its voxels, 0 at all
 // others. Between two neighbours of different labels, of strengths a and b, the label changes a / (a + b) of

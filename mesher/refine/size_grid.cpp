@@ -13,13 +13,15 @@ NearInterface::NearInterface(ScalarGrid distances_mm, const std::array<double, 3
       radius_mm_(radius_mm) {}
 
 // A node that is farther away than its distance from p and the width together shows that p is beyond the
-// width.
+// width. Beyond the nodes the nearest place between them counts, from which no face of the interface is
+// further: at the image's border they lie around all faces, and elsewhere the outermost are beyond the width.
 bool NearInterface::contains(const Point& p) const {
   constexpr double kRounding = 1e-6;  // of distances in single precision
-  const auto u = map(distances_mm_.to_nodes(), std::array<double, 3>{p.x, p.y, p.z});
+  auto u = map(distances_mm_.to_nodes(), std::array<double, 3>{p.x, p.y, p.z});
   std::array<int, 3> cell;
   for (std::size_t axis = 0; axis < 3; ++axis) {
-    if (!(u[axis] >= 0 && u[axis] <= distances_mm_.size()[axis] - 1)) return false;
+    if (!std::isfinite(u[axis])) return false;
+    u[axis] = std::clamp(u[axis], 0.0, distances_mm_.size()[axis] - 1.0);
     cell[axis] = std::min(static_cast<int>(u[axis]), distances_mm_.size()[axis] - 2);
   }
   for (unsigned node = 0; node < 8; ++node) {

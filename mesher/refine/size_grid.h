@@ -42,7 +42,7 @@ class SizeGrid {
   /// The same by image and grade alone, and near interfaces alone, if that is less than `radius_mm`.
   double radius_far(const Point& p) const {
     const double radius = image_ ? image_->factor * image_->radius_mm.at(p) : ScalarGrid::kNone;
-    return graded_ ? std::min(radius, graded_->at(p)) : radius;
+    return graded_ ? std::min(radius, graded_->at_nearest(p)) : radius;
   }
   double radius_near(const Point& p, double radius_mm = ScalarGrid::kNone) const {
     for (const NearInterface& near : near_)

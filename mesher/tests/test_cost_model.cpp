@@ -11,15 +11,18 @@
 namespace podm::test {
 namespace {
 
-// Label changes between background and others, of voxels `lag` apart along any axis, over the lag: areas in
-// voxel faces. Voxel by voxel, and outside all is background.
-double outside_by_voxel(const LabelImage& image, int lag) {
+// Sides, with a label or of the background, of label changes between voxels `lag` apart along any axis, over
+// the lag: areas in voxel faces. Voxel by voxel, and outside all is background.
+struct Sides {
+  double labelled = 0, outside = 0;
+};
+Sides sides_by_voxel(const LabelImage& image, int lag) {
   const auto label = [&](std::array<int, 3> at) -> LabelIndex {
     for (std::size_t axis = 0; axis < 3; ++axis)
       if (at[axis] < 0 || at[axis] >= image.size[axis]) return kBackground;
     return image.voxels[image.index(at[0], at[1], at[2])];
   };
-  double sides = 0;
+  Sides sides;
   for (std::size_t axis = 0; axis < 3; ++axis) {
     const double face = image.spacing[(axis + 1) % 3] * image.spacing[(axis + 2) % 3];
     for (int k = -lag; k < image.size[2]; ++k)
@@ -27,7 +30,11 @@ double outside_by_voxel(const LabelImage& image, int lag) {
         for (int i = -lag; i < image.size[0]; ++i) {
           std::array<int, 3> there{i, j, k};
           there[axis] += lag;
-          if ((label({i, j, k}) == kBackground) != (label(there) == kBackground)) sides += face / lag;
+          const LabelIndex a = label({i, j, k}), b = label(there);
+          if (a == b) continue;
+          const int labelled = (a != kBackground) + (b != kBackground);
+          sides.labelled += labelled * face / lag;
+          sides.outside += (2 - labelled) * face / lag;
         }
   }
   return sides;
@@ -38,13 +45,28 @@ TEST(CostModel, CountsTheSidesOfInterfacesSeenFromADistance) {
     LabelImage image = named.make();
     image.spacing = {1, 1, 1};  // so that one distance is a whole number of voxels along all axes
     const CostModel model(image, 1);
+    double volume = 0;
+    for (const LabelIndex label : image.voxels) volume += label != kBackground;
     const auto outside = [&](double delta) {
       return model.background_cells({.delta_mm = delta}) * delta * delta;
     };
-    const double unit = outside(1 / 1.6) / outside_by_voxel(image, 1);
-    for (const int lag : {2, 3, 4, 6, 24})
-      EXPECT_NEAR(outside(lag / 1.6), unit * outside_by_voxel(image, lag), 1e-9) << named.name << ", " << lag;
+    const double unit = outside(1 / 1.6) / sides_by_voxel(image, 1).outside;
+    for (const int lag : {2, 3, 4, 6, 24}) {
+      const Sides sides = sides_by_voxel(image, lag);
+      EXPECT_NEAR(outside(lag / 1.6), unit * sides.outside, 1e-9) << named.name << ", " << lag;
+      const double delta = lag / 0.8, unbounded = std::numeric_limits<double>::infinity();
+      const double cells = CostModel::cells(volume, sides.labelled, unbounded, delta);
+      EXPECT_NEAR(model.cells({.delta_mm = delta}), cells, 1e-9 * cells) << named.name << ", " << lag;
+    }
   }
+}
+
+// A flat cell of a coarse mesh has next to no volume for its facets, or none.
+TEST(CostModel, CountsPartsOfNoVolume) {
+  const double on_surface = CostModel::cells(0, 1, 2, 1);
+  EXPECT_GT(on_surface, 0);
+  for (const double volume : {-1e-15, 1e-300, 1e-15, 1e-12, 1e-9, 1e-6, 1e-5})
+    EXPECT_NEAR(CostModel::cells(volume, 1, 2, 1), on_surface, 3 * std::max(volume, 0.0)) << volume;
 }
 
 TEST(CostModel, FindsTheSameOnAnyNumberOfThreads) {

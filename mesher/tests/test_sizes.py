@@ -117,6 +117,14 @@ class SizesByPlace(PodmTestCase):
                                          "--size-near", "3,0=3", "--grade", grade)
             self.assertEqual((claim["verdict"], claim["num_checked"]), (verdict, record["cells"]))
 
+    def test_bounds_hold_beyond_the_image_where_an_object_is_cut_off(self):
+        image = write_nifti(self.folder / "cut.nii", voxels_of(20, lambda i, j, k: (i - 3) ** 2 + j ** 2 + k ** 2 < 225),
+                            (20,) * 3)
+        for options in ((), ("--optimize", "--min-dihedral", 8)):
+            record = self.record_of("--radius", 4, "--size-near", "1,0=1:3", "--grade", 0.3, "--verify", *options,
+                                    image=image)
+            self.assertEqual(record["verdicts"]["size"], "pass", options)
+
     def test_labels_near_which_sizes_hold_reach_the_verifier_by_their_values(self):
         image, names = self.folder / "slabs.nii", self.folder / "names.txt"
         write_nifti(image, voxels_of(12, lambda i, j, k: [2, 0, 3, 1][i // 3] if 1 < j < 10 and 1 < k < 10 else 1))

@@ -112,7 +112,7 @@ std::vector<Bounds> InterfaceFaces::boxes() const {
   return boxes;
 }
 
-// Of the squared width over the squared distance from a face to the circumcentre.
+// Returns by how much the squared width exceeds the squared distance from a face to the circumcentre.
 template <class T>
 T InterfaceFaces::excess(const VoxelFace& face, const CellPoints& p, const VoxelMap& to_voxels) const {
   const auto center = circumcenter<T>(p);

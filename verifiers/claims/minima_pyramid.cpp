@@ -39,7 +39,7 @@ MinimaPyramid::Level MinimaPyramid::halved(const Level& level) {
   return half;
 }
 
-// The block's minimum, and the growth as far as the place.
+// Returns the block's minimum, grown by the way from there to the place.
 double MinimaPyramid::grown(std::size_t level, const Block& block, const Point& place) const {
   double squared = 0;
   for (std::size_t axis = 0; axis < 3; ++axis) {

@@ -14,7 +14,7 @@ class WorstWitnesses {
  public:
   /// False when a witness of this severity would not be kept, if they come in the order of cells.
   bool wants(double severity) const { return severity > least_kept() || kept_.size() < kMaxWitnesses; }
-  /// Of a severity; 0 where all are kept.
+  /// Returns a severity: none below it is kept. 0 where all are.
   double least_kept() const { return kept_.size() < kMaxWitnesses ? 0 : kept_.back().severity; }
   void add(Witness witness) {
     kept_.insert(std::upper_bound(kept_.begin(), kept_.end(), witness, is_before), std::move(witness));

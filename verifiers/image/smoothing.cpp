@@ -190,8 +190,8 @@ class Smoother {
         for_open(tiles_[t],
                  [&](std::size_t at, std::size_t) { strengths_[at] = strength_of(voxel_mm_ / 2); });
     });
-    is_open_ = {};
-    is_lost_ = {};
+    is_open_ = std::vector<std::uint8_t>();  // gives the memory back
+    is_lost_ = std::vector<std::uint8_t>();
   }
 
   const Image& image_;

@@ -5,6 +5,7 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <limits>
 #include <random>
 
 namespace podm {
@@ -48,6 +49,15 @@ TEST(ScalarGrid, ReachesHalfACellBeyondItsNodes) {
   EXPECT_EQ(grid.at({-0.51, 0, 0}), ScalarGrid::kNone);
   EXPECT_EQ(grid.at({0, 0.51, 0}), ScalarGrid::kNone);
   EXPECT_EQ(grid.at({std::nan(""), 0, 0}), ScalarGrid::kNone);
+}
+
+TEST(ScalarGrid, GoesOnAsAtItsBorderWhereThatIsAskedFor) {
+  const ScalarGrid grid = grid_of({2, 1, 1}, {1, 3});
+  EXPECT_EQ(grid.at_nearest({-20, 7, -3}), 1);
+  EXPECT_EQ(grid.at_nearest({1e9, 0, 0}), 3);
+  EXPECT_EQ(grid.at_nearest({0.25, -40, 0.4}), 1.5);
+  EXPECT_EQ(grid.at_nearest({std::nan(""), 0, 0}), ScalarGrid::kNone);
+  EXPECT_EQ(grid.at_nearest({0, std::numeric_limits<double>::infinity(), 0}), ScalarGrid::kNone);
 }
 
 TEST(ScalarGrid, LeavesOutNodesWithoutANumber) {

@@ -38,8 +38,8 @@ struct SizeOptions {
   double image_factor = 1;
   std::vector<SizeNear> near = {};
   /// By how much bounds may grow, mm a mm of the way. 0: at once. Distances are those of voxels: a bound is
-  /// the largest that grows no faster from voxel to voxel, or less by at most a tenth of the growth
-  /// (image/graded_grid.h).
+  /// the largest that grows no faster from voxel to voxel, or less by an eighth of the growth where voxels
+  /// are cubes (image/graded_grid.h).
   double grade = 0;
   /// Surface sampling distance, mm. 0: default_delta_mm() of the least radius, that of places counting where
   /// it is bounded everywhere, by its largest.
