@@ -118,8 +118,8 @@ class SizesByPlace(PodmTestCase):
             self.assertEqual((claim["verdict"], claim["num_checked"]), (verdict, record["cells"]))
 
     def test_bounds_hold_beyond_the_image_where_an_object_is_cut_off(self):
-        image = write_nifti(self.folder / "cut.nii", voxels_of(20, lambda i, j, k: (i - 3) ** 2 + j ** 2 + k ** 2 < 225),
-                            (20,) * 3)
+        ball = voxels_of(20, lambda i, j, k: (i - 3) ** 2 + j ** 2 + k ** 2 < 225)
+        image = write_nifti(self.folder / "cut.nii", ball, (20,) * 3)
         for options in ((), ("--optimize", "--min-dihedral", 8)):
             record = self.record_of("--radius", 4, "--size-near", "1,0=1:3", "--grade", 0.3, "--verify", *options,
                                     image=image)
