@@ -270,13 +270,15 @@ double CostModel::volume_cells(double volume_mm3, double area_mm2, double radius
   if (growth_to_center < 1e-3 * first)  // where what is integrated would cancel out
     return kVolumeCells * std::max(volume_mm3, 0.0) / std::pow(first, 3);
   const double last = std::min(radius_mm, first + growth_to_center);
-  const double a = 1 + first / growth_to_center, b = 1 / growth_to_center;
+  const double core = kVolumeCells * volume_mm3 * std::pow((1 - (last - first) / growth_to_center) / last, 3);
+  if (last == first) return core;
+  // In units of the first radius, as the square of an absurdly small one is 0.
+  const double b = first / growth_to_center, a = 1 + b;
   const auto integral_to = [&](double u) {
     return -a * a / (2 * u * u) + 2 * a * b / u + b * b * std::log(u);
   };
-  const double core = 1 - (last - first) / growth_to_center;
-  return kVolumeCells * (area_mm2 / kGrowth * (integral_to(last) - integral_to(first)) +
-                         volume_mm3 * std::pow(core / last, 3));
+  return kVolumeCells * area_mm2 / (kGrowth * first * first) * (integral_to(last / first) - integral_to(1)) +
+         core;
 }
 
 Estimate estimate(const LabelImage& image, const MeshingOptions& options) {

@@ -11,10 +11,16 @@ import unittest
 HERE = pathlib.Path(__file__).parent
 
 
+def is_installed(module):
+    """Whether it is there; a folder of that name beside this file, which Python takes for one, has no origin."""
+    spec = importlib.util.find_spec(module)
+    return spec is not None and spec.origin is not None
+
+
 class SolverExamples(unittest.TestCase):
     def run_example(self, script, picture, programs=(), modules=()):
         missing = [name for name in programs if shutil.which(name) is None]
-        missing += [name for name in modules if importlib.util.find_spec(name) is None]
+        missing += [name for name in modules if not is_installed(name)]
         if missing:
             self.skipTest("needs " + ", ".join(missing) + ": scripts/setup-solvers")
         with tempfile.TemporaryDirectory() as folder:

@@ -58,7 +58,7 @@ class Hops(PodmTestCase):
         self.assertNotEqual(first, other)
 
     def test_meshes_of_a_radius_search_leave_the_next_no_caches(self):
-        searched = self.mesh_on_blades(sizes=("--target-elements", 8000))
+        searched = self.mesh_on_blades(sizes=("--target-elements", 8000, "--target-tolerance", 0.1))
         self.assertGreater(len(searched["calibration"]["meshes"]), 0, "a mesh missed the target before the last")
         used = searched["used"]
         alone = self.mesh_on_blades(sizes=("--radius", used["radius_mm"], "--delta", used["delta_mm"]))

@@ -68,8 +68,8 @@ class Meshes(OnRanks):
         cells = {}
         for number in 1, 2, 4:
             with self.subTest(ranks=number):
-                self.assert_exit(self.mesh(number, "--radius", 2.5, image=image), 0)
-                self.assert_verifies(self.out, "--radius", 2.5, "--image", image)
+                self.assert_exit(self.mesh(number, "--radius", 4, image=image), 0)
+                self.assert_verifies(self.out, "--radius", 4, "--image", image)
                 pieces = {f"out_{i}{facets}.vtu" for i in range(number) for facets in ("", "_facets")}
                 self.assertLessEqual(pieces | {"out.pvtu", "out_facets.pvtu"}, self.names())
                 record = self.last_record()
@@ -109,7 +109,7 @@ class Meshes(OnRanks):
     def test_one_rank_makes_the_mesh_of_podm(self):
         for algorithm in "podm", "pdr-podm":
             with self.subTest(algorithm=algorithm):
-                self.assert_is_mesh_of_podm("--radius", 3, "--threads", 1, "--algorithm", algorithm)
+                self.assert_is_mesh_of_podm("--radius", 4, "--threads", 1, "--algorithm", algorithm)
 
     def assert_is_mesh_of_podm(self, *options):
         self.assert_exit(self.mesh(1, *options), 0)
@@ -124,7 +124,7 @@ class Meshes(OnRanks):
     def test_as_many_ranks_of_one_thread_make_the_same_mesh(self):
         contents = []
         for _ in range(2):
-            self.assert_exit(self.mesh(3, "--radius", 2, "--threads", 1), 0)
+            self.assert_exit(self.mesh(3, "--radius", 3.5, "--threads", 1), 0)
             contents.append([(self.folder / f"out_{i}.vtu").read_bytes() for i in range(3)])
         self.assertEqual(*contents)
 
@@ -171,9 +171,9 @@ class InProcess(OnRanks):
         return [path.with_name(f"{path.stem}_{i}.vtu").read_bytes() for i in range(number)]
 
     def test_they_make_the_mesh_of_as_many_processes(self):
-        self.assert_exit(self.mesh(3, "--radius", 2, "--threads", 1), 0)
+        self.assert_exit(self.mesh(3, "--radius", 3.5, "--threads", 1), 0)
         by_mpi = self.contents(3)
-        process = self.mesh_in_process(3, "--radius", 2)
+        process = self.mesh_in_process(3, "--radius", 3.5)
         self.assert_exit(process, 0)
         self.assertEqual(self.contents(3), by_mpi)
         self.assertEqual(process.stderr.count("guarantees all met"), 1)
@@ -189,8 +189,8 @@ class InProcess(OnRanks):
         cells_of_ranks = set()
         for seed in range(4):
             with self.subTest(seed=seed):
-                self.assert_exit(self.mesh_in_process(5, "--radius", 3, "--seed", seed, "--initial-ratio", 1.5), 0)
-                self.assert_verifies(self.out, "--radius", 3, "--image", image)
+                self.assert_exit(self.mesh_in_process(5, "--radius", 4, "--seed", seed, "--initial-ratio", 1.5), 0)
+                self.assert_verifies(self.out, "--radius", 4, "--image", image)
                 record = self.last_record()
                 self.assertEqual(record["seed"], seed)
                 self.assertEqual(record["ranks"]["initial_ratio"], 1.5)
@@ -200,7 +200,7 @@ class InProcess(OnRanks):
         self.assertEqual(len(cells_of_ranks), 4)
 
     def test_a_seed_is_drawn_alike_by_processes(self):
-        options = ["--radius", 3, "--seed", 9, "--threads", 1]
+        options = ["--radius", 4, "--seed", 9, "--threads", 1]
         self.assert_exit(self.mesh(4, *options), 0)
         by_mpi = self.contents(4)
         self.assert_exit(self.mesh_in_process(4, *options), 0)
@@ -208,7 +208,7 @@ class InProcess(OnRanks):
 
     def test_virtual_clocks_agree_and_see_the_network(self):
         for network in [], ["--network", "1000,0.001"]:
-            self.assert_exit(self.mesh_in_process(3, "--radius", 3, *network), 0)
+            self.assert_exit(self.mesh_in_process(3, "--radius", 4, *network), 0)
         free, slow = ([rank["virtual"] for rank in json.loads(line)["ranks"]["by_rank"]]
                       for line in self.runs.read_text().splitlines())
         for ranks in free, slow:
@@ -271,7 +271,7 @@ class Logs(OnRanks):
     def test_the_logs_of_all_ranks_replay_to_their_mesh(self):
         for number, threads, space in (1, 2, "RAS"), (2, 1, "voxel"), (4, 2, "LPS"):
             with self.subTest(ranks=number, threads=threads):
-                self.assert_exit(self.mesh(number, "--radius", 2, "--log", self.log, "--threads", threads, "--space",
+                self.assert_exit(self.mesh(number, "--radius", 3.5, "--log", self.log, "--threads", threads, "--space",
                                            space, "--oversubscribe"), 0)
                 logs = self.logs(number)
                 self.assertLessEqual({log.name for log in logs}, self.names())
@@ -297,7 +297,7 @@ class Logs(OnRanks):
         self.assert_refused(["replay", "phantom:spheres@31", *one], one[0], "another image")
 
     def test_a_mesh_that_ranks_did_not_make_differs(self):
-        self.assert_exit(self.mesh(2, "--radius", 3, "--log", self.log), 0)
+        self.assert_exit(self.mesh(2, "--radius", 4, "--log", self.log), 0)
         for log in self.logs(2):
             head = f'"mesh_hash":"{self.last_record()["ranks"]["mesh_hash"]}"'.encode()
             self.assertIn(head, log.read_bytes())
