@@ -25,7 +25,7 @@ done
 [ $# -gt 0 ] || set -- $targets
 
 cmake -S . -B $build -G Ninja -DCMAKE_C_COMPILER=clang -DCMAKE_CXX_COMPILER=clang++ \
-  -DCMAKE_CXX_FLAGS="-include $PWD/ci/itk_with_clang.h -O0 -gline-tables-only -DNDEBUG" -DCMAKE_BUILD_TYPE=None \
+  -DCMAKE_CXX_FLAGS="-include $PWD/ci/itk_with_clang.h -O1 -gline-tables-only -DNDEBUG" -DCMAKE_BUILD_TYPE=None \
   -DPODM_BUILD_FUZZERS=ON -DPODM_UNITE=ON -DPODM_SANITIZE=address,undefined
 cmake --build $build --target "$@"
 

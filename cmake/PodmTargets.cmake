@@ -59,8 +59,7 @@ function(podm_add_python_test name)
 endfunction()
 
 # podm_add_fuzzer(NAME [SOURCES...] LIBS targets... [LEARN targets...]): the libFuzzer program of fuzz/NAME.cpp and other
-# sources. It is guided by the branches taken in its own sources and in the libraries LEARN, which alone are optimised:
-# most of the others are only linked.
+# sources. It is guided by the branches taken in its own sources and in the libraries LEARN.
 function(podm_add_fuzzer name)
   if(NOT PODM_BUILD_FUZZERS)
     return()
@@ -71,6 +70,6 @@ function(podm_add_fuzzer name)
   target_link_libraries(${name} PRIVATE ${ARG_LIBS} podm_flags)
   target_link_options(${name} PRIVATE -fsanitize=fuzzer)
   foreach(target ${name} ${ARG_LEARN})
-    target_compile_options(${target} PRIVATE -fsanitize=fuzzer-no-link -O1)
+    target_compile_options(${target} PRIVATE -fsanitize=fuzzer-no-link)
   endforeach()
 endfunction()
