@@ -65,7 +65,7 @@ test:
 	@scripts/setup build run python test
 	$(CONFIGURE) -DPODM_BUILD_TESTS=ON
 	cmake --build build --target all tests
-	$(if $(DATA),PODM_TEST_IMAGES="$(abspath $(DATA))") ctest --test-dir build -j3 --output-on-failure
+	$(if $(DATA),PODM_TEST_IMAGES="$(abspath $(DATA))") ctest --test-dir build -j4 --output-on-failure
 	@grep -ho 'skipped: .*' build/Testing/Temporary/LastTest.log | sort | uniq -c || true
 
 # A failing seed joins those that `make test` repeats.

@@ -26,8 +26,9 @@ RadiusSearch::RadiusSearch(const LabelImage& image, const SizeOptions& asked, in
       largest_mm_(std::hypot(image.size[0] * image.spacing[0], image.size[1] * image.spacing[1],
                              image.size[2] * image.spacing[2])),
       radius_mm_(radius_for(static_cast<double>(asked.target_elements))) {
+  if (!has_fixed_sizes(asked)) return;
   const double least = model_.cells(at(largest_mm_));
-  if (has_fixed_sizes(asked) && least > kErrorAllowed * static_cast<double>(asked.target_elements))
+  if (least > kErrorAllowed * static_cast<double>(asked.target_elements))
     throw InputError(fmt::format(
         "a target of {} elements: sizes near interfaces and of single labels{} ask for some {:.0f} alone",
         asked.target_elements, asked.delta_mm > 0 ? ", with this delta," : "", least));

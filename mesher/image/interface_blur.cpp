@@ -11,8 +11,6 @@ namespace {
 constexpr double kReach = 3;  // widths
 constexpr std::size_t kSide = kTileSide;
 
-std::size_t unsigned_of(int n) { return static_cast<std::size_t>(n); }
-
 void add(double factor, const std::array<double, kSide>& source, double* target) {
   for (std::size_t x = 0; x < kSide; ++x) target[x] += factor * source[x];
 }

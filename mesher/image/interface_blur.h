@@ -16,7 +16,7 @@ inline constexpr std::size_t kTileVoxels = 16 * 16 * 16;
 
 /// A place in a tile, x fastest.
 constexpr std::size_t place_in_tile(int i, int j, int k) {
-  return static_cast<std::size_t>(i + kTileSide * (j + kTileSide * k));
+  return unsigned_of(i + kTileSide * (j + kTileSide * k));
 }
 
 class InterfaceBlur {

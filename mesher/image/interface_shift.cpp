@@ -7,8 +7,6 @@ namespace podm {
 
 namespace {
 
-std::size_t unsigned_of(int n) { return static_cast<std::size_t>(n); }
-
 // Sums of `count` values, `stride` apart, from each of `num_sums` places on; in each of `num_blocks` blocks
 // of (num_sums + count - 1) * stride values.
 void add_up_along(std::size_t stride, std::size_t num_blocks, std::size_t num_sums, std::size_t count,

@@ -29,6 +29,7 @@ using Place = std::uint16_t;  // in a tile
 
 struct Tile {
   Voxel first, end;                 // of its voxels
+  bool has_sides = false;           // whether strengths are told of any
   std::vector<Place> left;          // voxels beside another label for which no width has been found yet
   std::vector<Place> lost;          // those of them that are lost to the present width
   std::vector<std::uint16_t> kept;  // strengths that keep volumes, of voxels that have one, x fastest
@@ -159,6 +160,7 @@ void Smoothing::find_sides(Tile& tile) const {
   tile.for_each_voxel([&](Place place) {
     if (is_beside_another(tile.voxel(place))) tile.left.push_back(place);
   });
+  tile.has_sides = !tile.left.empty();
 }
 
 // Finds the distances of all that are left; those near a lost voxel stay.
@@ -224,7 +226,7 @@ std::array<int, 3> Smoothing::voxels_within(double distance_mm) const {
 
 template <class Visit>
 void Smoothing::for_each_told(const Tile& tile, const Visit& visit) const {
-  if (is_uniform(tile)) return;
+  if (!tile.has_sides) return;
   tile.for_each_voxel([&](Place place) {
     const std::size_t voxel = index(tile.voxel(place));
     if (strengths_->at(voxel) != VoxelStrengths::kUntold) visit(place, voxel);

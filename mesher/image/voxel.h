@@ -18,6 +18,9 @@ inline Point center(const Voxel& v) {
   return {static_cast<double>(v.i), static_cast<double>(v.j), static_cast<double>(v.k)};
 }
 
+/// A place or a count, which is not negative.
+constexpr std::size_t unsigned_of(int n) { return static_cast<std::size_t>(n); }
+
 /// A voxel's place in its brick, 0 to 63, x fastest. A Number is an integer, or a register of several.
 template <class Number>
 constexpr Number place_in_brick(const Number& i, const Number& j, const Number& k) {

@@ -77,19 +77,26 @@ class SizeBounds {
   const std::optional<GradedSizes>& graded() const { return graded_; }
   bool has_any(CellId c) const { return is_by_place() || of_label(c); }
 
-  bool is_over(CellId c, const CellPoints& p, std::uint64_t& num_exact) const {
+  // Nothing where no bound asks for it, and of a flat cell.
+  std::optional<Circumsphere> sphere(const CellPoints& p) const {
+    return needs_sphere() ? circumsphere(p, *to_voxels_) : std::nullopt;
+  }
+
+  bool is_over(CellId c, const CellPoints& p, const std::optional<Circumsphere>& sphere,
+               std::uint64_t& num_exact) const {
     const auto radius = of_label(c);
     if (radius && verify::is_over(p, *radius, num_exact)) return true;
     if (!is_by_place()) return false;
     if (orientation(p[0], p[1], p[2], p[3], num_exact) == 0) return true;
     if (field_ && field_->is_over(p, num_exact)) return true;
-    return needs_sphere() && is_over_by_sphere(p, num_exact);
+    return needs_sphere() && is_over_by_sphere(p, sphere, num_exact);
   }
 
   // The circumradius over the least bound, rounded; 0 where it is not above `known`.
-  double severity(CellId c, const CellPoints& p, double radius, double known) const {
+  double severity(CellId c, const CellPoints& p, const std::optional<Circumsphere>& sphere, double radius,
+                  double known) const {
     constexpr double kRounding = 1e-12;
-    const double limit = radius / known * (1 + kRounding), bound = least(c, p, limit);
+    const double limit = radius / known * (1 + kRounding), bound = least(c, p, sphere, limit);
     return bound < limit ? radius / bound : 0;
   }
 
@@ -100,8 +107,8 @@ class SizeBounds {
   bool needs_sphere() const { return !near_.empty() || graded_; }
   bool is_by_place() const { return field_ || needs_sphere(); }
 
-  bool is_over_by_sphere(const CellPoints& p, std::uint64_t& num_exact) const {
-    const auto sphere = circumsphere(p, *to_voxels_);
+  bool is_over_by_sphere(const CellPoints& p, const std::optional<Circumsphere>& sphere,
+                         std::uint64_t& num_exact) const {
     if (!sphere) return true;
     for (const InterfaceFaces& faces : near_)
       if (verify::is_over(p, faces.near().radius_mm, num_exact) &&
@@ -111,10 +118,9 @@ class SizeBounds {
   }
 
   // The least of a cell's bounds, rounded, where it is below `limit`; else `limit`.
-  double least(CellId c, const CellPoints& p, double limit) const {
+  double least(CellId c, const CellPoints& p, const std::optional<Circumsphere>& sphere, double limit) const {
     double least = std::min(limit, of_label(c).value_or(kUnbounded));
     if (field_) least = std::min(least, field_->bound_at_center(p));
-    const auto sphere = needs_sphere() ? circumsphere(p, *to_voxels_) : std::nullopt;
     if (!sphere) return least;
     std::uint64_t num_exact = 0;
     for (const InterfaceFaces& faces : near_)
@@ -205,8 +211,10 @@ ClaimResult check_size(const Mesh& mesh, const Image* image, const SizeImage* si
         t.bins[0].add(radius);
         if (!bounds.has_any(c)) return;
         ++t.num_checked;
-        const bool is_over = bounds.is_over(c, p, t.num_exact);
-        const double severity = bounds.severity(c, p, radius, (is_over ? t.worst : t.closest).least_kept());
+        const auto sphere = bounds.sphere(p);
+        const bool is_over = bounds.is_over(c, p, sphere, t.num_exact);
+        const double severity =
+            bounds.severity(c, p, sphere, radius, (is_over ? t.worst : t.closest).least_kept());
         if (!is_over && !t.closest.wants(severity)) return;
         Witness witness = cell_witness(mesh, c, "circumradius within the bound", radius, severity);
         is_over ? t.violation(std::move(witness)) : t.closest.add(std::move(witness));
