@@ -1,8 +1,10 @@
 #include "isosurface_reference.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <functional>
+#include <iterator>
 #include <limits>
 #include <map>
 #include <set>
@@ -138,37 +140,54 @@ ReferenceLabel reference_label(const LabelImage& image, const Point& p, const Vo
 
 std::vector<Point> sample_isosurface(const LabelImage& image, int per_voxel,
                                      const VoxelStrengths* strengths) {
-  std::vector<Point> points;
+  using Place = std::array<int, 3>;  // in the lattice
   const auto label = [&](const Point& p) { return reference_label(image, p, strengths).label; };
-  const auto add_changes = [&](const Point& a, const Point& b) {
-    if (label(a) == label(b)) return;
-    Point low = a, high = b;
+  // Off the voxel centres, where lines would run along block faces.
+  const auto coordinate = [&](const Place& n, std::size_t axis) {
+    return (-1 + (n[axis] + 0.37) / per_voxel) * image.spacing[axis];
+  };
+  const auto point = [&](const Place& n) {
+    return Point{coordinate(n, 0), coordinate(n, 1), coordinate(n, 2)};
+  };
+  std::vector<Place> lattice;
+  std::vector<LabelIndex> labels;
+  const auto count = [&](std::size_t axis) { return (image.size[axis] + 1) * per_voxel + 1; };
+  for (int i = 0; i < count(0); ++i)
+    for (int j = 0; j < count(1); ++j)
+      for (int k = 0; k < count(2); ++k) {
+        lattice.push_back({i, j, k});
+        labels.push_back(label(point(lattice.back())));
+      }
+  std::vector<Point> points;
+  const auto add_change = [&](Point low, Point high, LabelIndex of_low) {
     for (int i = 0; i < 40; ++i) {
       const Point middle = 0.5 * (low + high);
-      (label(middle) == label(a) ? low : high) = middle;
+      (label(middle) == of_low ? low : high) = middle;
     }
     points.push_back(low);
   };
-  // Off the voxel centres, where lines would run along block faces.
-  const double step = 1.0 / per_voxel;
-  const auto coordinate = [&](int n, std::size_t axis) {
-    return (-1 + (n + 0.37) * step) * image.spacing[axis];
-  };
-  const auto count = [&](std::size_t axis) { return (image.size[axis] + 1) * per_voxel; };
-  for (int k = 0; k < count(2); ++k)
-    for (int j = 0; j < count(1); ++j)
-      for (int i = 0; i < count(0); ++i) {
-        const Point p{coordinate(i, 0), coordinate(j, 1), coordinate(k, 2)};
-        add_changes(p, p + Vector{step * image.spacing[0], 0, 0});
-        add_changes(p, p + Vector{0, step * image.spacing[1], 0});
-        add_changes(p, p + Vector{0, 0, step * image.spacing[2]});
-      }
+  for (std::size_t at = 0; at < lattice.size(); ++at) {
+    std::size_t step = 1;  // to the next along the axis
+    for (const std::size_t axis : {2, 1, 0}) {
+      if (lattice[at][axis] + 1 < count(axis) && labels[at + step] != labels[at])
+        add_change(point(lattice[at]), point(lattice[at + step]), labels[at]);
+      step *= static_cast<std::size_t>(count(axis));
+    }
+  }
+  std::sort(points.begin(), points.end(), [](const Point& a, const Point& b) { return a.x < b.x; });
   return points;
 }
 
 double distance_to_nearest(const std::vector<Point>& points, const Point& p) {
   double squared = std::numeric_limits<double>::infinity();
-  for (const Point& q : points) squared = std::min(squared, squared_distance(p, q));
+  const auto compare = [&](const Point& q) {
+    squared = std::min(squared, squared_distance(p, q));
+    return (q.x - p.x) * (q.x - p.x) < squared;  // others may be nearer
+  };
+  const auto first =
+      std::partition_point(points.begin(), points.end(), [&](const Point& q) { return q.x < p.x; });
+  for (auto q = first; q != points.end() && compare(*q);) ++q;
+  for (auto q = first; q != points.begin() && compare(*std::prev(q));) --q;
   return std::sqrt(squared);
 }
 

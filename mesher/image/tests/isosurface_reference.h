@@ -47,10 +47,12 @@ struct ReferenceLabel {
 ReferenceLabel reference_label(const LabelImage& image, const Point& p,
                                const VoxelStrengths* strengths = nullptr);
 
-/// Points of the isosurface: the label changes along lines of a lattice `per_voxel` lines a voxel.
+/// Points of the isosurface: the label changes along lines of a lattice `per_voxel` lines a voxel. From
+/// the least x on.
 std::vector<Point> sample_isosurface(const LabelImage& image, int per_voxel,
                                      const VoxelStrengths* strengths = nullptr);
 
+/// Of `points` from the least x on.
 double distance_to_nearest(const std::vector<Point>& points, const Point& p);
 
 /// Whether the label changes within `voxels` of p.
