@@ -23,9 +23,9 @@ constexpr int kPhantomSize = 64, kTrials = 2;
 constexpr std::uint64_t kTrialCellsPerThread = 60'000;
 constexpr int kMostThreadsOfTrial = 16;  // its mesh grows so far with the threads
 // What any run takes besides, fitted to processor seconds: files made, hashes begun, memory given back.
-constexpr double kSecondsOfAnyRun = 0.08;
-// The trial's mesh is small enough for caches: by so much the work of others takes longer, in 24 runs.
-constexpr double kOverTrial = 1.2;
+constexpr double kSecondsOfAnyRun = 0.02;
+// The trial's mesh is small enough for caches: by so much the work of others takes longer, in 32 runs.
+constexpr double kOverTrial = 1.25;
 
 // A cell of the background, and a square of delta of an interface, cost so much of a cell of the mesh: fitted
 // to processor seconds of 28 runs.
