@@ -17,8 +17,7 @@ void add(double factor, const std::array<double, kSide>& source, double* target)
 
 }  // namespace
 
-InterfaceBlur::Taps::Taps(double width_voxels)
-    : reach(static_cast<int>(std::ceil(kReach * width_voxels))), sums{0} {
+InterfaceBlur::Taps::Taps(double width_voxels) : reach(voxels_to_cover(kReach * width_voxels)), sums{0} {
   for (int i = -reach; i <= reach; ++i)
     weights.push_back(std::exp(-0.5 * (i / width_voxels) * (i / width_voxels)));
   double sum = 0;

@@ -56,7 +56,7 @@ class Smoothing {
   SmoothInterfaces operator()() {
     for_each_tile([&](Tile& tile, std::size_t) { find_sides(tile); });
     for (double width_mm = width_mm_; is_left(); width_mm /= 2) {
-      if (width_mm < kStairs * voxel_mm_) {
+      if (width_mm < (1 - kLengthRounding) * kStairs * voxel_mm_) {
         for_each_tile([&](Tile& tile, std::size_t) { leave_stairs(tile); });
         break;
       }
@@ -219,8 +219,7 @@ void Smoothing::leave_stairs(Tile& tile) {
 
 std::array<int, 3> Smoothing::voxels_within(double distance_mm) const {
   std::array<int, 3> voxels{};
-  for (std::size_t a = 0; a < 3; ++a)
-    voxels[a] = static_cast<int>(std::ceil(distance_mm / image_.spacing[a]));
+  for (std::size_t a = 0; a < 3; ++a) voxels[a] = voxels_to_cover(distance_mm / image_.spacing[a]);
   return voxels;
 }
 

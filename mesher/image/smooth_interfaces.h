@@ -22,7 +22,8 @@
 // do not come back: s smooths none that are longer than these averages.
 //
 // A voxel here is the side of a cube of its volume. Beyond the grid the image goes on as at its border. Taps
-// of a Gaussian reach three widths and are normalised.
+// of a Gaussian reach three widths and are normalised. In what is compared, here in whole voxels and there
+// with half a voxel, widths that are alike but for kLengthRounding are alike.
 #pragma once
 
 #include <memory>

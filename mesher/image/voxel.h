@@ -2,6 +2,7 @@
 #pragma once
 
 #include <array>
+#include <cmath>
 #include <cstddef>
 #include <cstdint>
 
@@ -20,6 +21,12 @@ inline Point center(const Voxel& v) {
 
 /// A place or a count, which is not negative.
 constexpr std::size_t unsigned_of(int n) { return static_cast<std::size_t>(n); }
+
+/// Relative: by so much lengths that are meant to be alike may differ, as spacings are rounded in headers.
+inline constexpr double kLengthRounding = 1e-5;
+
+/// The least whole number of voxels that is as long.
+inline int voxels_to_cover(double voxels) { return static_cast<int>(std::ceil(voxels - kLengthRounding)); }
 
 /// A voxel's place in its brick, 0 to 63, x fastest. A Number is an integer, or a register of several.
 template <class Number>

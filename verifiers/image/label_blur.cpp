@@ -57,7 +57,7 @@ void add_blurred_along(const Axis& axis, const std::vector<double>& taps, double
 LabelBlur::Taps LabelBlur::gaussian(const Image& image, double width_mm) {
   Taps taps;
   for (std::size_t axis = 0; axis < 3; ++axis) {
-    const int reach = taps.reach[axis] = static_cast<int>(std::ceil(3 * width_mm / image.spacing[axis]));
+    const int reach = taps.reach[axis] = voxels_to_cover(3 * width_mm / image.spacing[axis]);
     double sum = 0;
     for (int i = -reach; i <= reach; ++i) {
       const double mm = i * image.spacing[axis];

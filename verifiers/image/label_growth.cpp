@@ -60,7 +60,7 @@ LabelGrowth::LabelGrowth(const Image& image, const std::vector<std::uint16_t>& s
     : image_(image), strengths_(strengths), threads_(threads), grid_{{}, image.size} {
   const double shortest = *std::min_element(image.spacing.begin(), image.spacing.end());
   for (std::size_t axis = 0; axis < 3; ++axis) {
-    reach_[axis] = static_cast<int>(std::ceil(2 * width_mm / image.spacing[axis]));
+    reach_[axis] = voxels_to_cover(2 * width_mm / image.spacing[axis]);
     area_[axis] = std::max(std::int64_t{1},
                            static_cast<std::int64_t>(std::round(256 * shortest / image.spacing[axis])));
   }

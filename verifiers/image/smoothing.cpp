@@ -62,7 +62,7 @@ class Smoother {
 
   std::vector<std::uint16_t> strengths(double width_mm) {
     open_interfaces();
-    for (double width = width_mm; !tiles_.empty() && !(width < voxel_mm_ / 2); width /= 2) {
+    for (double width = width_mm; !tiles_.empty() && !(width < (1 - 1e-5) * voxel_mm_ / 2); width /= 2) {
       weigh(width);
       keep_open_near_lost(width);
     }
@@ -143,7 +143,7 @@ class Smoother {
   void keep_open_near_lost(double width_mm) {
     std::array<int, 3> reach;
     for (std::size_t axis = 0; axis < 3; ++axis)
-      reach[axis] = static_cast<int>(std::ceil(2 * width_mm / image_.spacing[axis]));
+      reach[axis] = voxels_to_cover(2 * width_mm / image_.spacing[axis]);
     for_tiles([&](std::size_t begin, std::size_t end) {
       std::vector<std::uint8_t> is_near;
       for (std::size_t t = begin; t < end; ++t) {

@@ -8,8 +8,8 @@
 // below the smoothed interface, mm: lead_s is by how much its own label leads once labels are blurred by s
 // (label_blur.h). s is W at first. A voxel with d_s < -h/4 is lost: a structure thinner than s lies there.
 // Voxels within ceil(2 s / spacing) of a lost one, along each axis, are tried again with half the width, and
-// so on, until none is lost or s < h/2, where all that are left have the depth h/2: the stairs of voxels. No
-// depth is less than h/20.
+// so on, until none is lost or s < h/2 (1 - 1e-5), where all that are left have the depth h/2: the stairs of
+// voxels. No depth is less than h/20.
 //   The strength is the depth over the greatest that is told apart, 1.1 W or h/2 if that is more, rounded to
 // 65535ths. Where that lets a label grow or shrink it is taken back. The faces of a voxel of U are those to
 // neighbours of other labels in the grid; a face across an axis counts round(256 * the shortest spacing / the
@@ -17,7 +17,7 @@
 // of U, along each axis, the mean of half the lead in strength, that of the voxel less that of the neighbour,
 // is subtracted from its strength, and the difference rounded; the least is that of depth h/20, the greatest
 // 65535. That is done twice. Voxels outside U have strength 1, which counts nowhere; those beyond the grid
-// have the strength of the nearest inside.
+// have the strength of the nearest inside. What is rounded up, ceil, is less by 1e-5 before.
 #pragma once
 
 #include "image/image.h"

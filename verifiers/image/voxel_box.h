@@ -3,10 +3,14 @@
 
 #include <algorithm>
 #include <array>
+#include <cmath>
 #include <cstddef>
 #include <vector>
 
 namespace podm::verify {
+
+/// The least whole number of voxels that is not less, but for 1e-5, as spacings are rounded in headers.
+inline int voxels_to_cover(double voxels) { return static_cast<int>(std::ceil(voxels - 1e-5)); }
 
 struct VoxelBox {
   std::array<int, 3> first{}, size{};

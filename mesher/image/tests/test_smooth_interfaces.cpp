@@ -47,7 +47,7 @@ class Definition {
   // Weights of the voxels of an axis in the blur of one of them.
   std::vector<double> taps(double width_mm, std::size_t a, int at) const {
     const double s = width_mm / image_.spacing[a];
-    const int reach = static_cast<int>(std::ceil(3 * s));
+    const int reach = static_cast<int>(std::ceil(3 * s - 1e-5));
     std::vector<double> of_voxel(static_cast<std::size_t>(image_.size[a]));
     double sum = 0;
     for (int i = -reach; i <= reach; ++i) sum += std::exp(-i * i / (2 * s * s));
@@ -95,11 +95,11 @@ class Definition {
       std::vector<Voxel> lost, next;
       for (const Voxel& v : left) {
         double& d = distances[image_.index(v.i, v.j, v.k)];
-        d = width < side_mm_ / 2 ? side_mm_ / 2 : distance_mm(width, v);
+        d = width < (1 - 1e-5) * side_mm_ / 2 ? side_mm_ / 2 : distance_mm(width, v);
         if (d < -side_mm_ / 4) lost.push_back(v);
       }
       const auto is_near = [&](int x, int y, std::size_t a) {
-        return std::abs(x - y) <= std::ceil(2 * width / image_.spacing[a]);
+        return std::abs(x - y) <= std::ceil(2 * width / image_.spacing[a] - 1e-5);
       };
       std::copy_if(left.begin(), left.end(), std::back_inserter(next), [&](const Voxel& v) {
         return std::any_of(lost.begin(), lost.end(), [&](const Voxel& u) {
@@ -119,7 +119,7 @@ class Definition {
     for_each([&](const Voxel& u, std::size_t at) {
       const std::array<int, 3> near{u.i, u.j, u.k};
       for (std::size_t a = 0; a < 3; ++a)
-        if (std::abs(near[a] - place[a]) > std::ceil(2 * width_mm_ / image_.spacing[a])) return;
+        if (std::abs(near[a] - place[a]) > std::ceil(2 * width_mm_ / image_.spacing[a] - 1e-5)) return;
       if (label(u) != label(v)) return;
       for (std::size_t a = 0; a < 3; ++a)
         for (const int step : {-1, 1}) {
@@ -176,6 +176,16 @@ TEST(SmoothInterfaces, HaveTheStrengthsOfTheDefinition) {
         for (std::size_t v = 0; v < expected.size(); ++v) ASSERT_NEAR(found[v], expected[v], 1);
       }
     }
+  }
+}
+
+// Whole numbers of voxels, which rounding makes a little more or less.
+TEST(SmoothInterfaces, HaveTheStrengthsOfTheDefinitionWhereWidthsAreWholeVoxels) {
+  Random random(35);
+  for (const auto& [spacing, width] : {std::pair{0.8, 1.6}, {0.4, 0.8}, {0.9, 2.7}, {0.7, 0.7}, {0.1, 0.3}}) {
+    const LabelImage image = labelled(random_image(random, {15, 13, 6}, {spacing, spacing, spacing}, 3, 0.9));
+    const auto expected = Definition(image, width).strengths(), found = all_strengths(image, width, 1);
+    for (std::size_t v = 0; v < expected.size(); ++v) ASSERT_NEAR(found[v], expected[v], 1) << spacing;
   }
 }
 

@@ -117,7 +117,7 @@ class ByDefinition {
     const double shortest = *std::min_element(image_.spacing.begin(), image_.spacing.end());
     Voxel reach;
     for (std::size_t axis = 0; axis < 3; ++axis)
-      reach[axis] = static_cast<int>(std::ceil(2 * width / image_.spacing[axis]));
+      reach[axis] = static_cast<int>(std::ceil(2 * width / image_.spacing[axis] - 1e-5));
     std::pair<long, long> sums;
     for_box(v, reach, [&](const Voxel& w) {
       if (!n.contains(w) || label(w) != label(v)) return;
@@ -138,7 +138,7 @@ class ByDefinition {
     Voxel reach;
     std::array<double, 3> sums{};
     for (std::size_t axis = 0; axis < 3; ++axis) {
-      reach[axis] = static_cast<int>(std::ceil(3 * s / image_.spacing[axis]));
+      reach[axis] = static_cast<int>(std::ceil(3 * s / image_.spacing[axis] - 1e-5));
       for (int i = -reach[axis]; i <= reach[axis]; ++i) sums[axis] += gaussian(i * image_.spacing[axis], s);
     }
     for_box(v, reach, [&](const Voxel& w) {
@@ -164,7 +164,7 @@ class ByDefinition {
     std::map<Voxel, double> depths;
     std::set<Voxel> open = at_interfaces();
     for (double s = width; !open.empty(); s /= 2) {
-      if (s < h_ / 2) {
+      if (s < (1 - 1e-5) * h_ / 2) {
         for (const Voxel& v : open) depths[v] = h_ / 2;
         break;
       }
@@ -174,7 +174,7 @@ class ByDefinition {
         if (depth(v, s) >= -h_ / 4) continue;
         Voxel reach;
         for (std::size_t axis = 0; axis < 3; ++axis)
-          reach[axis] = static_cast<int>(std::ceil(2 * s / image_.spacing[axis]));
+          reach[axis] = static_cast<int>(std::ceil(2 * s / image_.spacing[axis] - 1e-5));
         for_box(v, reach, [&](const Voxel& w) { near_lost.insert(w); });
       }
       std::erase_if(open, [&](const Voxel& v) { return !near_lost.contains(v); });
@@ -210,6 +210,12 @@ TEST(Smoothing, IsByDefinitionWhereVoxelsAreNoCubes) {
     expect_by_definition(random_image(21, {8, 9, 7}, {0.8, 1, 1.7}, 3), width);
     expect_by_definition(random_image(22, {9, 6, 8}, {1.2, 2.5, 0.7}, 4), width);
   }
+}
+
+// Whole numbers of voxels, which rounding makes a little more or less.
+TEST(Smoothing, IsByDefinitionWhereWidthsAreWholeVoxels) {
+  for (const auto& [spacing, width] : {std::pair{0.8, 1.6}, {0.4, 0.8}, {0.9, 2.7}, {0.7, 0.7}, {0.1, 0.3}})
+    expect_by_definition(random_image(24, {9, 8, 6}, {spacing, spacing, spacing}, 3), width);
 }
 
 TEST(Smoothing, IsByDefinitionInImagesOfManyParts) {
