@@ -9,7 +9,7 @@
 //   R4  insert c if it is inside and radius-edge >= 1.93
 //   R5  insert c if it is inside and r > r_t
 //   R6  after R1 and R3, whose point is z: remove circumcentre vertices closer than 2 delta to z, or than
-//       r_t is there, where a grid asks for small cells (size_grid.h)
+//       r_t is at z or at theirs, where a grid asks for small cells (size_grid.h)
 // r_t is the label's, and at most what a grid asks for at c. What follows needs but its least value in the
 // object, where all points of R4, R5 and R6 are: r_t from here on.
 // Spacing. Let q = 1.93, k = sqrt(2 + sqrt(3)) = 1.93185, s = min(delta, r_t / k), and m the least distance
@@ -125,6 +125,7 @@ class RulesOn {
   bool obeys_r1_and_r2(const Cell& cell, double squared_radius) const;
   bool needs_sample(CellId c, unsigned facet) const;
   bool is_large_in_shell(const Examination& t) const;
+  double squared_reach_of_r6(const Point& v, const Point& z) const;
 
   Cells& mesh_;
   const Isosurface& isosurface_;
