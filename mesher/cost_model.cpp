@@ -212,14 +212,14 @@ double CostModel::mean_radius_mm(LabelIndex label, const SizeOptions& sizes) con
   return std::cbrt(1 / density);
 }
 
-// How many times as many cells stand on the interfaces as where delta alone decides.
-double CostModel::surface_growth(const SizeOptions& sizes) const {
+// How many times as many cells stand on interfaces as where delta alone decides; `share` tells which.
+double CostModel::surface_growth(const SizeOptions& sizes, double SizeCensus::Places::*share) const {
   if (!census_) return 1;
   double growth = 0, shares = 0;
   for (const SizeCensus::Places& places : census_->places()) {
     const double ratio = sizes.delta_mm / (kSpacingOverRadius * places.radius_mm(sizes.image_factor));
-    growth += places.surface * std::max(1.0, ratio * ratio);
-    shares += places.surface;
+    growth += places.*share * std::max(1.0, ratio * ratio);
+    shares += places.*share;
   }
   return shares > 0 ? growth : 1;
 }
@@ -248,12 +248,12 @@ std::vector<double> CostModel::cells_by_label(const SizeOptions& sizes) const {
 
 double CostModel::squares(const SizeOptions& sizes) const {
   return area_mm2(kSeenOverDelta * sizes.delta_mm) / (sizes.delta_mm * sizes.delta_mm) *
-         surface_growth(sizes);
+         surface_growth(sizes, &SizeCensus::Places::surface);
 }
 
 double CostModel::background_cells(const SizeOptions& sizes) const {
   return kOutsideCells * areas_by_label_mm2(kSeenOutsideOverDelta * sizes.delta_mm)[kBackground] /
-         (sizes.delta_mm * sizes.delta_mm);
+         (sizes.delta_mm * sizes.delta_mm) * surface_growth(sizes, &SizeCensus::Places::border);
 }
 
 double CostModel::cells(double volume_mm3, double area_mm2, double radius_mm, double delta_mm) {

@@ -45,7 +45,7 @@ class CostModel {
   /// eight segmentations, nineteen in twenty were predicted within 15 %, the root mean square was 7 %.
   std::vector<double> cells_by_label(const SizeOptions& sizes) const;
   /// Cells of the background that the mesh is made with, those outside of the object among them:
-  /// kOutsideCells times its area in cells of delta, within 25 %.
+  /// kOutsideCells times its area in cells of delta, or of sizes by place, within 25 %.
   double background_cells(const SizeOptions& sizes) const;
   /// Squares of delta that cover the interfaces, those between two labels from both sides.
   double squares(const SizeOptions& sizes) const;
@@ -70,7 +70,7 @@ class CostModel {
   std::vector<double> areas_along_mm2(std::size_t axis, std::size_t lag) const;
   double area_along_mm2(std::size_t axis, std::size_t lag) const;
   double mean_radius_mm(LabelIndex label, const SizeOptions& sizes) const;
-  double surface_growth(const SizeOptions& sizes) const;
+  double surface_growth(const SizeOptions& sizes, double SizeCensus::Places::*share) const;
 
   const LabelImage& image_;
   int threads_;

@@ -25,6 +25,7 @@ class SizeCensus {
     LabelIndex label;
     double of_image_mm, fixed_mm;  ///< what the image's factor applies to, and what not; infinity: nothing
     double volume, surface;        ///< shares of the label, and of all interfaces
+    double border;                 ///< share of the interfaces with the background
 
     double radius_mm(double factor) const;
   };
