@@ -30,6 +30,7 @@
 //   Not proved  that the cells are no smaller than needed.
 #include <fmt/format.h>
 
+#include <cmath>
 #include <limits>
 #include <optional>
 #include <utility>
@@ -41,6 +42,7 @@
 #include "claims/interface_faces.h"
 #include "claims/size_field.h"
 #include "claims/tally.h"
+#include "errors.h"
 #include "geometry/measures.h"
 
 namespace podm::verify {
@@ -168,6 +170,17 @@ std::optional<std::string> why_not_run(const Mesh& mesh, const Image* image, con
   return std::nullopt;
 }
 
+// A size image that bounds no cell shows nothing; where sizes grow, it may bound some from afar.
+void refuse_what_bounds_no_cell(const Mesh& mesh, const SizeImage& sizes, const Options& options) {
+  const SizeField field(sizes, options.size_factor, mesh.space);
+  for (std::size_t c = 0; c < mesh.cells.size(); ++c)
+    if (std::isfinite(field.bound_at_center(points_of(mesh, static_cast<CellId>(c))))) return;
+  throw InputError(
+      sizes.path +
+      ": no cell of the mesh has its circumcentre where the size image has a size above 0 mm; is "
+      "it in another space?");
+}
+
 nlohmann::json details_of(const SizeBounds& bounds, const Options& options) {
   nlohmann::json details = nlohmann::json::object();
   for (const InterfaceFaces& faces : bounds.near())
@@ -202,6 +215,8 @@ ClaimResult result_of(const Tally& tally, const SizeBounds& bounds, const Option
 
 ClaimResult check_size(const Mesh& mesh, const Image* image, const SizeImage* sizes, const Options& options) {
   if (const auto reason = why_not_run(mesh, image, sizes, options)) return not_run(*reason);
+  if (sizes != nullptr && !options.grade && !mesh.cells.empty())
+    refuse_what_bounds_no_cell(mesh, *sizes, options);
   const SizeBounds bounds(mesh, image, sizes, options);
   const Tally tally = tally_over(
       mesh.cells.size(), options.threads, empty_tally(options, sizes), [&](std::size_t i, Tally& t) {

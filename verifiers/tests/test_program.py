@@ -163,8 +163,11 @@ class ProgramTest(unittest.TestCase):
             mesh.comments = comments
             mesh.write(self.mesh)
             process = self.verify(*claims, *options)
-            self.assert_exit(process, 0)
+            self.assert_exit(process, 0 if width is None else 1)
             report = self.read_report()
+            self.assertEqual(report["claims"]["labels"]["verdict"], "pass")
+            # The mesh's are the stairs of voxels.
+            self.assertEqual(report["claims"]["fidelity"]["verdict"], "pass" if width is None else "fail")
             self.assertEqual(report["image"].get("smoothed_mm"), width)
             self.assertEqual(report["options"]["smooth_mm"], 1.25 if options else None)
             self.assertEqual(report["mesh"]["smoothing_mm"], 0.75 if comments else None)

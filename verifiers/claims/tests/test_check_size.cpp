@@ -3,6 +3,7 @@
 #include <cmath>
 
 #include "claims/tests/small_meshes.h"
+#include "errors.h"
 
 namespace podm::verify {
 namespace {
@@ -72,15 +73,18 @@ TEST(Size, IsBoundedByThePlaceOfTheCircumcenter) {
 TEST(Size, LeavesOutVoxelsWithoutABound) {
   EXPECT_EQ(size_by(sizes_of({2, 2, 2}, {0, 0, 0, 0, 0, 0, 0, 1.8F})).verdict, Verdict::kPass);
   EXPECT_EQ(size_by(sizes_of({2, 2, 2}, {0, 0, 0, 0, 0, 0, 0, 1.7F})).verdict, Verdict::kFail);
-  EXPECT_EQ(size_by(sizes_of({2, 2, 2}, std::vector<float>(8, 0))).verdict, Verdict::kPass);
+  EXPECT_THROW(size_by(sizes_of({2, 2, 2}, std::vector<float>(8, 0))), InputError);
 }
 
 TEST(Size, ReachesHalfAVoxelBeyondTheCenters) {
   const SizeImage one = sizes_of({1, 1, 1}, {0.1F});
   EXPECT_EQ(size_by(one).verdict, Verdict::kFail) << "the circumcentre is a corner of the voxel";
-  EXPECT_EQ(size_by(one, shifted(corner(2, 2, 2), {1e-9, 0, 0})).verdict, Verdict::kPass) << "and now beyond";
+  EXPECT_THROW(size_by(one, shifted(corner(2, 2, 2), {1e-9, 0, 0})), InputError) << "and now beyond";
   EXPECT_EQ(size_by(one, shifted(corner(2, 2, 2), {-2, -2, -2})).verdict, Verdict::kFail);
-  EXPECT_EQ(size_by(one, shifted(corner(2, 2, 2), {-2, -2, -2.0000001})).verdict, Verdict::kPass);
+  EXPECT_THROW(size_by(one, shifted(corner(2, 2, 2), {-2, -2, -2.0000001})), InputError);
+  // One of two cells has a bound.
+  EXPECT_EQ(size_by(one, joined(corner(2, 2, 2), shifted(corner(2, 2, 2), {9, 0, 0}))).bad_cells,
+            std::vector<CellId>{0});
 }
 
 TEST(Size, DecidesTiesExactly) {
