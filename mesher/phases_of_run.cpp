@@ -15,6 +15,7 @@
 #include "measure_quality.h"
 #include "optimize/optimize_mesh.h"
 #include "podm/operation_log.h"
+#include "report_on_smoothing.h"
 #include "workers/work_cost.h"
 
 namespace podm {
@@ -38,20 +39,6 @@ std::optional<std::array<double, 2>> dihedral_bounds_kept(const MeshingReport& r
         report.quality.max_dihedral_deg <= largest - kMarginDeg)
       return {{least, largest}};
   return std::nullopt;
-}
-
-SmoothingReport report_on_smoothing(const LabelImage& image, double width_mm,
-                                    const SmoothInterfaces& smoothed, int threads) {
-  const std::vector<std::uint64_t> voxels = count_voxels(image, threads);
-  const std::vector<double> volumes = volumes_mm3(image, *smoothed.strengths, threads);
-  const double voxel_mm3 = image.spacing[0] * image.spacing[1] * image.spacing[2];
-  SmoothingReport report{.width_mm = width_mm, .labels = {}};
-  for (std::size_t label = 1; label < image.labels.size(); ++label) {
-    const bool is_thin = std::binary_search(smoothed.labels_lost.begin(), smoothed.labels_lost.end(), label);
-    report.labels.push_back(
-        {image.labels[label].value, static_cast<double>(voxels[label]) * voxel_mm3, volumes[label], is_thin});
-  }
-  return report;
 }
 
 }  // namespace
@@ -98,6 +85,9 @@ std::shared_ptr<const VoxelStrengths> PhasesOfRun::smooth(MeshingReport& report)
   const double start_s = seconds_();
   const SmoothInterfaces smoothed = smooth_interfaces(image_, options_.smoothing_mm, loop_threads_);
   report.smoothing = report_on_smoothing(image_, options_.smoothing_mm, smoothed, loop_threads_);
+  if (keeps_all_stairs(image_, options_.smoothing_mm))
+    report.warnings.push_back(
+        fmt::format("a blur of {:g} mm, less than half a voxel, smooths nothing", options_.smoothing_mm));
   for (const SmoothingReport::OfLabel& label : report.smoothing->labels)
     if (label.is_thin)
       report.warnings.push_back(fmt::format(

@@ -53,8 +53,8 @@ constexpr std::array kOfHarness{kMesher, kSchedule, kReplay,  kFidelity, kImageG
                                 kCopies, kCounters, kMeasure, kRanks,    kCarrier};
 
 // What podm does, or the harness with one process of it, and not ranks.
-constexpr std::array kNotOnRanks{kSchedule,    kReplay, kImageGrows, kCopies, kCounters, kOptimize,
-                                 kMinDihedral, kSmooth, kSizeImage,  kGrade,  kSolve};
+constexpr std::array kNotOnRanks{kSchedule,    kReplay, kImageGrows, kCopies,   kCounters, kOptimize,
+                                 kMinDihedral, kSmooth, kSizeImage,  kSizeNear, kGrade,    kSolve};
 
 // Every mesher takes these.
 constexpr std::array kOfAll{kMesher, "radius_mm", "delta_mm", kTargetElements, kPerThread, "threads", kSolve};
@@ -87,6 +87,7 @@ constexpr MesherOption kMesherOptions[] = {
     {"topology", Kind::kFile},
     {kSmooth, Kind::kPositive},
     {kSizeImage, Kind::kFile},
+    {kSizeNear, Kind::kWord},
     {kGrade, Kind::kPositive},
     {kMinDihedral, Kind::kPositive},
     {kOptimize, Kind::kFlag},

@@ -22,8 +22,10 @@ inline constexpr const char* kCopies = "copies";
 inline constexpr const char *kReplay = "replay", *kFidelity = "fidelity";
 /// The keys of dihedral angles: the bound below which vertices move, and whether cells are optimised.
 inline constexpr const char *kMinDihedral = "min_dihedral", *kOptimize = "optimize";
-/// The keys of what smooths interfaces, mm, and of sizes by place: a file, and by how much they may grow.
-inline constexpr const char *kSmooth = "smooth", *kSizeImage = "size_image", *kGrade = "grade";
+/// The keys of what smooths interfaces, mm, and of sizes by place: a file, those near an interface, and by
+/// how much they may grow.
+inline constexpr const char *kSmooth = "smooth", *kSizeImage = "size_image", *kSizeNear = "size_near",
+                            *kGrade = "grade";
 /// The key that hands the mesh to a finite-element solver: harness/solvers/README.md.
 inline constexpr const char* kSolve = "solve";
 /// The key that has a phantom's voxels grow with the threads.

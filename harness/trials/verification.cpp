@@ -94,12 +94,14 @@ Verification verify_mesh(const Trial& trial, const std::string& image, const Mes
   const UsedSizes used = record.used.value_or(UsedSizes{});
   const double radius_mm = used.radius_mm.value_or(0);
   const std::string size_image = trial.options.value(kSizeImage, "");
-  add("--claims", claims_of(trial, record, radius_mm > 0 || !size_image.empty()));
+  const std::string size_near = trial.options.value(kSizeNear, "");
+  add("--claims", claims_of(trial, record, radius_mm > 0 || !size_image.empty() || !size_near.empty()));
   if (radius_mm > 0) add("--radius", fmt::format("{}", radius_mm));
   if (!size_image.empty()) {
     add("--size-image", size_image);
     add("--size-factor", fmt::format("{}", used.size_image_factor.value_or(1)));
   }
+  if (!size_near.empty()) add("--size-near", size_near);
   if (trial.options.contains(kGrade)) add("--grade", fmt::format("{}", trial.options[kGrade].get<double>()));
   if (used.delta_mm) add("--delta", fmt::format("{}", *used.delta_mm));
   if (trial.options.value(kSchedule, false)) add("--schedule", folder + kScheduleName);

@@ -181,6 +181,11 @@ void add_threads_option(CLI::App& app, MeshingOptions& meshing, Program which) {
           into_threads(meshing.team.threads));
 }
 
+void add_oversubscribe_option(CLI::App& app, MeshingOptions& meshing) {
+  add_flag(app, "--oversubscribe", meshing.team.oversubscribe,
+           "allow more threads than processors [default: refused]");
+}
+
 void add_run_options(CLI::App& app, MeshCommand& command, Program which) {
   MeshingOptions& meshing = command.meshing;
   if (which == Program::kPodmMpi) add_rank_options(app, command);
@@ -194,8 +199,7 @@ void add_run_options(CLI::App& app, MeshCommand& command, Program which) {
           "bind threads to processors: compact, scatter, none,\n"
           "or processors such as 0,2,4-7",
           into(meshing.team.pin));
-  add_flag(app, "--oversubscribe", meshing.team.oversubscribe,
-           "allow more threads than processors [default: refused]");
+  add_oversubscribe_option(app, meshing);
   add_one(app, "--topology", "FILE",
           "machine that the threads stand for: hwloc XML, or TOML that tells its costs, too\n"
           "(NAME.toml, see experiments/machines) [default: this machine]",
@@ -292,6 +296,7 @@ void add_planned_options(CLI::App& app, MeshCommand& command, CLI::Option* plan)
   add_algorithm_option(app, command.meshing);
   begin_group(app, kRunGroup);
   add_threads_option(app, command.meshing, Program::kPodm);
+  add_oversubscribe_option(app, command.meshing);
   for (const char* group : {kSizeGroup, kSurfaceGroup, kDihedralGroup, kAlgorithmGroup, kRunGroup})
     need_in_group(app, group, plan);
 }

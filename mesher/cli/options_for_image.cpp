@@ -10,6 +10,7 @@
 #include "algorithms/team_size.h"
 #include "cli/labelled_image.h"
 #include "cli/process_memory.h"
+#include "image/smooth_interfaces.h"
 #include "make_size_grid.h"
 #include "podm/errors.h"
 #include "podm/image_io.h"
@@ -18,6 +19,16 @@ namespace podm::cli {
 namespace {
 
 constexpr std::uint64_t kLeastBytesForMesh = 1 << 20;
+
+// Names the image in what is said of it.
+template <class Ask>
+auto of_image(const std::string& path, const Ask& ask) {
+  try {
+    return ask();
+  } catch (const InputError& error) {
+    throw InputError(path + ": " + error.what());
+  }
+}
 
 void refuse_coarse_sampling(const MeshCommand& command, const LabelImage& image) {
   double longest_mm = 0;
@@ -31,7 +42,7 @@ void refuse_coarse_sampling(const MeshCommand& command, const LabelImage& image)
 // An element limit below the estimate bounds memory instead, and what has to be numbered.
 void refuse_what_cannot_fit(const std::string& image_path, const LabelImage& image,
                             const MeshingOptions& options, std::uint64_t limit_bytes, int num_ranks) {
-  const Estimate expected = estimate(image, options);
+  const Estimate expected = of_image(image_path, [&] { return estimate(image, options); });
   double memory_bytes = expected.memory_bytes;
   if (std::isfinite(memory_bytes))
     memory_bytes -= expected.cells * kPeakBytesPerMeshCell * (num_ranks - 1) / num_ranks;
@@ -85,6 +96,8 @@ MeshingOptions options_as_given(const MeshCommand& command, const LabelImage& im
     options.sizes.image = std::make_shared<const SizeImage>(
         read_size_image(command.size_image_path, bytes_for_image(limit_bytes)));
   refuse_coarse_sampling(command, image);
+  if (options.smoothing_mm > 0)
+    of_image(command.image.path, [&] { check_width(image, options.smoothing_mm); });
   return options;
 }
 

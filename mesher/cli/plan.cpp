@@ -13,6 +13,7 @@
 #include "geometry/affine.h"
 #include "image/isosurface.h"
 #include "image/smooth_interfaces.h"
+#include "report_on_smoothing.h"
 
 namespace podm::cli {
 namespace {
@@ -20,6 +21,12 @@ namespace {
 using Json = nlohmann::ordered_json;
 
 constexpr std::size_t kMostPartsInText = 20;  // JSON holds them all
+
+// Whole but where no integer holds it, as with absurdly small sizes.
+Json whole(double number) {
+  constexpr double kMostWhole = 9e15;
+  return number < kMostWhole ? Json(std::llround(number)) : Json(number);
+}
 
 std::array<double, 3> place_mm(const LabelImage& image, const Voxel& v) {
   const Point p = map(image.voxel_to_ras, center(v));
@@ -47,7 +54,12 @@ Plan make_plan(const MeshCommand& command, const LabelImage& image, double read_
   double others_bytes = 0;
   {
     const WorkTimer timer(threads);
-    const auto strengths = strengths_of(image, options.smoothing_mm, threads);
+    std::shared_ptr<const VoxelStrengths> strengths;
+    if (options.smoothing_mm > 0) {
+      const SmoothInterfaces smoothed = smooth_interfaces(image, options.smoothing_mm, threads);
+      report_on_smoothing(image, options.smoothing_mm, smoothed, threads);
+      strengths = smoothed.strengths;
+    }
     const Isosurface isosurface(image, threads, strengths);  // and what else is the phase's
     foreground_bounds(image, threads);
     estimate(image, options);
@@ -67,7 +79,7 @@ nlohmann::ordered_json plan_json(const Plan& plan, const LabelImage& image) {
   for (std::size_t i = 1; i < image.labels.size(); ++i)
     labels.push_back({{"value", image.labels[i].value},
                       {"name", image.labels[i].name},
-                      {"cells", std::llround(plan.cost.cells_of_label[i])},
+                      {"cells", whole(plan.cost.cells_of_label[i])},
                       {"components_mm3", plan.components_mm3[i]}});
   for (const ThinPart& part : plan.thin_parts)
     thin.push_back({{"label", image.labels[part.label].value},
@@ -79,8 +91,8 @@ nlohmann::ordered_json plan_json(const Plan& plan, const LabelImage& image) {
   return {{"radius_mm", plan.cost.sizes.radius_mm},
           {"delta_mm", plan.cost.sizes.delta_mm},
           {"threads", plan.threads},
-          {"cells", std::llround(plan.cost.cells)},
-          {"memory_bytes", std::llround(plan.memory_bytes)},
+          {"cells", whole(plan.cost.cells)},
+          {"memory_bytes", whole(plan.memory_bytes)},
           {"seconds", plan.seconds()},
           {"phases_s", {{"read", plan.read_s}, {"transform", plan.transform_s}, {"mesh", plan.cost.mesh_s}}},
           {"labels", labels},
@@ -95,10 +107,11 @@ std::string cost_text(const Plan& plan) {
       "plan       radius {}, delta {:.4g} mm, {} thread{}\n"
       "cells      about {:.3g}\n"
       "memory     about {:.3g} GiB\n"
-      "seconds    about {:.3g}: read {:.2g}, transform {:.2g}, mesh {:.3g}\n",
+      "seconds    about {:.3g}: read {:.2g}, transform {:.2g}, mesh {:.3g}{}\n",
       sizes.radius_mm > 0 ? fmt::format("{:.4g} mm", sizes.radius_mm) : "unbounded", sizes.delta_mm,
       plan.threads, plan.threads == 1 ? "" : "s", plan.cost.cells, plan.memory_bytes / kBytesPerGib,
-      plan.seconds(), plan.read_s, plan.transform_s, plan.cost.mesh_s);
+      plan.seconds(), plan.read_s, plan.transform_s, plan.cost.mesh_s,
+      sizes.target_elements > 0 ? ", and up to twice this to find the radius" : "");
 }
 
 // All labels, as above them.

@@ -241,6 +241,8 @@ Json smoothing_of(const MeshingReport& report) {
     labels.push_back({{"value", label.value},
                       {"voxels_mm3", label.voxels_mm3},
                       {"smoothed_mm3", label.smoothed_mm3},
+                      {"voxels_components", label.voxels_components},
+                      {"smoothed_components", label.smoothed_components},
                       {"is_thin", label.is_thin}});
   return {{"width_mm", report.smoothing->width_mm}, {"labels", labels}};
 }

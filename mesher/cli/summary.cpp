@@ -108,14 +108,16 @@ std::string smoothing_text(const MeshRun& run) {
   if (!run.report.smoothing) return "";
   const SmoothingReport& done = *run.report.smoothing;
   std::string text = fmt::format(
-      "smoothed   by {:g} mm; labels by volume in mm^3, of their voxels and smoothed\n", done.width_mm);
+      "smoothed   by {:g} mm; labels by volume in mm^3 and components, of their voxels and smoothed\n",
+      done.width_mm);
   std::vector<SmoothingReport::OfLabel> labels = done.labels;
   std::stable_sort(labels.begin(), labels.end(),
                    [](const auto& a, const auto& b) { return a.voxels_mm3 > b.voxels_mm3; });
   for (std::size_t i = 0; i < std::min(labels.size(), kLongestList); ++i)
-    text += fmt::format("  {:>14.6g} {:>14.6g} {:>+7.2f} %  label {}{}\n", labels[i].voxels_mm3,
+    text += fmt::format("  {:>14.6g} {:>14.6g} {:>+7.2f} % {:>6} {:>6}  label {}{}\n", labels[i].voxels_mm3,
                         labels[i].smoothed_mm3, 100 * (labels[i].smoothed_mm3 / labels[i].voxels_mm3 - 1),
-                        labels[i].value, labels[i].is_thin ? ", thin" : "");
+                        labels[i].voxels_components, labels[i].smoothed_components, labels[i].value,
+                        labels[i].is_thin ? ", thin" : "");
   return text + more(labels.size(), "labels");
 }
 

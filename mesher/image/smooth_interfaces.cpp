@@ -49,6 +49,11 @@ struct Tile {
   }
 };
 
+// Of a cube of a voxel's volume.
+double side_of_voxel_mm(const LabelImage& image) {
+  return std::cbrt(image.spacing[0] * image.spacing[1] * image.spacing[2]);
+}
+
 class Smoothing {
  public:
   Smoothing(const LabelImage& image, double width_mm, std::size_t threads);
@@ -56,7 +61,7 @@ class Smoothing {
   SmoothInterfaces operator()() {
     for_each_tile([&](Tile& tile, std::size_t) { find_sides(tile); });
     for (double width_mm = width_mm_; is_left(); width_mm /= 2) {
-      if (width_mm < (1 - kLengthRounding) * kStairs * voxel_mm_) {
+      if (keeps_all_stairs(image_, width_mm)) {
         for_each_tile([&](Tile& tile, std::size_t) { leave_stairs(tile); });
         break;
       }
@@ -110,7 +115,7 @@ Smoothing::Smoothing(const LabelImage& image, double width_mm, std::size_t threa
       grid_(image, {}),
       threads_(threads),
       width_mm_(width_mm),
-      voxel_mm_(std::cbrt(image.spacing[0] * image.spacing[1] * image.spacing[2])),
+      voxel_mm_(side_of_voxel_mm(image)),
       parts_per_mm_(VoxelStrengths::kMost / std::max(kMostDistance * width_mm, kStairs * voxel_mm_)),
       strengths_(std::make_shared<VoxelStrengths>(image.size)),
       lead_of_kept_(threads, std::vector<std::int64_t>(image.labels.size())) {
@@ -264,7 +269,11 @@ std::vector<LabelIndex> Smoothing::labels_lost() const {
 
 }  // namespace
 
-SmoothInterfaces smooth_interfaces(const LabelImage& image, double width_mm, int threads) {
+bool keeps_all_stairs(const LabelImage& image, double width_mm) {
+  return width_mm < (1 - kLengthRounding) * kStairs * side_of_voxel_mm(image);
+}
+
+void check_width(const LabelImage& image, double width_mm) {
   std::array<double, 3> sides_mm;
   for (std::size_t a = 0; a < 3; ++a) sides_mm[a] = image.size[a] * image.spacing[a];
   const double side_mm = *std::min_element(sides_mm.begin(), sides_mm.end());
@@ -274,6 +283,10 @@ SmoothInterfaces smooth_interfaces(const LabelImage& image, double width_mm, int
         fmt::format("a blur of {:g} mm: the width must be above 0, at most {} of the shortest side of a "
                     "voxel, which is {:g} mm here, and below the shortest side of the image, {:g} mm",
                     width_mm, kMostWidth, most_mm, side_mm));
+}
+
+SmoothInterfaces smooth_interfaces(const LabelImage& image, double width_mm, int threads) {
+  check_width(image, width_mm);
   return Smoothing(image, width_mm, num_threads(threads))();
 }
 

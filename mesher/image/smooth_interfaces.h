@@ -36,6 +36,11 @@ namespace podm {
 
 inline constexpr double kMostWidth = 8;  // of voxels' shortest sides
 
+/// Throws InputError if the width is not positive, at most kMostWidth and below the image's shortest side.
+void check_width(const LabelImage& image, double width_mm);
+/// Whether it is below half a voxel, so that all stairs remain.
+bool keeps_all_stairs(const LabelImage& image, double width_mm);
+
 struct SmoothInterfaces {
   std::shared_ptr<const VoxelStrengths> strengths;
   /// Labels that a blur of the whole width would have lost, from smallest to largest; narrower ones keep
@@ -45,8 +50,7 @@ struct SmoothInterfaces {
 
 /// Smooths by a blur of that width, on `threads` threads (0: all cores); the result is the same for any
 /// number. Beside the strengths it takes some bytes for each voxel beside another label, and some MB a
-/// thread. Throws InputError if the width is not positive, at most kMostWidth and below the image's shortest
-/// side.
+/// thread. Throws as check_width() does.
 SmoothInterfaces smooth_interfaces(const LabelImage& image, double width_mm, int threads);
 
 /// The strengths alone; null for a width of 0, where nothing is smoothed.

@@ -75,6 +75,15 @@ class Plan(PodmTestCase):
         for words in ("plan       radius 8 mm, delta 4 mm", "1 whole components, 1 bridges", "140 208 308"):
             self.assertIn(words, process.stdout)
 
+    def test_absurdly_many_cells_are_told_as_they_are(self):
+        plan = self.plan(self.dumbbell(), "--radius", "1e-9")["plan"]
+        for count in plan["cells"], plan["memory_bytes"], plan["labels"][0]["cells"]:
+            self.assertGreater(count, 1e20)
+
+    def test_a_target_takes_more_than_one_mesh(self):
+        text = run_podm("info", self.dumbbell(), "--plan", "--target-elements", "20000").stdout
+        self.assertIn("to find the radius", text)
+
     def test_options_need_a_plan_and_are_checked_as_those_of_a_run(self):
         image = self.dumbbell()
         self.assert_refused(["info", image, "--radius", "2"], "--radius", "--plan")

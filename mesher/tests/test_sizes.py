@@ -159,7 +159,8 @@ class SizesByPlace(PodmTestCase):
             self.assert_refused(self.refused("--radius", 9, f"--grade={grade}"), "--grade", grade)
         for near in "1=2", "1,2", ",1=2", "1,=2", "1,2=0", "1,2=-1", "1,2=1:0", "1,2=x", "1,2=1:":
             self.assert_refused(self.refused("--size-near", near), "--size-near")
-        self.assert_refused(self.refused("--size-near", "1,1=2"), "labels 1 and 1: 1 is on both sides")
+        self.assert_refused(self.refused("--size-near", "1,1=2"), "phantom:",
+                            "labels 1 and 1: label 1 is on both sides")
         self.assert_refused(self.refused("--size-near", "1,9=2"), "no label '9'")
         for option, value in (("--size-image", self.ramp), ("--size-near", "1,0=2"), ("--grade", 0.5)):
             self.assert_refused(self.refused(option, value, "--space", "voxel", "--verify"),

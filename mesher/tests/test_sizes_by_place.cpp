@@ -212,6 +212,30 @@ TEST(SizesByPlace, ArePredicted) {
   EXPECT_NEAR(estimate(image, options).cells, cells, 0.2 * cells);
 }
 
+TEST(SizesByPlace, ArePredictedWhereZonesAreNarrowerThanAVoxel) {
+  const LabelImage image = ball(24, 9);
+  for (const double width : {0.2, 0.4}) {
+    MeshingOptions options;
+    options.sizes.radius_mm = 4;
+    options.sizes.near = {{.labels = {{{10}, {0}}}, .radius_mm = 0.3, .width_mm = width}};
+    options.team.threads = 1;
+    const auto cells = static_cast<double>(mesh_image(image, options).mesh.cells.size());
+    EXPECT_NEAR(estimate(image, options).cells, cells, 0.25 * cells) << width;
+    options.sizes.near[0].radius_mm = 1e-6;
+    EXPECT_GT(estimate(image, options).cells, 1e12);
+  }
+}
+
+// Samples where cells are large take no vertices from where they are small, which would be inserted again.
+TEST(SizesByPlace, KeepWhatTheyAskForWhereTheyJump) {
+  const SizeImage jump = sizes_over(41, 24, [](const Point& p) { return p.x < 2 ? 0.5 : 6; });
+  MeshingOptions options = with(jump);
+  options.sizes.delta_mm = 3;
+  const MeshingResult result = mesh_image(ball(24, 9), options);
+  EXPECT_EQ(num_over(result.mesh, jump), 0);
+  EXPECT_LT(result.report.counters.removals, 1.5 * static_cast<double>(result.mesh.vertices.size()));
+}
+
 TEST(SizesByPlace, AreRefusedWhereTheyAreSenseless) {
   const LabelImage image = two_slabs();
   const auto refusal = [&](const MeshingOptions& options) {

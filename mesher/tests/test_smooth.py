@@ -51,11 +51,17 @@ class Smooth(PodmTestCase):
         stairs = self.record_of("--smooth", 0.4 * self.voxel_mm())["smoothing"]["labels"]  # narrower than a voxel
         for label, of_stairs in zip(smoothing["labels"], stairs, strict=True):
             self.assertEqual(label["voxels_mm3"], of_stairs["voxels_mm3"])
+            self.assertEqual(label["voxels_components"], of_stairs["voxels_components"])
+            self.assertIn(label["smoothed_components"], range(1, label["voxels_components"] + 1))
             if label["voxels_mm3"] > 500 * self.voxel_mm() ** 3:
                 self.assertAlmostEqual(label["smoothed_mm3"] / of_stairs["smoothed_mm3"], 1, delta=0.03)
         whole = sum(label["smoothed_mm3"] for label in smoothing["labels"])
         self.assertAlmostEqual(sum(meshed.values()) / whole, 1, delta=0.02)
         self.assertIsNone(self.record_of()["smoothing"])
+
+    def test_a_blur_below_half_a_voxel_is_said_to_smooth_nothing(self):
+        for voxels, is_told in ((0.45, True), (0.55, False)):
+            self.assertEqual("smooths nothing" in self.mesh("--smooth", voxels * self.voxel_mm()).stderr, is_told)
 
     def test_the_summary_tells_them_too(self):
         process = self.mesh("--smooth", 1.5 * self.voxel_mm())

@@ -44,18 +44,20 @@ def run(program, image, options, mesh, repeats):
 
 
 def lost_row(info, image, mesh_path):
-    """Components that the mesh lost or cut, and those of them that no thin part was told of."""
+    """Components that the mesh lost or cut, and those of them that no thin part was told of, or nothing but details."""
     volume, affine = read_volume(image), numpy.array(info["affine"])
     number, labels = image_components(volume)
     pieces = pieces_of_components(volume, number, len(labels), affine, read_mesh(mesh_path))
-    said, whole = numpy.zeros(len(labels), bool), numpy.zeros(len(labels), bool)
+    said, bridge, whole = numpy.zeros((3, len(labels)), bool)
     for part in info["plan"]["thin_parts"]:
         component = number[tuple(part["voxel"])]
         said[component] = True
+        bridge[component] |= part["kind"] == "bridge"
         whole[component] |= part["kind"] == "whole"
     is_lost, is_cut = pieces == 0, pieces > 1
     return {"components": len(labels), "lost": int(is_lost.sum()), "cut": int(is_cut.sum()),
             "missed": int(((is_lost | is_cut) & ~said).sum()), "lost_not_said_whole": int((is_lost & ~whole).sum()),
+            "cut_by_details": int((is_cut & said & ~whole & ~bridge).sum()),
             "said": int(said.sum()), "said_whole": int(whole.sum()),
             "said_whole_and_lost_or_cut": int((whole & (is_lost | is_cut)).sum())}
 
@@ -104,7 +106,7 @@ def line(row):
             f"labels {100 * (errors <= 0.15).mean():3.0f} % within 15 %  "
             f"memory {row['memory_bytes'] / 2**20:5.0f} MiB {percent('planned_memory_bytes', 'memory_bytes')}  "
             f"{row['seconds']:6.2f} s {percent('planned_s', 'seconds')}  components {row['components']:5}: "
-            f"lost {row['lost']}, cut {row['cut']}, missed {row['missed']}; said whole {row['said_whole']}, of them "
+            f"lost {row['lost']}, cut {row['cut']} (at details {row['cut_by_details']}), missed {row['missed']}; said whole {row['said_whole']}, of them "
             f"lost or cut {row['said_whole_and_lost_or_cut']}; load {row['load']:.1f}")
 
 

@@ -102,12 +102,12 @@ TEST_F(TrialTest, OptimisedMeshesAreAskedForAnglesAndNotForDelaunay) {
 
 TEST_F(TrialTest, SizesByPlaceAreTheVerifiersToo) {
   Trial trial = some_trial();
-  trial.options.update({{"size_image", "sizes.nrrd"}, {"grade", 0.25}});
+  trial.options.update({{"size_image", "sizes.nrrd"}, {"size_near", "1,0=2:3"}, {"grade", 0.25}});
   const std::string verifier = folder_.script("podm-verify", "echo \"$@\" > \"$(dirname \"$0\")/asked\"");
   TrialRunner({fake_mesher(folder_, write_record(kGoodRecord)), verifier})
       .run(trial, prepared(trial), folder_.path());
   const std::string asked = read_tail(folder_ / "asked", 1000);
-  for (const char* words : {"--size-image sizes.nrrd", "--grade 0.25", ",size"})
+  for (const char* words : {"--size-image sizes.nrrd", "--size-near 1,0=2:3", "--grade 0.25", ",size"})
     EXPECT_NE(asked.find(words), std::string::npos) << asked;
 }
 

@@ -359,6 +359,23 @@ TEST(SmoothInterfaces, KeepThinPartsByVolume) {
   }
 }
 
+// Rods across which voxels are three and a half times as long one way as the other.
+TEST(SmoothInterfaces, KeepLessOfThinRodsWhereVoxelsAreNoCubes) {
+  for (const std::array<double, 3>& spacing : {std::array{1.0, 1.0, 3.0}, std::array{0.7, 0.7, 2.5}})
+    for (const auto& [voxels, most_lost] : {std::pair{1, 0.40}, {2, 0.15}, {3, 0.08}, {5, 0.04}}) {
+      LabelImage image = empty_image({24, 24, 16}, spacing);
+      for (int k = 5; k < 5 + voxels; ++k)
+        for (int j = 9; j < 9 + voxels; ++j)
+          for (int i = 0; i < image.size[0]; ++i) image.voxels[image.index(i, j, k)] = 1;
+      const double stairs = volume_of_stairs_mm3(image);
+      for (const double width : {1.0, 1.5, 2.0}) {
+        const double kept = volume_mm3(image, width * spacing[0]) / stairs;
+        EXPECT_GT(kept, 1 - most_lost) << voxels << ' ' << width;
+        EXPECT_LT(kept, 1.04) << voxels << ' ' << width;
+      }
+    }
+}
+
 TEST(SmoothInterfaces, NameLabelsThatTheWholeWidthWouldLose) {
   LabelImage image = empty_image({24, 24, 24}, {1, 1, 1});
   image.labels.resize(3);

@@ -113,7 +113,8 @@ struct SmoothingReport {
     std::uint32_t value = 0;
     double voxels_mm3 = 0,
            smoothed_mm3 = 0;  ///< the volume of its voxels, and within its smoothed interfaces
-    bool is_thin = false;     ///< the whole width would have lost most of it: narrower ones were taken
+    std::uint64_t voxels_components = 0, smoothed_components = 0;  ///< the same; of voxels by their faces
+    bool is_thin = false;  ///< the whole width would have lost most of it: narrower ones were taken
   };
   std::vector<OfLabel> labels;  ///< but the background
 };
