@@ -106,8 +106,9 @@ def line(row):
             f"labels {100 * (errors <= 0.15).mean():3.0f} % within 15 %  "
             f"memory {row['memory_bytes'] / 2**20:5.0f} MiB {percent('planned_memory_bytes', 'memory_bytes')}  "
             f"{row['seconds']:6.2f} s {percent('planned_s', 'seconds')}  components {row['components']:5}: "
-            f"lost {row['lost']}, cut {row['cut']} (at details {row['cut_by_details']}), missed {row['missed']}; said whole {row['said_whole']}, of them "
-            f"lost or cut {row['said_whole_and_lost_or_cut']}; load {row['load']:.1f}")
+            f"lost {row['lost']}, cut {row['cut']} (at details {row['cut_by_details']}), missed {row['missed']}; "
+            f"said whole {row['said_whole']}, of them lost or cut {row['said_whole_and_lost_or_cut']}; "
+            f"load {row['load']:.1f}")
 
 
 def main():
