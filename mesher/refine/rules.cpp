@@ -230,19 +230,14 @@ bool RulesOn<Cells>::is_large_in_shell(const Examination& t) const {
 // was inserted where they are small, over and over. Outside of the object a grid may ask for less than
 // inside.
 template <class Cells>
-double RulesOn<Cells>::squared_reach_of_r6(const Point& v, const Point& z) const {
-  const SizeField& sizes = parameters_.sizes;
-  const double of_both = std::min(sizes.squared_radius_of_grid(v), sizes.squared_radius_of_grid(z));
-  return std::max(of_both, sizes.smallest_squared_radius());
-}
-
-template <class Cells>
 bool RulesOn<Cells>::r6_removes(VertexId v, const Point& z) const {
   if (mesh_.vertex(v).kind != VertexKind::kCircumcenter) return false;
+  const SizeField& sizes = parameters_.sizes;
   const Point& p = mesh_.point(v);
   const double squared = squared_distance(p, z);
-  return squared < squared_two_delta_ &&
-         (!parameters_.sizes.has_grid() || squared < squared_reach_of_r6(p, z));
+  if (squared >= squared_two_delta_) return false;
+  return !sizes.has_grid() || squared < sizes.smallest_squared_radius() ||
+         (squared < sizes.squared_radius_of_grid(z) && squared < sizes.squared_radius_of_grid(p));
 }
 
 template class RulesOn<Mesh>;

@@ -125,7 +125,6 @@ class RulesOn {
   bool obeys_r1_and_r2(const Cell& cell, double squared_radius) const;
   bool needs_sample(CellId c, unsigned facet) const;
   bool is_large_in_shell(const Examination& t) const;
-  double squared_reach_of_r6(const Point& v, const Point& z) const;
 
   Cells& mesh_;
   const Isosurface& isosurface_;
