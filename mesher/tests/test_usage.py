@@ -20,7 +20,7 @@ OPTIONS = {
     "info": ["--labels", "--merge", "--drop", "--background", "--label-names", "--drop-islands", "--json", "--plan",
              "--radius", "--radius-of", "--size-image", "--size-near", "--grade", "--delta", "--target-elements",
              "--target-tolerance", "--smooth", "--min-dihedral", "--optimize", "--dihedral-bounds", "--algorithm",
-             "--threads"],
+             "--threads", "--oversubscribe"],
     "phantom": ["--size", "--output"],
     "view": ["--output", "--cut", "--flip", "--labels", "--hide", "--colour", "--camera", "--zoom", "--size",
              "--background", "--no-legend"],
