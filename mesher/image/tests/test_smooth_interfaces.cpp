@@ -364,6 +364,7 @@ TEST(SmoothInterfaces, KeepLessOfThinRodsWhereVoxelsAreNoCubes) {
   for (const std::array<double, 3>& spacing : {std::array{1.0, 1.0, 3.0}, std::array{0.7, 0.7, 2.5}})
     for (const auto& [voxels, most_lost] : {std::pair{1, 0.40}, {2, 0.15}, {3, 0.08}, {5, 0.04}}) {
       LabelImage image = empty_image({24, 24, 16}, spacing);
+      image.labels.resize(2);
       for (int k = 5; k < 5 + voxels; ++k)
         for (int j = 9; j < 9 + voxels; ++j)
           for (int i = 0; i < image.size[0]; ++i) image.voxels[image.index(i, j, k)] = 1;
