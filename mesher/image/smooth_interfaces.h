@@ -18,8 +18,9 @@
 // its interface has moved, on average over all faces of its voxels within twice the whole width along each
 // axis (interface_shift.h), is taken from the distances of its voxels, which stay within the least and the
 // greatest that is told apart; and once more, as labels share interfaces.
-// So slabs and rods of any thickness keep their volume, and a sheet of one voxel is one voxel thick. Stairs
-// do not come back: s smooths none that are longer than these averages.
+// So slabs and rods of cubic voxels keep their volume, and a sheet of one voxel is one voxel thick; of rods
+// as thin as voxels that are no cubes some is lost. Stairs do not come back: s smooths none that are longer
+// than these averages.
 //
 // A voxel here is the side of a cube of its volume. Beyond the grid the image goes on as at its border. Taps
 // of a Gaussian reach three widths and are normalised. In what is compared, here in whole voxels and there

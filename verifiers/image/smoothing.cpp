@@ -62,7 +62,8 @@ class Smoother {
 
   std::vector<std::uint16_t> strengths(double width_mm) {
     open_interfaces();
-    for (double width = width_mm; !tiles_.empty() && !(width < (1 - 1e-5) * voxel_mm_ / 2); width /= 2) {
+    for (double width = width_mm; !tiles_.empty() && !(width < (1 - kLengthRounding) * voxel_mm_ / 2);
+         width /= 2) {
       weigh(width);
       keep_open_near_lost(width);
     }

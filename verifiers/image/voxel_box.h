@@ -9,8 +9,11 @@
 
 namespace podm::verify {
 
-/// The least whole number of voxels that is not less, but for 1e-5, as spacings are rounded in headers.
-inline int voxels_to_cover(double voxels) { return static_cast<int>(std::ceil(voxels - 1e-5)); }
+/// By so much lengths that are meant to be alike may differ, as spacings are rounded in headers.
+inline constexpr double kLengthRounding = 1e-5;
+
+/// The least whole number of voxels that is not less, but for that.
+inline int voxels_to_cover(double voxels) { return static_cast<int>(std::ceil(voxels - kLengthRounding)); }
 
 struct VoxelBox {
   std::array<int, 3> first{}, size{};
