@@ -3,6 +3,6 @@ import sys
 from pathlib import Path
 
 SCRIPTS = Path(__file__).resolve().parents[1]
-REFERENCE = SCRIPTS.parent / "results" / "reference" / "amd-epyc-zen5-2-cores"
+REFERENCE = SCRIPTS.parent / "results" / "reference" / "0.1.0"
 sys.path.insert(0, str(SCRIPTS))
 
