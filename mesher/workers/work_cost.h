@@ -4,7 +4,8 @@
 // The reference core is one of experiments/machines/epyc_zen5_2_cores.toml, with what `make build` compiles.
 // The costs of attempts are the parts of a profile, the liver at 3 million cells, each over the count that it
 // goes with, all lengthened by 6 % for the median of eleven images and sizes; the others were timed one by
-// one. Commit 584d07f has counts, seconds and residuals, in results/reference/amd-epyc-zen5-2-cores/README.md.
+// one. Commit 584d07f has counts, seconds and residuals, in
+// results/reference/amd-epyc-zen5-2-cores/README.md.
 #pragma once
 
 #include <cstdint>
