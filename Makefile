@@ -12,7 +12,7 @@ PREFIX ?= /usr/local
 SECONDS ?= 600
 
 .DEFAULT_GOAL := help
-.PHONY: help setup build install python peers test stress kill-matrix kick-tires experiments figures clean
+.PHONY: help setup build install python peers test stress kill-matrix audit kick-tires experiments figures clean
 
 help:
 	@echo "make kick-tires    the smallest runs of every experiment, in some minutes; tables and results/runs/"
@@ -22,6 +22,7 @@ help:
 	@echo "make stress        random runs of up to 256 workers on random images for SECONDS=600, each verified and"
 	@echo "                   replayed; SEED=N repeats one"
 	@echo "make kill-matrix   every mutant of a mesh and the claim of podm-verify that rejects it"
+	@echo "make audit         every figure and table of the documentation, recomputed from the rows in results/reference/"
 	@echo "make figures       tables and figures of results/runs/ beside the paper's, a mesh cut open: $(FIGURES)/,"
 	@echo "                   and one page of it all: results/runs/report.html"
 	@echo "make build         the programs, in build/bin/"
@@ -78,6 +79,11 @@ stress: build
 kill-matrix: build
 	@scripts/setup run
 	/usr/bin/python3 -B verifiers/tests/kill_matrix.py build/bin/podm build/bin/podm-verify
+
+# A figure that is meant to change: scripts/update_docs --figures.
+audit:
+	@scripts/setup run
+	scripts/audit
 
 kick-tires:
 	$(MAKE) experiments TIER=kick-tires

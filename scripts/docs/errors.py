@@ -1,0 +1,5 @@
+"""The one exception of this package."""
+
+
+class DocsError(Exception):
+    """A query, a table or a file that cannot be read; the text says which and why."""

@@ -1,0 +1,48 @@
+"""Which numbers of a text could be measurements, and so need a query or a mark.
+
+These do: numbers with a decimal point or an exponent, with a unit or a word of UNITS behind them, and of 1000 and more;
+in the body of a table every cell that is a number. These do not: code, links, headings, numbers of list items, versions
+(`0.1.0`, `Gmsh 4.1`), years, parts of names (`C3D4`), powers of small whole numbers (`2^31`), and smaller whole numbers
+without a unit, which count things of the text.
+"""
+import re
+from dataclasses import dataclass
+
+UNITS = ("%", "x", "times", "M", "k", "million", "thousand", "billion", "cells", "ns", "us", "ms", "s", "seconds",
+         "second", "min", "minute", "minutes", "h", "hour", "hours", "cycles", "bytes", "B", "KiB", "MiB", "GiB", "TiB",
+         "kB", "MB", "GB", "TB", "GHz", "MHz", "mm", "degrees", "points")
+VERSIONED = ("Gmsh", "CGAL", "Debian", "VTK", "likwid", "Python", "FEniCS", "hwloc", "Clang", "clang-format", "GCC", "MPI",
+             "TetGen", "CMake", "Table", "Tables", "Figure", "Fig.", "section", "Section", "equation", "eq.", "rule",
+             "version", "INR", "XDMF", "licence", "gmsh-version", "EPYC", "Procedia Engineering")
+NUMBER = re.compile(r"(?<![\w.^/#§])(?<!\d[,:-])(?P<sign>[-+](?=\d))?(?P<digits>\d+(?:,\d{3})*(?:\.\d+)?(?:e[-+]?\d+)?)"
+                    r"(?!\.\d)(?![A-Za-z_]*\d*\()")
+AFTER = re.compile(rf"[ \N{{NO-BREAK SPACE}}-]?(?:{'|'.join(map(re.escape, UNITS))})(?![\w/-]*\w\()(?!\w)")
+CELL = re.compile(r"[*~<> \u25cb\u25c7]*[-+]?\d[\d,.]*(?:e[-+]?\d+)?\s*(?:%|[\w/]{0,4})?[* ]*")
+
+
+@dataclass(frozen=True)
+class Number:
+    """`start` and `end`: its place in the text of the page."""
+
+    start: int
+    end: int
+    text: str
+
+
+def numbers_to_cover(text, body_cells):
+    """Of a text in which everything that is no prose is blank. `body_cells`: (start, end) of the cells of tables."""
+    whole_cells = {place for start, end in body_cells if CELL.fullmatch(text[start:end]) for place in range(start, end)}
+    for found in NUMBER.finditer(text):
+        if found.start("digits") in whole_cells or _is_suspect(text, found):
+            yield Number(found.start("digits"), found.end("digits"), found["digits"])
+
+
+def _is_suspect(text, found):
+    digits, before, after = found["digits"], text[max(0, found.start() - 24):found.start()], text[found.end():]
+    if after[:1] == "^" and digits != "10" or re.match(r"[\w(]", after) and not AFTER.match(after):
+        return False
+    if any(re.search(rf"(?<!\w){re.escape(name)} $", before) for name in VERSIONED):
+        return False
+    is_year = re.fullmatch(r"(?:19|20)\d\d", digits)
+    return bool("." in digits or "e" in digits or AFTER.match(after)
+                or len(digits.replace(",", "")) > 3 and not is_year)

@@ -1,0 +1,158 @@
+"""A page of Markdown: its figures with their queries, its generated tables, and the numbers that have neither a query
+nor a mark.
+
+    0.62<!--q NAME | cells_per_second | median | /1e6 .2f-->   a figure; the comment is behind its last digit
+    <!--rows NAME = FILES | FILTER-->                          rows by a name, for queries of this page
+    1.93<!--not measured-->                                    that number; behind other text: its line
+    <!--not measured: WHY-->                                   alone on a line: the block that follows, up to a blank line
+    <!--not measured below: WHY-->                             the section: up to a heading of the same or a higher level
+    <!--not measured page: WHY-->                              the page
+    <!-- table NAME ARGUMENTS --> ... <!-- end table -->       what scripts/update_docs generates
+"""
+import re
+from dataclasses import dataclass
+
+from .errors import DocsError
+from .numbers import numbers_to_cover
+from .query import parse_rows
+
+COMMENT = re.compile(r"<!--(.*?)-->", re.DOTALL)
+FIGURE = re.compile(r"((?<![\d.])[-+]?(?<![\w.])\d[\d,]*(?:\.\d+)?(?:e[-+]?\d+)?|(?<![\w-])[A-Za-z]+)\**\Z")
+TABLE = re.compile(r"<!-- table (?P<call>[^\n]*?) -->\n(?P<body>.*?)<!-- end table -->", re.DOTALL)
+HEADING = re.compile(r"^(#+) .*$", re.MULTILINE)
+NO_PROSE = [
+    re.compile(r"^(```|~~~).*?^\1[^\n]*$", re.MULTILINE | re.DOTALL),
+    re.compile(r"(?<=\n\n)(?: {4}[^\n]*\n+)+"),
+    re.compile(r"(`+)(?!`).*?(?<!`)\1(?!`)", re.DOTALL),
+]
+NO_TEXT = [
+    re.compile(r"(?<=\])\([^)\s]*\)"), re.compile(r"<?https?://[^\s)>]*"), HEADING,
+    re.compile(r"^\s*\d+\. ", re.MULTILINE), re.compile(r"^\|[-| :]+\|$", re.MULTILINE),
+]
+ROW = re.compile(r"^\|.*\|[ ]*$", re.MULTILINE)
+
+
+@dataclass(frozen=True)
+class Figure:
+    start: int
+    end: int
+    text: str
+    query: str
+
+
+@dataclass(frozen=True)
+class Table:
+    start: int
+    end: int
+    name: str
+    arguments: list
+    body: str
+
+
+class Page:
+    """`figures`, `tables`, `uncovered`, `num_marked` and `faults` of `text`; faults are (place, words)."""
+
+    def __init__(self, text):
+        self.text, self.faults, self.rows, self.figures = text, [], {}, []
+        visible = text
+        for pattern in NO_PROSE:
+            visible = pattern.sub(_blank, visible)
+        self._comments = [one for one in COMMENT.finditer(text) if visible[one.start():one.start() + 4] == "<!--"]
+        self.tables = [Table(one.start("body"), one.end("body"), *_call(one["call"]), one["body"])
+                       for one in TABLE.finditer(text) if visible[one.start():one.start() + 4] == "<!--"]
+        self._covered = [(one.start, one.end) for one in self.tables]
+        for comment in self._comments:
+            self._read(comment)
+        self._find_uncovered(visible)
+
+    def line_of(self, place):
+        return self.text.count("\n", 0, place) + 1
+
+    def _read(self, comment):
+        words, place = comment[1].strip(), comment.start()
+        if words.startswith("q "):
+            found = FIGURE.search(self.text[max(0, place - 60):place])
+            if not found:
+                self.faults.append((place, "a query without a figure right before it"))
+                return
+            start = place - (min(60, place) - found.start(1))
+            end = start + len(found[1])
+            self.figures.append(Figure(start, end, found[1], " ".join(words[2:].split())))
+            self._covered.append((start, end))
+        elif words.startswith("rows "):
+            self._name_rows(words[5:], place)
+        elif words.startswith("not measured"):
+            self._mark(comment, words.removeprefix("not measured"))
+        elif words.startswith(("table ", "end table")):
+            if not any(one.start - 1 <= comment.end() <= one.start or one.end == place for one in self.tables):
+                self.faults.append((place, f"'{words}' without its other end"))
+
+    def _name_rows(self, words, place):
+        name, sign, rest = words.partition("=")
+        try:
+            if not sign or not re.fullmatch(r"\w+", name.strip()):
+                raise DocsError(f"'{words}' is no NAME = FILES | FILTER")
+            self.rows[name.strip()] = parse_rows(" ".join(rest.split()), self.rows)
+        except DocsError as error:
+            self.faults.append((place, str(error)))
+
+    def _mark(self, comment, words):
+        scope, sign, why = words.partition(":")
+        before, after = self.text[:comment.start()], self.text[comment.end():]
+        line_start, line_end = before.rfind("\n") + 1, comment.end() + (after + "\n").index("\n")
+        is_alone = not before[line_start:].strip() and not after[:line_end - comment.end()].strip()
+        number = re.search(r"\d[\w,.]*\**\Z", before[-40:])
+        scope, is_told = scope.strip(), bool(why.strip())
+        if scope not in ("", "below", "page") or bool(sign) != is_told or (scope or is_alone) and not is_told:
+            self.faults.append((comment.start(), f"'not measured{words}': 'not measured', 'not measured: WHY', "
+                                                 f"'not measured below: WHY' or 'not measured page: WHY' is expected"))
+        elif scope == "page":
+            self._covered.append((0, len(self.text)))
+        elif scope == "below":
+            self._covered.append((comment.start(), self._end_of_section(comment.start())))
+        elif is_alone:
+            end = self.text.find("\n\n", comment.end() + 1)
+            self._covered.append((comment.end(), len(self.text) if end < 0 else end))
+        elif number:
+            self._covered.append((len(before) - len(number[0]), comment.start()))
+        else:
+            self._covered.append((line_start, line_end))
+
+    def _end_of_section(self, place):
+        above = [one for one in HEADING.finditer(self.text) if one.start() < place]
+        level = len(above[-1][1]) if above else 0
+        return next((one.start() for one in HEADING.finditer(self.text)
+                     if one.start() > place and len(one[1]) <= level), len(self.text))
+
+    def _find_uncovered(self, visible):
+        for comment in self._comments:
+            visible = visible[:comment.start()] + _blank(comment) + visible[comment.end():]
+        for pattern in NO_TEXT:
+            visible = pattern.sub(_blank, visible)
+        numbers = list(numbers_to_cover(visible, list(_body_cells(visible))))
+        self.uncovered = [one for one in numbers
+                          if not any(start <= one.start and one.end <= end for start, end in self._covered)]
+        self.num_marked = len(numbers) - len(self.uncovered) - sum(
+            any(one.start >= figure.start and one.end <= figure.end for figure in self.figures) for one in numbers)
+
+
+def _body_cells(text):
+    """(start, end) of the cells of rows below the first of each table, whose second line is blank by now."""
+    last_end = None
+    for row in ROW.finditer(text):
+        is_body = last_end is not None and re.fullmatch(r"\n( +\n)?", text[last_end:row.start()])
+        last_end = row.end()
+        if is_body:
+            place = row.start() + 1
+            for cell in row[0].strip()[1:-1].split("|"):
+                yield place, place + len(cell)
+                place += len(cell) + 1
+
+
+def _blank(found):
+    return re.sub(r"[^\n]", " ", found[0])
+
+
+def _call(text):
+    name, *arguments = text.split()
+    return name, arguments

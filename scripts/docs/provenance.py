@@ -1,0 +1,84 @@
+"""What a row must be to stand behind a figure: written by programs whose sources were committed, and, where the value
+depends on the machine, by one machine that is known."""
+import re
+from functools import lru_cache
+
+from .errors import DocsError
+
+# What a mesh is, or what a machine only plays: equal on every machine. Everything else of a row depends on it.
+FACTS = {"cells", "vertices", "boundary_facets", "labels", "facet_pairs", "quality", "dihedral_deg", "counters", "outcomes",
+         "guarantees", "verdicts", "status", "replay", "mesh_sha256", "perturbed", "optimization", "smoothing",
+         "promised_dihedral_deg", "used", "asked", "options", "resolved", "repeat", "trial", "input", "image", "leaves",
+         "threads", "cores", "mesh_bytes", "algorithm", "mesher"}
+FACTS_OF_RANKS = re.compile(r"on_ranks\.(number|cells_per_rank|rounds|deferred_share|imbalance|cells_over_one_machine)\b"
+                            r"|ranks\.(number|rounds\[\d+\]\.(deferred|entries|insertions)|imbalance)\b")
+FACTS_OF_SOLVERS = re.compile(r"solve\.\w+\.(unknowns|\w+\.(iterations|smallest_eigenvalue|largest_eigenvalue))\b")
+# Of workers in virtual time these are virtual seconds and counts, too.
+OF_VIRTUAL_TIME = {"virtual", "seconds", "refining_s", "timed", "overhead_s", "hops", "hops_by_kind", "workers"}
+IDENTITY = ("CPUVendor", "CPUFamilyNumber", "CPUModelNumber", "CPUStepping")
+
+
+class Provenance:
+    """Judges rows of the files of `sources`."""
+
+    def __init__(self, sources):
+        self._sources = sources
+        self._identity_of = lru_cache(maxsize=None)(self._read_identity)
+
+    def fault_of(self, rows, expression):
+        """Empty, or why `rows` may not give a value of `expression`."""
+        for row in rows:
+            if dirty := dirty_programs(row):
+                return f"row {key_of(row)} is of {' and '.join(dirty)} with sources that were not committed"
+        machines = {}
+        for row in rows:
+            if "environment" in row and depends_on_machine(row, expression):
+                machine = self.machine_of(row)
+                if machine is None:
+                    return (f"row {key_of(row)} names no machine: the topology "
+                            f"{row['environment'].get('topology_sha256', 'unknown')[:8]} is in no file")
+                machines.setdefault(machine, row)
+        if len(machines) > 1:
+            return "rows of two machines: " + " and ".join(f"{key_of(row)} ({' '.join(map(str, machine))})"
+                                                           for machine, row in list(machines.items())[:2])
+        return ""
+
+    def machine_of(self, row):
+        """What tells machines apart: the processor by CPUID and its caches; None where the row names none."""
+        identity = row["environment"].get("identity")
+        if isinstance(identity, dict):
+            known = (identity.get("vendor"), identity.get("family"), identity.get("model"), identity.get("stepping"))
+            return None if None in known else (*map(str, known), str(identity.get("caches")))
+        return self._identity_of(row["environment"].get("topology_sha256"))
+
+    def _read_identity(self, topology):
+        path = next(self._sources.reference.rglob(f"topology-{topology}.xml"), None) if topology else None
+        if path is None:
+            return None
+        text = path.read_text()
+        told = dict(re.findall(r'<info name="(CPU\w+)" value="([^"]*)"', text))
+        if not set(IDENTITY) <= set(told):
+            raise DocsError(f"{path.relative_to(self._sources.root)}: tells no {', '.join(IDENTITY)}")
+        caches = sorted(set(re.findall(r'cache_size="(\d+)" depth="(\d)"', text)), key=lambda one: one[::-1])
+        return (*(told[name] for name in IDENTITY), " ".join(f"L{depth}:{size}" for size, depth in caches))
+
+
+def depends_on_machine(row, expression):
+    rest = FACTS_OF_RANKS.sub("0", FACTS_OF_SOLVERS.sub("0", expression.text))
+    roots = {name for name in expression.roots if re.search(rf"(?<![\w.]){name}\b", rest)} - FACTS
+    return bool(roots - OF_VIRTUAL_TIME if row.get("executor") == "virtual" else roots)
+
+
+def dirty_programs(row):
+    """Names of the programs that wrote the row and whose sources were changed since the commit that they name."""
+    programs = {name: (program or {}).get("build") or {} for name, program in (row.get("programs") or {}).items()}
+    sources = (row.get("environment") or {}).get("sources")
+    programs["podm-bench"] = sources if isinstance(sources, dict) else {}
+    dirty = [name for name, build in programs.items() if str(build.get("dirty")).lower() == "true"]
+    if "dirty: true" in (row.get("program") if isinstance(row.get("program"), list) else []):
+        dirty.append("podm")
+    return dirty
+
+
+def key_of(row):
+    return row.get("key", "without a key")[:12]

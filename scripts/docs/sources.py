@@ -1,0 +1,68 @@
+"""Rows that queries name, and where they come from.
+
+A source is a file below results/reference (or `paper/...`: below results/): JSON lines, JSON or CSV. A row of a trial
+has, beside its own keys, the values that tables and figures take of it (`figures.load.derived`): no measure is defined
+twice.
+"""
+import csv
+import json
+from functools import lru_cache
+from pathlib import Path
+
+from figures import load
+
+from .errors import DocsError
+
+ROOT = Path(__file__).resolve().parents[2]
+
+
+class Sources:
+    """Files of the tree at `root`, each read once."""
+
+    def __init__(self, root=ROOT):
+        self.root = Path(root)
+        self.results = self.root / "results"
+        self.reference = self.results / "reference"
+        self.rows = lru_cache(maxsize=None)(self._rows)
+        self.frame = lru_cache(maxsize=None)(self._frame)
+
+    def path(self, name):
+        """Of a file or folder that a query or table names. Raises DocsError where there is none."""
+        place = (self.results if name.startswith("paper/") else self.reference) / name
+        if not place.exists():
+            raise DocsError(f"{place.relative_to(self.root)}: no such file")
+        return place
+
+    def release_folder(self, name):
+        """RELEASE/WHAT of a file of reference rows; None of a published one."""
+        parts = Path(name).parts
+        return None if parts[0] == "paper" or len(parts) < 3 else Path(*parts[:2])
+
+    def _frame(self, names):
+        """The table that figures are made of, of the rows of files or folders."""
+        return load.load([self.path(name) for name in names]).frame
+
+    def _rows(self, name):
+        path = self.path(name)
+        text = path.read_text()
+        try:
+            if path.suffix == ".csv":
+                return [{key: _number(value) for key, value in line.items()}
+                        for line in csv.DictReader(text.splitlines())]
+            if path.suffix == ".jsonl" or path.name == "plan.json":
+                return [_with_measures(json.loads(line)) for line in text.splitlines() if line.strip()]
+            found = json.loads(text)
+        except ValueError as error:
+            raise DocsError(f"{path.relative_to(self.root)}: {error}") from None
+        return found if isinstance(found, list) else [found]
+
+
+def _with_measures(row):
+    return {**row, **load.derived(row)} if "schema" in row and "experiment" in row else row
+
+
+def _number(text):
+    try:
+        return float(text)
+    except (TypeError, ValueError):
+        return text
