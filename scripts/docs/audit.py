@@ -64,7 +64,7 @@ def _audit_page(path, sources, provenance, report):
             fault(figure.start, f"'{figure.text}': {error}")
     for table in page.tables:
         try:
-            if generate(table.name, table.arguments, sources) != table.body:
+            if generate(table.name, table.arguments, sources, provenance) != table.body:
                 fault(table.start, f"table {table.name} is not what its rows give; scripts/update_docs writes it")
             report.folders |= {sources.release_folder(one) or Path(one) for one in table.arguments if "/" in one}
         except DocsError as error:

@@ -1,5 +1,5 @@
-"""Hashes of a fixed set of meshes, which say whether a program still makes the meshes that it made: on one thread and by
-64 workers in virtual time.
+"""Hashes of a fixed set of meshes, on one thread and by 64 workers in virtual time: they say whether a program still
+makes the meshes that it made.
 
 Exit codes: 0 written or equal, 1 a hash differs, 2 bad usage or input.
 """
@@ -16,8 +16,8 @@ from .sources import ROOT
 
 HASHES = ROOT / "results" / "reference" / "canonical_hashes.json"
 SCHEMA = "podm-canonical-hashes/1"
-VIRTUAL = ["--executor", "virtual", "--threads", "64", "--seed", "1", "--topology", "experiments/machines/blacklight.toml",
-           "--pin", "compact"]
+VIRTUAL = ["--executor", "virtual", "--threads", "64", "--seed", "1", "--pin", "compact",
+           "--topology", "experiments/machines/blacklight.toml"]
 MESHES = {
     "abdomen": ["phantom:abdomen@64", "--radius", "12"],
     "spheres": ["phantom:spheres@48", "--delta", "2"],

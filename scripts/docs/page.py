@@ -1,11 +1,11 @@
 """A page of Markdown: its figures with their queries, its generated tables, and the numbers that have neither a query
 nor a mark.
 
-    0.62<!--q NAME | cells_per_second | median | /1e6 .2f-->   a figure; the comment is behind its last digit
-    <!--rows NAME = FILES | FILTER-->                          rows by a name, for queries of this page
-    1.93<!--not measured-->                                    that number; behind other text: its line
-    <!--not measured: WHY-->                                   alone on a line: the block that follows, up to a blank line
-    <!--not measured below: WHY-->                             the section: up to a heading of the same or a higher level
+    0.62<!--q NAME; cells_per_second; median; /1e6 .2f-->   a figure; the comment is behind its last digit
+    <!--rows NAME = FILES; FILTER-->                          rows by a name, for queries of this page
+    1.93<!--not measured-->                                    that number; its unit may stand between
+    <!--not measured: WHY-->                                   its line; alone on a line the block that follows
+    <!--not measured below: WHY-->                             up to a heading of the same or a higher level
     <!--not measured page: WHY-->                              the page
     <!-- table NAME ARGUMENTS --> ... <!-- end table -->       what scripts/update_docs generates
 """
@@ -18,6 +18,7 @@ from .query import parse_rows
 
 COMMENT = re.compile(r"<!--(.*?)-->", re.DOTALL)
 FIGURE = re.compile(r"((?<![\d.])[-+]?(?<![\w.])\d[\d,]*(?:\.\d+)?(?:e[-+]?\d+)?|(?<![\w-])[A-Za-z]+)\**\Z")
+LAST_NUMBER = re.compile(r"(?<![\w.])(\d[\d,]*(?:\.\d+)?(?:e[-+]?\d+)?)\**(?:\s%|\s?[A-Za-z]+)?\Z")
 TABLE = re.compile(r"<!-- table (?P<call>[^\n]*?) -->\n(?P<body>.*?)<!-- end table -->", re.DOTALL)
 HEADING = re.compile(r"^(#+) .*$", re.MULTILINE)
 NO_PROSE = [
@@ -26,7 +27,7 @@ NO_PROSE = [
     re.compile(r"(`+)(?!`).*?(?<!`)\1(?!`)", re.DOTALL),
 ]
 NO_TEXT = [
-    re.compile(r"(?<=\])\([^)\s]*\)"), re.compile(r"<?https?://[^\s)>]*"), HEADING,
+    re.compile(r"(?<=\])\([^)\s]*\)"), re.compile(r"<?https?://[^\s)>]*"), re.compile(r"doi:[^\s\]]+"), HEADING,
     re.compile(r"^\s*\d+\. ", re.MULTILINE), re.compile(r"^\|[-| :]+\|$", re.MULTILINE),
 ]
 ROW = re.compile(r"^\|.*\|[ ]*$", re.MULTILINE)
@@ -70,6 +71,8 @@ class Page:
 
     def _read(self, comment):
         words, place = comment[1].strip(), comment.start()
+        if "--" in words:
+            self.faults.append((place, "'--' within a comment, which shows it on pages of older Markdown"))
         if words.startswith("q "):
             found = FIGURE.search(self.text[max(0, place - 60):place])
             if not found:
@@ -91,32 +94,36 @@ class Page:
         name, sign, rest = words.partition("=")
         try:
             if not sign or not re.fullmatch(r"\w+", name.strip()):
-                raise DocsError(f"'{words}' is no NAME = FILES | FILTER")
+                raise DocsError(f"'{words}' is no NAME = FILES; FILTER")
             self.rows[name.strip()] = parse_rows(" ".join(rest.split()), self.rows)
         except DocsError as error:
             self.faults.append((place, str(error)))
 
     def _mark(self, comment, words):
-        scope, sign, why = words.partition(":")
-        before, after = self.text[:comment.start()], self.text[comment.end():]
-        line_start, line_end = before.rfind("\n") + 1, comment.end() + (after + "\n").index("\n")
-        is_alone = not before[line_start:].strip() and not after[:line_end - comment.end()].strip()
-        number = re.search(r"\d[\w,.]*\**\Z", before[-40:])
-        scope, is_told = scope.strip(), bool(why.strip())
-        if scope not in ("", "below", "page") or bool(sign) != is_told or (scope or is_alone) and not is_told:
-            self.faults.append((comment.start(), f"'not measured{words}': 'not measured', 'not measured: WHY', "
-                                                 f"'not measured below: WHY' or 'not measured page: WHY' is expected"))
-        elif scope == "page":
-            self._covered.append((0, len(self.text)))
-        elif scope == "below":
-            self._covered.append((comment.start(), self._end_of_section(comment.start())))
-        elif is_alone:
-            end = self.text.find("\n\n", comment.end() + 1)
-            self._covered.append((comment.end(), len(self.text) if end < 0 else end))
-        elif number:
-            self._covered.append((len(before) - len(number[0]), comment.start()))
+        scope, sign, why = (part.strip() for part in words.partition(":"))
+        before = self.text[:comment.start()]
+        number = LAST_NUMBER.search(before[-60:])
+        if scope not in ("", "below", "page") or bool(sign) != bool(why) or (scope or not number) and not why:
+            self.faults.append((comment.start(), f"'not measured{words}': 'not measured' behind a number, 'not measured: "
+                                                 "WHY', 'not measured below: WHY' or 'not measured page: WHY' is expected"))
+        elif not why:
+            start = comment.start() - min(60, len(before)) + number.start(1)
+            self._covered.append((start, start + len(number[1])))
         else:
-            self._covered.append((line_start, line_end))
+            self._covered.append(self._extent(scope, comment))
+
+    def _extent(self, scope, comment):
+        """(start, end) of what a mark with a reason covers."""
+        line_start = self.text.rfind("\n", 0, comment.start()) + 1
+        line_end = (self.text + "\n").index("\n", comment.end())
+        if scope == "page":
+            return 0, len(self.text)
+        if scope == "below":
+            return comment.start(), self._end_of_section(comment.start())
+        if self.text[line_start:line_end].strip() == comment[0]:
+            block_end = self.text.find("\n\n", line_end)
+            return comment.end(), len(self.text) if block_end < 0 else block_end
+        return line_start, line_end
 
     def _end_of_section(self, place):
         above = [one for one in HEADING.finditer(self.text) if one.start() < place]

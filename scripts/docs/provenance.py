@@ -6,12 +6,15 @@ from functools import lru_cache
 from .errors import DocsError
 
 # What a mesh is, or what a machine only plays: equal on every machine. Everything else of a row depends on it.
-FACTS = {"cells", "vertices", "boundary_facets", "labels", "facet_pairs", "quality", "dihedral_deg", "counters", "outcomes",
-         "guarantees", "verdicts", "status", "replay", "mesh_sha256", "perturbed", "optimization", "smoothing",
+FACTS = {"cells", "vertices", "boundary_facets", "labels", "facet_pairs", "quality", "dihedral_deg", "counters",
+         "outcomes", "guarantees", "verdicts", "status", "replay", "mesh_sha256", "perturbed", "optimization", "smoothing",
          "promised_dihedral_deg", "used", "asked", "options", "resolved", "repeat", "trial", "input", "image", "leaves",
          "threads", "cores", "mesh_bytes", "algorithm", "mesher"}
-FACTS_OF_RANKS = re.compile(r"on_ranks\.(number|cells_per_rank|rounds|deferred_share|imbalance|cells_over_one_machine)\b"
-                            r"|ranks\.(number|rounds\[\d+\]\.(deferred|entries|insertions)|imbalance)\b")
+# Of files that are no rows of trials: random runs, plans beside runs.
+FACTS_ELSEWHERE = {"cells", "planned_cells", "components", "lost", "cut", "missed", "lost_not_said_whole",
+                   "cut_by_details", "runs", "counts", "failed_seeds", "first_seed", "last_seed"}
+FACTS_OF_RANKS = re.compile(r"on_ranks\.(number|cells_per_rank|rounds|deferred_share|imbalance"
+                            r"|cells_over_one_machine)\b|ranks\.(number|rounds\[\d+\]\.(deferred|entries|insertions)|imbalance)\b")
 FACTS_OF_SOLVERS = re.compile(r"solve\.\w+\.(unknowns|\w+\.(iterations|smallest_eigenvalue|largest_eigenvalue))\b")
 # Of workers in virtual time these are virtual seconds and counts, too.
 OF_VIRTUAL_TIME = {"virtual", "seconds", "refining_s", "timed", "overhead_s", "hops", "hops_by_kind", "workers"}
@@ -32,11 +35,10 @@ class Provenance:
                 return f"row {key_of(row)} is of {' and '.join(dirty)} with sources that were not committed"
         machines = {}
         for row in rows:
-            if "environment" in row and depends_on_machine(row, expression):
+            if depends_on_machine(row, expression):
                 machine = self.machine_of(row)
                 if machine is None:
-                    return (f"row {key_of(row)} names no machine: the topology "
-                            f"{row['environment'].get('topology_sha256', 'unknown')[:8]} is in no file")
+                    return f"row {key_of(row)} names no machine, or one whose topology is in no file"
                 machines.setdefault(machine, row)
         if len(machines) > 1:
             return "rows of two machines: " + " and ".join(f"{key_of(row)} ({' '.join(map(str, machine))})"
@@ -45,11 +47,12 @@ class Provenance:
 
     def machine_of(self, row):
         """What tells machines apart: the processor by CPUID and its caches; None where the row names none."""
-        identity = row["environment"].get("identity")
+        environment = row.get("environment") or {}
+        identity = environment.get("identity")
         if isinstance(identity, dict):
             known = (identity.get("vendor"), identity.get("family"), identity.get("model"), identity.get("stepping"))
             return None if None in known else (*map(str, known), str(identity.get("caches")))
-        return self._identity_of(row["environment"].get("topology_sha256"))
+        return self._identity_of(environment.get("topology_sha256"))
 
     def _read_identity(self, topology):
         path = next(self._sources.reference.rglob(f"topology-{topology}.xml"), None) if topology else None
@@ -66,6 +69,8 @@ class Provenance:
 def depends_on_machine(row, expression):
     rest = FACTS_OF_RANKS.sub("0", FACTS_OF_SOLVERS.sub("0", expression.text))
     roots = {name for name in expression.roots if re.search(rf"(?<![\w.]){name}\b", rest)} - FACTS
+    if "environment" not in row:
+        roots -= FACTS_ELSEWHERE
     return bool(roots - OF_VIRTUAL_TIME if row.get("executor") == "virtual" else roots)
 
 

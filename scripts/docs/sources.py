@@ -33,6 +33,12 @@ class Sources:
             raise DocsError(f"{place.relative_to(self.root)}: no such file")
         return place
 
+    def files(self, name):
+        """Names of the files of rows that `name`, a file or a folder, stands for."""
+        place = self.path(name)
+        found = sorted(place.rglob("*.jsonl")) if place.is_dir() else [place]
+        return [str(one.relative_to(self.reference)) for one in found if one.name != "radii.jsonl"]
+
     def release_folder(self, name):
         """RELEASE/WHAT of a file of reference rows; None of a published one."""
         parts = Path(name).parts
@@ -49,7 +55,7 @@ class Sources:
             if path.suffix == ".csv":
                 return [{key: _number(value) for key, value in line.items()}
                         for line in csv.DictReader(text.splitlines())]
-            if path.suffix == ".jsonl" or path.name == "plan.json":
+            if path.suffix == ".jsonl":
                 return [_with_measures(json.loads(line)) for line in text.splitlines() if line.strip()]
             found = json.loads(text)
         except ValueError as error:

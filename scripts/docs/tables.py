@@ -1,12 +1,17 @@
 """Tables that scripts/update_docs generates: `<!-- table NAME ARGUMENTS -->`. Each function takes the sources and the
 arguments and returns lines of Markdown; another table is a function and a line in TABLES."""
-from figures import experiment_verdicts, scaling
+import pandas
+
+from figures import distributed, experiment_verdicts, scaling
 from figures import solvers as solving
 from figures.simulated_sizes import speedups
 from figures.write import markdown
 
 from .errors import DocsError
+from .expression import Expression
 
+FACT = Expression("cells")
+PHASES_OF_SLIVERS = ("perturb", "optimize")
 
 def _lines(table):
     return markdown(table).splitlines()
@@ -16,6 +21,43 @@ def solvers(sources, folder):
     """Iterations by image and variant, without the angles of the meshes: README."""
     shown = solving.readable(solving.solvers(sources.frame((folder,))))
     return _lines(shown.drop(columns=["dihedral angles", *(one for one in shown if "eigenvalue" in one)]))
+
+
+def solvers_in_full(sources, folder):
+    """The same with all that was found of the meshes."""
+    return _lines(solving.readable(solving.solvers(sources.frame((folder,)))))
+
+
+def slivers(sources, file):
+    """Seconds of both stages against slivers by image and trial, on one and two threads: medians over repeats."""
+    rows = sources.frame((file,))
+    rows = rows[rows["trial"].str.contains("-both,") & (rows["status"] == "ok")]
+    lines = []
+    for image, group in rows.groupby("image"):
+        alone, both = (group[group["threads.used"] == count] for count in (1, 2))
+        seconds = [sum(some[f"phases_s.{phase}"] for phase in PHASES_OF_SLIVERS).median() for some in (alone, both)]
+        cells = alone["cells"].median()
+        lines.append({"image": image, "rows": len(group), "M cells": f"{cells / 1e6:.2f}",
+                      **{f"{phase}, one thread, s": f"{alone[f'phases_s.{phase}'].median():.2f}"
+                         for phase in PHASES_OF_SLIVERS},
+                      "M cells/s, one thread": f"{cells / seconds[0] / 1e6:.2f}",
+                      "gain on two threads": f"{seconds[0] / seconds[1]:.2f}",
+                      "least angle": f"{group['quality.min_dihedral_deg'].min():.2f}",
+                      "largest angle": f"{group['quality.max_dihedral_deg'].max():.2f}"})
+    return _lines(pandas.DataFrame(lines))
+
+
+def ranks(sources, folder):
+    """What meshes on ranks are, whoever made them when: no second among it."""
+    table = distributed.distributed(sources.frame((folder,)))
+    table = table[table["ranks"] > 1].sort_values(["cells_per_rank", "ranks"])
+    return _lines(pandas.DataFrame({
+        "M cells a rank": [f"{value / 1e6:g}" for value in table["cells_per_rank"]], "ranks": table["ranks"],
+        "M cells": [f"{value / 1e6:.2f}" for value in table["cells"]],
+        "rounds": [f"{value:.0f}" for value in table["rounds"]],
+        "deferred in round 0, of the cells": [f"{100 * value:.1f} %" for value in table["deferred_share"]],
+        "most cells of a rank over the mean": [f"{value:.3f}" for value in table["imbalance"]],
+        "cells over one machine's": [f"{value:.4f}" for value in table["cells_over_one_machine"]]}))
 
 
 def simulated_speedups(sources, folder):
@@ -29,13 +71,21 @@ def verdicts(sources, file):
     return _lines(experiment_verdicts.table(found)[["experiment", "claim", "basis", "verdict", "value", "bound", "n"]])
 
 
-TABLES = {"solvers": solvers, "simulated_speedups": simulated_speedups, "verdicts": verdicts}
+TABLES = {"ranks": ranks, "simulated_speedups": simulated_speedups, "slivers": slivers, "solvers": solvers,
+          "solvers_in_full": solvers_in_full, "verdicts": verdicts}
 
 
-def generate(name, arguments, sources):
-    """Raises DocsError."""
+# Tables with seconds of the machine: their rows must be of one that is known.
+TIMED = {"slivers": Expression("phases_s")}
+
+
+def generate(name, arguments, sources, provenance):
+    """Raises DocsError, also where rows may not give the table."""
     if name not in TABLES:
         raise DocsError(f"no table '{name}': {', '.join(TABLES)}")
+    rows = [row for one in arguments for file in sources.files(one) for row in sources.rows(file)]
+    if fault := provenance.fault_of(rows, TIMED.get(name, FACT)):
+        raise DocsError(fault)
     try:
         return "\n".join(TABLES[name](sources, *arguments)) + "\n"
     except TypeError as error:

@@ -21,7 +21,7 @@ def updated(page, sources, provenance, has_figures):
     """(the text of the page as its rows have it, faults as (place, words))."""
     changes, faults = [], list(page.faults)
     for table in page.tables:
-        _try(lambda: generate(table.name, table.arguments, sources), table, changes, faults)  # noqa: B023
+        _try(lambda: generate(table.name, table.arguments, sources, provenance), table, changes, faults)  # noqa: B023
     for figure in page.figures if has_figures else []:
         _try(lambda: answer(parse_query(figure.query, page.rows), sources, provenance)[0],  # noqa: B023
              figure, changes, faults)

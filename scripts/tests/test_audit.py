@@ -14,8 +14,8 @@ from docs.canonical_hashes import SCHEMA
 from docs.freshness import stale_folders
 from docs.page import Page
 
-QUERY = "<!--q 0.1.0/sizes/rows.jsonl | algorithm=podm | cells | median | /1e6 .2f-->"
-OTHER_QUERY = "<!--q fast | refining_s | ratio algorithm=podm | .2f-->"
+QUERY = "<!--q 0.1.0/sizes/rows.jsonl; algorithm=podm; cells; median; /1e6 .2f-->"
+OTHER_QUERY = "<!--q fast; refining_s; ratio algorithm=podm; .2f-->"
 TOPOLOGY = ('<topology><info name="CPUVendor" value="GenuineIntel"/><info name="CPUFamilyNumber" value="6"/>'
             '<info name="CPUModelNumber" value="{model}"/><info name="CPUStepping" value="2"/></topology>')
 
@@ -87,12 +87,12 @@ class Figures(Tree):
     def test_virtual_seconds_need_no_machine_and_wall_seconds_of_playing_them_do(self):
         self.rows = [synthetic.row(executor="virtual", environment=environment("gone"), phases_s={"refine": 5.0})]
         self.write_rows()
-        query = "<!--q 0.1.0/sizes/rows.jsonl | | {} | only | .1f-->"
+        query = "<!--q 0.1.0/sizes/rows.jsonl;; {}; only; .1f-->"
         self.assertEqual(self.faults(f"5.0{query.format('refining_s')} s\n"), [])
         self.assert_fault(f"1234.5{query.format('process.wall_s')} s\n", "no machine")
 
     def test_ratios_are_within_rounds(self):
-        alias = "<!--rows fast = 0.1.0/sizes/rows.jsonl | algorithm=pdr-podm-->\n"
+        alias = "<!--rows fast = 0.1.0/sizes/rows.jsonl; algorithm=pdr-podm-->\n"
         self.assertEqual(self.faults(f"{alias}{0.5:.2f}{OTHER_QUERY}\n"), [])
         self.rows[2]["repeat"] = 2
         self.write_rows()
@@ -100,11 +100,12 @@ class Figures(Tree):
 
     def test_a_filter_that_matches_nothing_fails(self):
         self.assert_fault(f"3.00{QUERY.replace('=podm', '=podm2')} M cells\n", "no row matches")
-        self.assert_fault(f"none{QUERY.replace('algorithm', 'algorithmus').replace('median', 'count')}\n", "algorithmus")
+        query = QUERY.replace("algorithm", "algorithmus").replace("median", "count")
+        self.assert_fault(f"none{query}\n", "algorithmus")
 
     def test_words_counts_and_intervals(self):
-        count = "<!--q 0.1.0/sizes/rows.jsonl | cells>1e6 status=ok | cells | count | words-->"
-        low = QUERY.replace("cells | median | /1e6", "refining_s | low |")
+        count = "<!--q 0.1.0/sizes/rows.jsonl; cells>1e6 status=ok; cells; count; words-->"
+        low = QUERY.replace("cells; median; /1e6", "refining_s; low;")
         self.assertEqual(self.faults(f"Of four{count} rows the least is 24.00{low} s.\n"), [])
         self.assert_fault(f"Of five{count} rows.\n", "'five' is four")
 
@@ -114,30 +115,30 @@ class Figures(Tree):
         self.assertEqual(self.faults(f"3.00{QUERY} M cells\n"), [])
 
     def test_queries_that_cannot_be_read_say_why(self):
-        for query, word in (("x | y", "no query"), ("0.1.0/gone.jsonl | | cells | median | d", "no such file"),
-                            ("0.1.0/sizes/rows.jsonl | | cells | mode | d", "no statistic"),
-                            ("0.1.0/sizes/rows.jsonl | | __import__('os') | median | d", "no path"),
-                            ("0.1.0/sizes/rows.jsonl | | cells | median | /1e6", "no format"),
-                            ("somewhere | | cells | median | d", "neither files")):
+        for query, word in (("x; y", "no query"), ("0.1.0/gone.jsonl;; cells; median; d", "no such file"),
+                            ("0.1.0/sizes/rows.jsonl;; cells; mode; d", "no statistic"),
+                            ("0.1.0/sizes/rows.jsonl;; __import__('os'); median; d", "no path"),
+                            ("0.1.0/sizes/rows.jsonl;; cells; median; /1e6", "no format"),
+                            ("somewhere;; cells; median; d", "neither files")):
             with self.subTest(query=query):
                 self.assert_fault(f"3<!--q {query}-->\n", word)
 
 
 class Numbers(Tree):
     def test_a_number_without_a_query_fails(self):
-        for text in ("It takes 1.5 GB.", "It is 3 times as fast.", "Some 40 % more.", "In 12,345 runs.", "| a |\n| --- |\n| 236 |",
-                     "After 5 minutes."):
+        for text in ("It takes 1.5 GB.", "It is 3 times as fast.", "Some 40 % more.", "In 12,345 runs.",
+                     "| a |\n| --- |\n| 236 |", "After 5 minutes."):
             with self.subTest(text=text):
                 self.assertEqual(len(self.faults(text + "\n")), 1)
 
     def test_what_is_no_measurement_needs_nothing(self):
-        text = ("# 1.5 GB\n\nSince 2015 `4.5 GB` of [a](b1.5) 2^31 voxels, version 0.1.0, Gmsh 4.1, C3D4, 26 neighbours,\n\n"
+        text = ("# 1.5 GB\n\nSince 2015 `4.5 GB` of [a](b1.5) 2^31 voxels, version 0.1.0, Gmsh 4.1, C3D4, 26 neighbours\n\n"
                 "    podm --radius 4.5\n\n```\n12.5\n```\n\n1. First\n")
         self.assertEqual(self.faults(text), [])
 
     def test_marks_cover_a_number_a_line_a_block_a_section_and_a_page(self):
         for text, num_faults in (
-                ("1.5<!--not measured--> and 2.5\n", 1), ("1.5 and 2.5 <!--not measured: bounds-->\n\n3.5\n", 1),
+                ("1.5<!--not measured--> and 2.5\n", 1), ("2.5 and 40 k<!--not measured--> and 3.5 mm\n", 2), ("1.5 and 2.5 <!--not measured: bounds-->\n\n3.5\n", 1),
                 ("<!--not measured: bounds-->\n1.5\n2.5\n\n3.5\n", 1),
                 ("# A\n\n<!--not measured below: bounds-->\n\n1.5\n\n## B\n\n2.5\n\n# C\n\n3.5\n", 1),
                 ("<!--not measured page: printed-->\n\n1.5\n\n# A\n\n2.5\n", 0),
@@ -168,6 +169,13 @@ class Tables(Tree):
         self.assertEqual(audit(self.root).faults, [])
         path.write_text(path.read_text().replace("| 200 |", "| 199 |"))
         self.assertEqual(len(audit(self.root).faults), 1)
+
+    def test_a_table_over_a_row_of_a_dirty_program_fails(self):
+        self.page()
+        update.main(["--root", str(self.root)])
+        self.rows[0]["programs"]["podm"]["build"] = {"dirty": "true"}
+        self.write_rows()
+        self.assertIn("not committed", audit(self.root).faults[0])
 
     def test_a_table_of_an_unknown_name_or_without_its_end_fails(self):
         self.assert_fault("<!-- table no -->\n<!-- end table -->\n", "no table 'no'", line=2)
