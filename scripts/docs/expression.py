@@ -1,7 +1,7 @@
 """Values of rows: dotted paths, and arithmetic of them.
 
-`phases_s.refine`, `cells / seconds`, `100 * quality.min_dihedral_deg`, `sum(labels.cells)`, `rounds[0].deferred`. A path
-through a list takes the rest of the path of every entry.
+`phases_s.refine`, `cells / seconds`, `sum(labels.cells)`, `ranks.rounds[0].deferred`. A path through a list takes the
+rest of the path of every entry.
 """
 import ast
 import operator

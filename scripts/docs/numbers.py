@@ -12,12 +12,12 @@ UNITS = ("%", "x", "times", "M", "k", "million", "thousand", "billion", "cells",
          "second", "min", "minute", "minutes", "h", "hour", "hours", "cycles", "bytes", "B", "KiB", "MiB", "GiB", "TiB",
          "kB", "MB", "GB", "TB", "GHz", "MHz", "mm", "degrees", "points")
 VERSIONED = ("Gmsh", "CGAL", "Debian", "VTK", "likwid", "Python", "FEniCS", "hwloc", "Clang", "clang-format", "GCC",
-             "MPI", "TetGen", "CMake", "Table", "Tables", "Figure", "Fig.", "section", "Section", "equation", "eq.", "rule",
-             "version", "INR", "XDMF", "licence", "gmsh-version", "EPYC", "Procedia Engineering")
+             "MPI", "TetGen", "CMake", "Table", "Tables", "Figure", "Fig.", "section", "Section", "equation", "eq.",
+             "rule", "version", "INR", "XDMF", "licence", "gmsh-version", "EPYC", "Procedia Engineering")
 NUMBER = re.compile(r"(?<![\w.^/#§])(?<![A-Za-z]-)(?<!\d[,:-])(?P<sign>[-+](?=\d))?"
                     r"(?P<digits>\d+(?:,\d{3})*(?:\.\d+)?(?:e[-+]?\d+)?)"
                     r"(?!\.\d)(?![A-Za-z_]*\d*\()")
-AFTER = re.compile(rf"[ \N{{NO-BREAK SPACE}}-]?(?:{'|'.join(map(re.escape, UNITS))})(?![\w/-]*\w\()(?!\w)")
+AFTER = re.compile(rf"[\s-]?(?:{'|'.join(map(re.escape, UNITS))})(?![\w/-]*\w\()(?!\w)")
 CELL = re.compile(r"[*~<> \u25cb\u25c7]*[-+]?\d[\d,.]*(?:e[-+]?\d+)?\s*(?:%|[\w/]{0,4})?[* ]*")
 
 

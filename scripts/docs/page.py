@@ -18,7 +18,7 @@ from .query import parse_rows
 
 COMMENT = re.compile(r"<!--(.*?)-->", re.DOTALL)
 FIGURE = re.compile(r"((?<![\d.])[-+]?(?<![\w.])\d[\d,]*(?:\.\d+)?(?:e[-+]?\d+)?|(?<![\w-])[A-Za-z]+)\**\Z")
-LAST_NUMBER = re.compile(r"(?<![\w.])(\d[\d,]*(?:\.\d+)?(?:e[-+]?\d+)?)\**(?:\s%|\s?[A-Za-z]+)?\Z")
+LAST_NUMBER = re.compile(r"(?<![\w.])(\d[\d,]*(?:\.\d+)?(?:e[-+]?\d+)?)\**(?:\s%|[\s-]+[A-Za-z]+|[A-Za-z]+)?\Z")
 TABLE = re.compile(r"<!-- table (?P<call>[^\n]*?) -->\n(?P<body>.*?)<!-- end table -->", re.DOTALL)
 HEADING = re.compile(r"^(#+) .*$", re.MULTILINE)
 NO_PROSE = [
@@ -70,7 +70,7 @@ class Page:
         return self.text.count("\n", 0, place) + 1
 
     def _read(self, comment):
-        words, place = comment[1].strip(), comment.start()
+        words, place = " ".join(comment[1].split()), comment.start()
         if "--" in words:
             self.faults.append((place, "'--' within a comment, which shows it on pages of older Markdown"))
         if words.startswith("q "):
@@ -80,7 +80,7 @@ class Page:
                 return
             start = place - (min(60, place) - found.start(1))
             end = start + len(found[1])
-            self.figures.append(Figure(start, end, found[1], " ".join(words[2:].split())))
+            self.figures.append(Figure(start, end, found[1], words[2:]))
             self._covered.append((start, end))
         elif words.startswith("rows "):
             self._name_rows(words[5:], place)
@@ -95,7 +95,7 @@ class Page:
         try:
             if not sign or not re.fullmatch(r"\w+", name.strip()):
                 raise DocsError(f"'{words}' is no NAME = FILES; FILTER")
-            self.rows[name.strip()] = parse_rows(" ".join(rest.split()), self.rows)
+            self.rows[name.strip()] = parse_rows(rest, self.rows)
         except DocsError as error:
             self.faults.append((place, str(error)))
 
@@ -104,8 +104,8 @@ class Page:
         before = self.text[:comment.start()]
         number = LAST_NUMBER.search(before[-60:])
         if scope not in ("", "below", "page") or bool(sign) != bool(why) or (scope or not number) and not why:
-            self.faults.append((comment.start(), f"'not measured{words}': 'not measured' behind a number, 'not measured: "
-                                                 "WHY', 'not measured below: WHY' or 'not measured page: WHY' is expected"))
+            self.faults.append((comment.start(), f"'not measured{words}': 'not measured' behind a number, or 'not "
+                                                 "measured: WHY', 'not measured below: WHY', 'not measured page: WHY'"))
         elif not why:
             start = comment.start() - min(60, len(before)) + number.start(1)
             self._covered.append((start, start + len(number[1])))

@@ -7,14 +7,15 @@ from .errors import DocsError
 
 # What a mesh is, or what a machine only plays: equal on every machine. Everything else of a row depends on it.
 FACTS = {"cells", "vertices", "boundary_facets", "labels", "facet_pairs", "quality", "dihedral_deg", "counters",
-         "outcomes", "guarantees", "verdicts", "status", "replay", "mesh_sha256", "perturbed", "optimization", "smoothing",
-         "promised_dihedral_deg", "used", "asked", "options", "resolved", "repeat", "trial", "input", "image", "leaves",
-         "threads", "cores", "mesh_bytes", "algorithm", "mesher"}
+         "outcomes", "guarantees", "verdicts", "status", "replay", "mesh_sha256", "perturbed", "optimization",
+         "smoothing", "promised_dihedral_deg", "used", "asked", "options", "resolved", "repeat", "trial", "input",
+         "image", "leaves", "threads", "cores", "mesh_bytes", "algorithm", "mesher"}
 # Of files that are no rows of trials: random runs, plans beside runs.
 FACTS_ELSEWHERE = {"cells", "planned_cells", "components", "lost", "cut", "missed", "lost_not_said_whole",
                    "cut_by_details", "runs", "counts", "failed_seeds", "first_seed", "last_seed"}
 FACTS_OF_RANKS = re.compile(r"on_ranks\.(number|cells_per_rank|rounds|deferred_share|imbalance"
-                            r"|cells_over_one_machine)\b|ranks\.(number|rounds\[\d+\]\.(deferred|entries|insertions)|imbalance)\b")
+                            r"|cells_over_one_machine)\b"
+                            r"|ranks\.(number|rounds\[\d+\]\.(deferred|entries|insertions)|imbalance)\b")
 FACTS_OF_SOLVERS = re.compile(r"solve\.\w+\.(unknowns|\w+\.(iterations|smallest_eigenvalue|largest_eigenvalue))\b")
 # Of workers in virtual time these are virtual seconds and counts, too.
 OF_VIRTUAL_TIME = {"virtual", "seconds", "refining_s", "timed", "overhead_s", "hops", "hops_by_kind", "workers"}

@@ -47,6 +47,20 @@ def slivers(sources, file):
     return _lines(pandas.DataFrame(lines))
 
 
+def costs(sources, folder):
+    """Minutes and memory that each experiment took, all its rows together, by the clock."""
+    lines = []
+    for name in sources.files(folder):
+        rows = sources.rows(name)
+        seconds = sum((row["process"] or {}).get("wall_s") or 0 for row in rows if row.get("process"))
+        around = sum(row.get(part) or 0 for row in rows for part in ("preparation_s", "verification_s", "harness_s"))
+        peak = max(((row.get("process") or {}).get("peak_rss_bytes") or 0 for row in rows), default=0)
+        lines.append({"experiment": rows[0]["experiment"], "rows": len(rows),
+                      "minutes": f"{(seconds + around) / 60:.1f}", "of these trials": f"{seconds / 60:.1f}",
+                      "largest process, MiB": f"{peak / 2**20:.0f}"})
+    return _lines(pandas.DataFrame(lines))
+
+
 def ranks(sources, folder):
     """What meshes on ranks are, whoever made them when: no second among it."""
     table = distributed.distributed(sources.frame((folder,)))
@@ -71,12 +85,12 @@ def verdicts(sources, file):
     return _lines(experiment_verdicts.table(found)[["experiment", "claim", "basis", "verdict", "value", "bound", "n"]])
 
 
-TABLES = {"ranks": ranks, "simulated_speedups": simulated_speedups, "slivers": slivers, "solvers": solvers,
-          "solvers_in_full": solvers_in_full, "verdicts": verdicts}
+TABLES = {"costs": costs, "ranks": ranks, "simulated_speedups": simulated_speedups, "slivers": slivers,
+          "solvers": solvers, "solvers_in_full": solvers_in_full, "verdicts": verdicts}
 
 
 # Tables with seconds of the machine: their rows must be of one that is known.
-TIMED = {"slivers": Expression("phases_s")}
+TIMED = {"costs": Expression("process"), "slivers": Expression("phases_s")}
 
 
 def generate(name, arguments, sources, provenance):

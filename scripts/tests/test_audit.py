@@ -132,13 +132,15 @@ class Numbers(Tree):
                 self.assertEqual(len(self.faults(text + "\n")), 1)
 
     def test_what_is_no_measurement_needs_nothing(self):
-        text = ("# 1.5 GB\n\nSince 2015 `4.5 GB` of [a](b1.5) 2^31 voxels, version 0.1.0, Gmsh 4.1, C3D4, 26 neighbours\n\n"
+        text = ("# 1.5 GB\n\nSince 2015 `4.5 GB` of [a](b1.5) 2^31 voxels, version 0.1.0, Gmsh 4.1, C3D4,\n"
+                "26 neighbours\n\n"
                 "    podm --radius 4.5\n\n```\n12.5\n```\n\n1. First\n")
         self.assertEqual(self.faults(text), [])
 
     def test_marks_cover_a_number_a_line_a_block_a_section_and_a_page(self):
         for text, num_faults in (
-                ("1.5<!--not measured--> and 2.5\n", 1), ("2.5 and 40 k<!--not measured--> and 3.5 mm\n", 2), ("1.5 and 2.5 <!--not measured: bounds-->\n\n3.5\n", 1),
+                ("1.5<!--not measured--> and 2.5\n", 1), ("2.5 and 40 k<!--not measured--> and 3.5 mm\n", 2),
+                ("1.5 and 2.5 <!--not measured: bounds-->\n\n3.5\n", 1),
                 ("<!--not measured: bounds-->\n1.5\n2.5\n\n3.5\n", 1),
                 ("# A\n\n<!--not measured below: bounds-->\n\n1.5\n\n## B\n\n2.5\n\n# C\n\n3.5\n", 1),
                 ("<!--not measured page: printed-->\n\n1.5\n\n# A\n\n2.5\n", 0),
