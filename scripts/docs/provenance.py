@@ -18,7 +18,7 @@ FACTS_OF_RANKS = re.compile(r"on_ranks\.(number|cells_per_rank|rounds|deferred_s
                             r"|ranks\.(number|rounds\[\d+\]\.(deferred|entries|insertions)|imbalance)\b")
 FACTS_OF_SOLVERS = re.compile(r"solve\.\w+\.(unknowns|\w+\.(iterations|smallest_eigenvalue|largest_eigenvalue))\b")
 # Of workers in virtual time these are virtual seconds and counts, too.
-OF_VIRTUAL_TIME = {"virtual", "seconds", "refining_s", "timed", "overhead_s", "hops", "hops_by_kind", "workers"}
+OF_VIRTUAL_TIME = {"virtual", "seconds", "whole_s", "refining_s", "timed", "overhead_s", "hops", "hops_by_kind", "workers"}
 IDENTITY = ("CPUVendor", "CPUFamilyNumber", "CPUModelNumber", "CPUStepping")
 
 
@@ -51,8 +51,9 @@ class Provenance:
         environment = row.get("environment") or {}
         identity = environment.get("identity")
         if isinstance(identity, dict):
-            known = (identity.get("vendor"), identity.get("family"), identity.get("model"), identity.get("stepping"))
-            return None if None in known else (*map(str, known), str(identity.get("caches")))
+            known = [identity.get(name) for name in ("vendor", "family", "model", "stepping")]
+            caches = identity.get("cache_bytes")
+            return None if None in known else (*map(str, known), _text(caches if isinstance(caches, dict) else {}))
         return self._identity_of(environment.get("topology_sha256"))
 
     def _read_identity(self, topology):
@@ -63,8 +64,13 @@ class Provenance:
         told = dict(re.findall(r'<info name="(CPU\w+)" value="([^"]*)"', text))
         if not set(IDENTITY) <= set(told):
             raise DocsError(f"{path.relative_to(self._sources.root)}: tells no {', '.join(IDENTITY)}")
-        caches = sorted(set(re.findall(r'cache_size="(\d+)" depth="(\d)"', text)), key=lambda one: one[::-1])
-        return (*(told[name] for name in IDENTITY), " ".join(f"L{depth}:{size}" for size, depth in caches))
+        caches = re.findall(r'<object type="(L\d)Cache"[^>]* cache_size="(\d+)"', text)
+        return (*(told[name] for name in IDENTITY), _text(dict(caches)))
+
+
+def _text(caches):
+    """Data caches by level."""
+    return " ".join(f"{level}:{size}" for level, size in sorted(caches.items()))
 
 
 def depends_on_machine(row, expression):

@@ -3,16 +3,19 @@ import re
 import statistics
 from dataclasses import dataclass
 
-from figures.spread import median_interval
+from figures.spread import order_interval
 
 from .condition import Filter, parse_filter
 from .errors import DocsError
 from .expression import Expression
 
 WORDS = ("none", "one", "two", "three", "four", "five", "six", "seven", "eight", "nine", "ten", "eleven", "twelve")
+INTERVAL = {"low": lambda values: order_interval(values)[0], "high": lambda values: order_interval(values)[1],
+            "coverage": lambda values: order_interval(values)[2]}
 OF_VALUES = {"median": statistics.median, "mean": statistics.fmean, "min": min, "max": max, "sum": sum, "count": len,
-             "low": lambda values: median_interval(values)[1], "high": lambda values: median_interval(values)[2]}
-OF_TWO = ("ratio", "ratio-low", "ratio-high", "ratio-of-medians")
+             **INTERVAL}
+OF_RATIOS = {"ratio": statistics.median, **{f"ratio-{name}": end for name, end in INTERVAL.items()}}
+OF_TWO = (*OF_RATIOS, "ratio-of-medians")
 FORMAT = re.compile(r"(?:([*/])\s*([\d.e+-]+)\s+)?(\S+)")
 
 
@@ -114,9 +117,7 @@ def _statistic(query, rows, base):
         return OF_VALUES[query.statistic](values)
     if query.statistic == "ratio-of-medians":
         return statistics.median(values) / statistics.median(map(query.value.of, base))
-    ratios = _ratios_within_rounds(query, rows, base)
-    return {"ratio": statistics.median, "ratio-low": OF_VALUES["low"], "ratio-high": OF_VALUES["high"]}[
-        query.statistic](ratios)
+    return OF_RATIOS[query.statistic](_ratios_within_rounds(query, rows, base))
 
 
 def _ratios_within_rounds(query, rows, base):

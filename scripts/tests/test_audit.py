@@ -78,6 +78,20 @@ class Figures(Tree):
         self.assertEqual(self.faults(f"3.00{QUERY} M cells\n"), [])
         self.assert_fault(f"25.0{QUERY.replace('cells', 'refining_s').replace('/1e6 .2f', '.1f')} s\n", "two machines")
 
+    def test_a_row_that_tells_its_processor_needs_no_topology(self):
+        identity = {"vendor": "GenuineIntel", "family": 6, "model": 207, "stepping": 2, "cache_bytes": {}}
+        query = QUERY.replace("cells", "refining_s").replace("/1e6 .2f", ".1f")
+        for row in self.rows:
+            row["environment"] = environment("gone", identity=identity)
+        self.write_rows()
+        self.assertEqual(self.faults(f"25.0{query} s\n"), [])
+        self.rows[0]["environment"] = environment("aaaa")
+        self.write_rows()
+        self.assertEqual(self.faults(f"25.0{query} s\n"), [], "the same processor, told in two ways")
+        self.rows[1]["environment"]["identity"] = {**identity, "cache_bytes": {"L1": 32768}}
+        self.write_rows()
+        self.assert_fault(f"25.0{query} s\n", "two machines")
+
     def test_a_row_whose_topology_is_lost_gives_no_seconds(self):
         self.rows[0]["environment"]["topology_sha256"] = "gone"
         self.write_rows()
