@@ -17,8 +17,9 @@ VERSIONED = ("Gmsh", "CGAL", "Debian", "VTK", "likwid", "Python", "FEniCS", "hwl
 NUMBER = re.compile(r"(?<![\w.^/#§])(?<![A-Za-z]-)(?<!\d[,:-])(?P<sign>[-+](?=\d))?"
                     r"(?P<digits>\d+(?:,\d{3})*(?:\.\d+)?(?:e[-+]?\d+)?)"
                     r"(?!\.\d)(?![A-Za-z_]*\d*\()")
-AFTER = re.compile(rf"[\s-]?(?:{'|'.join(map(re.escape, UNITS))})(?![\w/-]*\w\()(?!\w)")
-CELL = re.compile(r"[*~<> \u25cb\u25c7]*[-+]?\d[\d,.]*(?:e[-+]?\d+)?\s*(?:%|[\w/]{0,4})?[* ]*")
+NOTHING = "\0"  # in place of comments, which nobody sees: a unit may stand behind one
+AFTER = re.compile(rf"\0*[\s-]?(?:{'|'.join(map(re.escape, UNITS))})(?![\w/-]*\w\()(?!\w)")
+CELL = re.compile(r"[*~<> \u25cb\u25c7]*[-+]?\d[\d,.]*(?:e[-+]?\d+)?[\s\0]*(?:%|[\w/]{0,4})?[* \0]*")
 
 
 @dataclass(frozen=True)

@@ -13,7 +13,7 @@ import re
 from dataclasses import dataclass
 
 from .errors import DocsError
-from .numbers import numbers_to_cover
+from .numbers import NOTHING, numbers_to_cover
 from .query import parse_rows
 
 COMMENT = re.compile(r"<!--(.*?)-->", re.DOTALL)
@@ -133,14 +133,15 @@ class Page:
 
     def _find_uncovered(self, visible):
         for comment in self._comments:
-            visible = visible[:comment.start()] + _blank(comment) + visible[comment.end():]
+            visible = visible[:comment.start()] + NOTHING * len(comment[0]) + visible[comment.end():]
         for pattern in NO_TEXT:
             visible = pattern.sub(_blank, visible)
         numbers = list(numbers_to_cover(visible, list(_body_cells(visible))))
         self.uncovered = [one for one in numbers
                           if not any(start <= one.start and one.end <= end for start, end in self._covered)]
+        generated = [*self.figures, *self.tables]
         self.num_marked = len(numbers) - len(self.uncovered) - sum(
-            any(one.start >= figure.start and one.end <= figure.end for figure in self.figures) for one in numbers)
+            any(part.start <= one.start and one.end <= part.end for part in generated) for one in numbers)
 
 
 def _body_cells(text):

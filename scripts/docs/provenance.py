@@ -18,7 +18,8 @@ FACTS_OF_RANKS = re.compile(r"on_ranks\.(number|cells_per_rank|rounds|deferred_s
                             r"|ranks\.(number|rounds\[\d+\]\.(deferred|entries|insertions)|imbalance)\b")
 FACTS_OF_SOLVERS = re.compile(r"solve\.\w+\.(unknowns|\w+\.(iterations|smallest_eigenvalue|largest_eigenvalue))\b")
 # Of workers in virtual time these are virtual seconds and counts, too.
-OF_VIRTUAL_TIME = {"virtual", "seconds", "whole_s", "refining_s", "timed", "overhead_s", "hops", "hops_by_kind", "workers"}
+OF_VIRTUAL_TIME = {"virtual", "seconds", "whole_s", "refining_s", "timed", "overhead_s", "hops", "hops_by_kind",
+                   "workers"}
 IDENTITY = ("CPUVendor", "CPUFamilyNumber", "CPUModelNumber", "CPUStepping")
 
 

@@ -9,6 +9,7 @@ from figures.write import markdown
 
 from .errors import DocsError
 from .expression import Expression
+from .provenance import Provenance
 
 FACT = Expression("cells")
 PHASES_OF_SLIVERS = ("perturb", "optimize")
@@ -61,6 +62,21 @@ def costs(sources, folder):
     return _lines(pandas.DataFrame(lines))
 
 
+def machines(sources, folder):
+    """The machines that rows name, by the hash of the topology: the processor by CPUID, or that it is not known."""
+    by_hash = {}
+    for name in sources.files(folder):
+        for row in sources.rows(name):
+            if topology := (row.get("environment") or {}).get("topology_sha256"):
+                by_hash.setdefault(topology, (row, set()))[1].add(str(sources.release_folder(name).name))
+    provenance, lines = Provenance(sources), []
+    for topology, (row, folders) in sorted(by_hash.items(), key=lambda one: (sorted(one[1][1]), one[0])):
+        known = provenance.machine_of(row) or ("not known", "", "", "", "")
+        lines.append({"topology": topology[:8], "rows in": ", ".join(sorted(folders)),
+                      **dict(zip(("vendor", "family", "model", "stepping", "data caches, bytes"), known))})
+    return _lines(pandas.DataFrame(lines))
+
+
 def ranks(sources, folder):
     """What meshes on ranks are, whoever made them when: no second among it."""
     table = distributed.distributed(sources.frame((folder,)))
@@ -85,10 +101,8 @@ def verdicts(sources, file):
     return _lines(experiment_verdicts.table(found)[["experiment", "claim", "basis", "verdict", "value", "bound", "n"]])
 
 
-TABLES = {"costs": costs, "ranks": ranks, "simulated_speedups": simulated_speedups, "slivers": slivers,
-          "solvers": solvers, "solvers_in_full": solvers_in_full, "verdicts": verdicts}
-
-
+TABLES = {table.__name__: table
+          for table in (costs, machines, ranks, simulated_speedups, slivers, solvers, solvers_in_full, verdicts)}
 # Tables with seconds of the machine: their rows must be of one that is known.
 TIMED = {"costs": Expression("process"), "slivers": Expression("phases_s")}
 

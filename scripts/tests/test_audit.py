@@ -140,7 +140,8 @@ class Figures(Tree):
 
 class Numbers(Tree):
     def test_a_number_without_a_query_fails(self):
-        for text in ("It takes 1.5 GB.", "It is 3 times as fast.", "Some 40 % more.", "In 12,345 runs.",
+        for text in ("It takes 1.5 GB.", "Some 40<!-- so --> % more.", "| a |\n| --- |\n| 236<!-- so --> |",
+                     "It is 3 times as fast.", "Some 40 % more.", "In 12,345 runs.",
                      "| a |\n| --- |\n| 236 |", "After 5 minutes."):
             with self.subTest(text=text):
                 self.assertEqual(len(self.faults(text + "\n")), 1)
