@@ -169,6 +169,48 @@ Value virtual_refining_cells_per_second_and_rank(const Row& row) {
   return quotient(quotient(cells(row), virtual_refining_seconds(row)), number_of_ranks(row));
 }
 
+// Part of the virtual seconds of equation 1.
+template <std::size_t N>
+Value share_of_virtual_seconds(const Row& row, const std::array<const char*, N>& phases) {
+  const Value whole = virtual_seconds(row);
+  if (!whole.number || !row.mesh->virtual_time || !row.mesh->virtual_time->phases_s)
+    return absent("rows have no virtual/phases_s");
+  double sum = 0;
+  for (const char* phase : phases)
+    if (const double* const phase_s = row.mesh->virtual_time->phases_s->find(phase)) sum += *phase_s;
+  return quotient({sum, ""}, whole);
+}
+Value virtual_octree_share(const Row& row) {
+  return share_of_virtual_seconds(row, std::array{"allocate", "octree"});
+}
+
+// Seconds of virtual workers by cause, summed over the causes that `is_counted` names.
+Value virtual_worker_seconds(const Row& row, bool (*is_counted)(const std::string& cause)) {
+  const bool is_there = row.mesh && row.mesh->virtual_time && row.mesh->virtual_time->worker_s;
+  if (!is_there) return absent("rows have no virtual/worker_s");
+  double sum = 0;
+  for (const auto& [cause, spent_s] : *row.mesh->virtual_time->worker_s)
+    if (is_counted(cause)) sum += spent_s;
+  return {sum, ""};
+}
+bool is_any_cause(const std::string&) { return true; }
+bool is_waiting_for_work(const std::string& cause) { return cause == "begging"; }
+// Lists, gifts and leaves handed over, and waiting for the queue of leaves.
+bool is_distributing(const std::string& cause) { return cause == "between_attempts" || cause == "locks"; }
+
+Value waiting_share(const Row& row) {
+  return quotient(virtual_worker_seconds(row, is_waiting_for_work),
+                  virtual_worker_seconds(row, is_any_cause));
+}
+Value distributing_share(const Row& row) {
+  return quotient(virtual_worker_seconds(row, is_distributing), virtual_worker_seconds(row, is_any_cause));
+}
+Value worker_seconds_per_cell_but_distributing(const Row& row) {
+  return quotient(
+      virtual_worker_seconds(row, [](const std::string& cause) { return !is_distributing(cause); }),
+      cells(row));
+}
+
 Value contention_seconds(const Row& row) {
   return of_mesh(row, &MeshRecord::overhead_s, &OverheadRecord::contention, "overhead_s/contention");
 }
@@ -339,6 +381,14 @@ Value proved(const Row& row, const std::string& claim) {
 Value conformity_proved(const Row& row) { return proved(row, "conformity"); }
 Value fidelity_proved(const Row& row) { return proved(row, "fidelity"); }
 Value dihedral_proved(const Row& row) { return proved(row, "dihedral"); }
+Value radius_edge_proved(const Row& row) { return proved(row, "radius_edge"); }
+Value boundary_angles_proved(const Row& row) { return proved(row, "boundary_angles"); }
+
+Value topology_as_image(const Row& row) {
+  if (!row.mesh || !row.mesh->topology) return absent("rows have no topology");
+  const TopologyRecord& topology = *row.mesh->topology;
+  return yes(topology.components_as_image == topology.labels && topology.euler_as_image == topology.labels);
+}
 
 template <SystemRecord SolveRecord::*system, IterationsRecord SystemRecord::*preconditioner>
 Value iterations(const Row& row) {
@@ -398,6 +448,11 @@ constexpr Measure kMeasures[] = {
     {"virtual_cells_per_second_and_rank", "1/s", kMore, kVirtualClock, virtual_cells_per_second_and_rank},
     {"virtual_refining_cells_per_second_and_rank", "1/s", kMore, kVirtualClock,
      virtual_refining_cells_per_second_and_rank},
+    {"virtual_octree_share", "", kLess, kVirtualClock, virtual_octree_share},
+    {"waiting_share", "", kLess, kVirtualClock, waiting_share},
+    {"distributing_share", "", kLess, kVirtualClock, distributing_share},
+    {"worker_seconds_per_cell_but_distributing", "s", kLess, kVirtualClock,
+     worker_seconds_per_cell_but_distributing},
     {"processor_seconds", "s", kLess, kClock, processor_seconds},
     {"refining_processor_seconds", "s", kLess, kClock, refining_processor_seconds},
     {"rounds", "", kLess, kCost, rounds},
@@ -434,6 +489,9 @@ constexpr Measure kMeasures[] = {
     {"conformity_proved", "", kMore, kAnswer, conformity_proved},
     {"fidelity_proved", "", kMore, kAnswer, fidelity_proved},
     {"dihedral_proved", "", kMore, kAnswer, dihedral_proved},
+    {"radius_edge_proved", "", kMore, kAnswer, radius_edge_proved},
+    {"boundary_angles_proved", "", kMore, kAnswer, boundary_angles_proved},
+    {"topology_as_image", "", kMore, kAnswer, topology_as_image},
     {"replay_equal", "", kMore, kAnswer, replay_equal},
     {"ended", "", kMore, kOutcome, has_ended},
     {"passed", "", kMore, kOutcome, has_passed},

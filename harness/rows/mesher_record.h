@@ -59,10 +59,12 @@ struct ThreadsRecord {
 struct VirtualRecord {
   std::optional<double> refine_s;
   std::optional<ByName<double>> phases_s;  ///< of equation 1
+  std::optional<ByName<double>> worker_s;  ///< seconds of all workers together while they refine, by cause
   Json as_written = Json::object();
   static constexpr auto fields() {
     return std::tuple{field_if_any("refine_s", &VirtualRecord::refine_s),
-                      field_if_any("phases_s", &VirtualRecord::phases_s)};
+                      field_if_any("phases_s", &VirtualRecord::phases_s),
+                      field_if_any("worker_s", &VirtualRecord::worker_s)};
   }
 };
 
@@ -196,6 +198,17 @@ struct DihedralRecord {
   }
 };
 
+/// Labels of a mesh beside those of its image: how many have as many components, and the Euler number, as the
+/// image has by one of its two connectivities or between them.
+struct TopologyRecord {
+  std::uint64_t labels = 0, components_as_image = 0, euler_as_image = 0;
+  static constexpr auto fields() {
+    using T = TopologyRecord;
+    return std::tuple{field("labels", &T::labels), field("components_as_image", &T::components_as_image),
+                      field("euler_as_image", &T::euler_as_image)};
+  }
+};
+
 /// A mesher's record of a mesh.
 struct MeshRecord {
   std::optional<int> schema;           ///< kMesherSchema; rows have their own instead
@@ -224,6 +237,7 @@ struct MeshRecord {
   std::optional<std::string> mesh_sha256;
   std::optional<ByName<Proof>> verdicts;             ///< one a claim; nothing where podm-verify did not run
   std::optional<DihedralRecord> dihedral_deg;        ///< nothing where podm-verify did not tell
+  std::optional<TopologyRecord> topology;            ///< nothing where podm-verify had no image
   std::optional<std::vector<std::string>> promises;  ///< claims; nothing: all
   std::string stop_reason;
   Json as_written = Json::object();
@@ -256,6 +270,7 @@ struct MeshRecord {
                       field_if_any("mesh_sha256", &M::mesh_sha256),
                       field_if_any("verdicts", &M::verdicts),
                       field_if_any("dihedral_deg", &M::dihedral_deg),
+                      field_if_any("topology", &M::topology),
                       field_if_any("promises", &M::promises),
                       field("stop_reason", &M::stop_reason)};
   }

@@ -186,6 +186,7 @@ void TrialRunner::prove(const Run& run, TrialResult& result) {
                                                   programs_.verifier, run.folder, run.stop_requested);
     result.mesh->verdicts = verification.verdicts;
     result.mesh->dihedral_deg = verification.dihedral_deg;
+    result.mesh->topology = verification.topology;
     add_fault(verification.fault, verification.is_interrupted, result);
   }
   const auto is_asked_for = [&](const char* key) {

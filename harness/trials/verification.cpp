@@ -24,12 +24,35 @@ struct HistogramReport {
                       field("counts", &H::counts)};
   }
 };
+struct ImageTopologyReport {
+  std::int64_t components_6 = 0, components_26 = 0, euler_6 = 0, euler_26 = 0;
+  static constexpr auto fields() {
+    using T = ImageTopologyReport;
+    return std::tuple{field("components_6", &T::components_6), field("components_26", &T::components_26),
+                      field("euler_6", &T::euler_6), field("euler_26", &T::euler_26)};
+  }
+};
+struct LabelReport {
+  std::optional<std::int64_t> components, euler;
+  std::optional<ImageTopologyReport> image;
+  static constexpr auto fields() {
+    using L = LabelReport;
+    return std::tuple{field_if_any("components", &L::components), field_if_any("euler", &L::euler),
+                      field_if_any("image", &L::image)};
+  }
+};
+struct DetailsReport {
+  std::optional<std::vector<LabelReport>> labels;
+  static constexpr auto fields() { return std::tuple{field_if_any("labels", &DetailsReport::labels)}; }
+};
 struct ClaimReport {
   Proof verdict = Proof::kNotRun;
   std::optional<std::vector<HistogramReport>> histograms;
+  std::optional<DetailsReport> details;
   static constexpr auto fields() {
     return std::tuple{field("verdict", &ClaimReport::verdict),
-                      field_if_any("histograms", &ClaimReport::histograms)};
+                      field_if_any("histograms", &ClaimReport::histograms),
+                      field_if_any("details", &ClaimReport::details)};
   }
 };
 struct VerifierReport {
@@ -54,6 +77,25 @@ std::optional<DihedralRecord> dihedral_angles_of(const VerifierReport& report) {
       if (histogram.name == "dihedral_angle" && histogram.minimum && histogram.maximum)
         return DihedralRecord{*histogram.minimum, *histogram.maximum, histogram.counts};
   return {};
+}
+
+bool is_between(std::int64_t value, std::int64_t one, std::int64_t other) {
+  return std::min(one, other) <= value && value <= std::max(one, other);
+}
+
+// The claim `surface` counts components and Euler numbers of the mesh and, where it has one, of the image.
+std::optional<TopologyRecord> topology_of(const VerifierReport& report) {
+  const ClaimReport* const surface = report.claims.find("surface");
+  if (surface == nullptr || !surface->details || !surface->details->labels) return {};
+  TopologyRecord topology;
+  for (const LabelReport& label : *surface->details->labels) {
+    if (!label.components || !label.euler || !label.image) return {};
+    const ImageTopologyReport& image = *label.image;
+    ++topology.labels;
+    topology.components_as_image += is_between(*label.components, image.components_6, image.components_26);
+    topology.euler_as_image += is_between(*label.euler, image.euler_6, image.euler_26);
+  }
+  return topology;
 }
 
 std::string claims_of(const Trial& trial, const MeshRecord& record, bool has_size) {
@@ -107,13 +149,14 @@ Verification verify_mesh(const Trial& trial, const std::string& image, const Mes
   if (trial.options.value(kSchedule, false)) add("--schedule", folder + kScheduleName);
   const ProcessOutcome outcome = ask(command, timeout_of_proof_s(trial), stop_requested).outcome;
   const auto report = read_report(report_path);
-  Verification verification{{}, {}, {}, outcome.end == ProcessOutcome::End::kInterrupted};
+  Verification verification{{}, {}, {}, {}, outcome.end == ProcessOutcome::End::kInterrupted};
   if (!report) {
     verification.fault = "not verified: " + outcome.describe();
     return verification;
   }
   for (const auto& [claim, told] : report->claims) verification.verdicts[claim] = told.verdict;
   verification.dihedral_deg = dihedral_angles_of(*report);
+  verification.topology = topology_of(*report);
   verification.fault = fault_of(verification.verdicts, record);
   return verification;
 }

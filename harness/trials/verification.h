@@ -24,6 +24,7 @@ struct Programs {
 struct Verification {
   ByName<Proof> verdicts;  ///< one a claim; empty when the verifier told nothing
   std::optional<DihedralRecord> dihedral_deg;
+  std::optional<TopologyRecord> topology;
   std::string fault;  ///< why the mesh is not proved; empty: every claim promised passes
   bool is_interrupted = false;
 };

@@ -4,14 +4,15 @@ from dataclasses import dataclass, field
 import pandas
 
 from . import (cache, deviation, dihedral, distributed, distributed_figure, distributed_model, experiment_verdicts,
-               fig1, fig2b, fig4a, fig4b, guarantees, lost, machine, peers, scaling, simulated, solvers, table1, table2,
-               table3, validation, verdicts)
+               fig1, fig2b, fig4a, fig4b, guarantees, lost, machine, paper_claims, peers, scaling, simulated, solvers,
+               table1, table2, table3, validation, verdicts)
 
 
 @dataclass(frozen=True)
 class Outcome:
     """`tables`: by name, as data and readable. `figures`: by name. `missing`: reason by name of what cannot be made.
-    `series`: of weak scaling; `experiments`: verdicts of podm-bench, or None."""
+    `series`: of weak scaling; `experiments`: verdicts of podm-bench, or None; `paper`: what they say of the paper's
+    claims, of paper_claims.rows."""
 
     tables: dict
     figures: dict
@@ -19,6 +20,7 @@ class Outcome:
     missing: dict = field(default_factory=dict)
     series: list = field(default_factory=list)
     experiments: dict = None
+    paper: list = field(default_factory=list)
 
 
 def make(frame, report=None, schedule=None, mesh=None, experiments=None):
@@ -28,8 +30,14 @@ def make(frame, report=None, schedule=None, mesh=None, experiments=None):
     ranks = distributed.distributed(frame)
     nodes = distributed_model.extrapolated(ranks)
     drawn, missing = _figures(frame, series, (ranks, nodes), report, schedule, mesh)
-    return Outcome(_tables(frame, series, hops, ranks, nodes), drawn, verdicts.verdicts(frame, series, hops), missing,
-                   series, experiments)
+    tables, judged = _tables(frame, series, hops, ranks, nodes), []
+    try:
+        judged = paper_claims.rows(experiments, frame) if experiments else []
+    except paper_claims.PaperClaimsError as error:
+        missing[paper_claims.NAME] = str(error)
+    if judged:
+        tables[paper_claims.NAME] = (paper_claims.table(judged),) * 2
+    return Outcome(tables, drawn, verdicts.verdicts(frame, series, hops), missing, series, experiments, judged)
 
 
 def _tables(frame, series, hops, ranks, nodes):

@@ -3,8 +3,10 @@ from html import escape
 
 from figures import experiment_verdicts, guarantees, scaling, style
 from figures.fig4a import WHY_ABOVE
+from figures.paper_claims import NAME
 
 from .html import Bar, bars, findings, fold
+from .paper_table import paper_table, said
 
 MOST_COUNTS = 4  # numbers of cores in the picture of scaling
 FAULTS = {"unmet": "missed a guarantee", "failed": "failed", "timed_out": "timed out", "interrupted": "interrupted"}
@@ -19,7 +21,7 @@ def first_screen(frame, outcome):
     cards = "\n".join(f'<section class="answer" id="{name}" aria-labelledby="{name}-title">'
                       f'<h2 id="{name}-title">{question}</h2>\n{content}\n</section>'
                       for name, question, content in answers)
-    return f'<div class="answers">\n{cards}\n</div>'
+    return f'<div class="answers results">\n{cards}\n</div>'
 
 
 def _answer(text):
@@ -167,43 +169,16 @@ def _scaling_said(series, count):
 
 
 def holds(outcome):
-    """What could be decided; the rest counted in a line and folded."""
-    found = outcome.verdicts["claims"]
-    decided = [one for one in found if one["verdict"] != "cannot_fill"]
-    rest = [one for one in found if one["verdict"] == "cannot_fill"]
-    agree = sum(one["verdict"] == "agrees" for one in decided)
-    said = (f"{len(decided)} of {len(found)} claims of the paper can be decided here: "
-            f"{_number(agree, 'agrees', 'agree')}, {_number(len(decided) - agree, 'differs', 'differ')}.")
-    lines = [(one["verdict"], f"{one['statement']} ({one['basis']}).", one["reason"])
-             for one in sorted(decided, key=lambda one: one["verdict"] == "agrees")]
-    folded = fold(f"{_number(len(rest), 'claim', 'claims')} and {_open_cells(outcome)} cells cannot be decided here",
-                  findings([("cannot_fill", f"{one['statement']} ({one['basis']}).", one["reason"]) for one in rest]))
-    return _answer(said) + findings(lines) + _aside(_cells_said(outcome)) + folded + _experiments(outcome)
-
-
-def _number(count, one, many):
-    return f"{count} {one if count == 1 else many}"
-
-
-def _open_cells(outcome):
-    return sum(one["verdict"] == "cannot_fill" for one in outcome.verdicts["cells"])
-
-
-def _cells_said(outcome):
-    """"Cells of Tables 1 and 2: measured 4 agree, 0 differ; simulated ..."."""
-    parts = []
-    for basis in scaling.BASES:
-        verdicts = [one["verdict"] for one in outcome.verdicts["cells"] if one["basis"] == basis]
-        agree, differ = verdicts.count("agrees"), verdicts.count("differs")
-        if agree or differ:
-            parts.append(f"{basis}, {agree} agree and {differ} differ")
-    return f"Cells of Tables 1 and 2: {'; '.join(parts)}." if parts else ""
+    """The table of the paper's claims, then those of our own experiments."""
+    if outcome.experiments is None:
+        return _answer("Not judged.") + _aside(experiment_verdicts.HOW)
+    if NAME in outcome.missing:
+        return _answer(f"Not judged: {outcome.missing[NAME]}.") + _experiments(outcome)
+    return _answer(f"{said(outcome.paper).capitalize()}.") + paper_table(outcome.paper) + _experiments(outcome)
 
 
 def _experiments(outcome):
     """Verdicts of podm-bench: what does not hold is told as plainly as what does."""
-    if outcome.experiments is None:
-        return _aside(experiment_verdicts.HOW)
     lines = experiment_verdicts.table(outcome.experiments).to_dict("records")
     parts = {word: [(word, f"{line['experiment']}: {line['statement']} ({line['basis']})", line["reason"])
                     for line in lines if line["verdict"] == word] for word in experiment_verdicts.WORDS}

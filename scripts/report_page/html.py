@@ -85,7 +85,7 @@ def responsive(svg, title):
 
 
 def verdict_span(verdict):
-    return f'<span class="verdict {escape(verdict)}">{escape(verdict.replace("_", " "))}</span>'
+    return f'<span class="verdict {escape(verdict.replace(" ", "_"))}">{escape(verdict.replace("_", " "))}</span>'
 
 
 def findings(lines):

@@ -125,6 +125,22 @@ def experiment_verdicts(**verdicts):
         {"experiment": "weak_scaling", "title": "Weak scaling", "claim": "so", "paper": "Table 1", "claims": claims}]}
 
 
+def paper_verdicts(lines, verdict="holds", **of_claims):
+    """What podm-bench writes of the claims that judge lines of results/paper/claims.toml; `of_claims`: other verdicts
+    by name."""
+    claims = {}
+    for side in ("measured", "simulated"):
+        for line in lines:
+            for name in line[side].get("claims", []):
+                is_of_both = name in claims and claims[name]["basis"] != side
+                claims[name] = {"name": name, "statement": f"{name} is so", "basis": "any" if is_of_both else side,
+                                "verdict": of_claims.get(name, verdict), "reason": f"because of <{name}>",
+                                "value": 1.5, "bound": 2.0, "n": 3}
+    found = experiment_verdicts()
+    found["experiments"][0]["claims"] = list(claims.values())
+    return found
+
+
 def schedule(side=9):
     """A flat grid of leaves, two of which are active at one time, with rings that do not meet."""
     leaves = [[i, j, 0, 1] for j in range(side) for i in range(side)]

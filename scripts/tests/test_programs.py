@@ -8,7 +8,7 @@ from pathlib import Path
 
 import paths
 import synthetic
-from figures import paper
+from figures import paper, paper_claims
 
 
 def call(program, *arguments):
@@ -115,8 +115,10 @@ def make_page(folder, *more):
     write_rows(folder / "rows.jsonl", rows)
     write_rows(folder / "schedule.jsonl", synthetic.schedule())
     write_rows(folder / "verified.json", [synthetic.report()])
-    write_rows(folder / "experiments.json",
-               [synthetic.experiment_verdicts(good="holds", bad="does_not_hold", open="cannot_be_decided")])
+    found = synthetic.experiment_verdicts(good="holds", bad="does_not_hold", open="cannot_be_decided")
+    of_paper = synthetic.paper_verdicts(paper_claims.read_lines()[0], **{"podm-falls-beyond-128": "does_not_hold"})
+    found["experiments"] += of_paper["experiments"]
+    write_rows(folder / "experiments.json", [found])
     synthetic.write_vtu(folder / "mesh.vtu", *synthetic.box_mesh(side=6))
     done = call("report", "--records", folder / "rows.jsonl", "--mesh", folder / "mesh.vtu", "--schedule",
                 folder / "schedule.jsonl", "--verified", folder / "verified.json", "--experiment-verdicts",
@@ -156,10 +158,11 @@ class Page(unittest.TestCase):
         self.assertIn("because of &lt;bad&gt;", self.text)
         self.assertNotIn("<script>alert", self.text)
 
-    def test_four_answers_come_before_any_table(self):
+    def test_four_answers_come_before_any_table_but_that_of_the_papers_claims(self):
         answers = self.answers()
         self.assertEqual(list(answers), ["works", "fast", "scales", "holds"])
-        self.assertLess(self.text.index(answers["holds"]), self.text.index("<table"))
+        self.assertEqual(answers["holds"].count("<table"), 1)
+        self.assertEqual(self.text[: self.text.index('aria-label="Sections"')].count("<table"), 1)
         for name in ("works", "fast", "scales"):
             self.assertIn('class="bars"', answers[name])
             self.assertIn("<p", answers[name])
@@ -183,11 +186,24 @@ class Page(unittest.TestCase):
         shown, folded = re.sub(r"<details>.*?</details>", "", holds, flags=re.DOTALL), re.findall(
             r"<details>.*?</details>", holds, re.DOTALL)
         self.assertIn("weak_scaling: bad is so", shown)
-        self.assertIn("PDR.PODM overtakes PODM", shown)
-        self.assertNotIn("cannot_fill", shown)
         self.assertNotIn("open is so", shown)
         self.assertTrue(any("open is so" in one for one in folded))
-        self.assertTrue(any("cannot be decided here" in one and "cannot_fill" in one for one in folded))
+
+    def test_a_claim_of_the_paper_that_is_contradicted_is_seen_at_first_sight(self):
+        shown = re.sub(r"<details>.*?</details>", "", self.answers()["holds"], flags=re.DOTALL)
+        self.assertEqual(len(re.findall(r'<th scope="row">', shown)), len(paper_claims.read_lines()[0]))
+        line = re.search(r"<tr>(?:(?!</tr>).)*PODM falls behind.*?</tr>", shown).group()
+        self.assertIn('simulated <span class="verdict contradicted">', line)
+        self.assertIn("simulated: 11 agrees, 1 contradicted, 2 not judged", shown)
+
+    def test_verdicts_without_a_claim_that_the_paper_needs_name_it(self):
+        rows = write_rows(self.path.parent / "few.jsonl", [synthetic.row()])
+        write_rows(self.path.parent / "few.json", [synthetic.experiment_verdicts(good="holds")])
+        done = call("report", "--records", rows, "--experiment-verdicts", self.path.parent / "few.json", "-o",
+                    self.path.parent / "few.html")
+        self.assertEqual(done.returncode, 0, done.stderr)
+        self.assertIn("no claim of the verdicts is called &#x27;podm-keeps-its-rate&#x27;",
+                      self.answers((self.path.parent / "few.html").read_text())["holds"])
 
     def test_without_rows_nothing_is_claimed(self):
         with tempfile.TemporaryDirectory() as folder:

@@ -92,6 +92,23 @@ const std::map<std::string, SetValue> kSetters = {
        mesh_of(row).cells = many(value);
        mesh_of(row).virtual_time.emplace().phases_s = {{"refine", kMuch}};
      }},
+    {"virtual_octree_share",
+     [](Row& row, double value) {
+       mesh_of(row).virtual_time.emplace().phases_s = {{"octree", value}, {"refine", 1 - value}};
+     }},
+    {"waiting_share",
+     [](Row& row, double value) {
+       mesh_of(row).virtual_time.emplace().worker_s = {{"begging", value}, {"compute", 1 - value}};
+     }},
+    {"distributing_share",
+     [](Row& row, double value) {
+       mesh_of(row).virtual_time.emplace().worker_s = {{"between_attempts", value}, {"compute", 1 - value}};
+     }},
+    {"worker_seconds_per_cell_but_distributing",
+     [](Row& row, double value) {
+       mesh_of(row).cells = many(1);
+       mesh_of(row).virtual_time.emplace().worker_s = {{"compute", kMuch * value}, {"locks", 1}};
+     }},
     {"virtual_cells_per_second_and_rank", set_rate_of_rank},
     {"virtual_refining_cells_per_second_and_rank", set_rate_of_rank},
     {"processor_seconds", set_seconds_of_rank},
@@ -170,6 +187,18 @@ const std::map<std::string, SetValue> kSetters = {
     {"dihedral_proved",
      [](Row& row, double value) {
        mesh_of(row).verdicts = {{"dihedral", value == 1 ? Proof::kPass : Proof::kNotRun}};
+     }},
+    {"radius_edge_proved",
+     [](Row& row, double value) {
+       mesh_of(row).verdicts = {{"radius_edge", value == 1 ? Proof::kPass : Proof::kFail}};
+     }},
+    {"boundary_angles_proved",
+     [](Row& row, double value) {
+       mesh_of(row).verdicts = {{"boundary_angles", value == 1 ? Proof::kPass : Proof::kFail}};
+     }},
+    {"topology_as_image",
+     [](Row& row, double value) {
+       mesh_of(row).topology = {2, 2, value == 1 ? 2UL : 1UL};
      }},
     {"poisson_jacobi_iterations",
      [](Row& row, double value) {

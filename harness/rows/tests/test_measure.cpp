@@ -22,14 +22,16 @@ Row full_row() {
                   "after": {"with_free_vertex": 10, "without": 40}},
     "optimization": {"least_aim_deg": 12, "largest_aim_deg": 160, "beyond_aim_before": 100, "beyond_aim": 9,
                      "beyond_bounds_before": 60, "beyond_bounds": 6, "obstacles": {}, "successes": {}},
-    "virtual": {"refine_s": 0.5, "phases_s": {"read": 0.1, "refine": 0.5, "extract": 0.15}},
+    "virtual": {"refine_s": 0.5, "phases_s": {"read": 0.1, "refine": 0.5, "extract": 0.125, "octree": 0.025},
+                "worker_s": {"compute": 3, "contention": 1.5, "begging": 2, "between_attempts": 0.5, "locks": 1}},
+    "topology": {"labels": 3, "components_as_image": 3, "euler_as_image": 2},
     "overhead_s": {"contention": 0.25, "begging": 7, "rollback": 0.125},
     "outcomes": {"out_of_leaf": 11},
     "hops": [60, 30, 10],
     "hops_by_kind": {"mesh_reads": [60, 30, 10], "mesh_writes": [40, 0, 60]},
     "counters": {"insertions": {"R1": 300, "R2": 100}},
     "guarantees": {"radius_edge": 2, "facet_angle": 1},
-    "verdicts": {"structure": "pass", "conformity": "pass", "labels": "fail", "fidelity": "not_run",
+    "verdicts": {"structure": "pass", "radius_edge": "pass", "boundary_angles": "fail", "conformity": "pass", "labels": "fail", "fidelity": "not_run",
                  "dihedral": "pass"}
   })"));
   row.process.counters = {{"llc_load_misses", Counter{3000UL, "s", {}}},
@@ -80,6 +82,7 @@ void take_mesh(Row& row) { row.mesh.reset(); }
 void take_threads(Row& row) { row.asked.erase("threads"); }
 void take_phases(Row& row) { row.mesh->phases_s.clear(); }
 void take_virtual(Row& row) { row.mesh->virtual_time.reset(); }
+void take_worker_seconds(Row& row) { row.mesh->virtual_time->worker_s.reset(); }
 void take_overhead(Row& row) { row.mesh->overhead_s.reset(); }
 void take_rollback(Row& row) { row.mesh->overhead_s->rollback.reset(); }
 void take_levels(Row& row) { row.measured.reset(); }
@@ -133,6 +136,10 @@ TEST(Measures, AreWhatTheTableSays) {
        [](Row& row) { row.side_by_side->front().phases_s.clear(); }},
       {"virtual_refining_seconds", 0.5, take_virtual},
       {"virtual_cells_per_second", 1600, [](Row& row) { row.mesh->virtual_time->phases_s.reset(); }},
+      {"virtual_octree_share", 0.025 / 0.75, take_virtual},
+      {"waiting_share", 0.25, take_worker_seconds},
+      {"distributing_share", 0.1875, take_worker_seconds},
+      {"worker_seconds_per_cell_but_distributing", 6.5 / 1200, take_worker_seconds},
       {"cells_over_one_machine", 1.2, [](Row& row) { row.resolved.reset(); }},
       {"bytes_per_cell_beyond_image", 130, [](Row& row) { row.process.bytes_per_cell_beyond_image.reset(); }},
       {"contention_seconds", 0.25, take_overhead},
@@ -150,7 +157,7 @@ TEST(Measures, AreWhatTheTableSays) {
       {"other_node_over_own", 1.5, take_own_memory},
       {"cells", 1200, take_mesh},
       {"guarantee_misses", 3, take_mesh},
-      {"unproved_claims", 2, take_verdicts},
+      {"unproved_claims", 3, take_verdicts},
       {"poisson_jacobi_iterations", 120, take_solve},
       {"poisson_amg_iterations", 12, take_solve},
       {"elasticity_jacobi_iterations", 240, take_solve},
@@ -162,6 +169,9 @@ TEST(Measures, AreWhatTheTableSays) {
       {"conformity_proved", 1, take_verdicts},
       {"dihedral_proved", 1, take_verdicts},
       {"fidelity_proved", 0, take_verdicts},
+      {"radius_edge_proved", 1, take_verdicts},
+      {"boundary_angles_proved", 0, take_verdicts},
+      {"topology_as_image", 0, [](Row& row) { row.mesh->topology.reset(); }},
       {"replay_equal", 1, [](Row& row) { row.replay.reset(); }},
       {"ended", 1, nullptr},
       {"passed", 1, nullptr},
@@ -231,6 +241,17 @@ TEST(Measures, OfTrialsTellFailedOnesFromUnmetOnes) {
     row.replay = {end, ""};
     EXPECT_EQ(find_measure("replay_equal")->read(row).number, 0);
   }
+}
+
+TEST(Measures, OfTopologyNeedEachLabelToBeAsInTheImage) {
+  const auto topology = [](std::uint64_t components, std::uint64_t euler) {
+    Row row = full_row();
+    row.mesh->topology = {3, components, euler};
+    return *find_measure("topology_as_image")->read(row).number;
+  };
+  EXPECT_EQ(topology(3, 3), 1);
+  EXPECT_EQ(topology(2, 3), 0);
+  EXPECT_EQ(topology(3, 2), 0);
 }
 
 // Reading the image costs 1000 misses whatever the size; a further insertion 2.

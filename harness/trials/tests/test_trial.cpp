@@ -79,6 +79,28 @@ TEST_F(TrialTest, DihedralAnglesAreThoseThatTheVerifierCounts) {
             Json({{"least", 7.5}, {"largest", 160.25}, {"counts", {0, 4, 2}}}));
 }
 
+TEST_F(TrialTest, TopologyIsTheVerifiersCountBesideTheImages) {
+  const auto topology_of = [&](const std::string& labels) {
+    const std::string report =
+        R"({"claims":{"surface":{"verdict":"pass","details":{"labels":[)" + labels + "]}}}}";
+    const std::string mesher = fake_mesher(folder_, write_record(kGoodRecord)),
+                      verifier = fake_verifier(folder_, "echo '" + report + "' > \"$report\"");
+    return TrialRunner({mesher, verifier})
+        .run(some_trial(), prepared(some_trial()), folder_.path())
+        .mesh.value()
+        .topology;
+  };
+  const std::string image = R"("image":{"components_6":3,"components_26":2,"euler_6":4,"euler_26":1})";
+  const std::string same = R"({"components":2,"euler":1,)" + image + "}",
+                    between = R"({"components":3,"euler":2,)" + image + "}",
+                    torn = R"({"components":4,"euler":4,)" + image + "}",
+                    holed = R"({"components":2,"euler":0,)" + image + "}",
+                    no_image = R"({"components":2,"euler":1})";
+  EXPECT_EQ(to_json(topology_of(same + "," + between + "," + torn + "," + holed)),
+            Json({{"labels", 4}, {"components_as_image", 3}, {"euler_as_image", 3}}));
+  EXPECT_FALSE(topology_of(same + "," + no_image)) << "nothing to compare with";
+}
+
 TEST_F(TrialTest, OptimisedMeshesAreAskedForAnglesAndNotForDelaunay) {
   const auto claims_asked_for = [&](Json options, const std::string& record) {
     Trial trial = some_trial();
