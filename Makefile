@@ -29,7 +29,8 @@ help:
 	@echo "make python        the Python package podm, in build/python/"
 	@echo "make install       programs, what they run and the library, in PREFIX=/usr/local (DESTDIR=FOLDER: below that)"
 	@echo "make peers         what \`make experiments\` compares and counts with: TetGen, Gmsh and likwid as packages, and"
-	@echo "                   CGAL's mesher (GPL, compiles for some 3 minutes, stays in build/bin/)"
+	@echo "                   CGAL's mesher (GPL, compiles for some 3 minutes, stays in build/bin/); CGAL6=FOLDER: also"
+	@echo "                   that of the CGAL 6 whose headers are in FOLDER/include"
 	@echo "make setup         install the Debian 12 packages of all of these (root or sudo; otherwise says what to run)"
 	@echo "make clean         remove build folders; results stay"
 	@echo
@@ -59,7 +60,7 @@ install: build
 # Configured anew: the packages that it looks for may have come since.
 peers: build
 	@scripts/setup peers
-	$(CONFIGURE)
+	$(CONFIGURE) $(if $(CGAL6),-DPODM_CGAL6="$(abspath $(CGAL6))")
 	cmake --build build --target peers
 
 test:

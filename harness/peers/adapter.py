@@ -1,5 +1,7 @@
-"""What the adapters of this folder share: the contract's command line, podm's surface, the record."""
+"""What the adapters of this folder share: the contract's command line, runs of podm, its surface, the record."""
 import argparse
+import dataclasses
+import hashlib
 import json
 import os
 import pathlib
@@ -14,6 +16,8 @@ EXIT_ABSENT = 77
 # A regular tetrahedron of circumradius 1: what a bound of the circumradius means to meshers that bound edge or volume.
 EDGE_OF_UNIT_RADIUS = (8 / 3) ** 0.5
 VOLUME_OF_UNIT_RADIUS = EDGE_OF_UNIT_RADIUS**3 / 72**0.5
+# Phases of podm that turn the image in memory into a mesh in memory.
+WHOLE = ("transform", "allocate", "octree", "initial", "refine", "closing", "extract")
 
 
 def absent(reason):
@@ -79,16 +83,61 @@ def read_ply(path):
     return label, points, faces["vertices"]
 
 
-def boundary_surface(options):
-    """podm's surface of the image: points, triangles, the labels on both sides of each (0: outside), seconds.
+def podm_version(options):
+    """"podm 0.1.0 (1a2b3c4d5e6f)": its version and the beginning of its program's hash; "podm" where none is given."""
+    if not options.podm:
+        return "podm"
+    version = subprocess.run([options.podm, "--version"], check=True, capture_output=True, text=True).stdout
+    digest = hashlib.sha256(pathlib.Path(options.podm).read_bytes()).hexdigest()
+    return f"{version.splitlines()[0]} ({digest[:12]})"
 
-    podm writes a closed surface for each label; where two labels meet, their triangles are the same and become one."""
-    surface = os.path.join(options.output, "surface")
-    command = [options.podm, "mesh", options.image, "-o", surface + ".vtu", "--surface", surface + ".ply", "--quiet"]
-    for name in ("radius", "delta"):
-        if getattr(options, name):
-            command += ["--" + name, str(getattr(options, name))]
-    _, seconds, _ = run(command, surface + ".log")
+
+def run_podm(options, mesh, *switches, radius=None):
+    """Meshes the image into the file `mesh`; returns podm's record."""
+    record = mesh + ".jsonl"
+    pathlib.Path(record).unlink(missing_ok=True)  # podm appends
+    command = [options.podm, "mesh", options.image, "-o", mesh, "--record", record, "--quiet",
+               "--threads", str(options.threads), *switches]
+    for name, bound in (("--radius", radius), ("--delta", options.delta)):
+        command += [name, repr(bound)] if bound else []
+    run(command, mesh + ".log")
+    return json.loads(pathlib.Path(record).read_text())
+
+
+def whole_seconds(record):
+    """Seconds of podm from the image in memory to the mesh in memory."""
+    return sum(seconds for phase, seconds in record["phases_s"].items() if phase in WHOLE)
+
+
+def surface_alone(options, *switches):
+    """podm's record of a mesh that the surface alone drives: the surface of any radius that is not far below delta.
+
+    Without delta podm derives delta from the radius, so the radius is given then and all its cells are made."""
+    radius = None if options.delta else options.radius
+    return run_podm(options, os.path.join(options.output, "surface.vtu"), *switches, radius=radius)
+
+
+def evidence_of(record):
+    """What a row keeps of another run of podm."""
+    return {key: record[key] for key in ("cells", "vertices", "boundary_facets", "phases_s", "mesh_sha256")}
+
+
+@dataclasses.dataclass(frozen=True)
+class Surface:
+    """The boundary that podm has made. `sides`: the labels on both sides of each triangle (0: outside). `seconds`:
+    from the image in memory to the mesh in memory that has this boundary. `evidence`: of that run."""
+
+    points: np.ndarray
+    triangles: np.ndarray
+    sides: np.ndarray
+    seconds: float
+    evidence: dict
+
+
+def boundary_surface(options):
+    """podm writes a closed surface for each label; where two labels meet, their triangles are the same and become
+    one."""
+    record = surface_alone(options, "--surface", os.path.join(options.output, "surface.ply"))
     points, triangles, labels = [], [], []
     for path in sorted(pathlib.Path(options.output).glob("surface_*.ply")):
         label, points_of_label, triangles_of_label = read_ply(path)
@@ -102,7 +151,7 @@ def boundary_surface(options):
     np.maximum.at(sides[:, 0], same.reshape(-1), labels)
     np.add.at(sides[:, 1], same.reshape(-1), labels)
     sides[:, 1] -= sides[:, 0]
-    return points, triangles[first], sides, seconds
+    return Surface(points, triangles[first], sides, whole_seconds(record), evidence_of(record))
 
 
 def write_record(output, **record):

@@ -1,5 +1,5 @@
-"""What the adapters of CGAL's mesh generation share: images and meshes to and from cgal_mesh3, a program beside podm
-(GPL-3.0-or-later, built by `make peers`).
+"""What the adapters of CGAL's mesh generation share: images and meshes to and from cgal_mesh3 and its likes, programs
+beside podm (GPL-3.0-or-later, built by `make peers`).
 
 The radius is CGAL's cell_size, delta its facet_size; facet angle 30 degrees and radius-edge ratio 1.93 are as podm's.
 CGAL reads INR, so a NIfTI image is rewritten, and the mesh is taken to the image's own frame.
@@ -23,9 +23,15 @@ def version_of(program):
     def version(options):
         path = path_of(program, options)
         if not os.access(path, os.X_OK):
-            adapter.absent(f"{program} is not built beside podm: make peers")
+            adapter.absent(why_not_built(program))
         return subprocess.run([path, "--version"], check=True, capture_output=True, text=True).stdout.strip()
     return version
+
+
+def why_not_built(program):
+    if program.startswith("cgal6"):
+        return "CGAL 6 headers were not given: make peers CGAL6=FOLDER"
+    return f"{program} is not built beside podm: make peers"
 
 
 def path_of(program, options):
@@ -105,9 +111,11 @@ def run(program, sequential, parallel, optimisers=(), promises=PROMISES):
                                           *switches, "--output", inside("voxels.mesh")], inside("cgal.log"))
     measured = json.loads(log.splitlines()[-1])
     move_to_frame(inside("voxels.mesh"), inside("mesh.mesh"), info["spacing_mm"], info["affine"])
-    phases_s = {"refine": measured["seconds"], **{name: measured[f"{name}_seconds"] for name in optimisers}}
+    phases_s = {"read": measured["read_seconds"], "prepare": measured["prepare_seconds"],
+                "refine": measured["seconds"], **{name: measured[f"{name}_seconds"] for name in optimisers}}
     adapter.write_record(options.output, mesh="mesh.mesh", cells=measured["cells"], vertices=measured["vertices"],
                          boundary_facets=measured["boundary_facets"], phases_s=phases_s,
                          peak_rss_bytes=peak_rss_bytes, threads={"asked": options.threads, "used": options.threads},
-                         options={"switches": switches, "queue": measured["options"]["queue"]},
+                         options={"switches": switches, "queue": measured["options"]["queue"],
+                                  "cgal": measured["options"]["cgal"]},
                          promises=list(promises))

@@ -64,6 +64,32 @@ Value refining_seconds(const Row& row) {
   return row.mesh ? refining_seconds_of(row.mesh->phases_s) : absent("rows have no phases_s");
 }
 
+// From the input in memory to a mesh in memory: eq. (1) less reading. For a mesher that begins with a
+// finished surface the making of that surface counts.
+Value whole_seconds(const Row& row) {
+  const Value all = seconds(row);
+  if (!all.number) return all;
+  const double* const read_s = row.mesh->phases_s.find("read");
+  return {*all.number - (read_s == nullptr ? 0 : *read_s), ""};
+}
+Value whole_cells_per_second(const Row& row) { return quotient(cells(row), whole_seconds(row)); }
+
+// From the finished surface to the mesh. Cells that came with the surface are not counted.
+Value volume_seconds(const Row& row) {
+  const double* const surface_s = row.mesh ? row.mesh->phases_s.find("surface") : nullptr;
+  if (surface_s == nullptr) return absent("rows have no phases_s/surface");
+  return {*whole_seconds(row).number - *surface_s, ""};
+}
+Value volume_cells_per_second(const Row& row) {
+  if (!row.mesh) return absent("rows have no cells");
+  const auto num_before = static_cast<double>(row.mesh->surface_cells.value_or(0));
+  return quotient({static_cast<double>(row.mesh->cells) - num_before, ""}, volume_seconds(row));
+}
+
+Value boundary_facets(const Row& row) {
+  return number_or_reason(row.mesh ? row.mesh->boundary_facets : std::nullopt, "boundary_facets");
+}
+
 Value cells_per_second(const Row& row) { return quotient(cells(row), seconds(row)); }
 Value cells_per_second_and_core(const Row& row) { return quotient(cells_per_second(row), threads(row)); }
 Value refining_cells_per_second(const Row& row) { return quotient(cells(row), refining_seconds(row)); }
@@ -438,6 +464,10 @@ using enum Meaning;
 constexpr Measure kMeasures[] = {
     {"seconds", "s", kLess, kClock, seconds},
     {"refining_seconds", "s", kLess, kClock, refining_seconds},
+    {"whole_seconds", "s", kLess, kClock, whole_seconds},
+    {"whole_cells_per_second", "1/s", kMore, kClock, whole_cells_per_second},
+    {"volume_seconds", "s", kLess, kClock, volume_seconds},
+    {"volume_cells_per_second", "1/s", kMore, kClock, volume_cells_per_second},
     {"cells_per_second", "1/s", kMore, kClock, cells_per_second},
     {"cells_per_second_and_core", "1/s", kMore, kClock, cells_per_second_and_core},
     {"refining_cells_per_second", "1/s", kMore, kClock, refining_cells_per_second},
@@ -473,6 +503,7 @@ constexpr Measure kMeasures[] = {
     {"memory_over_last_cache", "", kMore, kClock, memory_over_last_cache},
     {"other_node_over_own", "", kMore, kClock, other_node_over_own},
     {"cells", "", kMore, kCost, cells},
+    {"boundary_facets", "", kMore, kCost, boundary_facets},
     {"guarantee_misses", "", kLess, kFaults, guarantee_misses},
     {"unproved_claims", "", kLess, kFaults, unproved_claims},
     {"poisson_jacobi_iterations", "", kLess, kFaults,

@@ -223,6 +223,9 @@ struct MeshRecord {
   std::optional<RanksRecord> ranks;
   ByName<double> phases_s;
   std::uint64_t cells = 0, vertices = 0;
+  std::optional<std::uint64_t> boundary_facets;
+  std::optional<std::uint64_t>
+      surface_cells;  ///< those of `cells` that come with the surface of phase `surface`
   std::optional<double> cells_per_second;
   double refine_cells_per_second = 0;
   std::optional<OutcomesRecord> outcomes;
@@ -256,6 +259,8 @@ struct MeshRecord {
                       field("phases_s", &M::phases_s),
                       field("cells", &M::cells),
                       field("vertices", &M::vertices),
+                      field_if_any("boundary_facets", &M::boundary_facets),
+                      field_if_any("surface_cells", &M::surface_cells),
                       field_if_any("cells_per_second", &M::cells_per_second),
                       field("refine_cells_per_second", &M::refine_cells_per_second),
                       field_if_any("outcomes", &M::outcomes),

@@ -6,6 +6,7 @@
 #include <filesystem>
 #include <functional>
 
+#include "rows/measure.h"
 #include "rows/statistics.h"
 
 namespace podm::bench {
@@ -14,6 +15,9 @@ namespace {
 using Line = std::vector<std::string>;
 using Rows = std::vector<const Row*>;
 
+constexpr const char* kRates =
+    "whole: from the input in memory to the mesh in memory. refining: without feature transform, allocation, "
+    "extraction,\nthe domain that CGAL prepares, and the surface that TetGen and HXT are given.\n";
 constexpr double kBytesPerMib = 1024.0 * 1024;
 
 // "-" without any value.
@@ -33,6 +37,21 @@ std::string memory_levels_of(const Rows& rows) {
   return memory_levels(records);
 }
 
+// "met, 9 claims proved"; of a mesher that promises some of the claims, how many of these it kept.
+std::string proofs_of(const MeshRecord& mesh) {
+  const ByName<Proof> verdicts = mesh.verdicts.value_or(ByName<Proof>{});
+  const auto num_proved = std::count_if(verdicts.begin(), verdicts.end(),
+                                        [](const auto& verdict) { return verdict.second == Proof::kPass; });
+  if (num_proved == 0) return "met";
+  if (!mesh.promises) return fmt::format("met, {} claims proved", num_proved);
+  const auto num_kept = std::count_if(mesh.promises->begin(), mesh.promises->end(), [&](const auto& claim) {
+    const Proof* const proof = verdicts.find(claim);
+    return proof != nullptr && *proof == Proof::kPass;
+  });
+  return fmt::format("met, {} of {} claims proved, {} of {} promised ones", num_proved, verdicts.size(),
+                     num_kept, mesh.promises->size());
+}
+
 // What became of the repeats: the first fault where there is one.
 std::string verdict(const Rows& repeats) {
   for (const Row* row : repeats)
@@ -41,10 +60,7 @@ std::string verdict(const Rows& repeats) {
                          row->reason);
   if (repeats.front()->measured) return memory_levels_of(repeats);
   const auto& mesh = repeats.front()->mesh;
-  const auto verdicts = mesh ? mesh->verdicts.value_or(ByName<Proof>{}) : ByName<Proof>{};
-  const auto num_proved = std::count_if(verdicts.begin(), verdicts.end(),
-                                        [](const auto& verdict) { return verdict.second == Proof::kPass; });
-  return num_proved > 0 ? fmt::format("met, {} claims proved", num_proved) : "met";
+  return mesh ? proofs_of(*mesh) : "met";
 }
 
 std::string print_count(double count) { return thousands(static_cast<std::uint64_t>(count)); }
@@ -54,6 +70,11 @@ Line line_of(const Rows& repeats) {
   Rows proved;
   for (const Row* row : repeats)
     if (row->status == Status::kOk) proved.push_back(row);
+  const auto measured = [&proved](const char* name) {
+    const Measure& measure = *find_measure(name);
+    return median_over<Row>(
+        proved, [&](const Row& row) { return measure.read(row).number; }, print_count);
+  };
   const auto over_meshes = [&proved](const auto& number_of, const auto& print) {
     return median_over<Row>(
         proved, [&](const Row& row) { return row.mesh ? Number(number_of(*row.mesh)) : Number(); }, print);
@@ -64,8 +85,10 @@ Line line_of(const Rows& repeats) {
           std::to_string(repeats.size()),
           over_meshes([](const MeshRecord& mesh) { return mesh.cells; }, print_count),
           over_meshes([](const MeshRecord& mesh) { return mesh.vertices; }, print_count),
+          measured("boundary_facets"),
           over_meshes(seconds, [](double s) { return fmt::format("{:.2f}", s); }),
-          over_meshes([](const MeshRecord& mesh) { return mesh.refine_cells_per_second; }, print_count),
+          measured("whole_cells_per_second"),
+          measured("refining_cells_per_second"),
           median_over<Row>(
               proved, [](const Row& row) { return Number(row.process.peak_rss_bytes); },
               [](double bytes) { return fmt::format("{:.0f}", bytes / kBytesPerMib); }),
@@ -114,15 +137,18 @@ std::string align(const std::vector<Line>& lines, std::size_t num_text_columns) 
 }
 
 std::string format_table(const std::vector<std::vector<Row>>& rows_of_trials) {
-  std::vector<Line> lines{{"trial", "input", "runs", "cells", "vertices", "seconds", "refine cells/s",
-                           "peak MiB", "bytes/cell", "guarantees"}};
+  std::vector<Line> lines{{"trial", "input", "runs", "cells", "vertices", "facets", "seconds",
+                           "whole cells/s", "refining cells/s", "peak MiB", "bytes/cell", "guarantees"}};
+  bool has_rates = false;
   for (const std::vector<Row>& rows : rows_of_trials) {
     Rows repeats;
     for (const Row& row : rows)
       if (!row.warmup) repeats.push_back(&row);
-    if (!repeats.empty()) lines.push_back(line_of(repeats));
+    if (repeats.empty()) continue;
+    lines.push_back(line_of(repeats));
+    has_rates = has_rates || repeats.front()->mesh;
   }
-  return align(lines, 2);
+  return align(lines, 2) + (has_rates ? kRates : "");
 }
 
 }  // namespace podm::bench

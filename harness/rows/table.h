@@ -13,9 +13,9 @@ namespace podm::bench {
 /// the first `num_text_columns` are aligned to the left.
 std::string align(const std::vector<std::vector<std::string>>& lines, std::size_t num_text_columns);
 
-/// A line for each trial that has rows besides those of warm-ups. Seconds are those
-/// of meshing_seconds(); numbers are medians over the repeats that hold all they promise, and "-" without
-/// any.
+/// A line for each trial that has rows besides those of warm-ups, and below what the rates leave out. Seconds
+/// are those of meshing_seconds(); numbers are medians over the repeats that hold all they promise, and "-"
+/// without any.
 std::string format_table(const std::vector<std::vector<Row>>& rows_of_trials);
 
 /// "L1 cache 4.1 cycles, L2 cache 14 cycles, ...": medians over records that measure the same machine.

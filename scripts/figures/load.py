@@ -21,6 +21,7 @@ REFINING = ("octree", "initial", "refine", "closing")
 # What a series varies; any other choice in a trial's name makes another series.
 VARIED = ("algorithm", "threads", "seed", "mesher", "input")
 GROWING = "-growing"  # ends the name of trials whose image grows with the cores
+BOUNDS_OF = re.compile(r"-bounds-of-\w+$")  # ends the names of trials of one series whose meshers have their own bounds
 ON_CORES = re.compile(r"-on-\d+$")  # ends the names of trials of one series, each with a radius for its cores
 
 
@@ -62,6 +63,7 @@ def derived(row):
         "grows": is_growing(row),
         "timed": timed,
         "seconds": sum(timed.values()) if timed else None,
+        "whole_s": sum(seconds for phase, seconds in timed.items() if phase != "read") if timed else None,
         "refining_s": sum(timed.get(phase, 0.0) for phase in REFINING) if timed else None,
         "headline": not doubt,
         "doubt": doubt,
@@ -103,7 +105,7 @@ def machine_of(row):
 def setting_of(row):
     """The trial's name without the choices that a series varies."""
     base, *choices = row.get("trial", "").split(",")
-    base = base.partition(GROWING)[0] + GROWING if is_growing(row) else ON_CORES.sub("", base)
+    base = base.partition(GROWING)[0] + GROWING if is_growing(row) else ON_CORES.sub("", BOUNDS_OF.sub("", base))
     return ",".join([base, *(one for one in choices if one.partition("=")[0] not in VARIED)])
 
 

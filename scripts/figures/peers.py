@@ -1,68 +1,143 @@
-"""Cells per second of PODM and of other meshers, where an experiment gave all of them the same image and bounds."""
+"""Cells per second of PODM and of other meshers, where an experiment gave all of them the same image.
+
+The whole is all that turns the image in memory into a mesh in memory; for meshers that begin with a finished surface
+the making of that surface counts, and a column of its own has their volume part beside PODM's."""
+import re
+
 import pandas
 
 from . import scaling
+from .spread import order_interval
 from .table1 import with_bounds
 
-COLUMNS = ["experiment", "setting", "image", "machine", "mesher", "cores", "n", "cells",
-           *(name + end for name in ("refining_rate", "rate") for end in ("", "_low", "_high")), "misses", "size_rank"]
+RATES = ("whole_rate", "refining_rate", "volume_rate", "whole_ratio", "volume_ratio")
+COLUMNS = ["experiment", "setting", "image", "machine", "mesher", "version", "cores", "n", "cells", "facets",
+           *(name + end for name in RATES for end in ("", "_low", "_high")), "coverage", "promised", "kept", "misses",
+           "size_rank"]
 GROUP = ["machine", "build", "experiment", "setting", "image"]
+OWN, OWN_VOLUME = "podm", "podm_volume"
+FIRST_SURFACE = "surface"  # the phase of meshers that begin with a finished surface
+LEFT_OUT = ("Refining leaves out the feature transform, allocation and extraction of PODM, the domain that CGAL prepares, "
+            "and the surface that TetGen and HXT are given.")
+COVERAGE = ("In brackets: from one order statistic to another; within rounds, so that a machine that grows slower does "
+            "so for both. The column coverage is the probability that such an interval holds the median.")
 
 
 def peers(frame):
-    """One line a mesher of each trial that other meshers ran too, on one core; largest meshes of PODM first. `rate` is
-    that of equation 1, nan where a mesher does not tell its seconds of reading. `misses`: claims that failed, promised
-    or not."""
+    """One line a mesher of each trial that other meshers ran too; on one core first, then largest meshes of PODM first.
+
+    Ratios are PODM's rate over the mesher's. `misses`: claims that failed, promised or not."""
     rows = _comparable(frame)
     lines = []
     for values, group in rows.groupby(GROUP, sort=False) if len(rows) else ():
-        if not {"podm"} < set(group["mesher"]):
+        if not {OWN} < set(group["mesher"]):
             continue
-        size = group.loc[group["mesher"] == "podm", "cells"].median()
-        lines += [{**dict(zip(GROUP, values)), "mesher": mesher, "size_rank": size, **_line(scaling.of_one_size(one))}
-                  for mesher, one in group.groupby("mesher")]
+        by_mesher = {mesher: scaling.of_one_size(one) for mesher, one in group.groupby("mesher")}
+        shared = {**dict(zip(GROUP, values)), "cores": group["cores"].max(),
+                  "size_rank": by_mesher[OWN]["cells"].median()}
+        lines += [{**shared, "mesher": mesher, **_line(one, by_mesher)} for mesher, one in by_mesher.items()]
     table = pandas.DataFrame(lines, columns=COLUMNS)
-    order = ["size_rank", "experiment", "setting", "refining_rate"]
-    return table.sort_values(order, ascending=[False, True, True, False], ignore_index=True).drop(columns="size_rank")
+    order = ["cores", "size_rank", "experiment", "setting", "whole_rate"]
+    return table.sort_values(order, ascending=[True, False, True, True, False],
+                             ignore_index=True).drop(columns="size_rank")
 
 
 def readable(table):
-    shown = table[["setting", "image", "mesher", "n"]].copy()
+    shown = table[["setting", "image", "cores", "mesher", "version", "n"]].copy()
     shown["M cells"] = [f"{cells / 1e6:.2f}" for cells in table["cells"]]
-    for name, title in (("refining_rate", "refining, M cells/s"), ("rate", "equation 1, M cells/s")):
-        columns = zip(*(table[name + end] * 1e-6 for end in ("", "_low", "_high")))
-        shown[title] = [with_bounds(*values, 3) or "unavailable: its seconds of reading are not told"
-                        for values in columns]
-    shown["claims missed"] = table["misses"]
+    shown["facets"] = [f"{facets:.0f}" if facets == facets else "not told" for facets in table["facets"]]
+    shown["bounds met"] = [_bounds_met(line) for line in table.to_dict("records")]
+    for name, title in (("whole_rate", "whole, M cells/s"), ("refining_rate", "refining, M cells/s"),
+                        ("volume_rate", "from the surface, M cells/s")):
+        shown[title] = _with_bounds(table, name, 1e-6, 3)
+    shown["PODM over it, whole"] = _with_bounds(table, "whole_ratio", 1, 2)
+    shown["PODM over it, from the surface"] = _with_bounds(table, "volume_ratio", 1, 2)
+    shown["coverage"] = [f"{100 * one:.0f} %" if one == one else "" for one in table["coverage"]]
     return shown
 
 
+def speed_table(frame):
+    """What a page says of speed: mesher, version, cores, cells, facets, the rate of the whole and PODM's over it."""
+    table = peers(frame)
+    shown = readable(table[table["mesher"] != OWN_VOLUME])
+    return shown[["setting", "cores", "mesher", "version", "n", "M cells", "facets", "bounds met", "whole, M cells/s",
+                  "PODM over it, whole", "coverage"]]
+
+
+def _with_bounds(table, name, scale, digits):
+    columns = zip(*(table[name + end] * scale for end in ("", "_low", "_high")))
+    return [with_bounds(*values, digits) for values in columns]
+
+
+def _bounds_met(line):
+    text = f"{line['kept']} of {line['promised']} promised"
+    return text + (f"; misses {line['misses']}" if line["misses"] else "")
+
+
 def _comparable(frame):
-    """Rows of one thread; of others also those that miss claims which they do not promise."""
-    if frame.empty or not (frame["mesher"] != "podm").any():
+    """Verified rows; of others also those that miss claims which they do not promise."""
+    if frame.empty or not (frame["mesher"] != OWN).any():
         return frame.iloc[:0]
-    is_theirs = (frame["mesher"] != "podm") & (frame["status"] == "ok") & (frame["warmup"] != True)  # noqa: E712
-    rows = frame[(frame["headline"] & (frame["mesher"] == "podm") | is_theirs) & (frame["cores"] == 1)]
-    rows = scaling.with_keys(rows)
-    return rows[(rows["basis"] == "measured") & rows["algorithm"].isin(["podm", *rows["mesher"]])]
+    is_theirs = (frame["mesher"] != OWN) & (frame["status"] == "ok") & (frame["warmup"] != True)  # noqa: E712
+    rows = frame[frame["headline"] & (frame["mesher"] == OWN) | is_theirs]
+    rows = scaling.with_keys(rows[rows["cores"].notna()])
+    return rows[(rows["basis"] == "measured") & rows["algorithm"].isin([OWN, *rows["mesher"]])]
 
 
-def _line(group):
-    refining, whole = group["cells"] / group["refining_s"], group["cells"] / group["seconds"]
-    line = {"n": len(group), "cores": 1, "cells": group["cells"].median()}
-    line.update(_bounds("refining_rate", refining))
-    if _tells_reading(group):
-        line.update(_bounds("rate", whole))
-    return {**line, "misses": ", ".join(misses_of(group))}
+def _line(rows, by_mesher):
+    facets = rows["boundary_facets"].median() if "boundary_facets" in rows else float("nan")
+    line = {"version": version_of(rows.iloc[-1]), "n": len(rows), "cells": rows["cells"].median(), "facets": facets,
+            "misses": ", ".join(misses_of(rows)), **_promises(rows)}
+    line.update(_bounds("whole_rate", _whole_rate(rows)))
+    line.update(_bounds("refining_rate", rows["cells"] / rows["refining_s"]))
+    line.update(_bounds("volume_rate", _volume_rate(rows)))
+    if rows is not by_mesher[OWN]:
+        line.update(_ratio("whole_ratio", _whole_rate, by_mesher[OWN], rows))
+    if OWN_VOLUME in by_mesher and rows is not by_mesher[OWN_VOLUME]:
+        line.update(_ratio("volume_ratio", _volume_rate, by_mesher[OWN_VOLUME], rows))
+    return line
+
+
+def _whole_rate(rows):
+    return rows["cells"] / rows["whole_s"]
+
+
+def _volume_rate(rows):
+    """Of meshers that begin with a finished surface, nan for others. Cells that came with it are not counted."""
+    if "timed." + FIRST_SURFACE not in rows:
+        return pandas.Series(float("nan"), rows.index)
+    before = rows["surface_cells"].fillna(0) if "surface_cells" in rows else 0
+    return (rows["cells"] - before) / (rows["whole_s"] - rows["timed." + FIRST_SURFACE])
 
 
 def _bounds(name, values):
-    return dict(zip((name, name + "_low", name + "_high"), scaling.median_interval(values)))
+    values = values.dropna()
+    return dict(zip((name, name + "_low", name + "_high"), (values.median(), *order_interval(values)[:2])))
 
 
-def _tells_reading(group):
-    """A mesher that is given a surface pays for reading in that phase."""
-    return any(f"timed.{phase}" in group and group[f"timed.{phase}"].notna().any() for phase in ("read", "surface"))
+def _ratio(name, rate_of, own, others):
+    """PODM's rate over the other's in each round that both have."""
+    by_round = [rate_of(rows).groupby(rows["repeat"]).last() for rows in (own, others)]
+    ratios = (by_round[0] / by_round[1]).dropna()
+    return {**_bounds(name, ratios), **({"coverage": order_interval(ratios)[2]} if len(ratios) else {})}
+
+
+def version_of(row):
+    """"CGAL 5.5.1" of all that a mesher says of its version."""
+    told = row.get("programs.peer.version")
+    told = told if isinstance(told, str) else row.get("programs.podm.version", "")
+    found = re.match(r"\S+ [\d.]*\d", told)
+    return found.group() if found else told
+
+
+def _promises(rows):
+    """How many claims the mesher promises, and how many of these passed for all of the rows."""
+    names = [name for name in rows if name.startswith("verdicts.") and rows[name].notna().any()]
+    promised = rows["promises"].iloc[-1] if "promises" in rows else None
+    if not isinstance(promised, list):
+        promised = [name.removeprefix("verdicts.") for name in names]
+    kept = [claim for claim in promised if (rows.get(f"verdicts.{claim}") == "pass").all()]
+    return {"promised": len(promised), "kept": len(kept)}
 
 
 def misses_of(group):

@@ -1,7 +1,7 @@
 """The page's HTML from an Outcome: four answers first, then everything they rest on. Everything is inlined."""
 from html import escape
 
-from figures import experiment_verdicts
+from figures import experiment_verdicts, peers
 from figures.outcome import readable_experiments, readable_verdicts
 from figures.write import svg_of
 
@@ -23,7 +23,7 @@ FIGURE_TITLES = {"fig1": "Figure 1: quality of the cells",
                 "dihedral": "Dihedral angles before and after the stages against slivers",
                 "solvers": "What meshes cost a solver: iterations of conjugate gradients"}
 TABLE_TITLES = {"table1": "Table 1: weak scaling", "table2": "Table 2: accesses by hops",
-                "table3": "Table 3: memory levels", "peers": "Beside other meshers, one core",
+                "table3": "Table 3: memory levels", "peers": "Beside other meshers",
                 "solvers": "Slivers and solvers: iterations of conjugate gradients",
                 "simulated": "Simulated: every trial of virtual workers", "cache": "Cache behaviour",
                 "distributed": "Ranks that share no memory",
@@ -38,8 +38,9 @@ NOTES = {
                  "no time of theirs.",
     "solvers": "P1 elements, 0 on the outer boundary, until the residual is 1e-8 of the first. Eigenvalues are the "
                "largest of the matrix over its diagonal. The other meshers' sizes are those nearest to as many cells.",
-    "peers": "Each mesher has the image and bounds of PODM. One that tells no seconds of reading has no rate by "
-             "equation 1.",
+    "peers": "Whole: from the image in memory to the mesh in memory, with the making of the surface that TetGen and HXT "
+             f"are given. {peers.LEFT_OUT} From the surface: the volume part of those two, beside that of PODM "
+             f"(podm_volume), without the cells that come with the surface. {peers.COVERAGE}",
 }
 # In the order of the section: what was fitted, what is left of it, then what is predicted.
 MACHINE_TABLES = {"machine": "Machines described, and their constants",
@@ -121,7 +122,7 @@ def _tables(outcome):
         data, shown = outcome.tables[name]
         classes = [basis.split()[0].strip(",") for basis in shown["basis"]] if "basis" in shown else None
         series = "; ".join(data["series"].dropna().unique()) + "." if "series" in data else ""
-        brackets = "In brackets: bootstrap 95 % interval." if name in ("table1", "peers") else ""
+        brackets = "In brackets: bootstrap 95 % interval." if name == "table1" else ""
         note = " ".join(part for part in (series, brackets, NOTES.get(name, "")) if part)
         content = table_html(shown, title, classes) + (f'\n<p class="faint">{escape(note)}</p>' if note else "")
         made.append(fold(title, content, name not in FOLDED_TABLES))

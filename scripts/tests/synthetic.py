@@ -92,9 +92,9 @@ def with_levels(cycles):
 
 
 def peer(name, cells=1_000_000, **changes):
-    """A row of another mesher, which promises one claim and misses another."""
-    made = row(name, cells=cells, promises=["structure"], verdicts={**PASSED, "delaunay": "fail"},
-               phases_s={"refine": 10.0, "write": 3.0}, **changes)
+    """A row of another mesher, which begins with a surface, promises one claim and misses another."""
+    changes = {"phases_s": {"surface": 4.0, "refine": 10.0, "write": 3.0}, **changes}
+    made = row(name, cells=cells, promises=["structure"], verdicts={**PASSED, "delaunay": "fail"}, **changes)
     made["programs"]["peer"] = {"name": name, "version": "made up"}
     return made
 

@@ -217,10 +217,52 @@ class Others(unittest.TestCase):
         self.assertEqual(set(table.index), {"podm", "tetgen"}, "a failed run gives no rate")
         self.assertEqual((table.loc["podm", "n"], table.loc["podm", "refining_rate"]), (2, 3e6 / 24))
         self.assertEqual((table.loc["tetgen", "refining_rate"], table.loc["tetgen", "misses"]), (1e5, "delaunay"))
-        self.assertAlmostEqual(table.loc["podm", "rate"], 3e6 / 27.18)
-        self.assertTrue(math.isnan(table.loc["tetgen", "rate"]), "it tells no seconds of reading")
-        self.assertIn("unavailable: its seconds of reading are not told",
-                      list(peers.readable(peers.peers(frame_of(self.ROWS)))["equation 1, M cells/s"]))
+        self.assertAlmostEqual(table.loc["podm", "whole_rate"], 3e6 / 26.18, msg="all but reading and writing")
+        self.assertEqual(table.loc["tetgen", "whole_rate"], 1e6 / 14, "the making of its surface counts")
+        self.assertAlmostEqual(table.loc["tetgen", "whole_ratio"], 3e6 / 26.18 / (1e6 / 14))
+        self.assertTrue(math.isnan(table.loc["podm", "whole_ratio"]))
+        self.assertEqual((table.loc["tetgen", "promised"], table.loc["tetgen", "kept"]), (1, 1))
+        self.assertEqual((table.loc["podm", "promised"], table.loc["podm", "kept"]), (6, 6))
+
+    def test_ratios_are_within_rounds(self):
+        slow = [1.0, 3.0, 1.0, 1.0, 10.0, 1.0]  # how much slower the machine is in each round
+        ours = [synthetic.row(repeat=number, phases_s={"read": 9.0, "refine": 2.0 * factor})
+                for number, factor in enumerate(slow)]
+        theirs = [synthetic.peer("cgal", repeat=number, cells=3_000_000, phases_s={"prepare": factor, "refine": 7.0 * factor})
+                  for number, factor in enumerate(slow)]
+        line = peers.peers(frame_of([*ours, *theirs])).set_index("mesher").loc["cgal"]
+        self.assertEqual([line["whole_ratio" + end] for end in ("", "_low", "_high")], [4.0, 4.0, 4.0])
+        self.assertEqual(line["coverage"], 1 - 2 / 2**6)
+
+    def test_from_the_surface_volume_parts_are_compared(self):
+        parts = synthetic.peer("podm_volume", cells=3_000_000, surface_cells=1_000_000,
+                               phases_s={"surface": 20.0, "refine": 5.0})
+        table = peers.peers(frame_of([synthetic.row(), synthetic.peer("tetgen"), parts])).set_index("mesher")
+        self.assertEqual(table.loc["tetgen", "volume_rate"], 1e6 / 10)
+        self.assertEqual(table.loc["podm_volume", "volume_rate"], 2e6 / 5, "cells of the surface alone do not count")
+        self.assertEqual(table.loc["tetgen", "volume_ratio"], 4)
+        self.assertTrue(math.isnan(table.loc["podm", "volume_rate"]), "podm makes both in one")
+
+    def test_meshers_with_bounds_of_their_own_are_one_setting(self):
+        made = frame_of([synthetic.row(trial="size-0.3M-one"),
+                         synthetic.peer("cgal", trial="size-0.3M-one-bounds-of-cgal,mesher=cgal")])
+        self.assertEqual(set(made["setting"]), {"size-0.3M-one"})
+        self.assertEqual(list(peers.peers(made)["mesher"]), ["podm", "cgal"])
+
+    def test_cells_facets_bounds_and_version_stand_beside_the_speed(self):
+        rows = [synthetic.row(boundary_facets=300), synthetic.peer("tetgen", boundary_facets=310)]
+        rows[1]["programs"]["peer"]["version"] = "TetGen 1.5, AGPL-3.0-or-later, surface by podm"
+        shown = peers.speed_table(frame_of(rows)).set_index("mesher").loc["tetgen"]
+        self.assertEqual((shown["version"], shown["M cells"], shown["facets"]), ("TetGen 1.5", "1.00", "310"))
+        self.assertEqual(shown["bounds met"], "1 of 1 promised; misses delaunay")
+
+    def test_order_statistics_say_their_coverage(self):
+        self.assertEqual(spread.order_interval([3, 1, 2]), (1, 3, 0.75))
+        self.assertEqual(spread.order_interval(range(6)), (0, 5, 1 - 2 / 64))
+        low, high, coverage = spread.order_interval(range(9))
+        self.assertEqual((low, high), (1, 7), "nine values spare one at each end")
+        self.assertAlmostEqual(coverage, 1 - 2 * 10 / 512)
+        self.assertTrue(all(math.isnan(value) for value in spread.order_interval([1])))
 
     def test_no_comparison_without_both(self):
         for rows in ([], [synthetic.row()], [synthetic.peer("cgal")],

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// CGAL's 3D mesh generation as a peer of podm: a label image in, counts and the seconds of the meshing call
-// out.
+// CGAL's 3D mesh generation as a peer of podm. It reads a label image and prints counts, and seconds by
+// phase.
 #include <CGAL/Exact_predicates_inexact_constructions_kernel.h>
 #include <CGAL/Image_3.h>
 #include <CGAL/Labeled_mesh_domain_3.h>
@@ -22,6 +22,7 @@
 #include <fstream>
 #include <iostream>
 #include <nlohmann/json.hpp>
+#include <optional>
 #include <stdexcept>
 #include <string>
 
@@ -81,9 +82,10 @@ double seconds_of(const Work& work) {
   return std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
 }
 
-// "seconds" are those of refinement alone.
+// "seconds" are those of make_mesh_3: initial points, triangulation, refinement, and the start of TBB's
+// threads.
 template <class Concurrency>
-Json mesh(const Domain& domain, const Options& options) {
+void mesh(const Domain& domain, const Options& options, Json& result) {
   using Triangulation = typename CGAL::Mesh_triangulation_3<Domain, CGAL::Default, Concurrency>::type;
   using Complex = CGAL::Mesh_complex_3_in_triangulation_3<Triangulation>;
   using Criteria = CGAL::Mesh_criteria_3<Triangulation>;
@@ -93,7 +95,6 @@ Json mesh(const Domain& domain, const Options& options) {
                           params::facet_distance = options.facet_distance_mm,
                           params::cell_radius_edge_ratio = kRadiusEdgeBound,
                           params::cell_size = options.cell_size_mm);
-  Json result;
   Complex complex;
   result["seconds"] = seconds_of([&] {
     complex = CGAL::make_mesh_3<Complex>(domain, criteria, params::no_perturb(), params::no_exude());
@@ -105,16 +106,21 @@ Json mesh(const Domain& domain, const Options& options) {
   result["vertices"] = complex.triangulation().number_of_vertices();
   result["boundary_facets"] = complex.number_of_facets_in_complex();
   result["peak_rss_bytes"] = peak_resident_bytes();
-  return result;
 }
 
 Json run(const Options& options) {
-  const CGAL::Image_3 image = read_image(options.image_path);
-  const Domain domain = Domain::create_labeled_image_mesh_domain(image);
+  Json result;
+  CGAL::Image_3 image;
+  result["read_seconds"] = seconds_of([&] { image = read_image(options.image_path); });
+  std::optional<Domain> domain;
+  result["prepare_seconds"] =
+      seconds_of([&] { domain.emplace(Domain::create_labeled_image_mesh_domain(image)); });
   const tbb::global_control limit(tbb::global_control::max_allowed_parallelism,
                                   std::max<std::size_t>(options.threads, 1));
-  Json result = options.threads == 0 ? mesh<CGAL::Sequential_tag>(domain, options)
-                                     : mesh<CGAL::Parallel_tag>(domain, options);
+  if (options.threads == 0)
+    mesh<CGAL::Sequential_tag>(*domain, options, result);
+  else
+    mesh<CGAL::Parallel_tag>(*domain, options, result);
   result["options"] = {{"image", options.image_path},
                        {"cell_size_mm", options.cell_size_mm},
                        {"facet_size_mm", options.facet_size_mm},

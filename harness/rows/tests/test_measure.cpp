@@ -13,7 +13,7 @@ namespace {
 Row full_row() {
   Row row = made_up_row("1M", {{"threads", 4}, {"target_elements", 1000}});
   row.mesh = from_json<MeshRecord>(Json::parse(R"({
-    "cells": 1200, "vertices": 300, "refine_cells_per_second": 300, "stop_reason": "complete",
+    "cells": 1200, "vertices": 300, "boundary_facets": 280, "refine_cells_per_second": 300, "stop_reason": "complete",
     "phases_s": {"read": 1, "transform": 2, "allocate": 0.5, "calibrate": 50, "draw": 70, "initial": 1, "octree": 0.25,
                  "refine": 4, "closing": 0.75, "perturb": 2, "optimize": 1, "extract": 0.5, "measure": 60,
                  "write": 100},
@@ -124,10 +124,36 @@ TEST(Measures, OfRanksAreWhatTheTableSays) {
   EXPECT_DOUBLE_EQ(*find_measure("virtual_refining_seconds")->read(row_on_ranks()).number, 10);
 }
 
+constexpr std::pair<const char*, double> kFromSurface[] = {
+    {"volume_seconds", 4},
+    {"volume_cells_per_second", 300},
+};
+
+// Of a mesher that begins with a finished surface, the whole counts the surface and the volume part does not.
+TEST(Measures, FromTheSurfaceAreWhatTheTableSays) {
+  Row row = full_row();
+  row.mesh->phases_s = {{"read", 1}, {"surface", 6}, {"refine", 4}, {"write", 100}};
+  for (const auto& [name, number] : kFromSurface) {
+    const Measure* measure = find_measure(name);
+    ASSERT_NE(measure, nullptr) << name;
+    EXPECT_DOUBLE_EQ(measure->read(row).number.value(), number) << name;
+    EXPECT_FALSE(measure->read(full_row()).number)
+        << name << " of a mesher that makes surface and volume in one";
+    EXPECT_FALSE(measure->read(made_up_row("1M", {})).number) << name << " without a mesh";
+  }
+  EXPECT_DOUBLE_EQ(find_measure("whole_seconds")->read(row).number.value(), 10);
+  row.mesh->surface_cells = 800;
+  EXPECT_DOUBLE_EQ(find_measure("volume_cells_per_second")->read(row).number.value(), 100)
+      << "cells that came with the surface are none of the volume part's";
+  EXPECT_DOUBLE_EQ(find_measure("whole_cells_per_second")->read(row).number.value(), 120);
+}
+
 TEST(Measures, AreWhatTheTableSays) {
   const Expected expected[] = {
       {"seconds", 10, take_mesh},            // without measuring, writing, calibration and drawing
       {"refining_seconds", 6, take_phases},  // initial, octree, refine, closing
+      {"whole_seconds", 9, take_mesh},       // the same without reading
+      {"whole_cells_per_second", 1200 / 9.0, take_phases},
       {"cells_per_second", 120, take_mesh},
       {"cells_per_second_and_core", 30, take_threads},
       {"refining_cells_per_second", 200, take_phases},
@@ -156,6 +182,7 @@ TEST(Measures, AreWhatTheTableSays) {
       {"memory_over_last_cache", 4, take_own_memory},
       {"other_node_over_own", 1.5, take_own_memory},
       {"cells", 1200, take_mesh},
+      {"boundary_facets", 280, [](Row& row) { row.mesh->boundary_facets.reset(); }},
       {"guarantee_misses", 3, take_mesh},
       {"unproved_claims", 3, take_verdicts},
       {"poisson_jacobi_iterations", 120, take_solve},
@@ -176,7 +203,7 @@ TEST(Measures, AreWhatTheTableSays) {
       {"ended", 1, nullptr},
       {"passed", 1, nullptr},
   };
-  EXPECT_EQ(std::size(expected) + std::size(kOfRanks), measures().size())
+  EXPECT_EQ(std::size(expected) + std::size(kOfRanks) + std::size(kFromSurface), measures().size())
       << "each measure of the table is told here";
   for (const auto& [name, number, take] : expected) {
     const Measure* measure = find_measure(name);

@@ -140,13 +140,27 @@ TEST_F(RowTest, TableIsAlignedAndTellsEveryTrial) {
   std::istringstream text(format_table({{met}, {made_of(failed)}, {}}));
   std::vector<std::string> lines;
   for (std::string line; std::getline(text, line);) lines.push_back(line);
-  ASSERT_EQ(lines.size(), 3u);
+  ASSERT_GT(lines.size(), 3u);
+  EXPECT_EQ(lines[3].rfind("whole: ", 0), 0u) << "it says what the rates leave out";
   EXPECT_NE(lines[1].find("1 234 567"), std::string::npos);
   EXPECT_NE(lines[1].find(" 2.00 "), std::string::npos) << "seconds leave out writing";
   EXPECT_NE(lines[2].find(failed.reason), std::string::npos);
   const std::size_t last_column = lines[0].find("guarantees");
   EXPECT_EQ(lines[1].find("met"), last_column);
   EXPECT_EQ(lines[2].find("failed:"), last_column);
+}
+
+TEST_F(RowTest, TableHasFacetsAndKeptPromisesBesideTheRateOfTheWhole) {
+  good.mesh->cells = 1200;
+  good.mesh->boundary_facets = 345;
+  good.mesh->phases_s = {{"read", 5.0}, {"surface", 1.0}, {"refine", 2.0}};
+  good.mesh->verdicts = {{"structure", Proof::kPass}, {"labels", Proof::kPass}, {"size", Proof::kFail}};
+  good.mesh->promises = {"structure", "size"};
+  const std::string table = format_table({{made_of(good)}});
+  EXPECT_NE(table.find(" 345 "), std::string::npos) << table;
+  EXPECT_NE(table.find(" 400 "), std::string::npos) << "the whole counts the surface: " << table;
+  EXPECT_NE(table.find(" 600 "), std::string::npos) << "refining does not: " << table;
+  EXPECT_NE(table.find("2 of 3 claims proved, 1 of 2 promised ones"), std::string::npos) << table;
 }
 
 TEST_F(RowTest, TableHasMediansOfWhatIsProvedAndNoOther) {
