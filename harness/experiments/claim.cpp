@@ -188,6 +188,7 @@ void read_kind(TomlSection& section, const Trials& trials, Claim& claim) {
 Claim read_claim(TomlSection& section, const Trials& all_trials) {
   Claim claim;
   claim.name = section.text("name");
+  claim.place = section.where("name");
   claim.statement = section.text("statement");
   claim.note = section.text("note", "");
   claim.basis = static_cast<Basis>(read_word(section, "basis", std::array{"measured", "simulated", "any"}));
@@ -203,6 +204,17 @@ Claim read_claim(TomlSection& section, const Trials& all_trials) {
     section.fail(section.place("needs_cores"), "needs_cores is of measured rows alone");
   claim.value = read_measure(section, claim.basis);
   read_kind(section, trials, claim);
+  claim.supersedes = read_texts(section, "supersedes");
+  claim.reason = section.text("reason", "");
+  if (!claim.supersedes.empty() && claim.reason.empty())
+    section.fail(section.place("supersedes"), "a claim that supersedes others needs a reason");
+  section.done();
+  return claim;
+}
+
+WithdrawnClaim read_withdrawn_claim(TomlSection& section) {
+  WithdrawnClaim claim{section.text("name"), section.where("name"), section.text("statement"),
+                       section.text("reason"), section.text("superseded_by", "")};
   section.done();
   return claim;
 }

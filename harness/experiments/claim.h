@@ -27,7 +27,8 @@ enum class Extent {
 };
 
 struct Claim {
-  std::string name;       ///< unique in its experiment
+  std::string name;       ///< its id for life, unique among all experiments
+  std::string place;      ///< "file:line:column" of the name
   std::string statement;  ///< one sentence: what is claimed
   std::string note;       ///< what is known of why it does or does not hold; may be empty
   Basis basis = Basis::kMeasured;
@@ -44,6 +45,14 @@ struct Claim {
   std::string along;                        ///< the option that a trend goes along
   bool grows = false;                       ///< the trend grows, or else it falls
   double factor_per_doubling = 0;           ///< the least of a trend; 0: any
+  std::vector<std::string> supersedes;      ///< claims whose place it takes, "name" or "experiment:name"
+  std::string reason;                       ///< why it does, or why it changed; may be empty
+};
+
+/// A claim that is no longer made.
+struct WithdrawnClaim {
+  std::string name, place, statement, reason;
+  std::string superseded_by;  ///< the claim that took its place; may be empty
 };
 
 /// The options of one trial, and the name that the file gives it.
@@ -55,6 +64,9 @@ struct ClaimedTrial {
 /// Reads one [[claims]]. Throws InputError "file:line:column: fault" on anything that is not exactly the
 /// format, or that no row of these trials could ever match.
 Claim read_claim(TomlSection& section, const std::vector<ClaimedTrial>& trials);
+
+/// Reads one [[withdrawn]]. Throws as read_claim() does.
+WithdrawnClaim read_withdrawn_claim(TomlSection& section);
 
 /// "at least 0.9 and at most 1.1", "above", "falls by at least 1.4 a doubling".
 std::string describe_bound(const Claim& claim);

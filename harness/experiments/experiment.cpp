@@ -10,6 +10,7 @@
 #include <map>
 #include <set>
 
+#include "experiments/claim_names.h"
 #include "experiments/option_matrix.h"
 #include "runtime/toml_section.h"
 
@@ -146,13 +147,16 @@ std::vector<Claim> read_claims(TomlSection& file, const std::vector<Trial>& tria
   std::vector<ClaimedTrial> claimed;
   for (const Trial& trial : trials) claimed.push_back({stem_of(trial.name), complete_options(trial.options)});
   std::vector<Claim> claims;
-  std::set<std::string> names;
-  for (TomlSection& section : file.table_array("claims")) {
-    claims.push_back(read_claim(section, claimed));
-    if (!names.insert(claims.back().name).second)
-      section.fail(section.place("name"), fmt::format("a second claim '{}'", claims.back().name));
-  }
+  for (TomlSection& section : file.table_array("claims")) claims.push_back(read_claim(section, claimed));
   return claims;
+}
+
+std::vector<WithdrawnClaim> read_withdrawn(TomlSection& file) {
+  std::vector<WithdrawnClaim> withdrawn;
+  if (!file.has("withdrawn")) return withdrawn;
+  for (TomlSection& section : file.table_array("withdrawn"))
+    withdrawn.push_back(read_withdrawn_claim(section));
+  return withdrawn;
 }
 
 }  // namespace
@@ -196,7 +200,9 @@ Experiment read_experiment(const std::string& path, const std::vector<std::strin
       experiment.trials.push_back(std::move(trial));
     }
   experiment.claims = read_claims(file, experiment.trials);
+  experiment.withdrawn = read_withdrawn(file);
   file.done();
+  check_claim_names({experiment});
   return experiment;
 } catch (const TomlError& fault) {
   throw InputError(fault.what());

@@ -4,10 +4,10 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 #include <map>
 
 #include "experiments/option_matrix.h"
+#include "rows/machine_state.h"
 
 namespace podm::bench {
 namespace {
@@ -24,12 +24,11 @@ bool may_differ(const Claim& claim, const std::string& key) {
          (claim.value->per != nullptr && key == kTargetElements);
 }
 
-double beyond(const Claim& claim, double value) {
-  const auto scale = [](double bound) { return bound == 0 ? 1 : std::abs(bound); };
-  double excess = -std::numeric_limits<double>::infinity();
-  if (claim.at_least) excess = std::max(excess, (*claim.at_least - value) / scale(*claim.at_least));
-  if (claim.at_most) excess = std::max(excess, (value - *claim.at_most) / scale(*claim.at_most));
-  return excess;
+// Holds the number against the bounds.
+Finding judge_number(const Bounds& bounds, const Estimate& estimate, const std::string& text,
+                     const std::string& label, std::size_t num_rows) {
+  return {decide(bounds, estimate),           estimate, bounds.excess(estimate.value),
+          text + describe_interval(estimate), label,    num_rows};
 }
 
 std::string with_unit(double value, const Measure& measure) {
@@ -40,9 +39,9 @@ void judge_bound_of(const Claim& claim, const RowPointers& rows, const std::stri
                     Findings& findings) {
   const Samples samples = sample(rows, *claim.value);
   if (!samples.absence.empty()) return lack(findings, samples.absence, label);
-  const double value = samples.middle(), excess = beyond(claim, value);
-  findings.found.push_back(
-      {excess <= 0, value, excess, with_unit(value, *claim.value), label, samples.num_rows});
+  const Estimate estimate = estimate_of(samples);
+  findings.found.push_back(judge_number(bounds_of(claim), estimate, with_unit(estimate.value, *claim.value),
+                                        label, samples.num_rows));
 }
 
 // What does not vary holds of each row; the rest of the median of its repeats.
@@ -56,14 +55,22 @@ void judge_bound(const Claim& claim, const RowPointers& rows, Findings& findings
   for (std::size_t i = 0; i < groups.size(); ++i) judge_bound_of(claim, groups[i].rows, labels[i], findings);
 }
 
+// A trial that did not end while other work kept the machine busy may end on an idle one.
+std::string doubt_about(const Row& row, const Claim& claim) {
+  const bool is_late = row.status == Status::kTimedOut && claim.value->meaning == Meaning::kOutcome;
+  return is_late && is_disturbed(row) ? describe_disturbance(*row.environment.busy_elsewhere) : "";
+}
+
 // What rows that cannot tell might still say does not save a claim that the others refute.
 void judge_share(const Claim& claim, const RowPointers& rows, Findings& findings) {
   std::size_t num_yes = 0, num_open = 0;
-  std::string absence, no;
+  std::string absence, no, doubt;
   for (const Row* row : rows) {
     const Samples samples = sample({row}, *claim.value);
-    if (!samples.absence.empty()) {
-      absence = samples.absence;
+    if (!samples.absence.empty()) absence = samples.absence;
+    const std::string doubt_of_row = samples.absence.empty() ? doubt_about(*row, claim) : "";
+    if (!doubt_of_row.empty()) doubt = row->trial + ": " + doubt_of_row;
+    if (!samples.absence.empty() || !doubt_of_row.empty()) {
       ++num_open;
     } else if (samples.middle() == 1) {
       ++num_yes;
@@ -71,16 +78,15 @@ void judge_share(const Claim& claim, const RowPointers& rows, Findings& findings
       no = ", not " + row->trial;
     }
   }
-  const double share = static_cast<double>(num_yes) / static_cast<double>(rows.size() - num_open);
+  const auto num_told = static_cast<double>(rows.size() - num_open);
   const double most = static_cast<double>(num_yes + num_open) / static_cast<double>(rows.size());
-  if (num_open > 0 && most >= *claim.at_least) return lack(findings, absence, "");
-  findings.found.push_back({share >= *claim.at_least, share, beyond(claim, share),
-                            fmt::format("{} of {}{}", num_yes, rows.size() - num_open, no), "", rows.size()});
-}
-
-std::string interval_of(const SeriesRatio& compared) {
-  if (!compared.has_interval) return "";
-  return fmt::format(", 95 % interval {:.3g} to {:.3g}", compared.ratio.low, compared.ratio.high);
+  if (!absence.empty() && most >= *claim.at_least) return lack(findings, absence, "");
+  Estimate share;
+  share.value = num_told > 0 ? static_cast<double>(num_yes) / num_told : 0;
+  Finding finding = judge_number(bounds_of(claim), share, fmt::format("{} of {}{}", num_yes, num_told, no),
+                                 "", rows.size());
+  if (!doubt.empty() && most >= *claim.at_least) finding.decision = {Outcome::kNotResolved, doubt, {}, false};
+  findings.found.push_back(std::move(finding));
 }
 
 // The samples of one side of a comparison and what tells them from others of the group.
@@ -107,16 +113,11 @@ const Side& best_of(const std::vector<Side>& sides, Better better) {
 }
 
 Finding compare(const Claim& claim, const Side& of, const Side& over, const std::string& label) {
-  const SeriesRatio compared = ratio_of(of.samples, over.samples);
-  const double value = compared.ratio.value;
-  const bool is_order = claim.kind == ClaimKind::kOrder;
-  const double excess = is_order ? (value > 1 ? -(value - 1) : 1 - value) : beyond(claim, value);
-  const bool holds = is_order ? value > 1 : excess <= 0;
   std::string text =
       fmt::format("{:.4g} over {}", of.samples.middle(), with_unit(over.samples.middle(), *claim.value));
   if (claim.over_best && !over.label.empty()) text += fmt::format(" ({})", over.label);
-  return {
-      holds, value, excess, text + interval_of(compared), label, of.samples.num_rows + over.samples.num_rows};
+  return judge_number(bounds_of(claim), ratio_of(of.samples, over.samples), text, label,
+                      of.samples.num_rows + over.samples.num_rows);
 }
 
 // Ratios and orders within one group. Series of `of` are told apart by what only `over` fixes, and the other
@@ -169,19 +170,29 @@ struct Place {
   Samples samples;
 };
 
+// The factor of each doubling of the option, from the factor of the step.
+Estimate per_doubling(Estimate step, double doublings) {
+  const auto root = [doublings](double& factor) { factor = std::pow(factor, 1 / doublings); };
+  root(step.value);
+  if (step.interval) {
+    root(step.interval->low);
+    root(step.interval->high);
+  }
+  std::for_each(step.samples.begin(), step.samples.end(), root);
+  return step;
+}
+
 // Judges the step from one value of the option to another. Without a factor the measure may rest on a step,
 // but not from the first value to the last.
 Finding judge_step(const Claim& claim, const Place& from, const Place& to, bool is_all,
                    const std::string& label) {
-  const SeriesRatio compared =
-      claim.grows ? ratio_of(to.samples, from.samples) : ratio_of(from.samples, to.samples);
-  const double value = std::pow(compared.ratio.value, 1 / std::log2(to.at / from.at));
-  const double least = claim.factor_per_doubling > 0 ? claim.factor_per_doubling : 1;
-  const bool holds = is_all && claim.factor_per_doubling == 0 ? value > 1 : value >= least;
-  const std::string text =
-      fmt::format("{:.4g} at {}={:g}, {:.4g} at {:g}{}", from.samples.middle(), claim.along, from.at,
-                  to.samples.middle(), to.at, interval_of(compared));
-  return {holds, value, (least - value) / least, text, label, from.samples.num_rows + to.samples.num_rows};
+  const Estimate step = claim.grows ? ratio_of(to.samples, from.samples) : ratio_of(from.samples, to.samples);
+  const bool has_factor = claim.factor_per_doubling > 0;
+  const Bounds bounds{has_factor ? claim.factor_per_doubling : 1, {}, is_all && !has_factor};
+  const std::string text = fmt::format("{:.4g} at {}={:g}, {:.4g} at {:g}", from.samples.middle(),
+                                       claim.along, from.at, to.samples.middle(), to.at);
+  return judge_number(bounds, per_doubling(step, std::log2(to.at / from.at)), text, label,
+                      from.samples.num_rows + to.samples.num_rows);
 }
 
 void judge_trend_of(const Claim& claim, const RowGroup& group, const std::string& label, Findings& findings) {

@@ -5,15 +5,14 @@
 #include <string>
 #include <vector>
 
-#include "experiments/claim.h"
-#include "rows/series.h"
+#include "experiments/decision.h"
 
 namespace podm::bench {
 
 /// One group of rows against the claim.
 struct Finding {
-  bool holds = false;
-  double value = 0;
+  Decision decision;
+  Estimate estimate;  ///< of the number that the bounds are for
   double excess = 0;  ///< how far beyond the bound, relative to it; below 0: within
   std::string text;   ///< the numbers behind it
   std::string label;  ///< tells the group from others; empty for one alone

@@ -11,35 +11,77 @@
 namespace podm::bench {
 namespace {
 
+bool does_hold(const Finding& finding) { return finding.decision.outcome == Outcome::kHolds; }
+
+// The verdict of a group; a group that breaks the claim outweighs one that does not resolve it.
+int weight_of(const Finding& finding) {
+  switch (finding.decision.outcome) {
+    case Outcome::kFails:
+      return 3;
+    case Outcome::kNotResolved:
+      return finding.decision.agrees_on_few_rounds ? 1 : 2;
+    case Outcome::kHolds:
+      break;
+  }
+  return 0;
+}
+
 // "3 of 4 hold; threads=256: 1.2 over 2.4 s".
 std::string told(const Findings& findings, const Finding& worst) {
   const auto& found = findings.found;
   const auto is_same = [&](const Finding& other) { return other.text == worst.text; };
-  if (worst.holds && found.size() > 1 && std::all_of(found.begin(), found.end(), is_same))
+  if (does_hold(worst) && found.size() > 1 && std::all_of(found.begin(), found.end(), is_same))
     return fmt::format("{} in each of {}", worst.text, found.size());
-  const std::string text = worst.label.empty() ? worst.text : worst.label + ": " + worst.text;
+  std::string text = worst.label.empty() ? worst.text : worst.label + ": " + worst.text;
+  if (!worst.decision.doubt.empty()) text += ": " + worst.decision.doubt;
   if (found.size() == 1) return text;
-  if (worst.holds) return fmt::format("nearest of {}: {}", found.size(), text);
-  const auto num_held =
-      std::count_if(found.begin(), found.end(), [](const Finding& finding) { return finding.holds; });
-  return fmt::format("{} of {} hold; {}", num_held, found.size(), text);
+  if (does_hold(worst)) return fmt::format("nearest of {}: {}", found.size(), text);
+  const bool is_open = worst.decision.outcome == Outcome::kNotResolved;
+  const auto is_better = [&](const Finding& finding) {
+    return is_open ? finding.decision.outcome != Outcome::kNotResolved : does_hold(finding);
+  };
+  return fmt::format("{} of {} {}; {}", std::count_if(found.begin(), found.end(), is_better), found.size(),
+                     is_open ? "resolved" : "hold", text);
 }
 
-Judgement conclude(const Findings& findings) {
+Verdict verdict_of(Outcome outcome) {
+  return outcome == Outcome::kHolds   ? Verdict::kHolds
+         : outcome == Outcome::kFails ? Verdict::kDoesNotHold
+                                      : Verdict::kNotResolved;
+}
+
+// What one size of an experiment says of a claim.
+struct Attempt {
+  Judgement judgement;
+  std::string size;
+  bool has_rows = false, has_failed_rows = false;
+  bool agrees_on_few_rounds = false;
+  double excess = 0;  // of the group that decides
+};
+
+Attempt conclude(const Findings& findings) {
   const auto& found = findings.found;
   const auto worst = std::max_element(found.begin(), found.end(), [](const Finding& a, const Finding& b) {
-    return std::pair(!a.holds, a.excess) < std::pair(!b.holds, b.excess);
+    return std::pair(weight_of(a), a.excess) < std::pair(weight_of(b), b.excess);
   });
-  Judgement judgement;
+  Attempt attempt;
+  attempt.has_rows = true;
+  attempt.has_failed_rows = findings.has_failed_rows;
+  Judgement& judgement = attempt.judgement;
   for (const Finding& finding : found) judgement.num_rows += finding.num_rows;
-  if (worst == found.end() || (worst->holds && !findings.missing.empty())) {
+  if (worst == found.end() || (worst->decision.outcome != Outcome::kFails && !findings.missing.empty())) {
     judgement.reason = findings.missing;
-    return judgement;
+    return attempt;
   }
-  judgement.verdict = worst->holds ? Verdict::kHolds : Verdict::kDoesNotHold;
-  if (std::isfinite(worst->value)) judgement.value = worst->value;
+  judgement.verdict = verdict_of(worst->decision.outcome);
+  attempt.agrees_on_few_rounds = worst->decision.agrees_on_few_rounds;
+  attempt.excess = worst->excess;
+  if (std::isfinite(worst->estimate.value)) judgement.value = worst->estimate.value;
+  judgement.interval = worst->estimate.interval;
+  judgement.num_rounds = worst->estimate.num_rounds;
+  judgement.rounds_needed = worst->decision.rounds_needed;
   judgement.reason = told(findings, *worst);
-  return judgement;
+  return attempt;
 }
 
 std::optional<double> cores_of(const Row& row) {
@@ -96,51 +138,97 @@ Chosen choose(const Claim& claim, const std::vector<Row>& rows, const std::strin
   return chosen;
 }
 
-struct Attempt {
-  Judgement judgement;
-  bool has_rows = false, has_failed_rows = false;
-};
-
-Attempt judge_pattern(const Claim& claim, const std::vector<Row>& all_rows, const std::string& pattern) {
+Attempt judge_size(const Claim& claim, const std::vector<Row>& all_rows, const std::string& pattern) {
   const Chosen chosen = choose(claim, all_rows, pattern);
   const RowPointers rows = within_extent(claim, chosen.rows);
-  const auto undecided = [&](const std::string& reason) {
-    return Attempt{
-        {Verdict::kCannotBeDecided, reason + why_skipped(chosen.skipped), {}, 0}, !rows.empty(), false};
-  };
-  if (rows.empty())
-    return undecided(pattern.empty() ? "no rows"
-                                     : fmt::format("no rows: trial {}", fmt::join(claim.trials, " or ")));
-  if (const std::string lack = lack_of_cores(claim, rows); !lack.empty()) return undecided(lack);
-  if (const std::string value = missing_value(claim.where, rows); !value.empty())
-    return undecided("no rows: " + value);
-  const Findings findings = find(claim, rows);
-  Attempt attempt{conclude(findings), true, findings.has_failed_rows};
+  Attempt attempt;
+  const std::string lacking = missing_value(claim.where, rows);
+  if (rows.empty()) {
+    attempt.judgement.reason =
+        pattern.empty() ? "no rows" : fmt::format("no rows: trial {}", fmt::join(claim.trials, " or "));
+  } else if (const std::string lack = lack_of_cores(claim, rows); !lack.empty()) {
+    attempt.judgement.reason = lack;
+  } else {
+    attempt = conclude(find(claim, rows));
+    // What there is can refute the claim, and no more.
+    if (!lacking.empty() && attempt.judgement.verdict != Verdict::kDoesNotHold)
+      attempt.judgement = {Verdict::kCannotBeDecided, "no rows: " + lacking, {}, {}, 0, {}, {}, 0};
+  }
+  attempt.size = pattern;
+  attempt.has_rows = !rows.empty();
   if (attempt.judgement.verdict == Verdict::kCannotBeDecided)
     attempt.judgement.reason += why_skipped(chosen.skipped);
   return attempt;
 }
 
+// The greatest decides. A size that lacks rows does not, unless rows of it failed; one of few rounds that
+// agree with the claim does where no other size decides.
+int weight_of(const Attempt& attempt) {
+  switch (attempt.judgement.verdict) {
+    case Verdict::kDoesNotHold:
+      return 6;
+    case Verdict::kNotResolved:
+      return attempt.agrees_on_few_rounds ? 2 : 4;
+    case Verdict::kHolds:
+      return 3;
+    case Verdict::kCannotBeDecided:
+      break;
+  }
+  return attempt.has_failed_rows ? 5 : attempt.has_rows ? 1 : 0;
+}
+
+bool is_set_aside(const Attempt& attempt, const Attempt& decisive) {
+  return attempt.agrees_on_few_rounds && attempt.judgement.verdict == Verdict::kNotResolved &&
+         decisive.judgement.verdict == Verdict::kHolds;
+}
+
+// What all sizes say together.
+Judgement conclude(const Claim& claim, const std::vector<Attempt>& attempts) {
+  const Attempt& decisive =
+      *std::max_element(attempts.begin(), attempts.end(), [](const Attempt& a, const Attempt& b) {
+        return std::pair(weight_of(a), a.excess) < std::pair(weight_of(b), b.excess);
+      });
+  Judgement judgement = decisive.judgement;
+  if (judgement.verdict == Verdict::kCannotBeDecided) return judgement;
+  judgement.num_rows = 0;
+  std::vector<std::string> aside;
+  for (const Attempt& attempt : attempts) {
+    if (attempt.judgement.verdict == Verdict::kCannotBeDecided) continue;
+    if (is_set_aside(attempt, decisive)) {
+      aside.push_back(attempt.size);
+      continue;
+    }
+    judgement.num_rows += attempt.judgement.num_rows;
+    if (!attempt.size.empty()) judgement.sizes.push_back(attempt.size);
+  }
+  if (claim.trials.size() > 1)
+    judgement.reason = fmt::format("{}: {}; judged at {}", decisive.size, judgement.reason,
+                                   fmt::join(judgement.sizes, ", "));
+  if (!aside.empty()) judgement.reason += fmt::format("; of too few rounds: {}", fmt::join(aside, ", "));
+  return judgement;
+}
+
 }  // namespace
 
 std::string to_string(Verdict verdict) {
-  return verdict == Verdict::kHolds         ? "holds"
-         : verdict == Verdict::kDoesNotHold ? "does_not_hold"
-                                            : "cannot_be_decided";
+  switch (verdict) {
+    case Verdict::kHolds:
+      return "holds";
+    case Verdict::kDoesNotHold:
+      return "does_not_hold";
+    case Verdict::kNotResolved:
+      return "not_resolved";
+    case Verdict::kCannotBeDecided:
+      break;
+  }
+  return "cannot_be_decided";
 }
 
 Judgement judge(const Claim& claim, const std::vector<Row>& rows) {
-  std::vector<std::string> patterns = claim.trials;
-  if (patterns.empty()) patterns.push_back("");
-  std::optional<Attempt> told;  // by the largest size that has rows
-  for (const std::string& pattern : patterns) {
-    Attempt attempt = judge_pattern(claim, rows, pattern);
-    // A size whose rows failed is not passed over for a smaller one that went well.
-    if (attempt.judgement.verdict != Verdict::kCannotBeDecided || attempt.has_failed_rows)
-      return attempt.judgement;
-    if (!told || (attempt.has_rows && !told->has_rows)) told = std::move(attempt);
-  }
-  return told->judgement;
+  std::vector<Attempt> attempts;
+  for (const std::string& pattern : claim.trials.empty() ? std::vector<std::string>{""} : claim.trials)
+    attempts.push_back(judge_size(claim, rows, pattern));
+  return conclude(claim, attempts);
 }
 
 }  // namespace podm::bench

@@ -7,6 +7,7 @@
 #include <filesystem>
 #include <map>
 
+#include "experiments/claim_names.h"
 #include "experiments/option_matrix.h"
 
 namespace podm::bench {
@@ -48,6 +49,7 @@ std::vector<Experiment> read_experiments(const RunCommand& command) {
   std::vector<Experiment> experiments;
   for (const std::string& path : command.experiment_paths)
     experiments.push_back(read_experiment(path, command.images));
+  check_claim_names(experiments);
   for (const Experiment& experiment : experiments)
     for (const Trial& trial : experiment.trials)
       if (is_chosen(trial, command)) return experiments;

@@ -1,6 +1,7 @@
 #include <fmt/format.h>
 
 #include "commands.h"
+#include "experiments/claim_names.h"
 #include "experiments/plan.h"
 #include "experiments/verdicts.h"
 #include "rows/results_file.h"
@@ -11,6 +12,7 @@ int verdicts(const std::vector<std::string>& experiment_paths, const std::string
              const std::string& json_path) {
   std::vector<Experiment> experiments;  // all, so that a bad file is refused before any verdict
   for (const std::string& path : experiment_paths) experiments.push_back(read_experiment(path));
+  check_claim_names(experiments);
   std::vector<ExperimentVerdicts> all;
   for (const Experiment& experiment : experiments)
     all.push_back(judge(experiment, read_rows(rows_path(results_folder, experiment)).rows));

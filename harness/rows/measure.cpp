@@ -485,25 +485,25 @@ constexpr Measure kMeasures[] = {
      worker_seconds_per_cell_but_distributing},
     {"processor_seconds", "s", kLess, kClock, processor_seconds},
     {"refining_processor_seconds", "s", kLess, kClock, refining_processor_seconds},
-    {"rounds", "", kLess, kCost, rounds},
-    {"deferred_share", "", kLess, kCost, deferred_share},
-    {"imbalance", "", kLess, kCost, imbalance},
-    {"cells_over_one_machine", "", kLess, kCost, cells_over_one_machine},
+    {"rounds", "", kLess, kCount, rounds},
+    {"deferred_share", "", kLess, kCount, deferred_share},
+    {"imbalance", "", kLess, kCount, imbalance},
+    {"cells_over_one_machine", "", kLess, kCount, cells_over_one_machine},
     {"bytes_per_cell_beyond_image", "", kLess, kCost, bytes_per_cell_beyond_image},
     {"contention_seconds", "s", kLess, kCost, contention_seconds},
     {"rollback_seconds", "s", kLess, kCost, rollback_seconds},
     {"begging_seconds", "s", kLess, kCost, begging_seconds},
     {"lost_seconds", "s", kLess, kCost, lost_seconds},
-    {"deferred_operations", "", kLess, kCost, deferred_operations},
-    {"zero_hop_share", "", kMore, kCost, zero_hop_share},
-    {"zero_hop_share_of_all_kinds", "", kMore, kCost, zero_hop_share_of_all_kinds},
+    {"deferred_operations", "", kLess, kCount, deferred_operations},
+    {"zero_hop_share", "", kMore, kCount, zero_hop_share},
+    {"zero_hop_share_of_all_kinds", "", kMore, kCount, zero_hop_share_of_all_kinds},
     {"last_level_misses_per_further_insertion", "", kLess, kCost, last_level_misses, insertions},
     {"first_cache_cycles", "cycles", kLess, kClock, first_cache_cycles},
     {"least_step_between_levels", "", kMore, kClock, least_step_between_levels},
     {"memory_over_last_cache", "", kMore, kClock, memory_over_last_cache},
     {"other_node_over_own", "", kMore, kClock, other_node_over_own},
-    {"cells", "", kMore, kCost, cells},
-    {"boundary_facets", "", kMore, kCost, boundary_facets},
+    {"cells", "", kMore, kCount, cells},
+    {"boundary_facets", "", kMore, kCount, boundary_facets},
     {"guarantee_misses", "", kLess, kFaults, guarantee_misses},
     {"unproved_claims", "", kLess, kFaults, unproved_claims},
     {"poisson_jacobi_iterations", "", kLess, kFaults,
@@ -545,13 +545,19 @@ bool fits(const Measure& measure, Basis basis) {
     case kVirtualClock:
       return basis == Basis::kSimulated;
     case kCost:
+    case kCount:
       return basis != Basis::kAny;
     default:
       return true;
   }
 }
 
-bool varies(const Measure& measure) { return measure.meaning <= kCost; }
+bool varies(const Measure& measure) { return measure.meaning <= kCount; }
+
+bool varies_between_runs(const Measure& measure, const Row& row) {
+  if (!varies(measure) || row.basis == Basis::kSimulated) return false;
+  return measure.meaning != kCount || row.asked.value("threads", 1) > 1;
+}
 
 bool is_yes_or_no(const Measure& measure) { return measure.meaning >= kAnswer; }
 

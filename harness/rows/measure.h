@@ -21,7 +21,8 @@ enum class Better { kLess, kMore };
 enum class Meaning {
   kClock,         ///< time of the clock: of measured rows alone
   kVirtualClock,  ///< virtual time: of simulated rows alone
-  kCost,          ///< work, losses, accesses: measured and simulated ones never in one claim
+  kCost,          ///< losses, memory, misses of caches: measured and simulated ones never in one claim
+  kCount,         ///< work that was done, likewise; one thread does the same in each run
   kFaults,        ///< faults of a mesh, or what it costs a solver, whoever made it, and whatever it misses
   kAnswer,        ///< 1 or 0, of such a mesh
   kOutcome,       ///< 1 or 0, of a trial, also one without a mesh
@@ -45,6 +46,9 @@ const Measure* find_measure(const std::string& name);
 bool fits(const Measure& measure, Basis basis);
 /// Whether its numbers vary from repeat to repeat and are told by their median; others hold of each row.
 bool varies(const Measure& measure);
+/// Whether another run of the row's trial may come to another number: a median of such rows needs an
+/// interval. Virtual time and simulated work are the same in each run, and so is what one thread does.
+bool varies_between_runs(const Measure& measure, const Row& row);
 bool is_yes_or_no(const Measure& measure);
 
 }  // namespace podm::bench

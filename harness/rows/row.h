@@ -261,18 +261,19 @@ struct EnvironmentRecord : MachineRecord {
   std::variant<std::vector<double>, Unavailable> load_average;  ///< over 1, 5 and 15 minutes
   MemoryBytes memory_bytes;
   std::string governor, transparent_huge_pages, numa_balancing;
+  std::optional<double> busy_elsewhere;  ///< processors that other work kept busy during the trial, mean
   static constexpr auto fields() {
     using E = EnvironmentRecord;
     return std::tuple_cat(
         MachineRecord::fields(),
-        std::tuple{field("topology_sha256", &E::topology_sha256), field("kernel", &E::kernel),
-                   field("smt", &E::smt), field("cgroup", &E::cgroup), field("libraries", &E::libraries),
-                   field("compiler", &E::compiler), field("compiler_flags", &E::compiler_flags),
-                   field("build_type", &E::build_type), field("sources", &E::sources),
-                   field("load_average", &E::load_average), field("memory_bytes", &E::memory_bytes),
-                   field("governor", &E::governor),
-                   field("transparent_huge_pages", &E::transparent_huge_pages),
-                   field("numa_balancing", &E::numa_balancing)});
+        std::tuple{
+            field("topology_sha256", &E::topology_sha256), field("kernel", &E::kernel), field("smt", &E::smt),
+            field("cgroup", &E::cgroup), field("libraries", &E::libraries), field("compiler", &E::compiler),
+            field("compiler_flags", &E::compiler_flags), field("build_type", &E::build_type),
+            field("sources", &E::sources), field("load_average", &E::load_average),
+            field("memory_bytes", &E::memory_bytes), field("governor", &E::governor),
+            field("transparent_huge_pages", &E::transparent_huge_pages),
+            field("numa_balancing", &E::numa_balancing), field_if_any("busy_elsewhere", &E::busy_elsewhere)});
   }
 };
 
@@ -305,6 +306,7 @@ struct Row {
   std::string stderr_tail;                       ///< last words of a trial that is not kOk
   ProgramRecords programs;
   EnvironmentRecord environment;
+  std::optional<bool> probe_moved;  ///< the machine's speed moved during the row's round
 
   /// The keys before the mesher's own, and those after them.
   static constexpr auto fields_before() {
@@ -327,7 +329,8 @@ struct Row {
                       field("harness_s", &Row::harness_s),
                       field("stderr_tail", &Row::stderr_tail),
                       field("programs", &Row::programs),
-                      field("environment", &Row::environment)};
+                      field("environment", &Row::environment),
+                      field_if_any("probe_moved", &Row::probe_moved)};
   }
 };
 /// Whether a row holds a mesh that met its guarantees or is known not to.

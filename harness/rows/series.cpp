@@ -3,10 +3,11 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <limits>
+#include <iterator>
 #include <map>
 
 #include "experiments/option_matrix.h"
+#include "rows/machine_state.h"
 
 namespace podm::bench {
 namespace {
@@ -21,40 +22,27 @@ std::string fault_of(const Row& row) {
   return fmt::format("{}: {}: {}: {}", kRowsFailed, row.trial, to_string(row.status), row.reason);
 }
 
+Samples absent(const std::string& why, const RowPointers& rows) {
+  Samples samples;
+  samples.absence = why;
+  samples.num_rows = rows.size();
+  return samples;
+}
+
 // read() of each row, or why one has none.
 Samples read_each(const RowPointers& rows, const Measure& measure, Value (*read)(const Row&)) {
   Samples samples;
   samples.num_rows = rows.size();
   for (const Row* row : rows) {
     const Value value = counts(*row, measure) ? read(*row) : Value{{}, fault_of(*row)};
-    if (!value.number) return {{}, {}, value.absence, rows.size()};
+    if (!value.number) return absent(value.absence, rows);
     samples.numbers.push_back(*value.number);
     samples.rounds.push_back(row->repeat);
+    samples.varies = samples.varies || varies_between_runs(measure, *row);
+    if (is_disturbed(*row))
+      samples.busy = std::max(samples.busy, row->environment.busy_elsewhere.value_or(0));
   }
   return samples;
-}
-
-// The growth of read() over that of per() from the smallest size to the largest.
-Samples sample_growth(const RowPointers& rows, const Measure& measure) {
-  std::map<double, RowPointers> by_size;
-  for (const Row* row : rows) by_size[row->asked.value(kTargetElements, 0.0)].push_back(row);
-  if (by_size.size() < 2) return {{}, {}, "needs two target_elements, has one", rows.size()};
-  double growth[2] = {0, 0};
-  for (const bool is_largest : {false, true}) {
-    const RowPointers& of_size = is_largest ? by_size.rbegin()->second : by_size.begin()->second;
-    const Samples counts = read_each(of_size, measure, measure.read);
-    const Samples pers = read_each(of_size, measure, measure.per);
-    for (const Samples* samples : {&counts, &pers})
-      if (!samples->absence.empty()) return {{}, {}, samples->absence, rows.size()};
-    growth[0] += is_largest ? counts.middle() : -counts.middle();
-    growth[1] += is_largest ? pers.middle() : -pers.middle();
-  }
-  if (growth[1] <= 0) return {{}, {}, "the larger mesh took no more work than the smaller", rows.size()};
-  return {{growth[0] / growth[1]}, {1}, "", rows.size()};
-}
-
-bool are_positive(const std::vector<double>& numbers) {
-  return std::all_of(numbers.begin(), numbers.end(), [](double number) { return number > 0; });
 }
 
 std::map<int, double> by_round(const Samples& samples) {
@@ -63,18 +51,41 @@ std::map<int, double> by_round(const Samples& samples) {
   return numbers;
 }
 
-// The ratios within rounds; none unless each round holds both once.
+// The growth of read() over that of per() from the smallest size to the largest, in each round that has both.
+Samples sample_growth(const RowPointers& rows, const Measure& measure) {
+  std::map<double, RowPointers> by_size;
+  for (const Row* row : rows) by_size[row->asked.value(kTargetElements, 0.0)].push_back(row);
+  if (by_size.size() < 2) return absent("needs two target_elements, has one", rows);
+  const RowPointers &smallest = by_size.begin()->second, &largest = by_size.rbegin()->second;
+  const Samples counts[2] = {read_each(smallest, measure, measure.read),
+                             read_each(largest, measure, measure.read)};
+  const Samples pers[2] = {read_each(smallest, measure, measure.per),
+                           read_each(largest, measure, measure.per)};
+  for (const Samples* samples : {&counts[0], &counts[1], &pers[0], &pers[1]})
+    if (!samples->absence.empty()) return absent(samples->absence, rows);
+  Samples growth;
+  growth.num_rows = rows.size();
+  growth.varies = counts[0].varies || counts[1].varies;
+  growth.busy = std::max(counts[0].busy, counts[1].busy);
+  auto small_counts = by_round(counts[0]), small_pers = by_round(pers[0]), large_pers = by_round(pers[1]);
+  for (const auto& [round, count] : by_round(counts[1])) {
+    if (!small_counts.contains(round)) continue;
+    const double further = large_pers[round] - small_pers[round];
+    if (further <= 0) return absent("the larger mesh took no more work than the smaller", rows);
+    growth.numbers.push_back((count - small_counts[round]) / further);
+    growth.rounds.push_back(round);
+  }
+  return growth.numbers.empty() ? absent("no round has both target_elements", rows) : growth;
+}
+
+// The ratios within the rounds that hold both; none where a series has several numbers of one round.
 std::vector<double> paired_ratios(const Samples& above, const Samples& below) {
   const auto numerators = by_round(above), denominators = by_round(below);
   std::vector<double> ratios;
-  if (numerators.size() != above.numbers.size() || denominators.size() != below.numbers.size() ||
-      numerators.size() != denominators.size())
-    return ratios;
-  for (const auto& [round, number] : numerators) {
-    const auto found = denominators.find(round);
-    if (found == denominators.end()) return {};
-    ratios.push_back(number / found->second);
-  }
+  if (numerators.size() != above.numbers.size() || denominators.size() != below.numbers.size()) return ratios;
+  for (const auto& [round, number] : numerators)
+    if (const auto found = denominators.find(round); found != denominators.end())
+      ratios.push_back(ratio_of_numbers(number, found->second));
   return ratios;
 }
 
@@ -111,22 +122,30 @@ std::vector<std::string> labels_of(const std::vector<RowGroup>& groups) {
 }
 
 Samples sample(const RowPointers& rows, const Measure& measure) {
-  return measure.per != nullptr ? sample_growth(rows, measure) : read_each(rows, measure, measure.read);
+  RowPointers steady;
+  std::copy_if(rows.begin(), rows.end(), std::back_inserter(steady),
+               [&](const Row* row) { return !probe_moved(*row) || !varies_between_runs(measure, *row); });
+  if (steady.empty()) return absent("the machine's speed moved during each round", rows);
+  return measure.per != nullptr ? sample_growth(steady, measure) : read_each(steady, measure, measure.read);
 }
 
-SeriesRatio ratio_of(const Samples& above, const Samples& below) {
-  const bool has_interval = above.numbers.size() > 1 && below.numbers.size() > 1;
-  if (!are_positive(above.numbers) || !are_positive(below.numbers)) {
-    const double numerator = above.middle(), denominator = below.middle();
-    const double ratio = denominator != 0 ? numerator / denominator
-                         : numerator == 0 ? 1
-                                          : std::numeric_limits<double>::infinity();
-    return {{ratio, ratio, ratio}, false};
-  }
-  if (const auto ratios = paired_ratios(above, below); !ratios.empty())
-    return {ratio_of_medians(ratios, std::vector<double>(ratios.size(), 1.0), Sampling::kPaired),
-            has_interval};
-  return {ratio_of_medians(above.numbers, below.numbers, Sampling::kIndependent), has_interval};
+Estimate estimate_of(const Samples& samples) {
+  Estimate estimate{
+      samples.middle(), {}, samples.numbers, samples.numbers.size(), samples.varies ? samples.busy : 0};
+  if (samples.varies) estimate.interval = median_interval(samples.numbers);
+  return estimate;
+}
+
+Estimate ratio_of(const Samples& above, const Samples& below) {
+  Samples ratios;
+  ratios.numbers = paired_ratios(above, below);
+  ratios.varies = above.varies || below.varies;
+  ratios.busy = std::max(above.varies ? above.busy : 0, below.varies ? below.busy : 0);
+  if (!ratios.numbers.empty()) return estimate_of(ratios);
+  Estimate estimate{ratio_of_numbers(above.middle(), below.middle()), {}, {}, 0, ratios.busy};
+  estimate.num_rounds = std::min(above.numbers.size(), below.numbers.size());
+  if (ratios.varies) estimate.interval = ratio_interval(above.numbers, below.numbers);
+  return estimate;
 }
 
 }  // namespace podm::bench

@@ -2,10 +2,12 @@
 #pragma once
 
 #include <functional>
+#include <optional>
 #include <string>
 #include <vector>
 
 #include "rows/measure.h"
+#include "rows/order_statistics.h"
 #include "rows/row_filter.h"
 #include "rows/statistics.h"
 
@@ -32,19 +34,27 @@ struct Samples {
   std::vector<int> rounds;  ///< the round of each number
   std::string absence;      ///< why there are no numbers; empty: there are
   std::size_t num_rows = 0;
+  bool varies = false;  ///< another run may come to another number
+  double busy = 0;      ///< the most processors that other work kept busy during a disturbed row; 0: none was
 
   double middle() const { return median(numbers); }
 };
 
+/// Rows of rounds during which the machine's speed moved are left out where their numbers vary.
 Samples sample(const RowPointers& rows, const Measure& measure);
 
-struct SeriesRatio {
-  Ratio ratio;
-  bool has_interval = false;  ///< both were measured more than once
+/// What repeats tell of one number.
+struct Estimate {
+  double value = 0;                  ///< the median
+  std::optional<Interval> interval;  ///< nothing where the number is the same in each run
+  std::vector<double> samples;       ///< those behind the interval; none for series that share no rounds
+  std::size_t num_rounds = 0;        ///< of the series that has fewer
+  double busy = 0;                   ///< as in Samples
 };
-/// The ratio is that of the medians; where both ran in the same rounds, it is the median of the ratios within
-/// rounds. Numbers that are not positive have no interval, and a ratio over 0 is infinite, or 1 where both
-/// are 0.
-SeriesRatio ratio_of(const Samples& above, const Samples& below);
+
+Estimate estimate_of(const Samples& samples);
+/// Where both series ran in the same rounds, the median of the ratios within rounds; else the ratio of the
+/// medians.
+Estimate ratio_of(const Samples& above, const Samples& below);
 
 }  // namespace podm::bench

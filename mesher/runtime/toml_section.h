@@ -33,6 +33,8 @@ class TomlSection {
   [[noreturn]] void fail(const toml::source_region& place, const std::string& fault) const;
   const toml::source_region& place() const { return table_->source(); }
   const toml::source_region& place(std::string_view key) const { return table_->find(key)->second.source(); }
+  /// "file:line:column" of the value at `key`, which is there.
+  std::string where(std::string_view key) const;
   bool has(std::string_view key) const { return table_->contains(key); }
   bool is_array(std::string_view key) const { return has(key) && table_->get(key)->is_array(); }
   bool is_table(std::string_view key) const { return has(key) && table_->get(key)->is_table(); }
@@ -76,6 +78,7 @@ class TomlSection {
                         std::int64_t most) const;
 
  private:
+  std::string told(const toml::source_region& place) const;
   TomlSection member(std::string_view key, std::string_view name, const toml::node& node) const;
   const toml::node* find(std::string_view key);
   const toml::node& required(std::string_view key);

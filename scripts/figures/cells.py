@@ -1,5 +1,5 @@
 """A verdict for each cell of Tables 1 and 2."""
-from . import paper, scaling
+from . import paper, resolution, scaling
 from .reasons import why_missing
 
 RATIO_TOLERANCE = 0.15  # of a ratio to one core
@@ -17,10 +17,10 @@ def cells(frame, series, hops):
     return made
 
 
-def shares_agree(ours, published):
-    """The share of all accesses, or of those that leave their node."""
-    is_near = published / SHARE_FACTOR <= ours <= published * SHARE_FACTOR
-    return is_near or abs(ours - published) <= SHARE_DIGIT
+def near_share(published):
+    """(least, most) that agrees with a share of all accesses, or of those that leave their node."""
+    return (min(published / SHARE_FACTOR, published - SHARE_DIGIT),
+            max(published * SHARE_FACTOR, published + SHARE_DIGIT))
 
 
 def _cells_of_table1(frame, series, basis):
@@ -58,8 +58,21 @@ def _judge_ratio(cell, ours, paper_ratio, our_base):
     elif cell["column"] == "cells":
         cell.update(verdict="reference", reason="rows are chosen by it: cells grow with the cores, as the paper's")
     else:
-        cell.update(verdict="agrees" if abs(difference) <= RATIO_TOLERANCE else "differs",
-                    reason=f"ratio to one core {ratio:.3g}, the paper's {paper_ratio:.3g}: {100 * difference:+.0f} %")
+        interval = _interval_of_ratio(cell, ours, ratio)
+        least, most = ((1 + sign * RATIO_TOLERANCE) * paper_ratio for sign in (-1, 1))
+        word = resolution.verdict(ratio, interval, least, most)
+        doubt = resolution.doubt(interval) if word == resolution.NOT_RESOLVED else ""
+        cell.update(verdict=word, reason=f"ratio to one core {ratio:.3g}, the paper's {paper_ratio:.3g}: "
+                                         f"{100 * difference:+.0f} %{doubt}")
+
+
+def _interval_of_ratio(cell, ours, ratio):
+    """Each column's ratio to one core is the speed-up, or its inverse, times what does not vary."""
+    interval = resolution.of_line(ours, "speedup", cell["basis"])
+    if interval is resolution.EXACT:
+        return interval
+    spread = interval.map(lambda speedup: speedup / ours["speedup"])
+    return spread.map(lambda factor: ratio / factor if cell["column"] == "seconds" else ratio * factor)
 
 
 def _cells_of_table2(frame, hops, basis):
@@ -72,7 +85,8 @@ def _cells_of_table2(frame, hops, basis):
             if (cores, hop) in ours.index:
                 _judge_share(cell, ours.loc[cores, hop], hop)
             elif cores in ours.index.get_level_values("cores"):
-                _judge_share(cell, {"share": 0.0, "n": ours.loc[(cores, 0), "n"]}, hop)
+                none = {name: 0.0 for name in ("share", "share_low", "share_high")}
+                _judge_share(cell, {**ours.loc[(cores, 0)], **none}, hop)
             else:
                 cell["reason"] = why_missing(frame, None, basis, "pdr-podm", cores, needs_hops=True)
             made.append(cell)
@@ -84,6 +98,10 @@ def _judge_share(cell, ours, hop):
     share = float(ours["share"])
     compared = [1 - one if hop == 0 else one for one in (share, cell["paper"])]
     what = "leave their node" if hop == 0 else f"take {hop} hops"
-    cell.update(value=share, n=int(ours["n"]), deviation=share - cell["paper"],
-                verdict="agrees" if shares_agree(*compared) else "differs",
-                reason=f"{100 * compared[0]:.2f} % {what}, in the paper {100 * compared[1]:.2f} %")
+    interval = resolution.of_line(ours, "share", cell["basis"])
+    if interval is not resolution.EXACT and hop == 0:
+        interval = interval.map(lambda one: 1 - one)
+    word = resolution.verdict(compared[0], interval, *near_share(compared[1]))
+    doubt = resolution.doubt(interval) if word == resolution.NOT_RESOLVED else ""
+    cell.update(value=share, n=int(ours["n"]), deviation=share - cell["paper"], verdict=word,
+                reason=f"{100 * compared[0]:.2f} % {what}, in the paper {100 * compared[1]:.2f} %{doubt}")

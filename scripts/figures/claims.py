@@ -1,10 +1,13 @@
 """A verdict for each finding of the paper: statements on shapes, each with the mirror that would refute it."""
-from . import paper, scaling, table2, table3
+import math
+
+from . import paper, resolution, scaling, table2, table3
 from .cells import RATIO_TOLERANCE, SHARE_FACTOR
 from .reasons import lack_of_cores, of_basis
 from .style import NAMES
 
 CROSSOVER = (128, 160)  # the paper's: PODM ahead on the first, PDR.PODM on the second
+ABOVE_ONE = math.nextafter(1, 2)
 TURNING = 128  # cores from which on PODM's speed-up falls
 # Mean absolute deviation of speed-ups from the paper's; in simulations PODM's column is fitted, the other predicted.
 DEVIATIONS = {"podm": 0.08, "pdr-podm": 0.15}
@@ -25,7 +28,13 @@ def _claim(name, statement, published, basis):
 
 
 def _decide(claim, agrees, value, reason):
-    claim.update(value=value, verdict="agrees" if agrees else "differs", reason=reason)
+    return _conclude(claim, resolution.AGREES if agrees else resolution.DIFFERS, value, reason)
+
+
+def _conclude(claim, word, value, reason, *intervals):
+    """The doubts are told of what is not resolved."""
+    doubts = [resolution.doubt(one) for one in intervals] if word == resolution.NOT_RESOLVED else []
+    claim.update(value=value, verdict=word, reason=reason + next(filter(None, doubts), ""))
     return claim
 
 
@@ -49,6 +58,10 @@ def _crossover(frame, series, basis):
         claim["reason"] = lack_of_cores(frame, basis, first) or most
         return claim
     behind, ahead = crossover(series.table)
+    if (open_on := _unresolved_orders(series, basis)):
+        claim.update(value=[behind, ahead], verdict=resolution.NOT_RESOLVED,
+                     reason=f"which is ahead on {', '.join(map(str, open_on))} cores is not resolved")
+        return claim
     if ahead is None:
         return _decide(claim, False, [behind, None], f"PDR.PODM is not ahead on {behind} cores, the most there are")
     reason = f"PDR.PODM is ahead from {ahead} cores on, " + (f"not on {behind}" if behind else "the fewest there are")
@@ -59,6 +72,17 @@ def _crossover(frame, series, basis):
         return _decide(claim, True, [behind, ahead], reason)
     claim.update(value=[behind, ahead], reason=f"{reason}: {last} and {first} cores would decide")
     return claim
+
+
+def _unresolved_orders(series, basis):
+    """The numbers of cores beyond one on which the intervals do not tell which algorithm is ahead."""
+    def order(cores):
+        lines = [series.table.loc[algorithm, cores] for algorithm in ("pdr-podm", "podm")]
+        one, other = (resolution.of_line(line, "speedup", basis) for line in lines)
+        ratio = lines[0]["speedup"] / lines[1]["speedup"]
+        return resolution.verdict(ratio, one.over(other) if one else resolution.EXACT, most=1)
+
+    return [cores for cores in _common_cores(series.table) if cores > 1 and order(cores) == resolution.NOT_RESOLVED]
 
 
 def _common_cores(table):
@@ -72,14 +96,15 @@ def _trends(frame, series, basis):
                                  ("pdr-podm", "PDR.PODM keeps most: 90.7 % on 32 cores, 64.0 % on 256")):
         published = paper.table1().loc[algorithm]["efficiency"]
         claim = _claim(f"efficiency of {algorithm}", statement, float(published[256] / published[32]), basis)
-        ours = _column(series, algorithm, "efficiency")
+        ours = _lines(series, algorithm)
         if ours is None or not {32, 256} <= set(ours.index):
             claim["reason"] = lack_of_cores(frame, basis, 256) or "no rows with 32 and with 256 cores"
         else:
-            kept = float(ours[256] / ours[32])
-            _decide(claim, abs(kept - claim["paper"]) <= RATIO_TOLERANCE, kept,
-                    f"{100 * kept:.0f} % of the efficiency on 32 cores is left on 256, in the paper "
-                    f"{100 * claim['paper']:.0f} %")
+            kept, interval = _quotient(ours.loc[256], ours.loc[32], "efficiency", basis)
+            bounds = (claim["paper"] - RATIO_TOLERANCE, claim["paper"] + RATIO_TOLERANCE)
+            _conclude(claim, resolution.verdict(kept, interval, *bounds), kept,
+                      f"{100 * kept:.0f} % of the efficiency on 32 cores is left on 256, in the paper "
+                      f"{100 * claim['paper']:.0f} %", interval)
         yield claim
 
 
@@ -89,13 +114,18 @@ def _turns(frame, series, basis):
         claim = _claim(f"speed-up of {algorithm} beyond {TURNING} cores",
                        f"{NAMES[algorithm]}'s speed-up {verb} with each step from {TURNING} to 256 cores",
                        _steps(paper.table1().loc[algorithm]["speedup"]), basis)
-        ours = _column(series, algorithm, "speedup")
+        ours = _lines(series, algorithm)
         if ours is None or not {TURNING, 256} <= set(ours.index):
             claim["reason"] = lack_of_cores(frame, basis, 256) or f"no rows with {TURNING} and with 256 cores"
         else:
-            steps = _steps(ours)
+            inside = ours[(ours.index >= TURNING) & (ours.index <= 256)].sort_index()
+            pairs = zip(inside.iloc, inside.iloc[1:].iloc)
+            steps, intervals = zip(*(_quotient(after, before, "speedup", basis) for before, after in pairs))
+            bounds = {"least": ABOVE_ONE} if sign > 0 else {"most": 1 / ABOVE_ONE}
+            word = resolution.together([resolution.verdict(step, interval, **bounds)
+                                        for step, interval in zip(steps, intervals)])
             told = ", ".join(f"{step:.2f}" for step in steps)
-            _decide(claim, all((step - 1) * sign > 0 for step in steps), steps, f"from step to step times {told}")
+            _conclude(claim, word, list(steps), f"from step to step times {told}", *intervals)
         yield claim
 
 
@@ -117,8 +147,10 @@ def _deviations(frame, series, basis):
             claim["reason"] = lack_of_cores(frame, basis, 256) or "no rows with 256 cores and with fewer"
         else:
             mean, worst = float(found.abs().mean()), int(found.abs().idxmax())
-            _decide(claim, mean <= most, mean, f"{100 * mean:.1f} % in the mean of {len(found)} numbers of cores, at "
-                    f"most {100 * found[worst]:+.0f} %, on {worst} cores")
+            interval = _interval_of_mean(series, algorithm, found.index, basis)
+            _conclude(claim, resolution.verdict(mean, interval, most=most), mean,
+                      f"{100 * mean:.1f} % in the mean of {len(found)} numbers of cores, at most "
+                      f"{100 * found[worst]:+.0f} %, on {worst} cores", interval)
         yield claim
 
 
@@ -127,9 +159,31 @@ def _steps(speedup):
     return [float(after / before) for before, after in zip(inside, inside.iloc[1:])]
 
 
-def _column(series, algorithm, column):
+def _interval_of_mean(series, algorithm, counts, basis):
+    """Of the mean of the sizes of deviations: each is the least and the greatest that its interval has."""
+    if basis != "measured":
+        return resolution.EXACT
+    published = paper.corrected_table1().loc[algorithm]["speedup"]
+    lines = _lines(series, algorithm)
+    ends = [sorted(abs(lines.loc[cores, f"speedup_{end}"] / published[cores] - 1) for end in ("low", "high"))
+            for cores in counts]
+    holds_paper = [lines.loc[cores, "speedup_low"] <= published[cores] <= lines.loc[cores, "speedup_high"]
+                   for cores in counts]
+    lows = [0.0 if holds else low for holds, (low, _) in zip(holds_paper, ends)]
+    return resolution.Interval(sum(lows) / len(lows), sum(high for _, high in ends) / len(ends),
+                               lines.loc[list(counts), "coverage"].min())
+
+
+def _quotient(above, below, column, basis):
+    """(the quotient of two lines' numbers, its interval)."""
+    intervals = [resolution.of_line(line, column, basis) for line in (above, below)]
+    exact = resolution.EXACT in intervals
+    return float(above[column] / below[column]), resolution.EXACT if exact else intervals[0].over(intervals[1])
+
+
+def _lines(series, algorithm):
     has_any = series is not None and algorithm in series.table.index
-    return series.table.loc[algorithm][column] if has_any else None
+    return series.table.loc[algorithm] if has_any else None
 
 
 def _zero_hops(hops, frame, basis):
@@ -142,28 +196,38 @@ def _zero_hops(hops, frame, basis):
                            else table2.why_no_hops(of_basis(frame, basis)))
         return claim
     worst = float(beyond["share"].min())
-    return _decide(claim, 1 - worst <= SHARE_FACTOR * (1 - least), worst,
-                   f"least share {100 * worst:.2f} %, up to {int(beyond['cores'].max())} cores: "
-                   f"{100 * (1 - worst):.2f} % leave their node, in the paper {100 * (1 - least):.2f} % at most")
+    bound = 1 - SHARE_FACTOR * (1 - least)
+    intervals = [resolution.of_line(line, "share", basis) for line in beyond.to_dict("records")]
+    words = [resolution.verdict(share, interval, least=bound) for share, interval in zip(beyond["share"], intervals)]
+    return _conclude(claim, resolution.together(words), worst,
+                     f"least share {100 * worst:.2f} %, up to {int(beyond['cores'].max())} cores: "
+                     f"{100 * (1 - worst):.2f} % leave their node, in the paper {100 * (1 - least):.2f} % at most",
+                     *intervals)
 
 
 def _latencies(frame):
     """The order of Table 3's cycles is compared, which are a machine's own. Measured, or not at all."""
     costs = table3.costs(frame)
-    own = costs[~costs["is_another"]]["cycles"].tolist()
-    another = costs[costs["is_another"]]["cycles"].tolist()
+    own, another = costs[~costs["is_another"]], costs[costs["is_another"]]
     within = _claim("latency within a node", "each level of memory costs more than the one before it: 4, 11, 40 and "
                     "some 200 cycles", [4, 11, 40, 200], "measured")
-    if len(own) < 3 or any(cycles != cycles for cycles in own):
+    if len(own) < 3 or own["cycles"].isna().any():
         within["reason"] = "no row measured two caches and the node's memory"
     else:
-        _decide(within, all(low < high for low, high in zip(own, own[1:])), own,
-                ", ".join(f"{cycles:.3g}" for cycles in own) + " cycles")
+        steps = [_quotient(high, low, "cycles", "measured") for low, high in zip(own.iloc, own.iloc[1:].iloc)]
+        _conclude_steps(within, steps, ABOVE_ONE, own["cycles"].tolist(),
+                        ", ".join(f"{cycles:.3g}" for cycles in own["cycles"]) + " cycles")
     beyond = _claim("latency beyond a node", "memory of another node costs more than that of the own: some 1500 "
                     "against 200 cycles", 7.5, "measured")
-    if not own or not another or any(cycles != cycles for cycles in (own[-1], *another)):
-        beyond["reason"] = "one NUMA node" if own else "no row measured memory levels"
+    if own.empty or another.empty or another["cycles"].isna().any() or own["cycles"].isna().iloc[-1]:
+        beyond["reason"] = "no row measured memory levels" if own.empty else "one NUMA node"
     else:
-        ratio = min(another) / own[-1]
-        _decide(beyond, ratio >= 1 + RATIO_TOLERANCE, ratio, f"{ratio:.3g} times as many cycles")
+        steps = [_quotient(line, own.iloc[-1], "cycles", "measured") for line in another.iloc]
+        ratio = min(value for value, _ in steps)
+        _conclude_steps(beyond, steps, 1 + RATIO_TOLERANCE, ratio, f"{ratio:.3g} times as many cycles")
     return [within, beyond]
+
+
+def _conclude_steps(claim, steps, least, value, reason):
+    words = [resolution.verdict(ratio, interval, least=least) for ratio, interval in steps]
+    _conclude(claim, resolution.together(words), value, reason, *(interval for _, interval in steps))

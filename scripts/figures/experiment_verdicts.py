@@ -3,11 +3,13 @@ import json
 
 import pandas
 
-SCHEMA = "podm-bench-verdicts/1"
-WORDS = ("holds", "does_not_hold", "cannot_be_decided")
+SCHEMA = "podm-bench-verdicts/2"
+WORDS = {"does_not_hold": "do not", "not_resolved": "are not resolved", "holds": "hold",
+         "cannot_be_decided": "cannot be decided here"}  # what claims of each verdict do, those to see first first
+WITHDRAWN = "withdrawn"
 HOW = ("No verdicts of experiments were given. `build/bin/podm-bench verdicts --json FILE experiments/*.toml` makes "
        "them, `--experiment-verdicts FILE` shows them.")
-COLUMNS = ["experiment", "claim", "basis", "verdict", "value", "bound", "n", "reason", "statement"]
+COLUMNS = ["experiment", "claim", "basis", "verdict", "value", "interval", "bound", "n", "reason", "statement"]
 
 
 class VerdictsError(Exception):
@@ -31,16 +33,35 @@ def read_experiment_verdicts(path):
 
 
 def table(found):
-    """One line a claim: those that do not hold first, then those that hold; `found` may be None."""
-    lines = [{**claim, "claim": claim["name"], "experiment": experiment["experiment"]}
-             for experiment in (found or {"experiments": []})["experiments"] for claim in experiment["claims"]]
+    """One line a claim: those that do not hold first, then those of the other verdicts, then what is no longer claimed;
+    `found` may be None."""
+    lines = [{**claim, "claim": claim["name"], "experiment": experiment["experiment"], "interval": _interval(claim),
+              "reason": _reason(claim)}
+             for experiment in (found or {"experiments": []})["experiments"]
+             for claim in (*experiment["claims"], *experiment["withdrawn"])]
     made = pandas.DataFrame(lines, columns=COLUMNS, dtype=object)
-    rank = made["verdict"].map(["does_not_hold", "holds", "cannot_be_decided"].index)
+    rank = made["verdict"].map([*WORDS, WITHDRAWN].index)
     return made.assign(rank=rank).sort_values("rank", kind="stable", ignore_index=True).drop(columns="rank")
 
 
 def counts(found):
-    """"12 hold, 3 do not, 5 cannot be decided here"; empty without verdicts."""
+    """"12 hold, 3 do not, 1 are not resolved, 5 cannot be decided here"; empty without verdicts."""
     verdicts = list(table(found)["verdict"])
-    hold, fail, open_ones = (verdicts.count(word) for word in WORDS)
-    return f"{hold} hold, {fail} do not, {open_ones} cannot be decided here" if verdicts else ""
+    told = [f"{verdicts.count(word)} {WORDS[word]}" for word in ("holds", "does_not_hold", "not_resolved",
+                                                                 "cannot_be_decided")]
+    withdrawn = verdicts.count(WITHDRAWN)
+    return ", ".join(told) + (f"; {withdrawn} withdrawn or superseded" if withdrawn else "") if verdicts else ""
+
+
+def _interval(claim):
+    """"0.98 to 1.14, 96.9 % of 6 rounds"; empty without one."""
+    interval = claim.get("interval")
+    if not interval or interval["rounds"] < 2:
+        return ""
+    low, high = (f"{bound:.3g}" if bound is not None else "infinite" for bound in (interval["low"], interval["high"]))
+    return f"{low} to {high}, {100 * interval['coverage']:.1f} % of {interval['rounds']} rounds"
+
+
+def _reason(claim):
+    successor = claim.get("superseded_by")
+    return f"superseded by {successor}: {claim['reason']}" if successor else claim["reason"]

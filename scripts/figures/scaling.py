@@ -15,7 +15,7 @@ import numpy
 import pandas
 
 from .extrapolation import LEAST_CELLS_PER_CORE, PAPER_CELLS_PER_CORE, at_paper_size
-from .spread import median_interval, ratio_interval
+from .spread import median_interval, order_interval
 
 KEY = ["basis", "machine", "build", "experiment", "setting", "image"]
 # Cells per core may stray this far from one core's; the paper's own stray by 3 %, a radius for a target by 5 %.
@@ -185,7 +185,8 @@ def _table(members):
         line.update(_bounds("seconds", median_interval(group["seconds"])))
         line.update(_bounds("rate", median_interval(rate[group.index])))
         alone = algorithm == "podm" and cores == 1
-        speedup = (1.0, numpy.nan, numpy.nan) if alone else ratio_interval(rate[group.index], rate[is_base])
+        speedup, line["coverage"] = _speedup(rate[group.index], rounds[group.index], rate[is_base], rounds[is_base])
+        speedup = (1.0, numpy.nan, numpy.nan) if alone else speedup
         line.update(_bounds("speedup", speedup))
         line.update(_bounds("efficiency", [value / cores for value in speedup]))
         line.update(_bounds("refining_rate", median_interval(refining_rate[group.index])))
@@ -194,6 +195,15 @@ def _table(members):
         line.update(_phases(group))
         lines[algorithm, cores] = line
     return _indexed(lines)
+
+
+def _speedup(rates, rounds, base_rates, base_rounds):
+    """((speed-up, low, high), coverage): the median of the ratios within rounds; without common rounds the ratio of the
+    medians, which has no interval."""
+    ratios = (rates / rounds.map(base_rates.groupby(base_rounds).last())).dropna()
+    if ratios.empty:
+        return (float(rates.median() / base_rates.median()), numpy.nan, numpy.nan), numpy.nan
+    return median_interval(ratios), order_interval(ratios)[2]
 
 
 def _indexed(lines):

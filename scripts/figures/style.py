@@ -111,7 +111,7 @@ def caption_of(series, has_paper=True):
     if not has_paper:
         return f"{text}.{beyond}"
     if any((one.table["n"] > 1).any() for one in series if not one.sizes):
-        text += ". Medians; bars: bootstrap 95 % interval"
+        text += ". Medians; bars: interval of order statistics, which holds the median with 95 % from six rounds on"
     if any(one.sizes for one in series):
         text += f". {EXTRAPOLATED}"
     return f"{text}. Grey, dashed: the paper, Blacklight.{beyond}"

@@ -9,9 +9,10 @@ import pandas
 
 from . import paper, scaling
 from .extrapolation import LEAST_CELLS_PER_CORE, PAPER_CELLS_PER_CORE, at_paper_size
+from .spread import order_interval
 from .table1 import in_order, marked
 
-COLUMNS = ["basis", "kind", "algorithm", "cores", "nodes", "hops", "share", "share_low", "share_high",
+COLUMNS = ["basis", "kind", "algorithm", "cores", "nodes", "hops", "share", "share_low", "share_high", "coverage",
            "share_all_kinds", "visits", "n", "series"]
 PAPER_NODE = 16  # cores of a blade of the paper's machine
 KINDS = "hops_by_kind."
@@ -105,7 +106,15 @@ def _block(group):
     return pandas.DataFrame({
         "basis": group["basis"].iloc[0], "hops": range(len(counts)), "share": counts / counts.sum(), "visits": counts,
         "share_all_kinds": _shares_of_all_kinds(group, len(counts)), "n": len(group), "nodes": nodes,
-        "series": _label(group.iloc[-1])})
+        "series": _label(group.iloc[-1]), **_bounds_of_shares(group, len(counts))})
+
+
+def _bounds_of_shares(group, length):
+    """The interval of each share over the rows; virtual workers do the same in each run."""
+    if group["basis"].iloc[0] != "measured":
+        return {}
+    shares = [[*counts, *[0] * (length - len(counts))] / numpy.sum(counts) for counts in group["hops"]]
+    return dict(zip(("share_low", "share_high", "coverage"), zip(*map(order_interval, zip(*shares)))))
 
 
 def _shares_of_all_kinds(group, length):

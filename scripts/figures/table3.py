@@ -2,6 +2,7 @@
 import pandas
 
 from . import paper
+from .spread import median_interval, order_interval
 
 COLUMNS = ["basis", "level", "memory_module", "size", "access_clock_cycles"]
 
@@ -27,11 +28,13 @@ def costs(frame):
     levels = _levels(frame)
     lines = []
     for (level, module), group in levels.groupby(["level", "module"]) if len(levels) else ():
-        cycles = pandas.to_numeric(group["cycles"], errors="coerce").dropna().median()
+        measured = pandas.to_numeric(group["cycles"], errors="coerce").dropna()
+        cycles, low, high = median_interval(measured)
         lines.append({"level": level, "module": module, "size_bytes": group["size_bytes"].iloc[-1], "cycles": cycles,
+                      "cycles_low": low, "cycles_high": high, "coverage": order_interval(measured)[2],
                       "text": group["cycles"].iloc[-1] if pandas.isna(cycles) else f"{cycles:.3g}",
                       "is_another": "another node" in module})
-    columns = ["level", "module", "size_bytes", "cycles", "text", "is_another"]
+    columns = ["level", "module", "size_bytes", "cycles", "cycles_low", "cycles_high", "coverage", "text", "is_another"]
     return pandas.DataFrame(lines, columns=columns).astype({"is_another": bool})
 
 

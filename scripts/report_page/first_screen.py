@@ -191,8 +191,12 @@ def _experiments(outcome):
     lines = experiment_verdicts.table(outcome.experiments).to_dict("records")
     parts = {word: [(word, f"{line['experiment']}: {line['statement']} ({line['basis']})", line["reason"])
                     for line in lines if line["verdict"] == word] for word in experiment_verdicts.WORDS}
+    former = [(line["verdict"], f"{line['experiment']}: {line['statement'] or line['claim']}", line["reason"])
+              for line in lines if line["verdict"] == experiment_verdicts.WITHDRAWN]
     return (_answer(f"Claims of our own experiments: {experiment_verdicts.counts(outcome.experiments)}.")
             + findings(parts["does_not_hold"])
+            + fold(f"What is not resolved: {len(parts['not_resolved'])}", findings(parts["not_resolved"]))
             + fold(f"What holds: {len(parts['holds'])}", findings(parts["holds"]))
             + fold(f"What cannot be decided here: {len(parts['cannot_be_decided'])}",
-                   findings(parts["cannot_be_decided"])))
+                   findings(parts["cannot_be_decided"]))
+            + fold(f"What is no longer claimed: {len(former)}", findings(former)))

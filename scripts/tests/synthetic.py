@@ -118,11 +118,16 @@ def solved(iterations, image="made-up", optimize=None, min_dihedral=None, mesher
 
 def experiment_verdicts(**verdicts):
     """What podm-bench writes: a claim by name and verdict, all of one experiment."""
+    interval = {"low": 1.25, "high": 1.75, "coverage": 0.75, "rounds": 3}
     claims = [{"name": name, "statement": f"{name} is so", "basis": "measured", "verdict": verdict,
-               "reason": f"because of <{name}>", "value": 1.5, "bound": 2.0, "n": 3}
-              for name, verdict in verdicts.items()]
-    return {"schema": "podm-bench-verdicts/1", "experiments": [
-        {"experiment": "weak_scaling", "title": "Weak scaling", "claim": "so", "paper": "Table 1", "claims": claims}]}
+               "reason": f"because of <{name}>", "value": 1.5, "interval": interval, "rounds_needed": None,
+               "bound": "at least 2", "sizes": [], "n": 3}
+              for name, verdict in verdicts.items() if verdict != "withdrawn"]
+    withdrawn = [{"name": name, "statement": f"{name} was so", "verdict": verdict, "reason": f"because of <{name}>",
+                  "superseded_by": "another"} for name, verdict in verdicts.items() if verdict == "withdrawn"]
+    return {"schema": "podm-bench-verdicts/2", "experiments": [
+        {"experiment": "weak_scaling", "title": "Weak scaling", "claim": "so", "paper": "Table 1", "claims": claims,
+         "withdrawn": withdrawn}]}
 
 
 def paper_verdicts(lines, verdict="holds", **of_claims):

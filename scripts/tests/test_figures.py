@@ -25,7 +25,7 @@ class Spread(unittest.TestCase):
 
     def test_one_value_has_no_interval(self):
         self.assertTrue(math.isnan(spread.median_interval([3.0])[1]))
-        self.assertTrue(math.isnan(spread.ratio_interval([3.0], [1.5])[2]))
+        self.assertTrue(all(map(math.isnan, spread.order_interval([3.0]))))
 
 
 class Scaling(unittest.TestCase):
@@ -271,11 +271,19 @@ class Others(unittest.TestCase):
 
 
 class Experiments(unittest.TestCase):
-    FOUND = synthetic.experiment_verdicts(one="holds", two="cannot_be_decided", three="does_not_hold", four="holds")
+    FOUND = synthetic.experiment_verdicts(zero="withdrawn", one="holds", two="cannot_be_decided",
+                                          three="does_not_hold", four="holds", five="not_resolved")
 
     def test_what_does_not_hold_comes_first(self):
-        self.assertEqual(list(experiment_verdicts.table(self.FOUND)["claim"]), ["three", "one", "four", "two"])
-        self.assertEqual(experiment_verdicts.counts(self.FOUND), "2 hold, 1 do not, 1 cannot be decided here")
+        self.assertEqual(list(experiment_verdicts.table(self.FOUND)["claim"]),
+                         ["three", "five", "one", "four", "two", "zero"])
+        self.assertEqual(experiment_verdicts.counts(self.FOUND), "2 hold, 1 do not, 1 are not resolved, "
+                         "1 cannot be decided here; 1 withdrawn or superseded")
+
+    def test_intervals_tell_their_coverage_and_what_was_withdrawn_its_successor(self):
+        found = experiment_verdicts.table(self.FOUND).set_index("claim")
+        self.assertEqual(found.loc["one", "interval"], "1.25 to 1.75, 75.0 % of 3 rounds")
+        self.assertEqual(found.loc["zero", "reason"], "superseded by another: because of <zero>")
 
     def test_without_any(self):
         self.assertTrue(experiment_verdicts.table(None).empty)
@@ -345,7 +353,7 @@ class Drawing(unittest.TestCase):
             size = "simulated, 3\N{NO-BREAK SPACE}M cells a core"
             self.assertTrue({"PODM, paper", "PODM, measured", f"PODM, {size}", f"PDR.PODM, {size}"} <= words, words)
             self.assertNotIn("PDR.PODM, measured", words)
-            self.assertIn("bootstrap 95 %", figure.get_label())
+            self.assertIn("order statistics", figure.get_label())
 
     def test_figures_without_rows_show_the_paper(self):
         made = outcome.make(frame_of([]))

@@ -66,7 +66,7 @@ class Programs(unittest.TestCase):
         for words in (done.stdout, written):
             self.assertLess(words.index("second"), words.index("first"), "what does not hold is not hidden")
             self.assertIn("because of <third>", words)
-        self.assertIn("1 hold, 1 do not, 1 cannot be decided here", done.stdout)
+        self.assertIn("1 hold, 1 do not, 0 are not resolved, 1 cannot be decided here", done.stdout)
 
     def test_equal_records_give_equal_files(self):
         rows = write_rows(self.folder / "weak.jsonl", synthetic.like_the_paper(paper.table1(), repeats=2))
@@ -87,7 +87,7 @@ class Programs(unittest.TestCase):
             ("report", ["--records", fine, "--schedule", fine],
              "fine.jsonl: schema 4; this program reads podm-schedule/1"),
             ("report", ["--records", fine, "--experiment-verdicts", fine],
-             "fine.jsonl: not verdicts of schema podm-bench-verdicts/1"),
+             "fine.jsonl: not verdicts of schema podm-bench-verdicts/2"),
             ("make_figures", ["--records", fine, "--experiment-verdicts", odd], "weak_scaling: one: verdict 'perhaps'"),
             ("report", ["--unknown"], "unrecognized arguments"),
         ):
@@ -115,7 +115,8 @@ def make_page(folder, *more):
     write_rows(folder / "rows.jsonl", rows)
     write_rows(folder / "schedule.jsonl", synthetic.schedule())
     write_rows(folder / "verified.json", [synthetic.report()])
-    found = synthetic.experiment_verdicts(good="holds", bad="does_not_hold", open="cannot_be_decided")
+    found = synthetic.experiment_verdicts(good="holds", bad="does_not_hold", vague="not_resolved",
+                                           open="cannot_be_decided", former="withdrawn")
     of_paper = synthetic.paper_verdicts(paper_claims.read_lines()[0], **{"podm-falls-beyond-128": "does_not_hold"})
     found["experiments"] += of_paper["experiments"]
     write_rows(folder / "experiments.json", [found])

@@ -3,9 +3,10 @@ import unittest
 
 import paths  # noqa: F401
 import synthetic
-from figures import cells, claims, paper, scaling, table2, verdicts
+from figures import cells, claims, paper, resolution, scaling, table2, verdicts
 from test_figures import frame_of
 
+ROUNDS = 6  # the fewest that resolve what is measured
 POWERS_OF_TWO = (1, 16, 32, 64, 128, 256)
 CYCLES = [4, 11, 40, 200, 1500]
 CLAIMS = ["crossover", "efficiency of podm", "efficiency of pdr-podm", "speed-up of podm beyond 128 cores",
@@ -30,10 +31,15 @@ def claim_of(found, name, basis="measured"):
 
 def fed(weak, shares, cycles, **changes):
     """Verdicts on tables as if they were ours; on Tables 1 and 2 of either basis."""
-    rows = synthetic.like_the_paper(weak, repeats=3, spread=0.005, **changes)
+    rows = synthetic.like_the_paper(weak, repeats=ROUNDS, spread=0.005, **changes)
     wide = {cores: list(shares[cores]) for cores in shares}
-    extra = [synthetic.row("pdr-podm", 16, environment=synthetic.BIG_MACHINE, **changes)]  # Table 1 has no 16 cores
-    return judged([*synthetic.with_hops([*rows, *extra], wide), synthetic.with_levels(cycles)])
+    extra = [synthetic.row("pdr-podm", 16, repeat=repeat, environment=synthetic.BIG_MACHINE, **changes)
+             for repeat in range(1, ROUNDS + 1)]  # Table 1 has no 16 cores
+    return judged([*synthetic.with_hops([*rows, *extra], wide), *levels(cycles)])
+
+
+def levels(cycles):
+    return [synthetic.with_levels(cycles) for _ in range(ROUNDS)]
 
 
 def swapped(weak):
@@ -152,9 +158,9 @@ class Published(unittest.TestCase):
 class Crossover(unittest.TestCase):
     def claim(self, counts, ahead_from):
         """Rows on those numbers of cores, where PDR.PODM is ahead from one of them on."""
-        rows = [synthetic.row(algorithm, cores, environment=synthetic.BIG_MACHINE,
+        rows = [synthetic.row(algorithm, cores, repeat=repeat, environment=synthetic.BIG_MACHINE,
                               phases_s={"refine": 9.0 if ahead else 10.0})
-                for cores in counts for algorithm in paper.ALGORITHMS
+                for repeat in range(1, ROUNDS + 1) for cores in counts for algorithm in paper.ALGORITHMS
                 for ahead in [(algorithm == "pdr-podm") == (cores >= ahead_from)]]
         return claim_of(judged(rows), "crossover")
 
@@ -207,7 +213,7 @@ class Missing(unittest.TestCase):
 
     def test_one_node_decides_nothing_about_hops_and_latency_beyond(self):
         rows = [*synthetic.with_hops([synthetic.row("pdr-podm", 16, executor="virtual")], {16: [1, 0, 0]}),
-                synthetic.with_levels(CYCLES[:4])]
+                *levels(CYCLES[:4])]
         found = judged(rows)
         self.assertEqual(claim_of(found, "zero-hop share", "simulated")["verdict"], "cannot_fill")
         self.assertEqual(claim_of(found, "latency within a node")["verdict"], "agrees")
@@ -224,8 +230,43 @@ class Missing(unittest.TestCase):
                                  column="rate")["verdict"], "differs")
 
     def test_shares_agree_within_a_factor_or_a_digit(self):
-        self.assertTrue(cells.shares_agree(0.0055, 0.0049) and cells.shares_agree(0.0001, 0.0))
-        self.assertFalse(cells.shares_agree(0.0, 0.0049) or cells.shares_agree(0.0102, 0.0049))
+        for ours, published, agrees in ((0.0055, 0.0049, True), (0.0001, 0.0, True), (0.0, 0.0049, False),
+                                        (0.0102, 0.0049, False)):
+            least, most = cells.near_share(published)
+            self.assertEqual(least <= ours <= most, agrees)
+
+
+class NotResolved(unittest.TestCase):
+    """What is measured in few rounds, or on both sides of a bound, neither agrees nor differs."""
+
+    def test_nothing_measured_is_decided_by_three_rounds(self):
+        rows = synthetic.like_the_paper(paper.corrected_table1(), repeats=3, spread=0.005)
+        shares = {cores: list(paper.table2()[cores]) for cores in paper.table2()}
+        found = judged([*synthetic.with_hops(rows, shares), synthetic.with_levels(CYCLES)])
+        own = [one for part in ("claims", "cells") for one in found[part]
+               if one["basis"] == "measured" and one["verdict"] not in ("reference", "cannot_fill")]
+        self.assertEqual({one["verdict"] for one in own}, {"not_resolved"})
+        self.assertTrue(all("too few rounds" in one["reason"] or "is not resolved" in one["reason"] for one in own))
+
+    def test_virtual_time_needs_one_round(self):
+        rows = synthetic.like_the_paper(paper.corrected_table1(), repeats=1, spread=0, executor="virtual")
+        found = judged(rows)
+        self.assertEqual(claim_of(found, "crossover", "simulated")["verdict"], "agrees")
+
+    def test_rounds_on_both_sides_of_the_tolerance_resolve_nothing(self):
+        rows = synthetic.like_the_paper(times(paper.corrected_table1(), 1.15), repeats=ROUNDS, spread=0.1)
+        cell = cell_of(judged(rows), table="1", basis="measured", algorithm="podm", cores=64, column="speedup")
+        self.assertEqual(cell["verdict"], "not_resolved")
+        self.assertIn("straddles the bound", cell["reason"])
+
+    def test_three_values(self):
+        within, beyond, both = ((1.0, 1.1), (2.0, 2.1), (1.0, 2.1))
+        for (low, high), word in ((within, "agrees"), (beyond, "differs"), (both, "not_resolved")):
+            self.assertEqual(resolution.verdict(1.05, resolution.Interval(low, high, 0.96), 0.9, 1.5), word)
+            self.assertEqual(resolution.verdict(1.05, resolution.Interval(low, high, 0.94), 0.9, 1.5), "not_resolved")
+        self.assertEqual(resolution.verdict(1.05, resolution.EXACT, 0.9, 1.5), "agrees")
+        self.assertEqual(resolution.together(["agrees", "not_resolved", "differs"]), "differs")
+        self.assertEqual(resolution.together(["agrees", "not_resolved"]), "not_resolved")
 
 
 if __name__ == "__main__":

@@ -131,5 +131,28 @@ TEST(Claim, NumbersOfThreadsAreUpToTheMachine) {
       "basis = 'measured'\nkind = 'bound'\nvalue = 'seconds'\nat_most = 1\nwhere = {threads = 256}\n"));
 }
 
+TEST(Claim, ThatSupersedesOthersGivesAReason) {
+  const std::string bound = "basis = 'measured'\nkind = 'bound'\nvalue = 'seconds'\nat_most = 1\n";
+  const Claim claim = read_claim_of(bound + "supersedes = ['old', 'exp:older']\nreason = 'r'\n");
+  EXPECT_EQ(claim.supersedes, (std::vector<std::string>{"old", "exp:older"}));
+  EXPECT_EQ(claim.reason, "r");
+  EXPECT_THROW(read_claim_of(bound + "supersedes = 'old'\n"), TomlError);
+  EXPECT_EQ(read_claim_of(bound + "reason = 'r'\n").reason, "r") << "of a claim that changed";
+}
+
+TEST(WithdrawnClaim, NeedsItsStatementAndAReason) {
+  const auto read = [](const std::string& lines) {
+    const toml::table table = toml::parse("name = 'c'\n" + lines);
+    TomlSection section("claim.toml", table, "[[withdrawn]]");
+    return read_withdrawn_claim(section);
+  };
+  const WithdrawnClaim claim = read("statement = 's'\nreason = 'r'\nsuperseded_by = 'd'\n");
+  EXPECT_EQ(claim.name + claim.statement + claim.reason + claim.superseded_by, "csrd");
+  EXPECT_EQ(claim.place, "claim.toml:1:8");
+  for (const char* lines :
+       {"statement = 's'\n", "reason = 'r'\n", "statement = 's'\nreason = 'r'\nvalue = 'seconds'\n"})
+    EXPECT_THROW(read(lines), TomlError) << lines;
+}
+
 }  // namespace
 }  // namespace podm::bench

@@ -7,7 +7,7 @@
 #include <cmath>
 #include <map>
 
-#include "experiments/experiment.h"
+#include "experiments/claim_names.h"
 #include "experiments/judge.h"
 #include "experiments/option_matrix.h"
 #include "tests/made_up_rows.h"
@@ -246,7 +246,7 @@ Rows rows_of(const Experiment& experiment, const Claim& claim) {
       rows.back().environment.usable_processors = cores;
     }
   }
-  return rows;
+  return in_six_rounds(rows);
 }
 
 // The value of a row where the claim's ratio, bound or factor comes to `value`.
@@ -346,6 +346,15 @@ TEST(ExperimentClaims, TurnEitherWayOrAreLeftOpen) {
       expect_undecided(experiment, claim);
     }
   }
+}
+
+TEST(ExperimentClaims, HaveNamesOfTheirOwn) {
+  std::vector<Experiment> experiments;
+  for (const std::string& path : experiment_files(PODM_EXPERIMENTS))
+    experiments.push_back(read_experiment(path));
+  EXPECT_NO_THROW(check_claim_names(experiments));
+  experiments.push_back(experiments.front());
+  EXPECT_THROW(check_claim_names(experiments), InputError);
 }
 
 // What is published as failed is claimed, so that a verdict says so.

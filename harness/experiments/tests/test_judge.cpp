@@ -10,14 +10,18 @@ namespace {
 
 using Rows = std::vector<Row>;
 
-constexpr auto kHolds = Verdict::kHolds, kFails = Verdict::kDoesNotHold, kOpen = Verdict::kCannotBeDecided;
+constexpr auto kHolds = Verdict::kHolds, kFails = Verdict::kDoesNotHold, kUnclear = Verdict::kNotResolved,
+               kOpen = Verdict::kCannotBeDecided;
 
 Rows operator+(Rows a, const Rows& b) {
   a.insert(a.end(), b.begin(), b.end());
   return a;
 }
 
-Verdict verdict_of(const Claim& claim, const Rows& rows) { return judge(claim, rows).verdict; }
+// On the rows of one round as if each of six rounds had found the same.
+Judgement judged(const Claim& claim, const Rows& rows) { return judge(claim, in_six_rounds(rows)); }
+
+Verdict verdict_of(const Claim& claim, const Rows& rows) { return judged(claim, rows).verdict; }
 
 bool has(const std::string& text, const std::string& words) { return text.find(words) != std::string::npos; }
 
@@ -35,10 +39,10 @@ TEST(JudgeBound, HoldsInEveryGroupOrNot) {
   const Rows fine{refined_in(1.5, {{"threads", 1}}), refined_in(1.9, {{"threads", 2}})};
   EXPECT_EQ(verdict_of(claim, fine), kHolds);
   for (const double seconds : {0.9, 2.1}) {
-    const Judgement judgement = judge(claim, fine + Rows{refined_in(seconds, {{"threads", 4}})});
+    const Judgement judgement = judged(claim, fine + Rows{refined_in(seconds, {{"threads", 4}})});
     EXPECT_EQ(judgement.verdict, kFails);
     EXPECT_EQ(judgement.value, seconds);
-    EXPECT_EQ(judgement.num_rows, 3u);
+    EXPECT_EQ(judgement.num_rows, 18u);
     EXPECT_TRUE(has(judgement.reason, "threads=4")) << judgement.reason;
   }
 }
@@ -46,12 +50,16 @@ TEST(JudgeBound, HoldsInEveryGroupOrNot) {
 TEST(JudgeBound, OfTimesIsAboutTheMedianOfRepeats) {
   const Claim claim =
       read_claim_of("basis = 'measured'\nkind = 'bound'\nvalue = 'refining_seconds'\nat_most = 2\n");
-  Rows rows;
-  for (const double seconds : {1.0, 1.5, 9.0})
-    rows.push_back(refined_in(seconds, {}, static_cast<int>(rows.size())));
-  EXPECT_EQ(judge(claim, rows).value, 1.5);
-  rows.push_back(refined_in(9, {}, 4));
-  EXPECT_EQ(verdict_of(claim, rows), kFails);
+  const auto rows = [](const std::vector<double>& seconds) {
+    Rows made;
+    for (const double s : seconds) made.push_back(refined_in(s, {}, static_cast<int>(made.size()) + 1));
+    return made;
+  };
+  EXPECT_EQ(judge(claim, rows({1.0, 1.5, 9.0})).value, 1.5);
+  EXPECT_EQ(judge(claim, rows({1, 1, 1, 1.9, 1.9, 1.9})).verdict, kHolds);
+  EXPECT_EQ(judge(claim, rows({9, 9, 9, 2.1, 2.1, 2.1})).verdict, kFails);
+  EXPECT_EQ(judge(claim, rows({1, 1, 1, 1, 1, 9})).verdict, kUnclear) << "six rounds leave no outlier aside";
+  EXPECT_EQ(judge(claim, rows({1, 1, 1, 1, 1, 1, 1, 1, 9})).verdict, kHolds) << "nine leave one aside";
 }
 
 TEST(JudgeBound, OfFaultsIsAboutEachRepeatAndUnmetRowsToo) {
@@ -62,13 +70,13 @@ TEST(JudgeBound, OfFaultsIsAboutEachRepeatAndUnmetRowsToo) {
     rows.push_back(made_up_row("1M", {}, repeat));
     mesh_of(rows.back()).guarantees = {{"radius_edge", 0}, {"facet_angle", 0}};
   }
-  EXPECT_EQ(verdict_of(claim, rows), kHolds);
+  EXPECT_EQ(judge(claim, rows).verdict, kHolds);
   mesh_of(rows[1]).guarantees["facet_angle"] = 1;
   rows[1].status = Status::kUnmet;
   EXPECT_EQ(judge(claim, rows).value, 1);
-  EXPECT_EQ(verdict_of(claim, rows), kFails) << "one in three";
-  EXPECT_EQ(verdict_of(claim, rows + Rows{failed(rows[0])}), kFails) << "a failed row takes nothing back";
-  EXPECT_EQ(verdict_of(claim, {rows[0], failed(rows[2])}), kOpen);
+  EXPECT_EQ(judge(claim, rows).verdict, kFails) << "one in three";
+  EXPECT_EQ(judge(claim, rows + Rows{failed(rows[0])}).verdict, kFails) << "a failed row takes nothing back";
+  EXPECT_EQ(judge(claim, {rows[0], failed(rows[2])}).verdict, kOpen);
 }
 
 const char* kRatio = R"(
@@ -90,7 +98,7 @@ TEST(JudgeRatio, ComparesWithinGroupsOfEqualOptions) {
                 refined_in(two, {{"algorithm", "pdr-podm"}, {"threads", 2}})};
   };
   EXPECT_EQ(verdict_of(claim, rows(1.05, 0.5)), kHolds);
-  const Judgement judgement = judge(claim, rows(1.05, 0.6));
+  const Judgement judgement = judged(claim, rows(1.05, 0.6));
   EXPECT_EQ(judgement.verdict, kFails) << "0.6 is less than 1 s of another number of threads";
   EXPECT_NEAR(*judgement.value, 1.2, 1e-12);
   EXPECT_TRUE(has(judgement.reason, "1 of 2 hold; threads=2: 0.6 over 0.5 s")) << judgement.reason;
@@ -107,7 +115,8 @@ TEST(JudgeRatio, IsTheMedianOfRatiosWithinRounds) {
   }
   Judgement judgement = judge(claim, rows);
   EXPECT_NEAR(*judgement.value, 1.05, 1e-12);
-  EXPECT_TRUE(has(judgement.reason, "95 % interval 1.05 to 1.05")) << judgement.reason;
+  EXPECT_TRUE(has(judgement.reason, "1.05 to 1.05 holds the median with 75.0 % (3 rounds)"))
+      << judgement.reason;
   // Rounds of 1, 2, 3 s against 3, 1, 2 s: ratios 3, 1/2 and 2/3, while the medians are equal.
   const double seconds[] = {3, 1, 2};
   for (int round = 0; round < 3; ++round)
@@ -126,7 +135,8 @@ TEST(JudgeRatio, OfSeriesWithoutCommonRoundsIsThatOfMedians) {
   }
   const Judgement judgement = judge(claim, rows);
   EXPECT_EQ(judgement.value, 1);
-  EXPECT_TRUE(has(judgement.reason, "95 % interval 0.3")) << judgement.reason;
+  EXPECT_TRUE(has(judgement.reason, "0.333 to 3 holds the median with 56.2 % (3 rounds)"))
+      << judgement.reason;
 }
 
 TEST(JudgeRatio, OverTheBestOfTheOthers) {
@@ -137,10 +147,10 @@ TEST(JudgeRatio, OverTheBestOfTheOthers) {
   };
   const Rows rows{refined_in(2, {{"contention", "local"}}), refined_in(1, {{"contention", "random"}}),
                   refined_in(4, {{"contention", "aggressive"}})};
-  const Judgement seconds = judge(claim_of("refining_seconds"), rows);
+  const Judgement seconds = judged(claim_of("refining_seconds"), rows);
   EXPECT_EQ(seconds.value, 2) << "the best takes the least time";
   EXPECT_TRUE(has(seconds.reason, "contention=random")) << seconds.reason;
-  EXPECT_EQ(judge(claim_of("refining_cells_per_second"), rows).value, 0.5) << "the best makes the most";
+  EXPECT_EQ(judged(claim_of("refining_cells_per_second"), rows).value, 0.5) << "the best makes the most";
   EXPECT_EQ(
       verdict_of(claim_of("refining_seconds"), {refined_in(1, {{"contention", "local"}}), rows[1], rows[2]}),
       kHolds);
@@ -170,7 +180,7 @@ at_least = 0.7
     return made;
   };
   EXPECT_EQ(verdict_of(claim, rows({1, 1.1, 1.3})), kHolds);
-  const Judgement judgement = judge(claim, rows({1, 1.1, 2}));
+  const Judgement judgement = judged(claim, rows({1, 1.1, 2}));
   EXPECT_EQ(judgement.verdict, kFails);
   EXPECT_EQ(judgement.value, 0.5);
   EXPECT_TRUE(has(judgement.reason, "1 of 2 hold")) << judgement.reason;
@@ -197,7 +207,7 @@ TEST(JudgeRatio, OverNothingIsInfiniteAndOfNothingIsOne) {
   };
   EXPECT_EQ(verdict_of(claim, rows(0, 0)), kHolds);
   EXPECT_EQ(verdict_of(claim, rows(0, 1)), kHolds);
-  const Judgement judgement = judge(claim, rows(1, 0));
+  const Judgement judgement = judged(claim, rows(1, 0));
   EXPECT_EQ(judgement.verdict, kFails);
   EXPECT_FALSE(judgement.value) << "infinity is no number of JSON's";
 }
@@ -240,7 +250,7 @@ factor_per_doubling = 1.4
   EXPECT_EQ(verdict_of(claim, rows({{1, 8}, {2, 5}, {4, 4}, {8, 2}})), kFails);
   EXPECT_EQ(verdict_of(claim, rows({{1, 8}, {8, 3}})), kFails) << "2.67 in three doublings is 1.39 each";
   EXPECT_EQ(verdict_of(claim, rows({{1, 8}, {8, 2.9}})), kHolds);
-  const Judgement one = judge(claim, rows({{1, 8}, {16, 2}}));
+  const Judgement one = judged(claim, rows({{1, 8}, {16, 2}}));
   EXPECT_EQ(one.verdict, kOpen);
   EXPECT_EQ(one.reason, "needs two values of threads, has 1");
 }
@@ -277,8 +287,8 @@ TEST(JudgeShare, OfTrialsThatEnded) {
   EXPECT_EQ(verdict_of(claim_of("1"), ended), kHolds);
   const Rows rows = ended + Rows{failed(made_up_row("1M", {{"contention", "local"}}))};
   EXPECT_EQ(verdict_of(claim_of("1"), rows), kFails);
-  EXPECT_EQ(judge(claim_of("1"), rows).value, 0.75);
-  EXPECT_TRUE(has(judge(claim_of("1"), rows).reason, "3 of 4, not 1M"));
+  EXPECT_EQ(judged(claim_of("1"), rows).value, 0.75);
+  EXPECT_TRUE(has(judged(claim_of("1"), rows).reason, "18 of 24, not 1M"));
   EXPECT_EQ(verdict_of(claim_of("0.75"), rows), kHolds);
 }
 
@@ -321,20 +331,164 @@ TEST(JudgeTrend, AFailedPlaceDoesNotHideAStepThatRefutes) {
   EXPECT_EQ(verdict_of(claim, rows(1)), kOpen);
 }
 
-TEST(Judge, TakesTheFirstTrialsThatHaveAllTheyNeed) {
+// Rows of both algorithms at a size, of which pdr-podm takes so many times as long.
+Rows rows_of_size(const std::string& trial, double ratio) {
+  return {refined_in(1, {{"algorithm", "podm"}}, 1, trial + ",algorithm=podm"),
+          refined_in(ratio, {{"algorithm", "pdr-podm"}}, 1, trial + ",algorithm=pdr-podm")};
+}
+
+TEST(JudgeSizes, EachThatHasAllItsRowsIsJudged) {
   const Claim claim = read_claim_of(std::string(kRatio) + "trials = ['10M', '1M', '0.1M']\n");
-  const auto rows = [](const std::string& trial, double ratio) {
-    return Rows{refined_in(1, {{"algorithm", "podm"}}, 1, trial + ",algorithm=podm"),
-                refined_in(ratio, {{"algorithm", "pdr-podm"}}, 1, trial + ",algorithm=pdr-podm")};
-  };
-  EXPECT_EQ(judge(claim, rows("0.1M", 1) + rows("1M", 2)).value, 2);
-  Rows half = rows("0.1M", 3) + rows("1M", 2);
-  half.push_back(rows("10M", 1)[0]);
-  EXPECT_EQ(judge(claim, half).value, 2) << "10M lacks pdr-podm";
-  const Judgement none = judge(claim, {rows("10M", 1)[0]});
+  const Judgement fine = judged(claim, rows_of_size("0.1M", 1) + rows_of_size("1M", 1.05));
+  EXPECT_EQ(fine.verdict, kHolds);
+  EXPECT_EQ(fine.sizes, (std::vector<std::string>{"1M", "0.1M"}));
+  EXPECT_EQ(fine.num_rows, 24u);
+  EXPECT_TRUE(has(fine.reason, "1M: 1.05 over 1 s")) << "the one nearest to breaking it: " << fine.reason;
+  EXPECT_TRUE(has(fine.reason, "; judged at 1M, 0.1M")) << fine.reason;
+  for (const double large : {1, 2}) {
+    const Judgement broken = judged(claim, rows_of_size("0.1M", 3) + rows_of_size("1M", large));
+    EXPECT_EQ(broken.verdict, kFails) << "a smaller one that fails is not passed over";
+    EXPECT_NEAR(*broken.value, 3, 1e-12);
+    EXPECT_TRUE(has(broken.reason, "0.1M: ")) << broken.reason;
+  }
+}
+
+TEST(JudgeSizes, OneThatLacksRowsCanRefuteAndNoMore) {
+  const Claim claim = read_claim_of(std::string(kRatio) + "trials = ['10M', '1M', '0.1M']\n");
+  const Rows lonely{rows_of_size("10M", 1)[0]};
+  const Judgement judgement = judged(claim, lonely + rows_of_size("1M", 1));
+  EXPECT_EQ(judgement.verdict, kHolds);
+  EXPECT_EQ(judgement.sizes, (std::vector<std::string>{"1M"})) << "10M lacks pdr-podm";
+  const Judgement none = judged(claim, lonely);
   EXPECT_EQ(none.verdict, kOpen);
   EXPECT_EQ(none.reason, "no rows: algorithm=pdr-podm");
-  EXPECT_EQ(judge(claim, {}).reason, "no rows: trial 10M or 1M or 0.1M");
+  EXPECT_EQ(judged(claim, {}).reason, "no rows: trial 10M or 1M or 0.1M");
+}
+
+TEST(JudgeSizes, EachValueOfAListNeedsRowsAtOneSize) {
+  const Claim claim = read_claim_of(
+      "basis = 'measured'\nkind = 'bound'\nvalue = 'refining_seconds'\nat_most = 2\n"
+      "trials = ['10M', '1M']\nwhere = {threads = [32, 64]}\n");
+  const auto row = [](const std::string& trial, int threads, double seconds) {
+    return Rows{refined_in(seconds, {{"threads", threads}}, 1, trial)};
+  };
+  EXPECT_EQ(judged(claim, row("10M", 64, 1)).reason, "no rows: threads=32") << "64 threads are not 32";
+  EXPECT_EQ(verdict_of(claim, row("10M", 64, 1) + row("1M", 32, 1)), kOpen);
+  const Rows all = row("1M", 32, 1) + row("1M", 64, 1);
+  EXPECT_EQ(verdict_of(claim, all), kHolds);
+  EXPECT_EQ(verdict_of(claim, all + row("10M", 64, 1)), kHolds);
+  EXPECT_EQ(verdict_of(claim, all + row("10M", 64, 3)), kFails);
+}
+
+TEST(JudgeSizes, OneOfTooFewRoundsIsSetAsideWhereItsMedianAgrees) {
+  const Claim claim = read_claim_of(std::string(kRatio) + "trials = ['10M', '1M', '0.1M']\n");
+  const Rows six = in_six_rounds(rows_of_size("1M", 1));
+  const Judgement fine = judge(claim, six + rows_of_size("0.1M", 1));
+  EXPECT_EQ(fine.verdict, kHolds);
+  EXPECT_EQ(fine.sizes, (std::vector<std::string>{"1M"}));
+  EXPECT_TRUE(has(fine.reason, "of too few rounds: 0.1M")) << fine.reason;
+  EXPECT_EQ(judge(claim, six + rows_of_size("0.1M", 2)).verdict, kUnclear)
+      << "one round is against the claim";
+  EXPECT_EQ(judge(claim, rows_of_size("1M", 1) + rows_of_size("0.1M", 1)).verdict, kUnclear);
+  EXPECT_EQ(judge(claim, in_six_rounds(rows_of_size("1M", 2)) + rows_of_size("0.1M", 1)).verdict, kFails);
+}
+
+// pdr-podm takes so many times as long in each round.
+Rows rounds_of(const std::vector<double>& ratios) {
+  Rows rows;
+  for (const double ratio : ratios) {
+    const int round = static_cast<int>(rows.size() / 2) + 1;
+    rows.push_back(refined_in(1, {{"algorithm", "podm"}}, round));
+    rows.push_back(refined_in(ratio, {{"algorithm", "pdr-podm"}}, round));
+  }
+  return rows;
+}
+
+TEST(JudgeInterval, ThatStraddlesTheBoundResolvesNothing) {
+  const Claim claim = read_claim_of(kRatio);  // at most 1.1
+  EXPECT_EQ(judge(claim, rounds_of({1, 1.02, 1.04, 1.06, 1.08, 1.09})).verdict, kHolds);
+  EXPECT_EQ(judge(claim, rounds_of({1.11, 1.12, 1.13, 1.14, 1.15, 1.16})).verdict, kFails);
+  for (const double last : {1.11, 1.5}) {
+    const Judgement judgement = judge(claim, rounds_of({1, 1.02, 1.04, 1.06, 1.08, last}));
+    EXPECT_EQ(judgement.verdict, kUnclear);
+    EXPECT_NEAR(*judgement.value, 1.05, 1e-12);
+    EXPECT_EQ(judgement.interval->high, last);
+    EXPECT_NEAR(judgement.interval->coverage, 31.0 / 32, 1e-12);
+    EXPECT_EQ(judgement.num_rounds, 6u);
+    EXPECT_TRUE(has(judgement.reason, "the interval straddles the bound")) << judgement.reason;
+    ASSERT_TRUE(judgement.rounds_needed);
+    EXPECT_GT(*judgement.rounds_needed, 6);
+  }
+}
+
+TEST(JudgeInterval, OfFewRoundsResolvesNothingHoweverClear) {
+  const Claim claim = read_claim_of(kRatio);
+  for (const double ratio : {0.5, 5.0})
+    for (const int rounds : {1, 3, 5}) {
+      const Judgement judgement =
+          judge(claim, rounds_of(std::vector<double>(static_cast<std::size_t>(rounds), ratio)));
+      EXPECT_EQ(judgement.verdict, kUnclear) << ratio << " in " << rounds;
+      EXPECT_TRUE(has(judgement.reason, "6 rounds would resolve it")) << judgement.reason;
+    }
+}
+
+TEST(JudgeInterval, IsNotNeededOfWhatIsTheSameInEachRun) {
+  const std::string bound = "kind = 'bound'\nvalue = 'deferred_operations'\nat_most = 5\nbasis = ";
+  const auto row = [](const Json& asked) {
+    Rows made{made_up_row("1M", asked)};
+    mesh_of(made[0]).outcomes.emplace().out_of_leaf = 4;
+    return made;
+  };
+  const Claim measured = read_claim_of(bound + "'measured'\n"),
+              simulated = read_claim_of(bound + "'simulated'\n");
+  EXPECT_EQ(judge(measured, row({{"threads", 1}})).verdict, kHolds);
+  EXPECT_EQ(judge(measured, row({{"threads", 2}})).verdict, kUnclear) << "threads share the work as it comes";
+  EXPECT_EQ(judge(simulated, row({{"threads", 2}, {"executor", "virtual"}})).verdict, kHolds);
+}
+
+TEST(JudgeLoad, OtherWorkLeavesUnresolvedWhatVaries) {
+  const Claim claim = read_claim_of(kRatio);
+  for (const double ratio : {1.0, 2.0}) {
+    Rows rows = rounds_of(std::vector<double>(6, ratio));
+    rows[3].environment.busy_elsewhere = 1.4;
+    EXPECT_NE(judge(claim, rows).verdict, kUnclear) << "less than a tenth of each processor";
+    rows[3].environment.busy_elsewhere = 3.2;
+    const Judgement judgement = judge(claim, rows);
+    EXPECT_EQ(judgement.verdict, kUnclear);
+    EXPECT_TRUE(has(judgement.reason, "other work kept 3.2 processors busy")) << judgement.reason;
+  }
+}
+
+TEST(JudgeLoad, FaultsOfAMeshCountOnABusyMachineToo) {
+  const Claim claim =
+      read_claim_of("basis = 'any'\nkind = 'bound'\nvalue = 'guarantee_misses'\nat_most = 0\n");
+  Rows rows{made_up_row("1M", {})};
+  rows[0].environment.busy_elsewhere = 16;
+  mesh_of(rows[0]).guarantees = {{"radius_edge", 1}};
+  EXPECT_EQ(judge(claim, rows).verdict, kFails);
+}
+
+TEST(JudgeLoad, ATrialThatDidNotEndOnABusyMachineRefutesNothing) {
+  const Claim claim = read_claim_of("basis = 'any'\nkind = 'share'\nvalue = 'ended'\nat_least = 1\n");
+  Rows rows{made_up_row("1M", {}), failed(made_up_row("1M", {}))};
+  EXPECT_EQ(judge(claim, rows).verdict, kFails);
+  rows[1].environment.busy_elsewhere = 16;
+  const Judgement judgement = judge(claim, rows);
+  EXPECT_EQ(judgement.verdict, kUnclear);
+  EXPECT_TRUE(has(judgement.reason, "1M: other work kept 16.0 processors busy")) << judgement.reason;
+  rows.push_back(failed(made_up_row("1M", {}), Status::kFailed));
+  EXPECT_EQ(judge(claim, rows).verdict, kFails) << "a crash is no matter of time";
+}
+
+TEST(JudgeLoad, RoundsOfAnotherSpeedAreLeftOut) {
+  const Claim claim = read_claim_of(kRatio);
+  Rows rows = rounds_of({1, 1, 1, 1, 1, 1, 9});
+  EXPECT_EQ(judge(claim, rows).verdict, kUnclear);
+  for (std::size_t i = 12; i < 14; ++i) rows[i].probe_moved = true;
+  EXPECT_EQ(judge(claim, rows).verdict, kHolds);
+  for (Row& row : rows) row.probe_moved = true;
+  EXPECT_EQ(judge(claim, rows).verdict, kOpen);
+  EXPECT_TRUE(has(judge(claim, rows).reason, "the machine's speed moved during each round"));
 }
 
 TEST(Judge, AFailedLargeSizeIsNotPassedOver) {
@@ -343,7 +497,7 @@ TEST(Judge, AFailedLargeSizeIsNotPassedOver) {
                   failed(refined_in(1, {{"algorithm", "pdr-podm"}}, 1, "10M")),
                   refined_in(1, {{"algorithm", "podm"}}, 1, "1M"),
                   refined_in(1, {{"algorithm", "pdr-podm"}}, 1, "1M")};
-  const Judgement judgement = judge(claim, rows);
+  const Judgement judgement = judged(claim, rows);
   EXPECT_EQ(judgement.verdict, kOpen);
   EXPECT_EQ(judgement.reason, "rows failed: 10M: timed_out: killed after 300 s");
 }
@@ -356,7 +510,7 @@ TEST(Judge, AGroupThatBreaksTheClaimDecidesAndOneThatLacksRowsLeavesItOpen) {
                   refined_in(1, {{"algorithm", "pdr-podm"}, {"seed", 2}})};
   const Rows half{refined_in(1, {{"algorithm", "podm"}, {"seed", 3}})};
   EXPECT_EQ(verdict_of(claim, fine + half), kOpen);
-  EXPECT_TRUE(has(judge(claim, fine + half).reason, "seed=3: no rows: algorithm=pdr-podm"));
+  EXPECT_TRUE(has(judged(claim, fine + half).reason, "seed=3: no rows: algorithm=pdr-podm"));
   EXPECT_EQ(verdict_of(claim, fine + half + broken), kFails);
 }
 
@@ -364,7 +518,7 @@ TEST(Judge, EachValueOfAListNeedsRowsAndARangeDoesNot) {
   const std::string share = "basis = 'any'\nkind = 'share'\nvalue = 'ended'\nat_least = 1\nwhere = ";
   const Rows rows{made_up_row("1M", {{"contention", "local"}, {"threads", 4}})};
   EXPECT_EQ(verdict_of(read_claim_of(share + "{contention = 'local'}\n"), rows), kHolds);
-  const Judgement judgement = judge(read_claim_of(share + "{contention = ['local', 'random']}\n"), rows);
+  const Judgement judgement = judged(read_claim_of(share + "{contention = ['local', 'random']}\n"), rows);
   EXPECT_EQ(judgement.verdict, kOpen);
   EXPECT_EQ(judgement.reason, "no rows: contention=random");
   EXPECT_EQ(verdict_of(read_claim_of(share + "{threads = {at_least = 2, at_most = 8}}\n"), rows), kHolds);
@@ -385,7 +539,7 @@ TEST(Judge, EachSeriesOfAListIsComparedAndNeeded) {
   EXPECT_EQ(verdict_of(claim, rows(0.5, 2)), kFails);
   Rows one = rows(2, 3);
   one.pop_back();
-  EXPECT_EQ(judge(claim, one).reason, "no rows: contention=aggressive");
+  EXPECT_EQ(judged(claim, one).reason, "no rows: contention=aggressive");
 }
 
 TEST(Judge, AnOptionThatIsNotGivenIsNone) {
@@ -407,18 +561,18 @@ TEST(Judge, RowsOfAnotherBasisNeverEnter) {
             made_up_row("1M", {{"counters", "cachegrind"}})};
   for (Row& row : rows) set_overhead(row, 5, 0, 0);
   set_overhead(rows[0], 0.5, 0, 0);
-  const Judgement measured = judge(read_claim_of(lines + "'measured'\n"), rows);
+  const Judgement measured = judged(read_claim_of(lines + "'measured'\n"), rows);
   EXPECT_EQ(measured.verdict, kHolds);
-  EXPECT_EQ(measured.num_rows, 1u);
-  const Judgement simulated = judge(read_claim_of(lines + "'simulated'\n"), rows);
+  EXPECT_EQ(measured.num_rows, 6u);
+  const Judgement simulated = judged(read_claim_of(lines + "'simulated'\n"), rows);
   EXPECT_EQ(simulated.verdict, kFails);
-  EXPECT_EQ(simulated.num_rows, 3u);
+  EXPECT_EQ(simulated.num_rows, 18u);
 }
 
 TEST(Judge, MachinesTooSmallDecideNothing) {
   const Claim claim = read_claim_of(std::string(kRatio) + "needs_cores = 17\n");
   const Rows rows{refined_in(1, {{"algorithm", "podm"}}), refined_in(1, {{"algorithm", "pdr-podm"}})};
-  EXPECT_EQ(judge(claim, rows).reason, "needs 17 cores, has 16");
+  EXPECT_EQ(judged(claim, rows).reason, "needs 17 cores, has 16");
   EXPECT_EQ(verdict_of(read_claim_of(std::string(kRatio) + "needs_cores = 16\n"), rows), kHolds);
 }
 
@@ -438,7 +592,7 @@ TEST(Judge, SkippedRowsSayWhy) {
       "below = {mesher = 'other'}\n");
   Rows rows{refined_in(1, {}), failed(refined_in(1, {{"mesher", "other"}}), Status::kSkipped)};
   rows[1].reason = "not installed";
-  EXPECT_EQ(judge(claim, rows).reason, "no rows: mesher=other (1M skipped: not installed)");
+  EXPECT_EQ(judged(claim, rows).reason, "no rows: mesher=other (1M skipped: not installed)");
   EXPECT_EQ(verdict_of(claim, {rows[0], refined_in(2, {{"mesher", "other"}})}), kHolds);
 }
 

@@ -13,6 +13,7 @@ namespace {
 const std::string kExperimentWithClaims = R"(title = "Title"
 claim = "Headline"
 paper = "Table 7"
+repeats = 6
 [inputs.a]
 image = "phantom:torus"
 [[trials]]
@@ -41,6 +42,12 @@ basis = "simulated"
 kind = "bound"
 value = "zero_hop_share"
 at_least = 0.9
+supersedes = ["nearer"]
+reason = "The word was too strong."
+[[withdrawn]]
+name = "cheap"
+statement = "It is cheap."
+reason = "It was refuted."
 )";
 
 class VerdictsTest : public BenchTest {
@@ -53,13 +60,15 @@ class VerdictsTest : public BenchTest {
     arguments.insert(arguments.end(), more.begin(), more.end());
     return bench(arguments);
   }
+  // Six rounds on 1, 2, ... threads.
   void write_rows(const std::vector<double>& seconds) {
-    std::string lines;
-    int threads = 0;
+    std::vector<Row> rows;
     for (const double s : seconds) {
-      ++threads;
-      lines += as_line(refined_in(s, {{"threads", threads}}, 1, "some,threads=" + std::to_string(threads)));
+      const std::size_t threads = rows.size() + 1;
+      rows.push_back(refined_in(s, {{"threads", threads}}, 1, "some,threads=" + std::to_string(threads)));
     }
+    std::string lines;
+    for (const Row& row : in_six_rounds(rows)) lines += as_line(row);
     folder_.write("results/exp.jsonl", lines);
   }
   std::string path_;
@@ -70,16 +79,30 @@ TEST_F(VerdictsTest, ArePrintedForEachClaimAndNeverChangeTheExitCode) {
   EXPECT_EQ(verdicts(), 0) << printed("err");
   for (const char* words :
        {"DOES NOT HOLD      exp         fast", "holds              exp         sound", "cannot be decided",
-        "at most 2", "threads=2: 5 s", "It is fast. The reason is known.",
-        "Claims: 1 hold, 1 do not hold, 1 cannot be decided here"})
+        "at most 2", "threads=2: 5 s", "5 to 5, 96.9 %", "It is fast. The reason is known.",
+        "Claims: 1 hold, 1 do not hold, 0 are not resolved, 1 cannot be decided here; 2 withdrawn or "
+        "superseded",
+        "withdrawn          exp         cheap", "It was refuted.",
+        "superseded by near: The word was too strong."})
     EXPECT_TRUE(has_printed("out", words)) << words << "\n" << printed("out");
   EXPECT_FALSE(has_printed("out", "It is sound.")) << "what holds needs no words";
 }
 
 TEST_F(VerdictsTest, WorkWithoutAnyRows) {
   EXPECT_EQ(verdicts(), 0);
-  EXPECT_TRUE(has_printed("out", "Claims: 0 hold, 0 do not hold, 3 cannot be decided here"));
+  EXPECT_TRUE(
+      has_printed("out", "Claims: 0 hold, 0 do not hold, 0 are not resolved, 3 cannot be decided here"));
   EXPECT_EQ(bench({"verdicts", "--results", folder_ / "absent", path_}), 0);
+}
+
+TEST_F(VerdictsTest, RefuseAClaimOfTwoExperiments) {
+  const std::string other = folder_.write("other.toml", kExperimentWithClaims);
+  EXPECT_EQ(verdicts({other}), 2);
+  EXPECT_NE(printed("err").find("other.toml:12:"), std::string::npos) << printed("err");
+  EXPECT_NE(printed("err").find("a second claim 'fast'; the first is in "), std::string::npos);
+  EXPECT_NE(printed("err").find("exp.toml:12:"), std::string::npos);
+  EXPECT_EQ(bench({"list", folder_ / "."}), 2);
+  EXPECT_EQ(bench({"run", "--dry-run", path_, other}), 2);
 }
 
 TEST_F(VerdictsTest, RefuseBadInput) {
@@ -94,7 +117,7 @@ TEST_F(VerdictsTest, AreWrittenAsJson) {
   EXPECT_EQ(verdicts({"--json", folder_ / "verdicts.json"}), 0);
   std::ifstream file(folder_ / "verdicts.json");
   const Json json = Json::parse(file, nullptr, false);
-  EXPECT_EQ(json["schema"], "podm-bench-verdicts/1");
+  EXPECT_EQ(json["schema"], "podm-bench-verdicts/2");
   ASSERT_EQ(json["experiments"].size(), 1u);
   const Json& experiment = json["experiments"][0];
   EXPECT_EQ(experiment["experiment"], "exp");
@@ -102,14 +125,30 @@ TEST_F(VerdictsTest, AreWrittenAsJson) {
   EXPECT_EQ(experiment["claim"], "Headline");
   EXPECT_EQ(experiment["paper"], "Table 7");
   ASSERT_EQ(experiment["claims"].size(), 3u);
-  EXPECT_EQ(experiment["claims"][0], (Json{{"name", "fast"},
-                                           {"statement", "It is fast."},
-                                           {"basis", "measured"},
-                                           {"verdict", "does_not_hold"},
-                                           {"reason", "1 of 2 hold; threads=2: 5 s. The reason is known."},
-                                           {"value", 5.0},
-                                           {"bound", "at most 2"},
-                                           {"n", 2}}));
+  const std::string reason =
+      "1 of 2 hold; threads=2: 5 s, 5 to 5 holds the median with 96.9 % (6 rounds). The reason is known.";
+  EXPECT_EQ(experiment["claims"][0],
+            (Json{{"name", "fast"},
+                  {"statement", "It is fast."},
+                  {"basis", "measured"},
+                  {"verdict", "does_not_hold"},
+                  {"reason", reason},
+                  {"value", 5.0},
+                  {"interval", {{"low", 5.0}, {"high", 5.0}, {"coverage", 0.96875}, {"rounds", 6}}},
+                  {"rounds_needed", nullptr},
+                  {"bound", "at most 2"},
+                  {"sizes", Json::array()},
+                  {"n", 12}}));
+  EXPECT_EQ(experiment["withdrawn"], (Json{{{"name", "cheap"},
+                                            {"statement", "It is cheap."},
+                                            {"verdict", "withdrawn"},
+                                            {"reason", "It was refuted."},
+                                            {"superseded_by", nullptr}},
+                                           {{"name", "nearer"},
+                                            {"statement", ""},
+                                            {"verdict", "withdrawn"},
+                                            {"reason", "The word was too strong."},
+                                            {"superseded_by", "near"}}}));
   EXPECT_EQ(experiment["claims"][2]["verdict"], "cannot_be_decided");
   EXPECT_TRUE(experiment["claims"][2]["value"].is_null());
   EXPECT_EQ(experiment["claims"][2]["reason"], "no rows");
@@ -130,13 +169,13 @@ TEST_F(VerdictsTest, ARunPrintsThemAndOnlyAFailedTrialChangesItsExitCode) {
   slow.replace(slow.find("\"refine\":1.0"), 12, "\"refine\":3.0");
   EXPECT_EQ(run_with(make(slow)), 0) << printed("err");
   EXPECT_TRUE(has_printed("out", "DOES NOT HOLD      exp         fast"));
-  EXPECT_TRUE(has_printed("out", "Claims: 1 hold, 1 do not hold"));
+  EXPECT_TRUE(has_printed("out", "Claims: 1 hold, 1 do not hold, 0 are not resolved"));
   EXPECT_EQ(run_with(make(kGoodRecord)), 0);
   EXPECT_TRUE(has_printed("out", "Claims: 2 hold, 0 do not hold")) << "of this mesher's rows";
   std::string unmet = kGoodRecord;
   unmet.replace(unmet.find("\"radius_edge\":0"), 15, "\"radius_edge\":1");
   EXPECT_EQ(run_with(make(unmet)), 1);
-  EXPECT_TRUE(has_printed("out", "0 of 2, not some,threads=1"));
+  EXPECT_TRUE(has_printed("out", "0 of 12, not some,threads=1"));
 }
 
 }  // namespace

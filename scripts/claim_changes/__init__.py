@@ -1,0 +1,1 @@
+"""How the claims of experiments/*.toml changed over the commits that a repository has."""

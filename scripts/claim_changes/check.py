@@ -1,0 +1,62 @@
+"""Faults of the claims as they stand against what they once were."""
+from .history import by_id
+from .table import PENDING, page
+from .weakened import weakened
+
+
+def faults(history, repository, committed_page):
+    """One text each, with the claim's name. `committed_page`: None where there is none."""
+    return (_lost(history, repository) + _weakened(history) + _unknown(history) + _page_fault(history, committed_page))
+
+
+def _lost(history, repository):
+    """With a release, its claims have to be there; before the first, all that ever stood."""
+    tag = repository.last_tag()
+    needed = by_id(repository.state(tag), history.shared_names) if tag else history.lives
+    since = f"stood in {tag}" if tag else "once stood"
+    return [f"claim '{id_}' {since} and is neither there nor withdrawn nor superseded with a reason"
+            for id_ in sorted(needed) if not _is_accounted_for(history, history.lives[id_])]
+
+
+def _is_accounted_for(history, life):
+    if history.is_current(life):
+        return True
+    successor, withdrawal = history.successor(life), history.withdrawal(life)
+    return bool(successor and successor.reason) or bool(withdrawal and withdrawal.reason)
+
+
+def _weakened(history):
+    found = []
+    for life in history.lives.values():
+        claim = history.claim_of(life)
+        if claim is not None and not claim.reason:
+            found += [f"claim '{life.id}' asks for less than it did, without a reason: {how}"
+                      for how in weakened(life, claim)]
+    return found
+
+
+def _unknown(history):
+    """Names of claims that never stood, or do not stand."""
+    named = [(claim.name, name) for claim in history.current.claims.values() for name in claim.supersedes]
+    found = [f"claim '{by}' supersedes '{name}', which never stood" for by, name in named if name not in history.lives]
+    names = {name for _, name in history.current.claims}
+    return found + [f"withdrawn claim '{entry.name}': there is no claim '{entry.superseded_by}'"
+                    for entry in history.current.withdrawn if entry.superseded_by and entry.superseded_by not in names]
+
+
+def _page_fault(history, committed_page):
+    made = page(history).splitlines()
+    committed = (committed_page or "").splitlines()
+    for number, (line, expected) in enumerate(zip(committed, made), 1):
+        if not _agree(line, expected):
+            return [f"experiments/claims-history.md:{number}: is not what scripts/claims_history makes, here {expected}"]
+    if len(committed) != len(made):
+        return [f"experiments/claims-history.md: has {len(committed)} lines, scripts/claims_history makes {len(made)}"]
+    return []
+
+
+def _agree(line, expected):
+    """A change that was committed together with the page has its commit's name only in what is made later."""
+    cells, made = line.split(" | "), expected.split(" | ")
+    is_pending = len(cells) > 3 and len(made) > 3 and cells[1] == PENDING
+    return line == expected or (is_pending and cells[:1] + cells[3:] == made[:1] + made[3:])

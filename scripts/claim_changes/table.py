@@ -1,0 +1,81 @@
+"""experiments/claims-history.md: what became of each claim, and each change of one."""
+from . import definitions
+from .weakened import was_loosened
+
+PENDING = "this commit"  # of a change that is committed together with the table
+TITLE = """# History of the claims
+
+The name of a claim is its id for life. `scripts/claims_history` makes this page from the commits that touched
+`experiments/*.toml` and from what these files say of the claims that they supersede and withdraw;
+`scripts/claims_history --check`, a part of `make test`, fails when a claim is gone without a reason, when one asks for
+less without a reason, and when this page is not what the command makes. A name of which several experiments had one
+each at one time stands with its experiment, `experiment:name`. The verdicts on the claims that stand are those of
+`podm-bench verdicts`."""
+GONE = """## Claims that were withdrawn, superseded, moved or loosened
+
+| claim | what became of it | what it said last, before | why |
+| --- | --- | --- | --- |"""
+CHANGES = """## Changes
+
+A change that is committed together with this page has no commit here yet.
+
+| claim | commit | date | change |
+| --- | --- | --- | --- |"""
+
+
+def page(history):
+    lives = [history.lives[id_] for id_ in sorted(history.lives)]
+    fates = [line for life in lives if (line := _fate(history, life))]
+    changes = [_line(life.id, change.commit or PENDING, change.date, _change_in_words(history, life, change))
+               for life in lives for change in life.changes[1:]]
+    return "\n".join([TITLE, "", GONE, *fates, "", CHANGES, *changes]) + "\n"
+
+
+def _fate(history, life):
+    """The line of a claim that is no longer what it was published as; None of any other."""
+    claim, successor, withdrawal = history.claim_of(life), history.successor(life), history.withdrawal(life)
+    if claim is None:
+        what = (f"superseded by `{successor.name}`" if successor else
+                _withdrawn_in_words(withdrawal) if withdrawal else "**gone**")
+        reason = successor.reason if successor else withdrawal.reason if withdrawal else ""
+        return _line(f"`{life.id}`", what, _said(life.last()), reason)
+    before = life.changes[0].after
+    parts = []
+    if before.experiment != claim.experiment:
+        parts.append(f"moved from `{before.experiment}` to `{claim.experiment}`")
+    if pair := was_loosened(life):
+        before = pair[0]
+        is_restored = not any(definitions.loosened(one, claim) for one in life.definitions())
+        parts.append(f"loosened to {definitions.bound_in_words(pair[1])}" + (", restored" if is_restored else ""))
+    return _line(f"`{life.id}`", "; ".join(parts), _said(before), claim.reason) if parts else None
+
+
+def _withdrawn_in_words(entry):
+    return "withdrawn" + (f", superseded by `{entry.superseded_by}`" if entry.superseded_by else "")
+
+
+def _said(claim):
+    bound = definitions.bound_in_words(claim)
+    return claim.definition["statement"] + (f" ({claim.experiment}; {bound})" if bound else f" ({claim.experiment})")
+
+
+def _change_in_words(history, life, change):
+    if change.after is None:
+        successor = history.successor(life)
+        return f"superseded by `{successor.name}`" if successor else "no longer claimed"
+    if change.before is None:
+        return "claimed again"
+    return "; ".join(f"{name}: {_value(old)} → {_value(new)}"
+                     for name, old, new in definitions.differences(change.before, change.after))
+
+
+def _value(value):
+    if isinstance(value, dict):
+        return ", ".join(f"{key} {_value(of_key)}" for key, of_key in value.items())
+    if isinstance(value, list):
+        return ", ".join(map(_value, value))
+    return "none" if value is None else str(value)
+
+
+def _line(*cells):
+    return f"| {' | '.join(str(cell).replace('|', chr(92) + '|') for cell in cells)} |"

@@ -1,0 +1,25 @@
+"""Where a claim asks for less than it once did."""
+from . import definitions
+
+
+def weakened(life, claim):
+    """In words, each way in which the claim as it stands asks for less than an earlier definition of its life."""
+    found = []
+    for before in life.definitions():
+        found += [_bound_in_words(*one) for one in definitions.loosened(before, claim)]
+        found += [f"{name} no longer has {', '.join(map(str, lost))}" for name, lost in
+                  definitions.narrowed(before, claim)]
+        found += [f"{name} was {old}, is {new}" for name, old, new in definitions.changed_measure(before, claim)]
+    return list(dict.fromkeys(found))
+
+
+def was_loosened(life):
+    """(before, after) of the first change that loosened a bound, whatever came later; None without one."""
+    for change in life.changes:
+        if change.before and change.after and definitions.loosened(change.before, change.after):
+            return change.before, change.after
+    return None
+
+
+def _bound_in_words(name, old, new):
+    return f"{name} loosened from {old} to {'nothing' if new is None else new}"
