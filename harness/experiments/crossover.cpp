@@ -6,7 +6,7 @@
 #include <map>
 
 #include "rows/row_filter.h"
-#include "rows/statistics.h"
+#include "rows/series.h"
 
 namespace podm::bench {
 namespace {
@@ -15,7 +15,7 @@ constexpr const char* kSchema = "podm-crossover/2";
 
 // Cells a second of the repeats.
 struct Rates {
-  std::vector<double> podm, podm_home;
+  Samples podm, podm_home;
 };
 
 // The trials of one [[trials]] on one image.
@@ -26,7 +26,7 @@ struct Series {
 
   bool has_both() const {
     return std::any_of(by_threads.begin(), by_threads.end(), [](const auto& entry) {
-      return !entry.second.podm.empty() && !entry.second.podm_home.empty();
+      return !entry.second.podm.numbers.empty() && !entry.second.podm_home.numbers.empty();
     });
   }
 };
@@ -47,7 +47,10 @@ void add(const Row& row, std::map<std::string, Series>& all) {
   series.row = &row;
   series.cells_per_thread = std::max(series.cells_per_thread, cells / threads);
   Rates& rates = series.by_threads[threads];
-  (algorithm == "podm" ? rates.podm : rates.podm_home).push_back(cells / meshing_seconds(row.mesh->phases_s));
+  Samples& samples = algorithm == "podm" ? rates.podm : rates.podm_home;
+  samples.numbers.push_back(cells / meshing_seconds(row.mesh->phases_s));
+  samples.rounds.push_back(row.repeat);
+  samples.varies = true;
 }
 
 Crossover crossover_of(const Series& series) {
@@ -63,17 +66,18 @@ Crossover crossover_of(const Series& series) {
   bool is_ahead = true;
   for (auto entry = series.by_threads.rbegin(); entry != series.by_threads.rend(); ++entry) {
     const auto& [threads, rates] = *entry;
-    if (rates.podm.empty() || rates.podm_home.empty()) continue;
-    const Ratio ratio = ratio_of_medians(rates.podm_home, rates.podm, Sampling::kIndependent);
-    is_ahead = is_ahead && ratio.low > 1;
+    if (rates.podm.numbers.empty() || rates.podm_home.numbers.empty()) continue;
+    const Estimate ratio = ratio_of(rates.podm_home, rates.podm);
+    is_ahead = is_ahead && ratio.interval->low > 1;
     if (is_ahead) crossover.threads = threads;
     crossover.measured_up_to = std::max(crossover.measured_up_to, threads);
     crossover.measurements.push_back({threads,
-                                      median(rates.podm),
-                                      median(rates.podm_home),
+                                      rates.podm.middle(),
+                                      rates.podm_home.middle(),
                                       ratio.value,
-                                      {ratio.low, ratio.high},
-                                      {rates.podm.size(), rates.podm_home.size()}});
+                                      {ratio.interval->low, ratio.interval->high},
+                                      ratio.interval->coverage,
+                                      {rates.podm.numbers.size(), rates.podm_home.numbers.size()}});
   }
   std::reverse(crossover.measurements.begin(), crossover.measurements.end());
   return crossover;

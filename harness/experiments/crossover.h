@@ -15,8 +15,9 @@ namespace podm::bench {
 struct CrossoverMeasurement {
   int threads = 0;
   double podm_cells_per_second = 0, podm_home_cells_per_second = 0;  ///< medians
-  double ratio = 1;                        ///< cells a second of podm-home over podm
-  std::array<double, 2> ratio_interval{};  ///< that holds it with 95 %
+  double ratio = 1;                        ///< cells a second of podm-home over podm, in the median of rounds
+  std::array<double, 2> ratio_interval{};  ///< that holds it with ratio_coverage
+  double ratio_coverage = 0;               ///< 0 of one round
   std::array<std::uint64_t, 2> rows{};     ///< how many of podm and podm-home
   static constexpr auto fields() {
     using C = CrossoverMeasurement;
@@ -25,6 +26,7 @@ struct CrossoverMeasurement {
                       field("podm_home_cells_per_second", &C::podm_home_cells_per_second),
                       field("ratio", &C::ratio),
                       field("ratio_interval", &C::ratio_interval),
+                      field("ratio_coverage", &C::ratio_coverage),
                       field("rows", &C::rows)};
   }
 };
@@ -53,10 +55,10 @@ struct Crossover {
 };
 
 /// What rows say, by trial, all of one machine and one mesher. PODM at home is ahead where it makes more
-/// cells a second than PODM, with evidence (95 % interval of the ratio of medians), on every number of
-/// threads measured from there on. Only what really ran decides, never virtual time, described machines or
-/// more threads than processors. The trial of the most cells a thread decides. There is none where no trial
-/// has both algorithms at one number of threads.
+/// cells a second than PODM, in all of the interval of the ratio (with as much coverage as the rounds have),
+/// on every number of threads measured from there on. Only what really ran decides, never virtual time,
+/// described machines or more threads than processors. The trial of the most cells a thread decides. There is
+/// none where no trial has both algorithms at one number of threads.
 std::optional<Crossover> crossover_of(const std::vector<std::vector<Row>>& rows_of_trials);
 
 /// Tells the crossover in a sentence without its end.

@@ -49,7 +49,7 @@ def _page_fault(history, committed_page):
     committed = (committed_page or "").splitlines()
     for number, (line, expected) in enumerate(zip(committed, made), 1):
         if not _agree(line, expected):
-            return [f"experiments/claims-history.md:{number}: is not what scripts/claims_history makes, here {expected}"]
+            return [f"experiments/claims-history.md:{number}: is not what scripts/claims_history makes: {expected}"]
     if len(committed) != len(made):
         return [f"experiments/claims-history.md: has {len(committed)} lines, scripts/claims_history makes {len(made)}"]
     return []

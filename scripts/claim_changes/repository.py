@@ -48,7 +48,8 @@ class Repository:
 
     def commits(self):
         """All that touch experiments, parents first, then the working tree."""
-        log = self._git("log", "--full-history", "--topo-order", "--reverse", "--format=%H %cs %P", "HEAD", "--", FOLDER)
+        log = self._git("log", "--full-history", "--topo-order", "--reverse", "--format=%H %cs %P", "HEAD", "--",
+                        FOLDER)
         for line in log.splitlines():
             commit, date, *parents = line.split()
             yield Commit(commit[:SHORT], date, self.state(commit), tuple(self.state(parent) for parent in parents))
@@ -76,7 +77,8 @@ class Repository:
     def _git(self, *arguments, may_fail=False):
         """What git prints; None where it fails and may."""
         try:
-            done = subprocess.run(["git", "-C", str(self.root), *arguments], capture_output=True, text=True, check=False)
+            done = subprocess.run(["git", "-C", str(self.root), *arguments], capture_output=True, text=True,
+                                  check=False)
         except FileNotFoundError:
             raise NoHistory("git is not installed") from None
         if done.returncode != 0:

@@ -3,6 +3,8 @@
 
 #include <gtest/gtest.h>
 
+#include <cmath>
+
 #include "rows/results_file.h"
 #include "tests/fake_mesher.h"
 #include "tests/made_up_rows.h"
@@ -54,6 +56,21 @@ TEST(Crossover, RepeatsThatOverlapAreNoEvidence) {
   for (const double podm : {2.2, 1.9}) repeats.push_back({row("podm", 2, podm)});
   for (const double podm_home : {1.9, 2.2}) repeats.push_back({row("podm-home", 2, podm_home)});
   EXPECT_FALSE(crossover_of(repeats).value().threads);
+}
+
+TEST(Crossover, RoundsAreComparedWithThemselvesAndTellTheirCoverage) {
+  std::vector<std::vector<Row>> rounds(2);
+  for (int round = 1; round <= 6; ++round) {  // each half as fast as the one before it
+    const double rate = std::pow(0.5, round);
+    rounds[0].push_back(row("podm", 1, rate));
+    rounds[1].push_back(row("podm-home", 1, 1.1 * rate));
+    for (auto& trial : rounds) trial.back().repeat = round;
+  }
+  const Crossover crossover = crossover_of(rounds).value();
+  EXPECT_EQ(crossover.threads, 1);
+  EXPECT_NEAR(crossover.measurements[0].ratio_interval[0], 1.1, 1e-12);
+  EXPECT_NEAR(crossover.measurements[0].ratio_coverage, 31.0 / 32, 1e-12);
+  EXPECT_EQ(crossover_of(rows({{1, 2}})).value().measurements[0].ratio_coverage, 0) << "one round";
 }
 
 TEST(Crossover, OnlyWhatRanOnThisMachineDecides) {
