@@ -1,0 +1,88 @@
+"""Tables that scripts/update_docs generates, of rows that are made up."""
+import json
+import shutil
+import tempfile
+import unittest
+from pathlib import Path
+
+import paths  # noqa: F401
+import synthetic
+from docs.errors import DocsError
+from docs.provenance import Provenance
+from docs.sources import Sources
+from docs.tables import generate
+from test_audit import TOPOLOGY, environment
+
+
+class Tables(unittest.TestCase):
+    def setUp(self):
+        self.root = Path(tempfile.mkdtemp())
+        self.addCleanup(shutil.rmtree, self.root)
+        self.folder = self.root / "results/reference/0.1.0/what"
+        self.folder.mkdir(parents=True)
+        for topology, model in ("aaaa", 207), ("bbbb", 143):
+            (self.folder / f"topology-{topology}.xml").write_text(TOPOLOGY.format(model=model))
+
+    def lines(self, name, rows, argument="0.1.0/what"):
+        """Cells of the table of `rows`, a list for each line below the head."""
+        (self.folder / "rows.jsonl").write_text("".join(json.dumps(row) + "\n" for row in rows))
+        sources = Sources(self.root)
+        made = generate(name, [argument], sources, Provenance(sources)).splitlines()
+        return [[cell.strip() for cell in line.strip("|").split("|")] for line in made if not line.startswith("| ---")]
+
+    def test_speedups_are_those_of_each_size_beside_the_papers(self):
+        rows = [row for size in (40_000, 160_000)
+                for row in synthetic.simulated_size(size, lambda algorithm, cores, size=size: cores * size / 320_000)]
+        head, at_32, at_256 = self.lines("simulated_speedups", rows)
+        self.assertEqual(at_256[0], "256")
+        found = dict(zip(head, at_256))
+        self.assertEqual((found["PODM: paper"], found["PDR.PODM: paper"]), ("44.7", "163.8"))
+        self.assertEqual((found["PODM: 40\N{NO-BREAK SPACE}k"], found["PODM: 160\N{NO-BREAK SPACE}k"]), ("32.0", "128.0"))
+        self.assertEqual(dict(zip(head, at_32))["PDR.PODM: 40\N{NO-BREAK SPACE}k"], "4.0")
+
+    def slivers(self, topology="aaaa"):
+        for threads, seconds in (1, 3.0), (2, 2.0):
+            for repeat in (1, 2, 3):
+                yield synthetic.row(cores=threads, cells=1_200_000, repeat=repeat, environment=environment(topology),
+                                    trial=f"1M-both,input=x,threads={threads}",
+                                    phases_s={"refine": 9.0, "perturb": seconds - 1, "optimize": 1.0},
+                                    quality={"min_dihedral_deg": 8 + repeat, "max_dihedral_deg": 160 + threads})
+
+    def test_slivers_are_told_by_image_with_the_gain_of_two_threads(self):
+        head, line = self.lines("slivers", list(self.slivers()))
+        found = dict(zip(head, line))
+        self.assertEqual((found["M cells/s, one thread"], found["gain on two threads"]), ("0.40", "1.50"))
+        self.assertEqual((found["least angle"], found["largest angle"], found["rows"]), ("9.00", "162.00", "6"))
+
+    def test_seconds_of_two_machines_or_of_none_give_no_table(self):
+        for topology in ("bbbb", "gone"):
+            rows = [*self.slivers(), *self.slivers(topology)]
+            with self.assertRaises(DocsError):
+                self.lines("slivers", rows)
+
+    def test_costs_add_up_what_rows_took(self):
+        rows = [synthetic.row(environment=environment("aaaa"), preparation_s=20.0, verification_s=10.0,
+                              process={"wall_s": 60.0, "peak_rss_bytes": peak * 2**20}) for peak in (5, 7)]
+        self.assertEqual(self.lines("costs", rows)[1], ["weak", "2", "3.0", "2.0", "7"])
+
+    def test_machines_are_named_by_their_processor_or_not_known(self):
+        rows = [synthetic.row(environment=environment(topology)) for topology in ("aaaa", "aaaa", "gone")]
+        _, known, lost = self.lines("machines", rows)
+        self.assertEqual(known[:6], ["aaaa", "what", "GenuineIntel", "6", "207", "2"])
+        self.assertEqual(lost[:3], ["gone", "what", "not known"])
+
+    def test_verdicts_are_those_of_the_file(self):
+        (self.folder / "verdicts.json").write_text(json.dumps(synthetic.experiment_verdicts(first="holds")))
+        sources = Sources(self.root)
+        text = generate("verdicts", ["0.1.0/what/verdicts.json"], sources, Provenance(sources))
+        self.assertIn("| weak_scaling | first | measured | holds |", text)
+
+    def test_arguments_that_do_not_fit_are_a_fault(self):
+        for name, arguments in ("costs", []), ("costs", ["0.1.0/gone"]), ("gone", []):
+            sources = Sources(self.root)
+            with self.assertRaises(DocsError):
+                generate(name, arguments, sources, Provenance(sources))
+
+
+if __name__ == "__main__":
+    unittest.main()
