@@ -7,6 +7,7 @@
 #include <map>
 
 #include "experiments/option_matrix.h"
+#include "rows/machine_state.h"
 
 namespace podm::bench {
 namespace {
@@ -21,16 +22,19 @@ std::string fault_of(const Row& row) {
   return fmt::format("{}: {}: {}: {}", kRowsFailed, row.trial, to_string(row.status), row.reason);
 }
 
-// read() of each row, or why one has none.
+// read() of each row, or why one has none. Rows of a round during which the machine's speed moved have no
+// time.
 Samples read_each(const RowPointers& rows, const Measure& measure, Value (*read)(const Row&)) {
   Samples samples;
   samples.num_rows = rows.size();
   for (const Row* row : rows) {
+    if (measure.meaning == Meaning::kClock && probe_moved(*row)) continue;
     const Value value = counts(*row, measure) ? read(*row) : Value{{}, fault_of(*row)};
     if (!value.number) return {{}, {}, value.absence, rows.size()};
     samples.numbers.push_back(*value.number);
     samples.rounds.push_back(row->repeat);
   }
+  if (samples.numbers.empty()) samples.absence = "the machine's speed moved during the round";
   return samples;
 }
 
