@@ -4,14 +4,19 @@ from dataclasses import dataclass, field
 import pandas
 
 from . import (cache, deviation, dihedral, distributed, distributed_figure, distributed_model, experiment_verdicts,
-               fig1, fig2b, fig4a, fig4b, guarantees, lost, machine, peers, scaling, simulated, solvers, table1, table2,
-               table3, validation, verdicts)
+               fig1, fig2b, fig4a, fig4b, guarantees, lost, machine, machine_state, peers, scaling, simulated, solvers,
+               table1, table2, table3, validation, verdicts)
+
+
+# Tables with times that this machine took: they say in which state it was.
+MEASURED_TABLES = ("table1", "table3", "peers", "validation", "distributed")
 
 
 @dataclass(frozen=True)
 class Outcome:
     """`tables`: by name, as data and readable. `figures`: by name. `missing`: reason by name of what cannot be made.
-    `series`: of weak scaling; `experiments`: verdicts of podm-bench, or None."""
+    `series`: of weak scaling; `experiments`: verdicts of podm-bench, or None. `remarks`: on the state of the machine
+    while rows were measured."""
 
     tables: dict
     figures: dict
@@ -19,6 +24,7 @@ class Outcome:
     missing: dict = field(default_factory=dict)
     series: list = field(default_factory=list)
     experiments: dict = None
+    remarks: list = field(default_factory=list)
 
 
 def make(frame, report=None, schedule=None, mesh=None, experiments=None):
@@ -29,7 +35,7 @@ def make(frame, report=None, schedule=None, mesh=None, experiments=None):
     nodes = distributed_model.extrapolated(ranks)
     drawn, missing = _figures(frame, series, (ranks, nodes), report, schedule, mesh)
     return Outcome(_tables(frame, series, hops, ranks, nodes), drawn, verdicts.verdicts(frame, series, hops), missing,
-                   series, experiments)
+                   series, experiments, machine_state.remarks(frame))
 
 
 def _tables(frame, series, hops, ranks, nodes):

@@ -41,7 +41,8 @@ def _comparable(frame):
     """Rows of one thread; of others also those that miss claims which they do not promise."""
     if frame.empty or not (frame["mesher"] != "podm").any():
         return frame.iloc[:0]
-    is_theirs = (frame["mesher"] != "podm") & (frame["status"] == "ok") & (frame["warmup"] != True)  # noqa: E712
+    is_theirs = ((frame["mesher"] != "podm") & (frame["status"] == "ok") & (frame["warmup"] != True)  # noqa: E712
+                 & ~frame["moved"])
     rows = frame[(frame["headline"] & (frame["mesher"] == "podm") | is_theirs) & (frame["cores"] == 1)]
     rows = scaling.with_keys(rows)
     return rows[(rows["basis"] == "measured") & rows["algorithm"].isin(["podm", *rows["mesher"]])]

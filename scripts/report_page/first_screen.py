@@ -4,7 +4,7 @@ from html import escape
 from figures import experiment_verdicts, guarantees, scaling, style
 from figures.fig4a import WHY_ABOVE
 
-from .html import Bar, bars, findings, fold
+from .html import Bar, bars, findings, fold, remarks_html
 
 MOST_COUNTS = 4  # numbers of cores in the picture of scaling
 FAULTS = {"unmet": "missed a guarantee", "failed": "failed", "timed_out": "timed out", "interrupted": "interrupted"}
@@ -19,7 +19,7 @@ def first_screen(frame, outcome):
     cards = "\n".join(f'<section class="answer" id="{name}" aria-labelledby="{name}-title">'
                       f'<h2 id="{name}-title">{question}</h2>\n{content}\n</section>'
                       for name, question, content in answers)
-    return f'<div class="answers">\n{cards}\n</div>'
+    return f'{remarks_html(outcome.remarks)}<div class="answers">\n{cards}\n</div>'
 
 
 def _answer(text):
