@@ -105,6 +105,14 @@ void add_latency(CLI::App& program, int& exit_code) {
   app.callback([path, &exit_code] { exit_code = latency(*path); });
 }
 
+void add_machine(CLI::App& program, int& exit_code) {
+  const auto as_json = std::make_shared<bool>(false);
+  CLI::App& app =
+      *program.add_subcommand("machine", "print what identifies this machine and how fast it is now");
+  app.add_flag("--json", *as_json, "print one line of JSON, as rows hold it [default: words]");
+  app.callback([as_json, &exit_code] { exit_code = show_machine(*as_json); });
+}
+
 void add_compare(CLI::App& program, int& exit_code) {
   const auto paths = std::make_shared<std::pair<std::string, std::string>>();
   CLI::App& app =
@@ -152,6 +160,7 @@ int main_or_throw(int argc, char** argv) {
   add_list(program, exit_code);
   add_verdicts(program, exit_code);
   add_latency(program, exit_code);
+  add_machine(program, exit_code);
   add_compare(program, exit_code);
   add_gate(program, exit_code);
   try {

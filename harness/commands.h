@@ -46,4 +46,7 @@ int verdicts(const std::vector<std::string>& experiment_paths, const std::string
 /// or prints it where `record_path` is empty.
 int latency(const std::string& record_path);
 
+/// Prints what identifies this machine and a probe of its speed, as one line of JSON or for people.
+int show_machine(bool as_json);
+
 }  // namespace podm::bench

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <map>
 
+#include "rows/machine_state.h"
 #include "rows/row_filter.h"
 #include "rows/series.h"
 
@@ -34,7 +35,7 @@ struct Series {
 bool is_measured(const Row& row) {
   return row.status == Status::kOk && !row.warmup && row.mesh &&
          row.asked.value("executor", "threads") == "threads" && !row.asked.contains("topology") &&
-         !row.asked.contains("oversubscribe");
+         !row.asked.contains("oversubscribe") && !probe_moved(row);
 }
 
 void add(const Row& row, std::map<std::string, Series>& all) {

@@ -2,16 +2,19 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <chrono>
 #include <cstdio>
 #include <filesystem>
 #include <map>
+#include <span>
 #include <utility>
 
 #include "experiments/crossover.h"
 #include "experiments/progress.h"
 #include "experiments/verdicts.h"
 #include "machine/environment.h"
+#include "rows/machine_state.h"
 #include "rows/record.h"
 #include "rows/results_file.h"
 #include "rows/table.h"
@@ -76,10 +79,11 @@ class ExperimentRun {
     announce();
     Progress progress(expected_s());
     HarnessClock clock;
-    for (const PlannedTurn& planned : plan_.turns) {
+    for (const Round& round : rounds()) {
       if (session_.is_interrupted()) break;
-      rows_[planned.turn.trial].push_back(planned.row ? *planned.row : run_turn(planned, progress, clock));
+      run_round(round, progress, clock);
     }
+    for (const std::string& remark : machine_state(all_rows()).remarks()) fmt::print("{}\n", remark);
     fmt::print("{}Recorded in {}\n", format_table(rows_), path_);
     if (!session_.is_interrupted()) print_verdicts();
     if (experiment_.stores_crossover && !session_.is_interrupted()) store_crossover();
@@ -87,6 +91,71 @@ class ExperimentRun {
   }
 
  private:
+  using Round = std::span<const PlannedTurn>;
+
+  std::vector<Round> rounds() const {
+    std::vector<Round> rounds;
+    const auto differ = [](const PlannedTurn& a, const PlannedTurn& b) {
+      return a.turn.repeat != b.turn.repeat || a.turn.is_warmup != b.turn.is_warmup;
+    };
+    for (auto begin = plan_.turns.begin(); begin != plan_.turns.end();) {
+      const auto end = std::find_if(begin, plan_.turns.end(),
+                                    [&](const PlannedTurn& planned) { return differ(*begin, planned); });
+      rounds.emplace_back(begin, end);
+      begin = end;
+    }
+    return rounds;
+  }
+
+  bool is_measured(const PlannedTurn& planned) const {
+    return basis_of(plan_.trials[planned.turn.trial].options, {}) == Basis::kMeasured;
+  }
+
+  // A round that an interrupt cuts short is not judged: the run that resumes it probes anew.
+  void run_round(const Round& round, Progress& progress, HarnessClock& clock) {
+    const bool is_probed = std::any_of(round.begin(), round.end(), [&](const PlannedTurn& planned) {
+      return !planned.row && is_measured(planned);
+    });
+    if (is_probed)
+      round_probe_ = session_.probes.begin();
+    else
+      session_.probes.pass();
+    clock.lap_without(0);
+    for (const PlannedTurn& planned : round) {
+      if (session_.is_interrupted()) return;
+      rows_[planned.turn.trial].push_back(planned.row ? *planned.row : run_turn(planned, progress, clock));
+    }
+    if (is_probed && !session_.is_interrupted()) end_round(round);
+    clock.lap_without(0);
+  }
+
+  // Marks the round's measured rows, those of an earlier run too, where the machine's speed moved.
+  void end_round(const Round& round) {
+    const Probe after = session_.probes.end();
+    std::vector<Row*> rows;
+    std::vector<Probe> probes{after};
+    for (const PlannedTurn& planned : round) {
+      Row& row = rows_[planned.turn.trial].back();
+      if (row.basis != Basis::kMeasured || row.status == Status::kSkipped) continue;
+      rows.push_back(&row);
+      if (row.environment.probe) probes.push_back(*row.environment.probe);
+    }
+    if (!has_moved(probes)) return;
+    std::vector<Row> marked;
+    for (Row* row : rows) {
+      row->probe_moved = true;
+      row->environment.probe_after = after;
+      marked.push_back(*row);
+    }
+    file_.replace_newest(marked);
+  }
+
+  std::vector<Row> all_rows() const {
+    std::vector<Row> rows;
+    for (const auto& of_trial : rows_) rows.insert(rows.end(), of_trial.begin(), of_trial.end());
+    return rows;
+  }
+
   std::vector<std::optional<double>> expected_s() const {
     std::vector<std::optional<double>> expected;
     for (const PlannedTurn& planned : plan_.turns)
@@ -108,6 +177,7 @@ class ExperimentRun {
     TrialResult result = prepare(trial, progress);
     EnvironmentRecord environment = session_.environment;
     renew(environment);
+    if (is_measured(planned)) environment.probe = round_probe_;
     const std::string key = session_.keys.of(trial, planned.turn, result.preparation);
     if (const auto known = plan_.finished.find(key); known != plan_.finished.end()) {
       progress.finish_turn(label + ": already measured");
@@ -178,11 +248,7 @@ class ExperimentRun {
   }
 
   // The turns asked for decide, as for the crossover below.
-  void print_verdicts() const {
-    std::vector<Row> rows;
-    for (const auto& of_trial : rows_) rows.insert(rows.end(), of_trial.begin(), of_trial.end());
-    fmt::print("\n{}", format_verdicts({judge(experiment_, rows)}));
-  }
+  void print_verdicts() const { fmt::print("\n{}", format_verdicts({judge(experiment_, all_rows())})); }
 
   // The turns asked for decide: their keys make them this machine's and this mesher's.
   void store_crossover() const {
@@ -223,6 +289,7 @@ class ExperimentRun {
   std::string path_;
   RecordFile file_;
   std::vector<std::vector<Row>> rows_;  // a list a trial; those of earlier runs are among them
+  std::optional<Probe> round_probe_;    // at the start of the round that runs
 };
 
 }  // namespace

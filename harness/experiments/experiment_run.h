@@ -5,6 +5,7 @@
 
 #include "commands.h"
 #include "experiments/plan.h"
+#include "experiments/round_probes.h"
 #include "machine/machine.h"
 #include "trials/counters.h"
 #include "trials/preparation.h"
@@ -26,6 +27,7 @@ struct Session {
   TrialKeys keys;
   TrialRunner runner;
   CountersKeptReady counters;
+  RoundProbes probes{probe_machine};
 };
 
 /// Whether every turn of the plan has a row of status ok, or may be skipped.

@@ -58,7 +58,7 @@ void judge_bound(const Claim& claim, const RowPointers& rows, Findings& findings
 // A trial that did not end while other work kept the machine busy may end on an idle one.
 std::string doubt_about(const Row& row, const Claim& claim) {
   const bool is_late = row.status == Status::kTimedOut && claim.value->meaning == Meaning::kOutcome;
-  return is_late && is_disturbed(row) ? describe_disturbance(*row.environment.busy_elsewhere) : "";
+  return is_late && is_disturbed(row) ? describe_disturbance(busy_elsewhere(row)) : "";
 }
 
 // What rows that cannot tell might still say does not save a claim that the others refute.

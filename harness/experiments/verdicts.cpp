@@ -104,12 +104,33 @@ std::string interval_in_words(const Judgement& judgement) {
 ExperimentVerdicts judge(const Experiment& experiment, const std::vector<Row>& rows) {
   std::set<std::string> stems;
   for (const Trial& trial : experiment.trials) stems.insert(stem_of(trial.name));
-  std::vector<Row> judged = rows_to_judge(rows);
-  std::erase_if(judged, [&](const Row& row) { return !stems.contains(stem_of(row.trial)); });
-  ExperimentVerdicts verdicts{&experiment, {}};
+  const auto is_foreign = [&](const Row& row) { return !stems.contains(stem_of(row.trial)); };
+  std::vector<Row> judged = rows_to_judge(rows), others = rows_of_other_machines(rows);
+  std::erase_if(judged, is_foreign);
+  std::erase_if(others, is_foreign);
+  ExperimentVerdicts verdicts{&experiment, {}, machine_state(judged), describe_left_out(others)};
   for (const Claim& claim : experiment.claims) verdicts.judgements.push_back(judge(claim, judged));
   return verdicts;
 }
+
+namespace {
+
+// Sentences on the machine that an experiment's rows were measured on.
+std::vector<std::string> remarks_of(const ExperimentVerdicts& verdicts) {
+  std::vector<std::string> remarks = verdicts.machine.remarks();
+  if (!verdicts.left_out.empty()) remarks.push_back(verdicts.left_out);
+  return remarks;
+}
+
+std::string remarks_in_lines(const std::vector<ExperimentVerdicts>& all) {
+  std::string lines;
+  for (const ExperimentVerdicts& verdicts : all)
+    for (const std::string& remark : remarks_of(verdicts))
+      lines += fmt::format("{}: {}\n", verdicts.experiment->name, remark);
+  return lines;
+}
+
+}  // namespace
 
 std::string format_verdicts(const std::vector<ExperimentVerdicts>& all) {
   std::vector<std::vector<std::string>> lines{
@@ -134,9 +155,11 @@ std::string format_verdicts(const std::vector<ExperimentVerdicts>& all) {
           {kWithdrawn, verdicts.experiment->name, claim.name, "-", "-", "-", "-", "-", why_withdrawn(claim)});
     }
   return fmt::format(
-      "{}{}Claims: {} hold, {} do not hold, {} are not resolved, {} cannot be decided here; {} withdrawn or "
+      "{}{}{}Claims: {} hold, {} do not hold, {} are not resolved, {} cannot be decided here; {} withdrawn "
+      "or "
       "superseded\n",
-      align(lines, 4), failed, numbers[0], numbers[1], numbers[2], numbers[3], num_withdrawn);
+      remarks_in_lines(all), align(lines, 4), failed, numbers[0], numbers[1], numbers[2], numbers[3],
+      num_withdrawn);
 }
 
 Json verdicts_as_json(const std::vector<ExperimentVerdicts>& all) {
@@ -153,6 +176,10 @@ Json verdicts_as_json(const std::vector<ExperimentVerdicts>& all) {
                            {"title", experiment.title},
                            {"claim", experiment.claim},
                            {"paper", experiment.paper.empty() ? Json() : Json(experiment.paper)},
+                           {"measured", verdicts.machine.measured},
+                           {"disturbed", verdicts.machine.disturbed},
+                           {"probe_moved", verdicts.machine.moved},
+                           {"remarks", remarks_of(verdicts)},
                            {"claims", claims},
                            {"withdrawn", withdrawn}});
   }

@@ -6,12 +6,15 @@
 
 #include "experiments/experiment.h"
 #include "experiments/judge.h"
+#include "rows/machine_state.h"
 
 namespace podm::bench {
 
 struct ExperimentVerdicts {
   const Experiment* experiment = nullptr;
   std::vector<Judgement> judgements;  ///< one a claim, in their order
+  MachineState machine;               ///< while the rows that may be judged were measured
+  std::string left_out;               ///< which rows of other machines; "" for none
 };
 
 /// `rows` are all there are of the experiment; those that may be judged are chosen here.

@@ -10,6 +10,8 @@
 #include <optional>
 #include <set>
 
+#include "rows/machine_state.h"
+#include "rows/row_filter.h"
 #include "rows/statistics.h"
 
 namespace podm::bench {
@@ -125,6 +127,22 @@ std::vector<Group> groups_of(const Rows& a, const Rows& b) {
       groups[found->second].b.push_back(row);
   std::erase_if(groups, [](const Group& group) { return group.b.empty(); });
   return groups;
+}
+
+bool names_its_machine(const Row& row) { return !is_simulated(row) && !row.environment.cpu.empty(); }
+
+// Throws InputError unless one machine measured all rows.
+void check_machines(const std::vector<Group>& groups) {
+  const Row* first = nullptr;
+  for (const Group& group : groups)
+    for (const Rows* rows : {&group.a, &group.b})
+      for (const Row& row : *rows) {
+        if (!names_its_machine(row)) continue;
+        if (first == nullptr) first = &row;
+        if (!same_machine(*first, row))
+          throw InputError(fmt::format("rows of two machines are in no ratio: {} and {}",
+                                       machine_name(*first), machine_name(row)));
+      }
 }
 
 // An answer of a row, empty where it gives none.
@@ -248,6 +266,7 @@ Rows read_record_file(const std::string& path) {
 Comparison compare(const Rows& a, const Rows& b) {
   const auto groups = groups_of(a, b);
   if (groups.empty()) throw InputError("no row of A measures what a row of B does");
+  check_machines(groups);
   Comparison result;
   for (const Group& group : groups) add_differences(group, result);
   result.text += fmt::format("{:<24} {:<16} {:>14} {:>14} {:>8}  95 % interval\n", "trial", "median of", "A",

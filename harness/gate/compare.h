@@ -24,7 +24,8 @@ struct Comparison {
 /// Matches rows of equal trial, input, algorithm, options, seed and threads; several that match are repeated
 /// measurements. A value is worse when the 95 % interval of B's median over A's lies beyond 2 % on its bad
 /// side; it has an interval when both have kFewestRepeats rows or one thread decides it. Throws InputError
-/// when no row of `a` matches one of `b`.
+/// when no row of `a` matches one of `b`, and naming both machines when two of the rows that match were
+/// measured on different ones. Records of the mesher alone name no machine: the caller answers for them.
 Comparison compare(const std::vector<Row>& a, const std::vector<Row>& b);
 
 inline constexpr int kFewestRepeats = 5;  ///< fewer show too little of the spread

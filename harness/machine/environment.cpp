@@ -3,7 +3,6 @@
 #include <fmt/format.h>
 #include <gnu/libc-version.h>
 #include <hwloc.h>
-#include <sys/utsname.h>
 
 #include <cstdlib>
 #include <filesystem>
@@ -25,24 +24,10 @@ std::string first_line(const std::string& path) {
   return std::getline(file, line) ? line : "unavailable: no " + path;
 }
 
-// The line reads "key: 123 kB".
-Count bytes_of(const std::string& key) {
-  std::ifstream file("/proc/meminfo");
-  const std::string kibibytes = value_in(file, key);
-  if (kibibytes.empty()) return Unavailable{fmt::format("/proc/meminfo does not tell '{}'", key)};
-  return std::uint64_t{1024} * std::stoull(kibibytes);
-}
-
 std::variant<std::vector<double>, Unavailable> load_average() {
   std::vector<double> minutes_1_5_15(3);
   if (getloadavg(minutes_1_5_15.data(), 3) != 3) return Unavailable{"getloadavg"};
   return minutes_1_5_15;
-}
-
-std::string kernel() {
-  utsname name{};
-  uname(&name);
-  return fmt::format("{} {} {}", name.sysname, name.release, name.machine);
 }
 
 // The limit is that of this process's own group; `unified` and `legacy` are its files in versions 2 and 1.
@@ -100,7 +85,7 @@ ProgramRecord describe_program(const std::string& path) {
 EnvironmentRecord environment_of_run(const MachineRecord& machine) {
   EnvironmentRecord environment;
   static_cast<MachineRecord&>(environment) = machine;
-  environment.kernel = kernel();
+  environment.kernel = kernel_name();
   environment.smt = first_line("/sys/devices/system/cpu/smt/control");
   environment.cgroup = cgroup_limits();
   environment.libraries = {{"glibc", gnu_get_libc_version()},
@@ -114,7 +99,7 @@ EnvironmentRecord environment_of_run(const MachineRecord& machine) {
 
 void renew(EnvironmentRecord& environment) {
   environment.load_average = load_average();
-  environment.memory_bytes = {bytes_of("MemTotal"), bytes_of("MemAvailable")};
+  environment.memory_bytes = {meminfo_bytes("MemTotal"), meminfo_bytes("MemAvailable")};
   environment.governor = first_line("/sys/devices/system/cpu/cpu0/cpufreq/scaling_governor");
   environment.transparent_huge_pages = first_line("/sys/kernel/mm/transparent_hugepage/enabled");
   environment.numa_balancing = first_line("/proc/sys/kernel/numa_balancing");

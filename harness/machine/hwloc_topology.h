@@ -1,10 +1,12 @@
-// An hwloc topology that is destroyed with its owner.
+// An hwloc topology that is destroyed with its owner, and the caches in it.
 #pragma once
 
 #include <hwloc.h>
 
+#include <cstddef>
 #include <memory>
 #include <type_traits>
+#include <vector>
 
 namespace podm::bench {
 
@@ -19,6 +21,20 @@ inline Topology load_topology() {
   if (hwloc_topology_init(&topology) != 0) return {};
   Topology owner(topology);
   return hwloc_topology_load(topology) == 0 ? std::move(owner) : Topology();
+}
+
+struct Cache {
+  int level;
+  std::size_t bytes;
+};
+
+/// The data caches above a processor, the nearest first.
+inline std::vector<Cache> caches_of(hwloc_obj_t processor) {
+  std::vector<Cache> caches;
+  for (hwloc_obj_t object = processor; object != nullptr; object = object->parent)
+    if (hwloc_obj_type_is_dcache(object->type) && object->attr->cache.size > 0)
+      caches.push_back({static_cast<int>(object->attr->cache.depth), object->attr->cache.size});
+  return caches;
 }
 
 }  // namespace podm::bench

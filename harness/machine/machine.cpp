@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 #include <sched.h>
+#include <sys/utsname.h>
 #include <unistd.h>
 
 #include <algorithm>
@@ -9,6 +10,7 @@
 #include <sstream>
 
 #include "machine/hwloc_topology.h"
+#include "machine/identity.h"
 
 namespace podm::bench {
 namespace {
@@ -46,6 +48,7 @@ Machine this_machine() {
   machine.summary.cores = count(HWLOC_OBJ_CORE);
   machine.summary.processors = count(HWLOC_OBJ_PU);
   machine.summary.usable_processors = usable_processors();
+  machine.summary.identity = identity_of(topology.get());
   if (topology) machine.topology_xml = xml_of(topology.get());
   return machine;
 }
@@ -64,6 +67,20 @@ int usable_processors() {
   const std::size_t allowed = usable_processor_ids().size();
   return std::max(1,
                   allowed > 0 ? static_cast<int>(allowed) : static_cast<int>(sysconf(_SC_NPROCESSORS_ONLN)));
+}
+
+std::string kernel_name() {
+  utsname name{};
+  uname(&name);
+  return fmt::format("{} {} {}", name.sysname, name.release, name.machine);
+}
+
+// The line reads "key: 123 kB".
+Count meminfo_bytes(const std::string& key) {
+  const std::string kibibytes = value_of("/proc/meminfo", key);
+  if (kibibytes.starts_with(Unavailable::kPrefix))
+    return Unavailable{fmt::format("/proc/meminfo does not tell '{}'", key)};
+  return std::uint64_t{1024} * std::stoull(kibibytes);
 }
 
 std::string value_in(std::istream& lines, const std::string& key) {

@@ -22,6 +22,12 @@ int usable_processors();
 /// Their numbers, the lowest first; none where the kernel does not tell.
 std::vector<int> usable_processor_ids();
 
+/// "Linux 6.1.0 x86_64".
+std::string kernel_name();
+
+/// The bytes that /proc/meminfo lists under the key.
+Count meminfo_bytes(const std::string& key);
+
 /// The text after the colon of the first line "key : text"; empty when no line has the key.
 std::string value_in(std::istream& lines, const std::string& key);
 /// What value_in() finds in a file, or "unavailable: why".

@@ -25,20 +25,6 @@ constexpr std::size_t kLoads = 250'000;  // a repeat takes some 30 ms from memor
 constexpr std::uint64_t kSeed = 1;
 constexpr double kBenchTimeoutS = 60;
 
-struct Cache {
-  int level;
-  std::size_t bytes;
-};
-
-// The data caches above a processor, the nearest first.
-std::vector<Cache> caches_of(hwloc_obj_t processor) {
-  std::vector<Cache> caches;
-  for (hwloc_obj_t object = processor; object != nullptr; object = object->parent)
-    if (hwloc_obj_type_is_dcache(object->type) && object->attr->cache.size > 0)
-      caches.push_back({static_cast<int>(object->attr->cache.depth), object->attr->cache.size});
-  return caches;
-}
-
 // Measures loads from one working set in the memory of a node. Throws std::runtime_error where the set cannot
 // be bound to the node.
 LatencyRecord latency(hwloc_topology_t topology, std::size_t bytes, hwloc_obj_t node) {

@@ -87,6 +87,7 @@ Row make_row(const RowContext& context, const Trial& trial, const Turn& turn, co
   row.programs.peer = result.peer;
   if (num_ranks(trial) == 0) row.programs.podm_mpi.reset();
   row.environment = context.environment;
+  if (row.basis == Basis::kMeasured) row.environment.busy_elsewhere = result.busy_elsewhere;
   return row;
 }
 

@@ -10,6 +10,7 @@
 #include <cstring>
 #include <filesystem>
 #include <fstream>
+#include <map>
 
 namespace podm::bench {
 namespace {
@@ -26,6 +27,12 @@ int write_all(int descriptor, const std::string& text) {
 
 [[noreturn]] void fail(const std::string& path, int error_number) {
   throw InputError(fmt::format("cannot write {}: {}", path, std::strerror(error_number)));
+}
+
+int open_to_append(const std::string& path) {
+  const int descriptor = ::open(path.c_str(), O_WRONLY | O_CREAT | O_APPEND | O_CLOEXEC, 0666);
+  if (descriptor < 0) fail(path, errno);
+  return descriptor;
 }
 
 // Throws InputError naming the line.
@@ -96,15 +103,30 @@ void write_file(const std::string& path, const std::string& text) {
   if (::rename(aside.c_str(), path.c_str()) != 0) fail(path, errno);
 }
 
-RecordFile::RecordFile(const std::string& path)
-    : path_(path), descriptor_(::open(path.c_str(), O_WRONLY | O_CREAT | O_APPEND | O_CLOEXEC, 0666)) {
-  if (descriptor_ < 0) fail(path_, errno);
-}
+RecordFile::RecordFile(const std::string& path) : path_(path), descriptor_(open_to_append(path)) {}
 
 RecordFile::~RecordFile() { ::close(descriptor_); }
 
 std::string as_line(const Row& row) {
   return to_json(row).dump(-1, ' ', false, Json::error_handler_t::replace) + "\n";
+}
+
+void RecordFile::replace_newest(const std::vector<Row>& rows) {
+  std::map<std::string, const Row*> awaited;
+  for (const Row& row : rows) awaited[row.key] = &row;
+  std::vector<std::string> lines;
+  std::ifstream file(path_);
+  for (std::string line; std::getline(file, line);) lines.push_back(line + "\n");
+  for (auto line = lines.rbegin(); line != lines.rend() && !awaited.empty(); ++line) {
+    const Json json = Json::parse(*line, nullptr, false);
+    const auto found = awaited.find(json.is_object() ? json.value("key", "") : "");
+    if (found == awaited.end()) continue;
+    *line = as_line(*found->second);
+    awaited.erase(found);
+  }
+  write_file(path_, fmt::format("{}", fmt::join(lines, "")));
+  ::close(descriptor_);  // of the file that was
+  descriptor_ = open_to_append(path_);
 }
 
 void RecordFile::append_text(const std::string& text) {

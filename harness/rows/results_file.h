@@ -55,6 +55,9 @@ class RecordFile {
   /// Throws InputError naming the file and the fault; then it is as before.
   void append(const Row& row) { append_text(as_line(row)); }
   void append_text(const std::string& text);
+  /// Writes these rows in the place of the newest line of the same key, each; other lines stay as they are.
+  /// The file is replaced whole or not at all. Throws InputError naming it.
+  void replace_newest(const std::vector<Row>& rows);
 
  private:
   std::string path_;

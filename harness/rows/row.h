@@ -10,6 +10,7 @@
 #include <variant>
 #include <vector>
 
+#include "rows/machine_record.h"
 #include "rows/mesher_record.h"
 
 namespace podm::bench {
@@ -208,23 +209,6 @@ struct ProgramRecords {
   }
 };
 
-/// The machine; nothing of a host's name or state.
-struct MachineRecord {
-  std::string cpu;
-  Count packages = 0UL, numa_nodes = 0UL, cores = 0UL, processors = 0UL;
-  int usable_processors = 0;
-  static constexpr auto fields() {
-    using M = MachineRecord;
-    return std::tuple{field("cpu", &M::cpu),
-                      field("packages", &M::packages),
-                      field("numa_nodes", &M::numa_nodes),
-                      field("cores", &M::cores),
-                      field("processors", &M::processors),
-                      field("usable_processors", &M::usable_processors)};
-  }
-  bool operator==(const MachineRecord&) const = default;
-};
-
 /// Limits of this process's control groups, as the kernel writes them, or "unavailable: why".
 struct ControlGroupLimits {
   std::string cpu_max, cpuset, memory_max;
@@ -261,19 +245,23 @@ struct EnvironmentRecord : MachineRecord {
   std::variant<std::vector<double>, Unavailable> load_average;  ///< over 1, 5 and 15 minutes
   MemoryBytes memory_bytes;
   std::string governor, transparent_huge_pages, numa_balancing;
-  std::optional<double> busy_elsewhere;  ///< processors that other work kept busy during the trial, mean
+  std::optional<Probe> probe;        ///< at the start of the row's round; nothing in simulated and older rows
+  std::optional<Probe> probe_after;  ///< at its end, where the speed moved meanwhile
+  std::optional<Measured> busy_elsewhere;  ///< mean number of processors that other work kept busy meanwhile
   static constexpr auto fields() {
     using E = EnvironmentRecord;
     return std::tuple_cat(
         MachineRecord::fields(),
-        std::tuple{
-            field("topology_sha256", &E::topology_sha256), field("kernel", &E::kernel), field("smt", &E::smt),
-            field("cgroup", &E::cgroup), field("libraries", &E::libraries), field("compiler", &E::compiler),
-            field("compiler_flags", &E::compiler_flags), field("build_type", &E::build_type),
-            field("sources", &E::sources), field("load_average", &E::load_average),
-            field("memory_bytes", &E::memory_bytes), field("governor", &E::governor),
-            field("transparent_huge_pages", &E::transparent_huge_pages),
-            field("numa_balancing", &E::numa_balancing), field_if_any("busy_elsewhere", &E::busy_elsewhere)});
+        std::tuple{field("topology_sha256", &E::topology_sha256), field("kernel", &E::kernel),
+                   field("smt", &E::smt), field("cgroup", &E::cgroup), field("libraries", &E::libraries),
+                   field("compiler", &E::compiler), field("compiler_flags", &E::compiler_flags),
+                   field("build_type", &E::build_type), field("sources", &E::sources),
+                   field("load_average", &E::load_average), field("memory_bytes", &E::memory_bytes),
+                   field("governor", &E::governor),
+                   field("transparent_huge_pages", &E::transparent_huge_pages),
+                   field("numa_balancing", &E::numa_balancing), field_if_any("probe", &E::probe),
+                   field_if_any("probe_after", &E::probe_after),
+                   field_if_any("busy_elsewhere", &E::busy_elsewhere)});
   }
 };
 
@@ -304,9 +292,9 @@ struct Row {
   double preparation_s = 0, verification_s = 0;  ///< before the mesher starts and after it has ended
   double harness_s = 0;                          ///< spent by this program since the row before
   std::string stderr_tail;                       ///< last words of a trial that is not kOk
+  std::optional<bool> probe_moved;  ///< true where the machine's speed moved during the row's round
   ProgramRecords programs;
   EnvironmentRecord environment;
-  std::optional<bool> probe_moved;  ///< the machine's speed moved during the row's round
 
   /// The keys before the mesher's own, and those after them.
   static constexpr auto fields_before() {
@@ -328,9 +316,9 @@ struct Row {
                       field("verification_s", &Row::verification_s),
                       field("harness_s", &Row::harness_s),
                       field("stderr_tail", &Row::stderr_tail),
+                      field_if_any("probe_moved", &Row::probe_moved),
                       field("programs", &Row::programs),
-                      field("environment", &Row::environment),
-                      field_if_any("probe_moved", &Row::probe_moved)};
+                      field("environment", &Row::environment)};
   }
 };
 /// Whether a row holds a mesh that met its guarantees or is known not to.

@@ -7,6 +7,7 @@
 #include <tuple>
 
 #include "experiments/option_matrix.h"
+#include "rows/machine_state.h"
 
 namespace podm::bench {
 namespace {
@@ -25,17 +26,47 @@ std::string maker_of(const Row& row) {
   return row.asked.contains(kMeasure) ? kMeasure : row.asked.value(kMesher, kPodm);
 }
 
-const MachineRecord& machine_of(const Row& row) { return row.environment; }
-
-// What rows of one series share: the machine and, where a mesh is made, the mesher's bytes.
-std::string origin_of(const Row& row) {
+// What rows of one maker share: the mesher's bytes, where a mesh is made.
+std::string program_of(const Row& row) {
   const auto& [podm, verifier, peer, podm_mpi] = row.programs;
   const std::string maker = maker_of(row);
-  return to_json(machine_of(row)).dump() + (maker == kPodm                ? podm.sha256
-                                            : maker == kRanks && podm_mpi ? podm_mpi->sha256
-                                            : peer                        ? peer->sha256
-                                                                          : "");
+  return maker == kPodm                ? podm.sha256
+         : maker == kRanks && podm_mpi ? podm_mpi->sha256
+         : peer                        ? peer->sha256
+                                       : "";
 }
+
+// The described machine as the experiment's file names it; "" for none.
+std::string described_machine_of(const Row& row) { return row.asked.value("topology", ""); }
+
+const Row* newest_measured(const std::vector<Row>& rows) {
+  const auto found = std::find_if_not(rows.rbegin(), rows.rend(), is_simulated);
+  return found == rows.rend() ? nullptr : &*found;
+}
+
+bool is_of_another_machine(const Row& row, const Row* newest) {
+  return !is_simulated(row) && !same_machine(row, *newest);
+}
+
+// The newest program of each maker and the newest model of each described machine, among the rows that may
+// count.
+class Newest {
+ public:
+  Newest(const std::vector<Row>& rows, const Row* newest_measured) {
+    for (const Row& row : rows) {
+      if (is_of_another_machine(row, newest_measured)) continue;
+      programs_[maker_of(row)] = program_of(row);
+      if (is_simulated(row)) models_[described_machine_of(row)] = model_of(row);
+    }
+  }
+  bool made(const Row& row) const {
+    return programs_.at(maker_of(row)) == program_of(row) &&
+           (!is_simulated(row) || models_.at(described_machine_of(row)) == model_of(row));
+  }
+
+ private:
+  std::map<std::string, std::string> programs_, models_;
+};
 
 // What a later row replaces. A trial that could not be prepared, or whose options or radius changed since,
 // has another key.
@@ -116,15 +147,12 @@ std::string stem_of(const std::string& trial) { return trial.substr(0, trial.fin
 
 std::vector<Row> rows_to_judge(const std::vector<Row>& rows) {
   std::vector<Row> chosen;
-  if (rows.empty()) return chosen;
-  const MachineRecord& newest_machine = machine_of(rows.back());
-  std::map<std::string, std::string> newest_origins;  // keys are makers
-  for (const Row& row : rows)
-    if (machine_of(row) == newest_machine) newest_origins[maker_of(row)] = origin_of(row);
+  const Row* const of_machine = newest_measured(rows);
+  const Newest newest(rows, of_machine);
   std::map<std::tuple<std::string, int, std::string>, std::size_t> places;
   for (const Row& row : rows) {
     if (row.warmup || row.status == Status::kInterrupted) continue;
-    if (origin_of(row) != newest_origins[maker_of(row)]) continue;
+    if (is_of_another_machine(row, of_machine) || !newest.made(row)) continue;
     const auto [place, is_new] = places.emplace(turn_of(row), chosen.size());
     if (is_new)
       chosen.push_back(row);
@@ -132,6 +160,14 @@ std::vector<Row> rows_to_judge(const std::vector<Row>& rows) {
       chosen[place->second] = row;
   }
   return chosen;
+}
+
+std::vector<Row> rows_of_other_machines(const std::vector<Row>& rows) {
+  const Row* const of_machine = newest_measured(rows);
+  std::vector<Row> others;
+  for (const Row& row : rows)
+    if (is_of_another_machine(row, of_machine)) others.push_back(row);
+  return others;
 }
 
 }  // namespace podm::bench

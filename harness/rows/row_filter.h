@@ -53,8 +53,13 @@ bool is_of(const Row& row, Basis basis);
 /// A trial's name as the experiment's file has it, without ",key=value".
 std::string stem_of(const std::string& trial);
 
-/// The rows that may be judged, in their order: those of the newest row's machine and mesher, of each trial,
-/// repeat and image the last, without warm-ups and what the user interrupted.
+/// The rows that may be judged, in their order: those of the newest row's mesher, of each trial, repeat and
+/// image the last, without warm-ups and what the user interrupted. Measured rows are those of the newest
+/// one's machine; simulated rows count wherever they were made, but of one described machine in its newest
+/// version.
 std::vector<Row> rows_to_judge(const std::vector<Row>& rows);
+
+/// Measured rows that rows_to_judge() leaves out as another machine made them.
+std::vector<Row> rows_of_other_machines(const std::vector<Row>& rows);
 
 }  // namespace podm::bench

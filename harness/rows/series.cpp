@@ -39,8 +39,7 @@ Samples read_each(const RowPointers& rows, const Measure& measure, Value (*read)
     samples.numbers.push_back(*value.number);
     samples.rounds.push_back(row->repeat);
     samples.varies = samples.varies || varies_between_runs(measure, *row);
-    if (is_disturbed(*row))
-      samples.busy = std::max(samples.busy, row->environment.busy_elsewhere.value_or(0));
+    if (is_disturbed(*row)) samples.busy = std::max(samples.busy, busy_elsewhere(*row));
   }
   return samples;
 }

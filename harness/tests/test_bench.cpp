@@ -176,6 +176,22 @@ TEST_F(BenchTest, RowsNameTheTopologyBesideThem) {
   }
 }
 
+TEST_F(BenchTest, MachineIsThatOfTheRowsAndIsProbed) {
+  EXPECT_EQ(run_with(good_mesh_, {"--only", "one"}), 0) << printed("err");
+  const auto environment = rows().at(0).at("environment");
+  EXPECT_EQ(bench({"machine", "--json"}), 0) << printed("err");
+  const auto machine = nlohmann::json::parse(printed("out"));
+  for (const char* key :
+       {"cpu", "packages", "numa_nodes", "cores", "processors", "usable_processors", "identity"})
+    EXPECT_EQ(environment.at(key), machine.at(key)) << key;
+  for (const char* value : {"chase_ns", "triad_gb_per_s", "integer_ns"})
+    for (const auto& probe : {environment.at("probe"), machine.at("probe")})
+      EXPECT_GT(probe.at(value), 0) << value;
+  EXPECT_EQ(bench({"machine"}), 0);
+  EXPECT_TRUE(has_printed("out", machine.at("identity").at("vendor"))) << printed("out");
+  EXPECT_TRUE(has_printed("out", "ns per random load"));
+}
+
 TEST_F(BenchTest, KeepKeepsTheMesh) {
   EXPECT_EQ(run_with(good_mesh_, {"--only", "one", "--keep"}), 0);
   bool is_kept = false;

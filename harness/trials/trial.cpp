@@ -7,6 +7,7 @@
 #include <filesystem>
 
 #include "experiments/option_matrix.h"
+#include "machine/load_watch.h"
 #include "machine/machine.h"
 #include "rows/record.h"
 #include "trials/counters.h"
@@ -138,7 +139,9 @@ void TrialRunner::run_program(const Run& run, TrialResult& result) {
   if (is_used) result.command = tool->wrap(result.command, run.folder);
   // likwid-perfctr needs the processor's counters for itself.
   const PerfCounters kernel(is_used ? CounterKinds::kSoftware : CounterKinds::kSoftwareAndHardware);
+  const ProcessorUse before = processor_use();
   result.process = run_process(request_of(run.trial, result.command, run.folder), run.stop_requested);
+  result.busy_elsewhere = busy_elsewhere(before, processor_use());
   if (!is_used || !tool->is_simulation()) result.counters = kernel.read(result.process);
   if (is_used)
     for (const auto& [name, count] : tool->read(run.folder)) result.counters[name] = count;
@@ -153,7 +156,9 @@ void TrialRunner::run_copies(const Run& run, TrialResult& result) {
     std::filesystem::create_directories(folder);
     requests.push_back(request_of(run.trial, command_of(run, folder, result), folder));
   }
+  const ProcessorUse before = processor_use();
   run_side_by_side(run.trial, std::move(requests), run.folder, run.stop_requested, result);
+  result.busy_elsewhere = busy_elsewhere(before, processor_use());
 }
 
 void TrialRunner::measure(const Run& run, TrialResult& result) {

@@ -23,6 +23,7 @@ struct TrialResult {
   std::optional<PeerRecord> peer;    ///< the mesher, where it is not podm
   ProcessOutcome process;
   Counters counters;                             ///< what was counted while it ran
+  std::optional<Measured> busy_elsewhere;        ///< processors that other work kept busy while it ran
   std::uint64_t mesh_bytes = 0;                  ///< size of the mesh file
   double preparation_s = 0, verification_s = 0;  ///< before the mesher starts and after it has ended
   std::string stderr_tail;                       ///< last words of a trial that is not kOk

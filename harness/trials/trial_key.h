@@ -10,7 +10,8 @@
 namespace podm::bench {
 
 /// Names a turn by all that can change its outcome: the mesher's bytes, the input's bytes, the options with
-/// the radius that was found, the machine and the number of the repeat. Not by paths, limits or the verifier.
+/// the radius that was found, the machine and the number of the repeat. Not by paths, limits or the verifier,
+/// and of trials in virtual time not by the machine that plays them.
 class TrialKeys {
  public:
   /// `podm` is the mesher's file, which podm-mpi is beside.

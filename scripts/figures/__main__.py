@@ -13,7 +13,7 @@ from views.read_mesh import read_mesh
 
 from .experiment_verdicts import HOW, VerdictsError, counts, read_experiment_verdicts
 from .load import RecordError, load
-from .outcome import make, readable_experiments, readable_verdicts
+from .outcome import MEASURED_TABLES, make, readable_experiments, readable_verdicts
 from .schedule import ScheduleError, read_schedule
 from .write import markdown, write_figure, write_json, write_text
 
@@ -75,7 +75,8 @@ def write(outcome, frame, folder):
     write_text(folder / "rows.csv", rows.to_csv(index=False))
     for name, (data, shown) in outcome.tables.items():
         write_text(folder / f"{name}.csv", data.to_csv(index=False))
-        write_text(folder / f"{name}.md", markdown(shown))
+        remarks = outcome.remarks if name in MEASURED_TABLES else []
+        write_text(folder / f"{name}.md", "".join(f"{remark}\n\n" for remark in remarks) + markdown(shown))
     for name, figure in outcome.figures.items():
         write_figure(figure, folder, name)
     write_json(folder / "verdicts.json", outcome.verdicts)

@@ -66,7 +66,7 @@ def distributed(frame):
     part. Rows are those of the newest program and machine; they have to be proved."""
     if "on_ranks.number" not in frame:
         return pandas.DataFrame(columns=COLUMNS)
-    rows = frame[frame["on_ranks.number"].notna() & (frame["unproved"] == "")]
+    rows = frame[frame["on_ranks.number"].notna() & (frame["unproved"] == "") & ~frame["moved"]]
     lines = []
     for basis, group in rows.groupby("basis"):
         newest = group.iloc[-1]

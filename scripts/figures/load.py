@@ -6,12 +6,13 @@ from pathlib import Path
 
 import pandas
 
-from . import distributed
+from . import distributed, machine_state
 
 SCHEMA = 4
 # A mesh counts as verified when these pass and no other claim fails; the rest may lack an input, such as the image.
 NEEDED_CLAIMS = ("structure", "delaunay", "radius_edge", "boundary_angles")
 SIMULATED_CACHES = "its seconds are those of a simulation of caches"
+UNDESCRIBED = "no machine described"
 OF_RANKS = "its ranks have tables and figures of their own"
 LONG_LISTS = ["labels", "facet_pairs", "command", "workers", "ranks.rounds", "ranks.by_rank"]
 # Phases in no second of equation 1: bettering angles, measuring and writing the mesh, finding the radius for a number
@@ -68,6 +69,8 @@ def derived(row):
         "headline": not doubt,
         "doubt": doubt,
         "unproved": unproved_of(row),
+        "disturbed": machine_state.is_disturbed(row),
+        "moved": machine_state.has_moved(row),
         "on_ranks": distributed.of_row(row),
     }
 
@@ -95,10 +98,12 @@ def mesher_of(row):
 
 
 def machine_of(row):
-    """The processor; in virtual time the described machine, if one is, which two descriptions never share."""
+    """Of measured rows the one that measured them; of simulated rows the described one, if any, which two descriptions
+    never share: the machine that simulates does not matter."""
     described = (row.get("virtual") or {}).get("machine")
     if not described:
-        return row.get("environment", {}).get("cpu", "unknown machine")
+        environment = row.get("environment", {})
+        return machine_state.name_of(environment) if row["basis"] == "measured" else UNDESCRIBED
     return f"{described.get('name', 'unnamed')} as described ({described.get('sha256', '')[:8]})"
 
 
@@ -143,7 +148,8 @@ def doubt_of(row):
     threads, cores = row.get("threads", {}).get("used", 0), usable_cores(row.get("environment", {}))
     if cores and threads > cores and not is_virtual(row):
         return f"{threads} threads on {cores} cores"
-    return unproved_of(row) or (SIMULATED_CACHES if simulates_caches(row) else "")
+    return (unproved_of(row) or (SIMULATED_CACHES if simulates_caches(row) else "")
+            or (machine_state.MOVED if machine_state.has_moved(row) else ""))
 
 
 def unproved_of(row):
@@ -171,8 +177,7 @@ def _newest_of_each_turn(rows):
 def turn_of(row):
     """What a later row replaces. A trial that could not be prepared, or whose options or radius changed since, has
     another key."""
-    machine = row.get("environment", {}).get("cpu")
-    return (machine, mesher_of(row), build_of(row), row.get("experiment"), row.get("trial"), row.get("repeat"),
+    return (machine_of(row), mesher_of(row), build_of(row), row.get("experiment"), row.get("trial"), row.get("repeat"),
             row.get("warmup"), row.get("input", {}).get("name"))
 
 

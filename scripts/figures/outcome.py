@@ -4,15 +4,19 @@ from dataclasses import dataclass, field
 import pandas
 
 from . import (cache, deviation, dihedral, distributed, distributed_figure, distributed_model, experiment_verdicts,
-               fig1, fig2b, fig4a, fig4b, guarantees, lost, machine, paper_claims, peers, scaling, simulated, solvers,
-               table1, table2, table3, validation, verdicts)
+               fig1, fig2b, fig4a, fig4b, guarantees, lost, machine, machine_state, paper_claims, peers, scaling,
+               simulated, solvers, table1, table2, table3, validation, verdicts)
+
+
+# Tables with times that this machine took: they say in which state it was.
+MEASURED_TABLES = ("table1", "table3", "peers", "validation", "distributed")
 
 
 @dataclass(frozen=True)
 class Outcome:
     """`tables`: by name, as data and readable. `figures`: by name. `missing`: reason by name of what cannot be made.
     `series`: of weak scaling; `experiments`: verdicts of podm-bench, or None; `paper`: what they say of the paper's
-    claims, of paper_claims.rows."""
+    claims, of paper_claims.rows. `remarks`: on the state of the machine while rows were measured."""
 
     tables: dict
     figures: dict
@@ -21,6 +25,7 @@ class Outcome:
     series: list = field(default_factory=list)
     experiments: dict = None
     paper: list = field(default_factory=list)
+    remarks: list = field(default_factory=list)
 
 
 def make(frame, report=None, schedule=None, mesh=None, experiments=None):
@@ -37,7 +42,8 @@ def make(frame, report=None, schedule=None, mesh=None, experiments=None):
         missing[paper_claims.NAME] = str(error)
     if judged:
         tables[paper_claims.NAME] = (paper_claims.table(judged),) * 2
-    return Outcome(tables, drawn, verdicts.verdicts(frame, series, hops), missing, series, experiments, judged)
+    return Outcome(tables, drawn, verdicts.verdicts(frame, series, hops), missing, series, experiments, judged,
+                   machine_state.remarks(frame))
 
 
 def _tables(frame, series, hops, ranks, nodes):

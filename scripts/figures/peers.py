@@ -79,6 +79,7 @@ def _comparable(frame):
     if frame.empty or not (frame["mesher"] != OWN).any():
         return frame.iloc[:0]
     is_theirs = (frame["mesher"] != OWN) & (frame["status"] == "ok") & (frame["warmup"] != True)  # noqa: E712
+    is_theirs &= ~frame["moved"]
     rows = frame[frame["headline"] & (frame["mesher"] == OWN) | is_theirs]
     rows = scaling.with_keys(rows[rows["cores"].notna()])
     return rows[(rows["basis"] == "measured") & rows["algorithm"].isin([OWN, *rows["mesher"]])]

@@ -5,7 +5,7 @@ from figures import experiment_verdicts, guarantees, peers, scaling, style
 from figures.fig4a import WHY_ABOVE
 from figures.paper_claims import NAME
 
-from .html import Bar, bars, findings, fold
+from .html import Bar, bars, findings, fold, remarks_html
 from .paper_table import paper_table, said
 
 MOST_COUNTS = 4  # numbers of cores in the picture of scaling
@@ -22,7 +22,7 @@ def first_screen(frame, outcome):
     cards = "\n".join(f'<section class="answer" id="{name}" aria-labelledby="{name}-title">'
                       f'<h2 id="{name}-title">{question}</h2>\n{content}\n</section>'
                       for name, question, content in answers)
-    return f'<div class="answers results">\n{cards}\n</div>'
+    return f'{remarks_html(outcome.remarks)}<div class="answers results">\n{cards}\n</div>'
 
 
 def _answer(text):

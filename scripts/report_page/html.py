@@ -35,6 +35,11 @@ def document(title, header, main, script):
 """
 
 
+def remarks_html(remarks):
+    """Sentences that a reader has to see before the numbers."""
+    return "".join(f'<p class="remark">{escape(remark)}</p>\n' for remark in remarks)
+
+
 def section(name, title, content):
     heading = f'<h2 id="{name}-title">{title}</h2>'
     return f'<section id="{name}" aria-labelledby="{name}-title">{heading}\n{content}\n</section>'

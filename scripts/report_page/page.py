@@ -2,11 +2,11 @@
 from html import escape
 
 from figures import experiment_verdicts, peers
-from figures.outcome import readable_experiments, readable_verdicts
+from figures.outcome import MEASURED_TABLES, readable_experiments, readable_verdicts
 from figures.write import svg_of
 
 from .first_screen import first_screen
-from .html import box, document, fold, responsive, section, table_html, text_of
+from .html import box, document, fold, remarks_html, responsive, section, table_html, text_of
 from .limits import limits
 from .viewer import script, viewer_html
 
@@ -126,7 +126,9 @@ def _tables(outcome):
         series = "; ".join(data["series"].dropna().unique()) + "." if "series" in data else ""
         brackets = INTERVALS if name in ("table1", "peers") else ""
         note = " ".join(part for part in (series, brackets, NOTES.get(name, "")) if part)
-        content = table_html(shown, title, classes) + (f'\n<p class="faint">{escape(note)}</p>' if note else "")
+        remarks = remarks_html(outcome.remarks) if name in MEASURED_TABLES else ""
+        faint = f'\n<p class="faint">{escape(note)}</p>' if note else ""
+        content = remarks + table_html(shown, title, classes) + faint
         made.append(fold(title, content, name not in FOLDED_TABLES))
     return "\n".join(made)
 

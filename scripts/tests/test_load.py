@@ -84,7 +84,7 @@ class Load(unittest.TestCase):
 
         rows = [synthetic.row(executor="virtual", virtual=virtual(one)) for one in ("aa" * 32, "bb" * 32)]
         machines = set(self.load(*rows, synthetic.row(executor="virtual"), synthetic.row()).frame["machine"])
-        self.assertEqual(len(machines), 3, "two descriptions, and the processor")
+        self.assertEqual(len(machines), 4, "two descriptions, none, and the processor")
         self.assertIn("Made-up CPU", machines)
 
     def test_missing_files_are_errors(self):

@@ -171,6 +171,16 @@ class Page(unittest.TestCase):
         self.assertIn("2 cores, equation 1", answers["scales"])
         self.assertNotIn("256", answers["scales"], "simulated cores are none of this machine's")
 
+    def test_a_busy_machine_is_said_before_any_answer_and_over_its_tables(self):
+        self.assertNotIn("processors busy", self.text)
+        busy = synthetic.ROW["environment"] | {"busy_elsewhere": 0.8}
+        with tempfile.TemporaryDirectory() as folder:
+            text = make_page(Path(folder), synthetic.row(environment=busy)).read_text()
+        said = r'<p class="remark">(Other work kept 0.8 of 2 processors busy during 1 of \d+ runs)'
+        first, *others = re.findall(said, text)
+        self.assertLess(text.index(first), text.index('<section class="answer"'))
+        self.assertTrue(others, "tables say it too")
+
     def test_our_meshes_are_not_blamed_for_others(self):
         works = self.answers()["works"]
         self.assertIn("none refuted; trials: 1 failed", works)

@@ -80,7 +80,9 @@ TEST(Crossover, OnlyWhatRanOnThisMachineDecides) {
     for (auto& trial : all) trial.front().asked.update(simulated);
     EXPECT_FALSE(crossover_of(all)) << simulated;
   }
-  auto warmup = rows({{1, 2}}), unmet = warmup;
+  auto warmup = rows({{1, 2}}), unmet = warmup, moved = warmup;
+  moved[0].front().probe_moved = true;
+  EXPECT_FALSE(crossover_of(moved)) << "it was not as fast for both";
   warmup[1].front().warmup = true;
   unmet[1].front().status = Status::kUnmet;
   EXPECT_FALSE(crossover_of(warmup));
@@ -124,13 +126,16 @@ algorithm = ["podm", "podm-home"]
   const std::string podm =
       fake_mesher(folder, "case \"$(cat \"$(dirname \"$0\")/arguments\")\" in *podm-home*) echo '" + faster +
                               "';; *) echo '" + kGoodRecord + "';; esac > \"$record\"\n");
-  const int exit_code = run_process({.arguments = {PODM_BENCH, "run", experiment, "--podm", podm, "--results",
-                                                   folder / "results", "--verifier", "none"},
-                                     .stdout_path = folder / "out",
-                                     .stderr_path = folder / "err",
-                                     .timeout_s = 60})
-                            .exit_code;
-  EXPECT_EQ(exit_code, 0) << read_tail(folder / "err", 1000);
+  // A run during which the machine changes its speed stores none.
+  for (int tries = 0; tries < 10 && !std::filesystem::exists(folder / "results/crossover.json"); ++tries) {
+    const int exit_code = run_process({.arguments = {PODM_BENCH, "run", experiment, "--again", "--podm", podm,
+                                                     "--results", folder / "results", "--verifier", "none"},
+                                       .stdout_path = folder / "out",
+                                       .stderr_path = folder / "err",
+                                       .timeout_s = 60})
+                              .exit_code;
+    EXPECT_EQ(exit_code, 0) << read_tail(folder / "err", 1000);
+  }
   EXPECT_NE(read_tail(folder / "out", 1000).find("PODM_CROSSOVER"), std::string::npos);
   std::ifstream file(folder / "results/crossover.json");
   const Json crossover = Json::parse(file, nullptr, false);

@@ -125,6 +125,37 @@ TEST_F(TrialKeysTest, OfTrialsOnRanksDifferWithPodmMpi) {
   EXPECT_EQ(key_beside("one", alone), key_beside("other", alone));
 }
 
+TEST_F(TrialKeysTest, OfVirtualTimeAreThoseOfEveryMachine) {
+  Trial trial = some_trials()[0];
+  const auto key_on = [&](const std::string& cpu, std::uint64_t nodes) {
+    MachineRecord machine;
+    machine.cpu = cpu;
+    machine.numa_nodes = nodes;
+    machine.identity.emplace().vendor = cpu;
+    return TrialKeys("m", machine).of(trial, {}, prepared(trial));
+  };
+  EXPECT_NE(key_on("one", 1), key_on("other", 1));
+  trial.options["executor"] = "virtual";
+  EXPECT_EQ(key_on("one", 1), key_on("other", 1));
+  EXPECT_NE(key_on("one", 1), key_on("one", 2)) << "the workers are spread over the nodes";
+  trial.options["topology"] = folder_.write("machine.toml", "x");
+  EXPECT_EQ(key_on("one", 1), key_on("other", 2));
+  trial.options = {{"counters", "cachegrind"}};
+  EXPECT_NE(key_on("one", 1), key_on("other", 1)) << "where cachegrind is missing it is measured";
+}
+
+TEST_F(TrialKeysTest, IdentityCounts) {
+  const Trial trial = some_trials()[0];
+  const auto key_of_model = [&](std::uint64_t model) {
+    MachineRecord machine;
+    machine.cpu = "AMD EPYC";
+    machine.identity.emplace().model = model;
+    return TrialKeys("m", machine).of(trial, {}, prepared(trial));
+  };
+  EXPECT_EQ(key_of_model(17), key_of_model(17));
+  EXPECT_NE(key_of_model(17), key_of_model(2));
+}
+
 TEST_F(TrialKeysTest, TopologyCountsByItsBytes) {
   Trial trial = some_trials()[0];
   trial.options["topology"] = folder_.write("machine.xml", "<topology/>");

@@ -50,6 +50,12 @@ statement = "It is cheap."
 reason = "It was refuted."
 )";
 
+// Other work kept half of the processors busy while this row was measured.
+Row disturbed(Row row) {
+  row.environment.busy_elsewhere = 0.5 * row.environment.usable_processors;
+  return row;
+}
+
 class VerdictsTest : public BenchTest {
  protected:
   VerdictsTest() : path_(folder_.write("exp.toml", kExperimentWithClaims)) {
@@ -154,6 +160,28 @@ TEST_F(VerdictsTest, AreWrittenAsJson) {
   EXPECT_EQ(experiment["claims"][2]["reason"], "no rows");
 }
 
+TEST_F(VerdictsTest, SayOnTopThatTheMachineWasBusyAndWhichRowsAreLeftOut) {
+  const auto row = [](const std::string& cpu, int threads) {
+    Row made = refined_in(1, {{"threads", threads}}, 1, "some,threads=" + std::to_string(threads));
+    made.environment.cpu = cpu;
+    return made;
+  };
+  folder_.write("results/exp.jsonl",
+                as_line(row("first", 1)) + as_line(row("other", 1)) + as_line(disturbed(row("other", 2))));
+  EXPECT_EQ(verdicts({"--json", folder_ / "verdicts.json"}), 0) << printed("err");
+  const std::string busy =
+      "Other work kept 8.0 of 16 processors busy during 1 of 2 runs: measured claims are not resolved.";
+  EXPECT_EQ(printed("out").find("exp: " + busy), 0u) << printed("out");
+  EXPECT_TRUE(has_printed("out", "left out: 1 of first")) << printed("out");
+  std::ifstream file(folder_ / "verdicts.json");
+  const Json experiment = Json::parse(file)["experiments"][0];
+  EXPECT_EQ(experiment["measured"], 2);
+  EXPECT_EQ(experiment["disturbed"], 1);
+  EXPECT_EQ(experiment["probe_moved"], 0);
+  ASSERT_EQ(experiment["remarks"].size(), 2u);
+  EXPECT_EQ(experiment["remarks"][0], busy);
+}
+
 TEST_F(VerdictsTest, RowsOfTrialsThatTheExperimentNoLongerHasDoNotCount) {
   write_rows({1, 1});
   std::string renamed = kExperimentWithClaims;
@@ -165,8 +193,11 @@ TEST_F(VerdictsTest, RowsOfTrialsThatTheExperimentNoLongerHasDoNotCount) {
 
 TEST_F(VerdictsTest, ARunPrintsThemAndOnlyAFailedTrialChangesItsExitCode) {
   const auto make = [](const std::string& record) { return "echo '" + record + "' > \"$record\"\n"; };
+  std::string of_cells = kExperimentWithClaims;  // no time, which a machine that changes its speed has not
+  of_cells.replace(of_cells.find("refining_seconds\"\nat_most = 2"), 29, "cells\"\nat_most = 2000");
+  folder_.write("exp.toml", of_cells);
   std::string slow = kGoodRecord;
-  slow.replace(slow.find("\"refine\":1.0"), 12, "\"refine\":3.0");
+  slow.replace(slow.find("\"cells\":1000"), 12, "\"cells\":3000");
   EXPECT_EQ(run_with(make(slow)), 0) << printed("err");
   EXPECT_TRUE(has_printed("out", "DOES NOT HOLD      exp         fast"));
   EXPECT_TRUE(has_printed("out", "Claims: 1 hold, 1 do not hold, 0 are not resolved"));

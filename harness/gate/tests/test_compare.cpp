@@ -106,6 +106,24 @@ TEST(Compare, MatchesOnlyWhatMeasuresTheSame) {
   EXPECT_FALSE(compare(repeats(2), both).is_worse);
 }
 
+TEST(Compare, RowsOfTwoMachinesAreRefusedAndBothNamed) {
+  Row other = row(2);
+  other.environment.identity.emplace().vendor = "Elsewhere";
+  for (const auto& [a, b] : {std::pair<Rows, Rows>{{row(2)}, {other}}, {{row(2), other}, {row(2)}}}) {
+    try {
+      compare(a, b);
+      ADD_FAILURE() << "compared";
+    } catch (const InputError& error) {
+      EXPECT_NE(std::string(error.what()).find("Elsewhere"), std::string::npos) << error.what();
+      EXPECT_NE(std::string(error.what()).find("no identity"), std::string::npos) << error.what();
+    }
+  }
+  other.basis = Basis::kSimulated;
+  Row here = row(2);
+  here.basis = Basis::kSimulated;
+  EXPECT_FALSE(compare({here}, {other}).is_worse) << "virtual time is the same everywhere";
+}
+
 TEST(Compare, TakesRecordsOfTheMesherAlone) {
   MeshRecord record = *row(2).mesh;
   record.input.emplace().path = "image.nii";
@@ -139,6 +157,10 @@ TEST_F(CompareCommand, ExitCodeTells) {
   Json record = Json::parse(kGoodRecord);
   const std::string alone = folder_.write("alone", record.dump() + "\n");
   EXPECT_EQ(run(alone, alone), 0) << read_tail(folder_ / "err", 1000);
+  Row elsewhere = row(2);
+  elsewhere.environment.cpu = "another";
+  EXPECT_EQ(run(a, file("elsewhere", {elsewhere})), 2);
+  EXPECT_TRUE(read_tail(folder_ / "err", 1000).find("rows of two machines") != std::string::npos);
   record["cells"] = "many";
   EXPECT_EQ(run(alone, folder_.write("broken", record.dump() + "\n")), 2);
   EXPECT_NE(read_tail(folder_ / "err", 1000).find("broken:1:"), std::string::npos);

@@ -63,6 +63,18 @@ TEST_F(ResultsFileTest, LineThatLacksItsEndAloneIsARow) {
   EXPECT_EQ(text_of("rows.jsonl"), kOne + kTwo);
 }
 
+TEST_F(ResultsFileTest, RowsReplaceTheNewestLineOfTheirKeyAlone) {
+  const std::string path = folder_.write("rows.jsonl", kOne + "{half\n" + kTwo + kOne);
+  RecordFile file(path);
+  Row one = from_json<Row>(Json::parse(kOne)), absent = one;
+  one.probe_moved = true;
+  absent.key = "of no line";
+  file.replace_newest({one, absent});
+  EXPECT_EQ(text_of("rows.jsonl"), kOne + "{half\n" + kTwo + as_line(one));
+  file.append_text("more\n");
+  EXPECT_TRUE(text_of("rows.jsonl").ends_with(as_line(one) + "more\n")) << "it is appended to the new file";
+}
+
 TEST_F(ResultsFileTest, BrokenLinesAmongOthersAreCollected) {
   repaired(std::string(7, '\0') + "\n" + kOne + "[3]\n" + kTwo);
   EXPECT_EQ(text_of("rows.jsonl"), kOne + kTwo);

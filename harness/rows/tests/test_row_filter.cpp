@@ -3,6 +3,7 @@
 
 #include <gtest/gtest.h>
 
+#include "rows/machine_state.h"
 #include "tests/made_up_rows.h"
 
 namespace podm::bench {
@@ -53,6 +54,50 @@ TEST(RowsToJudge, AreTheNewestOfEachKeyOfOneBuildAndMachine) {
   changed.input.name = "other image";
   EXPECT_EQ(keys({row("a", "1"), changed}), "aanother");
   EXPECT_EQ(keys({}), "");
+}
+
+Row simulated(const std::string& trial, const std::string& cpu, const std::string& model = "m") {
+  Row row = refined_in(1, {{"executor", "virtual"}, {"topology", "machine.toml"}}, 1, trial);
+  row.environment.cpu = cpu;
+  mesh_of(row).virtual_time.emplace().as_written["machine"]["sha256"] = model;
+  return row;
+}
+
+std::string trials_of(const Rows& rows) {
+  std::string text;
+  for (const Row& row : rows) text += row.trial;
+  return text;
+}
+
+TEST(RowsToJudge, SimulatedOnesCountWhereverTheyWereMade) {
+  Row measured = refined_in(1, {}, 1, "m");
+  EXPECT_EQ(trials_of(rows_to_judge({simulated("a", "one"), measured, simulated("b", "other")})), "amb")
+      << "a simulated row names no machine, so that the measured one stays";
+  EXPECT_EQ(trials_of(rows_to_judge({simulated("a", "one", "old"), simulated("b", "one", "new")})), "b")
+      << "two versions of a description are two machines";
+  Row other_program = simulated("a", "one");
+  other_program.programs.podm.sha256 = "old";
+  EXPECT_EQ(trials_of(rows_to_judge({other_program, simulated("b", "one")})), "b");
+  Row nodes = refined_in(1, {{"executor", "virtual"}}, 1, "n");
+  nodes.environment.numa_nodes = std::uint64_t{4};
+  Row more_nodes = nodes;
+  more_nodes.trial = "o";
+  more_nodes.environment.numa_nodes = std::uint64_t{8};
+  EXPECT_EQ(trials_of(rows_to_judge({nodes, more_nodes})), "o")
+      << "virtual workers are spread over the nodes";
+}
+
+TEST(RowsToJudge, RowsOfOtherMachinesAreLeftOutAndNamed) {
+  Row here = refined_in(1, {}, 1, "h"), elsewhere = refined_in(1, {}, 1, "e");
+  here.environment.identity.emplace().model = 17UL;
+  elsewhere.environment.identity.emplace().model = 2UL;
+  const Rows rows{elsewhere, elsewhere, here, simulated("s", "third")};
+  EXPECT_EQ(trials_of(rows_to_judge(rows)), "hs");
+  EXPECT_EQ(trials_of(rows_of_other_machines(rows)), "ee");
+  const std::string told = describe_left_out(rows_of_other_machines(rows));
+  EXPECT_NE(told.find("2 of some (" + std::string(" family 0 model 2 ")), std::string::npos) << told;
+  EXPECT_EQ(describe_left_out(rows_of_other_machines({here})), "");
+  EXPECT_TRUE(rows_of_other_machines({}).empty());
 }
 
 TEST(RowOptions, HaveTheirDefaultsAndTheImage) {

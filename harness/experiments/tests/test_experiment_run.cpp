@@ -1,0 +1,183 @@
+// Rounds of an experiment whose machine changes its speed, with a mesher and probes that the test makes up.
+#include "experiments/experiment_run.h"
+
+#include <gtest/gtest.h>
+
+#include <deque>
+
+#include "experiments/round_probes.h"
+#include "experiments/verdicts.h"
+#include "rows/machine_state.h"
+#include "rows/results_file.h"
+#include "tests/fake_mesher.h"
+#include "trials/sha256.h"
+
+namespace podm::bench {
+namespace {
+
+ProbeRecord at_speed(double speed) { return {100 / speed, 10 * speed, 0.4 / speed}; }
+
+// A source that goes through these speeds.
+class Speeds {
+ public:
+  explicit Speeds(std::vector<double> speeds) : speeds_(speeds.begin(), speeds.end()) {}
+  ProbeSource source() {
+    return [this] {
+      ++num_probes;
+      const double speed = speeds_.front();
+      if (speeds_.size() > 1) speeds_.pop_front();
+      return Probe(at_speed(speed));
+    };
+  }
+  int num_probes = 0;
+
+ private:
+  std::deque<double> speeds_;
+};
+
+TEST(RoundProbes, TheEndOfARoundIsTheStartOfTheNext) {
+  Speeds speeds({1, 2, 3, 4});
+  RoundProbes probes(speeds.source());
+  EXPECT_EQ(probes.begin(), Probe(at_speed(1)));
+  EXPECT_EQ(probes.end(), Probe(at_speed(2)));
+  EXPECT_EQ(probes.begin(), Probe(at_speed(2)));
+  EXPECT_EQ(probes.end(), Probe(at_speed(3)));
+  probes.pass();
+  EXPECT_EQ(probes.begin(), Probe(at_speed(4))) << "time has gone by";
+}
+
+TEST(RoundProbes, WhatIsUnavailableDoesNotMove) {
+  const Probe known = at_speed(1), other = at_speed(1.2), unknown = Unavailable{"why"};
+  EXPECT_TRUE(has_moved({known, unknown, other}));
+  EXPECT_FALSE(has_moved({known, unknown, known}));
+  EXPECT_FALSE(has_moved({unknown, unknown}));
+  EXPECT_FALSE(has_moved({}));
+}
+
+class ExperimentRunTest : public testing::Test {
+ protected:
+  // Two trials of so many rounds on an image, and a claim on the ratio of their times.
+  void write_experiment(int repeats, const std::string& more = "") {
+    folder_.write("exp.toml", fmt::format(R"(title = "T"
+claim = "C"
+repeats = {}
+[inputs.a]
+image = "{}"
+[[trials]]
+name = "some"
+input = "a"
+seed = [1, 2]
+{}
+[[claims]]
+name = "alike"
+statement = "Both seeds take as long."
+basis = "measured"
+kind = "ratio"
+value = "refining_seconds"
+of = {{seed = 2}}
+over = {{seed = 1}}
+at_most = 1.5
+)",
+                                          repeats, folder_.write("a.nii", "x"), more));
+  }
+  void run(
+      Speeds& speeds, const StopQuery& is_interrupted = [] { return false; }) {
+    RunCommand command;
+    command.experiment_paths = {folder_ / "exp.toml"};
+    command.results_folder = folder_ / "results";
+    command.programs.podm =
+        fake_mesher(folder_, "echo turn >> \"$(dirname \"$0\")/turns\"; echo mesh > \"$output\"; echo '" +
+                                 kGoodRecord + "' > \"$record\"\n");
+    std::filesystem::create_directories(command.results_folder);
+    Session session(command, sha256_of_file(command.programs.podm), this_machine(), is_interrupted);
+    session.probes = RoundProbes(speeds.source());
+    const Experiment experiment = read_experiment(folder_ / "exp.toml");
+    run_experiment(session, experiment,
+                   make_plan(command, experiment, rows(), session.preparer, session.keys));
+  }
+  std::size_t num_turns() const {
+    const std::string turns = read_tail(folder_ / "turns", 1000);
+    return static_cast<std::size_t>(std::count(turns.begin(), turns.end(), '\n'));
+  }
+  std::vector<Row> rows() const { return read_rows(folder_ / "results/exp.jsonl").rows; }
+  std::vector<int> rounds_marked() const {
+    std::vector<int> rounds;
+    for (const Row& row : rows())
+      if (probe_moved(row)) rounds.push_back(row.repeat);
+    std::sort(rounds.begin(), rounds.end());
+    return rounds;
+  }
+  Judgement judgement() const {
+    const Experiment experiment = read_experiment(folder_ / "exp.toml");
+    return judge(experiment, rows()).judgements.at(0);
+  }
+  TemporaryFolder folder_;
+};
+
+TEST_F(ExperimentRunTest, RowsCarryTheProbeOfTheirRoundAndDriftBetweenRoundsIsNoFault) {
+  write_experiment(3);
+  Speeds speeds({1, 1.05, 1.1, 1.15});
+  run(speeds);
+  ASSERT_EQ(rows().size(), 6u);
+  EXPECT_EQ(speeds.num_probes, 4);
+  for (const Row& row : rows()) {
+    EXPECT_EQ(row.environment.probe, Probe(at_speed(0.95 + 0.05 * row.repeat))) << row.repeat;
+    EXPECT_FALSE(row.probe_moved);
+    EXPECT_TRUE(row.environment.busy_elsewhere);
+  }
+  EXPECT_EQ(judgement().verdict, Verdict::kHolds) << judgement().reason;
+}
+
+TEST_F(ExperimentRunTest, ARoundWithinWhichTheSpeedMovedIsMarkedAndKept) {
+  write_experiment(3);
+  Speeds speeds({1, 1, 1.5, 1.5});
+  run(speeds);
+  ASSERT_EQ(rows().size(), 6u);
+  EXPECT_EQ(rounds_marked(), (std::vector<int>{2, 2}));
+  for (const Row& row : rows())
+    EXPECT_EQ(row.environment.probe_after,
+              probe_moved(row) ? std::optional<Probe>(at_speed(1.5)) : std::nullopt);
+  EXPECT_EQ(judgement().verdict, Verdict::kHolds);
+  EXPECT_EQ(judgement().num_rows, 6u) << "all were looked at";
+}
+
+TEST_F(ExperimentRunTest, WithoutARoundThatCountsTheReasonIsTheMachine) {
+  write_experiment(1);
+  Speeds speeds({1, 0.8});
+  run(speeds);
+  EXPECT_EQ(judgement().verdict, Verdict::kCannotBeDecided);
+  EXPECT_NE(judgement().reason.find("the machine's speed moved during the round"), std::string::npos)
+      << judgement().reason;
+}
+
+TEST_F(ExperimentRunTest, ARoundThatIsResumedIsJudgedByTheProbesOfBothRuns) {
+  write_experiment(2);
+  Speeds before({1}), after({1.3});
+  run(before, [this] { return num_turns() == 1; });  // an interrupt during the first round
+  ASSERT_EQ(rows().size(), 1u);
+  EXPECT_TRUE(rounds_marked().empty()) << "nobody saw its end";
+  run(after);
+  ASSERT_EQ(rows().size(), 4u);
+  EXPECT_EQ(rounds_marked(), (std::vector<int>{1, 1})) << "the row of the run before is marked too";
+  EXPECT_EQ(after.num_probes, 3);
+}
+
+TEST_F(ExperimentRunTest, SimulatedTrialsNeedNoProbe) {
+  write_experiment(2, "executor = \"virtual\"");
+  std::string text = read_tail(folder_ / "exp.toml", 10'000);
+  for (const auto& [from, to] : {std::pair<std::string, std::string>{"\"measured\"", "\"simulated\""},
+                                 {"\"refining_seconds\"", "\"virtual_refining_seconds\""}})
+    text.replace(text.find(from), from.size(), to);
+  folder_.write("exp.toml", text);
+  Speeds speeds({1, 2});
+  run(speeds);
+  ASSERT_EQ(rows().size(), 4u);
+  EXPECT_EQ(speeds.num_probes, 0);
+  for (const Row& row : rows()) {
+    EXPECT_FALSE(row.environment.probe);
+    EXPECT_FALSE(row.environment.busy_elsewhere);
+  }
+}
+
+}  // namespace
+}  // namespace podm::bench

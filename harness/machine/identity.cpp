@@ -1,0 +1,106 @@
+#include "machine/identity.h"
+
+#include <fmt/format.h>
+#if defined(__x86_64__)
+#include <cpuid.h>
+#endif
+
+#include <cstring>
+#include <fstream>
+#include <map>
+
+#include "machine/hwloc_topology.h"
+#include "machine/machine.h"
+
+namespace podm::bench {
+namespace {
+
+constexpr std::uint64_t kGib = std::uint64_t{1} << 30;
+
+std::uint32_t bits(std::uint32_t word, int first, int number) {
+  return (word >> first) & ((1U << number) - 1);
+}
+
+std::map<std::string, std::string> values_of(std::istream& lines) {
+  std::map<std::string, std::string> values;  // the first processor's
+  for (std::string line; std::getline(lines, line);) {
+    const auto colon = line.find(':');
+    const auto begin = line.find_first_not_of(" \t", colon == std::string::npos ? colon : colon + 1);
+    if (begin != std::string::npos)
+      values.emplace(line.substr(0, line.find_last_not_of(" \t", colon - 1) + 1), line.substr(begin));
+  }
+  return values;
+}
+
+Count number_in(const std::map<std::string, std::string>& values, const std::string& key) {
+  const auto found = values.find(key);
+  if (found == values.end()) return Unavailable{fmt::format("/proc/cpuinfo has no '{}'", key)};
+  try {
+    return static_cast<std::uint64_t>(std::stoull(found->second, nullptr, 0));  // Arm writes some as 0x41
+  } catch (const std::exception&) {
+    return Unavailable{fmt::format("/proc/cpuinfo: '{}' is '{}', no number", key, found->second)};
+  }
+}
+
+std::variant<ByName<std::uint64_t>, Unavailable> cache_bytes(hwloc_topology_t topology) {
+  hwloc_obj_t processor = topology == nullptr ? nullptr : hwloc_get_obj_by_type(topology, HWLOC_OBJ_PU, 0);
+  if (processor == nullptr) return Unavailable{"hwloc finds no topology"};
+  ByName<std::uint64_t> bytes;
+  for (const Cache& cache : caches_of(processor)) bytes[fmt::format("L{}", cache.level)] = cache.bytes;
+  if (bytes.empty()) return Unavailable{"hwloc finds no caches"};
+  return bytes;
+}
+
+Count memory_gib() {
+  const Count bytes = meminfo_bytes("MemTotal");
+  const auto* const number = std::get_if<std::uint64_t>(&bytes);
+  return number == nullptr ? bytes : Count((*number + kGib - 1) / kGib);
+}
+
+}  // namespace
+
+CpuModel decode_cpuid(const CpuidLeaf& leaf_0, const CpuidLeaf& leaf_1) {
+  std::string vendor(12, '\0');
+  const std::uint32_t parts[] = {leaf_0[1], leaf_0[3], leaf_0[2]};  // ebx, edx, ecx
+  std::memcpy(vendor.data(), parts, vendor.size());
+  const std::uint32_t signature = leaf_1[0];
+  std::uint64_t family = bits(signature, 8, 4), model = bits(signature, 4, 4);
+  if (family == 6 || family == 15) model += std::uint64_t{bits(signature, 16, 4)} << 4;
+  if (family == 15) family += bits(signature, 20, 8);
+  return {vendor, family, model, std::uint64_t{bits(signature, 0, 4)}};
+}
+
+CpuModel cpu_model_in(std::istream& cpuinfo) {
+  const auto values = values_of(cpuinfo);
+  const bool is_arm = values.contains("CPU implementer");
+  const auto vendor = values.find(is_arm ? "CPU implementer" : "vendor_id");
+  return {vendor == values.end() ? Unavailable{"/proc/cpuinfo names no vendor"}.text() : vendor->second,
+          number_in(values, is_arm ? "CPU architecture" : "cpu family"),
+          number_in(values, is_arm ? "CPU part" : "model"),
+          number_in(values, is_arm ? "CPU revision" : "stepping")};
+}
+
+CpuModel this_cpu_model() {
+#if defined(__x86_64__)
+  CpuidLeaf leaf_0{}, leaf_1{};
+  const auto ask = [](unsigned number, CpuidLeaf& leaf) {
+    return __get_cpuid(number, &leaf[0], &leaf[1], &leaf[2], &leaf[3]) != 0;
+  };
+  if (ask(0, leaf_0) && ask(1, leaf_1)) return decode_cpuid(leaf_0, leaf_1);
+#endif
+  std::ifstream cpuinfo("/proc/cpuinfo");
+  return cpu_model_in(cpuinfo);
+}
+
+IdentityRecord identity_of(hwloc_topology_t topology) {
+  const CpuModel cpu = this_cpu_model();
+  return {.vendor = cpu.vendor,
+          .family = cpu.family,
+          .model = cpu.model,
+          .stepping = cpu.stepping,
+          .cache_bytes = cache_bytes(topology),
+          .memory_gib = memory_gib(),
+          .kernel = kernel_name()};
+}
+
+}  // namespace podm::bench

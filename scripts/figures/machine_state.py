@@ -1,0 +1,50 @@
+"""The machine that a row was measured on: which one it was, and whether it was quiet and steady meanwhile. As
+harness/rows/machine_state.h decides."""
+import hashlib
+import json
+
+TOLERATED_LOAD = 0.1  # share of each usable processor that other work may keep busy
+MACHINE = ("cpu", "packages", "numa_nodes", "cores", "processors", "usable_processors", "identity")
+MOVED = "the machine's speed moved during the round"
+
+
+def name_of(environment):
+    """One name for rows of the same machine, another for each other machine. Rows without an identity are also told
+    apart by their topology, which has the processor's model."""
+    cpu, identity = environment.get("cpu", "unknown machine"), environment.get("identity")
+    if not identity:
+        topology = environment.get("topology_sha256", "")
+        return f"{cpu} (topology {topology[:8]})" if topology else cpu
+    facts = json.dumps({key: environment.get(key) for key in MACHINE}, sort_keys=True)
+    return (f"{cpu}, family {identity['family']} model {identity['model']} stepping {identity['stepping']} "
+            f"({hashlib.sha256(facts.encode()).hexdigest()[:8]})")
+
+
+def has_moved(row):
+    return row.get("probe_moved") is True
+
+
+def is_disturbed(row):
+    """False for simulated rows and where the load is unknown."""
+    environment = row.get("environment", {})
+    busy = environment.get("busy_elsewhere")
+    return (row.get("basis") == "measured" and isinstance(busy, (int, float))
+            and busy > TOLERATED_LOAD * environment.get("usable_processors", 1))
+
+
+def remarks(frame):
+    """Sentences on the measured rows of a frame of load.py, none where their machine was quiet and steady."""
+    if frame.empty:
+        return []
+    measured = frame[frame["basis"] == "measured"]
+    disturbed, moved = measured[measured["disturbed"]], int(measured["moved"].sum())
+    said = []
+    if len(disturbed):
+        busy = disturbed["environment.busy_elsewhere"].astype(float).mean()
+        processors = int(disturbed["environment.usable_processors"].iloc[-1])
+        said.append(f"Other work kept {busy:.1f} of {processors} processors busy during {len(disturbed)} of "
+                    f"{len(measured)} runs: measured claims are not resolved.")
+    if moved:
+        said.append(f"The machine's speed moved during the rounds of {moved} of {len(measured)} runs: their times "
+                    "do not count.")
+    return said
