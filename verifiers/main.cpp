@@ -60,8 +60,8 @@ void declare_inputs(CLI::App& app, Command& command) {
       ->required();
   app.option_defaults()->group("Inputs");
   app.add_option("--image", options.image_path,
-                 "segmented image, for the claims labels and fidelity, and topology beside the mesh's:\n"
-                 "NIfTI, NRRD, MetaImage or INR")
+                 "segmented image, for the claims labels, surface_vertices and fidelity, and topology\n"
+                 "beside the mesh's: NIfTI, NRRD, MetaImage or INR")
       ->option_text("FILE");
   app.add_option("--space", command.space,
                  "frame of the mesh's coordinates: RAS or LPS (mm), or voxel (indices)\n"
@@ -172,9 +172,17 @@ void declare_claims(CLI::App& app, Command& command) {
                      options.fidelity_bound_voxels))
       ->option_text("VOXELS")
       ->check(positive());
+  app.add_option(
+         "--vertex-voxels", options.vertex_bound_voxels,
+         fmt::format("surface_vertices: the image's label changes within this of each vertex of boundary\n"
+                     "and interfaces [default: {}]",
+                     options.vertex_bound_voxels))
+      ->option_text("VOXELS")
+      ->check(positive());
   app.add_option("--delta", options.delta_mm,
-                 "surface sampling distance of a PODM mesh: fidelity passes within 2 delta, too,\n"
-                 "as its rules prove; podm mesh tells and records it [default: none]")
+                 "surface sampling distance of a PODM mesh: fidelity passes within 2 delta, too, and\n"
+                 "labels reach as far, as its rules prove; podm mesh tells and records it\n"
+                 "[default: none]")
       ->option_text("MM")
       ->check(positive());
 }

@@ -31,8 +31,10 @@ struct Options {
   /// Fidelity: 95 % of either surface lies within this many voxels of the other, and all of the mesh's within
   /// sqrt(3) times as many of the image's.
   double fidelity_bound_voxels = 1;
+  /// Surface vertices: the image's label changes within this many voxels of each.
+  double vertex_bound_voxels = 1e-5;
   /// The sampling distance of a PODM mesh's surfaces: within 2 delta is near enough, too
-  /// (check_fidelity.cpp).
+  /// (check_fidelity.cpp, check_labels.cpp, check_surface_vertices.cpp).
   std::optional<double> delta_mm;
   std::optional<Space> space;               ///< overrides what the file states
   int threads = 0;                          ///< 0: all cores

@@ -97,6 +97,8 @@ const std::vector<Claim>& all_claims() {
       {"surface", Needs::kNothing,
        [](I i, A a, O o) { return check_surface(i.mesh, a, pointer(i.image), o); }},
       {"labels", Needs::kImage, [](I i, A, O o) { return check_labels(i.mesh, *i.image, o); }},
+      {"surface_vertices", Needs::kImage,
+       [](I i, A a, O o) { return check_surface_vertices(i.mesh, a, *i.image, o); }},
       {"fidelity", Needs::kImage, [](I i, A a, O o) { return check_fidelity(i.mesh, a, *i.image, o); }}};
   return kAll;
 }

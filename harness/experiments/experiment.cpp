@@ -136,7 +136,8 @@ std::vector<Trial> read_trials(TomlSection& section, const Inputs& inputs, const
       trial.image = input.image;
       trial.if_exists = input.if_exists;
       trial.options = variant.options;
-      if (!images.empty()) trial.options.erase(kFidelity);  // asked where voxels are as large as cells
+      // The cells of a given image may be larger than its structures.
+      if (!images.empty() && !trial.image.empty()) trial.options[kFidelity] = false;
       grow(section, !images.empty(), trial);
       trials.push_back(std::move(trial));
     }

@@ -32,8 +32,8 @@ struct Verification {
 /// How long a program may take that looks at the trial's mesh.
 double timeout_of_proof_s(const Trial& trial);
 
-/// Every claim; fidelity only where the trial asks for it, as it is promised of cells about as small as
-/// voxels alone; dihedral of optimised cells and where it is promised, delaunay of cells that are not
+/// Every claim; fidelity where the trial asks for it, or says nothing of it and is podm's, of another tier
+/// than kick-tires; dihedral of optimised cells and where it is promised, delaunay of cells that are not
 /// optimised. `record` is the mesher's, of the mesh at `mesh_path`.
 Verification verify_mesh(const Trial& trial, const std::string& image, const MeshRecord& record,
                          const std::string& mesh_path, const std::string& verifier, const std::string& folder,

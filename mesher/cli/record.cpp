@@ -267,8 +267,8 @@ Json promised_dihedral_of(const MeshingReport& report) {
 
 // The claims of podm-verify that an optimised mesh keeps.
 Json promises_of(const MeshingReport& report) {
-  Json claims = {"structure",  "radius_edge", "boundary_angles", "size",
-                 "conformity", "surface",     "labels",          "fidelity"};
+  Json claims = {"structure", "radius_edge", "boundary_angles",  "size",    "conformity",
+                 "surface",   "labels",      "surface_vertices", "fidelity"};
   if (report.promised_dihedral_deg) claims.push_back("dihedral");
   return claims;
 }

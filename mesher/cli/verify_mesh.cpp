@@ -84,7 +84,7 @@ std::vector<std::string> size_options(const MeshRun& run) {
 std::vector<std::string> claims_to_verify(const MeshRun& run,
                                           const std::function<std::string()>& write_image) {
   std::vector<std::string> options;
-  std::string claims = "structure,radius_edge,boundary_angles,conformity,surface,labels";
+  std::string claims = "structure,radius_edge,boundary_angles,conformity,surface,labels,surface_vertices";
   // The file tells what it promises of dihedral angles.
   const bool is_delaunay = !run.report.optimization;
   if (is_delaunay) claims += ",delaunay";
@@ -92,10 +92,7 @@ std::vector<std::string> claims_to_verify(const MeshRun& run,
   const std::vector<std::string> sizes = size_options(run);
   if (!sizes.empty()) claims += ",size";
   if (run.command.verify_fidelity) claims += ",fidelity";
-  if (run.command.verify_fidelity || !is_delaunay) {
-    options.insert(options.end(), {"--delta", fmt::format("{}", run.report.delta_mm)});
-  }
-  options.insert(options.end(), {"--claims", claims});
+  options.insert(options.end(), {"--delta", fmt::format("{}", run.report.delta_mm), "--claims", claims});
   const auto image = image_options(run, write_image);
   options.insert(options.end(), image.begin(), image.end());
   options.insert(options.end(), sizes.begin(), sizes.end());

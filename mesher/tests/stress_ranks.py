@@ -22,7 +22,8 @@ PROGRAM, MPI_PROGRAM = os.environ["PODM_PROGRAM"], os.environ["PODM_MPI_PROGRAM"
 MPIRUN = os.environ.get("PODM_MPIRUN", "mpirun")
 VERIFIER = os.path.join(os.path.dirname(PROGRAM), "podm-verify")
 # fidelity is left out: it is missed by meshes that are coarser than a structure, on one machine as on ranks.
-CLAIMS = {"structure", "radius_edge", "boundary_angles", "size", "delaunay", "conformity", "surface", "labels"}
+CLAIMS = {"structure", "radius_edge", "boundary_angles", "size", "delaunay", "conformity", "surface", "labels",
+          "surface_vertices"}
 PHANTOMS = [("spheres", 48), ("torus", 48), ("abdomen", 96)]
 IMAGE_SUFFIXES = (".nrrd", ".nii", ".nii.gz", ".mha", ".inr", ".inr.gz")
 IN_PROCESS_RANKS, MPI_RANKS = (2, 3, 5, 8), (2, 4)

@@ -2,7 +2,6 @@
 
 #include <cmath>
 #include <limits>
-#include <map>
 
 #include "image/label_function.h"
 #include "parallel.h"
@@ -143,27 +142,10 @@ std::optional<std::uint32_t> ExactCircumcenterLabel::operator()(CellId cell) con
   }
   const Solution<mpq_class> s = solve<mpq_class>(v);
   if (s.determinant == 0) return std::nullopt;
-  std::array<int, 3> block{};
-  std::array<std::array<mpq_class, 2>, 3> factors;  // of the lower and the upper voxel along each axis
-  for (std::size_t axis = 0; axis < 3; ++axis) {
-    const mpq_class u = (v[0][axis] + s.center[axis]) / mpq_class(image_.spacing[axis]);
-    if (u <= -1 || u >= image_.size[axis]) return 0;
-    mpz_class floor;
-    mpz_fdiv_q(floor.get_mpz_t(), u.get_num_mpz_t(), u.get_den_mpz_t());
-    block[axis] = static_cast<int>(floor.get_si());
-    factors[axis][1] = u - floor;
-    factors[axis][0] = 1 - factors[axis][1];
-  }
-  const LabelFunction function(image_);
-  const auto corners = function.corners(block);
-  const auto strengths = function.strengths(block);
-  std::map<std::uint32_t, mpq_class> weights;  // in 65535ths; ascending: the first of the greatest wins
-  for (std::size_t c = 0; c < 8; ++c)
-    weights[corners[c]] += strengths[c] * factors[0][c & 1] * factors[1][c >> 1 & 1] * factors[2][c >> 2];
-  auto best = weights.begin();
-  for (auto w = weights.begin(); w != weights.end(); ++w)
-    if (w->second > best->second) best = w;
-  return best->first;
+  std::array<mpq_class, 3> u;
+  for (std::size_t axis = 0; axis < 3; ++axis)
+    u[axis] = (v[0][axis] + s.center[axis]) / mpq_class(image_.spacing[axis]);
+  return LabelFunction(image_).exact_label_at(u);
 }
 
 }  // namespace podm::verify

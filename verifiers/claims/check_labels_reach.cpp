@@ -15,6 +15,11 @@ bool LabelReach::has(std::uint32_t label, const Point& point) const {
     low[a] = static_cast<int>(std::ceil(std::clamp(point[a] - reach, 0.0, last)));
     high[a] = static_cast<int>(std::floor(std::clamp(point[a] + reach, 0.0, last)));
   }
+  const auto reaches_beyond = [&](std::size_t a) {
+    return (point[a] + 1) * image_.spacing[a] <= mm_ ||
+           (image_.size[a] - point[a]) * image_.spacing[a] <= mm_;
+  };
+  if (label == 0 && (reaches_beyond(0) || reaches_beyond(1) || reaches_beyond(2))) return true;
   const auto squared_mm = [&](std::size_t axis, int index) {
     const double mm = (index - point[axis]) * image_.spacing[axis];
     return mm * mm;

@@ -1,5 +1,6 @@
 // Whether an image has a label near a point: what is asked of the cells of a mesh that is no Delaunay
-// triangulation, whose interfaces lie as far from the image's as cells are large.
+// triangulation, whose interfaces lie as far from the image's as cells are large; and of the vertices of
+// facets between labels.
 #pragma once
 
 #include <array>
@@ -14,7 +15,8 @@ class LabelReach {
   /// voxels around it has that label.
   LabelReach(const Image& image, double reach_mm);
   double mm() const { return mm_; }
-  /// Whether the centre of a voxel of that label lies within reach; `point` is in voxel indices.
+  /// Whether the centre of a voxel of that label lies within reach, those beyond the grid being background's;
+  /// `point` is in voxel indices.
   bool has(std::uint32_t label, const Point& point) const;
 
  private:

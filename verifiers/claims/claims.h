@@ -26,6 +26,8 @@ ClaimResult check_labels(const Mesh& mesh, const Image& image, const Options& op
 /// `image` null: components and Euler numbers are reported without the image's beside them.
 ClaimResult check_surface(const Mesh& mesh, const Adjacency& adjacency, const Image* image,
                           const Options& options);
+ClaimResult check_surface_vertices(const Mesh& mesh, const Adjacency& adjacency, const Image& image,
+                                   const Options& options);
 ClaimResult check_fidelity(const Mesh& mesh, const Adjacency& adjacency, const Image& image,
                            const Options& options);
 

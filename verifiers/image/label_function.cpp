@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <map>
 
 namespace podm::verify {
 
@@ -126,6 +127,39 @@ std::array<double, 8> LabelFunction::smoothed(std::array<double, 8> corner_weigh
 std::uint32_t LabelFunction::label_at(const Point& u) const {
   const LabelWeights weights = weights_at(u);
   return weights.labels[weights.best()];
+}
+
+std::uint32_t LabelFunction::exact_label_at(const std::array<mpq_class, 3>& u) const {
+  std::array<int, 3> block{};
+  std::array<std::array<mpq_class, 2>, 3> factors;  // of the lower and the upper voxel along each axis
+  for (std::size_t axis = 0; axis < 3; ++axis) {
+    if (u[axis] <= -1 || u[axis] >= image_.size[axis]) return 0;
+    mpz_class floor;
+    mpz_fdiv_q(floor.get_mpz_t(), u[axis].get_num_mpz_t(), u[axis].get_den_mpz_t());
+    block[axis] = static_cast<int>(floor.get_si());
+    factors[axis][1] = u[axis] - floor;
+    factors[axis][0] = 1 - factors[axis][1];
+  }
+  const auto labels = corners(block);
+  const auto strengths = this->strengths(block);
+  std::map<std::uint32_t, mpq_class> weights;  // in 65535ths; ascending: the first of the greatest wins
+  for (std::size_t c = 0; c < 8; ++c)
+    weights[labels[c]] += strengths[c] * factors[0][c & 1] * factors[1][c >> 1 & 1] * factors[2][c >> 2];
+  auto best = weights.begin();
+  for (auto w = weights.begin(); w != weights.end(); ++w)
+    if (w->second > best->second) best = w;
+  return best->first;
+}
+
+std::uint32_t LabelFunction::decided_label_at(const Point& u, std::uint64_t& num_exact) const {
+  const LabelWeights weights = weights_at(u);
+  const std::size_t best = weights.best();
+  for (std::size_t i = 0; i < weights.count; ++i)
+    if (i != best && !(weights.weights[best] - weights.weights[i] > 2.1 * kWeightError)) {
+      ++num_exact;
+      return exact_label_at({mpq_class(u[0]), mpq_class(u[1]), mpq_class(u[2])});
+    }
+  return weights.labels[best];
 }
 
 LabelWeights LabelFunction::weights_at(const Point& u) const {

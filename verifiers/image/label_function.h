@@ -8,6 +8,8 @@
 // their labels have weight, and change once.
 #pragma once
 
+#include <gmpxx.h>
+
 #include <array>
 #include <cstdint>
 
@@ -40,6 +42,10 @@ class LabelFunction {
   static LabelFunction of_voxels(const Image& image);
 
   std::uint32_t label_at(const Point& u) const;
+  /// The label at exactly this point, by rational arithmetic.
+  std::uint32_t exact_label_at(const std::array<mpq_class, 3>& u) const;
+  /// The same, by rational arithmetic only where rounded weights leave it open: `num_exact` counts these.
+  std::uint32_t decided_label_at(const Point& u, std::uint64_t& num_exact) const;
   LabelWeights weights_at(const Point& u) const;
   /// Derivative at u of weight(a) - weight(b), by voxel coordinates.
   Point gradient_of_difference(const Point& u, std::uint32_t a, std::uint32_t b) const;

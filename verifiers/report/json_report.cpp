@@ -120,6 +120,7 @@ Json options_of(const Options& options) {
           {"min_dihedral_deg", options.min_dihedral_deg ? Json(*options.min_dihedral_deg) : Json(nullptr)},
           {"max_dihedral_deg", options.max_dihedral_deg ? Json(*options.max_dihedral_deg) : Json(nullptr)},
           {"fidelity_bound_voxels", options.fidelity_bound_voxels},
+          {"vertex_bound_voxels", options.vertex_bound_voxels},
           {"delta_mm", options.delta_mm ? Json(*options.delta_mm) : Json(nullptr)},
           {"threads", options.threads}};
 }

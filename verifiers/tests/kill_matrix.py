@@ -10,7 +10,8 @@ import subprocess
 import sys
 import tempfile
 
-from mutants import OPERATORS, Workshop
+from mutants import Workshop
+from tolerance_mutants import OPERATORS
 
 
 def run(verifier, case, claim, folder):

@@ -152,7 +152,7 @@ class ResultTest(TestCase):
         report = self.mesh.verify(fidelity=True)
         self.assertTrue(report and report.holds, report.text)
         self.assertEqual(set(report.verdicts), {"structure", "delaunay", "radius_edge", "boundary_angles", "size",
-                                                "conformity", "surface", "labels", "fidelity"})
+                                                "conformity", "surface", "labels", "surface_vertices", "fidelity"})
         self.assertIn("labels", str(report))
         self.assertEqual(set(report.details["claims"]), set(report.verdicts))
 

@@ -105,6 +105,55 @@ TEST(LabelFunction, TiesGoToTheSmallerLabelAndOutsideIsBackground) {
   EXPECT_EQ(function.label_at({1e300, -1e300, 1}), 0U);
 }
 
+// In multiples of 1/8 weights are exact in doubles, ties among them.
+void expect_exact_labels(const Image& image) {
+  std::mt19937 random(9);
+  const LabelFunction function(image);
+  std::uint64_t num_exact = 0;
+  for (int trial = 0; trial < 3000; ++trial) {
+    Point u;
+    std::array<mpq_class, 3> exact;
+    for (std::size_t axis = 0; axis < 3; ++axis) {
+      u[axis] = (static_cast<int>(random() % 64) - 16) / 8.0;
+      exact[axis] = mpq_class(u[axis]);
+    }
+    EXPECT_EQ(function.exact_label_at(exact), function.label_at(u));
+    EXPECT_EQ(function.decided_label_at(u, num_exact), function.label_at(u));
+  }
+  EXPECT_GT(num_exact, 0U);
+  EXPECT_LT(num_exact, 2000U);
+}
+
+TEST(LabelFunction, ExactLabelsAreThoseOfExactWeights) {
+  expect_exact_labels(random_image(1, 4));
+  Image image = with_random_strengths(random_image(1, 4));
+  for (auto& strength : image.smoothing->strengths) strength = kFullStrength;
+  expect_exact_labels(image);
+}
+
+TEST(LabelFunction, DecidesWhatRoundingLeavesOpen) {
+  Image image = random_image(1, 2);
+  for (std::size_t i = 0; i < image.voxels.size(); ++i) image.voxels[i] = i % 4 < 2 ? 9 : 5;
+  const LabelFunction function(image);
+  std::uint64_t num_exact = 0;
+  EXPECT_EQ(function.decided_label_at({1.5, 1.3, 1.7}, num_exact), 5U) << "a tie";
+  EXPECT_EQ(function.decided_label_at({std::nextafter(1.5, 0), 1.3, 1.7}, num_exact), 9U);
+  EXPECT_EQ(function.decided_label_at({std::nextafter(1.5, 2), 1.3, 1.7}, num_exact), 5U);
+  EXPECT_EQ(num_exact, 3U);
+  EXPECT_EQ(function.decided_label_at({1.499, 1.3, 1.7}, num_exact), 9U);
+  EXPECT_EQ(num_exact, 3U);
+  // A third of the way is no double: the strengths 1 and 2 tie there.
+  image.smoothing.emplace();
+  for (std::size_t i = 0; i < image.voxels.size(); ++i)
+    image.smoothing->strengths.push_back(i % 4 < 2 ? 1000 : 2000);
+  const LabelFunction smoothed(image);
+  const mpq_class third(4, 3), little(1, 1000000000);
+  EXPECT_EQ(smoothed.exact_label_at({third, 1, 1}), 5U);
+  EXPECT_EQ(smoothed.exact_label_at({third - little * little * little, 1, 1}), 9U);
+  EXPECT_EQ(smoothed.exact_label_at({mpq_class(-1), 1, 1}), 0U);
+  EXPECT_EQ(smoothed.exact_label_at({mpq_class(4), 1, 1}), 0U);
+}
+
 void expect_gradients(const Image& image) {
   std::mt19937 random(5);
   std::uniform_real_distribution<double> fraction(0.1, 0.9);

@@ -1,0 +1,222 @@
+// Claim surface_vertices.
+//   Statements  each vertex of a facet between cells of different labels, or of a facet with one cell alone,
+//               lies where the label function (image/label_function.h) changes: within b voxels of it there
+//               are two points of different labels. Of a smoothed image (image/smoothing.h) the function is
+//               the smoothed one. Each label of the vertex's facets, background beyond the outermost ones,
+//               has a voxel within reach of the vertex: a voxel's diagonal more than 2 delta (--delta) or
+//               another diagonal, whichever is longer.
+//               b is 10^-5 (Options::vertex_bound_voxels), a distance in voxel indices. A mesh of the PODM
+//               family has its vertices on the isosurface to 10^-6, by the search that finds them; the rest
+//               is for the rounding of coordinates on their way to the file. The reach follows from the
+//               mesher's rules: the circumcentre of a facet's cell has the cell's label, R2 left no cell of
+//               the surface a circumradius of 2 delta, and one of the eight voxels around a point has the
+//               label of that point.
+//   Rests on    two witnesses for each vertex: the vertex itself, rounded to a point p of double voxel
+//               indices, and a point of another label than p's, which a search finds (label_search.h). That
+//               both are within b of the vertex of the file, and that their labels differ, is decided by
+//               filters and then by rational arithmetic. The search may miss a point, so that the claim may
+//               fail of a mesh for which it holds; it never passes where it does not hold. Strengths of a
+//               smoothed image are taken to be right: what makes them is smoothing.cpp, tested against its
+//               definition. Distances of the second statement are rounded.
+//   Cost        linear in the vertices of the surface; 2 to 20 us for each, the more the more labels meet
+//               near it, and 40 bytes a facet side.
+//   Not proved  that a vertex lies between the labels of its own facets: where three labels meet, a facet
+//               that passes from one label to a second may have a vertex where the first ends at a third.
+//               Such vertices are counted ("vertices_off_own_labels"), not judged. Nor that a facet is near
+//               the isosurface between its vertices, which is what the claim fidelity samples. The first
+//               statement is the promise of meshers of the PODM family; a mesh from elsewhere need not keep
+//               it.
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "claims/check_labels_reach.h"
+#include "claims/check_surface_boundary.h"
+#include "claims/claims.h"
+#include "claims/label_search.h"
+#include "claims/tally.h"
+#include "claims/voxel_map.h"
+
+namespace podm::verify {
+
+namespace {
+
+// Less than 1 by more than the rounding of a vertex's voxel indices.
+constexpr double kSomewhatLess = 1 - 1e-3;
+constexpr std::array<double, 2> kFurtherVoxels{0.01, 1};  // how far a vertex in violation is looked around
+
+double diagonal_mm(const Image& image) {
+  return std::hypot(image.spacing[0], image.spacing[1], image.spacing[2]);
+}
+
+struct VertexTally {
+  Tally tally;
+  std::uint64_t num_vertices = 0, num_off_own_labels = 0;
+  double furthest_voxels = 0;
+
+  void add(const VertexTally& other) {
+    tally.add(other.tally);
+    num_vertices += other.num_vertices;
+    num_off_own_labels += other.num_off_own_labels;
+    furthest_voxels = std::max(furthest_voxels, other.furthest_voxels);
+  }
+};
+
+class SurfaceVertices {
+ public:
+  SurfaceVertices(const Mesh& mesh, const Adjacency& adjacency, const Image& image, const Options& options,
+                  Space space, int threads)
+      : mesh_(mesh),
+        places_(mesh),
+        sides_(find_sides(mesh, adjacency, places_, threads)),
+        sides_of_(sides_, mesh.vertices.size()),
+        frame_(image, space),
+        to_voxels_(image.voxel_to_ras, space),
+        search_(image),
+        reach_(image, std::max(2 * options.delta_mm.value_or(0), diagonal_mm(image))),
+        bound_(options.vertex_bound_voxels),
+        squared_bound_(typed_decimal(bound_) * typed_decimal(bound_)) {}
+
+  double reach_mm() const { return reach_.mm(); }
+
+  void check(VertexId v, VertexTally& part) const {
+    const std::vector<LabelValue> labels = labels_around(v);
+    if (labels.empty()) return;
+    ++part.num_vertices;
+    const Point u = frame_.to_voxels(mesh_.vertices[v]);
+    check_change(v, u, part);
+    check_reach(v, u, labels, part.tally);
+    const bool meets_all = std::all_of(labels.begin(), labels.end(), [&](LabelValue label) {
+      return search_.find(u, is_label(label), kSomewhatLess * bound_, part.tally.num_exact).has_value();
+    });
+    part.num_off_own_labels += meets_all ? 0 : 1;
+  }
+
+ private:
+  static LabelSearch::Wanted is_label(LabelValue label) {
+    return [label](std::uint32_t found) { return static_cast<LabelValue>(found) == label; };
+  }
+
+  // The labels of the facets that have the vertex, each once; none off the surface.
+  std::vector<LabelValue> labels_around(VertexId v) const {
+    std::vector<LabelValue> labels;
+    for (const std::uint32_t* side = sides_of_.begin(v); side != sides_of_.end(v); ++side)
+      for (const LabelPlace place : {sides_[*side].label, sides_[*side].across})
+        labels.push_back(places_.labels[place]);
+    std::sort(labels.begin(), labels.end());
+    labels.erase(std::unique(labels.begin(), labels.end()), labels.end());
+    return labels;
+  }
+
+  void check_change(VertexId v, const Point& u, VertexTally& part) const {
+    Tally& tally = part.tally;
+    ++tally.num_checked;
+    const std::uint32_t own = search_.label_at(u, tally.num_exact);
+    const auto is_other = [own](std::uint32_t label) { return label != own; };
+    auto other = search_.find(u, is_other, kSomewhatLess * bound_, tally.num_exact);
+    const bool holds =
+        other && is_within_bound(v, u, tally.num_exact) && is_within_bound(v, other->at, tally.num_exact);
+    for (std::size_t i = 0; !other && i < kFurtherVoxels.size(); ++i)
+      other = search_.find(u, is_other, kFurtherVoxels[i], tally.num_exact);
+    const double distance = other ? other->distance : std::numeric_limits<double>::infinity();
+    part.furthest_voxels = std::max(part.furthest_voxels, distance);
+    if (holds && !tally.closest.wants(distance)) return;
+    Witness witness = witness_of(v, "the image's label changes at the vertex", distance);
+    if (other) witness.points.push_back(frame_.voxels_to_mesh(other->at));
+    witness.label = own;
+    holds ? tally.closest.add(std::move(witness)) : tally.violation(std::move(witness));
+  }
+
+  void check_reach(VertexId v, const Point& u, const std::vector<LabelValue>& labels, Tally& tally) const {
+    for (const LabelValue label : labels) {
+      ++tally.num_checked;
+      if (label >= 0 && label <= std::numeric_limits<std::uint32_t>::max() &&
+          reach_.has(static_cast<std::uint32_t>(label), u))
+        continue;
+      Witness witness = witness_of(v, "a voxel of each label of the vertex's facets is within reach", 0);
+      witness.severity = reach_mm();
+      witness.label = label;
+      tally.violation(std::move(witness));
+    }
+  }
+
+  Witness witness_of(VertexId v, const char* statement, double value) const {
+    Witness witness{.statement = statement,
+                    .vertices = {v},
+                    .points = {mesh_.vertices[v]},
+                    .value = value,
+                    .severity = value};
+    for (const std::uint32_t* side = sides_of_.begin(v); side != sides_of_.end(v); ++side)
+      witness.cells.push_back(sides_[*side].cell);
+    std::sort(witness.cells.begin(), witness.cells.end());
+    witness.cells.erase(std::unique(witness.cells.begin(), witness.cells.end()), witness.cells.end());
+    return witness;
+  }
+
+  // Whether the vertex, as the file has it, is so near to p.
+  bool is_within_bound(VertexId v, const Point& p, std::uint64_t& num_exact) const {
+    const Point& vertex = mesh_.vertices[v];
+    const auto slack = [&](auto zero) {
+      using T = decltype(zero);
+      const Vector<T> u = to_voxels_(Vector<T>{T(vertex[0]), T(vertex[1]), T(vertex[2])});
+      const Vector<T> d{u[0] - T(p[0]), u[1] - T(p[1]), u[2] - T(p[2])};
+      return T(squared_bound_.in<T>() - dot<T>(d, d));
+    };
+    return sign_of(slack, num_exact) >= 0;
+  }
+
+  const Mesh& mesh_;
+  CellLabelPlaces places_;
+  std::vector<Side> sides_;
+  SidesOfVertex sides_of_;
+  ImageFrame frame_;
+  VoxelMap to_voxels_;
+  LabelSearch search_;
+  LabelReach reach_;
+  double bound_;
+  Constant squared_bound_;
+};
+
+VertexTally tally_of(const SurfaceVertices& vertices, std::size_t count, int threads) {
+  std::vector<VertexTally> parts(static_cast<std::size_t>(threads));
+  parallel_ranges(count, threads, [&](std::size_t begin, std::size_t end, std::size_t thread) {
+    for (std::size_t v = begin; v < end; ++v) vertices.check(static_cast<VertexId>(v), parts[thread]);
+  });
+  VertexTally sum;
+  for (const VertexTally& part : parts) sum.add(part);
+  return sum;
+}
+
+}  // namespace
+
+ClaimResult check_surface_vertices(const Mesh& mesh, const Adjacency& adjacency, const Image& image,
+                                   const Options& options) {
+  ClaimResult result;
+  result.claim = "surface_vertices";
+  if (mesh.cells.empty() || mesh.cell_labels.size() != mesh.cells.size()) {
+    result.reason = mesh.cells.empty() ? "the mesh has no cells" : "the mesh states no cell labels";
+    return result;
+  }
+  const Space space = options.space.value_or(mesh.space);
+  const int threads = num_threads(options.threads);
+  const SurfaceVertices vertices(mesh, adjacency, image, options, space, threads);
+  const VertexTally found = tally_of(vertices, mesh.vertices.size(), threads);
+  result = result_of("surface_vertices", found.tally);
+  result.method = "a search for points of another label, decided by filters, then exact rationals";
+  result.details = {{"space", describe(space)},
+                    {"bound_voxels", options.vertex_bound_voxels},
+                    {"reach_mm", vertices.reach_mm()},
+                    {"vertices", found.num_vertices},
+                    {"furthest_voxels", found.furthest_voxels},
+                    {"vertices_off_own_labels", found.num_off_own_labels}};
+  result.reason = fmt::format(
+      "{} violations at {} vertices of boundary and interfaces; the image's label changes within {:.2g} "
+      "voxels of each (bound {}); at {} a label of their facets is further off",
+      result.num_violations, found.num_vertices, found.furthest_voxels, options.vertex_bound_voxels,
+      found.num_off_own_labels);
+  return result;
+}
+
+}  // namespace podm::verify

@@ -1,0 +1,52 @@
+// Points of an image's labels near a point: a search that finds them, by the label function's exact
+// decisions.
+//
+// A point that is found is a proof; that none is found proves nothing, unless weights are too far apart for
+// their slopes, which ends the search at once. Else it probes the segments from the
+// point along the gradient of the weights that matter there, and along the axes and diagonals of voxels, and
+// bisects the one that meets the label to where it does first.
+#pragma once
+
+#include <cstdint>
+#include <functional>
+#include <optional>
+
+#include "image/label_function.h"
+
+namespace podm::verify {
+
+/// Points and lengths are in voxel indices.
+class LabelSearch {
+ public:
+  /// Keeps a reference to the image.
+  explicit LabelSearch(const Image& image) : function_(image) {}
+
+  struct Found {
+    Point at{};
+    std::uint32_t label = 0;
+    double distance = 0;  ///< rounded
+  };
+  using Wanted = std::function<bool(std::uint32_t)>;
+  /// A point within `reach` of u whose label is wanted, decided exactly; u itself if its label is.
+  std::optional<Found> find(const Point& u, const Wanted& wanted, double reach,
+                            std::uint64_t& num_exact) const;
+  std::uint32_t label_at(const Point& u, std::uint64_t& num_exact) const {
+    return function_.decided_label_at(u, num_exact);
+  }
+
+ private:
+  std::optional<Found> along(const Point& u, const Point& direction, const Wanted& wanted, double reach,
+                             std::uint64_t& num_exact) const;
+  // The greatest weight at u that is wanted, and the greatest other one; 0 where there is none.
+  struct Rivals {
+    std::optional<std::uint32_t> wanted, other;
+    double wanted_weight = 0, other_weight = 0;
+    bool is_alone = false;  // one label has all the weight
+  };
+  Rivals rivals(const Point& u, const Wanted& wanted) const;
+  static bool is_out_of_reach(const Rivals& rivals, double reach);
+
+  LabelFunction function_;
+};
+
+}  // namespace podm::verify
