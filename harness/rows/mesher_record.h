@@ -59,10 +59,13 @@ struct ThreadsRecord {
 struct VirtualRecord {
   std::optional<double> refine_s;
   std::optional<ByName<double>> phases_s;  ///< of equation 1
+  /// Of the constants and rules of virtual time; rows of before it was recorded have none.
+  std::optional<std::string> model_sha256;
   Json as_written = Json::object();
   static constexpr auto fields() {
     return std::tuple{field_if_any("refine_s", &VirtualRecord::refine_s),
-                      field_if_any("phases_s", &VirtualRecord::phases_s)};
+                      field_if_any("phases_s", &VirtualRecord::phases_s),
+                      field_if_any("model_sha256", &VirtualRecord::model_sha256)};
   }
 };
 
