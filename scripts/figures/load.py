@@ -12,6 +12,7 @@ SCHEMA = 4
 # A mesh counts as verified when these pass and no other claim fails; the rest may lack an input, such as the image.
 NEEDED_CLAIMS = ("structure", "delaunay", "radius_edge", "boundary_angles")
 SIMULATED_CACHES = "its seconds are those of a simulation of caches"
+ALTERED = "a constant of its model is another"
 OF_RANKS = "its ranks have tables and figures of their own"
 LONG_LISTS = ["labels", "facet_pairs", "command", "workers", "ranks.rounds", "ranks.by_rank"]
 # Phases in no second of equation 1: bettering angles, measuring and writing the mesh, finding the radius for a number
@@ -93,11 +94,14 @@ def mesher_of(row):
 
 
 def machine_of(row):
-    """The processor; in virtual time the described machine, if one is, which two descriptions never share."""
-    described = (row.get("virtual") or {}).get("machine")
+    """The processor; in virtual time the described machine and the model that played it, so that neither two
+    descriptions nor two models share a number. Rows of before the model had a hash name none."""
+    virtual = row.get("virtual") or {}
+    described = virtual.get("machine")
     if not described:
         return row.get("environment", {}).get("cpu", "unknown machine")
-    return f"{described.get('name', 'unnamed')} as described ({described.get('sha256', '')[:8]})"
+    model = f", model {virtual['model_sha256'][:8]}" if virtual.get("model_sha256") else ""
+    return f"{described.get('name', 'unnamed')} as described ({described.get('sha256', '')[:8]}{model})"
 
 
 def setting_of(row):
@@ -141,6 +145,8 @@ def doubt_of(row):
     threads, cores = row.get("threads", {}).get("used", 0), usable_cores(row.get("environment", {}))
     if cores and threads > cores and not is_virtual(row):
         return f"{threads} threads on {cores} cores"
+    if row.get("asked", {}).get("cost_factor"):
+        return unproved_of(row) or ALTERED
     return unproved_of(row) or (SIMULATED_CACHES if simulates_caches(row) else "")
 
 

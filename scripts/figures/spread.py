@@ -1,4 +1,7 @@
-"""Median and percentile-bootstrap interval, with a fixed seed: equal records give equal figures."""
+"""Medians and intervals of them: percentile-bootstrap with a fixed seed, so that equal records give equal figures, and
+by order statistics."""
+import math
+
 import numpy
 
 DRAWS = 4000
@@ -33,3 +36,16 @@ def ratio_interval(values, base):
     above = resampled_medians(values)
     below = numpy.random.default_rng(2).permutation(resampled_medians(base))  # drawn apart from those above
     return (ratio, *interval(above / below))
+
+
+def order_interval(values):
+    """(low, high, coverage): the narrowest pair of order statistics, as many from each end, that holds the median of
+    what the values are drawn from with at least LEVEL. Too few values give the widest pair, whose coverage is less."""
+    values = sorted(values)
+    number = len(values)
+    if number < 2:
+        return numpy.nan, numpy.nan, numpy.nan
+    tails = numpy.cumsum([math.comb(number, below) / 2**number for below in range(number // 2)])
+    coverages = 1 - 2 * tails  # of the pair that leaves so many values out on each side
+    left_out = max((place for place, coverage in enumerate(coverages) if coverage >= LEVEL), default=0)
+    return values[left_out], values[-1 - left_out], float(coverages[left_out])
