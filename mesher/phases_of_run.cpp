@@ -159,6 +159,7 @@ void PhasesOfRun::simulate(const Refinement& refinement, MeshingReport& report) 
       virtual_seconds(team, &TimeCosts::voxel_transformed, voxels, num_workers);
   report.virtual_phases_s["extract"] = virtual_seconds(team, &TimeCosts::cell_extracted, cells, num_workers);
   report.virtual_model = time_model_text(costs_of(team));
+  if (!options_.team.cost_factor.empty()) report.virtual_model += options_.team.cost_factor + "\n";
   const VirtualSpending& spending = refinement.virtual_spending;
   report.virtual_worker_s = {{"compute", spending.work_s},
                              {"memory_remote", spending.remote_memory_s},

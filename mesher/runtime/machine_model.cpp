@@ -21,7 +21,6 @@ constexpr std::int64_t kMostNodes = 256, kMostRouters = 1024, kMostSockets = 64,
 constexpr std::int64_t kMostProcessors = 16'384;  // of all nodes
 constexpr double kMostCycles = 1e9, kMostAccesses = 1e15, kMostMicroseconds = 1e6, kMostGib = 1e6;
 constexpr double kLeast = 1e-9;  // of what must be positive
-constexpr double kMostFactor = 1e3;
 
 std::vector<std::string> read_sources(TomlSection& file) {
   std::vector<std::string> sources;
@@ -154,16 +153,6 @@ Memory read_memory(TomlSection section, const Processors& processors, int num_no
   return memory;
 }
 
-// Each key names a constant and holds the factor that it is taken times.
-TimeCosts read_costs(TomlSection section) {
-  TimeCosts costs;
-  for (const auto& [name, member] : kTimeCosts)
-    if (section.has(name)) costs.*member *= section.number(name, 0, kMostFactor);
-  section.done();
-  if (costs.spread > 1) section.fail(section.place("spread"), "attempts would end before they begin");
-  return costs;
-}
-
 Topology topology_of(const Processors& processors, const Memory& memory, int num_nodes,
                      const std::vector<std::vector<int>>& routes) {
   const std::string description = fmt::format("group:{} [numa(memory={})] pack:{} core:{} pu:1", num_nodes,
@@ -192,7 +181,6 @@ MachineModel MachineModel::from_file(const std::filesystem::path& path) try {
   const double wake_us = system.number("wake_us", 0, kMostMicroseconds);
   const double lock_us = system.number("lock_us", 0, kMostMicroseconds);
   system.done();
-  const TimeCosts costs = read_costs(file.optional_table("work"));
   file.done();
   if (network.num_nodes * processors.sockets * processors.cores_per_socket > kMostProcessors)
     file.fail(file.place(), fmt::format("a machine of more than {} cores", kMostProcessors));
@@ -211,8 +199,7 @@ MachineModel MachineModel::from_file(const std::filesystem::path& path) try {
           .routes = routes,
           .retries = network.retries,
           .wake_s = wake_us * 1e-6,
-          .lock_s = lock_us * 1e-6,
-          .costs = costs};
+          .lock_s = lock_us * 1e-6};
 } catch (const TomlError& error) {
   throw TopologyError(error.what());
 }

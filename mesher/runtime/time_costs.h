@@ -1,6 +1,5 @@
 // The constants of virtual time: what work takes on the reference core, each with its source. The cores of a
-// described machine work `core_speed` times as fast, and its description may take a constant times a factor
-// (runtime/machine_model.h).
+// described machine work `core_speed` times as fast (runtime/machine_model.h).
 //
 // The reference core is one of experiments/machines/epyc_zen5_2_cores.toml, with what `make build` compiles.
 // The costs of attempts are the parts of a profile, the liver at 3 million cells, each over the count that it

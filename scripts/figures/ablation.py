@@ -81,8 +81,8 @@ def _verdict(finding, rate, hops):
 
 
 def readable(table):
-    """The constants as they are, then one line a constant: a finding survives, or falls with the factors named. One that
-    does not hold as they are may hold with another constant."""
+    """The constants as they are, then one line a constant: a finding survives, or falls with the factors named. One
+    that does not hold as they are may hold with another constant."""
     as_they_are = table[table["constant"] == UNCHANGED[0]]
     lines = []
     for constant, group in table.groupby("constant", sort=False):

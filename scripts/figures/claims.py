@@ -161,8 +161,8 @@ def _zero_hop_cells(hops, frame, basis):
     published = paper.table2().loc[0]
     published = published[published < 1]  # on one blade no access can leave it
     claim = _claim("zero-hop share by number of cores",
-                   f"on each of {len(published)} numbers of cores as many of PDR.PODM's accesses leave their node as in "
-                   "the paper, within a factor of two", len(published), basis)
+                   f"on each of {len(published)} numbers of cores as many of PDR.PODM's accesses leave their node as "
+                   "in the paper, within a factor of two", len(published), basis)
     ours = hops[(hops["basis"] == basis) & (hops["algorithm"] == "pdr-podm") & (hops["hops"] == 0)]
     ours = ours.set_index("cores")["share"].reindex(published.index).dropna()
     if len(ours) < len(published):

@@ -3,9 +3,9 @@ from dataclasses import dataclass, field
 
 import pandas
 
-from . import (ablation, cache, deviation, dihedral, distributed, distributed_figure, distributed_model, experiment_verdicts,
-               fig1, fig2b, fig4a, fig4b, guarantees, lost, machine, peers, scaling, simulated, simulated_sizes, solvers, table1, table2,
-               table3, validation, verdicts)
+from . import (ablation, cache, deviation, dihedral, distributed, distributed_figure, distributed_model,
+               experiment_verdicts, fig1, fig2b, fig4a, fig4b, guarantees, lost, machine, peers, scaling, simulated,
+               simulated_sizes, solvers, table1, table2, table3, validation, verdicts)
 
 
 @dataclass(frozen=True)

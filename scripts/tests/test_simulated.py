@@ -56,7 +56,8 @@ class Sizes(unittest.TestCase):
         said = simulated_sizes.depends_on_size(series_of(rows))
         self.assertIn("64, 128 and 192 times PODM on one core on 256 cores", said)
         self.assertIn("not played", said)
-        self.assertIn("column is not fitted and depends on the cells a core: 64, 128 and 192 times", scales(outcome.make(frame_of(rows))))
+        self.assertIn("column is not fitted and depends on the cells a core: 64, 128 and 192 times",
+                      scales(outcome.make(frame_of(rows))))
         self.assertEqual(simulated_sizes.depends_on_size(series_of(rows_of(SIZES[:1]))), "")
 
     def test_seeds_are_compared_seed_by_seed(self):
