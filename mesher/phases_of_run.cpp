@@ -151,13 +151,15 @@ void PhasesOfRun::report_refinement(Refinement& refinement, MeshingReport& repor
 // Phases whose loops run on this machine's threads take virtual time by their counted work.
 void PhasesOfRun::simulate(const Refinement& refinement, MeshingReport& report) const {
   const Team team = team_.team();
-  const auto voxels = static_cast<double>(image_.voxels.size());
-  const auto cells = static_cast<double>(refinement.mesh->num_cells());
+  const std::uint64_t voxels = image_.voxels.size(), cells = refinement.mesh->num_cells();
   const int num_workers = team.coordination.num_workers;
   report.virtual_phases_s = refinement.virtual_phases_s;
-  report.virtual_phases_s["read"] = virtual_seconds(team, kVoxelRead * voxels);
-  report.virtual_phases_s["transform"] = virtual_seconds(team, kVoxelTransformed * voxels, num_workers);
-  report.virtual_phases_s["extract"] = virtual_seconds(team, kCellExtracted * cells, num_workers);
+  report.virtual_phases_s["read"] = virtual_seconds(team, &TimeCosts::voxel_read, voxels);
+  report.virtual_phases_s["transform"] =
+      virtual_seconds(team, &TimeCosts::voxel_transformed, voxels, num_workers);
+  report.virtual_phases_s["extract"] = virtual_seconds(team, &TimeCosts::cell_extracted, cells, num_workers);
+  report.virtual_model = time_model_text(costs_of(team));
+  if (!options_.team.cost_factor.empty()) report.virtual_model += options_.team.cost_factor + "\n";
   const VirtualSpending& spending = refinement.virtual_spending;
   report.virtual_worker_s = {{"compute", spending.work_s},
                              {"memory_remote", spending.remote_memory_s},

@@ -85,6 +85,7 @@ constexpr MesherOption kMesherOptions[] = {
     {"leaf_size", Kind::kPositive},
     {"seed", Kind::kSeed},
     {"topology", Kind::kFile},
+    {"cost_factor", Kind::kWord},
     {kSmooth, Kind::kPositive},
     {kSizeImage, Kind::kFile},
     {kSizeNear, Kind::kWord},

@@ -60,11 +60,14 @@ struct VirtualRecord {
   std::optional<double> refine_s;
   std::optional<ByName<double>> phases_s;  ///< of equation 1
   std::optional<ByName<double>> worker_s;  ///< seconds of all workers together while they refine, by cause
+  /// Of the constants and rules of virtual time; older rows have none.
+  std::optional<std::string> model_sha256;
   Json as_written = Json::object();
   static constexpr auto fields() {
     return std::tuple{field_if_any("refine_s", &VirtualRecord::refine_s),
                       field_if_any("phases_s", &VirtualRecord::phases_s),
-                      field_if_any("worker_s", &VirtualRecord::worker_s)};
+                      field_if_any("worker_s", &VirtualRecord::worker_s),
+                      field_if_any("model_sha256", &VirtualRecord::model_sha256)};
   }
 };
 

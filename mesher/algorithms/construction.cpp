@@ -23,7 +23,7 @@ Construction::Construction(const Problem& problem, const Box& clamp_box, const T
       accesses_.push_back({.node = place.node, .addresses = {}});
     }
   });
-  charge_virtual(kAllocate, kThreadStarted * (num_workers() - 1));
+  charge_virtual(kAllocate, &TimeCosts::thread_started, static_cast<std::uint64_t>(num_workers() - 1));
 }
 
 Construction::Entries Construction::all_cells() const {

@@ -57,10 +57,16 @@ struct Team {
   const PageSampler* pages = nullptr;   // asked at the end of each phase, if any
 };
 
-/// Virtual seconds of work that takes so many on the reference core, where `num_working` share it.
-inline double virtual_seconds(const Team& team, double reference_s, int num_working = 1) {
-  const auto count = static_cast<std::size_t>(num_working);
-  const double speed = team.model != nullptr ? team.model->speed_of_one_of(count) : 1;
+/// The constants of virtual time on the team's machine.
+inline TimeCosts costs_of(const Team& team) {
+  return team.model != nullptr ? team.model->costs : TimeCosts();
+}
+/// Virtual seconds of so many pieces of work that cost as much each, where `num_working` share them.
+inline double virtual_seconds(const Team& team, double TimeCosts::*cost, std::uint64_t count,
+                              int num_working = 1) {
+  const double reference_s = costs_of(team).*cost * static_cast<double>(count);
+  const auto at_work = static_cast<std::size_t>(num_working);
+  const double speed = team.model != nullptr ? team.model->speed_of_one_of(at_work) : 1;
   return reference_s / speed / num_working;
 }
 
@@ -144,9 +150,9 @@ class Construction {
     }
   }
   /// Charges the virtual phase with work that no virtual worker did.
-  void charge_virtual(const std::string& phase, double reference_s) {
+  void charge_virtual(const std::string& phase, double TimeCosts::*cost, std::uint64_t count) {
     if (team_.executor != Executor::kVirtual) return;
-    result_.virtual_phases_s[phase] += virtual_seconds(team_, reference_s);
+    result_.virtual_phases_s[phase] += virtual_seconds(team_, cost, count);
   }
   /// Moves the mesh between operations: what is at a point goes to the NUMA node of worker_of(point), and
   /// stays where that is kNoWorker. All of the team move it, in their time. Nothing: the run is over, and
@@ -161,7 +167,7 @@ class Construction {
     };
     time.run([&](WorkerId self) {
       relocation->look(self, node_of);
-      time.spend(self, kEntryToLeaf * static_cast<double>(mesh().cell_bound()) / num_workers());
+      time.spend(self, time.costs().entry_to_leaf * static_cast<double>(mesh().cell_bound()) / num_workers());
     });
     time.run([&](WorkerId self) { relocation->rename(self, *pools_[self]); });
     if (time.is_over()) return std::nullopt;
@@ -169,7 +175,7 @@ class Construction {
     time.run([&](WorkerId self) {
       const std::size_t num_cells = relocation->move(self, *pools_[self]);
       has_moved[self] = 1;
-      time.spend(self, kCellMoved * static_cast<double>(num_cells));
+      time.spend(self, time.costs().cell_moved * static_cast<double>(num_cells));
     });
     for (WorkerId self = 0; self < has_moved.size(); ++self)  // moves allocate nothing, starting workers does
       if (has_moved[self] == 0) relocation->move(self, *pools_[self]);

@@ -57,7 +57,7 @@ Refinement refine_by_leaves(const Problem& problem, const Team& team, const Leaf
     octree = make_octree(problem, radii, levels.clamp, options, static_cast<std::uint64_t>(team.num_nodes),
                          stop.over());
   });
-  construction.charge_virtual("octree", kCubeMade * static_cast<double>(octree->num_cubes()));
+  construction.charge_virtual("octree", &TimeCosts::cube_made, octree->num_cubes());
   construction.withhold(octree->num_cubes() * kBytesPerCube + octree->num_leaves() * kBytesPerLeaf);
   const auto left = refine_leaves<Locks>(construction, levels.final, *octree, options);  // 5 to 29
   refine_anywhere(construction, "closing", levels.final, left, construction.num_workers());

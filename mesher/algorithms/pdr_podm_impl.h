@@ -33,13 +33,13 @@ struct Leaves {
     Worker<Locks>& master = node.master();
     const auto wait = [&] { time.block(master.id(), &Overhead::begging_s); };
     const auto pop = [&] {
-      time.spend_in(&queue, master.id(), kLeafHandedOut);
+      time.spend_in(&queue, master.id(), time.costs().leaf_handed_out);
       return queue.wait_and_pop(node.number(), wait, over);
     };
     while (const auto leaf = pop()) {  // 9, 10: with B1 and B2
       node.begin(octree, *leaf, time.now_s());
       const LeafCells::Entries poor = cells.take(*leaf);
-      time.spend(master.id(), kEntryGiven * static_cast<double>(poor.size()));
+      time.spend(master.id(), time.costs().entry_given * static_cast<double>(poor.size()));
       master.give(poor);                       // 11
       if (!refine_leaf(node, master)) return;  // 12 to 24, on all workers of the node
       if (!hand_over(node)) return;            // 21
@@ -66,14 +66,14 @@ struct Leaves {
   }
 
   void hand_over_own(Worker<Locks>& worker) {
-    time.spend(worker.id(), kEntryToLeaf * static_cast<double>(worker.num_foreign()));
+    time.spend(worker.id(), time.costs().entry_to_leaf * static_cast<double>(worker.num_foreign()));
     cells.add(worker.take_foreign(), queue, over);
   }
 
   // This leaf goes back to the queue, if others have listed cells of it.
   void end_leaf(ComputingNode<Locks>& node) {
     const LeafId leaf = node.leaf();
-    const double handing_over_s = kEntryToLeaf * static_cast<double>(node.num_foreign());
+    const double handing_over_s = time.costs().entry_to_leaf * static_cast<double>(node.num_foreign());
     LeafSchedule::Activation activation = node.end(cells, queue, over);
     time.spend(node.master().id(), handing_over_s);
     if (with_schedule) {
@@ -81,7 +81,7 @@ struct Leaves {
       activation.end_s = time.now_s();  // under the lock: they are listed by their ends
       schedule.push_back(std::move(activation));
     }
-    time.spend_in(&queue, node.master().id(), kLeafHandedOut);
+    time.spend_in(&queue, node.master().id(), time.costs().leaf_handed_out);
     queue.finish(leaf);
   }
 };
@@ -115,10 +115,10 @@ void distribute(LeafCells& cells, RefinementQueue& queue, LeafId num_leaves, int
   time.run([&](WorkerId self) {
     for (std::size_t slice = next_slice++; slice < cells.num_slices() && !time.is_over();
          slice = next_slice++)
-      time.spend(self, kEntryToLeaf * static_cast<double>(cells.distribute(slice)));
+      time.spend(self, time.costs().entry_to_leaf * static_cast<double>(cells.distribute(slice)));
     if (--num_at_work > 0) return;
     cells.share_out(queue, over);
-    time.spend(self, kLeafSharedOut * num_leaves);
+    time.spend(self, time.costs().leaf_shared_out * num_leaves);
   });
 }
 
@@ -135,7 +135,8 @@ void settle(Construction& construction, const Octree& octree, const RefinementQu
   if (!relocation) return;
   const auto num_workers = static_cast<std::size_t>(construction.num_workers());
   time.run([&](WorkerId self) {
-    time.spend(self, kEntryGiven * static_cast<double>(cells.rename(*relocation, self, num_workers)));
+    time.spend(self,
+               time.costs().entry_given * static_cast<double>(cells.rename(*relocation, self, num_workers)));
   });
 }
 

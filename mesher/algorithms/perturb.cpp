@@ -71,7 +71,7 @@ class Phase {
         ++(worker.perturbation().has_free_vertex(c) ? cells.with_free_vertex : cells.without);
         if (gives) worker.give(c);
       }
-      if (gives) time_.spend(self, kCellJudged * (end - begin));
+      if (gives) time_.spend(self, time_.costs().cell_judged * (end - begin));
     };
     if (gives) {
       time_.run(list);

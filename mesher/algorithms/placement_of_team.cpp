@@ -5,6 +5,7 @@
 
 #include "algorithms/team_size.h"
 #include "podm/errors.h"
+#include "runtime/cost_factor.h"
 
 namespace podm {
 
@@ -31,9 +32,14 @@ WorkerGroups groups_of(const std::vector<Place>& places) {
   return groups;
 }
 
-std::optional<MachineModel> read_model(const std::string& path) {
-  if (!path.ends_with(".toml")) return std::nullopt;
-  return MachineModel::from_file(path);
+std::optional<MachineModel> read_model(const TeamOptions& options) {
+  const bool has_costs = options.topology_path.ends_with(".toml") && options.executor == Executor::kVirtual;
+  if (!options.cost_factor.empty() && !has_costs)
+    throw InputError("--cost-factor needs --executor virtual and a machine in TOML (--topology NAME.toml)");
+  if (!options.topology_path.ends_with(".toml")) return std::nullopt;
+  MachineModel model = MachineModel::from_file(options.topology_path);
+  if (!options.cost_factor.empty()) CostFactor::parse(options.cost_factor).apply_to(model);
+  return model;
 }
 
 Topology read_topology(const std::string& path, const std::optional<MachineModel>& model) {
@@ -44,7 +50,7 @@ Topology read_topology(const std::string& path, const std::optional<MachineModel
 }  // namespace
 
 PlacementOfTeam place_team(const TeamOptions& options) try {
-  const std::optional<MachineModel> model = read_model(options.topology_path);
+  const std::optional<MachineModel> model = read_model(options);
   PlacementOfTeam placement{.machine = read_topology(options.topology_path, model),
                             .places = {},
                             .groups = {},

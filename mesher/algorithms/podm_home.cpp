@@ -49,7 +49,7 @@ Refinement podm_home(const Problem& problem, const Team& team, StopControl& stop
   std::optional<Homes> homes;
   construction.timed("refine",
                      [&] { homes.emplace(expected_work(problem, kSamplesPerHome * num_homes), num_homes); });
-  construction.charge_virtual("refine", kPlaceLookedUp * static_cast<double>(kSamplesPerHome * num_homes));
+  construction.charge_virtual("refine", &TimeCosts::place_looked_up, kSamplesPerHome * num_homes);
   const Parameters parameters = parameters_for(problem, 1, clamp);
   refine_anywhere(construction, "refine", parameters, construction.all_cells(), construction.num_workers(),
                   &*homes);

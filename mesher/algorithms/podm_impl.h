@@ -24,7 +24,8 @@ void send_home(Worker<Locks>& worker, Coordination& group, Time& time) {
   for (std::size_t i = 0; i < away.size(); ++i) {
     cells.push_back(away[i].entry);
     if (i + 1 < away.size() && away[i + 1].home == away[i].home) continue;
-    time.spend(worker.id(), kBegging + kEntryGiven * static_cast<double>(cells.size()));
+    time.spend(worker.id(),
+               time.costs().begging + time.costs().entry_given * static_cast<double>(cells.size()));
     group.send(away[i].home, std::exchange(cells, {}));
   }
 }
@@ -40,19 +41,20 @@ bool refine(Worker<Locks>& worker, Coordination& group, Time& time,
       if (worker.num_away() >= kAwayToSend) send_home(worker, group, time);
       const auto [answer, pause_s] = group.after(outcome, self, worker);
       if (const std::size_t given = num_listed - worker.num_listed(); given > 0)
-        time.spend_in(&group, self, kBegging + kEntryGiven * static_cast<double>(given));
+        time.spend_in(&group, self,
+                      time.costs().begging + time.costs().entry_given * static_cast<double>(given));
       if (answer == ContentionManager::Answer::kWait) time.block(self, &Overhead::contention_s);
       if (answer == ContentionManager::Answer::kPause) time.pause(self, pause_s);
     } else {
       if (before_begging) before_begging();
       if (worker.num_away() > 0) send_home(worker, group, time);
-      time.spend_in(&group, self, kBegging);
+      time.spend_in(&group, self, time.costs().begging);
       const Coordination::Begging begging = group.beg(self);
       if (begging == Coordination::Begging::kOver) break;
       if (begging == Coordination::Begging::kListed) time.block(self, &Overhead::begging_s);
       const Construction::Entries gift = group.take_gift(self);
       worker.give(gift);
-      time.spend(self, kEntryGiven * static_cast<double>(gift.size()));
+      time.spend(self, time.costs().entry_given * static_cast<double>(gift.size()));
     }
   }
   const bool is_done = !time.is_over();

@@ -204,6 +204,10 @@ void add_run_options(CLI::App& app, MeshCommand& command, Program which) {
           "machine that the threads stand for: hwloc XML, or TOML that tells its costs, too\n"
           "(NAME.toml, see experiments/machines) [default: this machine]",
           into(meshing.team.topology_path));
+  add_one(app, "--cost-factor", "NAME=FACTOR",
+          "take one constant of a machine in TOML times a factor, 0 to switch it off: what hangs\n"
+          "on it? results/README.md names them",
+          into(meshing.team.cost_factor));
   add_choice(app, "--executor",
              "threads, or virtual: one core plays any number of threads in virtual time,\n"
              "the same for the same seed; times are simulated",

@@ -4,6 +4,7 @@
 
 #include "cli/input_sha256.h"
 #include "cli/json_text.h"
+#include "io/sha256.h"
 
 namespace podm::cli {
 namespace {
@@ -180,6 +181,12 @@ Json simulated_machine_of(const MeshRun& run) {
           {"constants", machine->constants}};
 }
 
+std::string text_sha256(std::string_view text) {
+  Sha256 digest;
+  digest.update(std::span(text));
+  return digest.hexadecimal();
+}
+
 // What a virtual executor says of time is simulated: it stands apart from what was measured.
 Json virtual_of(const MeshRun& run) {
   if (run.options.team.executor != Executor::kVirtual) return nullptr;
@@ -191,6 +198,7 @@ Json virtual_of(const MeshRun& run) {
           {"refine_s", refine_s},
           {"phases_s", phases_s},
           {"worker_s", run.report.virtual_worker_s},
+          {"model_sha256", text_sha256(run.report.virtual_model)},
           {"machine", simulated_machine_of(run)}};
 }
 

@@ -8,6 +8,7 @@
 #include <string>
 #include <vector>
 
+#include "runtime/time_costs.h"
 #include "runtime/topology.h"
 
 namespace podm {
@@ -42,6 +43,7 @@ struct MachineModel {
   double retries = 0;  ///< an access that waits at a station lengthens service there by this share of itself
   double wake_s = 0;   ///< until a thread that sleeps runs again
   double lock_s = 0;   ///< taking and giving back a mutex that nobody holds
+  TimeCosts costs = {};  ///< of work; studies of the model take one times a factor (cost_factor.h)
 
   int num_nodes() const { return topology.num_nodes(); }
   /// Of one of so many cores at work: what they share slows them down in step with their number.

@@ -12,6 +12,7 @@
 #include "podm/counters.h"
 #include "refine/outcome.h"
 #include "runtime/placement.h"
+#include "runtime/time_costs.h"
 #include "runtime/worker_id.h"
 #include "workers/stop_control.h"
 
@@ -41,6 +42,7 @@ class RealTime {
   /// Virtual time charges these; here they take what they take.
   static void spend(WorkerId, double) {}
   static void spend_in(const void*, WorkerId, double) {}
+  static constexpr TimeCosts costs() { return {}; }
   /// Ends the run if a limit is passed, as is looked at now and then, and when a worker has nothing to do.
   template <class Worker>
   void check_limits(const Worker& worker) {

@@ -18,6 +18,7 @@ VirtualTime::VirtualTime(StopControl& stop, std::size_t num_workers, VirtualCost
                          const MachineModel* machine, std::vector<NodeIndex> nodes)
     : stop_(stop), cost_(cost), random_(seed), states_(num_workers) {
   if (machine == nullptr) return;
+  costs_ = machine->costs;
   speed_ = machine->speed_of_one_of(num_workers);
   wake_s_ = machine->wake_s;
   lock_s_ = machine->lock_s;
@@ -106,7 +107,7 @@ void VirtualTime::end_attempt(WorkerId self, const Work& work, const std::option
   state.most_steps = 0;
   state.fibre->allow(Fibre::kUnlimited);
   // Seeded perturbation: attempts of equal work do not end together.
-  const double stretch = std::uniform_real_distribution(0.5, 1.5)(random_);
+  const double stretch = std::uniform_real_distribution(1 - costs_.spread, 1 + costs_.spread)(random_);
   const double whole_s = stretch * reference_seconds(work) / speed_;
   const bool has_failed = outcome == Outcome::kLockConflict;
   const double work_s = has_failed ? std::max(0.0, whole_s - unlocked_seconds()) : whole_s;
@@ -131,11 +132,11 @@ void VirtualTime::pass_unlocked(WorkerId self) {
 }
 
 double VirtualTime::unlocked_seconds() const {
-  return (cost_ == VirtualCost::kUnit ? kUnit / 10 : kListLookedUp) / speed_;
+  return (cost_ == VirtualCost::kUnit ? kUnit / 10 : costs_.list_looked_up) / speed_;
 }
 
 double VirtualTime::reference_seconds(const Work& work) const {
-  return cost_ == VirtualCost::kUnit ? kUnit : attempt_seconds(work, states_.size() > 1);
+  return cost_ == VirtualCost::kUnit ? kUnit : attempt_seconds(work, costs_, states_.size() > 1);
 }
 
 void VirtualTime::pass(WorkerId self, double seconds) {

@@ -91,6 +91,8 @@ class VirtualTime {
     return states_[worker.id()].overhead;
   }
   const VirtualSpending& spending() const { return spending_; }
+  /// What one may spend.
+  const TimeCosts& costs() const { return costs_; }
 
  private:
 #ifdef PODM_INTERLEAVING
@@ -129,6 +131,7 @@ class VirtualTime {
 
   StopControl& stop_;
   VirtualCost cost_;
+  TimeCosts costs_;
   double speed_ = 1, wake_s_ = 0, lock_s_ = 0;  // of the machine's cores and system
   std::optional<RemoteMemory> remote_;          // of a machine of several nodes
   std::map<const void*, double> free_at_;       // when a section's last worker leaves it

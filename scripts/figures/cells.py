@@ -11,7 +11,7 @@ COLUMNS = ("cells", "seconds", "rate", "speedup", "efficiency")
 
 def cells(frame, series, hops):
     made = []
-    for basis in scaling.bases_of(series):
+    for basis in scaling.BASES:
         made += _cells_of_table1(frame, scaling.first_of(series, basis), basis)
         made += _cells_of_table2(frame, hops, basis)
     return made

@@ -2,24 +2,33 @@
 import math
 
 from . import paper, resolution, scaling, table2, table3
-from .cells import RATIO_TOLERANCE, SHARE_FACTOR
+from .cells import RATIO_TOLERANCE, SHARE_FACTOR, shares_agree
 from .reasons import lack_of_cores, of_basis
 from .style import NAMES
 
 CROSSOVER = (128, 160)  # the paper's: PODM ahead on the first, PDR.PODM on the second
 ABOVE_ONE = math.nextafter(1, 2)
 TURNING = 128  # cores from which on PODM's speed-up falls
-# Mean absolute deviation of speed-ups from the paper's; in simulations PODM's column is fitted, the other predicted.
+# Mean absolute deviation of speed-ups from the paper's; in simulations PODM's column is fitted, the other is not.
 DEVIATIONS = {"podm": 0.08, "pdr-podm": 0.15}
 
 
 def claims(frame, series, hops):
     made = []
-    for basis in scaling.bases_of(series):
-        one = scaling.first_of(series, basis)
-        made += [_crossover(frame, one, basis), *_trends(frame, one, basis), *_turns(frame, one, basis),
-                 _zero_hops(hops, frame, basis), *_deviations(frame, one, basis)]
+    for basis in scaling.BASES:
+        shown = scaling.simulated_sizes(series) if basis == "simulated" else [scaling.first_of(series, basis)]
+        for one in shown or [None]:
+            judged = [_crossover(frame, one, basis), *_trends(frame, one, basis), *_turns(frame, one, basis),
+                      *_deviations(frame, one, basis)]
+            made += [_with_size(claim, one) for claim in judged] if len(shown) > 1 else judged
+        made += [_zero_hops(hops, frame, basis), _zero_hop_cells(hops, frame, basis)]
     return made + _latencies(frame)
+
+
+def _with_size(claim, series):
+    """Each size has a verdict of its own."""
+    size = f", {scaling.short(series.cells_per_core)} cells a core"
+    return {**claim, "claim": claim["claim"] + size, "statement": claim["statement"] + size}
 
 
 def _claim(name, statement, published, basis):
@@ -203,6 +212,25 @@ def _zero_hops(hops, frame, basis):
                      f"least share {100 * worst:.2f} %, up to {int(beyond['cores'].max())} cores: "
                      f"{100 * (1 - worst):.2f} % leave their node, in the paper {100 * (1 - least):.2f} % at most",
                      *intervals)
+
+
+def _zero_hop_cells(hops, frame, basis):
+    """Table 2 number of cores by number of cores, by the rule of its cells; all of them have to agree."""
+    published = paper.table2().loc[0]
+    published = published[published < 1]  # on one blade no access can leave it
+    claim = _claim("zero-hop share by number of cores",
+                   f"on each of {len(published)} numbers of cores as many of PDR.PODM's accesses leave their node as "
+                   "in the paper, within a factor of two", len(published), basis)
+    ours = hops[(hops["basis"] == basis) & (hops["algorithm"] == "pdr-podm") & (hops["hops"] == 0)]
+    ours = ours.set_index("cores")["share"].reindex(published.index).dropna()
+    if len(ours) < len(published):
+        claim["reason"] = (f"{len(ours)} of {len(published)} numbers of cores have rows" if len(ours)
+                           else table2.why_no_hops(of_basis(frame, basis)))
+        return claim
+    agree = sum(shares_agree(1 - share, 1 - published[cores]) for cores, share in ours.items())
+    times = ", ".join(f"{(1 - share) / (1 - published[cores]):.3g}" for cores, share in ours.items())
+    return _decide(claim, agree == len(published), agree, f"{agree} of {len(published)} agree; times as many as the "
+                   f"paper's leave their node: {times}")
 
 
 def _latencies(frame):

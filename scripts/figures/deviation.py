@@ -1,5 +1,5 @@
 """Simulated speed-ups, efficiencies and zero-hop shares beside the paper's: what the constants of the machine were
-fitted to, PODM's column, and what they predict, PDR.PODM's and Table 2."""
+fitted to, PODM's column, and what they were not, PDR.PODM's and Table 2."""
 import itertools
 
 import pandas
@@ -8,16 +8,16 @@ from . import paper, scaling, style
 from .claims import DEVIATIONS, deviations
 from .table1 import with_bounds
 
-ROLES = {"podm": "fitted", "pdr-podm": "predicted"}
+ROLES = {"podm": "fitted", "pdr-podm": "not fitted"}
 
 
 def deviation(series):
-    """One line an algorithm, number of cores beyond one, and size simulated, or basis `extrapolated`: speed-up and
-    efficiency beside the paper's, and the `deviation` of the speed-up, ours over the paper's less 1."""
+    """One line an algorithm, number of cores beyond one, and size simulated: speed-up and efficiency beside
+    the paper's, and the `deviation` of the speed-up, ours over the paper's less 1."""
     published = paper.corrected_table1()
     lines = []
     for algorithm in paper.ALGORITHMS:
-        for one in _shown(series):
+        for one in scaling.simulated_sizes(series):
             for cores, deviates in deviations(one.table, algorithm).items():
                 ours, theirs = one.table.loc[algorithm, cores], published.loc[algorithm, cores]
                 lines.append({"algorithm": algorithm, "role": ROLES[algorithm], "cores": cores,
@@ -54,7 +54,7 @@ def means(table):
 
 def figure(series):
     """Deviations of speed-ups against cores, a panel an algorithm; None without simulated ones."""
-    shown = _shown(series)
+    shown = scaling.simulated_sizes(series)
     if deviation(series).empty:
         return None
     drawn, panels = style.new_figure(columns=2, width=12.0, height=3.8)
@@ -71,13 +71,14 @@ def figure(series):
                  ylabel="speed-up over the paper's, less 1, %")
         axes.set_xticks(cores, [str(count) for count in cores], rotation=45)
     style.legend(panels[-1], **style.BESIDE)
-    style.finish(drawn, f"What is left of the fit, and the prediction. {style.caption_of(shown, has_paper=False)}")
+    style.finish(drawn, "What is left of the fit, and what nothing was fitted to. "
+                        f"{style.caption_of(shown, has_paper=False)}")
     return drawn
 
 
 def efficiency_and_hops(series, hops):
     """One line a number of cores of the paper's tables: each algorithm's efficiency, and the zero-hop share of all but
-    PODM, as in Table 2; published, simulated and extrapolated, as text."""
+    PODM, as in Table 2; published and simulated, as text."""
     published = paper.corrected_table1()["efficiency"]
     zero = hops[hops["hops"] == 0].set_index(["algorithm", "basis", "cores"])
     lines = []
@@ -86,23 +87,16 @@ def efficiency_and_hops(series, hops):
         for algorithm, name in style.NAMES.items():
             if algorithm in paper.ALGORITHMS:
                 line[f"{name}, efficiency, published"] = _percent(published.get((algorithm, cores)))
-            for one in map(lambda basis: scaling.first_of(series, basis), scaling.BASES[1:]):
-                if one and (algorithm, cores) in one.table.index:
-                    row = one.table.loc[algorithm, cores]
-                    line[f"{name}, {one.kind()}"] = _percent(*row[["efficiency", "efficiency_low", "efficiency_high"]])
-        for algorithm, basis in itertools.product(list(style.NAMES)[1:], ("published", *scaling.BASES[1:])):
+            one = scaling.first_of(series, "simulated")
+            if one and (algorithm, cores) in one.table.index:
+                row = one.table.loc[algorithm, cores]
+                line[f"{name}, {one.kind()}"] = _percent(*row[["efficiency", "efficiency_low", "efficiency_high"]])
+        for algorithm, basis in itertools.product(list(style.NAMES)[1:], ("published", "simulated")):
             if (algorithm, basis, cores) in zero.index:
                 row = zero.loc[algorithm, basis, cores]
-                share = _percent(*row[["share", "share_low", "share_high"]], digits=2)
-                line[f"{style.NAMES[algorithm]}, 0 hops, {row['kind']}"] = share
+                line[f"{style.NAMES[algorithm]}, 0 hops, {row['kind']}"] = _percent(row["share"], digits=2)
         lines.append(line)
     return pandas.DataFrame(lines).fillna("")
-
-
-def _shown(series):
-    """All sizes, then what they extrapolate to."""
-    last = scaling.first_of(series, "extrapolated")
-    return scaling.simulated_sizes(series) + ([last] if last else [])
 
 
 def _percent(value, low=float("nan"), high=float("nan"), digits=1):

@@ -10,6 +10,10 @@ COLOURS = dict(zip(PARTS, ["#8fb996", "#e8a33d", "#e6d5e8", "#d1495b", "#8f575c"
                            "#6d9dc5"]))
 
 
+# On no line: nobody simulated them.
+EXTRAPOLATED = {"linestyle": "none", "marker": "D", "markersize": 4, "markerfacecolor": "none"}
+
+
 def figure(table, extrapolated):
     """Efficiencies against ranks, simulated ones with what they extrapolate to, and measured ones apart; parts of the
     simulated. None without rows on more than one rank."""
@@ -51,8 +55,7 @@ def _extrapolations(axes, table):
                                  100 * group["refining_efficiency_high"] - middle]).clip(0)
         axes.errorbar(group["ranks"], middle, yerr=bars, capsize=3, color=style.INK,
                       label=f"extrapolated, {scaling.short(group['cells_per_rank'].iloc[0])} cells a node of {threads} "
-                            f"thread{'s' * (threads > 1)}", **{**style.LINES["extrapolated"],
-                                                               "marker": "D" if threads == 1 else "s"})
+                            f"thread{'s' * (threads > 1)}", **{**EXTRAPOLATED, "marker": "D" if threads == 1 else "s"})
 
 
 def _parts(axes, table, extrapolated):

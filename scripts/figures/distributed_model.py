@@ -13,6 +13,7 @@ from . import scaling
 from .distributed import PARTS, REFINING
 
 NODE_CELLS = 20e6
+LEAST_SIZES = 3
 LEAST_CELLS_PER_RANK = 100e3  # of fewer most cells lie along the borders of blocks
 NODES = (8, 64)
 THREADS = (1, 16)
@@ -31,7 +32,7 @@ COLUMNS = ["basis", "ranks", "threads", "cells_per_rank", "n", "sizes", "refinin
 ASSUMPTIONS = (
     "Extrapolated: to nodes of 20 million cells, part by part, from the simulated sizes, as a sum of what goes with "
     "the cells, with the surface of a rank's share (cells^(-1/3)), its edges (cells^(-2/3)) and once; bars: the range "
-    "when any one of three or more sizes is left out, no confidence interval. It is assumed that the coarse mesh, of "
+    "when any one of the sizes is left out, no confidence interval. It is assumed that the coarse mesh, of "
     "the ratio simulated, is made by all threads of the first node while the others wait, and learned by one of each; "
     "that sixteen threads of a node share rounds, pieces and waiting alike, with and without ranks, and leave updates "
     "to one; that nodes are as fast as the processor that simulated them, all the same, and the network as stated, "
@@ -39,15 +40,15 @@ ASSUMPTIONS = (
 
 
 def extrapolated(table):
-    """One line a number of nodes and threads of a node, of which two sizes or more were simulated. `worst_miss`: of the
-    microseconds a cell that sizes left out have, the greatest deviation of the prediction from the others; nan of two
-    sizes."""
+    """One line a number of nodes and threads of a node, of which three sizes or more were simulated: two would leave
+    nothing over that says how good the model is. `worst_miss`: of the microseconds a cell that sizes left out have, the
+    greatest deviation of what the others say."""
     simulated = table[(table["basis"] == "simulated") & (table["cells_per_rank"] >= LEAST_CELLS_PER_RANK)]
     by_size = simulated.fillna({part: 0.0 for part in PARTS}).set_index("cells_per_rank")
     base, lines = by_size[by_size["ranks"] == 1], []
     for ranks in NODES:
         many = by_size[by_size["ranks"] == ranks]
-        if len(many) > 1 and len(base) > 1:
+        if len(many) >= LEAST_SIZES and len(base) >= LEAST_SIZES:
             lines += [_line(ranks, threads, many, base) for threads in THREADS]
     return pandas.DataFrame(lines, columns=COLUMNS)
 
@@ -60,8 +61,7 @@ def _line(ranks, threads, many, base):
                             for parts in (REFINING_PARTS, PARTS)])
 
     value, sizes = efficiencies(), list(many.index)
-    left_out = [efficiencies([size]) for size in sizes] if len(sizes) > 2 else []
-    bounds = numpy.array([value, *left_out]) if left_out else numpy.full((1, 2), numpy.nan)
+    bounds = numpy.array([value, *(efficiencies([size]) for size in sizes)])
     return {"basis": "extrapolated", "ranks": ranks, "threads": threads, "cells_per_rank": NODE_CELLS, "n": len(sizes),
             "sizes": " and ".join(scaling.short(size) for size in sizes),
             **{name + end: number for end, numbers in (("", value), ("_low", bounds.min(0)), ("_high", bounds.max(0)))
@@ -96,8 +96,6 @@ def _sum(parts, chosen, threads):
 
 
 def _worst_miss(many):
-    if len(many) < 3:
-        return numpy.nan
     misses = []
     for size in many.index:
         predicted = sum(_parts_at(size, many.drop(index=size)).values())
@@ -107,10 +105,7 @@ def _worst_miss(many):
 
 def readable(table):
     def share(line, name):
-        text = f"{100 * line[name]:.0f} %"
-        if pandas.isna(line[name + "_low"]):
-            return text
-        return f"{text} [{100 * line[name + '_low']:.0f}, {100 * line[name + '_high']:.0f}]"
+        return f"{100 * line[name]:.0f} % [{100 * line[name + '_low']:.0f}, {100 * line[name + '_high']:.0f}]"
 
     shown = table[["ranks", "threads", "sizes"]].rename(columns={"ranks": "nodes", "threads": "threads of a node",
                                                                  "sizes": "from cells a rank"}).copy()
@@ -118,8 +113,7 @@ def readable(table):
     lines = table.to_dict("records")
     shown["efficiency, refining"] = [share(line, "refining_efficiency") for line in lines]
     shown["efficiency, whole"] = [share(line, "efficiency") for line in lines]
-    shown["worst miss of a size left out"] = ["" if pandas.isna(one) else f"{100 * one:.0f} %"
-                                              for one in table["worst_miss"]]
+    shown["worst miss of a size left out"] = [f"{100 * one:.0f} %" for one in table["worst_miss"]]
     for part, words in PARTS.items():
         shown[f"{words}, us a cell"] = [f"{value:.3g}" for value in table[part]]
     return shown

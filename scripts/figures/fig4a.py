@@ -6,8 +6,8 @@ WHY_ABOVE = ("Equation 1 also counts reading and transforming one image, whose w
 
 
 def fig4a(series):
-    """The paper's curves and the first series of each basis, what the simulated ones extrapolate to without a line; the
-    efficiency of refining alone beside that of equation 1."""
+    """The paper's curves and the first series of each basis; the efficiency of refining alone beside that of
+    equation 1."""
     figure, (speedup, efficiency) = style.new_figure(columns=2, width=12.0, height=4.2)
     published = paper.table1()
     shown = scaling.shown_of(series)

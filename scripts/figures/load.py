@@ -13,6 +13,7 @@ SCHEMA = 4
 NEEDED_CLAIMS = ("structure", "delaunay", "radius_edge", "boundary_angles")
 SIMULATED_CACHES = "its seconds are those of a simulation of caches"
 UNDESCRIBED = "no machine described"
+ALTERED = "a constant of its model is another"
 OF_RANKS = "its ranks have tables and figures of their own"
 LONG_LISTS = ["labels", "facet_pairs", "command", "workers", "ranks.rounds", "ranks.by_rank"]
 # Phases in no second of equation 1: bettering angles, measuring and writing the mesh, finding the radius for a number
@@ -98,13 +99,16 @@ def mesher_of(row):
 
 
 def machine_of(row):
-    """Of measured rows the one that measured them; of simulated rows the described one, if any, which two descriptions
-    never share: the machine that simulates does not matter."""
-    described = (row.get("virtual") or {}).get("machine")
+    """Of measured rows the one that measured them. Of simulated rows the described machine, if any, and the model that
+    played it, so that neither two descriptions nor two models share a number; the machine that simulates does not
+    matter. Rows of before the model had a hash name none."""
+    virtual = row.get("virtual") or {}
+    described = virtual.get("machine")
     if not described:
         environment = row.get("environment", {})
         return machine_state.name_of(environment) if row["basis"] == "measured" else UNDESCRIBED
-    return f"{described.get('name', 'unnamed')} as described ({described.get('sha256', '')[:8]})"
+    model = f", model {virtual['model_sha256'][:8]}" if virtual.get("model_sha256") else ""
+    return f"{described.get('name', 'unnamed')} as described ({described.get('sha256', '')[:8]}{model})"
 
 
 def setting_of(row):
@@ -148,6 +152,8 @@ def doubt_of(row):
     threads, cores = row.get("threads", {}).get("used", 0), usable_cores(row.get("environment", {}))
     if cores and threads > cores and not is_virtual(row):
         return f"{threads} threads on {cores} cores"
+    if row.get("asked", {}).get("cost_factor"):
+        return unproved_of(row) or ALTERED
     return (unproved_of(row) or (SIMULATED_CACHES if simulates_caches(row) else "")
             or (machine_state.MOVED if machine_state.has_moved(row) else ""))
 

@@ -3,9 +3,9 @@ from dataclasses import dataclass, field
 
 import pandas
 
-from . import (cache, deviation, dihedral, distributed, distributed_figure, distributed_model, experiment_verdicts,
-               fig1, fig2b, fig4a, fig4b, guarantees, lost, machine, machine_state, paper_claims, peers, scaling,
-               simulated, solvers, table1, table2, table3, validation, verdicts)
+from . import (ablation, cache, deviation, dihedral, distributed, distributed_figure, distributed_model,
+               experiment_verdicts, fig1, fig2b, fig4a, fig4b, guarantees, lost, machine, machine_state, paper_claims,
+               peers, scaling, simulated, simulated_sizes, solvers, table1, table2, table3, validation, verdicts)
 
 
 # Tables with times that this machine took: they say in which state it was.
@@ -50,7 +50,9 @@ def _tables(frame, series, hops, ranks, nodes):
     """The paper's tables are there always, others where rows fill them."""
     always = {"table1": (table1.table1(series), table1), "table2": (hops, table2),
               "table3": (table3.table3(frame), table3)}
-    others = {"simulated": (simulated.simulated(frame), simulated), "machine": (machine.machine(frame), machine),
+    others = {"simulated_sizes": (simulated_sizes.speedups(series), simulated_sizes),
+              "ablation": (ablation.ablation(frame), ablation),
+              "simulated": (simulated.simulated(frame), simulated), "machine": (machine.machine(frame), machine),
               "deviation": (deviation.deviation(series), deviation), "lost": (lost.lost(frame, series), lost),
               "validation": (validation.validation(frame), validation),
               "peers": (peers.peers(frame), peers), "solvers": (solvers.solvers(frame), solvers),
@@ -64,6 +66,9 @@ def _tables(frame, series, hops, ranks, nodes):
         for name, table in (("deviation_means", deviation.means(tables["deviation"][0])),
                             ("efficiency_and_hops", deviation.efficiency_and_hops(series, hops))):
             tables[name] = (table, table)
+    shares = simulated_sizes.fitted_shares(frame, series)
+    if len(shares):
+        tables["fitted_shares"] = (shares, simulated_sizes.readable_shares(shares))
     return tables
 
 

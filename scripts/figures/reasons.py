@@ -6,8 +6,6 @@ from . import table2
 
 def why_missing(frame, series, basis, algorithm, cores, needs_hops=False):
     """The machine, the lack of a run, or runs that did not verify."""
-    if basis == "extrapolated":
-        return f"{algorithm} was simulated on {cores} cores at fewer than two sizes"
     wanted = frame
     for column, value in (("basis", basis), ("algorithm", algorithm), ("cores", cores)):
         wanted = wanted[wanted[column] == value] if column in wanted else wanted.iloc[:0]

@@ -5,8 +5,8 @@ over cores. Seconds are the phases that load.py times. `refining` leaves all but
 efficiency is the median of ratios to PODM on one core in the same round, so that a machine that grows slower from
 round to round does not show.
 
-Series have one of three bases, which no line of a table or figure joins: measured, simulated, and extrapolated from
-simulation to the paper's cells a core.
+Series have one of two bases, which no line of a table or figure joins: measured and simulated. The base is a run of
+as many cells a core; no series has another's. What was not run at the paper's cells a core is not told of them.
 """
 import math
 from dataclasses import dataclass
@@ -14,13 +14,13 @@ from dataclasses import dataclass
 import numpy
 import pandas
 
-from .extrapolation import LEAST_CELLS_PER_CORE, PAPER_CELLS_PER_CORE, at_paper_size
 from .spread import median_interval, order_interval
 
 KEY = ["basis", "machine", "build", "experiment", "setting", "image"]
 # Cells per core may stray this far from one core's; the paper's own stray by 3 %, a radius for a target by 5 %.
 SIZE_TOLERANCE = 0.10
-BASES = ("measured", "simulated", "extrapolated")
+BASES = ("measured", "simulated")
+PAPER_CELLS_PER_CORE = 3e6
 # What simulations of several sizes share; each size has an image of its own, NAME@SIZE, with as many voxels a cell.
 FAMILY = ["basis", "machine", "build", "experiment"]
 PHASES = ["allocate", "read", "transform", "octree", "initial", "refine", "closing", "extract", "other"]
@@ -28,28 +28,26 @@ PHASES = ["allocate", "read", "transform", "octree", "initial", "refine", "closi
 
 @dataclass(frozen=True)
 class Series:
-    """`key`: values of KEY by name. `table`: indexed by (algorithm, cores), medians with their bounds and n; of an
-    extrapolation n is the number of sizes. `grows`: whether each number of cores has an image of its own. `sizes`:
-    cells a core that it was extrapolated from."""
+    """`key`: values of KEY by name. `table`: indexed by (algorithm, cores), medians with their bounds and n. `grows`:
+    whether each number of cores has an image of its own."""
 
     key: dict
     cells_per_core: float
     table: pandas.DataFrame
     grows: bool = False
-    sizes: tuple = ()
 
     def label(self):
         """What was run where."""
         key = self.key
         image = "an image that grows with the cores" if self.grows else key["image"]
-        size = f"{' and '.join(map(short, self.sizes or [self.cells_per_core]))} cells a core"
+        size = f"{short(self.cells_per_core)} cells a core"
         return ", ".join(part for part in (key["experiment"], key["setting"], image, size, key["machine"]) if part)
 
     def kind(self):
         """What legends and tables say of its numbers. The basis is the first word."""
-        basis, size = self.key["basis"], f"{short(self.cells_per_core)} cells a core"
-        words = {"simulated": f"simulated, {size}", "extrapolated": f"extrapolated from simulation, {size}"}
-        return words.get(basis, basis) + (", image grows" if self.grows else "")
+        basis = self.key["basis"]
+        size = f", {short(self.cells_per_core)} cells a core" if basis == "simulated" else ""
+        return basis + size + (", image grows" if self.grows else "")
 
 
 def short(cells):
@@ -79,7 +77,7 @@ def of_one_size(rows):
 
 def weak_series(frame):
     """All series that have a run of PODM on one core. First comes the one to show: of most core counts, then nearest to
-    the paper's cells per core, then the newest; last what the simulated ones are extrapolated to."""
+    the paper's cells per core, then the newest."""
     found = []
     rows = headline_rows(frame)
     if rows.empty:
@@ -90,12 +88,11 @@ def weak_series(frame):
             members = group[abs(group["cells"] / group["cores"] / base - 1) <= SIZE_TOLERANCE]
             series = Series(dict(zip(KEY, values)), base, _table(members), bool(members["grows"].iloc[0]))
             found.append((len(series.table), -_octaves_from_paper(base), members.index.max(), series))
-    series = [series for *_, series in sorted(found, key=lambda entry: entry[:3], reverse=True)]
-    return series + _extrapolated(simulated_sizes(series))
+    return [series for *_, series in sorted(found, key=lambda entry: entry[:3], reverse=True)]
 
 
 def rows_of(frame, series):
-    """The rows of a series that nothing extrapolated."""
+    """The rows of a series."""
     rows = headline_rows(frame)
     rows = rows[(rows[list(series.key)] == pandas.Series(series.key)).all(axis=1)]
     return rows[abs(rows["cells"] / rows["cores"] / series.cells_per_core - 1) <= SIZE_TOLERANCE]
@@ -114,39 +111,9 @@ def _family(series):
     return [*(series.key[name] for name in FAMILY), series.key["image"].partition("@")[0]]
 
 
-def _extrapolated(sizes):
-    """A series of each (algorithm, cores) that two sizes have, as a list; none without. The rate of one core and
-    speed-ups are extrapolated; the rest follows from them."""
-    sizes, lines = [one for one in sizes if one.cells_per_core >= LEAST_CELLS_PER_CORE], {}
-    base_rate, *_ = _at_paper_size(sizes, ("podm", 1), "rate")
-    for index in sorted({index for one in sizes for index in one.table.index}):
-        speedup = (1.0, numpy.nan, numpy.nan) if index == ("podm", 1) else _at_paper_size(sizes, index, "speedup")
-        n, cores = sum(index in one.table.index for one in sizes), index[1]
-        cells, rate = PAPER_CELLS_PER_CORE * cores, base_rate * speedup[0]
-        if n > 1:
-            lines[index] = {"n": n, "cells": cells, "rate": rate, "seconds": cells / rate,
-                            **_bounds("speedup", speedup),
-                            **_bounds("efficiency", [value / cores for value in speedup])}
-    if not lines:
-        return []
-    table = _indexed(lines).reindex(columns=sizes[0].table.columns)
-    key = {**sizes[-1].key, "basis": "extrapolated", "setting": "", "image": sizes[-1].key["image"].partition("@")[0]}
-    return [Series(key, PAPER_CELLS_PER_CORE, table, sizes=tuple(one.cells_per_core for one in sizes))]
-
-
-def _at_paper_size(sizes, index, column):
-    known = [one for one in sizes if index in one.table.index]
-    return at_paper_size([one.cells_per_core for one in known], [one.table.loc[index, column] for one in known])
-
-
 def first_of(series, basis, grows=False):
     """The series of that basis to show, or None."""
     return next((one for one in series if one.key["basis"] == basis and one.grows == grows), None)
-
-
-def bases_of(series):
-    """Those of verdicts: nothing can be extrapolated from one size."""
-    return BASES if first_of(series, "extrapolated") else BASES[:2]
 
 
 def shown_of(series, bases=BASES):
@@ -177,30 +144,37 @@ def _clusters(cells):
 def _table(members):
     rate, refining_rate = members["cells"] / members["seconds"], members["cells"] / members["refining_s"]
     is_base = (members["algorithm"] == "podm") & (members["cores"] == 1)
-    rounds = members.get("repeat", pandas.Series(index=members.index, dtype=float))
-    base_of_round = refining_rate[is_base].groupby(rounds[is_base]).last()
+    pairs = _pairs(members)
+    base_of_pair = refining_rate[is_base].groupby(pairs[is_base]).last()
     lines = {}
     for (algorithm, cores), group in members.groupby(["algorithm", "cores"]):
         line = {"n": len(group), "cells": group["cells"].median()}
         line.update(_bounds("seconds", median_interval(group["seconds"])))
         line.update(_bounds("rate", median_interval(rate[group.index])))
         alone = algorithm == "podm" and cores == 1
-        speedup, line["coverage"] = _speedup(rate[group.index], rounds[group.index], rate[is_base], rounds[is_base])
+        speedup, line["coverage"] = _speedup(rate[group.index], pairs[group.index], rate[is_base], pairs[is_base])
         speedup = (1.0, numpy.nan, numpy.nan) if alone else speedup
         line.update(_bounds("speedup", speedup))
         line.update(_bounds("efficiency", [value / cores for value in speedup]))
         line.update(_bounds("refining_rate", median_interval(refining_rate[group.index])))
-        ratios = (refining_rate[group.index] / rounds[group.index].map(base_of_round) / cores).dropna()
+        ratios = (refining_rate[group.index] / pairs[group.index].map(base_of_pair) / cores).dropna()
         line.update(_bounds("refining_efficiency", (1.0, numpy.nan, numpy.nan) if alone else median_interval(ratios)))
         line.update(_phases(group))
         lines[algorithm, cores] = line
     return _indexed(lines)
 
 
-def _speedup(rates, rounds, base_rates, base_rounds):
-    """((speed-up, low, high), coverage): the median of the ratios within rounds; without common rounds the ratio of the
+def _pairs(members):
+    """The rows that a ratio may be of: measured ones of the same round, which share its disturbance; simulated ones, which
+    no clock disturbs, of the same seed."""
+    key = "seed" if members["basis"].iloc[0] == "simulated" and "seed" in members else "repeat"
+    return members.get(key, pandas.Series(index=members.index, dtype=float))
+
+
+def _speedup(rates, pairs, base_rates, base_pairs):
+    """((speed-up, low, high), coverage): the median of the ratios within pairs; without common pairs the ratio of the
     medians, which has no interval."""
-    ratios = (rates / rounds.map(base_rates.groupby(base_rounds).last())).dropna()
+    ratios = (rates / pairs.map(base_rates.groupby(base_pairs).last())).dropna()
     if ratios.empty:
         return (float(rates.median() / base_rates.median()), numpy.nan, numpy.nan), numpy.nan
     return median_interval(ratios), order_interval(ratios)[2]

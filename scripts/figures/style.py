@@ -15,10 +15,7 @@ PHASE_COLOURS = {"allocate": "#4c6a5b", "read": "#c9b458", "transform": "#8fb996
                  "other": "#b0b0b0"}
 PHASE_NAMES = {"allocate": "allocation", "initial": "initial mesh", "refine": "refinement"}
 LINES = {"measured": {"linestyle": "-"},
-         "simulated": {"linestyle": (0, (4, 2)), "linewidth": 1.2, "markersize": 5, "markerfacecolor": "none"},
-         "extrapolated": {"linestyle": "none", "marker": "D", "markersize": 4, "markerfacecolor": "none"}}
-EXTRAPOLATED = ("Extrapolated: at the paper's 3 million cells a core by a line in (cells a core)^(-1/3) through the "
-                "sizes simulated; bars: its range when any one of three or more is left out")
+         "simulated": {"linestyle": (0, (4, 2)), "linewidth": 1.2, "markersize": 5, "markerfacecolor": "none"}}
 # Of a legend on the right of its axes, where it hides no lines.
 BESIDE = {"loc": "upper left", "bbox_to_anchor": (1, 1)}
 GROWING = {"linewidth": 1.0, "markersize": 4}
@@ -69,8 +66,8 @@ def ghost(axes, table, column, scale=1.0):
 
 
 def plot_series(axes, series, column, scale=1.0, of="", **options):
-    """Our medians with their intervals; measured filled and solid, simulated hollow and dashed, extrapolated hollow and
-    on no line, thin where the image grows. `of` ends the words of the legend, `options` change the line."""
+    """Our medians with their intervals; measured filled and solid, simulated hollow and dashed, thin where the
+    image grows. `of` ends the words of the legend, `options` change the line."""
     options = {"linewidth": 1.8, "markersize": 6, "capsize": 3, **LINES[series.key["basis"]],
                **(GROWING if series.grows else {}), **options}
     for algorithm, part in by_algorithm(series.table):
@@ -103,15 +100,13 @@ def caption_of(series, has_paper=True):
     parts = []
     for one in series:
         counts = sorted(set(one.table["n"].astype(int)))
-        what = "sizes" if one.sizes else "n"
-        n = f"{what}\N{NO-BREAK SPACE}=\N{NO-BREAK SPACE}{counts[0]}" + (f" to {counts[-1]}" if len(counts) > 1 else "")
+        n = f"n\N{NO-BREAK SPACE}=\N{NO-BREAK SPACE}{counts[0]}" + (f" to {counts[-1]}" if len(counts) > 1 else "")
         parts.append(f"{one.key['basis']}{', image grows' if one.grows else ''}: {one.label()}, {n}")
     text = "; ".join(parts) if parts else "no verified weak-scaling rows"
     beyond = BEYOND if any("podm-home" in one.table.index for one in series) else ""
     if not has_paper:
         return f"{text}.{beyond}"
-    if any((one.table["n"] > 1).any() for one in series if not one.sizes):
-        text += ". Medians; bars: interval of order statistics, which holds the median with 95 % from six rounds on"
-    if any(one.sizes for one in series):
-        text += f". {EXTRAPOLATED}"
+    if any((one.table["n"] > 1).any() for one in series):
+        text += (". Medians; bars: interval of order statistics, over rounds or seeds, which holds the median with 95 % from "
+                 "six on")
     return f"{text}. Grey, dashed: the paper, Blacklight.{beyond}"

@@ -1,5 +1,5 @@
-"""Table 1: weak scaling. Published, measured and simulated values, and what the last extrapolate to, in separate lines
-of one table; numbers that no clock told carry a mark."""
+"""Table 1: weak scaling. Published, measured and simulated values in separate lines of one table; numbers that no
+clock told carry a mark."""
 import pandas
 
 from . import paper, scaling, style
@@ -12,12 +12,11 @@ SCALES = {"cells": (1e-6, 2), "seconds": (1, 2), "rate": (1e-6, 2), "speedup": (
 TITLES = {"cells": "M elements", "seconds": "seconds", "rate": "M elements/s", "speedup": "speed-up",
           "efficiency": "efficiency %", "refining_efficiency": "refining, efficiency %"}
 # Before numbers of virtual workers: hollow, as their markers in figures.
-MARKS = {"simulated": "\N{WHITE CIRCLE} ", "extrapolated": "\N{WHITE DIAMOND} "}
+MARKS = {"simulated": "\N{WHITE CIRCLE} "}
 
 
 def table1(series):
-    """One line a number of cores, algorithm, basis and image. Published values tell no `n`; of extrapolated ones it
-    counts sizes."""
+    """One line a number of cores, algorithm, basis and image. Published values tell no `n`."""
     published = paper.table1().reset_index().assign(basis="published", kind="published", n=pandas.NA, images="one",
                                                     series="Table 1 of the paper")
     ours = [one.table.reset_index().assign(basis=one.key["basis"], kind=one.kind(), series=one.label(),

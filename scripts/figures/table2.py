@@ -1,14 +1,12 @@
 """Table 2: shares of accesses by hops between the node that accesses and the one that owns what is accessed.
 
 As in the paper reads of the mesh are counted, visits of its cells and vertices; beside them stands the share when the
-kinds that it leaves out count too: writes of the mesh, reads of the image and of its transform. Of shares simulated
-at several sizes another block tells what they extrapolate to.
+kinds that it leaves out count too: writes of the mesh, reads of the image and of its transform.
 """
 import numpy
 import pandas
 
 from . import paper, scaling
-from .extrapolation import LEAST_CELLS_PER_CORE, PAPER_CELLS_PER_CORE, at_paper_size
 from .spread import order_interval
 from .table1 import in_order, marked
 
@@ -20,15 +18,12 @@ KINDS = "hops_by_kind."
 
 def table2(frame):
     """One line a basis, algorithm, number of cores and hops. A cell is of one trial's rows of one size: counts of its
-    repeats and seeds are added up. Of an extrapolated one `n` is the number of sizes."""
+    repeats and seeds are added up."""
     published = paper.table2().melt(ignore_index=False, var_name="cores", value_name="share").reset_index()
     blocks = [published.assign(basis="published", kind="published", algorithm="pdr-podm",
                                nodes=-(-published["cores"] // PAPER_NODE), series="Table 2 of the paper")]
-    for rows, others in _shown(frame):
-        shown = list(_blocks_of(rows))
-        blocks += shown
-        if rows["basis"].iloc[0] == "simulated":
-            blocks += _extrapolated([*shown, *(block for other in others for block in _blocks_of(other))])
+    for rows in _shown(frame):
+        blocks += _blocks_of(rows)
     table = pandas.concat(blocks, ignore_index=True).reindex(columns=COLUMNS)
     return table.astype({"n": "Int64", "nodes": "Int64", "cores": int})
 
@@ -37,8 +32,7 @@ def readable(table):
     """One line a number of cores, algorithm and basis; hops across, in percent, with the mark of the basis."""
     lines = []
     for (cores, algorithm, basis), group in table.groupby(["cores", "algorithm", "basis"]):
-        shares = {row["hops"]: marked(_percent(row["share"], row["share_low"], row["share_high"]), basis)
-                  for _, row in group.iterrows()}
+        shares = {row["hops"]: marked(_percent(row["share"]), basis) for _, row in group.iterrows()}
         zero = group[group["hops"] == 0].iloc[0]
         lines.append({"cores": cores, "algorithm": algorithm, "basis": basis, "kind": zero["kind"],
                       **{f"{hops} hops": shares.get(hops, "") for hops in range(int(table["hops"].max()) + 1)},
@@ -59,21 +53,17 @@ def zero_hop_share(counts):
     return counts[0] / sum(counts) if isinstance(counts, list) and sum(counts) else counts
 
 
-def _percent(share, low=numpy.nan, high=numpy.nan):
-    """"99.12 %", with its interval in brackets where there is one."""
-    if pandas.isna(share):
-        return ""
-    return f"{100 * share:.2f} %" + ("" if pandas.isna(low) else f" [{100 * low:.2f}, {100 * high:.2f}]")
+def _percent(share):
+    return "" if pandas.isna(share) else f"{100 * share:.2f} %"
 
 
 def _blocks_of(rows):
-    """A block a number of cores and algorithm; `cells_per_core` tells the size."""
+    """A block a number of cores and algorithm."""
     size = scaling.short((rows["cells"] / rows["cores"]).median())
     for (algorithm, cores), group in rows.groupby(["algorithm", "cores"]):
         group = scaling.of_one_size(group)
-        per_core = group["cells"].iloc[-1] / cores
         kind = f"simulated, {size} cells a core" if _grows(rows) else "simulated, one mesh on any number of cores"
-        yield _block(group).assign(algorithm=algorithm, cores=cores, cells_per_core=per_core,
+        yield _block(group).assign(algorithm=algorithm, cores=cores,
                                    kind=kind if group["basis"].iloc[0] == "simulated" else group["basis"].iloc[0])
 
 
@@ -81,23 +71,6 @@ def _grows(rows):
     """Whether cells grow with the cores."""
     per_core = rows["cells"] / rows["cores"]
     return per_core.max() / per_core.min() <= (1 + scaling.SIZE_TOLERANCE) ** 2
-
-
-def _extrapolated(blocks):
-    """A block a number of cores and algorithm of which there are two sizes. Shares stay between 0 and 1."""
-    shares = pandas.concat(blocks, ignore_index=True).pivot_table(
-        index=["algorithm", "cores", "cells_per_core"], columns="hops", values="share", fill_value=0.0)
-    shares = shares[shares.index.get_level_values("cells_per_core") >= LEAST_CELLS_PER_CORE]
-    kind = f"extrapolated from simulation, {scaling.short(PAPER_CELLS_PER_CORE)} cells a core"
-    for (algorithm, cores), sizes in shares.groupby(["algorithm", "cores"]):
-        per_core = sizes.index.get_level_values("cells_per_core").to_numpy()
-        if len(sizes) > 1:
-            values = numpy.array([at_paper_size(per_core, sizes[hops]) for hops in sizes]).clip(0, 1)
-            yield pandas.DataFrame({
-                "basis": "extrapolated", "kind": kind, "algorithm": algorithm, "cores": cores, "hops": list(sizes),
-                "share": values[:, 0], "share_low": values[:, 1], "share_high": values[:, 2], "n": len(sizes),
-                "nodes": max(block["nodes"].iloc[0] for block in blocks if block["cores"].iloc[0] == cores),
-                "series": f"from {' and '.join(scaling.short(one) for one in per_core)} cells a core"})
 
 
 def _block(group):
@@ -134,8 +107,7 @@ def _label(row):
 
 def _shown(frame):
     """The rows of each basis, of one machine, program, trial and image: those with the most core counts, then the most
-    cells, then the newest; with each the likes of it of other sizes: those of other trials of the experiment whose
-    cells grow with the cores."""
+    cells, then the newest."""
     rows = scaling.headline_rows(frame)
     if rows.empty or "hops" not in rows:
         return []
@@ -146,16 +118,7 @@ def _shown(frame):
         rank = (has_pdr_podm, group["cores"].nunique(), group["cells"].max(), group.index.max())
         if values[0] not in chosen or rank > chosen[values[0]][0]:
             chosen[values[0]] = (rank, group)
-    return [(group, _likes(rows, group)) for _, group in chosen.values()]
-
-
-def _likes(rows, shown):
-    """Rows by setting. Cells grow with the cores in them and in those shown, or there is nothing to extrapolate."""
-    first = shown.iloc[0]
-    family = rows[(rows[scaling.FAMILY] == first[scaling.FAMILY]).all(axis=1)]
-    family = family[family["image"].str.partition("@")[0] == first["image"].partition("@")[0]]
-    others = [group for setting, group in family.groupby("setting", sort=False) if setting != first["setting"]]
-    return [group for group in others if _grows(group)] if _grows(shown) else []
+    return [group for _, group in chosen.values()]
 
 
 def _sum_of(lists):

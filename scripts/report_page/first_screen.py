@@ -1,7 +1,7 @@
 """What the page says first: four questions, each answered in a sentence and a picture."""
 from html import escape
 
-from figures import experiment_verdicts, guarantees, peers, scaling, style
+from figures import experiment_verdicts, guarantees, peers, scaling, simulated_sizes, style
 from figures.fig4a import WHY_ABOVE
 from figures.paper_claims import NAME
 
@@ -132,17 +132,18 @@ def _own_rates(rates):
 
 
 def scales(outcome):
-    """Measured rows alone."""
+    """Measured rows; of simulated ones what a reader has to know before any number of them."""
+    simulated = _aside(simulated_sizes.depends_on_size(outcome.series))
     shown = scaling.shown_of(outcome.series, ["measured"])
     counts = [count for count in scaling.core_counts([one.table for one in shown]) if count > 1]
     if not counts:
-        return _answer("Not known: no verified run of weak scaling on more than one core.")
+        return _answer("Not known: no verified run of weak scaling on more than one core.") + simulated
     picture = [bar for count in _some(counts) for bar in _bars_of_scaling(shown, count)]
     said = _scaling_said(shown[0], counts[-1])
     return (_answer(said) + bars("efficiency of weak scaling", picture, full=max(1.2, *(bar.value for bar in picture)),
                                  mark=1)
             + _aside(f"Efficiency: cells per second and core over PODM's on one core; the line is 100 %. {WHY_ABOVE}. "
-                     f"{style.caption_of(shown, has_paper=False)}"))
+                     f"{style.caption_of(shown, has_paper=False)}") + simulated)
 
 
 def _some(counts):

@@ -1,7 +1,7 @@
 """The page's HTML from an Outcome: four answers first, then everything they rest on. Everything is inlined."""
 from html import escape
 
-from figures import experiment_verdicts, peers
+from figures import experiment_verdicts, peers, simulated_sizes
 from figures.outcome import MEASURED_TABLES, readable_experiments, readable_verdicts
 from figures.write import svg_of
 
@@ -33,7 +33,7 @@ NOTES = {
     "table1": "Refining: octree, initial mesh, refinement and closing alone; its efficiency is the median of ratios "
               "within rounds.",
     "table2": "All kinds: with writes of the mesh and reads of the image and its transform, which the other columns "
-              "leave out. In brackets: the range when one of the sizes extrapolated from is left out.",
+              "leave out.",
     "simulated": "Seconds, losses and hops are of virtual workers. The wall time is what playing them took here, and "
                  "no time of theirs.",
     "solvers": "P1 elements, 0 on the outer boundary, until the residual is 1e-8 of the first. Eigenvalues are the "
@@ -44,8 +44,11 @@ NOTES = {
 }
 INTERVALS = ("In brackets: an interval of order statistics, which holds the median with 75 % of three rounds, 93.75 % "
              "of five and 95 % or more from six on.")
-# In the order of the section: what was fitted, what is left of it, then what is predicted.
-MACHINE_TABLES = {"machine": "Machines described, and their constants",
+# In the order of the section: what depends on the cells a core, on the fit and on single constants, then the rest.
+MACHINE_TABLES = {"simulated_sizes": "Speed-ups by cells a core, fitted and not fitted",
+                  "fitted_shares": "What the fitted constants decide: shares of worker time on several blades",
+                  "ablation": "Findings with each constant switched off and doubled",
+                  "machine": "Machines described, and their constants",
                   "validation": "Simulated beside measured, the same meshes",
                   "deviation_means": "Speed-ups: mean absolute deviation from the paper's",
                   "deviation": "Speed-ups (efficiencies) and their deviation from the paper's",
@@ -148,7 +151,8 @@ def _figures(outcome, names):
 
 def _machine(outcome):
     """The limits of the model come first, before any number of it."""
-    tables = [fold(title, table_html(outcome.tables[name][1], title), name != "lost")
+    notes = {"simulated_sizes": f'\n<p class="faint">{escape(simulated_sizes.NOTE)}</p>'}
+    tables = [fold(title, table_html(outcome.tables[name][1], title) + notes.get(name, ""), name != "lost")
               for name, title in MACHINE_TABLES.items() if name in outcome.tables]
     return "\n".join([limits(), *tables, _figures(outcome, MACHINE_FIGURES)])
 

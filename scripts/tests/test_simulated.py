@@ -1,11 +1,10 @@
-"""What simulated sizes extrapolate to, and the section on the simulated machine, from made-up rows."""
-import math
+"""Simulated sizes side by side, and the section on the simulated machine, from made-up rows."""
 import re
 import unittest
 
 import paths  # noqa: F401
 import synthetic
-from figures import (deviation, extrapolation, lost, machine, outcome, paper, scaling, style, table1, table2,
+from figures import (ablation, deviation, lost, machine, outcome, paper, scaling, simulated_sizes, style, table1,
                      validation)
 from report_page.first_screen import scales
 from report_page.limits import limits
@@ -26,81 +25,156 @@ def series_of(rows):
     return scaling.weak_series(frame_of(rows))
 
 
-class Extrapolation(unittest.TestCase):
-    X = 3e6 ** (-1 / 3)
+class Sizes(unittest.TestCase):
+    def test_each_size_is_over_one_core_of_its_own(self):
+        rows = [row for size in SIZES for row in rows_of([size])]
+        for row in rows:  # cores of larger meshes are faster
+            row["virtual"]["phases_s"]["refine"] /= row["cells"] / row["threads"]["used"]
+        for one in scaling.simulated_sizes(series_of(rows)):
+            x = one.cells_per_core ** (-1 / 3)
+            self.assertAlmostEqual(one.table.loc["pdr-podm", 256]["speedup"], 0.6 * 256 - 10 * x)
 
-    def test_a_line_through_all_sizes_is_met_and_has_no_spread(self):
-        value, low, high = extrapolation.at_paper_size(SIZES, [7 - 3 * size ** (-1 / 3) for size in SIZES])
-        for one in (value, low, high):
-            self.assertAlmostEqual(one, 7 - 3 * self.X)
+    def test_a_size_without_its_base_is_in_no_series(self):
+        rows = [row for row in rows_of() if row["threads"]["used"] > 1 or row["cells"] != SIZES[2]]
+        self.assertEqual([one.cells_per_core for one in scaling.simulated_sizes(series_of(rows))], list(SIZES[:2]))
 
-    def test_sizes_that_lie_on_no_line_have_an_interval_around_the_value(self):
-        value, low, high = extrapolation.at_paper_size(SIZES, [1, 2, 2.5])
-        self.assertTrue(low < value < high)
+    def test_sizes_stand_side_by_side_and_none_beyond_them(self):
+        rows = [row for row in rows_of() if row["cells"] < 1e8 or row["algorithm"] == "podm"]
+        table = simulated_sizes.speedups(series_of(rows)).set_index("cores")
+        line = table.loc[256]
+        self.assertEqual(list(table.index), [32, 256])
+        for size, x in (("40", 40e3 ** (-1 / 3)), ("160", 160e3 ** (-1 / 3))):
+            self.assertEqual(line[f"PDR.PODM, not fitted: {size}\N{NO-BREAK SPACE}k"], f"{0.6 * 256 - 10 * x:.1f}")
+        self.assertEqual(line["PDR.PODM, not fitted: 640\N{NO-BREAK SPACE}k"], "not played")
+        self.assertEqual(line["PDR.PODM: paper"], "163.8")
+        self.assertEqual(line["PDR.PODM, not fitted: most over least"], "1.00")
+        self.assertFalse([name for name in table if "M" in name.partition(":")[2]])
 
-    def test_two_sizes_have_no_interval_and_one_no_value(self):
-        value, low, high = extrapolation.at_paper_size(SIZES[:2], [1, 2])
-        self.assertTrue(value > 2 and math.isnan(low) and math.isnan(high))
-        self.assertTrue(math.isnan(extrapolation.at_paper_size(SIZES[:1], [1])[0]))
+    def test_the_dependence_on_the_size_is_said_of_two_sizes_and_more(self):
+        rows = [row for factor, size in zip((1, 2, 3), SIZES) for row in synthetic.simulated_size(
+            size, lambda _, cores, factor=factor: factor * cores / 4)]
+        said = simulated_sizes.depends_on_size(series_of(rows))
+        self.assertIn("64, 128 and 192 times PODM on one core on 256 cores", said)
+        self.assertIn("not played", said)
+        self.assertIn("column is not fitted and depends on the cells a core: 64, 128 and 192 times",
+                      scales(outcome.make(frame_of(rows))))
+        self.assertEqual(simulated_sizes.depends_on_size(series_of(rows_of(SIZES[:1]))), "")
 
-    def test_speedups_and_shares_are_extrapolated_and_the_rest_follows(self):
-        frame = frame_of(rows_of())
-        one = scaling.first_of(scaling.weak_series(frame), "extrapolated")
-        line = one.table.loc["pdr-podm", 256]
-        self.assertAlmostEqual(line["speedup"], 0.6 * 256 - 10 * self.X)
-        self.assertAlmostEqual(line["efficiency"], line["speedup"] / 256)
-        self.assertAlmostEqual(line["cells"] / line["seconds"] / 1e5, line["speedup"])
-        self.assertEqual((line["n"], one.cells_per_core), (3, 3e6))
-        shares = table2.table2(frame).set_index(["basis", "algorithm", "cores", "hops"])["share"]
-        self.assertAlmostEqual(shares["extrapolated", "pdr-podm", 256, 0], 1 - self.X / 2, places=6)
-        self.assertAlmostEqual(sum(shares["extrapolated", "pdr-podm", 256, hops] for hops in (0, 1)), 1)
+    def test_seeds_are_compared_seed_by_seed(self):
+        rows = [{**row, "seed": seed, "trial": f"{row['trial']},seed={seed}"} for seed in range(1, 6)
+                for row in synthetic.simulated_size(40_000, lambda _, cores, seed=seed: cores * seed / 10)]
+        for row in rows:  # a slow seed is slow on any number of cores
+            row["virtual"]["phases_s"]["refine"] *= row["seed"]
+        (one,) = scaling.simulated_sizes(series_of(rows))
+        line = one.table.loc["podm", 256]
+        self.assertEqual((line["n"], round(line["speedup"], 6)), (5, 76.8))
+        self.assertEqual((round(line["speedup_low"], 6), round(line["speedup_high"], 6)), (25.6, 128.0))
+        self.assertIn("[25.6, 128.0]", simulated_sizes.speedups([one]).iloc[-1]["PODM, fitted: 40\N{NO-BREAK SPACE}k"])
 
-    def test_shares_stay_shares(self):
-        rows = [row for size, zero in zip(SIZES, (0.5, 0.9, 0.999))
-                for row in synthetic.simulated_size(size, lambda _, cores: cores, zero_hops=zero)]
-        table = table2.table2(frame_of(rows)).query("basis == 'extrapolated'")
-        self.assertTrue(len(table) and table[["share", "share_low", "share_high"]].stack().between(0, 1).all())
+    def test_rows_of_two_models_are_in_no_series_together(self):
+        def of(model, sizes):
+            for row in rows_of(sizes):
+                row["virtual"].update(machine={"name": "Made-up", "sha256": "ab" * 32}, **model)
+                yield row
 
-    def test_one_size_gives_nothing(self):
-        frame = frame_of(rows_of(SIZES[:1]))
-        series = scaling.weak_series(frame)
-        self.assertEqual(scaling.bases_of(series), ("measured", "simulated"))
-        self.assertNotIn("extrapolated", set(table2.table2(frame)["basis"]))
+        rows = [*of({}, SIZES[:1]), *of({"model_sha256": "cd" * 32}, SIZES[1:])]
+        sizes = scaling.simulated_sizes(series_of(rows))
+        self.assertEqual([one.cells_per_core for one in sizes], list(SIZES[1:]))
+        self.assertIn("model cdcdcdcd", sizes[0].key["machine"])
 
-    def test_nothing_is_extrapolated_from_few_cells_a_core(self):
-        frame = frame_of(rows_of((2_000, 10_000, *SIZES[:2])))
-        self.assertEqual(scaling.first_of(scaling.weak_series(frame), "extrapolated").sizes, SIZES[:2])
-        self.assertEqual(set(table2.table2(frame).query("basis == 'extrapolated'")["n"]), {2})
-        self.assertEqual(scaling.bases_of(series_of(rows_of((2_000, 10_000)))), ("measured", "simulated"))
+    def test_claims_are_judged_size_by_size(self):
+        faster = {40_000: {128: 0.5, 256: 2.0}, 160_000: {128: 2.0, 256: 2.0}}
+        rows = [row for size, by_cores in faster.items() for row in synthetic.simulated_size(
+            size, lambda algorithm, cores, by_cores=by_cores: cores / 4 * (by_cores[cores] if algorithm == "pdr-podm"
+                                                                           else 1), counts=(1, 128, 256))]
+        claims = {one["claim"]: one["value"] for one in outcome.make(frame_of(rows)).verdicts["claims"]
+                  if one["basis"] == "simulated"}
+        self.assertEqual(claims["crossover, 40\N{NO-BREAK SPACE}k cells a core"], [128, 256])
+        self.assertEqual(claims["crossover, 160\N{NO-BREAK SPACE}k cells a core"], [1, 128])
 
-    def test_sizes_of_other_machines_experiments_and_images_are_left_out(self):
-        other = synthetic.row()["environment"] | {"cpu": "Another"}
-        shown = list(rows_of(SIZES[1:]))
-        for changes in ({"environment": other}, {"programs": {}}):
-            rows = [*shown, *rows_of(SIZES[:1], **changes)]
-            self.assertEqual(scaling.first_of(series_of(rows), "extrapolated").sizes, SIZES[1:])
-        rows = [*shown, *({**row, "experiment": "another"} for row in rows_of(SIZES[:1]))]
-        self.assertEqual(scaling.first_of(series_of(rows), "extrapolated").sizes, SIZES[1:])
-        rows = [*shown, *({**row, "input": {"name": "phantom:other@64"}} for row in rows_of(SIZES[:1]))]
-        self.assertEqual(scaling.first_of(series_of(rows), "extrapolated").sizes, SIZES[1:])
+    def test_shares_without_a_hop_are_judged_number_of_cores_by_number_of_cores(self):
+        published = paper.table2().loc[0]
+        for worse, agree in ((1.5, 7), (3.0, 0)):
+            rows = list(synthetic.simulated_size(40_000, lambda _, cores: cores, counts=(1, *published.index)))
+            for row in rows:
+                cores = row["threads"]["used"]
+                if cores > 16:
+                    remote = worse * (1 - published[cores])
+                    row.update(hops=[int(1e9 * (1 - remote)), int(1e9 * remote)], leaves={"nodes": cores // 16})
+            claim = next(one for one in outcome.make(frame_of(rows)).verdicts["claims"]
+                         if one["claim"] == "zero-hop share by number of cores" and one["basis"] == "simulated")
+            self.assertEqual((claim["value"], claim["paper"]), (agree, 7))
+            self.assertEqual(claim["verdict"], "agrees" if agree == 7 else "differs")
 
-    def test_hops_of_rows_whose_cells_do_not_grow_are_no_size(self):
-        fixed = [{**row, "cells": 500_000, "trial": f"fixed,threads={row['threads']['used']}"}
-                 for row in rows_of(SIZES[:1])]
-        rows = [*rows_of(SIZES[1:]), *fixed]
-        self.assertEqual(set(table2.table2(frame_of(rows)).query("basis == 'extrapolated'")["n"]), {2})
 
-    def test_nothing_measured_is_extrapolated(self):
-        rows = [synthetic.row(cells=cells, trial=f"{cells},threads=1") for cells in (300_000, 3_000_000)]
-        self.assertIsNone(scaling.first_of(series_of(rows), "extrapolated"))
+class FittedShares(unittest.TestCase):
+    def test_the_greatest_share_on_several_blades_counts(self):
+        rows = list(synthetic.with_losses(rows_of(SIZES[:1]), compute=0.6, memory_remote=0.1, network_queue=0.2))
+        for row in rows:
+            if row["threads"]["used"] == 256 and row["algorithm"] == "pdr-podm":
+                row["virtual"]["worker_s"]["network_queue"] *= 0
+        frame = frame_of(rows)
+        table = simulated_sizes.fitted_shares(frame, scaling.weak_series(frame)).set_index("algorithm")
+        self.assertAlmostEqual(table.loc["podm", "network_queue"], 0.2 / 0.9)
+        self.assertAlmostEqual(table.loc["pdr-podm", "memory_remote"], 0.1 / 0.7)
+        self.assertEqual(table.loc["pdr-podm", "n"], 2)
+        self.assertIn("fitted_shares", outcome.make(frame).tables)
+        self.assertTrue(simulated_sizes.fitted_shares(frame_of(rows_of()), series_of(rows_of())).empty)
 
-    def test_table_1_shows_the_largest_size_and_the_extrapolation_marked(self):
-        shown = table1.readable(table1.table1(series_of(rows_of())))
-        on_256 = shown[(shown["cores"] == 256) & (shown["algorithm"] == "podm")]
-        self.assertEqual(list(on_256["basis"]), [
-            "published", "simulated, 640\N{NO-BREAK SPACE}k cells a core",
-            "extrapolated from simulation, 3\N{NO-BREAK SPACE}M cells a core"])
-        self.assertTrue(on_256["speed-up"].iloc[2].startswith(table1.MARKS["extrapolated"]))
+
+class Ablation(unittest.TestCase):
+    RATES = {("podm", 1): 0.1, ("podm", 16): 1.6, ("pdr-podm", 16): 1.0, ("podm", 128): 9.0, ("pdr-podm", 128): 5.0,
+             ("podm", 256): 4.47, ("pdr-podm", 256): 8.0, ("podm-home", 256): 20.0}
+
+    def rows(self, factor=None, rates=None, zero_hops=None):
+        """Million cells a second by algorithm and cores."""
+        for (algorithm, cores), rate in {**self.RATES, **(rates or {})}.items():
+            made = synthetic.row(algorithm, cores, experiment="simulated_ablation", executor="virtual", cells=1_000_000,
+                                 phases_s={"refine": 1 / rate}, asked={"cost_factor": factor} if factor else {})
+            share = (zero_hops or {"podm": 0.2, "pdr-podm": 0.9}).get(algorithm, 0.5)
+            made["hops"] = [int(1e6 * share), int(1e6 * (1 - share))]
+            yield made
+
+    def lines(self, *groups):
+        table = ablation.readable(ablation.ablation(frame_of([row for group in groups for row in group])))
+        return table.set_index("constant")
+
+    def test_all_holds_as_they_are_and_survives_what_changes_nothing(self):
+        shown = self.lines(self.rows(), self.rows("wake=0"), self.rows("wake=2"))
+        self.assertEqual(set(shown.loc["as they are"].iloc[1:]), {"holds"})
+        self.assertEqual(set(shown.loc["wake"].iloc[1:]), {"survives"})
+        self.assertEqual(shown.loc["wake", "rows"], 2 * len(self.RATES))
+
+    def test_what_falls_names_its_factors(self):
+        shown = self.lines(self.rows("retries=0", {("podm", 256): 18.0}), self.rows("retries=2"), self.rows(),
+                           self.rows("core_speed=0.5", zero_hops={"podm": 0.9, "pdr-podm": 0.2}))
+        line = shown.loc["retries"]
+        for statement in ("PDR.PODM ahead on 256", "PODM slower on 256 than on 128",
+                          "PODM on 256 within 8 % of the paper's 44.7, the fit"):
+            self.assertEqual(line[statement], "falls: off")
+        self.assertEqual(line["PODM ahead on 128"], "survives")
+        hops = shown.loc["core speed", ablation.FINDINGS[-1].statement]
+        self.assertEqual(hops, "falls: halved")
+
+    def test_a_finding_that_does_not_hold_may_come_back_and_cannot_fall(self):
+        behind = {("pdr-podm", 256): 3.0}
+        shown = self.lines(self.rows(rates=behind), self.rows("wake=0", behind), self.rows("wake=2"))
+        self.assertEqual(shown.loc["as they are", "PDR.PODM ahead on 256"], "does not hold")
+        self.assertEqual(shown.loc["wake", "PDR.PODM ahead on 256"], "holds: doubled")
+
+    def test_what_lacks_rows_was_not_played(self):
+        part = [row for row in self.rows("wake=0") if row["threads"]["used"] < 256]
+        shown = self.lines(self.rows(), part)
+        self.assertEqual(shown.loc["wake", "PDR.PODM ahead on 256"], "not played")
+        self.assertEqual(shown.loc["wake", "PODM ahead on 128"], "survives")
+        self.assertTrue(ablation.ablation(frame_of([synthetic.row()])).empty)
+        self.assertEqual(set(self.lines(part).loc["wake"].iloc[1:]), {"not played"}, "nothing to compare with")
+
+    def test_altered_and_unproved_rows_give_no_other_number(self):
+        altered = list(self.rows("wake=0"))
+        self.assertEqual(scaling.weak_series(frame_of(altered)), [])
+        unproved = [{**row, "status": "unmet"} for row in self.rows()]
+        self.assertTrue(ablation.ablation(frame_of(unproved)).empty)
 
 
 class Machine(unittest.TestCase):
@@ -109,9 +183,9 @@ class Machine(unittest.TestCase):
         rows = [row for size in SIZES for row in synthetic.simulated_size(size, lambda *index: published[index],
                                                                           counts=(1, 32, 64, 128, 160, 256))]
         table = deviation.deviation(series_of(rows))
-        self.assertEqual(len(table), 2 * 5 * 4, "each algorithm and number of cores, three sizes and what follows")
+        self.assertEqual(len(table), 2 * 5 * 3, "each algorithm and number of cores, three sizes")
         self.assertTrue((table["deviation"].abs() < 1e-9).all())
-        self.assertEqual(list(deviation.means(table)["speed-up was"].unique()), ["fitted", "predicted"])
+        self.assertEqual(list(deviation.means(table)["speed-up was"].unique()), ["fitted", "not fitted"])
 
     def test_a_deviation_has_its_sign_and_counts_without_it(self):
         published = paper.corrected_table1()["speedup"]
@@ -185,16 +259,15 @@ class AtHome(unittest.TestCase):
             self.assertIn("PODM at home", told[name], name)
         for name in ("fig4a", "fig4b"):
             self.assertIn("PODM at home, simulated, 640\N{NO-BREAK SPACE}k", told[name])
-            self.assertIn("PODM at home, extrapolated", told[name])
             self.assertIn(style.BEYOND, told[name])
         lines = made.tables["table1"][0].query("algorithm == 'podm-home'")
         self.assertEqual(list(zip(lines["basis"], lines["cores"])), [
-            (basis, cores) for cores in (32, 256) for basis in ("simulated", "extrapolated")])
+            ("simulated", 32), ("simulated", 256)])
         self.assertTrue(all(abs(lines["efficiency"] - 0.8) < 1e-9))
         order = made.tables["table1"][1].query("cores == 256")["algorithm"].drop_duplicates()
         self.assertEqual(tuple(order), self.ALL)
         self.assertEqual(set(made.tables["table2"][0].query("algorithm == 'podm-home'")["basis"]),
-                         {"simulated", "extrapolated"})
+                         {"simulated"})
         self.assertIn("podm-home", set(made.tables["lost"][0]["algorithm"]))
         self.assertIn("PODM at home, 0 hops", told["efficiency_and_hops"])
         self.assertNotIn("PODM at home, efficiency, published", told["efficiency_and_hops"])

@@ -68,6 +68,9 @@ struct TeamOptions {
   /// The machine that the workers stand for, as hwloc XML or, with what it costs, as TOML (NAME.toml:
   /// runtime/machine_model.h). Empty: this one.
   std::string topology_path = {};
+  /// A constant of that machine in virtual time, times a factor, to see what hangs on it: "NAME=FACTOR",
+  /// runtime/cost_factor.h. Empty: none.
+  std::string cost_factor = {};
   Executor executor = Executor::kThreads;
   VirtualCost virtual_cost = VirtualCost::kMeasured;
   std::uint64_t seed = 1;  ///< decides pauses of Contention::kRandom, and virtual time

@@ -154,6 +154,8 @@ struct MeshingReport {
   std::map<std::string, double> virtual_phases_s;
   /// Simulated seconds of all workers together while they refine, by what they went into.
   std::map<std::string, double> virtual_worker_s;
+  /// The constants by which virtual time went, with their model's version: a line each, for hashing.
+  std::string virtual_model;
   /// The described machine whose costs virtual time charged, if any, and its constants that nobody measures.
   struct SimulatedMachine {
     std::string name;

@@ -1,0 +1,74 @@
+#include "runtime/cost_factor.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <charconv>
+
+namespace podm {
+
+namespace {
+
+constexpr double kMostFactor = 1e3;
+
+struct NamedConstant {
+  const char* name;
+  double MachineModel::*member;
+};
+// A core without speed would never end; hops without latency keep their order.
+constexpr std::array<NamedConstant, 6> kOfMachine{{{"core_speed", &MachineModel::core_speed},
+                                                   {"hop_latency", &MachineModel::hop_latency_s},
+                                                   {"miss_share", &MachineModel::miss_share},
+                                                   {"retries", &MachineModel::retries},
+                                                   {"wake", &MachineModel::wake_s},
+                                                   {"lock", &MachineModel::lock_s}}};
+// What an access keeps a hub or a router busy for: the first so many stations are hubs.
+constexpr const char *kHubService = "hub_service", *kRouterService = "router_service";
+
+bool is_known(const std::string& name) {
+  const auto has_name = [&](const auto& constant) { return name == constant.name; };
+  return std::any_of(kOfMachine.begin(), kOfMachine.end(), has_name) ||
+         std::any_of(kTimeCosts.begin(), kTimeCosts.end(), has_name) || name == kHubService ||
+         name == kRouterService;
+}
+
+std::string known_names() {
+  std::string names;
+  for (const auto& constant : kOfMachine) names += fmt::format("{}, ", constant.name);
+  names += fmt::format("{}, {}", kHubService, kRouterService);
+  for (const auto& constant : kTimeCosts) names += fmt::format(", {}", constant.name);
+  return names;
+}
+
+}  // namespace
+
+CostFactor CostFactor::parse(const std::string& text) {
+  const std::size_t sign = text.find('=');
+  CostFactor made{.name = text.substr(0, sign)};
+  if (!is_known(made.name))
+    throw TopologyError(fmt::format("no constant '{}': {}", made.name, known_names()));
+  const char* const last = text.data() + text.size();
+  const char* const first = sign == std::string::npos ? last : text.data() + sign + 1;
+  const auto [end, error] = std::from_chars(first, last, made.factor);
+  if (error != std::errc() || end != last || !(made.factor >= 0 && made.factor <= kMostFactor))
+    throw TopologyError(fmt::format("'{}' is not NAME=FACTOR with a factor from 0 to {}", text, kMostFactor));
+  if (made.factor == 0 && made.name == kOfMachine.front().name)
+    throw TopologyError("cores of no speed would never end: core_speed needs a factor above 0");
+  return made;
+}
+
+void CostFactor::apply_to(MachineModel& machine) const {
+  for (const auto& constant : kOfMachine)
+    if (name == constant.name) machine.*constant.member *= factor;
+  for (const auto& constant : kTimeCosts)
+    if (name == constant.name) machine.costs.*constant.member *= factor;
+  const auto num_hubs = static_cast<std::size_t>(machine.num_nodes());
+  for (std::size_t station = 0; station < machine.stations.size(); ++station)
+    if (name == (station < num_hubs ? kHubService : kRouterService))
+      machine.stations[station].service_s *= factor;
+  if (machine.miss_share > 1 || machine.costs.spread > 1)
+    throw TopologyError(fmt::format("{} times {} is a share above 1", name, factor));
+}
+
+}  // namespace podm
