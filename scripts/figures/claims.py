@@ -2,7 +2,7 @@
 import math
 
 from . import paper, resolution, scaling, table2, table3
-from .cells import RATIO_TOLERANCE, SHARE_FACTOR, shares_agree
+from .cells import RATIO_TOLERANCE, SHARE_FACTOR, near_share
 from .reasons import lack_of_cores, of_basis
 from .style import NAMES
 
@@ -222,15 +222,19 @@ def _zero_hop_cells(hops, frame, basis):
                    f"on each of {len(published)} numbers of cores as many of PDR.PODM's accesses leave their node as "
                    "in the paper, within a factor of two", len(published), basis)
     ours = hops[(hops["basis"] == basis) & (hops["algorithm"] == "pdr-podm") & (hops["hops"] == 0)]
-    ours = ours.set_index("cores")["share"].reindex(published.index).dropna()
+    ours = ours.set_index("cores").reindex(published.index).dropna(subset=["share"])
     if len(ours) < len(published):
         claim["reason"] = (f"{len(ours)} of {len(published)} numbers of cores have rows" if len(ours)
                            else table2.why_no_hops(of_basis(frame, basis)))
         return claim
-    agree = sum(shares_agree(1 - share, 1 - published[cores]) for cores, share in ours.items())
-    times = ", ".join(f"{(1 - share) / (1 - published[cores]):.3g}" for cores, share in ours.items())
-    return _decide(claim, agree == len(published), agree, f"{agree} of {len(published)} agree; times as many as the "
-                   f"paper's leave their node: {times}")
+    intervals = [resolution.of_line(line, "share", basis) for line in ours.to_dict("records")]
+    leaving = [(1 - share, interval and interval.map(lambda one: 1 - one), 1 - published[cores])
+               for (cores, share), interval in zip(ours["share"].items(), intervals)]
+    words = [resolution.verdict(value, interval, *near_share(of_paper)) for value, interval, of_paper in leaving]
+    agree = words.count(resolution.AGREES)
+    times = ", ".join(f"{value / of_paper:.3g}" for value, _, of_paper in leaving)
+    return _conclude(claim, resolution.together(words), agree, f"{agree} of {len(published)} agree; times as many as "
+                     f"the paper's leave their node: {times}", *intervals)
 
 
 def _latencies(frame):
