@@ -1,26 +1,90 @@
-"""Simulated speed-ups of every size, beside the paper's."""
+"""Simulated speed-ups of every size beside the paper's, side by side: how far a column depends on the cells a core, and
+how much of the workers' time the fitted constants decide."""
 import pandas
 
 from . import paper, scaling, style
+from .deviation import ROLES
+from .table1 import with_bounds
+
+NOT_PLAYED = "not played"
+# Of worker time: what the network's constants and those of memory behind it decide.
+FITTED_CAUSES = ("memory_remote", "network_queue")
+BLADE = 16  # cores of a blade of the paper's machine, which share a memory
+NOTE = (f"Each size is over PODM on one core of as many cells. Brackets: over seeds, by order statistics; of five the "
+        f"least and the greatest, which hold the median with 94 %. The paper's {scaling.short(3e6)} cells a core were "
+        f"{NOT_PLAYED}, and no value here is continued to them.")
 
 
 def speedups(series):
-    """One line a number of cores beyond one: by algorithm the speed-up over PODM on one core that the paper has, and
-    those simulated, by cells a core; as text, empty where there is none."""
+    """One line a number of cores beyond one, as text: by algorithm the speed-up over PODM on one core that the paper
+    has, those simulated by cells a core, and the greatest of these over the least."""
     published, sizes = paper.corrected_table1()["speedup"], scaling.simulated_sizes(series)
     lines = []
     for cores in (count for count in scaling.core_counts([one.table for one in sizes]) if count > 1):
         line = {"cores": cores}
-        for algorithm, name in style.NAMES.items():
-            if algorithm in paper.ALGORITHMS:
-                line[f"{name}: paper"] = _text(published.get((algorithm, cores)))
-            for one in sizes:
-                if algorithm in one.table.index.get_level_values("algorithm"):
-                    found = one.table["speedup"].get((algorithm, cores))
-                    line[f"{name}: {scaling.short(one.cells_per_core)}"] = _text(found)
+        for algorithm in style.NAMES:
+            if any(algorithm in one.table.index.get_level_values("algorithm") for one in sizes):
+                line.update(_of_algorithm(algorithm, cores, sizes, published))
         lines.append(line)
     return pandas.DataFrame(lines)
 
 
-def _text(value):
-    return "" if value is None else f"{value:.1f}"
+def readable(table):
+    return table
+
+
+def _of_algorithm(algorithm, cores, sizes, published):
+    name, line, found = style.NAMES[algorithm], {}, []
+    if algorithm in ROLES:
+        line[f"{name}: paper"] = f"{published[algorithm, cores]:.1f}" if (algorithm, cores) in published else ""
+        name += f", {ROLES[algorithm]}"
+    for one in sizes:
+        text = NOT_PLAYED
+        if (algorithm, cores) in one.table.index:
+            row = one.table.loc[algorithm, cores]
+            found.append(row["speedup"])
+            text = with_bounds(row["speedup"], row["speedup_low"], row["speedup_high"], 1)
+        line[f"{name}: {scaling.short(one.cells_per_core)}"] = text
+    if len(sizes) > 1:
+        line[f"{name}: most over least"] = f"{max(found) / min(found):.2f}" if len(found) > 1 else ""
+    return line
+
+
+def depends_on_size(series, cores=256):
+    """A sentence on PDR.PODM's column where two sizes or more were played on so many cores; empty otherwise."""
+    found = {scaling.short(one.cells_per_core): one.table.loc["pdr-podm", cores]["speedup"]
+             for one in scaling.simulated_sizes(series) if ("pdr-podm", cores) in one.table.index}
+    if len(found) < 2:
+        return ""
+    values, sizes = (" and ".join([", ".join(some[:-1]), some[-1]])
+                     for some in ([f"{one:.0f}" for one in found.values()], list(found)))
+    return (f"Simulated, PDR.PODM's column is not fitted and depends on the cells a core: {values} times PODM on one "
+            f"core on {cores} cores with {sizes} cells a core. The paper's {scaling.short(3e6)} a core were "
+            f"{NOT_PLAYED}.")
+
+
+def fitted_shares(frame, series):
+    """One line an algorithm and size: on more than one blade the greatest shares of worker time, over numbers of cores,
+    that go into memory of other blades and into queueing in the network. Empty where rows tell no causes."""
+    lines = []
+    for one in scaling.simulated_sizes(series):
+        rows = scaling.rows_of(frame, one)
+        causes = [column for column in rows if column.startswith("virtual.worker_s.")]
+        if not {f"virtual.worker_s.{cause}" for cause in FITTED_CAUSES} <= set(causes):
+            continue
+        shares = rows[causes].div(rows[causes].sum(axis=1), axis=0)
+        for algorithm in (name for name in style.NAMES if name in set(rows["algorithm"])):
+            beyond = shares[(rows["algorithm"] == algorithm) & (rows["cores"] > BLADE)]
+            if len(beyond):
+                lines.append({"algorithm": algorithm, "cells_per_core": one.cells_per_core, "n": len(beyond),
+                              **{cause: beyond[f"virtual.worker_s.{cause}"].max() for cause in FITTED_CAUSES}})
+    return pandas.DataFrame(lines)
+
+
+def readable_shares(table):
+    words = dict(zip(FITTED_CAUSES, ("memory of other blades", "queueing in the network")))
+    return pandas.DataFrame({
+        "algorithm": [style.NAMES[name] for name in table["algorithm"]],
+        "cells a core": [scaling.short(size) for size in table["cells_per_core"]], "rows": table["n"],
+        **{f"{words[cause]}, at most, % of worker time": [f"{100 * share:.2f}" for share in table[cause]]
+           for cause in FITTED_CAUSES}})
