@@ -42,8 +42,9 @@ class Tables(unittest.TestCase):
         self.assertEqual(self.of_size(head, at_32, "PDR.PODM", "40"), "4.0")
 
     def of_size(self, head, line, algorithm, size):
+        size = f": {size}\N{NO-BREAK SPACE}k"
         return next(cell for title, cell in zip(head, line)
-                    if title.split(":")[0].split(",")[0] == algorithm and title.endswith(f": {size}\N{NO-BREAK SPACE}k"))
+                    if title.split(":")[0].split(",")[0] == algorithm and title.endswith(size))
 
     def slivers(self, topology="aaaa"):
         for threads, seconds in (1, 3.0), (2, 2.0):
