@@ -71,6 +71,12 @@ class Tables(unittest.TestCase):
                               process={"wall_s": 60.0, "peak_rss_bytes": peak * 2**20}) for peak in (5, 7)]
         self.assertEqual(self.lines("costs", rows)[1], ["weak", "2", "3.0", "2.0", "7"])
 
+    def test_answers_of_the_gate_are_counts_of_tries(self):
+        row = {"basis": "simulated", "noise_percent": 4.5, "planted_percent": 5, "tries": 30, "slower": 28,
+               "not_slower": 0, "not_resolved": 2, "median_rounds": 50.0}
+        self.assertEqual(self.lines("gate", [row], "0.1.0/what/rows.jsonl")[1],
+                         ["4.5 %", "5 %", "28 of 30", "0 of 30", "2 of 30", "50"])
+
     def test_machines_are_named_by_their_processor_or_not_known(self):
         rows = [synthetic.row(environment=environment(topology)) for topology in ("aaaa", "aaaa", "gone")]
         _, known, lost = self.lines("machines", rows)
@@ -84,7 +90,9 @@ class Tables(unittest.TestCase):
         self.assertIn("| weak_scaling | first | measured | holds |", text)
 
     def test_arguments_that_do_not_fit_are_a_fault(self):
-        for name, arguments in ("costs", []), ("costs", ["0.1.0/gone"]), ("gone", []):
+        (self.folder / "verdicts.json").write_text("{}")
+        for name, arguments in (("costs", []), ("costs", ["0.1.0/gone"]), ("gone", []),
+                                ("verdicts", ["0.1.0/what/verdicts.json"])):
             sources = Sources(self.root)
             with self.assertRaises(DocsError):
                 generate(name, arguments, sources, Provenance(sources))
