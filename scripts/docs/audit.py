@@ -29,12 +29,13 @@ class Report:
 
 
 def pages_of(root):
-    """Every Markdown file of the tree; none is left out."""
+    """Every Markdown file that git tracks or would; without git, every one outside build folders."""
     listed = subprocess.run(["git", "-C", root, "ls-files", "-z", "--cached", "--others", "--exclude-standard", "*.md"],
                             capture_output=True, text=True, check=False)
     if listed.returncode == 0 and listed.stdout:
         return sorted(root / name for name in listed.stdout.split("\0") if name and (root / name).exists())
-    return sorted(path for path in root.rglob("*.md") if not any(part.startswith(".") for part in path.parts))
+    return sorted(path for path in root.rglob("*.md")
+                  if not any(part.startswith((".", "build")) for part in path.relative_to(root).parts))
 
 
 def audit(root):

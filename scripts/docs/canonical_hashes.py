@@ -87,6 +87,6 @@ def main(arguments=None):
         print(f"canonical_hashes: {error}", file=sys.stderr)
         return 2
     for name in changed:
-        print(f"canonical_hashes: {name} is another mesh than that of {HASHES.relative_to(ROOT)}; where that is meant, "
-              "scripts/canonical_hashes --write", file=sys.stderr)
+        print(f"canonical_hashes: {name} is another mesh, or of other arguments, than in {HASHES.relative_to(ROOT)}; "
+              "where that is meant, scripts/canonical_hashes --write", file=sys.stderr)
     return 1 if changed else 0

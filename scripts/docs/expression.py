@@ -67,3 +67,6 @@ class Expression:
 
 def _entries(value):
     return list(value.values()) if isinstance(value, dict) else value
+
+
+FACT = Expression("cells")  # stands for values that do not depend on the machine

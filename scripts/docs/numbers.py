@@ -19,7 +19,7 @@ NUMBER = re.compile(r"(?<![\w.^/#§])(?<![A-Za-z]-)(?<!\d[,:-])(?P<sign>[-+](?=\
                     r"(?!\.\d)(?![A-Za-z_]*\d*\()")
 NOTHING = "\0"  # in place of comments, which nobody sees: a unit may stand behind one
 AFTER = re.compile(rf"\0*[\s-]?(?:{'|'.join(map(re.escape, UNITS))})(?![\w/-]*\w\()(?!\w)")
-CELL = re.compile(r"[*~<> \u25cb\u25c7]*[-+]?\d[\d,.]*(?:e[-+]?\d+)?[\s\0]*(?:%|[\w/]{0,4})?[* \0]*")
+CELL = re.compile(r"[*~<> \u25cb\u25c7]*[-+]?\d[\d,.]*(?:e[-+]?\d+)?[\s\0]*(?:%|[A-Za-z/]{0,4})?[* \0]*")
 
 
 @dataclass(frozen=True)

@@ -7,7 +7,7 @@ from figures.spread import order_interval
 
 from .condition import Filter, parse_filter
 from .errors import DocsError
-from .expression import Expression
+from .expression import FACT, Expression
 
 WORDS = ("none", "one", "two", "three", "four", "five", "six", "seven", "eight", "nine", "ten", "eleven", "twelve")
 INTERVAL = {"low": lambda values: order_interval(values)[0], "high": lambda values: order_interval(values)[1],
@@ -85,10 +85,14 @@ def answer(query, sources, provenance):
         raise DocsError(f"no row has '{unknown[0]}'")
     if not rows and query.statistic != "count":
         raise DocsError("no row matches the filter")
-    fault = "" if is_published else provenance.fault_of(rows + base, query.value)
+    value = FACT if query.statistic == "count" else query.value
+    fault = "" if is_published else provenance.fault_of(rows + base, value)
     if fault:
         raise DocsError(fault)
-    return formatted(_statistic(query, rows, base), query), rows + base
+    try:
+        return formatted(_statistic(query, rows, base), query), rows + base
+    except (TypeError, ArithmeticError, statistics.StatisticsError) as error:
+        raise DocsError(f"{query.statistic} of '{query.value.text}': {error}") from None
 
 
 def formatted(value, query):

@@ -4,14 +4,14 @@ import pandas
 
 from figures import distributed, experiment_verdicts, scaling
 from figures import solvers as solving
+from figures.load import RecordError
 from figures.simulated_sizes import speedups
 from figures.write import markdown
 
 from .errors import DocsError
-from .expression import Expression
+from .expression import FACT, Expression
 from .provenance import Provenance
 
-FACT = Expression("cells")
 PHASES_OF_SLIVERS = ("perturb", "optimize")
 
 def _lines(table):
@@ -62,6 +62,15 @@ def costs(sources, folder):
     return _lines(pandas.DataFrame(lines))
 
 
+def gate(sources, file):
+    """Answers of the performance gate by noise and planted slowdown, of `podm-bench gate-simulation --json`."""
+    return _lines(pandas.DataFrame([
+        {"noise of a process": f"{row['noise_percent']:g} %", "planted": f"{row['planted_percent']:g} %",
+         **{answer.replace("_", " "): f"{row[answer]} of {row['tries']}"
+            for answer in ("slower", "not_slower", "not_resolved")},
+         "median rounds": f"{row['median_rounds']:.0f}"} for row in sources.rows(file)]))
+
+
 def machines(sources, folder):
     """The machines that rows name, by the hash of the topology: the processor by CPUID, or that it is not known."""
     by_hash = {}
@@ -102,7 +111,7 @@ def verdicts(sources, file):
 
 
 TABLES = {table.__name__: table
-          for table in (costs, machines, ranks, simulated_speedups, slivers, solvers, solvers_in_full, verdicts)}
+          for table in (costs, gate, machines, ranks, simulated_speedups, slivers, solvers, solvers_in_full, verdicts)}
 # Tables with seconds of the machine: their rows must be of one that is known.
 TIMED = {"costs": Expression("process"), "slivers": Expression("phases_s")}
 
@@ -116,5 +125,5 @@ def generate(name, arguments, sources, provenance):
         raise DocsError(fault)
     try:
         return "\n".join(TABLES[name](sources, *arguments)) + "\n"
-    except TypeError as error:
+    except (TypeError, KeyError, RecordError, experiment_verdicts.VerdictsError) as error:
         raise DocsError(f"table {name}: {error}") from None

@@ -133,6 +133,8 @@ class Figures(Tree):
                             ("0.1.0/sizes/rows.jsonl;; cells; mode; d", "no statistic"),
                             ("0.1.0/sizes/rows.jsonl;; __import__('os'); median; d", "no path"),
                             ("0.1.0/sizes/rows.jsonl;; cells; median; /1e6", "no format"),
+                            ("0.1.0/sizes/rows.jsonl;; cells / (repeat - repeat); max; d", "division by zero"),
+                            ("0.1.0/sizes/rows.jsonl;; status; median; d", "median of 'status'"),
                             ("somewhere;; cells; median; d", "neither files")):
             with self.subTest(query=query):
                 self.assert_fault(f"3<!--q {query}-->\n", word)
@@ -149,7 +151,8 @@ class Numbers(Tree):
     def test_what_is_no_measurement_needs_nothing(self):
         text = ("# 1.5 GB\n\nSince 2015 `4.5 GB` of [a](b1.5) 2^31 voxels, version 0.1.0, Gmsh 4.1, C3D4,\n"
                 "26 neighbours\n\n"
-                "    podm --radius 4.5\n\n```\n12.5\n```\n\n1. First\n")
+                "    podm --radius 4.5\n\n```\n12.5\n```\n\n1. First\n\n"
+                "| commit |\n| --- |\n| 646bd55 |\n")
         self.assertEqual(self.faults(text), [])
 
     def test_marks_cover_a_number_a_line_a_block_a_section_and_a_page(self):

@@ -37,8 +37,14 @@ class Tables(unittest.TestCase):
         self.assertEqual(at_256[0], "256")
         found = dict(zip(head, at_256))
         self.assertEqual((found["PODM: paper"], found["PDR.PODM: paper"]), ("44.7", "163.8"))
-        self.assertEqual((found["PODM: 40\N{NO-BREAK SPACE}k"], found["PODM: 160\N{NO-BREAK SPACE}k"]), ("32.0", "128.0"))
-        self.assertEqual(dict(zip(head, at_32))["PDR.PODM: 40\N{NO-BREAK SPACE}k"], "4.0")
+        self.assertEqual(self.of_size(head, at_256, "PODM", "40"), "32.0")
+        self.assertEqual(self.of_size(head, at_256, "PODM", "160"), "128.0")
+        self.assertEqual(self.of_size(head, at_32, "PDR.PODM", "40"), "4.0")
+
+    def of_size(self, head, line, algorithm, size):
+        size = f": {size}\N{NO-BREAK SPACE}k"
+        return next(cell for title, cell in zip(head, line)
+                    if title.split(":")[0].split(",")[0] == algorithm and title.endswith(size))
 
     def slivers(self, topology="aaaa"):
         for threads, seconds in (1, 3.0), (2, 2.0):
@@ -65,6 +71,12 @@ class Tables(unittest.TestCase):
                               process={"wall_s": 60.0, "peak_rss_bytes": peak * 2**20}) for peak in (5, 7)]
         self.assertEqual(self.lines("costs", rows)[1], ["weak", "2", "3.0", "2.0", "7"])
 
+    def test_answers_of_the_gate_are_counts_of_tries(self):
+        row = {"basis": "simulated", "noise_percent": 4.5, "planted_percent": 5, "tries": 30, "slower": 28,
+               "not_slower": 0, "not_resolved": 2, "median_rounds": 50.0}
+        self.assertEqual(self.lines("gate", [row], "0.1.0/what/rows.jsonl")[1],
+                         ["4.5 %", "5 %", "28 of 30", "0 of 30", "2 of 30", "50"])
+
     def test_machines_are_named_by_their_processor_or_not_known(self):
         rows = [synthetic.row(environment=environment(topology)) for topology in ("aaaa", "aaaa", "gone")]
         _, known, lost = self.lines("machines", rows)
@@ -78,7 +90,9 @@ class Tables(unittest.TestCase):
         self.assertIn("| weak_scaling | first | measured | holds |", text)
 
     def test_arguments_that_do_not_fit_are_a_fault(self):
-        for name, arguments in ("costs", []), ("costs", ["0.1.0/gone"]), ("gone", []):
+        (self.folder / "verdicts.json").write_text("{}")
+        for name, arguments in (("costs", []), ("costs", ["0.1.0/gone"]), ("gone", []),
+                                ("verdicts", ["0.1.0/what/verdicts.json"])):
             sources = Sources(self.root)
             with self.assertRaises(DocsError):
                 generate(name, arguments, sources, Provenance(sources))
