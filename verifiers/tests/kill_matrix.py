@@ -38,7 +38,7 @@ def word(is_killed, is_pure):
 def main():
     podm, verifier = sys.argv[1:]
     holes = 0
-    print(f"{'operator':<28} {'claim':<16} {'mutant':<10} neighbour")
+    print(f"{'operator':<35} {'claim':<16} {'mutant':<10} neighbour")
     with tempfile.TemporaryDirectory() as name:
         folder = pathlib.Path(name)
         shop = Workshop(podm, folder)
@@ -50,7 +50,7 @@ def main():
             code, verdict, warnings = run(verifier, pair.neighbour, claim or "structure", folder)
             is_accepted = code == 0 and verdict == "pass" and warnings == pair.neighbour.warnings
             holes += (not is_killed) + (not is_pure) + (not is_accepted)
-            print(f"{function.__name__:<28} {claim or 'the reader':<16} {word(is_killed, is_pure):<10} "
+            print(f"{function.__name__:<35} {claim or 'the reader':<16} {word(is_killed, is_pure):<10} "
                   f"{'accepted' if is_accepted else 'REJECTED'}   {function.__doc__}")
     print(f"{len(OPERATORS)} operators, {holes} holes")
     return 1 if holes else 0

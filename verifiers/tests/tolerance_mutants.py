@@ -119,7 +119,7 @@ def far_centroid(shop, options, reach):
     def at(distance):
         mesh = tetrahedron(REGULAR * 0.1 + (12 - distance, 1, 2), label=2)
         mesh.comments = UNCLAIMED
-        return Case(mesh, [*image, *options])
+        return Case(mesh, [*image, *options], warnings=1)  # no cell has label 1
     return mutant_of(at, reach)
 
 
@@ -144,7 +144,7 @@ def label_that_the_image_lacks(shop):
     having = image_of(shop, "having", voxels)
     cell = tetrahedron(REGULAR * 0.1 + 3, label=2)
     cell.comments = UNCLAIMED
-    return Mutant(Case(cell, lacking), Case(cell, having))
+    return Mutant(Case(cell, lacking), Case(cell, having, warnings=1))  # no cell has label 1
 
 
 @operator("labels")
