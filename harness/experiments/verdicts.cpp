@@ -155,8 +155,7 @@ std::string format_verdicts(const std::vector<ExperimentVerdicts>& all) {
           {kWithdrawn, verdicts.experiment->name, claim.name, "-", "-", "-", "-", "-", why_withdrawn(claim)});
     }
   return fmt::format(
-      "{}{}{}Claims: {} hold, {} do not hold, {} are not resolved, {} cannot be decided here; {} withdrawn "
-      "or "
+      "{}{}{}Claims: {} hold, {} do not hold, {} not resolved, {} cannot be decided here; {} withdrawn or "
       "superseded\n",
       remarks_in_lines(all), align(lines, 4), failed, numbers[0], numbers[1], numbers[2], numbers[3],
       num_withdrawn);

@@ -4,7 +4,7 @@ import json
 import pandas
 
 SCHEMA = "podm-bench-verdicts/2"
-WORDS = {"does_not_hold": "do not", "not_resolved": "are not resolved", "holds": "hold",
+WORDS = {"does_not_hold": "do not", "not_resolved": "not resolved", "holds": "hold",
          "cannot_be_decided": "cannot be decided here"}  # what claims of each verdict do, those to see first first
 WITHDRAWN = "withdrawn"
 HOW = ("No verdicts of experiments were given. `build/bin/podm-bench verdicts --json FILE experiments/*.toml` makes "
@@ -45,7 +45,7 @@ def table(found):
 
 
 def counts(found):
-    """"12 hold, 3 do not, 1 are not resolved, 5 cannot be decided here"; empty without verdicts."""
+    """"12 hold, 3 do not, 1 not resolved, 5 cannot be decided here"; empty without verdicts."""
     verdicts = list(table(found)["verdict"])
     told = [f"{verdicts.count(word)} {WORDS[word]}" for word in ("holds", "does_not_hold", "not_resolved",
                                                                  "cannot_be_decided")]

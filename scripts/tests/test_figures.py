@@ -277,7 +277,7 @@ class Experiments(unittest.TestCase):
     def test_what_does_not_hold_comes_first(self):
         self.assertEqual(list(experiment_verdicts.table(self.FOUND)["claim"]),
                          ["three", "five", "one", "four", "two", "zero"])
-        self.assertEqual(experiment_verdicts.counts(self.FOUND), "2 hold, 1 do not, 1 are not resolved, "
+        self.assertEqual(experiment_verdicts.counts(self.FOUND), "2 hold, 1 do not, 1 not resolved, "
                          "1 cannot be decided here; 1 withdrawn or superseded")
 
     def test_intervals_tell_their_coverage_and_what_was_withdrawn_its_successor(self):

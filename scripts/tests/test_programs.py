@@ -66,7 +66,7 @@ class Programs(unittest.TestCase):
         for words in (done.stdout, written):
             self.assertLess(words.index("second"), words.index("first"), "what does not hold is not hidden")
             self.assertIn("because of <third>", words)
-        self.assertIn("1 hold, 1 do not, 0 are not resolved, 1 cannot be decided here", done.stdout)
+        self.assertIn("1 hold, 1 do not, 0 not resolved, 1 cannot be decided here", done.stdout)
 
     def test_equal_records_give_equal_files(self):
         rows = write_rows(self.folder / "weak.jsonl", synthetic.like_the_paper(paper.table1(), repeats=2))
