@@ -17,8 +17,8 @@ COLUMNS = ["experiment", "setting", "image", "machine", "mesher", "version", "co
 GROUP = ["machine", "build", "experiment", "setting", "image"]
 OWN, OWN_VOLUME = "podm", "podm_volume"
 FIRST_SURFACE = "surface"  # the phase of meshers that begin with a finished surface
-LEFT_OUT = ("Refining leaves out the feature transform, allocation and extraction of PODM, the domain that CGAL prepares, "
-            "and the surface that TetGen and HXT are given.")
+LEFT_OUT = ("Refining leaves out the feature transform, allocation and extraction of PODM, the domain that CGAL "
+            "prepares, and the surface that TetGen and HXT are given.")
 COVERAGE = ("In brackets: from one order statistic to another; within rounds, so that a machine that grows slower does "
             "so for both. The column coverage is the probability that such an interval holds the median.")
 

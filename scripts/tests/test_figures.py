@@ -228,7 +228,8 @@ class Others(unittest.TestCase):
         slow = [1.0, 3.0, 1.0, 1.0, 10.0, 1.0]  # how much slower the machine is in each round
         ours = [synthetic.row(repeat=number, phases_s={"read": 9.0, "refine": 2.0 * factor})
                 for number, factor in enumerate(slow)]
-        theirs = [synthetic.peer("cgal", repeat=number, cells=3_000_000, phases_s={"prepare": factor, "refine": 7.0 * factor})
+        theirs = [synthetic.peer("cgal", repeat=number, cells=3_000_000,
+                                 phases_s={"prepare": factor, "refine": 7.0 * factor})
                   for number, factor in enumerate(slow)]
         line = peers.peers(frame_of([*ours, *theirs])).set_index("mesher").loc["cgal"]
         self.assertEqual([line["whole_ratio" + end] for end in ("", "_low", "_high")], [4.0, 4.0, 4.0])
