@@ -256,6 +256,9 @@ class Others(unittest.TestCase):
         shown = peers.speed_table(frame_of(rows)).set_index("mesher").loc["tetgen"]
         self.assertEqual((shown["version"], shown["M cells"], shown["facets"]), ("TetGen 1.5", "1.00", "310"))
         self.assertEqual(shown["bounds met"], "1 of 1 promised; misses delaunay")
+        rows[1]["promises"] = ["structure", "delaunay", "fidelity"]
+        shown = peers.speed_table(frame_of(rows)).set_index("mesher").loc["tetgen"]
+        self.assertEqual(shown["bounds met"], "1 of 3 promised, 1 not run; misses delaunay")
 
     def test_order_statistics_say_their_coverage(self):
         self.assertEqual(spread.order_interval([3, 1, 2]), (1, 3, 0.75))
