@@ -12,13 +12,13 @@ from .table1 import with_bounds
 
 RATES = ("whole_rate", "refining_rate", "volume_rate", "whole_ratio", "volume_ratio")
 COLUMNS = ["experiment", "setting", "image", "machine", "mesher", "version", "cores", "n", "cells", "facets",
-           *(name + end for name in RATES for end in ("", "_low", "_high")), "coverage", "promised", "kept", "misses",
-           "size_rank"]
+           *(name + end for name in RATES for end in ("", "_low", "_high")), "coverage", "promised", "kept", "not_run",
+           "misses", "size_rank"]
 GROUP = ["machine", "build", "experiment", "setting", "image"]
 OWN, OWN_VOLUME = "podm", "podm_volume"
 FIRST_SURFACE = "surface"  # the phase of meshers that begin with a finished surface
-LEFT_OUT = ("Refining leaves out the feature transform, allocation and extraction of PODM, the domain that CGAL prepares, "
-            "and the surface that TetGen and HXT are given.")
+LEFT_OUT = ("Refining leaves out the feature transform, allocation and extraction of PODM, the domain that CGAL "
+            "prepares, and the surface that TetGen and HXT are given.")
 COVERAGE = ("In brackets: from one order statistic to another; within rounds, so that a machine that grows slower does "
             "so for both. The column coverage is the probability that such an interval holds the median.")
 
@@ -71,6 +71,7 @@ def _with_bounds(table, name, scale, digits):
 
 def _bounds_met(line):
     text = f"{line['kept']} of {line['promised']} promised"
+    text += f", {line['not_run']} not run" if line["not_run"] else ""
     return text + (f"; misses {line['misses']}" if line["misses"] else "")
 
 
@@ -86,8 +87,9 @@ def _comparable(frame):
 
 
 def _line(rows, by_mesher):
-    facets = rows["boundary_facets"].median() if "boundary_facets" in rows else float("nan")
-    line = {"version": version_of(rows.iloc[-1]), "n": len(rows), "cells": rows["cells"].median(), "facets": facets,
+    facets = rows["boundary_facets"] if "boundary_facets" in rows else pandas.Series(dtype=float)
+    line = {"version": version_of(rows.iloc[-1]), "n": len(rows), "cells": rows["cells"].median(),
+            "facets": _median(facets),
             "misses": ", ".join(misses_of(rows)), **_promises(rows)}
     line.update(_bounds("whole_rate", _whole_rate(rows)))
     line.update(_bounds("refining_rate", rows["cells"] / rows["refining_s"]))
@@ -113,7 +115,13 @@ def _volume_rate(rows):
 
 def _bounds(name, values):
     values = values.dropna()
-    return dict(zip((name, name + "_low", name + "_high"), (values.median(), *order_interval(values)[:2])))
+    return dict(zip((name, name + "_low", name + "_high"), (_median(values), *order_interval(values)[:2])))
+
+
+def _median(values):
+    """nan without any."""
+    values = values.dropna()
+    return values.median() if len(values) else float("nan")
 
 
 def _ratio(name, rate_of, own, others):
@@ -132,13 +140,14 @@ def version_of(row):
 
 
 def _promises(rows):
-    """How many claims the mesher promises, and how many of these passed for all of the rows."""
+    """How many claims the mesher promises, how many of these passed for all of the rows, and how many were not run."""
     names = [name for name in rows if name.startswith("verdicts.") and rows[name].notna().any()]
     promised = rows["promises"].iloc[-1] if "promises" in rows else None
     if not isinstance(promised, list):
         promised = [name.removeprefix("verdicts.") for name in names]
-    kept = [claim for claim in promised if (rows.get(f"verdicts.{claim}") == "pass").all()]
-    return {"promised": len(promised), "kept": len(kept)}
+    verdicts = [rows.get(f"verdicts.{claim}", pandas.Series(dtype=object)) for claim in promised]
+    return {"promised": len(promised), "kept": sum(len(one) > 0 and (one == "pass").all() for one in verdicts),
+            "not_run": sum(not one.isin(["pass", "fail"]).any() for one in verdicts)}
 
 
 def misses_of(group):

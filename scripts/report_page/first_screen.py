@@ -11,7 +11,8 @@ from .paper_table import paper_table, said
 MOST_COUNTS = 4  # numbers of cores in the picture of scaling
 FAULTS = {"unmet": "missed a guarantee", "failed": "failed", "timed_out": "timed out", "interrupted": "interrupted"}
 NAMES = {**style.NAMES, "cgal": "CGAL, parallel", "cgal_sequential": "CGAL", "cgal_unsorted": "CGAL, unsorted queue",
-         "cgal6": "CGAL 6, parallel", "cgal6_unsorted": "CGAL 6, unsorted queue", "gmsh": "Gmsh's HXT", "tetgen": "TetGen"}
+         "cgal6": "CGAL 6, parallel", "cgal6_unsorted": "CGAL 6, unsorted queue", "gmsh": "Gmsh's HXT",
+         "tetgen": "TetGen"}
 FROM_SURFACE = ("tetgen", "gmsh")
 
 

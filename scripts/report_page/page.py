@@ -38,8 +38,8 @@ NOTES = {
                  "no time of theirs.",
     "solvers": "P1 elements, 0 on the outer boundary, until the residual is 1e-8 of the first. Eigenvalues are the "
                "largest of the matrix over its diagonal. The other meshers' sizes are those nearest to as many cells.",
-    "peers": "Whole: from the image in memory to the mesh in memory, with the making of the surface that TetGen and HXT "
-             f"are given. {peers.LEFT_OUT} From the surface: the volume part of those two, beside that of PODM "
+    "peers": "Whole: from the image in memory to the mesh in memory, with the making of the surface that TetGen and "
+             f"HXT are given. {peers.LEFT_OUT} From the surface: the volume part of those two, beside that of PODM "
              f"(podm_volume), without the cells that come with the surface. {peers.COVERAGE}",
 }
 INTERVALS = ("In brackets: an interval of order statistics, which holds the median with 75 % of three rounds, 93.75 % "

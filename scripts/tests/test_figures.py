@@ -228,7 +228,8 @@ class Others(unittest.TestCase):
         slow = [1.0, 3.0, 1.0, 1.0, 10.0, 1.0]  # how much slower the machine is in each round
         ours = [synthetic.row(repeat=number, phases_s={"read": 9.0, "refine": 2.0 * factor})
                 for number, factor in enumerate(slow)]
-        theirs = [synthetic.peer("cgal", repeat=number, cells=3_000_000, phases_s={"prepare": factor, "refine": 7.0 * factor})
+        theirs = [synthetic.peer("cgal", repeat=number, cells=3_000_000,
+                                 phases_s={"prepare": factor, "refine": 7.0 * factor})
                   for number, factor in enumerate(slow)]
         line = peers.peers(frame_of([*ours, *theirs])).set_index("mesher").loc["cgal"]
         self.assertEqual([line["whole_ratio" + end] for end in ("", "_low", "_high")], [4.0, 4.0, 4.0])
@@ -255,6 +256,9 @@ class Others(unittest.TestCase):
         shown = peers.speed_table(frame_of(rows)).set_index("mesher").loc["tetgen"]
         self.assertEqual((shown["version"], shown["M cells"], shown["facets"]), ("TetGen 1.5", "1.00", "310"))
         self.assertEqual(shown["bounds met"], "1 of 1 promised; misses delaunay")
+        rows[1]["promises"] = ["structure", "delaunay", "fidelity"]
+        shown = peers.speed_table(frame_of(rows)).set_index("mesher").loc["tetgen"]
+        self.assertEqual(shown["bounds met"], "1 of 3 promised, 1 not run; misses delaunay")
 
     def test_order_statistics_say_their_coverage(self):
         self.assertEqual(spread.order_interval([3, 1, 2]), (1, 3, 0.75))
