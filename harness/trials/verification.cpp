@@ -24,8 +24,8 @@ struct HistogramReport {
                       field("counts", &H::counts)};
   }
 };
-struct ImageTopologyReport {
-  std::int64_t components_6 = 0, components_26 = 0, euler_6 = 0, euler_26 = 0;
+struct ImageTopologyReport {  // whole numbers, of either sign
+  double components_6 = 0, components_26 = 0, euler_6 = 0, euler_26 = 0;
   static constexpr auto fields() {
     using T = ImageTopologyReport;
     return std::tuple{field("components_6", &T::components_6), field("components_26", &T::components_26),
@@ -33,7 +33,7 @@ struct ImageTopologyReport {
   }
 };
 struct LabelReport {
-  std::optional<std::int64_t> components, euler;
+  std::optional<double> components, euler;
   std::optional<ImageTopologyReport> image;
   static constexpr auto fields() {
     using L = LabelReport;
@@ -79,7 +79,7 @@ std::optional<DihedralRecord> dihedral_angles_of(const VerifierReport& report) {
   return {};
 }
 
-bool is_between(std::int64_t value, std::int64_t one, std::int64_t other) {
+bool is_between(double value, double one, double other) {
   return std::min(one, other) <= value && value <= std::max(one, other);
 }
 
