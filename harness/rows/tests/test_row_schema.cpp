@@ -89,6 +89,7 @@ TEST(RowSchema, CommittedRowsAreReadAndWrittenAsTheyWere) {
   std::size_t num_rows = 0;
   for (const auto& entry : fs::recursive_directory_iterator(kResults + "/reference")) {
     const std::string path = entry.path().string(), name = entry.path().filename().string();
+    if (entry.path().parent_path().filename() == "gate") continue;  // gate/gate_rounds.h and gate_evidence.h
     if (!name.ends_with(".jsonl") || name == "radii.jsonl" || name == "verification.jsonl") continue;
     const RowsRead read = read_rows(path);
     EXPECT_EQ(read.broken_line, 0u) << path;
