@@ -56,7 +56,7 @@ TEST(Slowdown, LostInNoiseIsNotResolvedAndPredictsTheRoundsThatAnAnswerTakes) {
     EXPECT_GT(slowdown.rounds_for_an_answer(), 10 * kLooks.back());
     EXPECT_LT(slowdown.rounds_for_an_answer(), 1000 * kLooks.back());
   }
-  EXPECT_LE(num_answered, kTries / 20);
+  EXPECT_LE(num_answered, kTries / 10);  // 5 % of the intervals may miss, and 1.025 is near to both bounds
 }
 
 TEST(Slowdown, IntervalsHoldTheTrueRatioAtAllLooksTogether) {
