@@ -1,10 +1,11 @@
 #!/bin/sh
-# The performance gate: the mesher of the working tree against that of the commit where it left branch $1 (main).
-# Exits with 1 when the change may not go in. Both are built side by side in build-gate/.
+# The performance gate: the mesher of the working tree against that of the commit where it left the branch or commit $1
+# (main). Exits with 1 when the change may not go in. Both are built side by side in build-gate/.
 set -eu
 cd "$(dirname "$0")/.."
 
-base=$(git merge-base HEAD "${1:-main}")
+since=${1:-main}
+base=$(git merge-base HEAD "$since") || { echo "ci/gate.sh: no commit of '$since' that HEAD began at" >&2; exit 2; }
 rm -rf build-gate/base-sources
 mkdir -p build-gate/base-sources
 git archive "$base" | tar -x -C build-gate/base-sources

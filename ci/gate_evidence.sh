@@ -1,26 +1,12 @@
 #!/bin/sh
-# How often the gate's seconds err here: $2 (20) tries of mesher $1 against itself, and as many against itself made to
-# take 1.10 times its processor seconds. Prints the answers and counts them; ci/README.md keeps them.
+# How often the gate's answer about seconds errs on this machine: records $1 (300) more rounds of the mesher of build
+# folder $2 (build) with planted slowdowns, and tries the gate's own rule on all recorded rounds. Prints the counts and
+# keeps rounds and counts in folder $3 (results/runs/gate). $1 = 0 tries the rule again on the rounds that are there.
 set -eu
 cd "$(dirname "$0")/.."
-podm=$(realpath "$1")
-tries=${2:-20}
-bench=$(dirname "$podm")/podm-bench
+rounds=${1:-300}
+build=${2:-build}
+folder=${3:-results/runs/gate}
 
-folder=$(mktemp -d)
-trap 'rm -rf "$folder"' EXIT
-printf '#!/bin/sh\nexec %s/ci/gate_planted_slowdown.py 1.10 %s "$@"\n' "$PWD" "$podm" > "$folder/slower"
-chmod +x "$folder/slower"
-
-grep -m1 "model name" /proc/cpuinfo
-for head in "$podm" "$folder/slower"; do
-  blocks=0
-  for try in $(seq "$tries"); do
-    code=0
-    "$bench" gate --tier 2 --base "$podm" --head "$head" --order-seed "$try" > "$folder/said" || code=$?
-    [ "$code" -le 1 ] || exit "$code"
-    blocks=$((blocks + code))
-    grep head/base "$folder/said"
-  done
-  echo "$(basename "$head"): $blocks of $tries tries blocked; load $(cut -d' ' -f1-3 /proc/loadavg)"
-done
+mkdir -p "$folder"
+"$build/bin/podm-bench" gate-evidence "$folder/rounds.jsonl" --rounds "$rounds" --json "$folder/tries.jsonl"

@@ -149,6 +149,48 @@ void add_gate(CLI::App& program, int& exit_code) {
   app.callback([state, &exit_code] { exit_code = run_gate(state->options, state->renews); });
 }
 
+void add_gate_evidence(CLI::App& program, int& exit_code) {
+  const auto command = std::make_shared<EvidenceCommand>();
+  command->podm = beside_this_program("podm");
+  CLI::App& app = *program.add_subcommand(
+      "gate-evidence", "count how often the gate's answer about seconds errs on recorded rounds");
+  app.add_option("FILE", command->rounds_path, "JSON lines of the rounds")->option_text(" ")->required();
+  app.add_option("--rounds", command->num_rounds,
+                 "record so many more rounds first, with planted slowdowns [default: 0]")
+      ->option_text("N")
+      ->check(CLI::NonNegativeNumber);
+  app.add_option("--podm", command->podm, "file of the mesher to record [default: podm beside this program]")
+      ->option_text("FILE");
+  app.add_option("--budgets", command->budgets_path,
+                 fmt::format("names the trial to record [default: {}]", command->budgets_path))
+      ->option_text("FILE");
+  app.add_option("--order-seed", command->order_seed,
+                 fmt::format("draws the order within rounds [default: {}]", command->order_seed))
+      ->option_text("N");
+  app.add_option("--json", command->json_path,
+                 "also write the counts as JSON lines to this file [default: none]")
+      ->option_text("FILE");
+  app.callback([command, &exit_code] { exit_code = gate_evidence(*command); });
+}
+
+void add_gate_simulation(CLI::App& program, int& exit_code) {
+  struct State {
+    int num_tries = 3000;
+    std::string json_path;
+  };
+  const auto state = std::make_shared<State>();
+  CLI::App& app = *program.add_subcommand(
+      "gate-simulation", "count how often the gate's answer about seconds errs on a simulated machine");
+  app.add_option("--tries", state->num_tries,
+                 fmt::format("tries per noise and planted slowdown [default: {}]", state->num_tries))
+      ->option_text("N")
+      ->check(CLI::PositiveNumber);
+  app.add_option("--json", state->json_path,
+                 "also write the counts as JSON lines to this file [default: none]")
+      ->option_text("FILE");
+  app.callback([state, &exit_code] { exit_code = gate_simulation(state->num_tries, state->json_path); });
+}
+
 int main_or_throw(int argc, char** argv) {
   CLI::App program("Runs mesher experiments, one process a trial, and records each as a JSON line.",
                    "podm-bench");
@@ -163,6 +205,8 @@ int main_or_throw(int argc, char** argv) {
   add_machine(program, exit_code);
   add_compare(program, exit_code);
   add_gate(program, exit_code);
+  add_gate_evidence(program, exit_code);
+  add_gate_simulation(program, exit_code);
   try {
     program.parse(argc, argv);
   } catch (const CLI::ParseError& error) {

@@ -10,10 +10,12 @@
 
 namespace podm::bench {
 
+inline constexpr const char* kBudgetsPath = "ci/gate_budgets.json";  ///< unless told otherwise
+
 struct GateOptions {
   std::string head;  ///< the changed mesher; a podm-verify lies beside it
   std::string base;  ///< the mesher before the change; empty: no seconds are compared
-  std::string budgets_path = "ci/gate_budgets.json";
+  std::string budgets_path = kBudgetsPath;
   std::vector<int> tiers{1, 2, 3};  ///< those to pass
   std::uint64_t order_seed = 1;     ///< draws the order within rounds
 };

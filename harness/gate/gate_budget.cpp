@@ -11,21 +11,15 @@ namespace {
 
 constexpr int kBudgetSchema = 1;
 
-GateTrial trial_of(const Json& json) { return {json.at("name"), json.at("image"), json.at("radius_mm")}; }
-
-Json json_of(const GateTrial& trial) {
-  return {{"name", trial.name}, {"image", trial.image}, {"radius_mm", trial.radius_mm}};
-}
-
 Budgets budgets_of(const Json& json) {
   if (json.at("schema") != kBudgetSchema) throw InputError(fmt::format("is not of schema {}", kBudgetSchema));
   Budgets budgets{.build = json.at("build"),
                   .instructions_tolerance = json.at("instructions_tolerance"),
                   .budgets = {},
-                  .timed = trial_of(json.at("timed"))};
+                  .timed = from_json<GateTrial>(json.at("timed"), "timed")};
   for (const Json& member : json.at("budgets"))
-    budgets.budgets.push_back(
-        {trial_of(member), from_json<Work>(member.at("work"), "work"), member.at("instructions")});
+    budgets.budgets.push_back({from_json<GateTrial>(member), from_json<Work>(member.at("work"), "work"),
+                               member.at("instructions")});
   return budgets;
 }
 
@@ -45,10 +39,10 @@ void write_budgets(const Budgets& budgets, const std::string& path) {
   Json json = {{"schema", kBudgetSchema},
                {"build", budgets.build},
                {"instructions_tolerance", budgets.instructions_tolerance},
-               {"timed", json_of(budgets.timed)},
+               {"timed", to_json(budgets.timed)},
                {"budgets", Json::array()}};
   for (const Budget& budget : budgets.budgets) {
-    Json member = json_of(budget.trial);
+    Json member = to_json(budget.trial);
     member["instructions"] = budget.instructions;
     member["work"] = to_json(budget.work);
     json["budgets"].push_back(member);

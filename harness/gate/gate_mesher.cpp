@@ -71,6 +71,13 @@ MesherRun GateMesher::mesh(const std::string& podm, const GateTrial& trial, int 
   return run;
 }
 
+MesherRun GateMesher::mesh_or_throw(const std::string& podm, const GateTrial& trial, int threads) const {
+  MesherRun run = mesh(podm, trial, threads, false);
+  if (!run.process.succeeded() || !run.record)
+    throw InputError(fmt::format("{} on {}: {}", podm, trial.image, run.process.describe()));
+  return run;
+}
+
 std::uint64_t GateMesher::count_instructions(const std::string& podm, const GateTrial& trial) const {
   std::vector<std::string> arguments{"valgrind", "--tool=callgrind", "--callgrind-out-file=/dev/null"};
   for (const std::string& argument : command(podm, trial, 1)) arguments.push_back(argument);

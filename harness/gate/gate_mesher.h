@@ -15,6 +15,11 @@ struct GateTrial {
   std::string name;
   std::string image;  ///< the name that `podm mesh` takes
   double radius_mm = 0;
+  static constexpr auto fields() {
+    using T = GateTrial;
+    return std::tuple{field("name", &T::name), field("image", &T::image), field("radius_mm", &T::radius_mm)};
+  }
+  bool operator==(const GateTrial&) const = default;
 };
 
 struct MesherRun {
@@ -35,6 +40,9 @@ class GateMesher {
 
   /// A mesh; `verify` has it proved after, with the verdicts in the record.
   MesherRun mesh(const std::string& podm, const GateTrial& trial, int threads, bool verify) const;
+
+  /// A mesh that is not proved, with its record. Throws InputError also when the mesher fails.
+  MesherRun mesh_or_throw(const std::string& podm, const GateTrial& trial, int threads) const;
 
   /// Instructions of one thread's mesh, counted by callgrind.
   std::uint64_t count_instructions(const std::string& podm, const GateTrial& trial) const;

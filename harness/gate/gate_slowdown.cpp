@@ -1,36 +1,11 @@
 #include "gate/gate_slowdown.h"
 
-#include <algorithm>
 #include <cmath>
 #include <vector>
 
+#include "rows/signed_rank.h"
+
 namespace podm::bench {
-namespace {
-
-// Stricter than an interval that is looked at once: a gate looks up to eight times.
-constexpr BootstrapOptions kBootstrap{.confidence = 0.998, .num_resamples = 1000};
-
-// The machine's speed changes between rounds more than a program may: each round's seconds are taken relative
-// to the base's in that round, so the medians compared are those of ratios.
-Slowdown judge(const std::vector<Round>& rounds) {
-  std::vector<double> head, again;
-  for (const Round& round : rounds) {
-    head.push_back(round.head_s / std::sqrt(round.base_s * round.base_again_s));
-    again.push_back(round.base_again_s / round.base_s);
-  }
-  const std::vector<double> ones(rounds.size(), 1.0);
-  Slowdown slowdown{.head = ratio_of_medians(head, ones, Sampling::kPaired, kBootstrap),
-                    .noise = ratio_of_medians(again, ones, Sampling::kPaired, kBootstrap),
-                    .num_rounds = static_cast<int>(rounds.size())};
-  const double noise = std::max(slowdown.noise.value, 1 / slowdown.noise.value);
-  if (slowdown.head.low > kNoticeable && slowdown.head.value > kNoticeable * noise)
-    slowdown.answer = Answer::kSlower;
-  else if (slowdown.head.high < kSevere)
-    slowdown.answer = Answer::kNotSlower;
-  return slowdown;
-}
-
-}  // namespace
 
 const char* to_string(Answer answer) {
   switch (answer) {
@@ -38,19 +13,42 @@ const char* to_string(Answer answer) {
       return "not slower";
     case Answer::kSlower:
       return "slower";
-    case Answer::kCannotTell:
+    case Answer::kNotResolved:
       break;
   }
-  return "cannot tell";
+  return "not resolved";
 }
 
-Slowdown measure_slowdown(const std::function<Round()>& next_round) {
+double Slowdown::rounds_for_an_answer() const {
+  const double too_wide = (ratio.high - ratio.low) / (kSevere - kNoticeable);
+  return std::ceil(num_rounds * too_wide * too_wide);
+}
+
+// The machine's speed changes between rounds more than a program may: only seconds of one round are divided.
+Ratio head_over_base(std::span<const Round> rounds) {
+  constexpr double kConfidenceOfLook = 1 - (1 - kConfidence) / kLooks.size();
+  std::vector<double> logarithms;
+  logarithms.reserve(rounds.size());
+  for (const Round& round : rounds) logarithms.push_back(std::log(round.head_s / round.base_s));
+  const CentreEstimate centre = signed_rank_estimate(logarithms, kConfidenceOfLook);
+  return {std::exp(centre.value), std::exp(centre.low), std::exp(centre.high)};
+}
+
+std::optional<Slowdown> measure_slowdown(const std::function<std::optional<Round>()>& next_round) {
   std::vector<Round> rounds;
   Slowdown slowdown;
-  for (int num_rounds = kFewestRounds; num_rounds <= kMostRounds; num_rounds += kMoreRounds) {
-    while (static_cast<int>(rounds.size()) < num_rounds) rounds.push_back(next_round());
-    slowdown = judge(rounds);
-    if (slowdown.answer != Answer::kCannotTell) break;
+  for (const int num_rounds : kLooks) {
+    while (static_cast<int>(rounds.size()) < num_rounds) {
+      const std::optional<Round> round = next_round();
+      if (!round) return {};
+      rounds.push_back(*round);
+    }
+    slowdown = {.ratio = head_over_base(rounds), .num_rounds = num_rounds};
+    if (slowdown.ratio.low > kNoticeable)
+      slowdown.answer = Answer::kSlower;
+    else if (slowdown.ratio.high < kSevere)
+      slowdown.answer = Answer::kNotSlower;
+    if (slowdown.answer != Answer::kNotResolved) break;
   }
   return slowdown;
 }

@@ -1,38 +1,48 @@
-// Whether one program is slower than another, told by processes run in turn on a machine of changing speed.
+// Decides from seconds whether one program is slower than another, on a machine whose speed changes.
 #pragma once
 
-#include <cstdint>
+#include <array>
 #include <functional>
+#include <optional>
+#include <span>
 
 #include "rows/statistics.h"
 
 namespace podm::bench {
 
-/// Seconds of three processes run one right after the other, in an order drawn anew each round. The base is
-/// run twice: a difference between those two is noise.
+/// Seconds of two processes that ran close to each other, in a drawn order (drawn_order.h).
 struct Round {
-  double base_s = 0, base_again_s = 0, head_s = 0;
+  double base_s = 0, head_s = 0;
 };
 
-enum class Answer { kNotSlower, kSlower, kCannotTell };
-/// "not slower", "slower", "cannot tell".
+enum class Answer { kNotSlower, kSlower, kNotResolved };
+/// "not slower", "slower", "not resolved".
 const char* to_string(Answer answer);
 
+/// The rule: slower when the interval of head over base lies above kNoticeable, else not slower when it lies
+/// below kSevere. An interval that is narrower than kSevere - kNoticeable always gives an answer. The rule
+/// looks after so many rounds as kLooks lists, and stops at the first look that gives an answer; after the
+/// last one the answer is "not resolved".
+inline constexpr double kNoticeable = 1.01, kSevere = 1.04;
+inline constexpr std::array kLooks{10, 15, 22, 33, 50, 75, 112, 168};
+/// The probability that the intervals of all looks hold the true ratio.
+inline constexpr double kConfidence = 0.95;
+
 struct Slowdown {
-  Answer answer = Answer::kCannotTell;
-  Ratio head;   ///< head over base
-  Ratio noise;  ///< base over base
+  Answer answer = Answer::kNotResolved;
+  Ratio ratio;  ///< head over base
   int num_rounds = 0;
+
+  /// An estimate: the interval narrows with the square root of the number of rounds.
+  double rounds_for_an_answer() const;
 };
 
-/// The rule: slower when the interval of the ratio lies above kNoticeable and the ratio above that and the
-/// noise, not slower when the interval lies below kSevere. More rounds are asked for until one holds. In
-/// 9000 simulated tries (tests/test_gate.cpp) it called none of equal programs slower, and 99.7 % of those
-/// that were slower by 10 %.
-inline constexpr double kNoticeable = 1.03, kSevere = 1.07;
-inline constexpr int kFewestRounds = 7, kMostRounds = 63, kMoreRounds = 8;
+/// The centre of the ratios head over base and its interval at one look, whose confidence is raised so that
+/// all looks together have kConfidence (Bonferroni). Asks for at least one round.
+Ratio head_over_base(std::span<const Round> rounds);
 
-/// Asks for as many rounds as the answer takes; what `next_round` throws passes through.
-Slowdown measure_slowdown(const std::function<Round()>& next_round);
+/// Asks for as many rounds as the answer takes; returns nothing when `next_round` has no more before that.
+/// What `next_round` throws passes through.
+std::optional<Slowdown> measure_slowdown(const std::function<std::optional<Round>()>& next_round);
 
 }  // namespace podm::bench

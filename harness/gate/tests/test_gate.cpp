@@ -1,112 +1,13 @@
-// How often the gate errs, on a simulated machine; what its tiers block; its file of budgets.
+// What the gate's tiers block, and its file of budgets.
 #include "gate/gate.h"
 
 #include <gtest/gtest.h>
 
-#include <algorithm>
-#include <array>
-#include <cmath>
-#include <random>
-
 #include "gate/gate_budget.h"
-#include "gate/gate_slowdown.h"
 #include "tests/fake_mesher.h"
 
 namespace podm::bench {
 namespace {
-
-// A shared machine: its speed wanders by 1.6 within an hour and jumps every five minutes or so, each process
-// has noise of its own, and one in ten is disturbed by a quarter more or less.
-class SimulatedMachine {
- public:
-  SimulatedMachine(std::uint64_t seed, double noise) : random_(seed), noise_(noise) {
-    wander_ = kWander * gauss();
-  }
-
-  // Seconds that a process of `seconds` on the average machine takes now.
-  double run(double seconds) {
-    const double kept = std::exp(-seconds / 600);
-    wander_ = kept * wander_ + kWander * std::sqrt(1 - kept * kept) * gauss();
-    if (uniform() < seconds / 300) jump_ = kWander * gauss();
-    const double disturbance = uniform() < 0.1 ? -0.25 * std::log1p(-uniform()) : 0;
-    return seconds * std::exp(wander_ + jump_ + noise_ * gauss() + disturbance);
-  }
-  Round round(double head_over_base) {
-    Round round;
-    std::array<int, 3> order{0, 1, 2};
-    std::shuffle(order.begin(), order.end(), random_);
-    for (const int which : order) {
-      double& seconds = which == 0 ? round.base_s : which == 1 ? round.base_again_s : round.head_s;
-      seconds = run(which == 2 ? 2 * head_over_base : 2);
-    }
-    return round;
-  }
-
- private:
-  static constexpr double kWander = 0.12;  // plus or minus two of it: a factor of 1.6
-
-  double gauss() { return normal_(random_); }
-  double uniform() { return std::uniform_real_distribution<double>()(random_); }
-
-  std::mt19937_64 random_;
-  std::normal_distribution<double> normal_;
-  double noise_, wander_ = 0, jump_ = 0;
-};
-
-constexpr int kTries = 200;
-constexpr std::uint64_t kFirstSeed = 1'000'000;  // far from those that the rule was chosen on
-
-struct Counts {
-  int slower = 0, not_slower = 0, cannot_tell = 0;
-};
-
-Counts answers_of(int num_tries, double head_over_base, double noise) {
-  Counts counts;
-  for (int i = 0; i < num_tries; ++i) {
-    SimulatedMachine machine(kFirstSeed + static_cast<std::uint64_t>(i), noise);
-    const Answer answer = measure_slowdown([&] { return machine.round(head_over_base); }).answer;
-    counts.slower += answer == Answer::kSlower;
-    counts.not_slower += answer == Answer::kNotSlower;
-    counts.cannot_tell += answer == Answer::kCannotTell;
-  }
-  return counts;
-}
-
-TEST(Slowdown, OfTenPercentBlocksInNineteenOfTwentyTries) {
-  for (const double noise : {0.02, 0.03, 0.045})
-    EXPECT_GE(answers_of(kTries, 1.1, noise).slower, kTries * 19 / 20) << noise;
-}
-
-TEST(Slowdown, OfNothingNeverBlocks) {
-  for (const double noise : {0.02, 0.03, 0.045}) {
-    const Counts counts = answers_of(kTries, 1, noise);
-    EXPECT_EQ(counts.slower, 0) << noise;
-    EXPECT_GE(counts.not_slower, kTries * 9 / 10) << noise;
-  }
-}
-
-TEST(Slowdown, IsNotTakenFromAGainNorFromNoiseAlone) {
-  EXPECT_EQ(answers_of(kTries, 0.8, 0.03).not_slower, kTries);
-  const Counts lost_in_noise = answers_of(20, 1, 0.4);
-  EXPECT_EQ(lost_in_noise.slower, 0);
-  EXPECT_GT(lost_in_noise.cannot_tell, 10);
-}
-
-TEST(Slowdown, AsksForFewRoundsWhenTheyAgreeAndForAllWhenTheyDoNot) {
-  const Slowdown clear = measure_slowdown([] { return Round{1, 1, 1.2}; });
-  EXPECT_EQ(clear.answer, Answer::kSlower);
-  EXPECT_EQ(clear.num_rounds, kFewestRounds);
-  EXPECT_NEAR(clear.head.value, 1.2, 1e-12);
-  int num_rounds = 0;
-  const Slowdown unclear = measure_slowdown([&] { return Round{1, 1, ++num_rounds % 2 == 0 ? 0.8 : 1.3}; });
-  EXPECT_EQ(unclear.answer, Answer::kCannotTell);
-  EXPECT_EQ(unclear.num_rounds, kMostRounds);
-  EXPECT_EQ(num_rounds, kMostRounds);
-}
-
-TEST(Slowdown, SmallerThanTheDifferenceOfTheBaseToItselfIsNoEvidence) {
-  EXPECT_NE(measure_slowdown([] { return Round{1, 1.2, 1.2}; }).answer, Answer::kSlower);
-}
 
 TEST(Work, DifferencesNameEachValueThatChangedCameOrWent) {
   const auto committed = from_json<Work>({{"cells", 10}, {"insertions", {{"R1", 3}, {"R2", 4}}}});
@@ -161,10 +62,18 @@ TEST_F(GateTest, MoreInstructionsThanTheBudgetAllowsBlock) {
   EXPECT_FALSE(gate(options(mesher(proved_, "i=0; while [ $i -lt 20000 ]; do i=$((i+1)); done\n"), {1}), {}));
 }
 
-TEST_F(GateTest, SecondsAreAskedOfBothMeshersAndAFailureIsNoAnswer) {
+TEST_F(GateTest, SlowerHeadBlocksAndFasterOneDoesNot) {
+  const std::string slow = folder_ / "slow";
+  std::filesystem::copy_file(mesher(proved_, "i=0; while [ $i -lt 30000 ]; do i=$((i+1)); done\n"), slow);
   GateOptions both = options(mesher(proved_), {2});
-  both.base = both.head;
-  EXPECT_NO_THROW(gate(both, {}));
+  both.base = slow;
+  EXPECT_TRUE(gate(both, {}));
+  std::swap(both.base, both.head);
+  EXPECT_FALSE(gate(both, {}));
+}
+
+TEST_F(GateTest, FailureIsNoAnswer) {
+  GateOptions both = options(mesher(proved_), {2});
   both.base = folder_.script("broken", "exit 3\n");
   EXPECT_THROW(gate(both, {}), InputError);
   EXPECT_THROW(gate(options(folder_ / "absent", {1}), {}), InputError);

@@ -90,6 +90,7 @@ TEST(RowSchema, CommittedRowsAreReadAndWrittenAsTheyWere) {
   for (const auto& entry : fs::recursive_directory_iterator(kResults + "/reference")) {
     const std::string path = entry.path().string(), name = entry.path().filename().string();
     if (!name.ends_with(".jsonl") || name == "radii.jsonl") continue;
+    if (entry.path().parent_path().filename() == "gate") continue;  // gate/gate_rounds.h and gate_evidence.h
     const RowsRead read = read_rows(path);
     EXPECT_EQ(read.broken_line, 0u) << path;
     std::string written;

@@ -1,0 +1,62 @@
+// How often the gate's answer about seconds errs: tries of its own rule on recorded rounds and on a simulated
+// machine, counted by planted slowdown.
+#pragma once
+
+#include <optional>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "gate/gate_rounds.h"
+#include "gate/gate_slowdown.h"
+
+namespace podm::bench {
+
+/// The tries at one planted slowdown and what came of them. One JSON line of `--json FILE`.
+struct GateTries {
+  std::string basis;                      ///< "measured" or "simulated"
+  std::optional<std::string> clock = {};  ///< measured: "processor" or "wall", whose seconds were compared
+  /// Measured: "apart", each try starts where the one before ended; "overlapping", a try starts at each
+  /// round.
+  std::optional<std::string> starts = {};
+  std::optional<double> noise_percent = {};  ///< simulated: of one process
+  int planted_percent = 0;
+  int tries = 0, slower = 0, not_slower = 0, not_resolved = 0;
+  /// The interval of Clopper and Pearson for the share of slower, 95 %. Tries that overlap are not
+  /// independent and have none.
+  std::optional<double> slower_share_low = {}, slower_share_high = {};
+  std::optional<double> median_rounds = {};  ///< that a try took
+  std::optional<double> rounds_for_an_answer =
+      {};  ///< the median of what the tries that are not resolved predict
+  static constexpr auto fields() {
+    using T = GateTries;
+    return std::tuple{field("basis", &T::basis),
+                      field_if_any("clock", &T::clock),
+                      field_if_any("starts", &T::starts),
+                      field_if_any("noise_percent", &T::noise_percent),
+                      field("planted_percent", &T::planted_percent),
+                      field("tries", &T::tries),
+                      field("slower", &T::slower),
+                      field("not_slower", &T::not_slower),
+                      field("not_resolved", &T::not_resolved),
+                      field_if_any("slower_share_low", &T::slower_share_low),
+                      field_if_any("slower_share_high", &T::slower_share_high),
+                      field_if_any("median_rounds", &T::median_rounds),
+                      field_if_any("rounds_for_an_answer", &T::rounds_for_an_answer)};
+  }
+};
+
+/// The answers of tries on rounds in their order. Each starts where the one before ended, or, `overlapping`,
+/// one at each round. A try that the rounds end before its answer is left out.
+std::vector<Slowdown> replayed_answers(std::span<const Round> rounds, bool overlapping);
+
+/// By both clocks, both kinds of starts and planted slowdown.
+std::vector<GateTries> measured_tries(const std::vector<GateRound>& rounds);
+
+/// By noise (2, 3 and 4.5 %) and planted slowdown, so many tries each, on machines of other seeds.
+std::vector<GateTries> simulated_tries(int num_tries);
+
+/// A table in Markdown, a row per member.
+std::string table_of(const std::vector<GateTries>& tries);
+
+}  // namespace podm::bench

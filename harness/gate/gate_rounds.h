@@ -1,0 +1,68 @@
+// Rounds of a mesher against itself with planted slowdowns, recorded so that the gate's rule can be tried on
+// what a real machine does. One JSON line per round, in the order in which the rounds ran.
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <string>
+#include <vector>
+
+#include "gate/gate_mesher.h"
+#include "rows/row.h"
+
+namespace podm::bench {
+
+/// The slowdowns that each round plants, in percent.
+inline constexpr std::array kPlantedPercent{0, 3, 5, 7, 10};
+
+/// One process of a round.
+struct GateProcess {
+  bool is_head = false;  ///< one process of a round is the base
+  int planted_percent = 0;
+  double cpu_s = 0, wall_s = 0;  ///< what was planted is in both
+  static constexpr auto fields() {
+    using P = GateProcess;
+    return std::tuple{field("is_head", &P::is_head), field("planted_percent", &P::planted_percent),
+                      field("cpu_s", &P::cpu_s), field("wall_s", &P::wall_s)};
+  }
+};
+
+/// Takes the planted share of the process's processor seconds on this thread, and adds the seconds that this
+/// took to both clocks of the process.
+void plant(GateProcess& process);
+
+struct GateRound {
+  static constexpr int kSchema = 1;
+  int schema = kSchema;
+  int round = 1;                 ///< its number in the file
+  std::uint64_t order_seed = 1;  ///< drew the order of the processes
+  GateTrial trial;
+  std::vector<GateProcess> processes;  ///< in the order in which they ran
+  ProgramRecord podm;
+  EnvironmentRecord environment;
+  static constexpr auto fields() {
+    using R = GateRound;
+    return std::tuple{field("schema", &R::schema),          field("round", &R::round),
+                      field("order_seed", &R::order_seed),  field("trial", &R::trial),
+                      field("processes", &R::processes),    field("podm", &R::podm),
+                      field("environment", &R::environment)};
+  }
+};
+
+/// The rounds of a file. Throws InputError "file:line: fault" on a line that is no whole round and on one
+/// that is of another machine, mesher or trial than the first.
+std::vector<GateRound> read_gate_rounds(const std::string& path);
+
+struct RecordingOptions {
+  std::string podm, rounds_path;
+  GateTrial trial;
+  int num_rounds = 0;
+  std::uint64_t order_seed = 1;
+};
+
+/// Appends rounds to the file, which is made if need be. A round runs the mesher once as the base and once
+/// per planted slowdown. This process itself takes the planted part of a process's processor seconds, right
+/// after the process has ended. Throws InputError, also when the user stops it; the rounds before stay.
+void record_gate_rounds(const RecordingOptions& options, const StopQuery& stop_requested);
+
+}  // namespace podm::bench
