@@ -9,6 +9,7 @@
 #include <map>
 #include <random>
 
+#include "errors.h"
 #include "image/image.h"
 #include "image/image_frame.h"
 #include "image/size_image.h"
