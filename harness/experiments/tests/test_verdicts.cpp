@@ -96,8 +96,7 @@ TEST_F(VerdictsTest, ArePrintedForEachClaimAndNeverChangeTheExitCode) {
 
 TEST_F(VerdictsTest, WorkWithoutAnyRows) {
   EXPECT_EQ(verdicts(), 0);
-  EXPECT_TRUE(
-      has_printed("out", "Claims: 0 hold, 0 do not hold, 0 not resolved, 3 cannot be decided here"));
+  EXPECT_TRUE(has_printed("out", "Claims: 0 hold, 0 do not hold, 0 not resolved, 3 cannot be decided here"));
   EXPECT_EQ(bench({"verdicts", "--results", folder_ / "absent", path_}), 0);
 }
 
