@@ -23,10 +23,16 @@ def speedups(series):
     for cores in (count for count in scaling.core_counts([one.table for one in sizes]) if count > 1):
         line = {"cores": cores}
         for algorithm in style.NAMES:
-            if any(algorithm in one.table.index.get_level_values("algorithm") for one in sizes):
-                line.update(_of_algorithm(algorithm, cores, sizes, published))
+            played = [one for one in sizes if _plays(one, algorithm)]
+            if played:
+                line.update(_of_algorithm(algorithm, cores, played, published))
         lines.append(line)
     return pandas.DataFrame(lines)
+
+
+def _plays(series, algorithm):
+    """Whether it has more than the base."""
+    return any(name == algorithm and cores > 1 for name, cores in series.table.index)
 
 
 def readable(table):
