@@ -222,17 +222,18 @@ def _zero_hop_cells(hops, frame, basis):
                    f"on each of {len(published)} numbers of cores as many of PDR.PODM's accesses leave their node as "
                    "in the paper, within a factor of two", len(published), basis)
     ours = hops[(hops["basis"] == basis) & (hops["algorithm"] == "pdr-podm") & (hops["hops"] == 0)]
-    ours = ours.set_index("cores").reindex(published.index).dropna(subset=["share"])
-    if len(ours) < len(published):
+    ours = ours.set_index("cores").reindex(published.index).dropna(subset="share")
+    remote, theirs = 1 - ours["share"], 1 - published[ours.index]
+    intervals = [resolution.of_line(line, "share", basis) for line in ours.to_dict("records")]
+    intervals = [one if one is resolution.EXACT else one.map(lambda share: 1 - share) for one in intervals]
+    words = [resolution.verdict(one, interval, *near_share(paper_share))
+             for one, interval, paper_share in zip(remote, intervals, theirs)]
+    if len(ours) < len(published) and resolution.DIFFERS not in words:
         claim["reason"] = (f"{len(ours)} of {len(published)} numbers of cores have rows" if len(ours)
                            else table2.why_no_hops(of_basis(frame, basis)))
         return claim
-    intervals = [resolution.of_line(line, "share", basis) for line in ours.to_dict("records")]
-    leaving = [(1 - share, interval and interval.map(lambda one: 1 - one), 1 - published[cores])
-               for (cores, share), interval in zip(ours["share"].items(), intervals)]
-    words = [resolution.verdict(value, interval, *near_share(of_paper)) for value, interval, of_paper in leaving]
     agree = words.count(resolution.AGREES)
-    times = ", ".join(f"{value / of_paper:.3g}" for value, _, of_paper in leaving)
+    times = ", ".join(f"{one:.3g}" for one in remote / theirs)
     return _conclude(claim, resolution.together(words), agree, f"{agree} of {len(published)} agree; times as many as "
                      f"the paper's leave their node: {times}", *intervals)
 

@@ -32,7 +32,8 @@ def readable(table):
     """One line a number of cores, algorithm and basis; hops across, in percent, with the mark of the basis."""
     lines = []
     for (cores, algorithm, basis), group in table.groupby(["cores", "algorithm", "basis"]):
-        shares = {row["hops"]: marked(_percent(row["share"]), basis) for _, row in group.iterrows()}
+        shares = {row["hops"]: marked(_percent(row["share"], row["share_low"], row["share_high"]), basis)
+                  for _, row in group.iterrows()}
         zero = group[group["hops"] == 0].iloc[0]
         lines.append({"cores": cores, "algorithm": algorithm, "basis": basis, "kind": zero["kind"],
                       **{f"{hops} hops": shares.get(hops, "") for hops in range(int(table["hops"].max()) + 1)},
@@ -53,8 +54,11 @@ def zero_hop_share(counts):
     return counts[0] / sum(counts) if isinstance(counts, list) and sum(counts) else counts
 
 
-def _percent(share):
-    return "" if pandas.isna(share) else f"{100 * share:.2f} %"
+def _percent(share, low=numpy.nan, high=numpy.nan):
+    """"99.12 %", with its interval in brackets where there is one."""
+    if pandas.isna(share):
+        return ""
+    return f"{100 * share:.2f} %" + ("" if pandas.isna(low) else f" [{100 * low:.2f}, {100 * high:.2f}]")
 
 
 def _blocks_of(rows):

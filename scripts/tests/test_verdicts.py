@@ -11,7 +11,7 @@ POWERS_OF_TWO = (1, 16, 32, 64, 128, 256)
 CYCLES = [4, 11, 40, 200, 1500]
 CLAIMS = ["crossover", "efficiency of podm", "efficiency of pdr-podm", "speed-up of podm beyond 128 cores",
           "speed-up of pdr-podm beyond 128 cores", "zero-hop share", "latency within a node", "latency beyond a node",
-          "deviation of podm", "deviation of pdr-podm"]
+          "deviation of podm", "deviation of pdr-podm", "zero-hop share by number of cores"]
 
 
 def judged(rows):
@@ -101,7 +101,10 @@ class Published(unittest.TestCase):
             with self.subTest(counts=list(shares), basis=basis):
                 found = fed(weak, shares, CYCLES, **changes)
                 own = of_basis(found["claims"], basis)
-                self.assertEqual({one["claim"]: one["verdict"] for one in own}, dict.fromkeys(CLAIMS, "agrees"))
+                expected = dict.fromkeys(CLAIMS, "agrees")
+                if len(shares.columns) < len(paper.table2().columns):  # it is on every number of cores
+                    expected["zero-hop share by number of cores"] = "cannot_fill"
+                self.assertEqual({one["claim"]: one["verdict"] for one in own}, expected)
                 here = {("1", cores) for cores in weak.index.get_level_values("cores")} | {("2", one) for one in shares}
                 for cell in of_basis(found["cells"], basis):
                     if (cell["table"], cell["cores"]) not in here:
