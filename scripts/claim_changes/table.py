@@ -5,6 +5,8 @@ from .weakened import was_loosened
 PENDING = "this commit"  # of a change that is committed together with the table
 TITLE = """# History of the claims
 
+<!--not measured page: statements and bounds of claims-->
+
 The name of a claim is its id for life. `scripts/claims_history` makes this page from the commits that touched
 `experiments/*.toml` and from what these files say of the claims that they supersede and withdraw;
 `scripts/claims_history --check`, a part of `make test`, fails when a claim is gone without a reason, when one asks for

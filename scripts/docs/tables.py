@@ -3,6 +3,7 @@ arguments and returns lines of Markdown; another table is a function and a line 
 import pandas
 
 from figures import distributed, experiment_verdicts, scaling
+from figures import paper_claims as papers
 from figures import solvers as solving
 from figures.load import RecordError
 from figures.simulated_sizes import speedups
@@ -13,6 +14,7 @@ from .expression import FACT, Expression
 from .provenance import Provenance
 
 PHASES_OF_SLIVERS = ("perturb", "optimize")
+
 
 def _lines(table):
     return markdown(table).splitlines()
@@ -110,8 +112,15 @@ def verdicts(sources, file):
     return _lines(experiment_verdicts.table(found)[["experiment", "claim", "basis", "verdict", "value", "bound", "n"]])
 
 
-TABLES = {table.__name__: table
-          for table in (costs, gate, machines, ranks, simulated_speedups, slivers, solvers, solvers_in_full, verdicts)}
+def paper_claims(sources, *names):
+    """The paper's claims beside ours, of folders of rows and, last, of the verdicts of podm-bench on them."""
+    *folders, file = names
+    found = experiment_verdicts.read_experiment_verdicts(sources.path(file))
+    return papers.markdown_lines(papers.rows(found, sources.frame(tuple(folders))))
+
+
+TABLES = {table.__name__: table for table in (costs, gate, machines, paper_claims, ranks, simulated_speedups, slivers,
+                                              solvers, solvers_in_full, verdicts)}
 # Tables with seconds of the machine: their rows must be of one that is known.
 TIMED = {"costs": Expression("process"), "slivers": Expression("phases_s")}
 
@@ -125,5 +134,6 @@ def generate(name, arguments, sources, provenance):
         raise DocsError(fault)
     try:
         return "\n".join(TABLES[name](sources, *arguments)) + "\n"
-    except (TypeError, KeyError, RecordError, experiment_verdicts.VerdictsError) as error:
+    except (TypeError, ValueError, KeyError, RecordError, experiment_verdicts.VerdictsError,
+            papers.PaperClaimsError) as error:
         raise DocsError(f"table {name}: {error}") from None

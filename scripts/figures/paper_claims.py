@@ -10,8 +10,6 @@ import tomllib
 import pandas
 
 from . import paper, paper_figures
-from .experiment_verdicts import read_experiment_verdicts
-from .load import load
 
 LINES = paper.FOLDER / "claims.toml"
 NAME = "paper_claims"  # of the table
@@ -157,9 +155,3 @@ def markdown_lines(found):
     cells = [TITLES, ["---"] * len(TITLES), *shown.itertuples(index=False)]
     made = ["| " + " | ".join(cell.replace("|", "\\|") for cell in line) + " |" for line in cells]
     return [line.replace("\N{NO-BREAK SPACE}", " ") for line in [*made, "", *textwrap.wrap(besides(), WIDTH)]]
-
-
-def paper_claims(folder, verdicts=None):
-    """Lines of Markdown, of a folder of rows and what podm-bench said of them: verdicts.json in it, unless given."""
-    found = read_experiment_verdicts(verdicts or folder / "verdicts.json")
-    return markdown_lines(rows(found, load([folder]).frame))

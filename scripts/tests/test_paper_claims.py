@@ -11,7 +11,8 @@ from pathlib import Path
 import paths
 import synthetic
 from figures import paper, paper_claims, paper_figures
-from figures.experiment_verdicts import SCHEMA
+from figures.experiment_verdicts import SCHEMA, read_experiment_verdicts
+from figures.load import load
 from test_figures import frame_of
 
 LINES, UNJUDGED = paper_claims.read_lines()
@@ -201,7 +202,8 @@ class Table(unittest.TestCase):
             folder = Path(folder)
             (folder / "weak.jsonl").write_text("".join(json.dumps(one) + "\n" for one in simulated()))
             (folder / "verdicts.json").write_text(json.dumps(synthetic.paper_verdicts(LINES)))
-            text = paper_claims.paper_claims(folder)
+            found = read_experiment_verdicts(folder / "verdicts.json")
+            text = paper_claims.markdown_lines(paper_claims.rows(found, load([folder]).frame))
         self.assertEqual([one.count(" | ") for one in text[: 2 + len(LINES)]], [4] * (2 + len(LINES)))
         self.assertTrue(any("64 (40 k), 128 (160 k) on 256 cores; not fitted" in one for one in text))
         self.assertIn("Not judged: below a threshold", text[3 + len(LINES)])
