@@ -165,8 +165,8 @@ def _table(members):
 
 
 def _pairs(members):
-    """The rows that a ratio may be of: measured ones of the same round, which share its disturbance; simulated ones, which
-    no clock disturbs, of the same seed."""
+    """The key of rows that may form a ratio: the round of measured ones, which share its disturbance; the seed of
+    simulated ones, which no clock disturbs."""
     key = "seed" if members["basis"].iloc[0] == "simulated" and "seed" in members else "repeat"
     return members.get(key, pandas.Series(index=members.index, dtype=float))
 

@@ -107,6 +107,6 @@ def caption_of(series, has_paper=True):
     if not has_paper:
         return f"{text}.{beyond}"
     if any((one.table["n"] > 1).any() for one in series):
-        text += (". Medians; bars: interval of order statistics, over rounds or seeds, which holds the median with 95 % from "
-                 "six on")
+        text += (". Medians; bars: interval of order statistics over rounds or seeds, which holds the median with 95 % "
+                 "from six on")
     return f"{text}. Grey, dashed: the paper, Blacklight.{beyond}"
