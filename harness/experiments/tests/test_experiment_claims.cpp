@@ -78,6 +78,16 @@ const std::map<std::string, SetValue> kSetters = {
      [](Row& row, double value) {
        mesh_of(row).cells = static_cast<std::uint64_t>(std::llround(1e6 * value));
      }},
+    {"boundary_facets",
+     [](Row& row, double value) {
+       mesh_of(row).boundary_facets = static_cast<std::uint64_t>(std::llround(1e6 * value));
+     }},
+    {"whole_cells_per_second", set_rate},
+    {"volume_cells_per_second",
+     [](Row& row, double value) {
+       set_rate(row, value);
+       mesh_of(row).phases_s.emplace_back("surface", kMuch);
+     }},
     {"cells_per_second", set_rate},
     {"cells_per_second_and_core",
      [](Row& row, double value) { set_rate(row, value * row.asked["threads"].get<double>()); }},

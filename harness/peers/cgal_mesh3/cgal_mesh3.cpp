@@ -108,6 +108,18 @@ void mesh(const Domain& domain, const Options& options, Json& result) {
   result["peak_rss_bytes"] = peak_resident_bytes();
 }
 
+#if defined(CGAL_MESH_3_USE_LAZY_UNSORTED_REFINEMENT_QUEUE) && CGAL_VERSION_NR >= 1060000000
+// CGAL 6.1.1 does not compile here: elements of this queue have constant members, which its deque cannot
+// move.
+void mesh_in_parallel(const Domain&, const Options&, Json&) {
+  throw std::runtime_error("CGAL " CGAL_VERSION_STR " has no unsorted queue in parallel: --threads 0");
+}
+#else
+void mesh_in_parallel(const Domain& domain, const Options& options, Json& result) {
+  mesh<CGAL::Parallel_tag>(domain, options, result);
+}
+#endif
+
 Json run(const Options& options) {
   Json result;
   CGAL::Image_3 image;
@@ -120,7 +132,7 @@ Json run(const Options& options) {
   if (options.threads == 0)
     mesh<CGAL::Sequential_tag>(*domain, options, result);
   else
-    mesh<CGAL::Parallel_tag>(*domain, options, result);
+    mesh_in_parallel(*domain, options, result);
   result["options"] = {{"image", options.image_path},
                        {"cell_size_mm", options.cell_size_mm},
                        {"facet_size_mm", options.facet_size_mm},
