@@ -2,8 +2,10 @@
 arguments and returns lines of Markdown; another table is a function and a line in TABLES."""
 import pandas
 
-from figures import distributed, experiment_verdicts, scaling
+from figures import distributed, experiment_verdicts
 from figures import paper_claims as papers
+from figures import peers as other_meshers
+from figures import scaling
 from figures import solvers as solving
 from figures.load import RecordError
 from figures.simulated_sizes import speedups
@@ -88,6 +90,20 @@ def machines(sources, folder):
     return _lines(pandas.DataFrame(lines))
 
 
+def peers(sources, folder):
+    """Speed of podm and other meshers by one clock, beside what they made: README."""
+    return _lines(_peers(sources, folder).drop(columns=["version", "n", "bounds met", "coverage"]))
+
+
+def peers_in_full(sources, folder):
+    """The same with versions, numbers of rounds, bounds met and the coverage of intervals."""
+    return _lines(_peers(sources, folder))
+
+
+def _peers(sources, folder):
+    return other_meshers.speed_table(sources.frame((folder,)))
+
+
 def ranks(sources, folder):
     """What meshes on ranks are, whoever made them when: no second among it."""
     table = distributed.distributed(sources.frame((folder,)))
@@ -119,10 +135,12 @@ def paper_claims(sources, *names):
     return papers.markdown_lines(papers.rows(found, sources.frame(tuple(folders))))
 
 
-TABLES = {table.__name__: table for table in (costs, gate, machines, paper_claims, ranks, simulated_speedups, slivers,
-                                              solvers, solvers_in_full, verdicts)}
+TABLES = {table.__name__: table
+          for table in (costs, gate, machines, paper_claims, peers, peers_in_full, ranks, simulated_speedups, slivers,
+                        solvers, solvers_in_full, verdicts)}
 # Tables with seconds of the machine: their rows must be of one that is known.
-TIMED = {"costs": Expression("process"), "slivers": Expression("phases_s")}
+TIMED = {"costs": Expression("process"), "peers": Expression("phases_s"), "peers_in_full": Expression("phases_s"),
+         "slivers": Expression("phases_s")}
 
 
 def generate(name, arguments, sources, provenance):
