@@ -3,19 +3,16 @@
 #include <cmath>
 
 #include "claims/check_surface_boundary.h"
+#include "geometry/exact.h"
 #include "parallel.h"
 
 namespace podm::verify {
 
 namespace {
 
-double dot(const Point& a, const Point& b) { return a[0] * b[0] + a[1] * b[1] + a[2] * b[2]; }
 Point minus(const Point& a, const Point& b) { return {a[0] - b[0], a[1] - b[1], a[2] - b[2]}; }
 Point plus(const Point& a, double s, const Point& d) {
   return {a[0] + s * d[0], a[1] + s * d[1], a[2] + s * d[2]};
-}
-Point cross(const Point& a, const Point& b) {
-  return {a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]};
 }
 
 }  // namespace

@@ -162,7 +162,7 @@ class SurfaceVertices {
       using T = decltype(zero);
       const Vector<T> u = to_voxels_(Vector<T>{T(vertex[0]), T(vertex[1]), T(vertex[2])});
       const Vector<T> d{u[0] - T(p[0]), u[1] - T(p[1]), u[2] - T(p[2])};
-      return T(squared_bound_.in<T>() - dot<T>(d, d));
+      return T(squared_bound_.in<T>() - dot(d, d));
     };
     return sign_of(slack, num_exact) >= 0;
   }

@@ -463,7 +463,7 @@ TEST(JudgeLoad, FaultsOfAMeshCountOnABusyMachineToo) {
   const Claim claim =
       read_claim_of("basis = 'any'\nkind = 'bound'\nvalue = 'guarantee_misses'\nat_most = 0\n");
   Rows rows{made_up_row("1M", {})};
-  rows[0].environment.busy_elsewhere = 16;
+  rows[0].environment.busy_elsewhere = 16.0;
   mesh_of(rows[0]).guarantees = {{"radius_edge", 1}};
   EXPECT_EQ(judge(claim, rows).verdict, kFails);
 }
@@ -472,7 +472,7 @@ TEST(JudgeLoad, ATrialThatDidNotEndOnABusyMachineRefutesNothing) {
   const Claim claim = read_claim_of("basis = 'any'\nkind = 'share'\nvalue = 'ended'\nat_least = 1\n");
   Rows rows{made_up_row("1M", {}), failed(made_up_row("1M", {}))};
   EXPECT_EQ(judge(claim, rows).verdict, kFails);
-  rows[1].environment.busy_elsewhere = 16;
+  rows[1].environment.busy_elsewhere = 16.0;
   const Judgement judgement = judge(claim, rows);
   EXPECT_EQ(judgement.verdict, kUnclear);
   EXPECT_TRUE(has(judgement.reason, "1M: other work kept 16.0 processors busy")) << judgement.reason;
