@@ -205,8 +205,8 @@ void add_run_options(CLI::App& app, MeshCommand& command, Program which) {
           "(NAME.toml, see experiments/machines) [default: this machine]",
           into(meshing.team.topology_path));
   add_one(app, "--cost-factor", "NAME=FACTOR",
-          "one constant of a machine in TOML times a factor, 0 to switch it off, to see\n"
-          "what hangs on it; results/README.md names them [default: none]",
+          "multiply one constant of a machine in TOML by a factor; 0 switches it off.\n"
+          "results/README.md lists the names [default: none]",
           into(meshing.team.cost_factor));
   add_choice(app, "--executor",
              "threads, or virtual: one core plays any number of threads in virtual time,\n"

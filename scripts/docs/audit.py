@@ -67,7 +67,7 @@ def _audit_page(path, sources, provenance, report):
         try:
             if generate(table.name, table.arguments, sources, provenance) != table.body:
                 fault(table.start, f"table {table.name} is not what its rows give; scripts/update_docs writes it")
-            report.folders |= {sources.release_folder(one) or Path(one) for one in table.arguments if "/" in one}
+            report.folders |= {sources.release_folder(file) for one in table.arguments for file in sources.files(one)}
         except DocsError as error:
             fault(table.start, str(error))
     for number in page.uncovered:

@@ -38,8 +38,8 @@ def mesh(labels: npt.ArrayLike | StrPath, *, affine: npt.ArrayLike | None = None
          nodes: int | None = None, cores_per_node: int | None = None, initial_ratio: float | None = None,
          initial_threads: int | None = None, leaf_size: float | None = None, threads: int | None = None,
          contention: str | None = None, begging: str | None = None, pin: str | None = None,
-         oversubscribe: bool = False, topology: StrPath | None = None, executor: str | None = None,
-         virtual_cost: str | None = None, seed: int | None = None,
+         oversubscribe: bool = False, topology: StrPath | None = None, cost_factor: str | None = None,
+         executor: str | None = None, virtual_cost: str | None = None, seed: int | None = None,
          progress: Callable[[_podm.Progress], object] | None = None) -> Mesh:
     """Meshes a label image into tetrahedra.
 
