@@ -192,8 +192,10 @@ TEST_F(VerdictsTest, RowsOfTrialsThatTheExperimentNoLongerHasDoNotCount) {
 
 TEST_F(VerdictsTest, ARunPrintsThemAndOnlyAFailedTrialChangesItsExitCode) {
   const auto make = [](const std::string& record) { return "echo '" + record + "' > \"$record\"\n"; };
-  std::string of_cells = kExperimentWithClaims;  // no time, which a machine that changes its speed has not
+  // Cells of one thread are the same in each run, on a busy machine too.
+  std::string of_cells = kExperimentWithClaims;
   of_cells.replace(of_cells.find("refining_seconds\"\nat_most = 2"), 29, "cells\"\nat_most = 2000");
+  of_cells.replace(of_cells.find("[1, 2]"), 6, "1");
   folder_.write("exp.toml", of_cells);
   std::string slow = kGoodRecord;
   slow.replace(slow.find("\"cells\":1000"), 12, "\"cells\":3000");
@@ -205,7 +207,7 @@ TEST_F(VerdictsTest, ARunPrintsThemAndOnlyAFailedTrialChangesItsExitCode) {
   std::string unmet = kGoodRecord;
   unmet.replace(unmet.find("\"radius_edge\":0"), 15, "\"radius_edge\":1");
   EXPECT_EQ(run_with(make(unmet)), 1);
-  EXPECT_TRUE(has_printed("out", "0 of 12, not some,threads=1"));
+  EXPECT_TRUE(has_printed("out", "0 of 6, not some"));
 }
 
 }  // namespace

@@ -108,7 +108,7 @@ TEST(ProbeMoved, LeavesTheRowOutOfTheClockAndInTheCounts) {
   EXPECT_EQ(sample_of("refining_seconds").rounds, (std::vector<int>{1, 3}));
   EXPECT_EQ(sample_of("cells").numbers.size(), 3u);
   rows = {rows[1]};
-  EXPECT_EQ(sample_of("refining_seconds").absence, "the machine's speed moved during the round");
+  EXPECT_EQ(sample_of("refining_seconds").absence, "the machine's speed moved during each round");
   EXPECT_EQ(sample_of("cells").absence, "");
 }
 
