@@ -109,12 +109,16 @@ void declare_selection(CLI::App& app, Command& command) {
 
 void declare_claims(CLI::App& app, Command& command) {
   Options& options = command.options;
-  std::vector<std::string> names;
-  for (const Claim& claim : all_claims()) names.emplace_back(claim.name);
+  constexpr std::size_t kNamesPerLine = 6;
+  std::string names;
+  for (std::size_t i = 0; i < all_claims().size(); ++i)
+    names += fmt::format("{}{}", i == 0 ? "" : i % kNamesPerLine == 0 ? ",\n" : ", ", all_claims()[i].name);
   app.option_defaults()->group("Claims and their bounds");
-  app.add_option("--claims", command.claims,
-                 fmt::format("check these alone [default: all whose inputs and bounds are given], of\n{}",
-                             fmt::join(names, ",")))
+  app.add_option(
+         "--claims", command.claims,
+         fmt::format(
+             "check these alone, separated by commas [default: all whose inputs and bounds are given]:\n{}",
+             names))
       ->option_text("NAMES");
   app.add_option("--radius-edge", options.radius_edge_bound,
                  fmt::format("circumradius over shortest edge is below this [default: {}]",

@@ -203,7 +203,7 @@ TEST_F(VerdictsTest, ARunPrintsThemAndOnlyAFailedTrialChangesItsExitCode) {
   EXPECT_TRUE(has_printed("out", "DOES NOT HOLD      exp         fast"));
   EXPECT_TRUE(has_printed("out", "Claims: 1 hold, 1 do not hold, 0 not resolved"));
   EXPECT_EQ(run_with(make(kGoodRecord)), 0);
-  EXPECT_TRUE(has_printed("out", "Claims: 2 hold, 0 do not hold")) << "of this mesher's rows";
+  EXPECT_TRUE(has_printed("out", "Claims: 2 hold, 0 do not hold")) << printed("out");
   std::string unmet = kGoodRecord;
   unmet.replace(unmet.find("\"radius_edge\":0"), 15, "\"radius_edge\":1");
   EXPECT_EQ(run_with(make(unmet)), 1);
