@@ -2,9 +2,9 @@
 //   Statements  each vertex of a facet between cells of different labels, or of a facet with one cell alone,
 //               lies where the label function (image/label_function.h) changes: within b voxels of it there
 //               are two points of different labels. Of a smoothed image (image/smoothing.h) the function is
-//               the smoothed one. Each label of the vertex's facets, background beyond the outermost ones,
-//               has a voxel within reach of the vertex: a voxel's diagonal more than 2 delta (--delta) or
-//               another diagonal, whichever is longer.
+//               the smoothed one. Where delta is given (--delta), each label of the vertex's facets,
+//               background beyond the outermost ones, has a voxel within reach of the vertex: a voxel's
+//               diagonal more than 2 delta or another diagonal, whichever is longer.
 //               b is 10^-5 (Options::vertex_bound_voxels), a distance in voxel indices. A mesh of the PODM
 //               family has its vertices on the isosurface to 10^-6, by the search that finds them; the rest
 //               is for the rounding of coordinates on their way to the file. The reach follows from the
@@ -75,6 +75,7 @@ class SurfaceVertices {
         frame_(image, space),
         to_voxels_(image.voxel_to_ras, space),
         search_(image),
+        judges_reach_(options.delta_mm.has_value()),
         reach_(image, std::max(2 * options.delta_mm.value_or(0), diagonal_mm(image))),
         bound_(options.vertex_bound_voxels),
         squared_bound_(typed_decimal(bound_) * typed_decimal(bound_)) {}
@@ -87,7 +88,7 @@ class SurfaceVertices {
     ++part.num_vertices;
     const Point u = frame_.to_voxels(mesh_.vertices[v]);
     check_change(v, u, part);
-    check_reach(v, u, labels, part.tally);
+    if (judges_reach_) check_reach(v, u, labels, part.tally);
     const bool meets_all = std::all_of(labels.begin(), labels.end(), [&](LabelValue label) {
       return search_.find(u, is_label(label), kSomewhatLess * bound_, part.tally.num_exact).has_value();
     });
@@ -136,7 +137,7 @@ class SurfaceVertices {
           reach_.has(static_cast<std::uint32_t>(label), u))
         continue;
       Witness witness = witness_of(v, "a voxel of each label of the vertex's facets is within reach", 0);
-      witness.severity = reach_mm();
+      witness.severity = reach_.mm();
       witness.label = label;
       tally.violation(std::move(witness));
     }
@@ -174,6 +175,7 @@ class SurfaceVertices {
   ImageFrame frame_;
   VoxelMap to_voxels_;
   LabelSearch search_;
+  bool judges_reach_;
   LabelReach reach_;
   double bound_;
   Constant squared_bound_;
@@ -207,10 +209,10 @@ ClaimResult check_surface_vertices(const Mesh& mesh, const Adjacency& adjacency,
   result.method = "a search for points of another label, decided by filters, then exact rationals";
   result.details = {{"space", describe(space)},
                     {"bound_voxels", options.vertex_bound_voxels},
-                    {"reach_mm", vertices.reach_mm()},
                     {"vertices", found.num_vertices},
                     {"furthest_voxels", found.furthest_voxels},
                     {"vertices_off_own_labels", found.num_off_own_labels}};
+  if (options.delta_mm) result.details["reach_mm"] = vertices.reach_mm();
   result.reason = fmt::format(
       "{} violations at {} vertices of boundary and interfaces; the image's label changes within {:.2g} "
       "voxels of each (bound {}); at {} a label of their facets is further off",

@@ -155,6 +155,9 @@ TEST(SurfaceVertices, LabelsOfFacetsAreWithinReach) {
     mesh.cell_labels = {unknown};
     EXPECT_EQ(surface_vertices_of(mesh, image).num_violations, 4U);
   }
+  mesh.cell_labels = {2};
+  EXPECT_EQ(check_surface_vertices(mesh, mapped_adjacency(mesh), image, Options{}).verdict, Verdict::kPass)
+      << "how far a label may reach follows from delta alone";
   mesh.cell_labels = {1};
   EXPECT_EQ(surface_vertices_of(mesh, image, 0.1).details.at("vertices_off_own_labels"), 0);
 }
