@@ -215,7 +215,7 @@ def _read_file(path, is_named, problems):
                 break
             raise RecordError(f"{path}:{number}: not JSON: {error.msg} in column {error.colno}") from None
         schema = row.get("schema") if isinstance(row, dict) else None
-        if not rows and not isinstance(schema, int):  # lines of another kind
+        if not rows and not (isinstance(schema, int) and (is_named or "experiment" in row)):  # lines of another kind
             if is_named:
                 problems.append(f"{path}: no rows of trials (line {number} has schema {schema!r}); skipped")
             return []

@@ -50,6 +50,14 @@ class Load(unittest.TestCase):
             self.assertRegex(records.problems[0], "weak.jsonl: no rows of trials")
             self.assertEqual(load([self.file.parent]).problems, [])
 
+    def test_lines_of_another_kind_in_a_folder_are_passed_over(self):
+        self.load(synthetic.row())
+        rounds = self.file.parent / "rounds.jsonl"
+        rounds.write_text(json.dumps({"schema": 1, "round": 1, "processes": []}) + "\n")
+        self.assertEqual(len(load([self.file.parent]).frame), 1)
+        with self.assertRaises(RecordError):
+            load([rounds])
+
     def test_folders_within_are_read_but_for_hidden_ones(self):
         self.load(synthetic.row())
         for name in ("default_tier", ".running"):
