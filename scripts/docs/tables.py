@@ -75,6 +75,15 @@ def gate(sources, file):
          "median rounds": f"{row['median_rounds']:.0f}"} for row in sources.rows(file)]))
 
 
+def gate_tries(sources, file):
+    """Answers of the performance gate on recorded rounds by clock, kind of starts and planted slowdown."""
+    return _lines(pandas.DataFrame([
+        {"clock": row["clock"], "tries": row["starts"], "planted": f"{row['planted_percent']:g} %",
+         "number": row["tries"], **{answer.replace("_", " "): row[answer]
+                                    for answer in ("slower", "not_slower", "not_resolved")}}
+        for row in sources.rows(file)]))
+
+
 def machines(sources, folder):
     """The machines that rows name, by the hash of the topology: the processor by CPUID, or that it is not known."""
     by_hash = {}
@@ -136,8 +145,8 @@ def paper_claims(sources, *names):
 
 
 TABLES = {table.__name__: table
-          for table in (costs, gate, machines, paper_claims, peers, peers_in_full, ranks, simulated_speedups, slivers,
-                        solvers, solvers_in_full, verdicts)}
+          for table in (costs, gate, gate_tries, machines, paper_claims, peers, peers_in_full, ranks, simulated_speedups,
+                        slivers, solvers, solvers_in_full, verdicts)}
 # Tables with seconds of the machine: their rows must be of one that is known.
 TIMED = {"costs": Expression("process"), "peers": Expression("phases_s"), "peers_in_full": Expression("phases_s"),
          "slivers": Expression("phases_s")}
