@@ -145,8 +145,8 @@ def paper_claims(sources, *names):
 
 
 TABLES = {table.__name__: table
-          for table in (costs, gate, gate_tries, machines, paper_claims, peers, peers_in_full, ranks, simulated_speedups,
-                        slivers, solvers, solvers_in_full, verdicts)}
+          for table in (costs, gate, gate_tries, machines, paper_claims, peers, peers_in_full, ranks,
+                        simulated_speedups, slivers, solvers, solvers_in_full, verdicts)}
 # Tables with seconds of the machine: their rows must be of one that is known.
 TIMED = {"costs": Expression("process"), "peers": Expression("phases_s"), "peers_in_full": Expression("phases_s"),
          "slivers": Expression("phases_s")}
