@@ -32,7 +32,8 @@ class Programs(unittest.TestCase):
         done = call("make_figures", "--records", records, "-o", self.folder / "out")
         self.assertEqual(done.returncode, 0, done.stderr)
         made = {path.name for path in (self.folder / "out").iterdir()}
-        names = ("table1", "table2", "table3", "simulated", "peers", "cache", "guarantees", "guarantees_of_others")
+        # The rows of peers are of rounds in which the machine's speed moved: they make no table.
+        names = ("table1", "table2", "table3", "simulated", "cache", "guarantees", "guarantees_of_others")
         tables = {f"{name}.{kind}" for name in names for kind in ("csv", "md")}
         figures = {f"{name}.{kind}" for name in ("fig1", "fig4a", "fig4b") for kind in ("pdf", "png")}
         self.assertLessEqual({"rows.csv", "verdicts.json", "verdicts.md"} | tables | figures, made)
