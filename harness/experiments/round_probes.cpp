@@ -1,16 +1,38 @@
 #include "experiments/round_probes.h"
 
+#include <array>
 #include <utility>
 
 namespace podm::bench {
+namespace {
+
+// `probe` has the best value of each kind of both.
+void improve(ProbeRecord& probe, const ProbeRecord& other) { probe = best_of(std::array{probe, other}); }
+
+}  // namespace
+
+Probe RoundProbes::settled() {
+  Probe probe = source_();
+  auto* const values = std::get_if<ProbeRecord>(&probe);
+  if (!values) return probe;
+  const auto is_slow = [&] { return differ(std::array{best_of(std::array{*best_, *values}), *values}); };
+  for (int repeat = 1; best_ ? repeat < kMostRepeats && is_slow() : repeat < kFirstRepeats; ++repeat)
+    if (const Probe other = source_(); const auto* const more = std::get_if<ProbeRecord>(&other))
+      improve(*values, *more);
+  if (best_)
+    improve(*best_, *values);
+  else
+    best_ = *values;
+  return probe;
+}
 
 Probe RoundProbes::begin() {
   const auto last = std::exchange(last_, std::nullopt);
-  return last ? *last : source_();
+  return last ? *last : settled();
 }
 
 Probe RoundProbes::end() {
-  last_ = source_();
+  last_ = settled();
   return *last_;
 }
 

@@ -9,9 +9,14 @@
 
 namespace podm::bench {
 
-/// Probes the machine between rounds: the probe that ends one round begins the next.
+/// Probes the machine between rounds: the probe that ends one round begins the next. Whatever shares a
+/// virtual processor comes and goes within seconds. A probe that is slower than the run's best one by more
+/// than kToleratedMove is therefore repeated, and the best value of each kind counts: only what lasts shows.
 class RoundProbes {
  public:
+  /// A probe repeats at most as often, the run's first one exactly as often.
+  static constexpr int kMostRepeats = 12, kFirstRepeats = 8;
+
   explicit RoundProbes(ProbeSource source) : source_(std::move(source)) {}
 
   /// Before the first trial of a round; returns the probe that its rows carry.
@@ -22,8 +27,11 @@ class RoundProbes {
   void pass() { last_.reset(); }
 
  private:
+  Probe settled();
+
   ProbeSource source_;
-  std::optional<Probe> last_;  ///< of the end of the round before
+  std::optional<ProbeRecord> best_;  ///< of the run so far
+  std::optional<Probe> last_;        ///< of the end of the round before
 };
 
 /// The speed moved during a round: two of its probes differ (probe.h). They are those of its start and end,
