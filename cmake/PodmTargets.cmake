@@ -18,11 +18,22 @@ if(PODM_SANITIZE)
   add_link_options(-fsanitize=${PODM_SANITIZE})
 endif()
 
-# podm_unite(TARGET GROUP sources...): sources of TARGET that may be compiled as one, for none has another's private names
-# or needs a speed that another's code could change. The templates that they share are then compiled once.
-function(podm_unite target group)
-  set_target_properties(${target} PROPERTIES UNITY_BUILD ${PODM_UNITE} UNITY_BUILD_MODE GROUP)
-  set_source_files_properties(${ARGN} PROPERTIES UNITY_GROUP ${group})
+# podm_sources(TARGET sources... [UNITED sources...]...): those of a target. The sources after each UNITED may be compiled as
+# one: none has another's private names or needs a speed that another's code could change. The templates that they share
+# are then compiled once.
+function(podm_sources target)
+  set(group 0)
+  foreach(source ${ARGN})
+    if(source STREQUAL UNITED)
+      math(EXPR group "${group} + 1")
+      set_target_properties(${target} PROPERTIES UNITY_BUILD ${PODM_UNITE} UNITY_BUILD_MODE GROUP)
+    else()
+      target_sources(${target} PRIVATE ${source})
+      if(group)
+        set_source_files_properties(${source} PROPERTIES UNITY_GROUP ${group})
+      endif()
+    endif()
+  endforeach()
 endfunction()
 
 # A test that cannot run here says `skipped: why` and runs nothing, which ctest calls skipped: it neither passes nor fails.

@@ -8,8 +8,9 @@
 #include <memory>
 #include <string>
 
-#include "commands.h"
+#include "experiments/commands.h"
 #include "gate/gate_command.h"
+#include "machine/commands.h"
 
 namespace podm::bench {
 namespace {

@@ -1,9 +1,11 @@
-// What podm-bench throws at its user.
+// What podm-bench throws at its user, and its exit codes.
 #pragma once
 
 #include <stdexcept>
 
 namespace podm::bench {
+
+inline constexpr int kExitMissed = 1, kExitInput = 2, kExitInternal = 3;
 
 /// The user's input is at fault; what() names the file, the place and the fault. Exit code 2.
 class InputError : public std::runtime_error {

@@ -7,7 +7,7 @@
 #include <exception>
 #include <new>
 
-#include "cli/commands.h"
+#include "cli/commands/commands.h"
 #include "podm/errors.h"
 
 namespace {

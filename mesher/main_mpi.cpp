@@ -8,8 +8,8 @@
 #include <exception>
 #include <new>
 
-#include "cli/commands.h"
-#include "cli/mesh_on_ranks.h"
+#include "cli/commands/commands.h"
+#include "cli/commands/mesh_on_ranks.h"
 #include "distributed/mpi_communication.h"
 #include "distributed/rank_failure.h"
 #include "distributed/together.h"

@@ -3,13 +3,13 @@
 #include <algorithm>
 #include <filesystem>
 
-#include "commands.h"
-#include "experiments/option_matrix.h"
+#include "experiments/commands.h"
 #include "experiments/plan.h"
 #include "experiments/progress.h"
 #include "machine/machine.h"
+#include "options/option_matrix.h"
+#include "process/sha256.h"
 #include "rows/table.h"
-#include "trials/sha256.h"
 
 namespace podm::bench {
 namespace {

@@ -2,7 +2,7 @@
 
 #include <algorithm>
 
-#include "experiments/option_matrix.h"
+#include "options/option_matrix.h"
 #include "rows/statistics.h"
 #include "rows/table.h"
 

@@ -4,14 +4,12 @@
 
 #include <algorithm>
 #include <array>
-#include <charconv>
-#include <cmath>
 #include <filesystem>
 #include <map>
 #include <set>
 
 #include "experiments/claim_names.h"
-#include "experiments/option_matrix.h"
+#include "options/option_matrix.h"
 #include "runtime/toml_section.h"
 
 namespace podm::bench {
@@ -21,7 +19,6 @@ namespace fs = std::filesystem;
 
 constexpr double kDefaultTimeoutS = 600;
 constexpr std::int64_t kMaxRepeats = 10'000;
-constexpr std::array<const char*, 3> kTierNames = {"kick-tires", "default", "full"};
 
 struct Input {
   std::string image;
@@ -162,15 +159,6 @@ std::vector<WithdrawnClaim> read_withdrawn(TomlSection& file) {
 
 }  // namespace
 
-std::string to_string(Tier tier) { return kTierNames[static_cast<std::size_t>(tier)]; }
-
-Tier parse_tier(const std::string& text) {
-  const auto* const found = std::find(kTierNames.begin(), kTierNames.end(), text);
-  if (found == kTierNames.end())
-    throw InputError(fmt::format("there is no tier '{}', but {}", text, fmt::join(kTierNames, ", ")));
-  return static_cast<Tier>(found - kTierNames.begin());
-}
-
 std::size_t Experiment::num_turns() const {
   std::size_t turns = 0;
   for (const Trial& trial : trials) turns += static_cast<std::size_t>(trial.repeats + trial.warmups);
@@ -217,22 +205,6 @@ std::vector<std::string> experiment_files(const std::string& folder) {
   if (error) throw InputError(fmt::format("cannot read {}: {}", folder, error.message()));
   std::sort(paths.begin(), paths.end());
   return paths;
-}
-
-bool is_phantom(const std::string& image) { return image.starts_with("phantom:"); }
-
-std::optional<std::string> grown(const std::string& image, double factor) {
-  const std::size_t at = image.find('@');
-  int size = 0;
-  if (!is_phantom(image) || at == std::string::npos) return {};
-  const char* const end = image.data() + image.size();
-  if (std::from_chars(image.data() + at + 1, end, size).ptr != end) return {};
-  return fmt::format("{}@{}", image.substr(0, at), std::lround(size * std::cbrt(factor)));
-}
-
-bool image_exists(const Trial& trial) {
-  std::error_code error;
-  return is_phantom(trial.image) || fs::exists(trial.image, error);
 }
 
 }  // namespace podm::bench

@@ -14,13 +14,13 @@
 #include "experiments/progress.h"
 #include "experiments/verdicts.h"
 #include "machine/environment.h"
+#include "process/scratch_folder.h"
+#include "process/sha256.h"
+#include "process/stopwatch.h"
 #include "rows/machine_state.h"
-#include "rows/record.h"
 #include "rows/results_file.h"
 #include "rows/table.h"
-#include "trials/scratch_folder.h"
-#include "trials/sha256.h"
-#include "trials/stopwatch.h"
+#include "trials/record.h"
 
 namespace podm::bench {
 namespace {

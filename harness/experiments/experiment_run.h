@@ -3,7 +3,7 @@
 
 #include <string>
 
-#include "commands.h"
+#include "experiments/commands.h"
 #include "experiments/plan.h"
 #include "experiments/round_probes.h"
 #include "machine/machine.h"

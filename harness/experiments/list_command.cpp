@@ -1,7 +1,7 @@
 #include <fmt/format.h>
 
-#include "commands.h"
 #include "experiments/claim_names.h"
+#include "experiments/commands.h"
 
 namespace podm::bench {
 

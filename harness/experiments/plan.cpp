@@ -8,7 +8,7 @@
 #include <map>
 
 #include "experiments/claim_names.h"
-#include "experiments/option_matrix.h"
+#include "options/option_matrix.h"
 
 namespace podm::bench {
 namespace {

@@ -6,7 +6,7 @@
 #include <string>
 #include <vector>
 
-#include "commands.h"
+#include "experiments/commands.h"
 #include "experiments/expectation.h"
 #include "rows/results_file.h"
 #include "trials/trial_key.h"

@@ -3,13 +3,13 @@
 #include <cstdio>
 #include <utility>
 
-#include "commands.h"
+#include "experiments/commands.h"
 #include "experiments/experiment_run.h"
 #include "experiments/plan.h"
 #include "machine/machine.h"
+#include "process/sha256.h"
+#include "process/stop_request.h"
 #include "rows/results_file.h"
-#include "trials/sha256.h"
-#include "trials/stop_request.h"
 
 namespace podm::bench {
 namespace {

@@ -5,8 +5,8 @@
 #include "gate/compare.h"
 #include "gate/gate_budget.h"
 #include "gate/gate_evidence.h"
+#include "process/stop_request.h"
 #include "rows/results_file.h"
-#include "trials/stop_request.h"
 
 namespace podm::bench {
 namespace {

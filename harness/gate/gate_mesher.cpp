@@ -8,7 +8,7 @@
 #include <filesystem>
 #include <fstream>
 
-#include "trials/warm_memory.h"
+#include "process/warm_memory.h"
 
 namespace podm::bench {
 namespace {

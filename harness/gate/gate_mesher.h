@@ -5,9 +5,9 @@
 #include <string>
 #include <vector>
 
-#include "experiments/experiment.h"
+#include "options/trial_settings.h"
+#include "process/ask.h"
 #include "rows/mesher_record.h"
-#include "trials/ask.h"
 
 namespace podm::bench {
 

@@ -10,9 +10,9 @@
 
 #include "gate/drawn_order.h"
 #include "machine/environment.h"
+#include "process/stopwatch.h"
 #include "rows/machine_state.h"
 #include "rows/results_file.h"
-#include "trials/stopwatch.h"
 
 namespace podm::bench {
 namespace {

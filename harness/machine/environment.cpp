@@ -10,10 +10,9 @@
 #include <sstream>
 
 #include "machine/machine.h"
+#include "process/ask.h"
+#include "process/sha256.h"
 #include "runtime/control_group.h"
-#include "trials/ask.h"
-#include "trials/ranks.h"
-#include "trials/sha256.h"
 
 namespace podm::bench {
 namespace {

@@ -5,8 +5,8 @@
 #include <string>
 
 #include "machine/machine.h"
+#include "process/programs.h"
 #include "rows/row.h"
-#include "trials/verification.h"
 
 namespace podm::bench {
 

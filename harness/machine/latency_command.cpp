@@ -2,7 +2,7 @@
 
 #include <cstdio>
 
-#include "commands.h"
+#include "machine/commands.h"
 #include "machine/memory_levels.h"
 #include "rows/results_file.h"
 

@@ -12,6 +12,7 @@
 #include <string>
 
 #include "machine/machine.h"
+#include "process/usable_processors.h"
 
 namespace podm::bench {
 namespace {

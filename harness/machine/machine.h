@@ -16,12 +16,6 @@ struct Machine {
 
 Machine this_machine();
 
-/// Processors that this process may run on, at least 1.
-int usable_processors();
-
-/// Their numbers, the lowest first; none where the kernel does not tell.
-std::vector<int> usable_processor_ids();
-
 /// "Linux 6.1.0 x86_64".
 std::string kernel_name();
 

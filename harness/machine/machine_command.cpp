@@ -2,7 +2,7 @@
 
 #include <cstdio>
 
-#include "commands.h"
+#include "machine/commands.h"
 #include "machine/machine.h"
 #include "machine/probe.h"
 #include "rows/machine_state.h"

@@ -12,8 +12,8 @@
 #include "machine/hwloc_topology.h"
 #include "machine/machine.h"
 #include "machine/pointer_chase.h"
+#include "process/ask.h"
 #include "rows/statistics.h"
-#include "trials/ask.h"
 
 namespace podm::bench {
 namespace {

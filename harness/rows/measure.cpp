@@ -5,7 +5,7 @@
 #include <algorithm>
 #include <array>
 
-#include "trials/counter_tool.h"
+#include "options/option_matrix.h"
 
 namespace podm::bench {
 namespace {

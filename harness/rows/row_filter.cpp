@@ -6,7 +6,7 @@
 #include <map>
 #include <tuple>
 
-#include "experiments/option_matrix.h"
+#include "options/option_matrix.h"
 #include "rows/machine_state.h"
 
 namespace podm::bench {

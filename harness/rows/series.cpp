@@ -6,7 +6,7 @@
 #include <iterator>
 #include <map>
 
-#include "experiments/option_matrix.h"
+#include "options/option_matrix.h"
 #include "rows/machine_state.h"
 
 namespace podm::bench {

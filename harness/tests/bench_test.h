@@ -8,8 +8,8 @@
 #include <string>
 #include <vector>
 
+#include "process/process.h"
 #include "tests/fake_mesher.h"
-#include "trials/process.h"
 
 namespace podm::bench {
 

@@ -5,7 +5,7 @@
 #include <vector>
 
 #include "experiments/claim.h"
-#include "rows/record.h"
+#include "trials/record.h"
 
 namespace podm::bench {
 

@@ -4,10 +4,10 @@
 #include <chrono>
 #include <thread>
 
-#include "experiments/schedule.h"
+#include "options/schedule.h"
+#include "process/sha256.h"
 #include "rows/results_file.h"
 #include "tests/bench_test.h"
-#include "trials/sha256.h"
 
 namespace podm::bench {
 namespace {

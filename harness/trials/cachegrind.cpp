@@ -5,8 +5,8 @@
 #include <fstream>
 #include <sstream>
 
+#include "process/process.h"
 #include "trials/counter_tool.h"
-#include "trials/process.h"
 
 namespace podm::bench {
 namespace {

@@ -6,13 +6,10 @@
 #include <string>
 #include <vector>
 
+#include "options/option_matrix.h"
 #include "rows/row.h"
 
 namespace podm::bench {
-
-/// The key of a trial that says who counts: the kernel, the default, or one of the two.
-inline constexpr const char *kCounters = "counters", *kPerfEvent = "perf_event", *kCachegrind = "cachegrind",
-                            *kLikwid = "likwid:";
 
 class CounterTool {
  public:

@@ -6,8 +6,8 @@
 #include <functional>
 #include <vector>
 
+#include "process/process.h"
 #include "rows/row.h"
-#include "trials/process.h"
 
 namespace podm::bench {
 

@@ -5,8 +5,8 @@
 #include <string>
 #include <vector>
 
+#include "process/ask.h"
 #include "rows/row.h"
-#include "trials/ask.h"
 
 namespace podm::bench {
 

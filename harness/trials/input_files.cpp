@@ -6,7 +6,7 @@
 #include <filesystem>
 
 #include "errors.h"
-#include "experiments/experiment.h"
+#include "options/trial_settings.h"
 #include "rows/results_file.h"
 #include "trials/image_info.h"
 

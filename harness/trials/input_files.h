@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-#include "trials/process.h"
+#include "process/process.h"
 
 namespace podm::bench {
 

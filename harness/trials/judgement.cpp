@@ -5,7 +5,7 @@
 #include <fstream>
 #include <functional>
 
-#include "peers/peer.h"
+#include "trials/peer.h"
 
 namespace podm::bench {
 namespace {

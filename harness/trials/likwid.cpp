@@ -10,7 +10,8 @@
 #include <sstream>
 
 #include "machine/machine.h"
-#include "trials/ask.h"
+#include "process/ask.h"
+#include "process/usable_processors.h"
 #include "trials/counter_tool.h"
 
 namespace podm::bench {

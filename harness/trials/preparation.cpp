@@ -2,7 +2,7 @@
 
 #include <fmt/format.h>
 
-#include "experiments/option_matrix.h"
+#include "options/option_matrix.h"
 
 namespace podm::bench {
 

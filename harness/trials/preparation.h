@@ -7,11 +7,11 @@
 #include <optional>
 #include <string>
 
-#include "experiments/experiment.h"
+#include "options/trial_settings.h"
+#include "process/process.h"
+#include "process/sha256.h"
 #include "trials/input_files.h"
-#include "trials/process.h"
 #include "trials/radii.h"
-#include "trials/sha256.h"
 
 namespace podm::bench {
 

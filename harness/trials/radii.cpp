@@ -6,11 +6,12 @@
 #include <chrono>
 #include <fstream>
 
-#include "experiments/option_matrix.h"
 #include "machine/machine.h"
+#include "options/option_matrix.h"
+#include "process/sha256.h"
+#include "process/usable_processors.h"
 #include "rows/results_file.h"
 #include "trials/input_files.h"
-#include "trials/sha256.h"
 
 namespace podm::bench {
 namespace {

@@ -6,9 +6,9 @@
 #include <string>
 #include <vector>
 
-#include "experiments/experiment.h"
+#include "options/trial_settings.h"
+#include "process/process.h"
 #include "rows/row.h"
-#include "trials/process.h"
 
 namespace podm::bench {
 

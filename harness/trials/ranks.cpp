@@ -5,7 +5,8 @@
 
 #include <filesystem>
 
-#include "experiments/option_matrix.h"
+#include "options/option_matrix.h"
+#include "process/programs.h"
 
 namespace podm::bench {
 
@@ -14,10 +15,6 @@ namespace fs = std::filesystem;
 int num_ranks(const Trial& trial) { return trial.options.value(kRanks, 0); }
 
 bool is_over_mpi(const nlohmann::ordered_json& options) { return options.value(kCarrier, "") == kMpi; }
-
-std::string podm_mpi_of(const std::string& podm) {
-  return (fs::path(podm).parent_path() / "podm-mpi").string();
-}
 
 std::string absence_of_ranks(const Trial& trial, const std::string& podm) {
   if (num_ranks(trial) == 0) return "";

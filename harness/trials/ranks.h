@@ -4,8 +4,8 @@
 #include <string>
 #include <vector>
 
-#include "experiments/experiment.h"
-#include "trials/process.h"
+#include "options/trial_settings.h"
+#include "process/process.h"
 
 namespace podm::bench {
 
@@ -13,9 +13,6 @@ namespace podm::bench {
 int num_ranks(const Trial& trial);
 /// Whether they are processes; threads of one process compute one after the other, in virtual time.
 bool is_over_mpi(const nlohmann::ordered_json& options);
-
-/// The file of podm-mpi, which is built beside podm where MPI is found.
-std::string podm_mpi_of(const std::string& podm);
 
 /// Why the ranks of the trial cannot run here; empty: they can, or there are none.
 std::string absence_of_ranks(const Trial& trial, const std::string& podm);

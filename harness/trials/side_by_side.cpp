@@ -2,8 +2,9 @@
 
 #include <fmt/format.h>
 
-#include "experiments/option_matrix.h"
 #include "machine/machine.h"
+#include "options/option_matrix.h"
+#include "process/usable_processors.h"
 #include "trials/judgement.h"
 
 namespace podm::bench {

@@ -1,6 +1,6 @@
 #include "trials/solving.h"
 
-#include "trials/ask.h"
+#include "process/ask.h"
 #include "trials/verification.h"
 
 namespace podm::bench {

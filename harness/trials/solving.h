@@ -3,9 +3,9 @@
 
 #include <string>
 
-#include "experiments/experiment.h"
+#include "options/trial_settings.h"
+#include "process/stop_request.h"
 #include "rows/row.h"
-#include "trials/stop_request.h"
 
 namespace podm::bench {
 

@@ -6,18 +6,19 @@
 #include <algorithm>
 #include <filesystem>
 
-#include "experiments/option_matrix.h"
 #include "machine/load_watch.h"
 #include "machine/machine.h"
-#include "rows/record.h"
+#include "options/option_matrix.h"
+#include "process/stopwatch.h"
+#include "process/usable_processors.h"
+#include "process/warm_memory.h"
 #include "trials/counters.h"
 #include "trials/image_info.h"
 #include "trials/judgement.h"
 #include "trials/ranks.h"
+#include "trials/record.h"
 #include "trials/side_by_side.h"
 #include "trials/solving.h"
-#include "trials/stopwatch.h"
-#include "trials/warm_memory.h"
 
 namespace podm::bench {
 namespace {

@@ -5,12 +5,13 @@
 #include <memory>
 #include <string>
 
-#include "experiments/experiment.h"
-#include "peers/peer.h"
+#include "options/trial_settings.h"
+#include "process/process.h"
+#include "process/programs.h"
 #include "rows/row.h"
 #include "trials/counter_tool.h"
+#include "trials/peer.h"
 #include "trials/preparation.h"
-#include "trials/process.h"
 #include "trials/verification.h"
 
 namespace podm::bench {

@@ -1,10 +1,11 @@
 #include "trials/trial_key.h"
 
-#include "experiments/option_matrix.h"
-#include "rows/record.h"
+#include "options/option_matrix.h"
+#include "process/programs.h"
+#include "process/sha256.h"
 #include "trials/counter_tool.h"
 #include "trials/ranks.h"
-#include "trials/sha256.h"
+#include "trials/record.h"
 
 namespace podm::bench {
 

@@ -3,8 +3,8 @@
 
 #include <string>
 
-#include "experiments/schedule.h"
-#include "peers/peer.h"
+#include "options/schedule.h"
+#include "trials/peer.h"
 #include "trials/preparation.h"
 
 namespace podm::bench {

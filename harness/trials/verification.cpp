@@ -5,8 +5,8 @@
 #include <algorithm>
 #include <fstream>
 
-#include "experiments/option_matrix.h"
-#include "trials/ask.h"
+#include "options/option_matrix.h"
+#include "process/ask.h"
 
 namespace podm::bench {
 namespace {

@@ -3,23 +3,13 @@
 
 #include <string>
 
-#include "experiments/experiment.h"
+#include "options/trial_settings.h"
+#include "process/process.h"
 #include "rows/row.h"
-#include "trials/process.h"
 
 namespace podm::bench {
 
 inline constexpr const char* kScheduleName = "/schedule.jsonl";  ///< its file in the folder of a trial
-
-/// The programs that a trial runs.
-struct Programs {
-  std::string podm;
-  std::string verifier;            ///< empty: meshes are not verified
-  std::string peers = {};          ///< folder of other meshers; empty: there are none
-  std::string bench = {};          ///< this program, to measure the machine
-  std::string likwid_groups = {};  ///< folder of the groups of events for likwid-perfctr
-  std::string solver = {};         ///< of finite elements; empty: there is none
-};
 
 struct Verification {
   ByName<Proof> verdicts;  ///< one a claim; empty when the verifier told nothing

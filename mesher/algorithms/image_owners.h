@@ -2,7 +2,7 @@
 #pragma once
 
 #include "algorithms/placement_of_team.h"
-#include "image/feature_transform.h"
+#include "isosurface/feature_transform.h"
 #include "runtime/numa_memory.h"
 
 namespace podm {

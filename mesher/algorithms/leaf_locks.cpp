@@ -1,8 +1,8 @@
 // Operations and workers that keep to a leaf: the kernel and the rules know nothing of leaves.
 #include "algorithms/leaf_locks.h"
 
-#include "delaunay/operation_impl.h"
-#include "refine/worker_impl.h"
+#include "delaunay/operation_steps.h"
+#include "refine/attempt.h"
 
 namespace podm {
 

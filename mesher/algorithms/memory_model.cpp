@@ -5,7 +5,7 @@
 #include <algorithm>
 #include <bit>
 
-#include "image/feature_transform.h"
+#include "isosurface/feature_transform.h"
 
 namespace podm {
 

@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "delaunay/mesh.h"
-#include "image/oracle_reads.h"
+#include "isosurface/oracle_reads.h"
 #include "podm/meshing_report.h"
 #include "runtime/numa_memory.h"
 #include "runtime/topology.h"

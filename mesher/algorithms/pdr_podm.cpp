@@ -1,17 +1,8 @@
-// PDR.PODM: parallel Delaunay refinement leaf by leaf, by a PODM mesh generator on each computing node.
-// (Feng, Tsolakis, Chernikov, Chrisochoides, IMR 2015, section 3; numbers behind lines are those of its
-// Fig. 3.) With one worker a node it is PDR. (Chernikov, Chrisochoides, ICS 2004; SISC 28 (2006).)
-//
-// A coarse mesh is made first, with PODM. Then an octree divides space into leaves, and a queue hands those
-// out that have poor cells, to nodes that refine them at the same time.
-//
-//   Nodes lock nothing against each other: an operation keeps to the region of its leaf, and active leaves'
-//   regions have no point in common (octree/octree.h). What would lock a vertex outside waits for the end,
-//   when all workers refine what is left anywhere, with PODM. That ends the run with the same guarantees as
-//   PODM's, whatever leaves there were (octree/leaf_region.h).
+// PDR.PODM as a run: the initial mesh, the octree, the leaves, and what they leave over. The numbers behind
+// lines are those of Fig. 3; the loop over leaves is in leaf_loop.h.
+#include "algorithms/leaf_loop.h"
 #include "algorithms/leaf_size.h"
 #include "algorithms/memory_model.h"
-#include "algorithms/pdr_podm_impl.h"
 #include "algorithms/perturb.h"
 #include "algorithms/podm.h"
 #include "workers/work_cost.h"

@@ -3,7 +3,7 @@
 #include <new>
 #include <numeric>
 
-#include "algorithms/podm_impl.h"
+#include "algorithms/podm_loop.h"
 
 namespace podm {
 

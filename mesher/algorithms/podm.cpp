@@ -1,15 +1,4 @@
-// PODM, Parallel Optimistic Delaunay Meshing. (Foteinos, Chrisochoides, JPDC 74 (2014) 2123-2140.)
-//
-// Every worker has a list of cells that may be poor. It takes one, and by the first rule that the cell breaks
-// plans an insertion, with removals where R6 asks for them. It locks each vertex of each cell that it is
-// about to replace, and never waits for one: an operation that meets another's vertex is rolled back, with
-// nothing written, and its cell goes back on the list. New cells go on the list of their maker.
-//
-//   Between any two operations the cells are the Delaunay triangulation of the vertices
-//   (delaunay/vertex_locks.h). Between any two operations vertices keep the distances I1 to I3
-//   (refine/rules.h), so that insertions end. Every cell that may break a rule is on a list, in a gift, on
-//   its way home (podm_home.cpp), or in an operation. So when all workers beg, no cell breaks a rule any
-//   more. Who waits, waits for one who runs (workers/contention_manager.h): the last to run never waits.
+// PODM as a run, and as a phase of other algorithms' runs. Its loop is in podm_loop.h.
 #include "algorithms/podm.h"
 
 #include <algorithm>
@@ -18,7 +7,7 @@
 #include "algorithms/leaf_locks.h"
 #include "algorithms/leaf_size.h"
 #include "algorithms/perturb.h"
-#include "algorithms/podm_impl.h"
+#include "algorithms/podm_loop.h"
 #include "refine/virtual_box.h"
 
 namespace podm {

@@ -8,7 +8,7 @@
 #include "algorithms/page_sampler.h"
 #include "algorithms/placement_of_team.h"
 #include "algorithms/team_size.h"
-#include "image/feature_transform.h"
+#include "isosurface/feature_transform.h"
 
 namespace podm {
 

@@ -5,8 +5,8 @@
 #include <random>
 #include <vector>
 
-#include "image/isosurface.h"
-#include "image/tests/closest_point.h"
+#include "isosurface/isosurface.h"
+#include "isosurface/tests/closest_point.h"
 
 namespace podm {
 namespace {

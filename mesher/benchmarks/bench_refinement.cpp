@@ -8,7 +8,7 @@
 #include <vector>
 
 #include "algorithms/podm.h"
-#include "cost_model.h"
+#include "image/foreground.h"
 #include "podm/image_io.h"
 #include "podm/mesh_image.h"
 #include "refine/virtual_box.h"

@@ -7,7 +7,7 @@
 #include <fstream>
 
 #include "algorithms/team_size.h"
-#include "cli/option_values.h"
+#include "cli/options/option_values.h"
 #include "podm/errors.h"
 
 namespace podm::cli {

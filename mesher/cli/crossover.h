@@ -5,7 +5,7 @@
 #include <nlohmann/json.hpp>
 #include <string>
 
-#include "cli/options.h"
+#include "cli/options/options.h"
 
 namespace podm::cli {
 

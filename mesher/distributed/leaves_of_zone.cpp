@@ -4,11 +4,11 @@
 
 #include "algorithms/leaf_size.h"
 #include "algorithms/memory_model.h"
-#include "algorithms/pdr_podm_impl.h"
-#include "algorithms/podm_impl.h"
-#include "delaunay/operation_impl.h"
+#include "algorithms/leaf_loop.h"
+#include "algorithms/podm_loop.h"
+#include "delaunay/operation_steps.h"
 #include "distributed/together.h"
-#include "refine/worker_impl.h"
+#include "refine/attempt.h"
 
 namespace podm {
 

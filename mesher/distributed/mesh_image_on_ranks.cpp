@@ -4,15 +4,15 @@
 #include <array>
 #include <numeric>
 
-#include "check_options.h"
+#include "algorithms/check_options.h"
 #include "distributed/pieces.h"
 #include "distributed/report_of_ranks.h"
 #include "distributed/together.h"
-#include "extract_mesh.h"
 #include "io/sha256.h"
-#include "measure_quality.h"
-#include "phases_of_run.h"
 #include "podm/mesh_io.h"
+#include "run/extract_mesh.h"
+#include "run/measure_quality.h"
+#include "run/phases_of_run.h"
 
 namespace podm {
 

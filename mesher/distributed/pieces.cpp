@@ -5,9 +5,9 @@
 #include <tuple>
 
 #include "distributed/messages.h"
-#include "extract_mesh.h"
 #include "geometry/point_hash.h"
 #include "podm/errors.h"
+#include "run/extract_mesh.h"
 
 namespace podm {
 

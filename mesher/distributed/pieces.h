@@ -2,7 +2,7 @@
 #pragma once
 
 #include "distributed/rounds.h"
-#include "image/isosurface.h"
+#include "isosurface/isosurface.h"
 #include "podm/mesh_piece.h"
 
 namespace podm {

@@ -5,13 +5,13 @@
 #include <map>
 
 #include "algorithms/leaf_size.h"
-#include "algorithms/podm_impl.h"
-#include "cost_model.h"
+#include "algorithms/podm_loop.h"
 #include "distributed/completion.h"
 #include "distributed/leaves_of_zone.h"
 #include "distributed/messages.h"
 #include "distributed/zone.h"
 #include "distributed/zones_of_round.h"
+#include "prediction/cost_model.h"
 #include "runtime/processor_seconds.h"
 
 namespace podm {

@@ -2,8 +2,8 @@
 
 #include <cmath>
 
-#include "delaunay/operation_impl.h"
-#include "refine/worker_impl.h"
+#include "delaunay/operation_steps.h"
+#include "refine/attempt.h"
 
 namespace podm {
 

@@ -5,7 +5,7 @@
 #include "geometry/circumsphere.h"
 #include "geometry/dihedral.h"
 #include "podm/bounds.h"
-#include "refine/size_field.h"
+#include "sizing/size_field.h"
 
 namespace podm {
 

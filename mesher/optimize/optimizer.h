@@ -22,8 +22,8 @@
 #include "podm/choices.h"
 #include "podm/counters.h"
 #include "refine/outcome.h"
-#include "refine/size_field.h"
 #include "runtime/access_tally.h"
+#include "sizing/size_field.h"
 
 namespace podm {
 

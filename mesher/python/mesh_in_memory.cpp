@@ -4,12 +4,12 @@
 #include <utility>
 
 #include "algorithms/team_size.h"
-#include "cli/json_text.h"
-#include "cli/labelled_image.h"
-#include "cli/options_for_image.h"
-#include "cli/process_memory.h"
-#include "cli/record.h"
-#include "cli/verify_mesh.h"
+#include "cli/commands/labelled_image.h"
+#include "cli/commands/verify_mesh.h"
+#include "cli/options/options_for_image.h"
+#include "cli/processes/process_memory.h"
+#include "cli/reports/json_text.h"
+#include "cli/reports/record.h"
 #include "podm/mesh_io.h"
 
 namespace podm::python {

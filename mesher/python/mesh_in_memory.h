@@ -10,8 +10,8 @@
 #include <string>
 #include <vector>
 
-#include "cli/mesh_run.h"
-#include "cli/options.h"
+#include "cli/commands/mesh_run.h"
+#include "cli/options/options.h"
 #include "podm/image_io.h"
 #include "podm/mesh_image.h"
 

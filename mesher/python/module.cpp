@@ -11,18 +11,18 @@
 #include <optional>
 
 #include "algorithms/team_size.h"
-#include "cli/json_text.h"
-#include "cli/labelled_image.h"
-#include "cli/option_values.h"
-#include "cli/options_for_image.h"
-#include "cli/plan.h"
-#include "cli/summary.h"
-#include "measure_quality.h"
+#include "cli/commands/labelled_image.h"
+#include "cli/options/option_values.h"
+#include "cli/options/options_for_image.h"
+#include "cli/reports/json_text.h"
+#include "cli/reports/plan.h"
+#include "cli/reports/summary.h"
 #include "podm/errors.h"
 #include "podm/mesh_io.h"
 #include "python/beside_python.h"
 #include "python/error_text.h"
 #include "python/mesh_in_memory.h"
+#include "run/measure_quality.h"
 
 namespace podm::python {
 namespace {

@@ -33,8 +33,8 @@
 
 #include "delaunay/mesh.h"
 #include "delaunay/vertex_move.h"
-#include "image/isosurface.h"
-#include "refine/size_field.h"
+#include "isosurface/isosurface.h"
+#include "sizing/size_field.h"
 
 namespace podm {
 

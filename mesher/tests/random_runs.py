@@ -13,7 +13,7 @@ MANAGERS = ["aggressive", "random", "global", "local"]
 TOPOLOGY = pathlib.Path(__file__).resolve().parents[2] / "experiments/machines/blacklight.toml"
 SHARE_ON_THREADS = 1 / 6
 MOST_THREADS = {"virtual": 256, "threads": 16}
-VOLUME_CELLS, SURFACE_CELLS = 4.82, 1.57  # of mesher/cost_model.h
+VOLUME_CELLS, SURFACE_CELLS = 4.82, 1.57  # of mesher/prediction/cost_model.h
 
 
 @dataclasses.dataclass

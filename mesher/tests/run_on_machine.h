@@ -9,7 +9,7 @@
 #include "algorithms/image_owners.h"
 #include "algorithms/page_sampler.h"
 #include "algorithms/podm.h"
-#include "cost_model.h"
+#include "image/foreground.h"
 #include "tests/images.h"
 
 namespace podm::test {

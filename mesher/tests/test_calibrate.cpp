@@ -1,6 +1,6 @@
 // Runs with a target number of cells: that they meet it, and that a mesh made on the way counts in nothing
 // but calibration.
-#include "calibrate.h"
+#include "run/calibrate.h"
 
 #include <gtest/gtest.h>
 

@@ -1,5 +1,5 @@
 // The prediction of a mesh's number of cells from its image, radii and delta.
-#include "cost_model.h"
+#include "prediction/cost_model.h"
 
 #include <gtest/gtest.h>
 

@@ -1,12 +1,12 @@
 // Extraction from the store: what the definition says, whoever writes it and whichever labels are known.
-#include "extract_mesh.h"
+#include "run/extract_mesh.h"
 
 #include <gtest/gtest.h>
 
 #include <set>
 
 #include "algorithms/podm.h"
-#include "cost_model.h"
+#include "image/foreground.h"
 #include "podm/mesh_io.h"
 #include "tests/images.h"
 

@@ -1,6 +1,6 @@
 // Measures of a mesh: what their definitions say, cell by cell, and the same to the bit on any number of
 // threads.
-#include "measure_quality.h"
+#include "run/measure_quality.h"
 
 #include <gtest/gtest.h>
 

@@ -1,5 +1,5 @@
 // Logs of ranks become one when they fit together, and are refused where they do not.
-#include "merge_logs.h"
+#include "replay/merge_logs.h"
 
 #include <gtest/gtest.h>
 

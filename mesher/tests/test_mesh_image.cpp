@@ -6,7 +6,7 @@
 #include <numbers>
 #include <set>
 
-#include "cost_model.h"
+#include "image/foreground.h"
 #include "image/working_frame.h"
 #include "podm/mesh_image.h"
 #include "tests/images.h"

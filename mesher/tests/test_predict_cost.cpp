@@ -1,5 +1,5 @@
 // What is predicted of phantoms, against their meshes.
-#include "predict_cost.h"
+#include "prediction/predict_cost.h"
 
 #include <gtest/gtest.h>
 

@@ -1,5 +1,5 @@
 // Radii for a target number of cells, and how they are corrected.
-#include "radius_search.h"
+#include "prediction/radius_search.h"
 
 #include <gtest/gtest.h>
 

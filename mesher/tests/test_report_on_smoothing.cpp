@@ -1,5 +1,5 @@
 // Components of smoothed labels, against those of a fine grid of points.
-#include "report_on_smoothing.h"
+#include "run/report_on_smoothing.h"
 
 #include <gtest/gtest.h>
 
@@ -8,8 +8,8 @@
 #include <set>
 
 #include "image/components.h"
-#include "image/isosurface.h"
 #include "image/working_frame.h"
+#include "isosurface/isosurface.h"
 #include "tests/images.h"
 
 namespace podm {

@@ -4,11 +4,11 @@
 #include <algorithm>
 #include <cmath>
 
-#include "cost_model.h"
 #include "geometry/circumsphere.h"
-#include "make_size_grid.h"
 #include "podm/mesh_image.h"
 #include "podm/mesh_io.h"
+#include "prediction/cost_model.h"
+#include "sizing/make_size_grid.h"
 #include "tests/fault_of.h"
 #include "tests/images.h"
 

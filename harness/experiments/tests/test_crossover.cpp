@@ -5,10 +5,10 @@
 
 #include <cmath>
 
+#include "process/process.h"
 #include "rows/results_file.h"
 #include "tests/fake_mesher.h"
 #include "tests/made_up_rows.h"
-#include "trials/process.h"
 
 namespace podm::bench {
 namespace {

@@ -4,6 +4,7 @@
 
 #include "experiments/experiment.h"
 #include "machine/machine.h"
+#include "process/usable_processors.h"
 #include "tests/fake_mesher.h"
 
 namespace podm::bench {

@@ -9,7 +9,7 @@
 
 #include "experiments/claim_names.h"
 #include "experiments/judge.h"
-#include "experiments/option_matrix.h"
+#include "options/option_matrix.h"
 #include "tests/made_up_rows.h"
 
 namespace podm::bench {

@@ -7,10 +7,10 @@
 
 #include "experiments/round_probes.h"
 #include "experiments/verdicts.h"
+#include "process/sha256.h"
 #include "rows/machine_state.h"
 #include "rows/results_file.h"
 #include "tests/fake_mesher.h"
-#include "trials/sha256.h"
 
 namespace podm::bench {
 namespace {

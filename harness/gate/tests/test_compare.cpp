@@ -3,10 +3,10 @@
 
 #include <gtest/gtest.h>
 
+#include "process/process.h"
 #include "rows/results_file.h"
 #include "tests/fake_mesher.h"
 #include "tests/made_up_rows.h"
-#include "trials/process.h"
 
 namespace podm::bench {
 namespace {

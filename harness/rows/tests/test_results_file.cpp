@@ -1,10 +1,10 @@
 // Rows outlive crashes, and one run at a time writes them.
 #include <gtest/gtest.h>
 
+#include "process/process.h"
 #include "rows/results_file.h"
 #include "tests/fake_mesher.h"
 #include "tests/made_up_rows.h"
-#include "trials/process.h"
 
 namespace podm::bench {
 namespace {

@@ -4,6 +4,7 @@
 #include <sstream>
 
 #include "machine/machine.h"
+#include "process/usable_processors.h"
 #include "tests/fake_mesher.h"
 #include "trials/preparation.h"
 

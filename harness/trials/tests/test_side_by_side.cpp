@@ -1,8 +1,9 @@
 // Several processes of one trial at the same time.
 #include <gtest/gtest.h>
 
-#include "experiments/option_matrix.h"
 #include "machine/machine.h"
+#include "options/option_matrix.h"
+#include "process/usable_processors.h"
 #include "tests/fake_mesher.h"
 #include "trials/trial.h"
 

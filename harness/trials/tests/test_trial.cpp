@@ -4,6 +4,8 @@
 #include <fmt/format.h>
 
 #include "machine/machine.h"
+#include "process/programs.h"
+#include "process/usable_processors.h"
 #include "tests/fake_mesher.h"
 #include "trials/ranks.h"
 #include "trials/trial.h"

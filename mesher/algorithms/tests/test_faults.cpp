@@ -7,9 +7,9 @@
 #include <string>
 
 #include "algorithms/podm.h"
-#include "cost_model.h"
 #include "failing_allocator.h"
 #include "failing_threads.h"
+#include "image/foreground.h"
 #include "podm/errors.h"
 #include "podm/operation_log.h"
 #include "refine/virtual_box.h"

@@ -7,7 +7,7 @@
 #include <set>
 
 #include "algorithms/podm.h"
-#include "cost_model.h"
+#include "image/foreground.h"
 #include "octree/tests/refinement_queue_state.h"
 #include "refine/virtual_box.h"
 #include "runtime/parallel_for.h"

@@ -5,7 +5,7 @@
 
 #include <cmath>
 
-#include "cost_model.h"
+#include "image/foreground.h"
 #include "tests/images.h"
 
 namespace podm::test {

@@ -5,8 +5,8 @@
 #include <optional>
 
 #include "algorithms/podm.h"
-#include "cost_model.h"
 #include "delaunay/tests/cells_by_points.h"
+#include "image/foreground.h"
 #include "refine/cell_quality.h"
 #include "tests/images.h"
 

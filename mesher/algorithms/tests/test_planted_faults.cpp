@@ -3,8 +3,8 @@
 #include <gtest/gtest.h>
 
 #include "algorithms/podm.h"
-#include "cost_model.h"
 #include "delaunay/planted_fault.h"
+#include "image/foreground.h"
 #include "tests/images.h"
 
 namespace podm::test {

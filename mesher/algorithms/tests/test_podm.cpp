@@ -3,7 +3,7 @@
 #include <gtest/gtest.h>
 
 #include "algorithms/podm.h"
-#include "cost_model.h"
+#include "image/foreground.h"
 #include "refine/virtual_box.h"
 #include "tests/images.h"
 

@@ -7,7 +7,7 @@
 
 #include "algorithms/podm.h"
 #include "algorithms/tests/broken_rule.h"
-#include "cost_model.h"
+#include "image/foreground.h"
 #include "podm/mesh_image.h"
 #include "refine/invariants.h"
 #include "refine/virtual_box.h"

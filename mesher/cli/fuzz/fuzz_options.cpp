@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-#include "cli/options.h"
+#include "cli/options/options.h"
 #include "podm/errors.h"
 
 // The bytes are the arguments, each ended by a newline.

@@ -8,8 +8,8 @@
 
 #include "distributed/in_process_ranks.h"
 #include "distributed/mesh_image_on_ranks.h"
-#include "merge_logs.h"
 #include "podm/mesh_io.h"
+#include "replay/merge_logs.h"
 #include "tests/images.h"
 #include "tests/scratch_folder.h"
 

@@ -5,13 +5,13 @@
 
 #include <mutex>
 
-#include "cost_model.h"
-#include "default_sizes.h"
 #include "delaunay/walk.h"
 #include "distributed/in_process_ranks.h"
 #include "distributed/pieces.h"
-#include "measure_quality.h"
+#include "image/foreground.h"
 #include "podm/mesh_io.h"
+#include "run/measure_quality.h"
+#include "sizing/default_sizes.h"
 #include "tests/images.h"
 
 namespace podm::test {

@@ -8,8 +8,8 @@
 #include <vector>
 
 #include "algorithms/podm.h"
-#include "cost_model.h"
-#include "image/isosurface.h"
+#include "image/foreground.h"
+#include "isosurface/isosurface.h"
 #include "optimize/obstacles.h"
 #include "optimize/optimize_mesh.h"
 #include "tests/images.h"

@@ -1,0 +1,44 @@
+// The commands of podm-bench that run experiments and judge their claims. Each returns the exit code; all
+// throw InputError.
+#pragma once
+
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "errors.h"
+#include "options/trial_settings.h"
+#include "process/programs.h"
+
+namespace podm::bench {
+
+inline constexpr const char* kResultsFolder = "results/runs";  ///< unless told otherwise
+
+struct RunCommand {
+  std::vector<std::string> experiment_paths;
+  std::string only;                 ///< a pattern of trial names, as in a shell; empty: all
+  std::optional<Tier> tier;         ///< trials of this tier and the lower ones; nothing: all
+  std::vector<std::string> images;  ///< they stand for all inputs; none: the inputs
+  std::string results_folder = kResultsFolder;
+  std::uint64_t order_seed = 1;
+  Programs programs;
+  bool again = false;  ///< also what is measured already
+  bool keep = false;   ///< meshes and messages
+};
+
+/// Runs what is not measured yet and prints the table.
+int run(const RunCommand& command);
+
+/// Prints what run() would do and what that takes; writes no file.
+int dry_run(const RunCommand& command);
+
+/// Prints title, tier, trials and time of the experiments in a folder.
+int list(const std::string& folder);
+
+/// Judges the claims of experiments by the rows of a folder of results and prints a table of the verdicts;
+/// writes them as JSON too unless `json_path` is empty. No verdict changes the exit code.
+int verdicts(const std::vector<std::string>& experiment_paths, const std::string& results_folder,
+             const std::string& json_path);
+
+}  // namespace podm::bench

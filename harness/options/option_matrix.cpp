@@ -1,0 +1,316 @@
+#include "options/option_matrix.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <cctype>
+#include <cmath>
+#include <cstdio>
+#include <cstring>
+#include <filesystem>
+#include <limits>
+
+#include "process/usable_processors.h"
+
+namespace podm::bench {
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+constexpr std::int64_t kMaxThreads = 1024;
+constexpr std::int64_t kMaxElements = std::numeric_limits<std::uint32_t>::max();
+constexpr std::int64_t kMaxSeed = std::numeric_limits<std::int64_t>::max();
+constexpr const char* kPerThread = "target_elements_per_thread";  // becomes target_elements
+constexpr const char* kPerRank = "target_elements_per_rank";      // so does this
+constexpr const char* kPowersOfTwo = "1..all";
+constexpr const char* kMillimetres = "_mm";  // ends keys of lengths, but no option of podm
+
+enum class Kind {
+  kPositive,
+  kElements,
+  kCount,
+  kSeed,
+  kWord,
+  kSwitch,
+  kFlag,
+  kFile,
+  kThreads,
+  kCounters,
+  kMeasure,
+  kCarrier,
+  kNetwork
+};
+
+struct MesherOption {
+  const char* key;
+  Kind kind;
+};
+
+// These are the harness's own; no mesher is passed them.
+constexpr std::array kOfHarness{kMesher, kSchedule, kReplay,  kFidelity, kImageGrows, kSolve,
+                                kCopies, kCounters, kMeasure, kRanks,    kCarrier};
+
+// What podm does, or the harness with one process of it, and not ranks.
+constexpr std::array kNotOnRanks{kSchedule,    kReplay, kImageGrows, kCopies,   kCounters, kOptimize,
+                                 kMinDihedral, kSmooth, kSizeImage,  kSizeNear, kGrade,    kSolve};
+
+// Every mesher takes these.
+constexpr std::array kOfAll{kMesher, "radius_mm", "delta_mm", kTargetElements, kPerThread, "threads", kSolve};
+
+template <class Keys>
+bool is_among(const Keys& keys, std::string_view key) {
+  return std::find(keys.begin(), keys.end(), key) != keys.end();
+}
+
+constexpr MesherOption kMesherOptions[] = {
+    {kMesher, Kind::kWord},
+    {"algorithm", Kind::kWord},
+    {"radius_mm", Kind::kPositive},
+    {"delta_mm", Kind::kPositive},
+    {kTargetElements, Kind::kElements},
+    {kPerThread, Kind::kElements},
+    {kPerRank, Kind::kElements},
+    {"threads", Kind::kThreads},
+    {"contention", Kind::kWord},
+    {"begging", Kind::kWord},
+    {"executor", Kind::kWord},
+    {"pin", Kind::kSwitch},
+    {"oversubscribe", Kind::kSwitch},
+    {"nodes", Kind::kCount},
+    {"cores_per_node", Kind::kCount},
+    {"initial_ratio", Kind::kPositive},
+    {"initial_threads", Kind::kThreads},
+    {"leaf_size", Kind::kPositive},
+    {"seed", Kind::kSeed},
+    {"topology", Kind::kFile},
+    {"cost_factor", Kind::kWord},
+    {kSmooth, Kind::kPositive},
+    {kSizeImage, Kind::kFile},
+    {kSizeNear, Kind::kWord},
+    {kGrade, Kind::kPositive},
+    {kMinDihedral, Kind::kPositive},
+    {kOptimize, Kind::kFlag},
+    {kSchedule, Kind::kFlag},
+    {kReplay, Kind::kFlag},
+    {kFidelity, Kind::kFlag},
+    {kSolve, Kind::kFlag},
+    {kImageGrows, Kind::kFlag},
+    {kCopies, Kind::kThreads},
+    {kCounters, Kind::kCounters},
+    {kMeasure, Kind::kMeasure},
+    {kRanks, Kind::kCount},
+    {kCarrier, Kind::kCarrier},
+    {kNetwork, Kind::kNetwork},
+};
+
+// "all" is the number of usable processors, "1..all" the powers of two up to it and itself.
+std::vector<Json> thread_counts(const TomlSection& section, const toml::node& node, std::string_view key) {
+  if (!node.is_string()) return {section.count_of(node, key, 1, kMaxThreads)};
+  const std::int64_t all = usable_processors();
+  const std::string text = section.text_of(node, key);
+  if (text == "all") return {all};
+  if (text != kPowersOfTwo)
+    section.fail(node.source(), fmt::format("{} must be an integer, \"all\" or \"{}\"", key, kPowersOfTwo));
+  std::vector<Json> counts;
+  for (std::int64_t count = 1; count < all; count *= 2) counts.push_back(count);
+  counts.push_back(all);
+  return counts;
+}
+
+Json switch_value(const TomlSection& section, const toml::node& node, std::string_view key) {
+  if (const auto value = node.value_exact<bool>()) return *value;
+  if (const auto value = node.value_exact<std::int64_t>()) return *value;
+  return section.text_of(node, key);
+}
+
+// Groups are files: a name has no folder in it.
+std::string counters_value(const TomlSection& section, const toml::node& node, std::string_view key) {
+  const std::string choice = section.text_of(node, key);
+  const bool is_group = choice.starts_with(kLikwid) && choice.size() > std::strlen(kLikwid) &&
+                        choice.find('/') == std::string::npos;
+  if (!is_group && choice != kPerfEvent && choice != kCachegrind)
+    section.fail(node.source(), fmt::format("{} must be \"{}\", \"{}\" or \"{}GROUP\"", key, kPerfEvent,
+                                            kCachegrind, kLikwid));
+  return choice;
+}
+
+std::string measure_value(const TomlSection& section, const toml::node& node, std::string_view key) {
+  if (section.text_of(node, key) != kMemoryLatency)
+    section.fail(node.source(), fmt::format("{} must be \"{}\"", key, kMemoryLatency));
+  return kMemoryLatency;
+}
+
+std::string carrier_value(const TomlSection& section, const toml::node& node, std::string_view key) {
+  const std::string carrier = section.text_of(node, key);
+  if (carrier != kMpi && carrier != kInProcess)
+    section.fail(node.source(), fmt::format("{} must be \"{}\" or \"{}\"", key, kMpi, kInProcess));
+  return carrier;
+}
+
+std::string network_value(const TomlSection& section, const toml::node& node, std::string_view key) {
+  const std::string network = section.text_of(node, key);
+  double latency_us = -1, gb_per_s = -1;
+  char more = 0;
+  if (std::sscanf(network.c_str(), "%lf,%lf%c", &latency_us, &gb_per_s, &more) != 2 || !(latency_us > 0) ||
+      !(gb_per_s > 0) || std::isinf(latency_us) || std::isinf(gb_per_s))
+    section.fail(node.source(), fmt::format("{} must be \"MICROSECONDS,GB_PER_S\", such as \"2,12.5\"", key));
+  return network;
+}
+
+std::vector<Json> read_value(const TomlSection& section, const toml::node& node, const MesherOption& option,
+                             const std::string& folder) {
+  const std::string key = option.key;
+  switch (option.kind) {
+    case Kind::kPositive:
+      return {section.positive_of(node, key)};
+    case Kind::kElements:
+      return {section.count_of(node, key, 1, kMaxElements)};
+    case Kind::kCount:
+      return {section.count_of(node, key, 1, kMaxThreads)};
+    case Kind::kSeed:
+      return {section.count_of(node, key, 0, kMaxSeed)};
+    case Kind::kWord:
+      return {section.text_of(node, key)};
+    case Kind::kSwitch:
+      return {switch_value(section, node, key)};
+    case Kind::kFlag:
+      return {section.flag_of(node, key)};
+    case Kind::kFile:
+      return {(std::filesystem::path(folder) / section.text_of(node, key)).lexically_normal().string()};
+    case Kind::kCounters:
+      return {counters_value(section, node, key)};
+    case Kind::kMeasure:
+      return {measure_value(section, node, key)};
+    case Kind::kCarrier:
+      return {carrier_value(section, node, key)};
+    case Kind::kNetwork:
+      return {network_value(section, node, key)};
+    case Kind::kThreads:
+      break;
+  }
+  return thread_counts(section, node, key);
+}
+
+void multiply(std::vector<Variant>& variants, const std::string& key, const std::vector<Json>& values,
+              bool in_suffix) {
+  std::vector<Variant> product;
+  for (const Variant& variant : variants)
+    for (const Json& value : values) {
+      product.push_back(variant);
+      product.back().options[key] = value;
+      if (in_suffix) product.back().suffix += fmt::format(",{}={}", key, in_name(value));
+    }
+  variants = std::move(product);
+}
+
+// Different ones: where there are two processors, [1, 2, "all"] is 1, 2.
+std::vector<Json> read_values(TomlSection& section, const MesherOption& option, const std::string& folder) {
+  std::vector<Json> values;
+  for (const toml::node* node : section.values(option.key))
+    for (Json& value : read_value(section, *node, option, folder))
+      if (std::find(values.begin(), values.end(), value) == values.end()) values.push_back(std::move(value));
+  return values;
+}
+
+void refuse_second_size(const TomlSection& section) {
+  std::vector<const char*> given;
+  for (const char* key : {"radius_mm", kTargetElements, kPerThread, kPerRank})
+    if (section.has(key)) given.push_back(key);
+  if (given.size() > 1)
+    section.fail(section.place(given.back()),
+                 fmt::format("{} exclude each other", fmt::join(given, " and ")));
+}
+
+void refuse_options_of_podm(const TomlSection& section, const Json& options) {
+  if (options.value(kMesher, kPodm) == kPodm) return;
+  for (const auto& [key, value] : options.items())
+    if (!is_among(kOfAll, key))
+      section.fail(section.place(key), fmt::format("{} is an option of podm alone", key));
+}
+
+void refuse_options_of_meshers(const TomlSection& section, const Json& options) {
+  if (!options.contains(kMeasure)) return;
+  for (const MesherOption& option : kMesherOptions)
+    if (option.kind != Kind::kMeasure && section.has(option.key))
+      section.fail(section.place(option.key), fmt::format("{} is an option of meshers", option.key));
+}
+
+// A copy has one processor, and the kernel counts all copies together.
+void refuse_crowded_copies(const TomlSection& section, const Json& options) {
+  if (!options.contains(kCopies)) return;
+  if (options["threads"] != 1) section.fail(section.place(kCopies), "copies need threads = 1");
+  for (const char* key : {"pin", kCounters})
+    if (options.contains(key))
+      section.fail(section.place(key), fmt::format("{} and {} exclude each other", kCopies, key));
+}
+
+void refuse_strangers_to_ranks(const TomlSection& section, const Json& options) {
+  const auto need = [&](const char* key, const char* needed, bool is_there) {
+    if (options.contains(key) && !is_there)
+      section.fail(section.place(key), fmt::format("{} needs {}", key, needed));
+  };
+  need(kRanks, kCarrier, options.contains(kCarrier));
+  need(kCarrier, kRanks, options.contains(kRanks));
+  need(kPerRank, kRanks, options.contains(kRanks));
+  need(kNetwork, "ranks of carrier \"in-process\"", options.value(kCarrier, "") == kInProcess);
+  if (!options.contains(kRanks)) return;
+  for (const char* key : kNotOnRanks)
+    if (options.contains(key))
+      section.fail(section.place(key), fmt::format("{} and {} exclude each other", kRanks, key));
+}
+
+void scale_by(const char* key, const char* number, const TomlSection& section, Json& options) {
+  if (!options.contains(key)) return;
+  const std::int64_t elements = options[key].get<std::int64_t>() * options[number].get<std::int64_t>();
+  if (elements > kMaxElements)
+    section.fail(section.place(key), fmt::format("{} elements in all, more than {}", elements, kMaxElements));
+  options.erase(key);
+  options[kTargetElements] = elements;
+}
+
+}  // namespace
+
+std::string in_name(const Json& value) {
+  std::string text = value.is_string() ? std::filesystem::path(value.get<std::string>()).filename().string()
+                     : value.is_number_float() ? fmt::format("{}", value.get<double>())
+                                               : value.dump();
+  for (char& c : text)
+    if (!std::isalnum(static_cast<unsigned char>(c)) && c != '.' && c != '_' && c != '-') c = '_';
+  return text;
+}
+
+std::vector<Variant> read_matrix(TomlSection& section, const std::string& folder) {
+  refuse_second_size(section);
+  std::vector<Variant> variants{{"", {{"threads", 1}}}};
+  for (const MesherOption& option : kMesherOptions) {
+    const std::vector<Json> values = read_values(section, option, folder);
+    const bool in_suffix = section.is_array(option.key) || section.is_text(option.key, kPowersOfTwo);
+    if (!values.empty()) multiply(variants, option.key, values, in_suffix);
+  }
+  for (Variant& variant : variants) {
+    refuse_options_of_meshers(section, variant.options);
+    refuse_options_of_podm(section, variant.options);
+    refuse_crowded_copies(section, variant.options);
+    refuse_strangers_to_ranks(section, variant.options);
+    scale_by(kPerThread, "threads", section, variant.options);
+    scale_by(kPerRank, kRanks, section, variant.options);
+  }
+  return variants;
+}
+
+std::vector<std::string> mesher_arguments(const Json& options) {
+  std::vector<std::string> arguments;
+  for (const auto& [key, value] : options.items()) {
+    if (value == false || is_among(kOfHarness, key)) continue;
+    std::string name = key.ends_with(kMillimetres) ? key.substr(0, key.size() - 3) : key;
+    std::replace(name.begin(), name.end(), '_', '-');
+    arguments.push_back("--" + name);
+    if (value.is_string()) arguments.push_back(value);
+    if (value.is_number_float()) arguments.push_back(fmt::format("{}", value.get<double>()));
+    if (value.is_number_integer()) arguments.push_back(value.dump());
+  }
+  return arguments;
+}
+
+}  // namespace podm::bench

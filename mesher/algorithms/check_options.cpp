@@ -1,0 +1,124 @@
+#include "algorithms/check_options.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "algorithms/team_size.h"
+#include "geometry/affine.h"
+#include "podm/bounds.h"
+
+namespace podm {
+
+namespace {
+
+bool is_positive_or_zero(double x) { return std::isfinite(x) && x >= 0; }
+
+using Labels = std::vector<Label>;
+
+bool has_value(Labels::const_iterator begin, Labels::const_iterator end, std::uint32_t value) {
+  return std::any_of(begin, end, [value](const Label& label) { return label.value == value; });
+}
+
+void check_near(const LabelImage& image, const std::vector<SizeNear>& near) {
+  for (const SizeNear& each : near) {
+    if (!(std::isfinite(each.radius_mm) && each.radius_mm > 0) ||
+        !(std::isfinite(each.width_mm) && each.width_mm > 0))
+      throw InputError("the size near an interface and its width must be positive numbers of mm");
+    for (const auto& side : each.labels)
+      for (const std::uint32_t value : side)
+        if (!has_value(image.labels.begin(), image.labels.end(), value))
+          throw InputError(fmt::format("size near label {}: the image has no such label", value));
+  }
+}
+
+// Readers see to it; others may not have.
+void check_size_image(const SizeImage& image) {
+  std::size_t voxels = 1;
+  for (const int n : image.size) voxels *= static_cast<std::size_t>(std::max(n, 0));
+  if (voxels == 0 || voxels != image.radius_mm.size())
+    throw InputError(image.path + ": the size image has not as many radii as voxels");
+  if (!(std::abs(determinant(image.voxel_to_ras)) > 0))
+    throw InputError(image.path + ": the affine is singular");
+  for (const float radius : image.radius_mm)
+    if (!is_positive_or_zero(radius))
+      throw InputError(image.path + ": radii must be finite, and not negative");
+}
+
+void check_sizes(const LabelImage& image, const SizeOptions& sizes) {
+  if (!is_positive_or_zero(sizes.radius_mm)) throw InputError("radius must be a positive number of mm");
+  if (!is_positive_or_zero(sizes.delta_mm)) throw InputError("delta must be a positive number of mm");
+  for (const auto& [value, radius] : sizes.radius_of_mm) {
+    if (!has_value(image.labels.begin() + 1, image.labels.end(), value))
+      throw InputError("radius of label " + std::to_string(value) + ": the image has no such label");
+    if (!(std::isfinite(radius) && radius > 0))
+      throw InputError("radius of label " + std::to_string(value) + " must be a positive number of mm");
+  }
+  check_near(image, sizes.near);
+  if (const auto& by_place = sizes.image) check_size_image(*by_place);
+  if (!(std::isfinite(sizes.image_factor) && sizes.image_factor > 0))
+    throw InputError("the factor of a size image must be a positive number");
+  if (!is_positive_or_zero(sizes.grade)) throw InputError("grade must be a positive number");
+  if (sizes.target_elements > 0 && sizes.radius_mm > 0)
+    throw InputError("a target number of elements excludes a radius");
+  if (!(sizes.target_tolerance_percent > 0 && sizes.target_tolerance_percent <= 100))
+    throw InputError("the tolerance of a target must be more than 0 and at most 100 percent");
+}
+
+void check_leaves(const LeafOptions& leaves) {
+  if (!(std::isfinite(leaves.initial_ratio) && leaves.initial_ratio >= 1))
+    throw InputError("the initial ratio must be 1 or more");
+  if (!is_positive_or_zero(leaves.size_mm)) throw InputError("leaf size must be a positive number of mm");
+}
+
+void check_dihedral(double min_dihedral_deg) {
+  if (!(min_dihedral_deg >= 0 && min_dihedral_deg <= kMostMinDihedral))
+    throw InputError(
+        fmt::format("the least dihedral angle must be more than 0 and at most {} degrees", kMostMinDihedral));
+}
+
+// The image bounds it, too: smooth_interfaces.h.
+void check_smoothing(double smoothing_mm) {
+  if (!is_positive_or_zero(smoothing_mm))
+    throw InputError("the width by which interfaces are smoothed must be a positive number of mm");
+}
+
+void check_optimization(const MeshingOptions& options) {
+  const OptimizeOptions& optimize = options.optimize;
+  if (!optimize.is_wanted) return;
+  const double least = optimize.least_dihedral_deg, largest = optimize.largest_dihedral_deg;
+  if (!(least > 0 && least <= 15) || !(largest >= 150 && largest < 180))
+    throw InputError(
+        "bounds on dihedral angles must be more than 0 and at most 15, and at least 150 and less than 180");
+  if (options.log != nullptr)
+    throw InputError("an optimised mesh has no log of operations: those of optimisation are not logged");
+}
+
+// Readers see to it; others may have left the affine out.
+void check_affine(const LabelImage& image) {
+  const Affine& a = image.voxel_to_ras;
+  for (std::size_t axis = 0; axis < 3; ++axis) {
+    const double norm = std::hypot(a[axis], a[4 + axis], a[8 + axis]);
+    if (!(norm > 0 && std::abs(norm - image.spacing[axis]) <= 1e-6 * norm))
+      throw InputError("the image's spacing is not that of its affine (axis " + std::to_string(axis) + ")");
+  }
+  const double voxel_mm3 = image.spacing[0] * image.spacing[1] * image.spacing[2];
+  if (!(std::abs(determinant(a)) > 1e-6 * voxel_mm3)) throw InputError("the image's affine is singular");
+}
+
+}  // namespace
+
+void check_options(const LabelImage& image, const MeshingOptions& options) {
+  if (image.labels.size() < 2 || image.voxels.size() != image.num_voxels())
+    throw InputError("the image has no foreground");
+  check_affine(image);
+  check_sizes(image, options.sizes);
+  check_dihedral(options.min_dihedral_deg);
+  check_smoothing(options.smoothing_mm);
+  check_team_size(options.team, options.algorithm);
+  check_leaves(options.leaves);
+  check_optimization(options);
+}
+
+}  // namespace podm

@@ -1,0 +1,200 @@
+// PDR.PODM: parallel Delaunay refinement leaf by leaf, by a PODM mesh generator on each computing node.
+// (Feng, Tsolakis, Chernikov, Chrisochoides, IMR 2015, section 3; numbers behind lines are those of its
+// Fig. 3.) With one worker a node it is PDR. (Chernikov, Chrisochoides, ICS 2004; SISC 28 (2006).)
+//
+// A coarse mesh is made first, with PODM. Then an octree divides space into leaves, and a queue hands those
+// out that have poor cells, to nodes that refine them at the same time.
+//
+//   Nodes lock nothing against each other: an operation keeps to the region of its leaf, and active leaves'
+//   regions have no point in common (octree/octree.h). What would lock a vertex outside waits for the end,
+//   when all workers refine what is left anywhere, with PODM. That ends the run with the same guarantees as
+//   PODM's, whatever leaves there were (octree/leaf_region.h).
+//
+// Sources that bring locks of their own include this file; all others include podm.h.
+#pragma once
+
+#include <algorithm>
+#include <atomic>
+#include <deque>
+#include <mutex>
+
+#include "algorithms/computing_node.h"
+#include "algorithms/podm.h"
+#include "workers/work_cost.h"
+
+namespace podm {
+
+// What the computing nodes share while they refine leaf after leaf.
+template <class Locks, class Time>
+struct Leaves {
+  const Octree& octree;
+  LeafCells& cells;
+  RefinementQueue& queue;
+  Time& time;
+  std::stop_token over;
+  bool with_schedule;
+  // New cells of other leaves, by worker, for which it pays to wake the others of the node: these take ten
+  // times as long as a thread to wake.
+  static constexpr std::size_t kForeignToShare = 1000;
+  std::mutex mutex = {};  // guards the schedule
+  std::vector<LeafSchedule::Activation> schedule = {};
+
+  // 9 to 28, by a node's master; its other workers call refine() alone, and beg between leaves.
+  void refine_one_by_one(ComputingNode<Locks>& node) {
+    Worker<Locks>& master = node.master();
+    const auto wait = [&] { time.block(master.id(), &Overhead::begging_s); };
+    const auto pop = [&] {
+      time.spend_in(&queue, master.id(), time.costs().leaf_handed_out);
+      return queue.wait_and_pop(node.number(), wait, over);
+    };
+    while (const auto leaf = pop()) {  // 9, 10: with B1 and B2
+      node.begin(octree, *leaf, time.now_s());
+      const LeafCells::Entries poor = cells.take(*leaf);
+      time.spend(master.id(), time.costs().entry_given * static_cast<double>(poor.size()));
+      master.give(poor);                       // 11
+      if (!refine_leaf(node, master)) return;  // 12 to 24, on all workers of the node
+      if (!hand_over(node)) return;            // 21
+      end_leaf(node);                          // 25 to 27
+    }
+    if (!time.is_over()) node.group().dismiss();
+  }
+
+  bool refine_leaf(ComputingNode<Locks>& node, Worker<Locks>& worker) {
+    return refine(worker, node.group(), time, [&] {
+      if (node.hands_over()) hand_over_own(worker);
+    });
+  }
+
+  // New cells go to the leaves that have them. Where these are many each worker hands over those it made:
+  // one alone would keep the others of its node waiting. False: the run is over.
+  bool hand_over(ComputingNode<Locks>& node) {
+    if (node.num_foreign() < kForeignToShare * node.num_workers()) return true;
+    node.set_hands_over(true);
+    node.group().rouse(node.master().id());
+    const bool is_done = refine_leaf(node, node.master());
+    node.set_hands_over(false);
+    return is_done;
+  }
+
+  void hand_over_own(Worker<Locks>& worker) {
+    time.spend(worker.id(), time.costs().entry_to_leaf * static_cast<double>(worker.num_foreign()));
+    cells.add(worker.take_foreign(), queue, over);
+  }
+
+  // This leaf goes back to the queue, if others have listed cells of it.
+  void end_leaf(ComputingNode<Locks>& node) {
+    const LeafId leaf = node.leaf();
+    const double handing_over_s = time.costs().entry_to_leaf * static_cast<double>(node.num_foreign());
+    LeafSchedule::Activation activation = node.end(cells, queue, over);
+    time.spend(node.master().id(), handing_over_s);
+    if (with_schedule) {
+      const std::scoped_lock lock(mutex);
+      activation.end_s = time.now_s();  // under the lock: they are listed by their ends
+      schedule.push_back(std::move(activation));
+    }
+    time.spend_in(&queue, node.master().id(), time.costs().leaf_handed_out);
+    queue.finish(leaf);
+  }
+};
+
+inline std::optional<LeafSchedule> described(const Octree& octree,
+                                             std::vector<LeafSchedule::Activation> activations) {
+  const Point& origin = octree.origin();
+  LeafSchedule schedule{.origin_mm = {origin.x, origin.y, origin.z},
+                        .side_mm = octree.finest_side_mm(),
+                        .leaves = {},
+                        .activations = std::move(activations)};
+  for (LeafId leaf = 0; leaf < octree.num_leaves(); ++leaf)
+    schedule.leaves.push_back({.corner = octree.cube(leaf).corner, .side = octree.cube(leaf).side});
+  return schedule;
+}
+
+// A computing node is one group of workers.
+inline CoordinationOptions coordination_of_node(const Team& team) {
+  CoordinationOptions options = team.coordination;
+  options.num_workers /= team.num_nodes;
+  options.groups.clear();
+  return options;
+}
+
+// 5, 6, by all workers: the last to end shares out what they listed.
+template <class Time>
+void distribute(LeafCells& cells, RefinementQueue& queue, LeafId num_leaves, int num_workers, Time& time,
+                const std::stop_token& over) {
+  std::atomic<std::size_t> next_slice = 0;
+  std::atomic<int> num_at_work = num_workers;
+  time.run([&](WorkerId self) {
+    for (std::size_t slice = next_slice++; slice < cells.num_slices() && !time.is_over();
+         slice = next_slice++)
+      time.spend(self, time.costs().entry_to_leaf * static_cast<double>(cells.distribute(slice)));
+    if (--num_at_work > 0) return;
+    cells.share_out(queue, over);
+    time.spend(self, time.costs().leaf_shared_out * num_leaves);
+  });
+}
+
+// Each node's share of the initial mesh goes to its memory: only then do its workers find there what they
+// work on, and its vertices, which stay. They are few, but the first of the leaf, and had a third of its far
+// accesses and more.
+template <class Time>
+void settle(Construction& construction, const Octree& octree, const RefinementQueue& queue,
+            std::size_t workers_per_node, LeafCells& cells, Time& time) {
+  const auto relocation = construction.relocate(time, [&](const Point& p) {
+    const LeafId leaf = octree.leaf_at(p);
+    return leaf == kNoLeaf ? kNoWorker : static_cast<WorkerId>(queue.home_of(leaf) * workers_per_node);
+  });
+  if (!relocation) return;
+  const auto num_workers = static_cast<std::size_t>(construction.num_workers());
+  time.run([&](WorkerId self) {
+    time.spend(self,
+               time.costs().entry_given * static_cast<double>(cells.rename(*relocation, self, num_workers)));
+  });
+}
+
+/// Refines leaf by leaf the cells of the store, or `only` some of them, which live, with all workers of the
+/// team. Returns those that no leaf could refine.
+template <class Locks, class Time>
+Construction::Entries refine_leaf_by_leaf(Construction& construction,
+                                          const Construction::Workers<Locks>& workers, const Octree& octree,
+                                          bool with_schedule, Time& time,
+                                          const Construction::Entries* only = nullptr) {
+  const int num_workers = construction.num_workers();
+  const std::stop_token over = construction.stop().over();
+  if (with_schedule)
+    for (const auto& worker : workers) worker->locks().record_leaves();
+  const auto num_nodes = static_cast<unsigned>(construction.team().num_nodes);
+  const std::size_t per_node = workers.size() / num_nodes;
+  const auto resume = [&](WorkerId worker) { time.resume(worker); };
+
+  LeafCells cells(construction.mesh(), octree, only);
+  RefinementQueue queue(octree, num_nodes, LeafOrder::kHome,
+                        [&](unsigned node) { resume(static_cast<WorkerId>(node * per_node)); });
+  std::deque<ComputingNode<Locks>> nodes;  // 8
+  for (unsigned node = 0; node < num_nodes; ++node)
+    nodes.emplace_back(node, std::span(workers).subspan(node * per_node, per_node),
+                       coordination_of_node(construction.team()), resume);
+  Leaves<Locks, Time> leaves{.octree = octree,
+                             .cells = cells,
+                             .queue = queue,
+                             .time = time,
+                             .over = over,
+                             .with_schedule = with_schedule};
+  distribute(cells, queue, octree.num_leaves(), num_workers, time, over);  // 5, 6
+  if (construction.mesh().num_nodes() > 1) settle(construction, octree, queue, per_node, cells, time);
+  time.run([&](WorkerId self) {  // 7
+    ComputingNode<Locks>& node = nodes[self / per_node];
+    if (self % per_node == 0) {
+      leaves.refine_one_by_one(node);
+    } else {
+      leaves.refine_leaf(node, *workers[self]);
+    }
+  });
+  for (auto& node : nodes)
+    if (node.has_leaf()) leaves.end_leaf(node);  // the run ended early
+  construction.account(workers, time);
+  construction.report_leaves(octree.num_leaves(),
+                             with_schedule ? described(octree, std::move(leaves.schedule)) : std::nullopt);
+  return cells.take_leftover();
+}
+
+}  // namespace podm

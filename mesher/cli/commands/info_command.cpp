@@ -1,0 +1,91 @@
+// podm info: what an image is, and how much of it each label fills.
+#include <fmt/format.h>
+
+#include <nlohmann/json.hpp>
+#include <optional>
+
+#include "algorithms/team_size.h"
+#include "cli/commands/commands.h"
+#include "cli/commands/labelled_image.h"
+#include "cli/reports/json_text.h"
+#include "cli/reports/plan.h"
+#include "cli/reports/standard_output.h"
+#include "image/foreground.h"
+
+namespace podm::cli {
+namespace {
+
+// All of such an image is meshed: rarely what its maker wanted.
+std::string note_on_background(const LabelImage& image, const std::vector<std::uint64_t>& counts) {
+  if (counts[kBackground] > 0) return "";
+  return fmt::format(
+      "note       no background: no voxel has the value {}, so that all of the image is foreground\n"
+      "           (--background VALUE takes another for it)\n",
+      image.labels[kBackground].value);
+}
+
+std::string as_text(const std::string& path, const LabelImage& image, const std::optional<Plan>& plan) {
+  const auto& affine = image.voxel_to_ras;
+  const double voxel_mm3 = voxel_volume_mm3(image);
+  const auto counts = count_voxels(image, 0);
+  std::string text = fmt::format(
+      "image      {}\n"
+      "size       {} x {} x {} voxels\n"
+      "spacing    {} x {} x {} mm\n",
+      path, image.size[0], image.size[1], image.size[2], image.spacing[0], image.spacing[1],
+      image.spacing[2]);
+  for (std::size_t row = 0; row < 3; ++row)
+    text += fmt::format("{:<11}{:>12.6g} {:>12.6g} {:>12.6g} {:>12.6g}\n", row == 0 ? "affine" : "",
+                        affine[4 * row], affine[4 * row + 1], affine[4 * row + 2], affine[4 * row + 3]);
+  text += fmt::format("labels     {}\n{:>10} {:>12} {:>16}  {}\n", image.labels.size() - 1, "value", "voxels",
+                      "volume mm^3", "name");
+  for (std::size_t i = 0; i < image.labels.size(); ++i)
+    text += fmt::format("{:>10} {:>12} {:>16.6g}  {}\n", image.labels[i].value, counts[i],
+                        static_cast<double>(counts[i]) * voxel_mm3,
+                        i == kBackground ? "background" : image.labels[i].name);
+  return text + note_on_background(image, counts) + (plan ? plan_text(*plan, image) : "");
+}
+
+nlohmann::ordered_json as_json(const std::string& path, const LabelImage& image,
+                               const std::optional<Plan>& plan) {
+  const double voxel_mm3 = voxel_volume_mm3(image);
+  const auto counts = count_voxels(image, 0);
+  nlohmann::ordered_json labels = nlohmann::ordered_json::array();
+  for (std::size_t i = 1; i < image.labels.size(); ++i)
+    labels.push_back({{"value", image.labels[i].value},
+                      {"name", image.labels[i].name},
+                      {"voxels", counts[i]},
+                      {"volume_mm3", static_cast<double>(counts[i]) * voxel_mm3}});
+  nlohmann::ordered_json told = {
+      {"path", path},
+      {"size", image.size},
+      {"spacing_mm", image.spacing},
+      {"affine", affine_rows(image)},
+      {"voxel_volume_mm3", voxel_mm3},
+      {"background", {{"value", image.labels[kBackground].value}, {"voxels", counts[kBackground]}}},
+      {"labels", labels},
+      {"warnings", image.warnings}};
+  if (plan) told["plan"] = plan_json(*plan, image);
+  return told;
+}
+
+}  // namespace
+
+int run(const InfoCommand& command) {
+  const int threads = loop_threads(command.planned.meshing.team);
+  const WorkTimer timer(threads);
+  const LabelImage image = read_labelled_image(command.image, threads);
+  const double read_s = timer.seconds();
+  for (const std::string& warning : image.warnings) fmt::print(stderr, "warning: {}\n", warning);
+  std::optional<Plan> plan;
+  if (command.plan) {
+    MeshCommand planned = command.planned;
+    planned.image = command.image;
+    plan = make_plan(planned, image, read_s);
+  }
+  write_standard_output(command.json ? json_line(as_json(command.image.path, image, plan))
+                                     : as_text(command.image.path, image, plan));
+  return 0;
+}
+
+}  // namespace podm::cli

@@ -1,0 +1,201 @@
+#include "cli/commands/mesh_on_ranks.h"
+
+#include <fmt/format.h>
+
+#include <array>
+#include <filesystem>
+#include <optional>
+
+#include "algorithms/team_size.h"
+#include "cli/commands/labelled_image.h"
+#include "cli/commands/mesh_run.h"
+#include "cli/commands/verify_mesh.h"
+#include "cli/options/options_for_image.h"
+#include "cli/processes/ranks_of_machine.h"
+#include "cli/reports/appended_file.h"
+#include "cli/reports/input_sha256.h"
+#include "cli/reports/progress_display.h"
+#include "cli/reports/told_by_ranks.h"
+#include "distributed/in_process_ranks.h"
+#include "distributed/together.h"
+#include "distributed/write_pieces.h"
+#include "podm/mesh_io.h"
+#include "podm/operation_log.h"
+
+namespace podm::cli {
+namespace {
+
+void refuse(const std::string& path, const char* option) {
+  if (!path.empty())
+    throw InputError(fmt::format("{} cannot be had on ranks yet; podm mesh has it, on one machine", option));
+}
+
+void check_command(const MeshCommand& command) {
+  refuse(command.surface_path, "--surface");
+  refuse(command.schedule_path, "--schedule");
+  refuse(command.size_image_path, "--size-image");
+  refuse(command.size_near.empty() ? "" : command.size_near[0].labels[0], "--size-near");
+  check_options_on_ranks(command.meshing);
+  check_pieces_path(command.mesh_path);
+  if (command.verify) check_verifier(command);
+}
+
+class Run {
+ public:
+  Run(MeshCommand command, Communication& ranks, SignalThread& signals, SharedByRanks& shared)
+      : command_(std::move(command)), ranks_(ranks), signals_(signals), shared_(shared), machines_(ranks) {}
+
+  int operator()() {
+    check();
+    MeshRun run = prepare();
+    MeshingOnRanks result = mesh(run);
+    const double start_s = ranks_.seconds();
+    if (result.piece.total_cells > 0) write_pieces(result.piece, command_.mesh_path, ranks_);
+    run.report = std::move(result.report);
+    if (log_) write_log(run, result.mesh_hash);
+    run.write_s = ranks_.seconds() - start_s;
+    auto& warnings = run.report.warnings;
+    if (!is_in_process()) warnings = machines_.warnings(command_.meshing.team.threads);
+    warnings.insert(warnings.end(), run.image.warnings.begin(), run.image.warnings.end());
+    gather_from_ranks(result, command_.meshing.team.threads, machines_, ranks_, run);
+    std::array<std::uint64_t, 1> code{0};
+    if (ranks_.rank() == 0) {
+      if (command_.verify && run.mesh.cells > 0) run.verification = verify_mesh(run, signals_);
+      code[0] = static_cast<std::uint64_t>(tell(run, records_));
+    }
+    ranks_.maximum(code);
+    return static_cast<int>(code[0]);
+  }
+
+ private:
+  bool is_in_process() const { return command_.ranks_in_process > 0; }
+
+  // All that may be refused before there is work to lose.
+  void check() {
+    TeamOptions& team = command_.meshing.team;
+    if (team.threads == 0 && team.nodes == 0 && team.cores_per_node == 0)
+      team.threads = is_in_process() ? 1 : machines_.share_of_processors();
+    team.threads = num_workers(team);
+    const auto check = [&] {
+      check_command(command_);
+      if (ranks_.rank() == 0 && !command_.record_path.empty()) records_.emplace(command_.record_path);
+      if (!command_.log_path.empty()) log_.emplace(own_log_path());
+    };
+    do_together(check, ranks_);
+    expect_agreement({{"program", "SHA-256 " + file_sha256("/proc/self/exe")},
+                      {"output", command_.mesh_path},
+                      {"--log", command_.log_path},
+                      {"--verify", command_.verify ? "asked for" : "not asked for"}},
+                     ranks_);
+  }
+
+  // Each process has the image once, and its ranks share what is left.
+  MeshRun prepare() {
+    const std::uint64_t ranks_here = is_in_process() ? static_cast<std::uint64_t>(ranks_.size()) : 1;
+    std::uint64_t limit_bytes = memory_limit_bytes(command_);
+    if (command_.max_memory_bytes == 0 && !is_in_process())
+      limit_bytes /= static_cast<std::uint64_t>(machines_.num_ranks_here());
+    const double start_s = ranks_.seconds();
+    const auto make = [&] {
+      return std::make_shared<const LabelImage>(
+          read_labelled_image(command_.image, command_.meshing.team.threads, bytes_for_image(limit_bytes)));
+    };
+    MeshingOptions options;
+    const auto read = [&] {
+      image_ = shared_.image.get(make, ranks_);
+      options = options_for_image(command_, *image_, limit_bytes, is_in_process() ? 1 : ranks_.size());
+      options.limits.max_memory_bytes /= ranks_here;
+      if (log_) options.log = &*log_;
+    };
+    do_together(read, ranks_);
+    return {.command = command_,
+            .image = *image_,
+            .options = std::move(options),
+            .crossover = {},
+            .report = {},
+            .mesh = {},
+            .mesh_sha256 = {},
+            .read_s = ranks_.seconds() - start_s,
+            .verification = nullptr,
+            .program = "podm-mpi"};
+  }
+
+  std::string own_log_path() const {
+    return ranks_.size() == 1 ? command_.log_path : fmt::format("{}.{}", command_.log_path, ranks_.rank());
+  }
+
+  // No rank's log gets its name before all are on the disks.
+  void write_log(const MeshRun& run, std::uint64_t mesh_hash) {
+    const OperationLogHead head{.box = run.report.virtual_box,
+                                .image_sha256 = label_image_sha256(run.image),
+                                .space = to_string(run.options.space),
+                                .mesh_sha256 = {},
+                                .mesh_hash = mesh_hash_text(mesh_hash),
+                                .rank = ranks_.rank(),
+                                .num_ranks = ranks_.size()};
+    do_together([&] { log_->finish(head); }, ranks_);
+    do_together([&] { log_->publish(); }, ranks_);
+    if (ranks_.rank() == 0) remove_logs_of_more_ranks();
+  }
+
+  // An earlier run's, which would be taken for this one's.
+  void remove_logs_of_more_ranks() const {
+    std::error_code error;
+    for (int rank = ranks_.size() == 1 ? 0 : ranks_.size();; ++rank)
+      if (!std::filesystem::remove(fmt::format("{}.{}", command_.log_path, rank), error)) return;
+  }
+
+  // A process has one bar, and heeds signals once: by rank 0, where it has several.
+  MeshingOnRanks mesh(const MeshRun& run) {
+    using Style = ProgressDisplay::Style;
+    const bool is_silent = command_.quiet || ranks_.rank() != 0;
+    ProgressDisplay display(stderr, is_silent ? Style::kNone : ProgressDisplay::style_for(stderr));
+    const auto progress = [&](const Progress& now) {
+      if (is_in_process() && ranks_.rank() != 0) return;
+      if (now.phase != "transform") signals_.heed_first(is_silent);
+      display.show(now);
+    };
+    return mesh_image_on_ranks(run.image, run.options, ranks_, progress, signals_.token(),
+                               &shared_.isosurface);
+  }
+
+  MeshCommand command_;
+  Communication& ranks_;
+  SignalThread& signals_;
+  SharedByRanks& shared_;
+  const RanksOfMachine machines_;
+  std::shared_ptr<const LabelImage> image_;
+  std::optional<AppendedFile> records_;  // rank 0's
+  std::optional<OperationLogWriter> log_;
+};
+
+}  // namespace
+
+int mesh_on_ranks(MeshCommand command, Communication& ranks, SignalThread& signals, SharedByRanks& shared) {
+  return Run(std::move(command), ranks, signals, shared)();
+}
+
+int mesh_in_process(const MeshCommand& command, SignalThread& signals) {
+  constexpr double kSecondsPerUs = 1e-6, kBytesPerGigabyte = 1e9;
+  SharedByRanks shared;
+  std::optional<RefusedByAll> refusal;
+  int code = 0;
+  const auto mesh = [&](Communication& ranks) {
+    try {
+      const int own_code = mesh_on_ranks(command, ranks, signals, shared);
+      if (ranks.rank() == 0) code = own_code;
+    } catch (const RefusedByAll& error) {  // all end, and none has failed
+      if (ranks.rank() == 0) refusal = error;
+    }
+  };
+  run_ranks({.num_ranks = command.ranks_in_process,
+             .one_at_a_time = true,
+             .seed = command.meshing.team.seed,
+             .latency_s = kSecondsPerUs * command.network.latency_us,
+             .bytes_per_s = kBytesPerGigabyte * command.network.gigabytes_per_s},
+            mesh);
+  if (refusal) throw RefusedByAll(*refusal);
+  return code;
+}
+
+}  // namespace podm::cli

@@ -1,0 +1,150 @@
+#include "cli/commands/verify_mesh.h"
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+#include <unistd.h>
+
+#include <filesystem>
+#include <nlohmann/json.hpp>
+#include <optional>
+
+#include "cli/processes/child_process.h"
+#include "files/temporary_file.h"
+#include "podm/errors.h"
+#include "podm/image_io.h"
+
+namespace podm::cli {
+namespace {
+
+namespace fs = std::filesystem;
+
+std::string verifier_path() {
+  return (fs::read_symlink("/proc/self/exe").parent_path() / "podm-verify").string();
+}
+
+using Ranges = std::vector<std::pair<std::uint32_t, std::uint32_t>>;
+
+std::string text_of(const Ranges& ranges) {
+  std::vector<std::string> parts;
+  for (const auto& [first, last] : ranges)
+    parts.push_back(first == last ? fmt::format("{}", first) : fmt::format("{}-{}", first, last));
+  return fmt::format("{}", fmt::join(parts, ","));
+}
+
+// The image and what was meshed of it.
+std::vector<std::string> image_options(const MeshRun& run, const std::function<std::string()>& write_image) {
+  const ImageArguments& image = run.command.image;
+  const LabelSelection& selection = image.selection;
+  const std::string background = fmt::format("{}", selection.background);
+  if (image.is_array || image.is_phantom()) return {"--image", write_image(), "--background", background};
+  std::vector<std::string> options{"--image", image.path, "--background", background};
+  if (!selection.keep.empty()) options.insert(options.end(), {"--labels", text_of(selection.keep)});
+  if (!selection.drop.empty()) options.insert(options.end(), {"--drop", text_of(selection.drop)});
+  if (selection.drop_islands_mm3 > 0)
+    options.insert(options.end(), {"--drop-islands", fmt::format("{}", selection.drop_islands_mm3)});
+  for (const auto& [values, name] : selection.merges)
+    options.insert(options.end(), {"--merge", fmt::format("{}={}", fmt::join(values, ","), name)});
+  return options;
+}
+
+// The verifier calls the background 0, and a foreground label 0 by the background's value.
+std::uint32_t called_by_verifier(std::uint32_t label, std::uint32_t background) {
+  return label == 0 ? background : label == background ? 0 : label;
+}
+
+// Returns the bounds on circumradii, nothing where there are none.
+std::vector<std::string> size_options(const MeshRun& run) {
+  std::vector<std::string> options;
+  const auto add = [&](const char* name, const std::string& value) {
+    options.insert(options.end(), {name, value});
+  };
+  const SizeOptions& sizes = run.options.sizes;
+  const std::uint32_t background = run.command.image.selection.background;
+  const auto text_of_side = [&](std::vector<std::uint32_t> labels) {
+    for (std::uint32_t& label : labels) label = called_by_verifier(label, background);
+    return fmt::format("{}", fmt::join(labels, "+"));
+  };
+  if (run.report.radius_mm > 0) add("--radius", fmt::format("{}", run.report.radius_mm));
+  for (const auto& [label, radius] : sizes.radius_of_mm)
+    add("--radius-of", fmt::format("{}={}", called_by_verifier(label, background), radius));
+  if (const std::string& size_image = run.command.size_image_path; !size_image.empty()) {
+    add("--size-image", size_image);
+    if (const double factor = run.report.size_image_factor; factor != 1)
+      add("--size-factor", fmt::format("{}", factor));
+  }
+  for (const SizeNear& near : sizes.near)
+    add("--size-near", fmt::format("{},{}={}:{}", text_of_side(near.labels[0]), text_of_side(near.labels[1]),
+                                   near.radius_mm, near.width_mm));
+  if (sizes.grade > 0 && !options.empty()) add("--grade", fmt::format("{}", sizes.grade));
+  return options;
+}
+
+}  // namespace
+
+std::vector<std::string> claims_to_verify(const MeshRun& run,
+                                          const std::function<std::string()>& write_image) {
+  std::vector<std::string> options;
+  std::string claims = "structure,radius_edge,boundary_angles,conformity,surface,labels,surface_vertices";
+  // The file tells what it promises of dihedral angles.
+  const bool is_delaunay = !run.report.optimization;
+  if (is_delaunay) claims += ",delaunay";
+  if (run.report.promised_dihedral_deg) claims += ",dihedral";
+  const std::vector<std::string> sizes = size_options(run);
+  if (!sizes.empty()) claims += ",size";
+  if (run.command.verify_fidelity) claims += ",fidelity";
+  options.insert(options.end(), {"--delta", fmt::format("{}", run.report.delta_mm), "--claims", claims});
+  const auto image = image_options(run, write_image);
+  options.insert(options.end(), image.begin(), image.end());
+  options.insert(options.end(), sizes.begin(), sizes.end());
+  return options;
+}
+
+namespace {
+
+// A phantom is written to `scratch` with its labels selected.
+std::vector<std::string> verifier_command(const MeshRun& run, std::optional<TemporaryFolder>& scratch) {
+  std::vector<std::string> command{verifier_path(), run.command.mesh_path, "--json", "-"};
+  if (run.command.quiet) command.push_back("--quiet");
+  const auto claims = claims_to_verify(run, [&] {
+    const std::string path = scratch.emplace(run.command.mesh_path) / "image.nii.gz";
+    write_nifti(run.image, path);
+    return path;
+  });
+  command.insert(command.end(), claims.begin(), claims.end());
+  return command;
+}
+
+// Null where sizes are those of labels.
+const char* option_of_sizes_by_place(const MeshCommand& command) {
+  if (!command.size_image_path.empty()) return "--size-image";
+  if (!command.size_near.empty()) return "--size-near";
+  return command.meshing.sizes.grade > 0 ? "--grade" : nullptr;
+}
+
+}  // namespace
+
+void check_verifier(const MeshCommand& command) {
+  const std::string& mesh_path = command.mesh_path;
+  if (const char* option = option_of_sizes_by_place(command);
+      option != nullptr && command.meshing.space == Space::kVoxel)
+    throw InputError(
+        fmt::format("--verify: podm-verify does not judge sizes of {} in --space voxel", option));
+  if (mesh_path.ends_with(".xdmf"))
+    throw InputError(fmt::format(
+        "--verify: podm-verify does not read {}; it reads all other formats that are written", mesh_path));
+  if (::access(verifier_path().c_str(), X_OK) != 0)
+    throw InputError(fmt::format("--verify: {} cannot be run", verifier_path()));
+}
+
+nlohmann::ordered_json verify_mesh(const MeshRun& run, const SignalThread& signals) {
+  if (signals.token().stop_requested()) return nullptr;
+  std::optional<TemporaryFolder> scratch;
+  const auto command = verifier_command(run, scratch);
+  ChildProcess verifier(command, "--verify", signals);
+  auto report = nlohmann::ordered_json::parse(verifier.read(signals), nullptr, false);
+  if (report.is_object()) return report;
+  if (signals.token().stop_requested()) return nullptr;
+  throw InputError(fmt::format("--verify: {} gave no report", command[0]));
+}
+
+}  // namespace podm::cli

@@ -1,0 +1,38 @@
+#include "cli/processes/python_scripts.h"
+
+#include <fmt/format.h>
+#include <unistd.h>
+
+#include <filesystem>
+#include <vector>
+
+#include "cli/processes/child_process.h"
+#include "podm/errors.h"
+
+namespace podm::cli {
+namespace {
+
+constexpr const char* kPython = "/usr/bin/python3";  // Debian's modules belong to it
+
+std::vector<std::string> script_command(const std::string& script, const std::string& asked_by) {
+  const auto folder = std::filesystem::read_symlink("/proc/self/exe").parent_path().parent_path();
+  const std::string path = (folder / PODM_SHARE / script).string();
+  if (::access(kPython, X_OK) != 0)
+    throw InputError(fmt::format("{}: {} is not there; install Debian's python3", asked_by, kPython));
+  if (::access(path.c_str(), R_OK) != 0)
+    throw InputError(fmt::format("{}: {} is not there; podm is not installed whole", asked_by, path));
+  return {kPython, "-E", "-s", "-B", path};
+}
+
+}  // namespace
+
+ScriptResult run_script(const std::string& script, const std::string& argument, const std::string& asked_by,
+                        const SignalThread& signals) {
+  std::vector<std::string> command = script_command(script, asked_by);
+  command.push_back(argument);
+  ChildProcess process(command, asked_by, signals);
+  std::string output = process.read(signals);
+  return {std::move(output), process.exit_code()};
+}
+
+}  // namespace podm::cli

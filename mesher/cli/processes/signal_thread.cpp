@@ -1,0 +1,103 @@
+#include "cli/processes/signal_thread.h"
+
+#include <poll.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <array>
+#include <string>
+
+#include "files/leftovers.h"
+
+namespace podm::cli {
+namespace {
+
+struct StoppingSignal {
+  int number;
+  const char* name;
+};
+
+constexpr std::array<StoppingSignal, 3> kStopping{
+    {{SIGINT, "SIGINT"}, {SIGTERM, "SIGTERM"}, {SIGHUP, "SIGHUP"}}};
+
+// Null: the signal ends the program whenever it comes.
+const StoppingSignal* stopping(int number) {
+  for (const StoppingSignal& signal : kStopping)
+    if (signal.number == number) return &signal;
+  return nullptr;
+}
+
+// Those that end no program by default, tell of a crash, or come to nobody.
+constexpr std::array kLeftAlone{SIGCHLD, SIGCONT, SIGTSTP, SIGTTIN, SIGTTOU, SIGURG,  SIGWINCH, SIGABRT,
+                                SIGBUS,  SIGFPE,  SIGILL,  SIGSEGV, SIGSYS,  SIGTRAP, SIGKILL,  SIGSTOP};
+
+// Signals that would end the program: neither ignored, nor blocked, nor handled by what was loaded before it.
+bool is_awaited(int number, const sigset_t& blocked) {
+  struct sigaction action;
+  return std::find(kLeftAlone.begin(), kLeftAlone.end(), number) == kLeftAlone.end() &&
+         sigaction(number, nullptr, &action) == 0 && action.sa_handler == SIG_DFL &&
+         sigismember(&blocked, number) == 0;
+}
+
+[[noreturn]] void end_by(int number) {
+  remove_leftovers_for_good();
+  sigset_t only;
+  sigemptyset(&only);
+  sigaddset(&only, number);
+  raise(number);
+  pthread_sigmask(SIG_UNBLOCK, &only, nullptr);
+  _exit(128 + number);  // the first process of a container outlives its own signals
+}
+
+// Stays clear of stdio, whose lock a thread may hold that waits for the reader of a full pipe, and waits for
+// nobody itself.
+void tell(const StoppingSignal& signal) {
+  const std::string text = std::string(isatty(STDERR_FILENO) != 0 ? "\n" : "") + "podm: " + signal.name +
+                           ": the run ends early, with what there is; another signal ends it at once\n";
+  pollfd errors{STDERR_FILENO, POLLOUT, 0};
+  if (poll(&errors, 1, 0) != 1 || (errors.revents & POLLOUT) == 0) return;
+  if (::write(STDERR_FILENO, text.data(), text.size()) < 0) return;  // nobody reads it
+}
+
+}  // namespace
+
+SignalThread::SignalThread() {
+  pthread_sigmask(SIG_SETMASK, nullptr, &mask_before_);
+  sigemptyset(&awaited_);
+  for (int number = 1; number <= SIGRTMAX; ++number) {
+    if (!is_awaited(number, mask_before_)) continue;
+    sigaddset(&awaited_, number);
+    any_awaited_ = number;
+  }
+  if (any_awaited_ == 0) return;
+  pthread_sigmask(SIG_BLOCK, &awaited_, nullptr);
+  thread_ = std::thread([this] { receive(); });
+}
+
+SignalThread::~SignalThread() {
+  if (!thread_.joinable()) return;
+  is_done_ = true;
+  pthread_kill(thread_.native_handle(), any_awaited_);
+  thread_.join();
+}
+
+void SignalThread::heed_first(bool is_quiet) {
+  if (first_ != First::kEnds) return;
+  is_quiet_ = is_quiet;
+  first_ = First::kStops;
+}
+
+void SignalThread::receive() {
+  for (;;) {
+    int number = 0;
+    if (sigwait(&awaited_, &number) != 0) continue;
+    if (is_done_) return;
+    const StoppingSignal* signal = stopping(number);
+    First stops = First::kStops;
+    if (signal == nullptr || !first_.compare_exchange_strong(stops, First::kHasStopped)) end_by(number);
+    source_.request_stop();
+    if (!is_quiet_) tell(*signal);
+  }
+}
+
+}  // namespace podm::cli

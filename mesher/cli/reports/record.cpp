@@ -1,0 +1,398 @@
+#include "cli/reports/record.h"
+
+#include <fmt/format.h>
+
+#include "cli/reports/input_sha256.h"
+#include "cli/reports/json_text.h"
+#include "io/sha256.h"
+
+namespace podm::cli {
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+Json ranges(const std::vector<std::pair<std::uint32_t, std::uint32_t>>& closed_ranges) {
+  Json array = Json::array();
+  for (const auto& [first, last] : closed_ranges) array.push_back({first, last});
+  return array;
+}
+
+Json selection_of(const LabelSelection& selection) {
+  Json merges = Json::array();
+  for (const auto& merge : selection.merges)
+    merges.push_back({{"values", merge.values}, {"name", merge.name}});
+  return {{"background", selection.background},
+          {"keep", ranges(selection.keep)},
+          {"drop", ranges(selection.drop)},
+          {"merge", merges},
+          {"drop_islands_mm3", selection.drop_islands_mm3}};
+}
+
+Json dropped_islands_of(const LabelImage& image) {
+  Json dropped = Json::array();
+  for (const DroppedIslands& of : image.dropped_islands)
+    dropped.push_back({{"value", of.label.value},
+                       {"name", of.label.name},
+                       {"islands", of.number},
+                       {"volume_mm3", of.volume_mm3},
+                       {"is_whole_label", of.is_whole_label}});
+  return dropped;
+}
+
+// Of the bounds asked for; null: the mesh was left as it was.
+Json optimize_of(const OptimizeOptions& optimize) {
+  if (!optimize.is_wanted) return nullptr;
+  return {{"least_dihedral_deg", optimize.least_dihedral_deg},
+          {"largest_dihedral_deg", optimize.largest_dihedral_deg}};
+}
+
+Json size_image_of(const MeshRun& run) {
+  const std::string& path = run.command.size_image_path;
+  if (path.empty()) return nullptr;
+  return {{"path", path}, {"sha256", file_sha256(path)}};
+}
+
+Json size_near_of(const SizeOptions& sizes) {
+  Json all = Json::array();
+  for (const SizeNear& near : sizes.near)
+    all.push_back({{"labels", near.labels}, {"radius_mm", near.radius_mm}, {"width_mm", near.width_mm}});
+  return all;
+}
+
+// The options that were asked for; 0 means what it means in MeshingOptions.
+Json options_of(const MeshRun& run) {
+  const MeshingOptions& options = run.options;
+  Json radius_of = Json::object();
+  for (const auto& [value, radius_mm] : options.sizes.radius_of_mm)
+    radius_of[std::to_string(value)] = radius_mm;
+  return {{"radius_mm", options.sizes.radius_mm},
+          {"radius_of_mm", radius_of},
+          {"size_image", size_image_of(run)},
+          {"size_near", size_near_of(options.sizes)},
+          {"grade", options.sizes.grade},
+          {"delta_mm", options.sizes.delta_mm},
+          {"target_elements", options.sizes.target_elements},
+          {"target_tolerance_percent", options.sizes.target_tolerance_percent},
+          {"optimize", optimize_of(options.optimize)},
+          {"space", to_string(options.space)},
+          {"min_dihedral_deg", options.min_dihedral_deg},
+          {"smoothing_mm", options.smoothing_mm},
+          {"max_elements", options.limits.max_elements},
+          {"max_seconds", options.limits.max_seconds},
+          {"max_memory_bytes", run.command.max_memory_bytes},
+          {"labels", selection_of(run.command.image.selection)}};
+}
+
+Json or_null(const std::optional<int>& value) { return value ? Json(*value) : Json(nullptr); }
+
+// The place of each worker; processors have the system's numbers, nodes and sockets are counted from 0.
+Json placement_of(const MeshingReport& report) {
+  Json places = Json::array();
+  for (const WorkerReport& worker : report.workers)
+    places.push_back({{"processor", or_null(worker.processor)},
+                      {"bound_to", or_null(worker.bound_to)},
+                      {"node", worker.node},
+                      {"socket", worker.socket}});
+  return places;
+}
+
+Json unavailable(const std::string& why) { return "unavailable: " + why; }
+
+// Accesses by kind and distance; why there are none on a machine of one node.
+Json hops_by_kind(const HopsByKind& hops, const MeshingReport& report) {
+  if (hops.mesh_reads.empty()) return unavailable("one NUMA node or one thread");
+  Json kinds = {{"mesh_reads", hops.mesh_reads},
+                {"mesh_writes", hops.mesh_writes},
+                {"image_reads", hops.image_reads},
+                {"transform_reads", hops.transform_reads}};
+  if (!report.image_reads_unavailable.empty())
+    kinds["image_reads"] = kinds["transform_reads"] = unavailable(report.image_reads_unavailable);
+  return kinds;
+}
+
+// What Table 2 counts.
+Json hops_of(const MeshingReport& report) {
+  const Json kinds = hops_by_kind(report.counters.hops, report);
+  return kinds.is_object() ? kinds["mesh_reads"] : kinds;
+}
+
+Json pages_of(const MeshingReport& report) {
+  if (!report.pages.unavailable.empty()) return unavailable(report.pages.unavailable);
+  Json phases = Json::object();
+  for (const PageSamples::AtPhase& at : report.pages.phases) {
+    Json& phase = phases[at.phase];
+    for (const PageSamples::OfArray& pages : at.arrays)
+      phase[pages.array] = {
+          {"as_claimed", pages.as_claimed}, {"elsewhere", pages.elsewhere}, {"untouched", pages.untouched}};
+    phase["accesses_by_hops"] = at.accesses_by_hops;
+  }
+  return phases;
+}
+
+void add_counts(const Counters& counters, Count::Kind kind, Json& counts) {
+  for (const Count& count : kCounts)
+    if (count.kind == kind) counts[count.name] = counters.*count.member;
+}
+
+Json outcomes_of(const Counters& counters) {
+  Json outcomes = {{"committed", counters.num_committed()}};
+  add_counts(counters, Count::kOutcome, outcomes);
+  return outcomes;
+}
+
+Json counters_of(const MeshingReport& report) {
+  const Counters& counters = report.counters;
+  Json insertions = Json::object();
+  for (std::size_t rule = 0; rule < counters.insertions_by_rule.size(); ++rule)
+    insertions[fmt::format("R{}", rule + 1)] = counters.insertions_by_rule[rule];
+  Json counts = {{"insertions", insertions}};
+  add_counts(counters, Count::kWork, counts);
+  counts["store_cells"] = report.store_cells;
+  return counts;
+}
+
+Json seconds_of(const Overhead& overhead, const std::string& suffix = "") {
+  Json seconds = Json::object();
+  for (const Cause& cause : kCauses) seconds[cause.name + suffix] = overhead.*cause.member;
+  return seconds;
+}
+
+Json workers_of(const MeshingReport& report) {
+  Json workers = Json::array();
+  for (const WorkerReport& worker : report.workers) {
+    const Counters& counters = worker.counters;
+    Json told = {{"committed", counters.num_committed()}};
+    for (const Count& count : kCounts)
+      if (count.by_worker) told[count.name] = counters.*count.member;
+    told.update(seconds_of(counters.overhead, "_s"));
+    told["hops_by_kind"] = hops_by_kind(counters.hops, report);
+    workers.push_back(std::move(told));
+  }
+  return workers;
+}
+
+Json simulated_machine_of(const MeshRun& run) {
+  const auto& machine = run.report.simulated_machine;
+  if (!machine) return nullptr;
+  const std::string& path = run.options.team.topology_path;
+  return {{"name", machine->name},
+          {"path", path},
+          {"sha256", file_sha256(path)},
+          {"constants", machine->constants}};
+}
+
+std::string text_sha256(std::string_view text) {
+  Sha256 digest;
+  digest.update(std::span(text));
+  return digest.hexadecimal();
+}
+
+// What a virtual executor says of time is simulated: it stands apart from what was measured.
+Json virtual_of(const MeshRun& run) {
+  if (run.options.team.executor != Executor::kVirtual) return nullptr;
+  double refine_s = 0;
+  const std::map<std::string, double>& phases_s = run.report.virtual_phases_s;
+  for (const char* phase : {"initial", "refine", "closing"})
+    if (const auto found = phases_s.find(phase); found != phases_s.end()) refine_s += found->second;
+  return {{"cost", to_string(run.options.team.virtual_cost)},
+          {"refine_s", refine_s},
+          {"phases_s", phases_s},
+          {"worker_s", run.report.virtual_worker_s},
+          {"model_sha256", text_sha256(run.report.virtual_model)},
+          {"machine", simulated_machine_of(run)}};
+}
+
+Json calibration_of(const MeshingReport& report) {
+  if (!report.calibration) return nullptr;
+  const Calibration& calibration = *report.calibration;
+  Json meshes = Json::array();
+  for (const Calibration::TrialMesh& mesh : calibration.meshes)
+    meshes.push_back({{"radius_mm", mesh.radius_mm}, {"cells", mesh.cells}, {"seconds", mesh.seconds}});
+  return {{"target_elements", calibration.target_elements},
+          {"radius_mm", calibration.radius_mm},
+          {"meshes", meshes},
+          {"seconds", calibration.seconds}};
+}
+
+// Null where R7 was not asked for, or the run ended before it.
+Json perturbed_of(const MeshingReport& report) {
+  if (!report.perturbed) return nullptr;
+  const Perturbed& told = *report.perturbed;
+  const auto cells = [](const Perturbed::Cells& of) {
+    return Json{{"with_free_vertex", of.with_free_vertex}, {"without", of.without}};
+  };
+  Json unmoved = {{"not_reached", told.not_reached}};
+  for (const auto& [why, name] : Names<Unmoved>::kAll)
+    unmoved[name] = told.unmoved[static_cast<std::size_t>(why)];
+  return {{"min_dihedral_deg", told.min_dihedral_deg},
+          {"max_dihedral_deg", told.max_dihedral_deg},
+          {"before", cells(told.before)},
+          {"after", cells(told.after)},
+          {"unmoved", unmoved}};
+}
+
+template <class Choice>
+Json counts_of(const std::map<Choice, std::uint64_t>& counts) {
+  Json json = Json::object();
+  for (const auto& [choice, name] : Names<Choice>::kAll) {
+    const auto found = counts.find(choice);
+    json[name] = found == counts.end() ? 0 : found->second;
+  }
+  return json;
+}
+
+// Null where interfaces were left as they are.
+Json smoothing_of(const MeshingReport& report) {
+  if (!report.smoothing) return nullptr;
+  Json labels = Json::array();
+  for (const SmoothingReport::OfLabel& label : report.smoothing->labels)
+    labels.push_back({{"value", label.value},
+                      {"voxels_mm3", label.voxels_mm3},
+                      {"smoothed_mm3", label.smoothed_mm3},
+                      {"voxels_components", label.voxels_components},
+                      {"smoothed_components", label.smoothed_components},
+                      {"is_thin", label.is_thin}});
+  return {{"width_mm", report.smoothing->width_mm}, {"labels", labels}};
+}
+
+Json optimization_of(const MeshingReport& report) {
+  if (!report.optimization) return nullptr;
+  const OptimizationReport& done = *report.optimization;
+  return {{"least_aim_deg", done.least_aim_deg},
+          {"largest_aim_deg", done.largest_aim_deg},
+          {"beyond_aim_before", done.beyond_aim_before},
+          {"beyond_aim", done.beyond_aim},
+          {"beyond_bounds_before", done.beyond_bounds_before},
+          {"beyond_bounds", done.beyond_bounds},
+          {"obstacles", counts_of(done.obstacles)},
+          {"successes", counts_of(done.successes)}};
+}
+
+Json promised_dihedral_of(const MeshingReport& report) {
+  if (!report.promised_dihedral_deg) return nullptr;
+  return *report.promised_dihedral_deg;
+}
+
+// The claims of podm-verify that an optimised mesh keeps.
+Json promises_of(const MeshingReport& report) {
+  Json claims = {"structure", "radius_edge", "boundary_angles",  "size",    "conformity",
+                 "surface",   "labels",      "surface_vertices", "fidelity"};
+  if (report.promised_dihedral_deg) claims.push_back("dihedral");
+  return claims;
+}
+
+Json leaves_of(const MeshRun& run) {
+  const Algorithm algorithm = run.report.algorithm;
+  if (algorithm == Algorithm::kPodm || algorithm == Algorithm::kPodmHome) return nullptr;
+  return {{"number", run.report.num_leaves},
+          {"nodes", run.report.computing_nodes},
+          {"initial_ratio", run.options.leaves.initial_ratio},
+          {"initial_threads", run.options.team.initial_threads},
+          {"leaf_size_mm", run.options.leaves.size_mm}};
+}
+
+Json quality_of(const Quality& quality) {
+  return {{"max_radius_edge", quality.max_radius_edge},
+          {"min_facet_angle_deg", quality.min_facet_angle_deg},
+          {"max_facet_angle_deg", quality.max_facet_angle_deg},
+          {"min_dihedral_deg", quality.min_dihedral_deg},
+          {"max_dihedral_deg", quality.max_dihedral_deg},
+          {"max_radius_mm", quality.max_radius_mm},
+          {"shortest_edge_mm", quality.shortest_edge_mm}};
+}
+
+Json guarantees_of(const Guarantees& misses) {
+  return {{"radius_edge", misses.radius_edge}, {"facet_angle", misses.facet_angle},
+          {"radius", misses.radius},           {"facet_vertices", misses.facet_vertices},
+          {"orientation", misses.orientation}, {"missing_labels", misses.missing_labels}};
+}
+
+Json labels_of(const MeshRun& run) {
+  const MeshingReport& report = run.report;
+  Json labels = Json::array();
+  for (const Label& label : run.image.labels) {
+    const auto cells = report.cells_of_label.find(label.value);
+    const auto volume = report.volume_of_label_mm3.find(label.value);
+    if (cells == report.cells_of_label.end() || volume == report.volume_of_label_mm3.end()) continue;
+    labels.push_back({{"value", label.value},
+                      {"name", label.name},
+                      {"cells", cells->second},
+                      {"volume_mm3", volume->second}});
+  }
+  return labels;
+}
+
+Json facet_pairs_of(const MeshRun& run) {
+  const std::vector<Label>& labels = run.image.labels;
+  Json pairs = Json::array();
+  for (const FacetCount& count : run.mesh.facet_pairs)
+    pairs.push_back({{"labels", {labels[count.labels[0]].value, labels[count.labels[1]].value}},
+                     {"facets", count.facets}});
+  return pairs;
+}
+
+}  // namespace
+
+Json record(const MeshRun& run) {
+  const MeshingReport& report = run.report;
+  const ImageArguments& input = run.command.image;
+  Json record = {
+      {"schema", kRecordSchema},
+      {"program", run.program + " " PODM_VERSION},
+      {"algorithm", to_string(report.algorithm)},
+      {"input",
+       {{"path", input.path},
+        {"sha256", input_sha256(input, run.image)},
+        {"affine", affine_rows(run.image)}}},
+      {"options", options_of(run)},
+      {"dropped_islands", dropped_islands_of(run.image)},
+      {"used",
+       {{"radius_mm", report.radius_mm},
+        {"size_image_factor", report.size_image_factor},
+        {"delta_mm", report.delta_mm}}},
+      {"seed", run.options.team.seed},
+      {"threads",
+       {{"asked", run.options.team.threads},
+        {"used", report.workers.size()},
+        {"pin", run.options.team.pin},
+        {"placement", placement_of(report)},
+        {"contention", to_string(run.options.team.contention)},
+        {"begging", to_string(run.options.team.begging)}}},
+      {"auto", run.options.algorithm == Algorithm::kAuto ? run.crossover.source : Json()},
+      {"leaves", leaves_of(run)},
+      {"ranks", run.ranks},
+      {"executor", to_string(run.options.team.executor)},
+      {"virtual", virtual_of(run)},
+      {"phases_s", run.phases_s()},
+      {"calibration", calibration_of(report)},
+      {"cells", run.mesh.cells},
+      {"vertices", run.mesh.vertices},
+      {"boundary_facets", run.mesh.boundary_facets},
+      {"labels", labels_of(run)},
+      {"facet_pairs", facet_pairs_of(run)},
+      {"cells_per_second", run.cells_per_second()},
+      {"refine_cells_per_second", run.refine_cells_per_second()},
+      {"peak_rss_bytes", run.peak_rss_bytes},
+      {"outcomes", outcomes_of(report.counters)},
+      {"overhead_s", seconds_of(report.counters.overhead)},
+      {"hops", hops_of(report)},
+      {"hops_by_kind", hops_by_kind(report.counters.hops, report)},
+      {"pages", pages_of(report)},
+      {"counters", counters_of(report)},
+      {"workers", workers_of(report)},
+      {"quality", quality_of(report.quality)},
+      {"perturbed", perturbed_of(report)},
+      {"smoothing", smoothing_of(report)},
+      {"optimization", optimization_of(report)},
+      {"promised_dihedral_deg", promised_dihedral_of(report)},
+      {"guarantees", guarantees_of(report.guarantees)},
+      {"mesh_sha256", run.mesh_sha256.empty() ? Json() : Json(run.mesh_sha256)},
+      {"verdicts", run.verdicts()},
+      {"stop_reason", to_string(report.stop_reason)},
+      {"warnings", report.warnings},
+  };
+  if (report.optimization) record["promises"] = promises_of(report);  // others promise all
+  return record;
+}
+
+}  // namespace podm::cli

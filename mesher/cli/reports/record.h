@@ -1,0 +1,16 @@
+// The JSON line that describes a run of podm mesh. Its names and meaning are those of the project's trial
+// records.
+#pragma once
+
+#include <nlohmann/json.hpp>
+#include <string>
+
+#include "cli/commands/mesh_run.h"
+
+namespace podm::cli {
+
+inline constexpr int kRecordSchema = 1;
+
+nlohmann::ordered_json record(const MeshRun& run);
+
+}  // namespace podm::cli

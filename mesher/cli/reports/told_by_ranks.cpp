@@ -1,0 +1,215 @@
+#include "cli/reports/told_by_ranks.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "cli/options/options_for_image.h"
+#include "cli/processes/process_memory.h"
+#include "distributed/messages.h"
+#include "podm/mesh_io.h"
+
+namespace podm::cli {
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+// What a rank took, and its process, which has others if clocks are virtual.
+struct Spent {
+  std::uint64_t threads, peak_rss_bytes;
+  bool is_virtual;
+  RankReport report;
+};
+
+Spent spent_by(const Communication& ranks, int threads) {
+  return {static_cast<std::uint64_t>(threads), peak_resident_bytes(), ranks.is_virtual(), ranks.report()};
+}
+
+// A round on all ranks: sums, and the seconds of the rank that took longest.
+RoundReport on_all(const std::vector<PartOfRank>& parts, std::size_t round) {
+  RoundReport all;
+  for (const PartOfRank& part : parts) {
+    const RoundReport& one = part.rounds[round];
+    all.entries += one.entries;
+    all.insertions += one.insertions;
+    all.in_leaves += one.in_leaves;
+    all.deferred = one.deferred;
+    all.cubes += one.cubes;
+    all.update += one.update;
+    all.update_s = std::max(all.update_s, one.update_s);
+    all.refine_s = std::max(all.refine_s, one.refine_s);
+  }
+  return all;
+}
+
+// Most cells of a rank over the mean.
+double imbalance(const std::vector<PartOfRank>& parts) {
+  std::uint64_t most = 0, sum = 0;
+  for (const PartOfRank& part : parts) {
+    most = std::max(most, part.cells);
+    sum += part.cells;
+  }
+  return sum == 0 ? 1 : static_cast<double>(most * parts.size()) / static_cast<double>(sum);
+}
+
+Json update_of(const Update& update) {
+  return {{"cubes", update.cubes},
+          {"vertices_told", update.vertices_told},
+          {"inserted", update.inserted},
+          {"removed", update.removed}};
+}
+
+// Where it is one in a late round, what waited was in one piece.
+std::size_t ranks_refining(const std::vector<PartOfRank>& parts, std::size_t round) {
+  return static_cast<std::size_t>(std::count_if(
+      parts.begin(), parts.end(), [&](const PartOfRank& part) { return part.rounds[round].insertions > 0; }));
+}
+
+Json rounds_of(const std::vector<PartOfRank>& parts) {
+  Json rounds = Json::array();
+  for (std::size_t i = 0; i < parts[0].rounds.size(); ++i) {
+    const RoundReport round = on_all(parts, i);
+    rounds.push_back({{"ranks_refining", ranks_refining(parts, i)},
+                      {"entries", round.entries},
+                      {"insertions", round.insertions},
+                      {"in_leaves", round.in_leaves},
+                      {"deferred", round.deferred},
+                      {"cubes", round.cubes},
+                      {"update", update_of(round.update)},
+                      {"update_s", round.update_s},
+                      {"refine_s", round.refine_s}});
+  }
+  return rounds;
+}
+
+Json spent_of(const PartOfRank& part) {
+  Json spent = Json::object();
+  for (const auto& [phase, of_phase] : part.spent)
+    spent[phase] = {{"computing_s", of_phase.computing_s},
+                    {"waiting_s", of_phase.waiting_s},
+                    {"network_s", of_phase.network_s}};
+  return spent;
+}
+
+Json memory_of(const Spent& spent) { return spent.is_virtual ? Json(nullptr) : Json(spent.peak_rss_bytes); }
+
+// The clock sees a rank's own thread, and no others that it starts.
+bool has_virtual_time(const Spent& spent) { return spent.is_virtual && spent.threads == 1; }
+
+Json virtual_time_of(const Spent& spent) {
+  if (!has_virtual_time(spent)) return nullptr;
+  const RankReport& report = spent.report;
+  return {{"computing_s", report.computing_s},
+          {"waiting_s", report.waiting_s},
+          {"network_s", report.network_s},
+          {"messages", report.messages_sent},
+          {"bytes", report.bytes_sent}};
+}
+
+Json network_of(const MeshCommand& command) {
+  if (std::isinf(command.network.gigabytes_per_s)) return nullptr;
+  return {{"latency_us", command.network.latency_us}, {"gigabytes_per_s", command.network.gigabytes_per_s}};
+}
+
+Json ranks_of(const std::vector<PartOfRank>& parts, const std::vector<Spent>& spent,
+              const RanksOfMachine& machines, const MeshRun& run) {
+  Json by_rank = Json::array();
+  Update last;
+  for (std::size_t rank = 0; rank < parts.size(); ++rank) {
+    const PartOfRank& part = parts[rank];
+    by_rank.push_back({{"host", machines.host(rank)},
+                       {"threads", spent[rank].threads},
+                       {"cells", part.cells},
+                       {"boundary_facets", part.boundary_facets},
+                       {"store_cells", part.store_cells},
+                       {"peak_rss_bytes", memory_of(spent[rank])},
+                       {"phases_s", part.phases_s},
+                       {"spent", spent_of(part)},
+                       {"virtual", virtual_time_of(spent[rank])}});
+    last += part.last_update;
+  }
+  return {{"number", parts.size()},
+          {"machines", machines.num_machines()},
+          {"carrier", run.command.ranks_in_process > 0 ? "in-process" : "mpi"},
+          {"network", network_of(run.command)},
+          {"initial_ratio", run.options.leaves.initial_ratio},
+          {"imbalance", imbalance(parts)},
+          {"rounds", rounds_of(parts)},
+          {"last_update", update_of(last)},
+          {"by_rank", by_rank}};
+}
+
+std::string memory_text(const std::vector<Spent>& spent) {
+  const auto [least, most] =
+      std::minmax_element(spent.begin(), spent.end(),
+                          [](const Spent& a, const Spent& b) { return a.peak_rss_bytes < b.peak_rss_bytes; });
+  const auto gib = [](std::uint64_t bytes) { return static_cast<double>(bytes) / kBytesPerGib; };
+  return fmt::format("memory of one {:.3f} to {:.3f} GiB", gib(least->peak_rss_bytes),
+                     gib(most->peak_rss_bytes));
+}
+
+std::string virtual_time_text(const std::vector<Spent>& spent) {
+  if (!has_virtual_time(spent[0])) return "clocks do not see their other threads";
+  double computing_s = 0, waiting_s = 0;
+  std::uint64_t bytes = 0;
+  for (const Spent& one : spent) {
+    computing_s = std::max(computing_s, one.report.computing_s);
+    waiting_s = std::max(waiting_s, one.report.waiting_s);
+    bytes += one.report.bytes_sent;
+  }
+  return fmt::format(
+      "virtual time at most {:.2f} s of one computing, {:.2f} s waiting, {:.4f} s network, {} bytes sent",
+      computing_s, waiting_s, spent[0].report.network_s, bytes);
+}
+
+std::string text_of(const std::vector<PartOfRank>& parts, const std::vector<Spent>& spent,
+                    const RanksOfMachine& machines, Algorithm algorithm) {
+  const bool is_virtual = spent[0].is_virtual;
+  const std::string where = is_virtual ? "in this process"
+                                       : fmt::format("on {} machine{}", machines.num_machines(),
+                                                     machines.num_machines() > 1 ? "s" : "");
+  std::string text = fmt::format(
+      "ranks      {} {}, by {}; the most cells of one are {:.3g} times the mean;\n           {}\n",
+      parts.size(), where, to_string(algorithm), imbalance(parts),
+      is_virtual ? virtual_time_text(spent) : memory_text(spent));
+  if (parts[0].rounds.empty()) return text;
+  text += fmt::format("{:>10} {:>11} {:>11} {:>11} {:>14} {:>17} {:>9}\n", "round", "entries", "insertions",
+                      "deferred", "vertices told", "seconds: exchange", "refine");
+  for (std::size_t i = 0; i < parts[0].rounds.size(); ++i) {
+    const RoundReport round = on_all(parts, i);
+    text += fmt::format("{:>10} {:>11} {:>11} {:>11} {:>14} {:>17.2f} {:>9.2f}\n", i, round.entries,
+                        round.insertions, round.deferred, round.update.vertices_told, round.update_s,
+                        round.refine_s);
+  }
+  return text;
+}
+
+}  // namespace
+
+void gather_from_ranks(const MeshingOnRanks& result, int threads, const RanksOfMachine& machines,
+                       Communication& ranks, MeshRun& run) {
+  const Spent own = spent_by(ranks, threads);
+  Bytes message;
+  append(message, std::span<const Spent>(&own, 1));
+  append(message, numbers_of(result.piece.mesh).facet_pairs);
+  std::vector<Spent> spent;
+  std::vector<FacetCount> pairs;
+  for (const Bytes& told : ranks.all_gather(std::move(message))) {
+    MessageReader reader(told);
+    spent.push_back(reader.read<Spent>().at(0));
+    run.peak_rss_bytes = std::max(run.peak_rss_bytes, spent.back().peak_rss_bytes);
+    const auto more = reader.read<FacetCount>();
+    pairs.insert(pairs.end(), more.begin(), more.end());
+  }
+  run.mesh = {.cells = result.piece.total_cells,
+              .vertices = result.piece.total_vertices,
+              .boundary_facets = result.piece.total_facets,
+              .facet_pairs = sums_of(pairs)};
+  run.ranks = ranks_of(result.parts, spent, machines, run);
+  run.ranks["mesh_hash"] = mesh_hash_text(result.mesh_hash);
+  run.ranks_text = text_of(result.parts, spent, machines, result.report.algorithm) +
+                   fmt::format("hash       {}\n", mesh_hash_text(result.mesh_hash));
+}
+
+}  // namespace podm::cli

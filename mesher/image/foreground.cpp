@@ -1,0 +1,84 @@
+#include "image/foreground.h"
+
+#include <algorithm>
+#include <array>
+#include <iterator>
+
+#include "image/rows_of_image.h"
+#include "image/working_frame.h"
+#include "podm/errors.h"
+
+namespace podm {
+namespace {
+
+// Voxels of each label.
+struct VoxelCounts {
+  std::vector<std::uint64_t> of_label;
+  void add_row(const LabelIndex* row, int size) {
+    for (int i = 0, end = 0; i < size; i = end) {
+      while (end < size && row[end] == row[i]) ++end;
+      of_label[row[i]] += static_cast<std::uint64_t>(end - i);
+    }
+  }
+  void operator+=(const VoxelCounts& b) {
+    for (std::size_t label = 0; label < of_label.size(); ++label) of_label[label] += b.of_label[label];
+  }
+};
+
+// Bounds of the foreground that one thread has seen.
+struct alignas(64) VoxelBounds {
+  std::array<int, 3> low, high{-1, -1, -1};
+
+  void add(const std::array<int, 3>& a, const std::array<int, 3>& b) {
+    for (std::size_t axis = 0; axis < 3; ++axis) {
+      low[axis] = std::min(low[axis], a[axis]);
+      high[axis] = std::max(high[axis], b[axis]);
+    }
+  }
+
+  void add_row(const LabelImage& image, int j, int k) {
+    const auto row = image.voxels.begin() + static_cast<std::ptrdiff_t>(image.index(0, j, k));
+    const auto end = row + image.size[0];
+    const auto is_foreground = [](LabelIndex label) { return label != kBackground; };
+    const auto first = std::find_if(row, end, is_foreground);
+    if (first == end) return;
+    const auto after_last =
+        std::find_if(std::reverse_iterator(end), std::reverse_iterator(first), is_foreground).base();
+    add({static_cast<int>(first - row), j, k}, {static_cast<int>(after_last - row) - 1, j, k});
+  }
+};
+
+}  // namespace
+
+std::vector<std::uint64_t> count_voxels(const LabelImage& image, int threads) {
+  const VoxelCounts none{std::vector<std::uint64_t>(image.labels.size())};
+  const auto add_row = [&](VoxelCounts& counts, int j, int k) {
+    counts.add_row(&image.voxels[image.index(0, j, k)], image.size[0]);
+  };
+  return sum_over_rows(image, threads, none, add_row).of_label;
+}
+
+Box foreground_bounds(const LabelImage& image, int threads) {
+  std::vector<VoxelBounds> bounds(num_threads(threads), VoxelBounds{image.size});
+  parallel_for(static_cast<std::size_t>(image.size[2]), bounds.size(),
+               [&](std::size_t k, std::size_t thread) {
+                 for (int j = 0; j < image.size[1]; ++j)
+                   bounds[thread].add_row(image, j, static_cast<int>(k));
+               });
+  for (const VoxelBounds& b : bounds) bounds[0].add(b.low, b.high);
+  const VoxelBounds& all = bounds[0];
+  if (all.high[0] < 0) throw InputError("the image has no foreground");
+  const Affine a = voxels_to_working(image);
+  const auto bound = [&](std::size_t row, bool is_low) {  // a sum of each axis' own least, or greatest
+    double sum = a[4 * row + 3];
+    for (std::size_t axis = 0; axis < 3; ++axis) {
+      const double entry = a[4 * row + axis];
+      sum += entry * ((entry > 0) == is_low ? all.low[axis] - 1 : all.high[axis] + 1);
+    }
+    return sum;
+  };
+  return {{bound(0, true), bound(1, true), bound(2, true)},
+          {bound(0, false), bound(1, false), bound(2, false)}};
+}
+
+}  // namespace podm

@@ -1,0 +1,204 @@
+#include "isosurface/brick_features.h"
+
+#include <algorithm>
+#include <bit>
+#include <cstring>
+#include <limits>
+
+#include "isosurface/isosurface_block.h"
+
+namespace podm {
+
+namespace {
+
+// Voxels of the window along an axis, if it is two bricks on each side: the brick's four begin at kFirst.
+constexpr int kWindow = 20, kFirst = 8, kMostOffset = 11, kNoOffset = 12;
+
+// Rows or slices of the window from the brick outwards, and how far from it each is.
+struct Outward {
+  int at, gap;
+};
+constexpr auto kOutward = [] {
+  std::array<Outward, kWindow> outward{};
+  for (int n = 0; n < kWindow; ++n) {
+    const int gap = n < 4 ? 0 : (n - 2) / 2;
+    outward[static_cast<std::size_t>(n)] = {n < 4        ? kFirst + n
+                                            : n % 2 == 0 ? kFirst - gap
+                                                         : kFirst + 3 + gap,
+                                            gap};
+  }
+  return outward;
+}();
+constexpr double kInfinity = std::numeric_limits<double>::infinity();
+
+constexpr double square(double x) { return x * x; }
+
+// The offset from voxel x to the nearest in a row of the window that is not empty, a bit each; the first of
+// equals.
+int nearest_in_row(std::uint32_t row, int x) {
+  const std::uint32_t up_to_x = row & ((2u << x) - 1), from_x = row >> x;
+  const int below = up_to_x != 0 ? x - 31 + std::countl_zero(up_to_x) : kNoOffset;
+  const int above = std::countr_zero(from_x);
+  return below <= above ? -below : above;
+}
+
+// Four voxels beside each other in x: the least squared distance so far, and the bits of its offset.
+struct Four {
+  alignas(32) std::array<double, 4> squared{kInfinity, kInfinity, kInfinity, kInfinity};
+  alignas(32) std::array<std::int64_t, 4> bits{};
+
+  void take_if_nearer(const Four& from, double squared_along, std::int64_t bits_along) {
+    for (std::size_t x = 0; x < 4; ++x) {
+      const double s = from.squared[x] + squared_along;
+      const std::int64_t b = from.bits[x] + bits_along;
+      const bool is_nearer = s < squared[x];
+      bits[x] = is_nearer ? b : bits[x];
+      squared[x] = is_nearer ? s : squared[x];
+    }
+  }
+};
+
+// The greatest of the squared distances.
+double greatest(const std::array<Four, 16>& rows) {
+  std::array<double, 4> most{};
+  for (const Four& four : rows)
+    for (std::size_t x = 0; x < 4; ++x) most[x] = std::max(most[x], four.squared[x]);
+  return std::max({most[0], most[1], most[2], most[3]});
+}
+
+constexpr std::int64_t kBitsAlongY = 1 << 5, kBitsAlongZ = 1 << 10;
+
+}  // namespace
+
+Surroundings::Surroundings(const LabelImage& image) : reach_mm_(kInfinity) {
+  const double shortest = std::min({image.spacing[0], image.spacing[1], image.spacing[2]});
+  for (std::size_t a = 0; a < 3; ++a) {
+    num_bricks_[a] = 5 * image.spacing[a] < 8 * shortest ? kMostBricks : 1;
+    // Even from the brick's end.
+    reach_mm_ = std::min(reach_mm_, (4 * num_bricks_[a] + 1) * image.spacing[a]);
+  }
+}
+
+// The masks of the bricks around one, at most 5^3.
+struct BrickFeatures::Window {
+  Window(const BrickFeatures& of, const Voxel& brick) : num_bricks(of.surroundings_.num_bricks()) {
+    const auto& [x, y, z] = num_bricks;
+    for (int k = -z; k <= z; ++k)
+      for (int j = -y; j <= y; ++j)
+        for (int i = -x; i <= x; ++i) {
+          const Voxel b{brick.i + i, brick.j + j, brick.k + k};
+          if (!of.bricks_.contains(b.i, b.j, b.k)) continue;
+          const std::uint64_t m = of.masks_[of.bricks_.index(b.i, b.j, b.k)];
+          mask[index(j + 2, k + 2) + static_cast<std::size_t>(i + 2)] = m;
+          any[static_cast<std::size_t>(k + 2)][static_cast<std::size_t>(j + 2)] |= m;
+        }
+  }
+  static std::size_t index(int j, int k) { return static_cast<std::size_t>(25 * k + 5 * j); }
+  /// The surface voxels of a row, a bit each.
+  std::uint32_t row(int y, int z) const {
+    const unsigned shift = place_in_brick({0, y, z});
+    if ((any[static_cast<std::size_t>(z / 4)][static_cast<std::size_t>(y / 4)] >> shift & 15) == 0) return 0;
+    const std::uint64_t* const five = &mask[index(y / 4, z / 4)];
+    std::uint32_t row = 0;
+    for (unsigned i = 0; i < 5; ++i) row |= static_cast<std::uint32_t>(five[i] >> shift & 15) << (4 * i);
+    return row;
+  }
+  bool has_surface(int z) const {
+    std::uint64_t of_all = 0;
+    for (const std::uint64_t m : any[static_cast<std::size_t>(z / 4)]) of_all |= m;
+    return (of_all >> place_in_brick({0, 0, z}) & 0xffff) != 0;
+  }
+
+  std::array<int, 3> num_bricks;
+  std::array<std::uint64_t, 125> mask{};
+  std::array<std::array<std::uint64_t, 5>, 5> any{};  // by k, then j: of all i
+};
+
+BrickFeatures::BrickFeatures(const LabelImage& image, const BrickGrid& bricks, const SurfaceMasks& masks,
+                             const Surroundings& surroundings)
+    : bricks_(bricks), masks_(masks), surroundings_(surroundings) {
+  for (std::size_t a = 0; a < 3; ++a) {
+    for (int d = -kMostOffset; d <= kMostOffset; ++d)
+      squared_[a][static_cast<std::size_t>(d + kMostOffset)] = square(image.spacing[a] * d);
+  }
+}
+
+// The nearest of a slice has its nearest of each row, and the nearest of all its nearest of each slice: as
+// distances along axes add up, the least sums are found one axis after the other. Rows and slices that are
+// farther than all features found, or than the reach, are passed over.
+std::array<FeatureOffset, 64> BrickFeatures::offsets(const Voxel& brick) const {
+  const Window window(*this, brick);
+  const auto squared = [&](std::size_t axis, int offset) {
+    return squared_[axis][static_cast<std::size_t>(offset + kMostOffset)];
+  };
+  const double squared_reach = square(surroundings_.reach_mm());
+  double farthest2 = squared_reach;
+  std::array<Four, 16> nearest;  // rows of the brick
+  for (const auto& [z, gap_z] : kOutward) {
+    if (squared(2, gap_z) >= farthest2) break;
+    if (!window.has_surface(z)) continue;
+    std::array<Four, 4> in_slice;
+    for (const auto& [y, gap_y] : kOutward) {
+      if (squared(1, gap_y) + squared(2, gap_z) >= farthest2) break;
+      const std::uint32_t row = window.row(y, z);
+      if (row == 0) continue;
+      Four in_row;
+      for (std::size_t x = 0; x < 4; ++x) {
+        const int offset = nearest_in_row(row, kFirst + static_cast<int>(x));
+        in_row.squared[x] = squared(0, offset);
+        in_row.bits[x] = offset;
+      }
+      for (int to = 0; to < 4; ++to) {
+        const int along = y - kFirst - to;
+        in_slice[static_cast<std::size_t>(to)].take_if_nearer(in_row, squared(1, along), along * kBitsAlongY);
+      }
+    }
+    for (int to = 0; to < 4; ++to) {
+      const int along = z - kFirst - to;
+      for (std::size_t y = 0; y < 4; ++y)
+        nearest[static_cast<std::size_t>(4 * to) + y].take_if_nearer(in_slice[y], squared(2, along),
+                                                                     along * kBitsAlongZ);
+    }
+    farthest2 = std::min(squared_reach, greatest(nearest));
+  }
+  std::array<FeatureOffset, 64> offsets;
+  for (std::size_t p = 0; p < 64; ++p) {
+    const Four& four = nearest[p / 4];
+    if (four.squared[p % 4] < squared_reach)
+      offsets[p] =
+          FeatureOffset(static_cast<std::uint16_t>(four.bits[p % 4] + FeatureOffset(0, 0, 0).bits()));
+  }
+  return offsets;
+}
+
+BrickNeighborhoods::BrickNeighborhoods(const LabelImage& image, const Voxel& brick) {
+  const int x = 4 * brick.i - 1, y = 4 * brick.j - 1, z = 4 * brick.k - 1;
+  labels_.fill(kBackground);
+  const int begin = std::max(0, -x), end = std::min(6, image.size[0] - x);
+  for (int k = std::max(0, -z); k < std::min(6, image.size[2] - z); ++k)
+    for (int j = std::max(0, -y); j < std::min(6, image.size[1] - y); ++j)
+      std::copy_n(&image.voxels[image.index(x + begin, y + j, z + k)], end - begin,
+                  &labels_[static_cast<std::size_t>(6 * k + j) * kRow + static_cast<std::size_t>(begin)]);
+}
+
+Neighborhood BrickNeighborhoods::around(unsigned place) const {
+  const std::size_t first = first_around(place);
+  const auto differing_from = [&](LabelIndex label) {
+    std::uint32_t bits = 0;
+    for (std::size_t r = 0; r < 9; ++r) {
+      std::uint64_t four;
+      std::memcpy(&four, &labels_[first + (6 * (r / 3) + r % 3) * kRow], sizeof four);
+      bits |= (differing(four, repeated(label)) & 7) << (3 * r);
+    }
+    return bits;
+  };
+  const auto label_at = [&](unsigned position) {
+    return labels_[first + (6 * (position / 9) + position / 3 % 3) * kRow + position % 3];
+  };
+  const std::uint32_t others = differing_from(label(place));
+  const LabelIndex other = label_at(static_cast<unsigned>(std::countr_zero(others)));
+  const bool has_two_labels = (others & differing_from(other)) == 0;
+  return Neighborhood(others | static_cast<std::uint32_t>(has_two_labels) << 30);
+}
+
+}  // namespace podm

@@ -1,0 +1,136 @@
+#include "isosurface/isosurface.h"
+
+#include <algorithm>
+#include <limits>
+
+#include "image/working_frame.h"
+
+namespace podm {
+
+namespace {
+
+double square(double x) { return x * x; }
+
+// The number of [low, high] that is nearest to x; low if x is not a number.
+double clamped(double x, double low, double high) { return std::max(low, std::min(x, high)); }
+
+// More than 1 by more than roundings.
+constexpr double kSomewhatMore = 1 + 1e-9;
+
+}  // namespace
+
+template <class Reads>
+Oracle<Reads>::Oracle(const LabelImage& image, std::shared_ptr<const FeatureTransform> transform,
+                      std::shared_ptr<const VoxelStrengths> strengths, const Reads& reads)
+    : image_(&image),
+      transform_(std::move(transform)),
+      strengths_(std::move(strengths)),
+      grid_(image, reads),
+      features_(*transform_, reads),
+      from_voxels_(voxels_to_working(image)),
+      to_voxels_(inverse(from_voxels_)),
+      spacing_{image.spacing[0], image.spacing[1], image.spacing[2]},
+      inverse_spacing_{1 / spacing_.x, 1 / spacing_.y, 1 / spacing_.z},
+      end_{image.size[0] - 0.5, image.size[1] - 0.5, image.size[2] - 0.5},
+      half_diagonal_mm_(0.5 * std::sqrt(squared_length(spacing_))),
+      shortest_side_mm_(std::min({spacing_.x, spacing_.y, spacing_.z})),
+      to_surface_voxel_mm_(strengths_ != nullptr ? 2 * half_diagonal_mm_ : half_diagonal_mm_),
+      beyond_bricks_mm_(to_surface_voxel_mm_ - half_diagonal_mm_) {}
+
+// Which corners of u's block differ from v is known; where there are two labels their weights decide, and no
+// label of the block has to be read unless the other one wins.
+template <class Reads>
+LabelIndex Oracle<Reads>::label_by_neighborhood(const Point& u, const Voxel& v, Brick brick,
+                                                LabelIndex own) const {
+  const Neighborhood around = features_.neighborhood(brick, v);
+  const Voxel block = block_of(u);
+  const CornerMask others = around.differing_corners(block.i - v.i, block.j - v.j, block.k - v.k);
+  if (own == Features<Reads>::kUntold || (others != 0 && !around.has_two_labels())) return label_by_block(u);
+  if (others == 0) return own;
+  const Point f = u - center(block);
+  const auto [of_own, of_other] = with_strengths(block, [&](const auto& strengths) {
+    return std::pair(weight(~others & kAllCorners, f, strengths), weight(others, f, strengths));
+  });
+  if (of_own > of_other) return own;
+  const auto c = std::countr_zero(others);
+  const LabelIndex other = grid_.label({block.i + (c & 1), block.j + (c >> 1 & 1), block.k + (c >> 2)});
+  return of_own == of_other ? std::min(own, other) : other;
+}
+
+template <class Reads>
+LabelIndex Oracle<Reads>::label_by_block(const Point& u) const {
+  const Voxel block = block_of(u);
+  return with_strengths(block, [&](const auto& strengths) {
+    return winner(grid_.block(block), u - center(block), strengths).label;
+  });
+}
+
+// Its block may still have several labels, but only if a surface voxel is beside v: the nearest, which may be
+// another where voxels are long, is then no farther than a diagonal.
+template <class Reads>
+LabelIndex Oracle<Reads>::label_off_surface(const Point& u, const Voxel& v, Brick brick) const {
+  const std::optional<Voxel> offset = features_.offset_to_nearest(brick, v);
+  const double diagonal_mm = 2 * half_diagonal_mm_ * kSomewhatMore;
+  if (offset && length_mm(center(*offset)) <= diagonal_mm) return label_by_block(u);
+  return brick.label() == Brick::kMixed ? grid_.label_inside(v) : brick.label();
+}
+
+template <class Reads>
+Point Oracle<Reads>::clamped_to_grid(const Point& u) const {
+  return {clamped(u.x, 0, end_.x - 0.5), clamped(u.y, 0, end_.y - 0.5), clamped(u.z, 0, end_.z - 0.5)};
+}
+
+template <class Reads>
+double Oracle<Reads>::distance_lower_bound(const Point& p, double radius) const {
+  return std::max(clearance(to_voxels(p), radius), 0.0);
+}
+
+// The isosurface lies within half a voxel of the grid. p projects to p' on that convex box, and
+// |p - s|^2 >= |p - p'|^2 + |p' - s|^2 for any s in it.
+template <class Reads>
+double Oracle<Reads>::bound_from_outside(const Point& u, double radius) const {
+  const Point inside{clamped(u.x, -0.5, end_.x), clamped(u.y, -0.5, end_.y), clamped(u.z, -0.5, end_.z)};
+  const double bound =
+      std::max(0.0, bound_by_feature(inside, nearest_voxel(clamped_to_grid(inside)), radius));
+  return std::sqrt(squared_length(to_mm(u - inside)) + square(bound));
+}
+
+// The lemma says that every isosurface point is within half a voxel of a surface voxel: within the bricks
+// that have some, and within half a diagonal of a surface voxel's centre, of which none is nearer to v's than
+// its feature. Where interfaces are smoothed it is half a voxel, and half a diagonal, more.
+template <class Reads>
+double Oracle<Reads>::bound_by_feature(const Point& u, const Voxel& v, double radius) const {
+  const Brick brick = features_.brick_of(v);
+  const std::optional<Voxel> offset = features_.offset_to_nearest(brick, v);
+  const double from_center = length_mm(u - center(v)) + to_surface_voxel_mm_;
+  if (offset) return length_mm(center(*offset)) - from_center;
+  const double bound = brick.is_near() ? features_.reach_mm() - from_center
+                                       : features_.distance_from_far(brick) - beyond_bricks_mm_;
+  if (bound > radius || is_empty()) return bound;
+  const double reach = (radius + to_surface_voxel_mm_) * kSomewhatMore;
+  return features_.is_surface_within(u, reach) ? bound : reach - to_surface_voxel_mm_;
+}
+
+// Members are spread over files, each of which makes its own for both oracles.
+template Oracle<NoReads>::Oracle(const LabelImage&, std::shared_ptr<const FeatureTransform>,
+                                 std::shared_ptr<const VoxelStrengths>, const NoReads&);
+template Oracle<CountedReads>::Oracle(const LabelImage&, std::shared_ptr<const FeatureTransform>,
+                                      std::shared_ptr<const VoxelStrengths>, const CountedReads&);
+template LabelIndex Oracle<NoReads>::label_by_neighborhood(const Point&, const Voxel&, Brick,
+                                                           LabelIndex) const;
+template LabelIndex Oracle<CountedReads>::label_by_neighborhood(const Point&, const Voxel&, Brick,
+                                                                LabelIndex) const;
+template LabelIndex Oracle<NoReads>::label_by_block(const Point&) const;
+template LabelIndex Oracle<CountedReads>::label_by_block(const Point&) const;
+template LabelIndex Oracle<NoReads>::label_off_surface(const Point&, const Voxel&, Brick) const;
+template LabelIndex Oracle<CountedReads>::label_off_surface(const Point&, const Voxel&, Brick) const;
+template Point Oracle<NoReads>::clamped_to_grid(const Point&) const;
+template Point Oracle<CountedReads>::clamped_to_grid(const Point&) const;
+template double Oracle<NoReads>::distance_lower_bound(const Point&, double) const;
+template double Oracle<CountedReads>::distance_lower_bound(const Point&, double) const;
+template double Oracle<NoReads>::bound_from_outside(const Point&, double) const;
+template double Oracle<CountedReads>::bound_from_outside(const Point&, double) const;
+template double Oracle<NoReads>::bound_by_feature(const Point&, const Voxel&, double) const;
+template double Oracle<CountedReads>::bound_by_feature(const Point&, const Voxel&, double) const;
+
+}  // namespace podm

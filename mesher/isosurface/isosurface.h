@@ -1,0 +1,213 @@
+// The isosurface oracle: what the object's boundary is, and where its nearest point lies.
+//
+// The label at a point is the one with the greatest trilinear weight among the eight voxels around it, ties
+// to the smaller label index; outside the grid everything is background. The isosurface is the set of points
+// where that label changes. Points are mm in the working frame.
+//
+// Lemma. An isosurface point s lies within half a voxel, along every axis, of a surface voxel's centre
+// (feature_transform.h). Proof: let c be the corner nearest to s of the block that holds s, s = c + (x,y,z)
+// in units of voxels with 0 <= x,y,z <= 1/2. If c is no surface voxel, it has its label in common with its
+// three neighbours in the block, and that label's weight, (1-y)(1-z) + (1-x)(y(1-z) + z(1-y)), does not
+// grow with x, y or z, hence is at least its value 1/2 at (1/2,1/2,1/2), and exceeds 1/2 elsewhere. So s is
+// the block's centre, as near to all corners, and some corner is a surface voxel.
+//
+// Where interfaces are smoothed, voxels weigh as much as they are strong (voxel_strengths.h). A block with
+// one label still has it throughout, as all other weights are 0. So an isosurface point lies in a block with
+// an edge between two labels, whose ends are surface voxels: within *one* voxel, along every axis, of a
+// surface voxel's centre. Half a voxel beyond the grid background still ties, as voxels there are as strong
+// as their neighbours inside.
+#pragma once
+
+#include <algorithm>
+#include <array>
+#include <cstdint>
+#include <memory>
+#include <optional>
+
+#include "geometry/affine.h"
+#include "geometry/point.h"
+#include "isosurface/feature_transform.h"
+#include "isosurface/isosurface_block.h"
+#include "isosurface/voxel_strengths.h"
+#include "podm/label_image.h"
+
+namespace podm {
+
+/// A point of the isosurface that is near to another point.
+struct NearPoint {
+  Point point;  // to about a hundredth of a voxel
+  Voxel surface_voxel;
+  bool is_midpoint;  // of two neighbouring voxels
+};
+
+/// Up to four balls of one radius, in which no isosurface point is searched for any further.
+struct Cover {
+  std::array<Point, 4> centers;
+  unsigned num_balls = 0;
+  double squared_radius = 0;
+
+  bool contains(const Point& z) const {
+    return std::any_of(centers.begin(), centers.begin() + num_balls,
+                       [&](const Point& c) { return squared_distance(c, z) < squared_radius; });
+  }
+};
+
+/// `Reads` is told of every read of the image and of its transform.
+template <class Reads>
+class Oracle {
+ public:
+  /// Keeps a reference to `image`, whose transform is given, and the strengths of its voxels if they differ.
+  Oracle(const LabelImage& image, std::shared_ptr<const FeatureTransform> transform,
+         std::shared_ptr<const VoxelStrengths> strengths, const Reads& reads);
+  const LabelImage& image() const { return *image_; }
+  const FeatureTransform& transform() const { return *transform_; }
+
+  /// Greatest trilinear weight; a single look-up away from any label change.
+  LabelIndex label_at(const Point& p) const { return label_at_voxels(to_voxels(p)); }
+
+  /// Asks for the cache lines that the questions about p begin with.
+  void prefetch(const Point& p) const {
+    const Point u = to_voxels(p);
+    if (!is_inside(u)) return;
+    const Voxel v = nearest_voxel(u);
+    features_.prefetch(v);
+    grid_.prefetch(v);
+  }
+
+  /// A lower bound of the distance from p to the isosurface, mm; 0 when p may lie on it. A look-up,
+  /// and some more where only that can tell whether the distance is above `radius`. In the grid the bound is
+  /// above if the distance is, by two diagonals of a voxel.
+  double distance_lower_bound(const Point& p, double radius) const;
+
+  /// The isosurface point nearest to p, as found by local search from the nearest surface voxels, if within
+  /// `radius` of p. Among several bumps of voxel size the search may take the second nearest: on smooth
+  /// shapes it exceeds the nearest distance typically by nothing, in 1 % of cases by more than 0.25 and never
+  /// by more than 1 of a voxel's shortest side, as long as no side is much longer; of sides of 1, 1 and 5
+  /// by more than 0.55 and never by more than 0.75 of the longest. From far outside of the grid it may exceed
+  /// by 4 sides. One of the first points found will do if `cover` contains it.
+  std::optional<NearPoint> near_point(const Point& p, double radius, const Cover& cover = {}) const;
+  /// p's near point, brought to less than 1e-6 voxel from the isosurface. May be a little beyond `radius`.
+  Point polished(const NearPoint& near, const Point& p) const;
+
+  /// The point where the label changes along segment ab, searched from a; none if there is no change.
+  /// If the labels at a and b differ one is always found. Double crossings are found down to 1e-6 of the
+  /// segment's part in a block.
+  std::optional<Point> segment_intersection(const Point& a, const Point& b) const;
+  /// Whether the same search finds a change along ab, at whose ends the label is `label`.
+  bool is_crossed(const Point& a, const Point& b, LabelIndex label) const;
+
+ protected:
+  const LabelImage* image_;
+  std::shared_ptr<const FeatureTransform> transform_;
+  std::shared_ptr<const VoxelStrengths> strengths_;  // null: all are equally strong
+
+ private:
+  struct LabelChange {
+    double t;  // parameter along the segment
+    Voxel block;
+    LabelIndex to;
+  };
+
+  Point to_voxels(const Point& p) const { return map(to_voxels_, p); }
+  Point from_voxels(const Point& u) const { return map(from_voxels_, u); }
+  // Both convert directions, which lie along the image's axes.
+  Vector to_mm(const Vector& d) const { return {d.x * spacing_.x, d.y * spacing_.y, d.z * spacing_.z}; }
+  Vector per_mm(const Vector& gradient) const {
+    return {gradient.x * inverse_spacing_.x, gradient.y * inverse_spacing_.y,
+            gradient.z * inverse_spacing_.z};
+  }
+  double length_mm(const Vector& d) const { return std::sqrt(squared_length(to_mm(d))); }
+
+  // All below take points in voxels; bounds and normals are mm.
+  bool is_inside(const Point& u) const {
+    const auto is_in = [](double x, double end) {
+      return x > -0.5 && x + 0.5 < end + 0.5;
+    };  // as rounded below
+    return is_in(u.x, end_.x) && is_in(u.y, end_.y) && is_in(u.z, end_.z);
+  }
+  /// `u` must be inside.
+  static Voxel nearest_voxel(const Point& u) {
+    return {static_cast<int>(u.x + 0.5), static_cast<int>(u.y + 0.5), static_cast<int>(u.z + 0.5)};
+  }
+  LabelIndex label_at_voxels(const Point& u) const;
+  /// `v` is the surface voxel nearest to u, in `brick`.
+  LabelIndex label_by_neighborhood(const Point& u, const Voxel& v, Brick brick, LabelIndex own) const;
+  LabelIndex label_by_block(const Point& u) const;
+  /// `v`, nearest to u, is no surface voxel.
+  LabelIndex label_off_surface(const Point& u, const Voxel& v, Brick brick) const;
+  /// ask(strengths) of a block's corners.
+  template <class Ask>
+  auto with_strengths(const Voxel& block, const Ask& ask) const {
+    if (strengths_ != nullptr) [[unlikely]]
+      return ask(strengths_->block(block));
+    return ask(EquallyStrong{});
+  }
+  /// The nearest point of the box of all voxel centres; (0,0,0) for NaN.
+  Point clamped_to_grid(const Point& u) const;
+  bool is_empty() const { return features_.is_empty(); }
+  /// May be negative. Beyond the words of the transform it is searched for only where that can tell whether
+  /// the distance is above `radius`.
+  double clearance(const Point& u, double radius) const {
+    return is_inside(u) ? bound_by_feature(u, nearest_voxel(u), radius) : bound_from_outside(u, radius);
+  }
+  double bound_from_outside(const Point& u, double radius) const;
+  double bound_by_feature(const Point& u, const Voxel& v, double radius) const;
+  std::optional<LabelChange> first_change(const Point& u, const Vector& d, LabelIndex label) const;
+  std::optional<LabelChange> change_in_block(const Point& from, const Vector& d, const Voxel& block,
+                                             const BlockLabels& labels, LabelIndex label) const;
+  struct Nearest;
+  class Sheet;
+  double share_to_change(const Voxel& from, unsigned edge) const;
+  std::optional<EightVoxels> features_around(const Point& u) const;
+  Nearest nearest_midpoint(const EightVoxels& surface_voxels, const Point& u) const;
+  bool find_nearer_midpoint(const Point& u, Nearest& best) const;
+  bool pull(Sheet& sheet, Point& z) const;
+  std::optional<Vector> tangent_step(const Sheet& sheet, const Point& u, const Point& z,
+                                     double negligible) const;
+  double negligible_gain(const Nearest& best) const;
+  void descend(Sheet& sheet, const Point& u, Nearest& best) const;
+  std::optional<NearPoint> foot(const Nearest& midpoint, const Point& u, double radius) const;
+
+  LabelGrid<Reads> grid_;
+  Features<Reads> features_;
+  Affine from_voxels_, to_voxels_;              // to the working frame, from it
+  Vector spacing_, inverse_spacing_;            // mm a voxel, voxels a mm
+  Point end_;                                   // half a voxel beyond the last
+  double half_diagonal_mm_, shortest_side_mm_;  // a voxel's
+  double to_surface_voxel_mm_;                  // from an isosurface point, at most
+  double beyond_bricks_mm_;  // by which the isosurface may leave the bricks of surface voxels
+};
+
+/// The oracle as most ask it: nobody counts.
+class Isosurface : public Oracle<NoReads> {
+ public:
+  /// Runs the feature transform on `threads` threads (0: all cores). Keeps a reference to `image`;
+  /// `strengths` are null unless its interfaces are smoothed. Throws InputError if the image has more than
+  /// 2^31 - 1 voxels.
+  Isosurface(const LabelImage& image, int threads, std::shared_ptr<const VoxelStrengths> strengths = nullptr)
+      : Oracle(image, std::make_shared<FeatureTransform>(image, threads), std::move(strengths), {}) {}
+  /// The same answers, by one whose reads are counted; strengths are not.
+  Oracle<CountedReads> counted(const CountedReads& reads) const {
+    return {*image_, transform_, strengths_, reads};
+  }
+};
+
+template <class Reads>
+inline LabelIndex Oracle<Reads>::label_at_voxels(const Point& u) const {
+  // Half a voxel outside the grid background has at least half the weight.
+  if (!is_inside(u)) return kBackground;
+  const Voxel v = nearest_voxel(u);
+  const Brick brick = features_.brick_of(v);
+  if (const auto own = features_.label_if_surface(brick, v)) return label_by_neighborhood(u, v, brick, *own);
+  if (strengths_ != nullptr) [[unlikely]]
+    return label_off_surface(u, v, brick);
+  // The lemma leaves only a tie at the block's centre to take the label from a voxel off the surface.
+  constexpr double kNotCenter = 1.5 - 1e-9;
+  const Vector offset = u - center(v);
+  if (std::fabs(offset.x) + std::fabs(offset.y) + std::fabs(offset.z) > kNotCenter) {
+    return label_by_block(u);
+  }
+  return brick.label() == Brick::kMixed ? grid_.label_inside(v) : brick.label();
+}
+
+}  // namespace podm

@@ -1,0 +1,215 @@
+// Labels by voxel and by block. A *block* is the box between eight voxel centres; inside it every label has a
+// trilinear weight, of corners that are 1 or as strong as their voxels, and the greatest weight wins.
+// Coordinates here are in voxels: voxel (i,j,k) is centred at (i,j,k), and block (i,j,k) reaches from there
+// to (i+1,j+1,k+1).
+#pragma once
+
+#include <array>
+#include <bit>
+#include <cmath>
+#include <cstdint>
+#include <cstring>
+
+#include "geometry/point.h"
+#include "image/voxel.h"
+#include "isosurface/oracle_reads.h"
+#include "podm/label_image.h"
+
+namespace podm {
+
+/// The block that holds u.
+inline Voxel block_of(const Point& u) {
+  return {static_cast<int>(std::floor(u.x)), static_cast<int>(std::floor(u.y)),
+          static_cast<int>(std::floor(u.z))};
+}
+
+/// Four labels in a word, and the same label four times.
+inline std::uint64_t repeated(LabelIndex label) { return label * 0x0001'0001'0001'0001u; }
+/// Bit l: whether the l-th label of one word differs from that of the other.
+inline unsigned differing(std::uint64_t four_labels, std::uint64_t others) {
+  constexpr std::uint64_t kLow = 0x7fff'7fff'7fff'7fff;
+  const std::uint64_t x = four_labels ^ others;
+  const std::uint64_t top_bits = (((x & kLow) + kLow) | x) & ~kLow;
+  return static_cast<unsigned>((top_bits >> 15) * 0x0001'0002'0004'0008 >> 48 & 0xf);
+}
+
+/// A set of a block's corners, a bit each; corner i + 2 j + 4 k lies at (i,j,k) from the block's own voxel.
+using CornerMask = unsigned;
+inline constexpr CornerMask kAllCorners = 0xff;
+using CornerValues = std::array<double, 8>;
+
+/// The bits of each number below 16, as numbers.
+inline constexpr auto kBits = [] {
+  std::array<std::array<double, 4>, 16> bits{};
+  for (std::size_t m = 0; m < 16; ++m) {
+    for (std::size_t b = 0; b < 4; ++b) bits[m][b] = static_cast<double>(m >> b & 1);
+  }
+  return bits;
+}();
+/// 1 at the corners of the set, 0 elsewhere.
+constexpr CornerValues indicator(CornerMask mask) {
+  const auto &low = kBits[mask & 15], &high = kBits[mask >> 4];
+  return {low[0], low[1], low[2], low[3], high[0], high[1], high[2], high[3]};
+}
+
+/// The labels of a block's corners.
+struct BlockLabels {
+  std::array<LabelIndex, 8> corner;
+
+  bool is_uniform(LabelIndex label) const {
+    const auto words = std::bit_cast<std::array<std::uint64_t, 2>>(corner);
+    return ((words[0] ^ repeated(label)) | (words[1] ^ repeated(label))) == 0;
+  }
+  CornerMask mask(LabelIndex label) const {
+    const auto words = std::bit_cast<std::array<std::uint64_t, 2>>(corner);
+    return ~(differing(words[0], repeated(label)) | differing(words[1], repeated(label)) << 4) & kAllCorners;
+  }
+  /// The label of the first corner of a set that is not empty.
+  LabelIndex first(CornerMask mask) const { return corner[static_cast<std::size_t>(std::countr_zero(mask))]; }
+};
+
+/// A function that is linear along each axis, given by its values at a block's corners.
+class Trilinear {
+ public:
+  constexpr explicit Trilinear(const CornerValues& v)
+      : value_(v[0]),
+        x_(v[1] - v[0]),
+        y_(v[2] - v[0]),
+        z_(v[4] - v[0]),
+        xy_(v[3] - v[2] - x_),
+        xz_(v[5] - v[4] - x_),
+        yz_(v[6] - v[4] - y_),
+        xyz_(v[7] - v[6] - v[5] + v[4] - xy_) {}
+
+  /// The value at f, which is given in voxels from the block's own voxel.
+  double value(const Point& f) const {
+    return value_ + f.x * x_ + f.y * (y_ + f.x * xy_) + f.z * (z_ + f.x * xz_ + f.y * (yz_ + f.x * xyz_));
+  }
+  Vector gradient(const Point& f) const {
+    return {x_ + f.y * xy_ + f.z * (xz_ + f.y * xyz_), y_ + f.x * xy_ + f.z * (yz_ + f.x * xyz_),
+            z_ + f.x * xz_ + f.y * (yz_ + f.x * xyz_)};
+  }
+  /// The second derivative of value(f + s d) by s, at s = 0.
+  double second_derivative(const Point& f, const Vector& d) const {
+    return 2 *
+           (d.x * d.y * (xy_ + f.z * xyz_) + d.x * d.z * (xz_ + f.y * xyz_) + d.y * d.z * (yz_ + f.x * xyz_));
+  }
+  /// Coefficients of the powers of s in value(f + s d).
+  std::array<double, 4> along(const Point& f, const Vector& d) const {
+    return {value(f), dot(gradient(f), d), 0.5 * second_derivative(f, d), d.x * d.y * d.z * xyz_};
+  }
+
+ private:
+  double value_, x_, y_, z_, xy_, xz_, yz_, xyz_;
+};
+
+/// Of corners of a block that are equally strong, 1 each.
+struct EquallyStrong {
+  constexpr CornerValues of(CornerMask mask) const { return indicator(mask); }
+};
+/// Of corners each with a strength of its own (voxel_strengths.h).
+struct CornerStrengths {
+  CornerValues values;
+
+  /// Of the corners of the set; 0 elsewhere.
+  CornerValues of(CornerMask mask) const {
+    CornerValues v = indicator(mask);
+    for (std::size_t c = 0; c < 8; ++c) v[c] *= values[c];
+    return v;
+  }
+};
+
+/// The weight of the corners `a` less that of the corners `b`.
+template <class Strengths = EquallyStrong>
+constexpr Trilinear weight_difference(CornerMask a, CornerMask b, const Strengths& strengths = {}) {
+  CornerValues v = strengths.of(a);
+  const CornerValues w = strengths.of(b);
+  for (std::size_t c = 0; c < 8; ++c) v[c] -= w[c];
+  return Trilinear(v);
+}
+
+/// The weight of the corners `mask` at f.
+template <class Strengths = EquallyStrong>
+double weight(CornerMask mask, const Point& f, const Strengths& strengths = {}) {
+  const CornerValues v = strengths.of(mask);
+  std::array<double, 4> plane;
+  for (std::size_t c = 0; c < 4; ++c) plane[c] = v[c] * (1 - f.z) + v[c + 4] * f.z;
+  return (plane[0] * (1 - f.x) + plane[1] * f.x) * (1 - f.y) + (plane[2] * (1 - f.x) + plane[3] * f.x) * f.y;
+}
+
+struct Winner {
+  LabelIndex label;
+  double weight;
+};
+/// The label of greatest weight at `f`, ties to the smaller label.
+template <class Strengths = EquallyStrong>
+Winner winner(const BlockLabels& labels, const Point& f, const Strengths& strengths = {});
+
+extern template Winner winner(const BlockLabels&, const Point&, const EquallyStrong&);
+extern template Winner winner(const BlockLabels&, const Point&, const CornerStrengths&);
+
+/// Labels of an image, background outside. Keeps a reference to its voxels. `Reads` is told of each piece of
+/// a row that is read.
+template <class Reads>
+class LabelGrid {
+ public:
+  LabelGrid(const LabelImage& image, const Reads& reads)
+      : reads_(reads),
+        voxels_(image.voxels.data()),
+        num_x_(image.size[0]),
+        num_y_(image.size[1]),
+        num_z_(image.size[2]),
+        row_(static_cast<std::size_t>(num_x_)),
+        slice_(row_ * static_cast<std::size_t>(num_y_)) {}
+
+  int num_x() const { return num_x_; }
+  int num_y() const { return num_y_; }
+  int num_z() const { return num_z_; }
+
+  bool contains(const Voxel& v) const {
+    return is_in(v.i, num_x_) && is_in(v.j, num_y_) && is_in(v.k, num_z_);
+  }
+
+  /// `v` must be in the grid.
+  LabelIndex label_inside(const Voxel& v) const { return *row_from(index(v)); }
+  LabelIndex label(const Voxel& v) const { return contains(v) ? label_inside(v) : kBackground; }
+  void prefetch(const Voxel& v) const { __builtin_prefetch(voxels_ + index(v)); }
+
+  BlockLabels block(const Voxel& b) const {
+    BlockLabels labels;
+    if (is_in(b.i, num_x_ - 1) && is_in(b.j, num_y_ - 1) && is_in(b.k, num_z_ - 1)) {
+      const std::size_t first = index(b);
+      std::memcpy(&labels.corner[0], row_from(first), 2 * sizeof(LabelIndex));
+      std::memcpy(&labels.corner[2], row_from(first + row_), 2 * sizeof(LabelIndex));
+      std::memcpy(&labels.corner[4], row_from(first + slice_), 2 * sizeof(LabelIndex));
+      std::memcpy(&labels.corner[6], row_from(first + slice_ + row_), 2 * sizeof(LabelIndex));
+    } else {
+      for (int c = 0; c < 8; ++c) {
+        const Voxel v{b.i + (c & 1), b.j + (c >> 1 & 1), b.k + (c >> 2)};
+        labels.corner[static_cast<std::size_t>(c)] = label(v);
+      }
+    }
+    return labels;
+  }
+
+ private:
+  std::size_t index(const Voxel& v) const {
+    return static_cast<std::size_t>(v.k) * slice_ + static_cast<std::size_t>(v.j) * row_ +
+           static_cast<std::size_t>(v.i);
+  }
+  static bool is_in(int i, int n) { return static_cast<unsigned>(i) < static_cast<unsigned>(n); }
+  const LabelIndex* row_from(std::size_t index) const {
+    reads_.image(index);
+    return voxels_ + index;
+  }
+
+  [[no_unique_address]] Reads reads_;
+  const LabelIndex* voxels_;
+  int num_x_, num_y_, num_z_;
+  std::size_t row_, slice_;  // voxels
+};
+
+extern template class LabelGrid<NoReads>;
+extern template class LabelGrid<CountedReads>;
+
+}  // namespace podm

@@ -1,0 +1,67 @@
+// How strong each voxel is in the label function: about as strong as the smoothed interface is far from its
+// centre.
+//
+// The weight of a label at a point is the trilinear interpolation of the strengths of its voxels, 0 at all
+// others. Between two neighbours of different labels, of strengths a and b, the label changes a / (a + b) of
+// the way: halfway where all are as strong, as in an image that is not smoothed. A voxel's centre keeps its
+// label, whatever the strengths; so does the way between neighbours of one label, and no component of a label
+// (by faces) is ever lost, split or joined to another along an axis.
+#pragma once
+
+#include <algorithm>
+#include <array>
+#include <cstdint>
+
+#include "isosurface/isosurface_block.h"
+#include "podm/label_image.h"
+#include "runtime/huge_array.h"
+
+namespace podm {
+
+/// Told of voxels beside one of another label; there, in (0,1]. Two bytes a voxel.
+class VoxelStrengths {
+ public:
+  static constexpr std::uint16_t kMost = 0xffff, kUntold = 0;
+
+  /// None is told yet.
+  explicit VoxelStrengths(const std::array<int, 3>& size)
+      : size_(size),
+        row_(static_cast<std::size_t>(size[0])),
+        slice_(row_ * static_cast<std::size_t>(size[1])),
+        strengths_(slice_ * static_cast<std::size_t>(size[2])) {}
+
+  /// In parts of kMost.
+  std::uint16_t& at(std::size_t voxel) { return strengths_[voxel]; }
+  std::uint16_t at(std::size_t voxel) const { return strengths_[voxel]; }
+
+  /// Outside the grid a voxel is as strong as the nearest inside, so that a cut through an object stays flat.
+  double strength(const Voxel& v) const { return share(strengths_[index(clamped(v))]); }
+  CornerStrengths block(const Voxel& b) const {
+    CornerValues values;
+    for (std::size_t row = 0; row < 4; ++row) {
+      const Voxel v{b.i, b.j + static_cast<int>(row & 1), b.k + static_cast<int>(row >> 1)};
+      const Voxel low = clamped(v), high = clamped({v.i + 1, v.j, v.k});
+      const std::size_t first = index(low);
+      values[2 * row] = share(strengths_[first]);
+      values[2 * row + 1] = share(strengths_[first + static_cast<std::size_t>(high.i - low.i)]);
+    }
+    return {values};
+  }
+
+ private:
+  static double share(std::uint16_t parts) { return parts * (1.0 / kMost); }
+  std::size_t index(const Voxel& v) const {
+    return static_cast<std::size_t>(v.k) * slice_ + static_cast<std::size_t>(v.j) * row_ +
+           static_cast<std::size_t>(v.i);
+  }
+  Voxel clamped(const Voxel& v) const {
+    return {std::clamp(v.i, 0, size_[0] - 1), std::clamp(v.j, 0, size_[1] - 1),
+            std::clamp(v.k, 0, size_[2] - 1)};
+  }
+
+  std::array<int, 3> size_;
+  std::size_t row_, slice_;  // voxels
+  HugeArray<std::uint16_t> strengths_;
+};
+
+}  // namespace podm

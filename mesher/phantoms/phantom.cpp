@@ -1,0 +1,146 @@
+// Analytic phantoms: images for machines without data, at any resolution and of one physical size.
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <map>
+
+#include "phantoms/phantom_abdomen.h"
+#include "phantoms/phantom_shapes.h"
+#include "podm/errors.h"
+#include "podm/image_io.h"
+#include "runtime/parallel_for.h"
+
+namespace podm {
+
+namespace {
+
+constexpr int kSmallestSize = 16, kLargestSize = 1024;
+constexpr int kMarginVoxels = 2;
+
+struct Phantom {
+  std::vector<Organ> organs;
+  Vector half_extent_mm;          // around the origin, holds every organ
+  double relative_z_spacing = 1;  // to the spacing along x and y
+};
+
+std::vector<Organ> spheres() {
+  const Shape shell = ellipsoid({-20, 0, 0}, {60, 60, 60});
+  return {{1, "shell", shell},
+          {2, "core", ellipsoid({-20, 0, 0}, {35, 35, 35})},
+          {3, "neighbour", without(ellipsoid({62, 0, 0}, {36, 36, 36}), shell)}};
+}
+
+std::vector<Organ> torus_and_ball() {
+  return {{1, "ring", torus(60, 22)}, {2, "ball", ellipsoid({0, 0, 0}, {30, 30, 30})}};
+}
+
+Phantom phantom_of(const std::string& name) {
+  if (name == "abdomen") return {abdomen_organs(), kAbdomenHalfExtent, 1.25};
+  if (name == "spheres") return {spheres(), {98, 60, 60}};
+  if (name == "torus") return {torus_and_ball(), {82, 82, 30}};
+  std::string known;
+  for (const std::string& n : phantom_names()) known += " " + n;
+  throw InputError("phantom:" + name + ": unknown phantom (known:" + known + ")");
+}
+
+/// Positions of voxel centres along one axis.
+struct Axis {
+  double first, spacing;
+  int size;
+
+  double at(int i) const { return first + spacing * i; }
+  /// The first position not below `low`, and the first one above `high`, within the axis.
+  int first_not_below(double low) const {
+    return static_cast<int>(std::clamp(std::ceil((low - first) / spacing), 0.0, static_cast<double>(size)));
+  }
+  int end_of(double high) const {
+    return static_cast<int>(
+        std::clamp(std::floor((high - first) / spacing) + 1, 0.0, static_cast<double>(size)));
+  }
+};
+
+Axis axis_of(const LabelImage& image, std::size_t axis) {
+  return {image.voxel_to_ras[4 * axis + 3], image.spacing[axis], image.size[axis]};
+}
+
+/// An organ ready for voxels.
+struct Paint {
+  Shape shape;
+  LabelIndex label;
+};
+
+// The last paint covers the others: paints go from it to the first, on the voxels that are still background.
+void fill_row(LabelIndex* row, const std::vector<const Paint*>& paints, const Axis& x, double y, double z) {
+  for (auto paint = paints.rbegin(); paint != paints.rend(); ++paint) {
+    const Shape& shape = (*paint)->shape;
+    if (y < shape.low.y || y > shape.high.y) continue;
+    const int end = x.end_of(shape.high.x);
+    for (int i = x.first_not_below(shape.low.x); i < end; ++i) {
+      if (row[i] == kBackground && shape.value({x.at(i), y, z}) < 0) row[i] = (*paint)->label;
+    }
+  }
+}
+
+void fill_slice(LabelImage& image, const std::vector<Paint>& paints, int k) {
+  const Axis x = axis_of(image, 0), y = axis_of(image, 1);
+  const double z = axis_of(image, 2).at(k);
+  std::vector<const Paint*> met;
+  for (const Paint& paint : paints) {
+    if (z >= paint.shape.low.z && z <= paint.shape.high.z) met.push_back(&paint);
+  }
+  for (int j = 0; j < y.size; ++j) fill_row(&image.voxels[image.index(0, j, k)], met, x, y.at(j), z);
+}
+
+void fill(LabelImage& image, const std::vector<Organ>& organs, int threads) {
+  std::map<std::uint32_t, std::string> names;
+  for (const Organ& organ : organs) names.emplace(organ.label, organ.name);
+  image.labels = {{0, ""}};
+  std::map<std::uint32_t, LabelIndex> index;
+  for (const auto& [value, name] : names) {
+    index[value] = static_cast<LabelIndex>(image.labels.size());
+    image.labels.push_back({value, name});
+  }
+  std::vector<Paint> paints;
+  for (const Organ& organ : organs) paints.push_back({organ.shape, index[organ.label]});
+  image.voxels.assign(image.num_voxels(), kBackground);
+  parallel_for(static_cast<std::size_t>(image.size[2]), num_threads(threads),
+               [&](std::size_t k, std::size_t) { fill_slice(image, paints, static_cast<int>(k)); });
+}
+
+// Rounds up, to so few bits that the spacing, and times half a number of voxels too, is exact in the single
+// precision of NIfTI: the phantom and its file are the same image.
+double in_few_bits(double spacing) {
+  constexpr int kBits = 12;
+  int exponent = 0;
+  const double fraction = std::frexp(spacing, &exponent);
+  return std::ldexp(std::ceil(std::ldexp(fraction, kBits)), exponent - kBits);
+}
+
+}  // namespace
+
+std::vector<std::string> phantom_names() { return {"abdomen", "spheres", "torus"}; }
+
+LabelImage make_phantom(const std::string& name, int size, int threads) {
+  const Phantom phantom = phantom_of(name);
+  if (size < kSmallestSize || size > kLargestSize) {
+    throw InputError("phantom:" + name + "@" + std::to_string(size) + ": the size must be between " +
+                     std::to_string(kSmallestSize) + " and " + std::to_string(kLargestSize) + " voxels");
+  }
+  const std::array<double, 3> half{phantom.half_extent_mm.x, phantom.half_extent_mm.y,
+                                   phantom.half_extent_mm.z};
+  const double spacing = 2 * *std::max_element(half.begin(), half.end()) / (size - 2 * kMarginVoxels);
+  LabelImage image;
+  image.spacing = {in_few_bits(spacing), in_few_bits(spacing),
+                   in_few_bits(phantom.relative_z_spacing * spacing)};
+  for (std::size_t axis = 0; axis < 3; ++axis) {
+    constexpr double kRoundOff = 1e-9;  // else the longest axis might get a voxel too many
+    const double voxels = std::ceil(2 * half[axis] / image.spacing[axis] - kRoundOff);
+    image.size[axis] = static_cast<int>(voxels) + 2 * kMarginVoxels;
+    image.voxel_to_ras[5 * axis] = image.spacing[axis];
+    image.voxel_to_ras[4 * axis + 3] = -0.5 * (image.size[axis] - 1) * image.spacing[axis];
+  }
+  fill(image, phantom.organs, threads);
+  return image;
+}
+
+}  // namespace podm

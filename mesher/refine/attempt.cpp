@@ -1,0 +1,10 @@
+#include "refine/worker.h"
+
+#include "refine/attempt.h"
+
+namespace podm {
+
+template class Worker<NoLocks>;
+template class Worker<VertexLocks>;
+
+}  // namespace podm

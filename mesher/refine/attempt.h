@@ -1,0 +1,245 @@
+// The definitions of Worker's members, for those who bring locks of their own: they include this in one
+// source, which instantiates Worker for them. Everybody else includes worker.h.
+#pragma once
+
+#include "refine/r7_attempt.h"
+#include "refine/worker.h"
+
+namespace podm {
+
+// A run that nobody shares is on one node.
+template <class Locks>
+std::optional<AccessTally> Worker<Locks>::tally_for(const Mesh& mesh) {
+  if (!Locks::kIsShared || mesh.num_nodes() == 1) return std::nullopt;
+  return AccessTally(mesh.num_nodes());
+}
+
+template <class Locks>
+std::optional<CountedReads> Worker<Locks>::reads_for(std::optional<AccessTally>& tally,
+                                                     const ImageOwners* owners, NodeIndex node) {
+  if (!tally || owners == nullptr || !owners->unavailable().empty()) return std::nullopt;
+  return CountedReads(*owners, *tally, node);
+}
+
+template <class Locks>
+Worker<Locks>::Worker(Mesh& mesh, const Isosurface& isosurface, const Parameters& parameters, WorkerId self,
+                      Pool& pool, OperationLogWriter* log, const ImageOwners* owners)
+    : mesh_(mesh),
+      accesses_(tally_for(mesh)),
+      isosurface_(isosurface),
+      parameters_(parameters),
+      reads_(reads_for(accesses_, owners, pool.node())),
+      rules_(mesh, isosurface, parameters, reads_),
+      operation_(mesh, pool, self, accesses_ ? &*accesses_ : nullptr),
+      poor_(mesh.cell_capacity()),
+      min_distance_(kSpacingFloor * parameters.spacing_mm),
+      self_(self),
+      log_(log) {
+  if (log_ != nullptr) unlogged_.operations.reserve(kOperationsToFlush);
+  if (log_ != nullptr) unlogged_.removed.reserve(kOperationsToFlush);
+}
+
+template <class Locks>
+Outcome Worker<Locks>::attempt() try {
+  [[maybe_unused]] const AttemptScope scope(operation_.locks());
+  return attempt_next();
+} catch (...) {
+  operation_.rollback();
+  operation_.release();
+  throw;
+}
+
+template <class Locks>
+Outcome Worker<Locks>::attempt_next() {
+  if (unlogged_.operations.size() >= kOperationsToFlush) flush_log();
+  look_ahead();
+  const PoorElementList::Entry entry = poor_.pop();
+  const Outcome outcome = try_entry(entry);
+  if (outcome == Outcome::kLockConflict) {
+    ++operation_.counters().lock_conflicts;
+    poor_.push(entry.cell, entry.stamp);
+  } else if (outcome == Outcome::kStaleCell) {
+    ++operation_.counters().stale_cells;
+  } else if (outcome == Outcome::kOutOfLeaf) {
+    ++operation_.counters().out_of_leaf;
+    deferred_.push_back(entry);
+  }
+  return outcome;
+}
+
+// Two entries of three are stale, and their turns take no time: so it looks far, and asks for what a cell
+// needs beyond its own line only if the cell still lives.
+template <class Locks>
+void Worker<Locks>::look_ahead() {
+  mesh_.prefetch(poor_.upcoming(kTurnsToCell).cell);
+  const PoorElementList::Entry entry = poor_.upcoming(kTurnsToSurroundings);
+  if (mesh_.stamp(entry.cell) != entry.stamp) return;
+  mesh_.prefetch_surroundings(entry.cell);
+  rules_.prefetch(entry.cell);
+}
+
+template <class Locks>
+Outcome Worker<Locks>::try_entry(const PoorElementList::Entry& entry) {
+  if (mesh_.stamp(entry.cell) != entry.stamp) return Outcome::kStaleCell;
+  if (const StepResult reserved = operation_.reserve(entry.cell, entry.stamp); reserved != StepResult::kDone)
+    return outcome_of(reserved);
+  ++operation_.counters().classified_cells;
+  const bool is_timed =
+      Locks::kIsShared && operation_.counters().classified_cells % kAttemptsForOneTimed == 0;
+  const auto start = is_timed ? std::chrono::steady_clock::now() : std::chrono::steady_clock::time_point();
+  const Outcome outcome = perturbation_ ? apply_r7(entry.cell) : apply_first_rule(entry.cell);
+  if (is_timed && outcome == Outcome::kLockConflict)
+    operation_.counters().overhead.rollback_s +=
+        kAttemptsForOneTimed *
+        std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+  return outcome;
+}
+
+template <class Locks>
+Outcome Worker<Locks>::apply_first_rule(CellId c) {
+  const Examination t = rules_.examine(c);
+  if (!t.is_distance_proven) ++operation_.counters().oracle_searches;
+  mesh_.tell_reliance(c, t.relies_on_others());
+  if (const auto z = rules_.r1_sample(t)) {
+    const Outcome sampled = insert_on_isosurface(*z, c, Rule::kR1);
+    if (sampled != Outcome::kRejected) return sampled;
+  }
+  if (const auto p = rules_.r2_center(t)) return insert_circumcenter(*p, c, Rule::kR2);
+  if (const auto center = rules_.r3_surface_center(t)) {
+    const std::uint16_t stamp = mesh_.stamp(c);
+    const Outcome sampled = insert_on_isosurface(center->point, center->start, Rule::kR3);
+    if (sampled == Outcome::kCommitted && mesh_.stamp(c) == stamp) give(c);
+    return sampled;
+  }
+  if (const auto rule = rules_.volume_rule(t)) return insert_circumcenter(t.center, c, *rule);
+  return Outcome::kSound;
+}
+
+template <class Locks>
+void Worker<Locks>::perturb(const DihedralBounds& bounds, std::uint64_t seed) {
+  perturbation_.emplace(mesh_, isosurface_, parameters_, rules_, operation_, bounds, seed, reads_);
+}
+
+template <class Locks>
+Outcome Worker<Locks>::apply_r7(CellId c) {
+  if (!perturbation_->is_poor(c)) return Outcome::kSound;
+  if (const StepResult planned = perturbation_->plan(c); planned != StepResult::kDone) {
+    operation_.rollback();
+    if (planned == StepResult::kNoMove) kept_.push_back({{c, mesh_.stamp(c)}, perturbation_->why_not()});
+    return outcome_of(planned);
+  }
+  make_room_in_log();
+  operation_.commit_move();
+  ++operation_.counters().moves;
+  tell_of_commit(operation_.move().point(), operation_.move().kind());
+  return Outcome::kCommitted;
+}
+
+// The point and its R6 removals are one operation. kRejected: the point is covered already, or the ball only
+// touches the isosurface there.
+template <class Locks>
+Outcome Worker<Locks>::insert_on_isosurface(const Point& z, CellId start, Rule rule) {
+  StepResult planned = operation_.plan_insertion(z, start);
+  if (planned == StepResult::kDone && rule == Rule::kR1 && is_covered(z)) planned = StepResult::kCovered;
+  if (planned == StepResult::kDone) planned = plan_r6_removals(z);
+  if (planned == StepResult::kDone) return commit(z, VertexKind::kIsosurface, rule);
+  operation_.rollback();
+  return outcome_of(planned);
+}
+
+template <class Locks>
+bool Worker<Locks>::is_covered(const Point& z) const {
+  bool is_covered = false;
+  operation_.for_each_region_vertex(
+      [&](VertexId v, CellId) { is_covered = is_covered || rules_.is_covered(z, v); });
+  return is_covered;
+}
+
+template <class Locks>
+StepResult Worker<Locks>::plan_r6_removals(const Point& z) {
+  StepResult planned = StepResult::kDone;
+  operation_.for_each_region_vertex([&](VertexId v, CellId seed) {
+    if (planned == StepResult::kDone && rules_.r6_removes(v, z) && !operation_.removes(v))
+      planned = operation_.plan_removal(v, seed);
+  });
+  return planned;
+}
+
+template <class Locks>
+Outcome Worker<Locks>::insert_circumcenter(const Point& p, CellId start, Rule rule) {
+  const StepResult planned = operation_.plan_insertion(p, start);
+  if (planned == StepResult::kDone) return commit(p, VertexKind::kCircumcenter, rule);
+  if (planned == StepResult::kNotInConflict) return give_up();
+  operation_.rollback();
+  return outcome_of(planned);
+}
+
+template <class Locks>
+Outcome Worker<Locks>::give_up() {
+  operation_.rollback();
+  ++operation_.counters().rejected;
+  return Outcome::kRejected;
+}
+
+template <class Locks>
+Outcome Worker<Locks>::commit(const Point& p, VertexKind kind, Rule rule) {
+  make_room_in_log();
+  if (operation_.commit_insertion(p, kind, min_distance_) != StepResult::kDone) return give_up();
+  operation_.counters().removals += operation_.removed().size();
+  ++operation_.counters().insertions_by_rule[static_cast<std::size_t>(rule)];
+  tell_of_commit(p, kind);
+  return Outcome::kCommitted;
+}
+
+template <class Locks>
+void Worker<Locks>::tell_of_commit(const Point& p, VertexKind kind) {
+  if (log_ != nullptr) log(p, kind);
+  list_created();
+  if (poor_.is_due_for_cleaning()) poor_.drop_stale(mesh_);
+}
+
+template <class Locks>
+void Worker<Locks>::list_created() {
+  for (const CellId c : operation_.created()) {
+    if constexpr (requires(Locks & locks) { locks.region(); }) {
+      if (!operation_.locks().region().owns(mesh_.cell(c).center)) {
+        foreign_.push_back({c, mesh_.stamp(c)});
+        continue;
+      }
+    }
+    if (const unsigned home = homes_ == nullptr ? home_ : homes_->of(mesh_.cell(c).center); home != home_) {
+      away_.push_back({home, {c, mesh_.stamp(c)}});
+    } else {
+      give(c);
+    }
+  }
+}
+
+// Before the commit, so that no operation is missing when memory runs out.
+template <class Locks>
+void Worker<Locks>::make_room_in_log() {
+  if (log_ == nullptr) return;
+  unlogged_.removed.reserve(unlogged_.removed.size() + operation_.num_planned_removals());
+}
+
+template <class Locks>
+void Worker<Locks>::log(const Point& p, VertexKind kind) {
+  const auto& removed = operation_.removed();
+  unlogged_.operations.push_back({log_->next_sequence(),
+                                  {p.x, p.y, p.z},
+                                  operation_.inserted(),
+                                  self_,
+                                  static_cast<std::uint32_t>(kind),
+                                  static_cast<std::uint32_t>(removed.size())});
+  unlogged_.removed.insert(unlogged_.removed.end(), removed.begin(), removed.end());
+}
+
+template <class Locks>
+void Worker<Locks>::flush_log() {
+  if (log_ == nullptr) return;
+  log_->append(unlogged_);
+  unlogged_.operations.clear();
+  unlogged_.removed.clear();
+}
+
+}  // namespace podm

@@ -1,0 +1,284 @@
+#include "run/extract_mesh.h"
+
+#include <algorithm>
+#include <atomic>
+#include <new>
+#include <numeric>
+#include <utility>
+#include <vector>
+
+#include "image/working_frame.h"
+#include "runtime/huge_array.h"
+#include "runtime/parallel_for.h"
+#include "runtime/parallel_resize.h"
+
+namespace podm {
+
+namespace {
+
+// Threads share out chunks of ids.
+constexpr std::size_t kChunk = 1 << 13;
+
+std::size_t num_chunks(std::uint32_t num_ids) { return (num_ids + kChunk - 1) / kChunk; }
+
+/// Calls work(chunk, begin, end) for every chunk of the ids from `first`, where one begins, to `last`.
+template <class Work>
+void for_each_chunk(std::uint32_t first, std::uint32_t last, std::size_t threads, const Work& work) {
+  parallel_for_ranges(last - first, kChunk, threads, [&](std::size_t begin, std::size_t end, std::size_t) {
+    work((first + begin) / kChunk, first + static_cast<std::uint32_t>(begin),
+         first + static_cast<std::uint32_t>(end));
+  });
+}
+
+/// Calls work(begin, end) for some sixteen slices of the ids below `num_ids`, chunks each, one after another.
+template <class Work>
+void for_each_slice(std::uint32_t num_ids, const Work& work) {
+  const auto length = static_cast<std::uint32_t>(kChunk * std::max<std::size_t>(1, num_chunks(num_ids) / 16));
+  for (std::uint32_t begin = 0; begin < num_ids; begin += std::min(length, num_ids - begin))
+    work(begin, begin + std::min(length, num_ids - begin));
+}
+
+// One number a chunk: how many it adds to the output; summed up, where in the output they begin.
+class Starts {
+ public:
+  explicit Starts(std::uint32_t num_ids) : starts_(num_chunks(num_ids) + 1) {}
+  std::size_t& operator[](std::size_t chunk) { return starts_[chunk]; }
+  /// That of all chunks before the id, where one ends.
+  std::size_t before(std::uint32_t id) const { return starts_[num_chunks(id)]; }
+  void sum_up() { std::exclusive_scan(starts_.begin(), starts_.end(), starts_.begin(), std::size_t{0}); }
+  std::size_t total() const { return starts_.back(); }
+
+ private:
+  std::vector<std::size_t> starts_;
+};
+
+// Asks the image where nobody has; dead cells are background.
+LabelIndex label_of(Mesh& mesh, const Isosurface& isosurface, CellId c) {
+  LabelIndex& label = mesh.label(c);
+  if (label == kUnknownLabel)
+    label = mesh.cell(c).is_alive() ? isosurface.label_at(mesh.cell(c).center) : kBackground;
+  return label;
+}
+
+// A facet on its way out: vertices by their ids in the store.
+struct BoundaryFacet {
+  std::array<VertexId, 3> vertices;
+  std::array<LabelIndex, 2> labels;
+};
+
+// A pass over the cells gives them labels and counts them. A second writes cells, with vertices by their ids
+// in the store, finds facets and which vertices are in use, and sets the store's memory free behind it. Then
+// vertices get numbers, in the order of their ids, and cells and facets learn them.
+class Extractor {
+ public:
+  Extractor(Mesh& mesh, const Isosurface& isosurface, std::size_t threads, const CellFilter& is_wanted,
+            TetMesh& out)
+      : mesh_(mesh),
+        is_wanted_(is_wanted),
+        isosurface_(isosurface),
+        to_world_(working_to_world(isosurface.image())),
+        threads_(threads),
+        out_(out),
+        labels_(mesh.cell_bound()),
+        out_ids_(mesh.vertex_bound(), kNoVertex),
+        facets_(num_chunks(mesh.cell_bound())) {}
+
+  std::uint64_t operator()() {
+    Starts cells(mesh_.cell_bound());
+    for_each_chunk(0, mesh_.cell_bound(), threads_, [&](std::size_t chunk, CellId begin, CellId end) {
+      cells[chunk] = label_cells(begin, end);
+    });
+    cells.sum_up();
+    out_.cells.reserve(cells.total());
+    out_.cell_labels.reserve(cells.total());
+    for_each_slice(mesh_.cell_bound(), [&](CellId first, CellId last) {
+      parallel_resize(out_.cells, cells.before(last), threads_);
+      parallel_resize(out_.cell_labels, cells.before(last), threads_);
+      for_each_chunk(first, last, threads_, [&](std::size_t chunk, CellId begin, CellId end) {
+        write_cells(begin, end, cells[chunk], facets_[chunk]);
+      });
+      mesh_.release_cells(first, last);
+    });
+    if (is_out_of_memory_) throw std::bad_alloc();
+    write_vertices();
+    number_vertices_of_cells();
+    return write_facets();
+  }
+
+ private:
+  // The marks stand in out_ids_, which a facet reads anyway: looking at the vertices themselves would double
+  // the time.
+  static constexpr std::uint32_t kUsed = 0, kOffIsosurface = 1u << 31;
+
+  std::uint32_t out_id(VertexId v) const { return out_ids_[v] & ~kOffIsosurface; }
+  bool is_off_isosurface(VertexId v) const { return (out_ids_[v] & kOffIsosurface) != 0; }
+
+  // How many of them are in the mesh.
+  std::size_t label_cells(CellId begin, CellId end) {
+    std::size_t count = 0;
+    for (CellId c = begin; c < end; ++c) {
+      labels_[c] = label_of(mesh_, isosurface_, c);
+      count += is_wanted(c);
+    }
+    return count;
+  }
+
+  bool is_wanted(CellId c) const { return labels_[c] != kBackground && (!is_wanted_ || is_wanted_(c)); }
+
+  // What a cell needs besides its own line, early.
+  static constexpr CellId kLookahead = 32;
+  void prefetch_around(CellId c) const {
+    if (c >= mesh_.cell_bound() || labels_[c] == kBackground) return;
+    for (const FacetId mirror : mesh_.cell(c).mirrors) {
+      if (mirror != kNoFacet) __builtin_prefetch(&labels_[cell_of(mirror)]);
+    }
+    for (const VertexId v : mesh_.cell(c).vertices) __builtin_prefetch(&out_ids_[v]);
+  }
+
+  void write_cells(CellId begin, CellId end, std::size_t at, std::vector<BoundaryFacet>& facets) {
+    for (CellId c = begin; c < end; ++c) {
+      prefetch_around(c + kLookahead);
+      if (!is_wanted(c)) continue;
+      const LabelIndex label = labels_[c];
+      const Cell& cell = mesh_.cell(c);
+      for (const VertexId v : cell.vertices) {
+        if (load(out_ids_[v], std::memory_order_relaxed) != kUsed)
+          store(out_ids_[v], kUsed, std::memory_order_relaxed);
+      }
+      for (unsigned k = 0; k < 4; ++k) {
+        const LabelIndex across =
+            cell.mirrors[k] == kNoFacet ? kBackground : labels_[cell_of(cell.mirrors[k])];
+        if (across < label) add_facet(cell, k, {across, label}, facets);  // once, by the larger label
+      }
+      out_.cells[at] = cell.vertices;
+      if (is_mirrored_) std::swap(out_.cells[at][2], out_.cells[at][3]);
+      out_.cell_labels[at++] = label;
+    }
+  }
+
+  void add_facet(const Cell& cell, unsigned k, const std::array<LabelIndex, 2>& labels,
+                 std::vector<BoundaryFacet>& facets) {
+    // kFacetVertices turns towards the cell; outwards is the other way round.
+    const auto vertex = [&](std::size_t i) {
+      return cell.vertices[static_cast<unsigned>(kFacetVertices[k][2 - i])];
+    };
+    std::array<VertexId, 3> vertices{vertex(0), vertex(1), vertex(2)};
+    if (is_mirrored_) std::swap(vertices[1], vertices[2]);
+    try {
+      facets.push_back({vertices, labels});
+    } catch (const std::bad_alloc&) {  // not to leave the thread
+      is_out_of_memory_ = true;
+    }
+  }
+
+  void write_vertices() {
+    Starts vertices(mesh_.vertex_bound());
+    for_each_chunk(0, mesh_.vertex_bound(), threads_, [&](std::size_t chunk, VertexId begin, VertexId end) {
+      for (VertexId v = begin; v < end; ++v) vertices[chunk] += out_ids_[v] == kUsed;
+    });
+    vertices.sum_up();
+    out_.vertices.reserve(vertices.total());
+    for_each_slice(mesh_.vertex_bound(), [&](VertexId first, VertexId last) {
+      parallel_resize(out_.vertices, vertices.before(last), threads_);
+      for_each_chunk(first, last, threads_, [&](std::size_t chunk, VertexId begin, VertexId end) {
+        write_vertices(begin, end, vertices[chunk]);
+      });
+      mesh_.release_vertices(first, last);
+    });
+  }
+
+  void write_vertices(VertexId begin, VertexId end, std::size_t at) {
+    for (VertexId v = begin; v < end; ++v) {
+      if (out_ids_[v] != kUsed) continue;
+      out_ids_[v] = static_cast<std::uint32_t>(at);
+      if (mesh_.vertex(v).kind != VertexKind::kIsosurface) out_ids_[v] |= kOffIsosurface;
+      const Point p = map(to_world_, mesh_.point(v));
+      out_.vertices[at++] = {flip_ * p.x, flip_ * p.y, p.z};
+    }
+  }
+
+  void number_vertices_of_cells() {
+    parallel_for_ranges(out_.cells.size(), kChunk, threads_,
+                        [&](std::size_t begin, std::size_t end, std::size_t) {
+                          for (std::size_t c = begin; c < end; ++c) {
+                            for (const VertexId v : out_.cells[std::min(c + kLookahead, end - 1)])
+                              __builtin_prefetch(&out_ids_[v]);
+                            for (std::uint32_t& v : out_.cells[c]) v = out_id(v);
+                          }
+                        });
+  }
+
+  // Returns how many have a vertex off the isosurface.
+  std::uint64_t write_facets() {
+    std::vector<std::size_t> begin(facets_.size() + 1);
+    for (std::size_t chunk = 0; chunk < facets_.size(); ++chunk)
+      begin[chunk + 1] = begin[chunk] + facets_[chunk].size();
+    parallel_resize(out_.facets, begin.back(), threads_);
+    parallel_resize(out_.facet_labels, begin.back(), threads_);
+    std::atomic<std::uint64_t> off_isosurface = 0;
+    parallel_for(facets_.size(), threads_, [&](std::size_t chunk, std::size_t) {
+      std::size_t at = begin[chunk];
+      std::uint64_t count = 0;
+      for (const auto& [vertices, labels] : facets_[chunk]) {
+        out_.facets[at] = {out_id(vertices[0]), out_id(vertices[1]), out_id(vertices[2])};
+        out_.facet_labels[at++] = labels;
+        count +=
+            std::any_of(vertices.begin(), vertices.end(), [&](VertexId v) { return is_off_isosurface(v); });
+      }
+      off_isosurface += count;
+    });
+    return off_isosurface;
+  }
+
+  Mesh& mesh_;
+  const CellFilter& is_wanted_;
+  const Isosurface& isosurface_;
+  const Affine to_world_;
+  const bool is_mirrored_ = determinant(to_world_) < 0;  // swapping two vertices of a cell turns it back
+  std::size_t threads_;
+  TetMesh& out_;
+  const double flip_ = out_.space == Space::kLps ? -1 : 1;
+  HugeArray<LabelIndex> labels_;        // those of the store's cells: they outlive the cells, and lie closer
+  std::vector<std::uint32_t> out_ids_;  // by id in the store: used or not, then the position in the output
+  std::vector<std::vector<BoundaryFacet>> facets_;  // by chunk of cells
+  std::atomic<bool> is_out_of_memory_ = false;
+};
+
+}  // namespace
+
+std::uint64_t label_cells(Mesh& mesh, const Isosurface& isosurface, int threads) {
+  std::atomic<std::uint64_t> labelled = 0;
+  for_each_chunk(0, mesh.cell_bound(), num_threads(threads), [&](std::size_t, CellId begin, CellId end) {
+    std::uint64_t count = 0;
+    for (CellId c = begin; c < end; ++c) count += label_of(mesh, isosurface, c) != kBackground;
+    labelled += count;
+  });
+  return labelled;
+}
+
+TetMesh extract_mesh(Mesh& mesh, const Isosurface& isosurface, Space space, int threads,
+                     std::uint64_t& facets_off_isosurface, const CellFilter& is_wanted) {
+  TetMesh out;
+  out.labels = isosurface.image().labels;
+  out.space = space;
+  facets_off_isosurface = Extractor(mesh, isosurface, num_threads(threads), is_wanted, out)();
+  return out;
+}
+
+void convert_to_voxel_space(TetMesh& mesh, const LabelImage& image, int threads) {
+  const auto for_each = [&](auto& items, const auto& change) {
+    parallel_for_ranges(items.size(), kChunk, num_threads(threads),
+                        [&](std::size_t begin, std::size_t end, std::size_t) {
+                          for (std::size_t i = begin; i < end; ++i) change(items[i]);
+                        });
+  };
+  const Affine ras_to_voxel = inverse(image.voxel_to_ras);
+  for_each(mesh.vertices, [&](auto& vertex) { vertex = map(ras_to_voxel, vertex); });
+  if (determinant(image.voxel_to_ras) < 0) {
+    for_each(mesh.cells, [](auto& cell) { std::swap(cell[2], cell[3]); });
+    for_each(mesh.facets, [](auto& facet) { std::swap(facet[1], facet[2]); });
+  }
+  mesh.space = Space::kVoxel;
+}
+
+}  // namespace podm

@@ -1,0 +1,82 @@
+// The public API: the phases of a run, one after the other.
+#include "podm/mesh_image.h"
+
+#include "algorithms/check_options.h"
+#include "replay/replay.h"
+#include "run/calibrate.h"
+#include "run/extract_mesh.h"
+#include "run/phases_of_run.h"
+#include "smoothing/smooth_interfaces.h"
+
+namespace podm {
+
+namespace {
+
+// One call of mesh_image.
+class Run {
+ public:
+  Run(const LabelImage& image, const MeshingOptions& options, const ProgressCallback& progress,
+      std::stop_token stop)
+      : image_(image), options_(options), phases_(image, options, progress, std::move(stop)) {}
+
+  MeshingResult operator()() {
+    MeshingResult result;
+    MeshingReport& report = result.report;
+    phases_.transform(report);
+    Refinement refinement = refine(report);
+    phases_.report_refinement(refinement, report);
+    phases_.optimize(*refinement.mesh, report);
+    const auto extract = [&](Space space) {
+      result.mesh = extract_mesh(*refinement.mesh, phases_.isosurface(), space, phases_.loop_threads(),
+                                 report.guarantees.facet_vertices);
+      refinement.mesh.reset();
+    };
+    phases_.extract(extract, report);
+    phases_.finish(result.mesh, report);
+    return result;
+  }
+
+ private:
+  Refinement refine(MeshingReport& report) {
+    if (options_.sizes.target_elements > 0) {
+      const auto make_mesh = [&](const SizeOptions& sizes) { return refine_with(sizes); };
+      return refine_to_target(image_, phases_.isosurface(), options_.sizes, phases_.loop_threads(), make_mesh,
+                              report);
+    }
+    SizeOptions sizes = options_.sizes;
+    sizes.delta_mm = phases_.delta_mm();
+    return refine_with(sizes);
+  }
+
+  Refinement refine_with(const SizeOptions& sizes) {
+    Refinement refinement;
+    phases_.refine(sizes, [&](const Problem& problem, const Team& team, StopControl& stop) {
+      refinement = refine_by(phases_.team().size().algorithm, problem, team, options_.leaves, stop);
+    });
+    return refinement;
+  }
+
+  const LabelImage& image_;
+  const MeshingOptions& options_;
+  PhasesOfRun phases_;
+};
+
+}  // namespace
+
+MeshingResult mesh_image(const LabelImage& image, const MeshingOptions& options,
+                         const ProgressCallback& progress, std::stop_token stop) {
+  check_options(image, options);
+  return Run(image, options, progress, std::move(stop))();
+}
+
+TetMesh replay_operations(const LabelImage& image, const OperationLog& log, Space space) {
+  const std::unique_ptr<Mesh> refined = replay(log);
+  const Isosurface isosurface(image, 0, strengths_of(image, log.head.smoothing_mm, 0));
+  std::uint64_t facets_off_isosurface = 0;
+  const bool is_voxel = space == Space::kVoxel;
+  TetMesh mesh = extract_mesh(*refined, isosurface, is_voxel ? Space::kRas : space, 0, facets_off_isosurface);
+  if (is_voxel) convert_to_voxel_space(mesh, image, 0);
+  return mesh;
+}
+
+}  // namespace podm

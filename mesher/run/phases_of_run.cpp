@@ -1,0 +1,218 @@
+#include "run/phases_of_run.h"
+
+#include <fmt/format.h>
+#include <malloc.h>
+
+#include <algorithm>
+#include <new>
+
+#include "algorithms/memory_model.h"
+#include "image/foreground.h"
+#include "optimize/optimize_mesh.h"
+#include "podm/operation_log.h"
+#include "prediction/cost_model.h"
+#include "run/extract_mesh.h"
+#include "run/measure_quality.h"
+#include "run/report_on_smoothing.h"
+#include "sizing/default_sizes.h"
+#include "sizing/make_size_grid.h"
+#include "smoothing/smooth_interfaces.h"
+#include "workers/work_cost.h"
+
+namespace podm {
+
+namespace {
+
+double seconds_since(std::chrono::steady_clock::time_point start) {
+  return std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+}
+
+// The bounds on dihedral angles that were asked for, the last first, if all cells keep them. Angles are those
+// of rounded arithmetic: the margin is above its errors.
+std::optional<std::array<double, 2>> dihedral_bounds_kept(const MeshingReport& report) {
+  constexpr double kMarginDeg = 1e-9;
+  std::vector<std::array<double, 2>> asked;
+  if (const auto& done = report.optimization)
+    asked.push_back({done->least_dihedral_deg, done->largest_dihedral_deg});
+  if (const auto& done = report.perturbed) asked.push_back({done->min_dihedral_deg, done->max_dihedral_deg});
+  for (const auto& [least, largest] : asked)
+    if (report.quality.min_dihedral_deg >= least + kMarginDeg &&
+        report.quality.max_dihedral_deg <= largest - kMarginDeg)
+      return {{least, largest}};
+  return std::nullopt;
+}
+
+}  // namespace
+
+PhasesOfRun::PhasesOfRun(const LabelImage& image, const MeshingOptions& options,
+                         const ProgressCallback& progress, std::stop_token stop, double share_of_cells,
+                         Seconds seconds)
+    : image_(image),
+      options_(options),
+      progress_(progress),
+      stop_(std::move(stop)),
+      team_(options),
+      loop_threads_(podm::loop_threads(options.team)),
+      share_of_cells_(share_of_cells),
+      seconds_(std::move(seconds)) {}
+
+double PhasesOfRun::seconds_on_the_wall() {
+  return std::chrono::duration<double>(Clock::now().time_since_epoch()).count();
+}
+
+void PhasesOfRun::announce(const char* phase, double fraction, std::uint64_t cells) const {
+  if (progress_) progress_({phase, std::clamp(fraction, 0.0, 1.0), cells, seconds_since(start_)});
+}
+
+void PhasesOfRun::transform(MeshingReport& report) {
+  const auto strengths = options_.smoothing_mm > 0 ? smooth(report) : nullptr;
+  transform(report, [&] { return std::make_shared<const Isosurface>(image_, loop_threads_, strengths); });
+}
+
+void PhasesOfRun::transform(MeshingReport& report,
+                            const std::function<std::shared_ptr<const Isosurface>()>& make) {
+  announce("transform", 0, 0);
+  const double start_s = seconds_();
+  isosurface_ = make();
+  object_ = foreground_bounds(image_, loop_threads_);
+  asked_grid_ = make_size_grid(image_, options_.sizes, loop_threads_);
+  expected_ = estimate(image_, options_, asked_grid_.get());
+  report.phases_s["transform"] = seconds_() - start_s;
+  team_.locate_memory(image_, isosurface_->transform());
+}
+
+std::shared_ptr<const VoxelStrengths> PhasesOfRun::smooth(MeshingReport& report) const {
+  announce("smooth", 0, 0);
+  const double start_s = seconds_();
+  const SmoothInterfaces smoothed = smooth_interfaces(image_, options_.smoothing_mm, loop_threads_);
+  report.smoothing = report_on_smoothing(image_, options_.smoothing_mm, smoothed, loop_threads_);
+  if (keeps_all_stairs(image_, options_.smoothing_mm))
+    report.warnings.push_back(
+        fmt::format("a blur of {:g} mm, less than half a voxel, smooths nothing", options_.smoothing_mm));
+  for (const SmoothingReport::OfLabel& label : report.smoothing->labels)
+    if (label.is_thin)
+      report.warnings.push_back(fmt::format(
+          "label {} ({:.4g} mm^3) is thin for a blur of {:g} mm, which would lose most of it: it was "
+          "blurred by less",
+          label.value, label.voxels_mm3, options_.smoothing_mm));
+  report.phases_s["smooth"] = seconds_() - start_s;
+  return smoothed.strengths;
+}
+
+void PhasesOfRun::refine(const SizeOptions& sizes, const Refine& refine) {
+  sizes_ = sizes;
+  const bool is_as_asked = options_.sizes.target_elements == 0;
+  size_field_ =
+      size_field(image_, sizes, is_as_asked ? asked_grid_ : make_size_grid(image_, sizes, loop_threads_));
+  const auto observe = [&](std::uint64_t cells) {
+    announce("refine", static_cast<double>(cells) / (share_of_cells_ * expected_.cells), cells);
+  };
+  StopControl stop_control(options_.limits, stop_, observe, start_);
+  if (options_.log != nullptr) options_.log->restart();
+  team_.forget_reads();
+  announce("refine", 0, 0);
+  const auto num_workers = static_cast<std::uint64_t>(team_.size().num_workers);
+  const std::uint64_t bytes = memory_of_run(options_.limits);
+  const Problem problem{.isosurface = *isosurface_,
+                        .object = object_,
+                        .delta_mm = sizes.delta_mm,
+                        .sizes = *size_field_,
+                        .cell_capacity = cell_capacity(bytes, num_workers, options_.team.executor),
+                        .memory_bytes = bytes,
+                        .dihedral_bounds = dihedral_bounds(),
+                        .observe_perturbation = [&](double fraction, std::uint64_t cells) {
+                          announce("perturb", fraction, cells);
+                        }};
+  refine(problem, team_.team(), stop_control);
+}
+
+std::optional<DihedralBounds> PhasesOfRun::dihedral_bounds() const {
+  if (options_.min_dihedral_deg == 0) return std::nullopt;
+  return DihedralBounds(options_.min_dihedral_deg, max_dihedral_deg(options_.min_dihedral_deg));
+}
+
+void PhasesOfRun::report_refinement(Refinement& refinement, MeshingReport& report) const {
+  report.radius_mm = sizes_.radius_mm;
+  report.delta_mm = sizes_.delta_mm;
+  report.size_image_factor = sizes_.image_factor;
+  report.phases_s.merge(refinement.phases_s);
+  report.stop_reason = refinement.stop_reason;
+  report.counters = refinement.counters;
+  report.workers = refinement.workers;
+  report.store_cells = refinement.mesh->num_cells();
+  const auto& [low, high] = refinement.mesh->box();
+  report.virtual_box = {low.x, low.y, low.z, high.x, high.y, high.z};
+  if (options_.team.executor == Executor::kVirtual) simulate(refinement, report);
+  report.num_leaves = refinement.num_leaves;
+  report.schedule = std::move(refinement.schedule);
+  report.perturbed = refinement.perturbed;
+  team_.report_to(report, std::move(refinement.pages));
+}
+
+// Phases whose loops run on this machine's threads take virtual time by their counted work.
+void PhasesOfRun::simulate(const Refinement& refinement, MeshingReport& report) const {
+  const Team team = team_.team();
+  const std::uint64_t voxels = image_.voxels.size(), cells = refinement.mesh->num_cells();
+  const int num_workers = team.coordination.num_workers;
+  report.virtual_phases_s = refinement.virtual_phases_s;
+  report.virtual_phases_s["read"] = virtual_seconds(team, &TimeCosts::voxel_read, voxels);
+  report.virtual_phases_s["transform"] =
+      virtual_seconds(team, &TimeCosts::voxel_transformed, voxels, num_workers);
+  report.virtual_phases_s["extract"] = virtual_seconds(team, &TimeCosts::cell_extracted, cells, num_workers);
+  report.virtual_model = time_model_text(costs_of(team));
+  if (!options_.team.cost_factor.empty()) report.virtual_model += options_.team.cost_factor + "\n";
+  const VirtualSpending& spending = refinement.virtual_spending;
+  report.virtual_worker_s = {{"compute", spending.work_s},
+                             {"memory_remote", spending.remote_memory_s},
+                             {"network_queue", spending.network_s},
+                             {"between_attempts", spending.between_s},
+                             {"locks", spending.queueing_s}};
+  for (const Cause& cause : kCauses)
+    report.virtual_worker_s[cause.name] = refinement.counters.overhead.*cause.member;
+}
+
+void PhasesOfRun::optimize(Mesh& mesh, MeshingReport& report) const {
+  const OptimizeOptions& asked = options_.optimize;
+  if (!asked.is_wanted || report.stop_reason != StopReason::kComplete) return;
+  announce("optimize", 0, 0);
+  const double start_s = seconds_();
+  label_cells(mesh, *isosurface_, loop_threads_);
+  StopControl stop(
+      {.max_elements = 0, .max_seconds = options_.limits.max_seconds}, stop_, [](std::uint64_t) {}, start_);
+  const DihedralBounds bounds(asked.least_dihedral_deg, asked.largest_dihedral_deg);
+  const OptimizerParameters parameters{CellQuality(aim_over(bounds)), bounds, *size_field_, sizes_.delta_mm};
+  try {
+    report.optimization = optimize_mesh(mesh, parameters, team_.team(), stop,
+                                        [&](double fraction) { announce("optimize", fraction, 0); });
+    report.stop_reason = stop.reason();
+  } catch (const std::bad_alloc&) {  // before anything changed
+    report.stop_reason = StopReason::kMemoryLimit;
+  }
+  report.phases_s["optimize"] = seconds_() - start_s;
+}
+
+void PhasesOfRun::extract(const std::function<void(Space)>& extract, MeshingReport& report) const {
+  announce("extract", 0, 0);
+  const double start_s = seconds_();
+  malloc_trim(0);  // what workers had is for the mesh now
+  extract(options_.space == Space::kVoxel ? Space::kRas : options_.space);
+  report.phases_s["extract"] += seconds_() - start_s;
+}
+
+void PhasesOfRun::finish(TetMesh& mesh, MeshingReport& report) const {
+  announce("measure", 0, 0);
+  const double start_s = seconds_();
+  measure_quality(mesh, image_, *size_field_, loop_threads_, report);
+  report.phases_s["measure"] = seconds_() - start_s;
+  mesh.is_optimized = report.optimization.has_value();
+  mesh.smoothing_mm = options_.smoothing_mm;
+  if (options_.space != Space::kVoxel) {  // angles are others there
+    mesh.dihedral_bounds_deg = report.promised_dihedral_deg = dihedral_bounds_kept(report);
+    return;
+  }
+  const double begin_s = seconds_();
+  convert_to_voxel_space(mesh, image_, loop_threads_);
+  report.phases_s["extract"] += seconds_() - begin_s;
+}
+
+}  // namespace podm

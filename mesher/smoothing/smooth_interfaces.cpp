@@ -1,0 +1,297 @@
+#include "smoothing/smooth_interfaces.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <utility>
+#include <vector>
+
+#include "podm/errors.h"
+#include "runtime/parallel_for.h"
+#include "smoothing/interface_blur.h"
+#include "smoothing/interface_shift.h"
+
+namespace podm {
+
+namespace {
+
+// All of a voxel's side.
+constexpr double kLost = 0.25;     // how far beyond its interface a voxel is lost
+constexpr double kLeast = 0.05;    // distance that is taken
+constexpr double kStairs = 0.5;    // distance from stairs, and the width at which they remain
+constexpr double kLostReach = 2;   // widths
+constexpr double kShiftReach = 2;  // widths
+constexpr int kTimesKept = 2;
+constexpr double kMostDistance = 1.1;  // widths: weights lead by 1.2 at most, distances are 0.84 of that
+
+using Place = std::uint16_t;  // in a tile
+
+struct Tile {
+  Voxel first, end;                 // of its voxels
+  bool has_sides = false;           // whether strengths are told of any
+  std::vector<Place> left;          // voxels beside another label for which no width has been found yet
+  std::vector<Place> lost;          // those of them that are lost to the present width
+  std::vector<std::uint16_t> kept;  // strengths that keep volumes, of voxels that have one, x fastest
+
+  static Place place(const Voxel& from_first) {
+    return static_cast<Place>(place_in_tile(from_first.i, from_first.j, from_first.k));
+  }
+  Voxel voxel(Place place) const {
+    return {first.i + place % kTileSide, first.j + place / kTileSide % kTileSide,
+            first.k + place / kTileSide / kTileSide};
+  }
+  template <class Visit>
+  void for_each_voxel(const Visit& visit) const {
+    for (int k = 0; k < end.k - first.k; ++k)
+      for (int j = 0; j < end.j - first.j; ++j)
+        for (int i = 0; i < end.i - first.i; ++i) visit(place({i, j, k}));
+  }
+};
+
+// Of a cube of a voxel's volume.
+double side_of_voxel_mm(const LabelImage& image) {
+  return std::cbrt(image.spacing[0] * image.spacing[1] * image.spacing[2]);
+}
+
+class Smoothing {
+ public:
+  Smoothing(const LabelImage& image, double width_mm, std::size_t threads);
+
+  SmoothInterfaces operator()() {
+    for_each_tile([&](Tile& tile, std::size_t) { find_sides(tile); });
+    for (double width_mm = width_mm_; is_left(); width_mm /= 2) {
+      if (keeps_all_stairs(image_, width_mm)) {
+        for_each_tile([&](Tile& tile, std::size_t) { leave_stairs(tile); });
+        break;
+      }
+      blur_by(width_mm);
+    }
+    for (int time = 0; time < kTimesKept; ++time) keep_volumes();
+    return {strengths_, labels_lost()};
+  }
+
+ private:
+  template <class Work>
+  void for_each_tile(const Work& work) {
+    parallel_for(tiles_.size(), threads_,
+                 [&](std::size_t t, std::size_t thread) { work(tiles_[t], thread); });
+  }
+  bool is_left() const {
+    return std::any_of(tiles_.begin(), tiles_.end(), [](const Tile& tile) { return !tile.left.empty(); });
+  }
+  std::uint16_t parts(double distance_mm) const {
+    const double parts = std::round(std::max(distance_mm, kLeast * voxel_mm_) * parts_per_mm_);
+    return static_cast<std::uint16_t>(std::min(parts, double{VoxelStrengths::kMost}));
+  }
+  std::size_t index(const Voxel& v) const { return image_.index(v.i, v.j, v.k); }
+  bool is_uniform(const Tile& tile) const;
+  bool is_beside_another(const Voxel& v) const;
+  void find_sides(Tile& tile) const;
+  void blur_by(double width_mm);
+  void blur_tile(Tile& tile, const InterfaceBlur& blur, InterfaceBlur::Desk& desk,
+                 std::vector<std::int64_t>& lead_of_kept);
+  void leave_near_lost(Tile& tile, const std::array<int, 3>& reach);
+  void leave_stairs(Tile& tile);
+  std::array<int, 3> voxels_within(double distance_mm) const;
+  template <class Visit>
+  void for_each_told(const Tile& tile, const Visit& visit) const;
+  void keep_volumes();
+  std::vector<LabelIndex> labels_lost() const;
+
+  const LabelImage& image_;
+  const LabelGrid<NoReads> grid_;
+  const std::size_t threads_;
+  const double width_mm_, voxel_mm_, parts_per_mm_;
+  std::array<int, 3> num_tiles_{};
+  std::vector<Tile> tiles_;
+  std::shared_ptr<VoxelStrengths> strengths_;
+  // By thread and label: voxels beside another label that the whole width keeps, less those lost.
+  std::vector<std::vector<std::int64_t>> lead_of_kept_;
+};
+
+Smoothing::Smoothing(const LabelImage& image, double width_mm, std::size_t threads)
+    : image_(image),
+      grid_(image, {}),
+      threads_(threads),
+      width_mm_(width_mm),
+      voxel_mm_(side_of_voxel_mm(image)),
+      parts_per_mm_(VoxelStrengths::kMost / std::max(kMostDistance * width_mm, kStairs * voxel_mm_)),
+      strengths_(std::make_shared<VoxelStrengths>(image.size)),
+      lead_of_kept_(threads, std::vector<std::int64_t>(image.labels.size())) {
+  for (std::size_t a = 0; a < 3; ++a) num_tiles_[a] = (image.size[a] + kTileSide - 1) / kTileSide;
+  for (int k = 0; k < num_tiles_[2]; ++k)
+    for (int j = 0; j < num_tiles_[1]; ++j)
+      for (int i = 0; i < num_tiles_[0]; ++i) {
+        Tile& tile = tiles_.emplace_back();
+        tile.first = {i * kTileSide, j * kTileSide, k * kTileSide};
+        tile.end = {std::min(tile.first.i + kTileSide, image_.size[0]),
+                    std::min(tile.first.j + kTileSide, image_.size[1]),
+                    std::min(tile.first.k + kTileSide, image_.size[2])};
+      }
+}
+
+bool Smoothing::is_beside_another(const Voxel& v) const {
+  const LabelIndex own = grid_.label(v);
+  for (int k = -1; k <= 1; ++k)
+    for (int j = -1; j <= 1; ++j)
+      for (int i = -1; i <= 1; ++i)
+        if (grid_.label({v.i + i, v.j + j, v.k + k}) != own) return true;
+  return false;
+}
+
+// With the voxels around it; those outside the grid are background.
+bool Smoothing::is_uniform(const Tile& tile) const {
+  const Voxel low{std::max(tile.first.i - 1, 0), std::max(tile.first.j - 1, 0),
+                  std::max(tile.first.k - 1, 0)};
+  const Voxel end{std::min(tile.end.i + 1, image_.size[0]), std::min(tile.end.j + 1, image_.size[1]),
+                  std::min(tile.end.k + 1, image_.size[2])};
+  const bool is_at_border = low.i == tile.first.i || low.j == tile.first.j || low.k == tile.first.k ||
+                            end.i == tile.end.i || end.j == tile.end.j || end.k == tile.end.k;
+  const LabelIndex first = is_at_border ? kBackground : grid_.label(low);
+  for (int k = low.k; k < end.k; ++k) {
+    for (int j = low.j; j < end.j; ++j) {
+      const LabelIndex* row = &image_.voxels[image_.index(0, j, k)];
+      unsigned differing = 0;  // added up without a branch, which many voxels at a time can be
+      for (int i = low.i; i < end.i; ++i) differing |= static_cast<unsigned>(row[i] ^ first);
+      if (differing != 0) return false;
+    }
+  }
+  return true;
+}
+
+void Smoothing::find_sides(Tile& tile) const {
+  if (is_uniform(tile)) return;
+  tile.for_each_voxel([&](Place place) {
+    if (is_beside_another(tile.voxel(place))) tile.left.push_back(place);
+  });
+  tile.has_sides = !tile.left.empty();
+}
+
+// Finds the distances of all that are left; those near a lost voxel stay.
+void Smoothing::blur_by(double width_mm) {
+  const InterfaceBlur blur(image_, width_mm);
+  std::vector<InterfaceBlur::Desk> desks(threads_);
+  for_each_tile(
+      [&](Tile& tile, std::size_t thread) { blur_tile(tile, blur, desks[thread], lead_of_kept_[thread]); });
+  const std::array<int, 3> reach = voxels_within(kLostReach * width_mm);
+  for_each_tile([&](Tile& tile, std::size_t) { leave_near_lost(tile, reach); });
+}
+
+void Smoothing::blur_tile(Tile& tile, const InterfaceBlur& blur, InterfaceBlur::Desk& desk,
+                          std::vector<std::int64_t>& lead_of_kept) {
+  tile.lost.clear();
+  if (tile.left.empty()) return;
+  const auto& distances_mm = blur.distances_mm(tile.first, desk);
+  for (const Place place : tile.left) {
+    const double d = distances_mm[place];
+    const std::size_t voxel = index(tile.voxel(place));
+    const bool is_lost = d < -kLost * voxel_mm_;
+    if (is_lost) tile.lost.push_back(place);
+    if (blur.width_mm() == width_mm_) lead_of_kept[image_.voxels[voxel]] += is_lost ? -1 : 1;
+    strengths_->at(voxel) = parts(d);
+  }
+}
+
+void Smoothing::leave_near_lost(Tile& tile, const std::array<int, 3>& reach) {
+  if (tile.left.empty()) return;
+  std::array<bool, kTileVoxels> is_near{};
+  const auto mark = [&](const Voxel& lost) {
+    const auto low = [&](int at, int first, std::size_t a) { return std::max(at - reach[a] - first, 0); };
+    const auto end = [&](int at, int first, std::size_t a) {
+      return std::min(at + reach[a] + 1 - first, kTileSide);
+    };
+    for (int k = low(lost.k, tile.first.k, 2); k < end(lost.k, tile.first.k, 2); ++k)
+      for (int j = low(lost.j, tile.first.j, 1); j < end(lost.j, tile.first.j, 1); ++j)
+        for (int i = low(lost.i, tile.first.i, 0); i < end(lost.i, tile.first.i, 0); ++i)
+          is_near[place_in_tile(i, j, k)] = true;
+  };
+  const auto tile_at = [&](int voxel, std::size_t a) {
+    return std::clamp(voxel, 0, image_.size[a] - 1) / kTileSide;
+  };
+  for (int k = tile_at(tile.first.k - reach[2], 2); k <= tile_at(tile.end.k - 1 + reach[2], 2); ++k)
+    for (int j = tile_at(tile.first.j - reach[1], 1); j <= tile_at(tile.end.j - 1 + reach[1], 1); ++j)
+      for (int i = tile_at(tile.first.i - reach[0], 0); i <= tile_at(tile.end.i - 1 + reach[0], 0); ++i) {
+        const Tile& other = tiles_[static_cast<std::size_t>((k * num_tiles_[1] + j) * num_tiles_[0] + i)];
+        for (const Place lost : other.lost) mark(other.voxel(lost));
+      }
+  std::erase_if(tile.left, [&](Place place) { return !is_near[place]; });
+}
+
+void Smoothing::leave_stairs(Tile& tile) {
+  for (const Place place : tile.left) strengths_->at(index(tile.voxel(place))) = parts(kStairs * voxel_mm_);
+}
+
+std::array<int, 3> Smoothing::voxels_within(double distance_mm) const {
+  std::array<int, 3> voxels{};
+  for (std::size_t a = 0; a < 3; ++a) voxels[a] = voxels_to_cover(distance_mm / image_.spacing[a]);
+  return voxels;
+}
+
+template <class Visit>
+void Smoothing::for_each_told(const Tile& tile, const Visit& visit) const {
+  if (!tile.has_sides) return;
+  tile.for_each_voxel([&](Place place) {
+    const std::size_t voxel = index(tile.voxel(place));
+    if (strengths_->at(voxel) != VoxelStrengths::kUntold) visit(place, voxel);
+  });
+}
+
+// All are found before any is changed.
+void Smoothing::keep_volumes() {
+  const InterfaceShift shift(image_, *strengths_, voxels_within(kShiftReach * width_mm_));
+  std::vector<InterfaceShift::Desk> desks(threads_);
+  const double least = parts(0);
+  for_each_tile([&](Tile& tile, std::size_t thread) {
+    const std::array<double, kTileVoxels>* shifts = nullptr;
+    for_each_told(tile, [&](Place place, std::size_t voxel) {
+      if (shifts == nullptr) shifts = &shift.shifts(tile.first, desks[thread]);
+      const double kept = std::round(strengths_->at(voxel) - (*shifts)[place]);
+      tile.kept.push_back(static_cast<std::uint16_t>(std::clamp(kept, least, double{VoxelStrengths::kMost})));
+    });
+  });
+  for_each_tile([&](Tile& tile, std::size_t) {
+    auto kept = tile.kept.begin();
+    for_each_told(tile, [&](Place, std::size_t voxel) { strengths_->at(voxel) = *kept++; });
+    tile.kept.clear();
+  });
+}
+
+std::vector<LabelIndex> Smoothing::labels_lost() const {
+  std::vector<LabelIndex> lost;
+  for (std::size_t label = 1; label < image_.labels.size(); ++label) {
+    std::int64_t lead = 0;
+    for (const auto& of_thread : lead_of_kept_) lead += of_thread[label];
+    if (lead < 0) lost.push_back(static_cast<LabelIndex>(label));
+  }
+  return lost;
+}
+
+}  // namespace
+
+bool keeps_all_stairs(const LabelImage& image, double width_mm) {
+  return width_mm < (1 - kLengthRounding) * kStairs * side_of_voxel_mm(image);
+}
+
+void check_width(const LabelImage& image, double width_mm) {
+  std::array<double, 3> sides_mm;
+  for (std::size_t a = 0; a < 3; ++a) sides_mm[a] = image.size[a] * image.spacing[a];
+  const double side_mm = *std::min_element(sides_mm.begin(), sides_mm.end());
+  const double most_mm = kMostWidth * *std::min_element(image.spacing.begin(), image.spacing.end());
+  if (!(width_mm > 0 && width_mm <= most_mm && width_mm < side_mm))
+    throw InputError(
+        fmt::format("a blur of {:g} mm: the width must be above 0, at most {} of the shortest side of a "
+                    "voxel, which is {:g} mm here, and below the shortest side of the image, {:g} mm",
+                    width_mm, kMostWidth, most_mm, side_mm));
+}
+
+SmoothInterfaces smooth_interfaces(const LabelImage& image, double width_mm, int threads) {
+  check_width(image, width_mm);
+  return Smoothing(image, width_mm, num_threads(threads))();
+}
+
+std::shared_ptr<const VoxelStrengths> strengths_of(const LabelImage& image, double width_mm, int threads) {
+  return width_mm > 0 ? smooth_interfaces(image, width_mm, threads).strengths : nullptr;
+}
+
+}  // namespace podm
