@@ -175,7 +175,6 @@ Experiment read_experiment(const std::string& path, const std::vector<std::strin
   experiment.claim = file.text("claim");
   experiment.paper = file.text("paper", "");
   experiment.expected_minutes = file.positive("expected_minutes", 0);
-  experiment.stores_crossover = file.flag("stores_crossover");
   Trial head;
   head.timeout_s = kDefaultTimeoutS;
   read_conduct(file, head);

@@ -16,7 +16,6 @@ struct Experiment {
   std::string title, claim, paper;  ///< the last may be empty
   Tier tier = Tier::kDefault;
   double expected_minutes = 0;
-  bool stores_crossover = false;          ///< its end stores it for podm mesh --algorithm auto: crossover.h
   std::vector<Trial> trials;              ///< the matrix, expanded, in the order of the file
   std::vector<Claim> claims;              ///< what its rows are to show; at least one
   std::vector<WithdrawnClaim> withdrawn;  ///< what it claimed once

@@ -10,7 +10,6 @@
 #include <span>
 #include <utility>
 
-#include "experiments/crossover.h"
 #include "experiments/progress.h"
 #include "experiments/verdicts.h"
 #include "machine/environment.h"
@@ -86,7 +85,6 @@ class ExperimentRun {
     for (const std::string& remark : machine_state(all_rows()).remarks()) fmt::print("{}\n", remark);
     fmt::print("{}Recorded in {}\n", format_table(rows_), path_);
     if (!session_.is_interrupted()) print_verdicts();
-    if (experiment_.stores_crossover && !session_.is_interrupted()) store_crossover();
     return !session_.is_interrupted() && summarize();
   }
 
@@ -247,22 +245,7 @@ class ExperimentRun {
     fmt::print(stderr, "kept: {}\n", path);
   }
 
-  // The turns asked for decide, as for the crossover below.
   void print_verdicts() const { fmt::print("\n{}", format_verdicts({judge(experiment_, all_rows())})); }
-
-  // The turns asked for decide: their keys make them this machine's and this mesher's.
-  void store_crossover() const {
-    const auto crossover = crossover_of(rows_);
-    if (!crossover) {
-      fmt::print("No crossover stored: podm and podm-home did not both run on this machine's own cores\n");
-      return;
-    }
-    const std::string path = fmt::format("{}/crossover.json", session_.command.results_folder);
-    write_file(path, to_json(*crossover).dump(2) + "\n");
-    fmt::print(
-        "{}; stored in {}. To have podm mesh --algorithm auto follow it:\n  export PODM_CROSSOVER={}\n",
-        tell_crossover(*crossover), path, std::filesystem::absolute(path).lexically_normal().string());
-  }
 
   static bool is_good(const Row& row) {
     return row.status == Status::kOk || row.status == Status::kSkipped ||

@@ -53,7 +53,7 @@ constexpr std::array kOfHarness{kMesher, kSchedule, kReplay,  kFidelity, kImageG
 
 // What podm does, or the harness with one process of it, and not ranks.
 constexpr std::array kNotOnRanks{kSchedule,    kReplay, kImageGrows, kCopies,   kCounters, kOptimize,
-                                 kMinDihedral, kSmooth, kSizeImage,  kSizeNear, kGrade,    kSolve};
+                                 kMinDihedral, kSmooth, kSizeImage,  kSizeNear, kGrade,    kSolve,  kCrossover};
 
 // Every mesher takes these.
 constexpr std::array kOfAll{kMesher, "radius_mm", "delta_mm", kTargetElements, kPerThread, "threads", kSolve};
@@ -72,6 +72,7 @@ constexpr MesherOption kMesherOptions[] = {
     {kPerThread, Kind::kElements},
     {kPerRank, Kind::kElements},
     {"threads", Kind::kThreads},
+    {kCrossover, Kind::kCount},
     {"contention", Kind::kWord},
     {"begging", Kind::kWord},
     {"executor", Kind::kWord},

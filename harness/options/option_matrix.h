@@ -34,6 +34,8 @@ inline constexpr const char* kImageGrows = "image_grows";
 /// ranks of one process the modelled network, "MICROSECONDS,GB_PER_S".
 inline constexpr const char *kRanks = "ranks", *kCarrier = "carrier", *kMpi = "mpi",
                             *kInProcess = "in-process", *kNetwork = "network";
+/// The key of the number of threads below which PDR.PODM is PODM.
+inline constexpr const char* kCrossover = "crossover";
 /// The key of the number of cells aimed at, by a radius that is found once: radii.h.
 inline constexpr const char* kTargetElements = "target_elements";
 

@@ -191,26 +191,6 @@ class Rows(unittest.TestCase):
         self.assertEqual(rows["growing"]["input"]["name"], "phantom:torus@30")
         self.assertEqual(max(rows["growing"]["input"]["size"]), 30)
 
-    def test_podm_follows_the_crossover_that_is_stored(self):
-        with tempfile.TemporaryDirectory() as folder:
-            path = pathlib.Path(folder, "exp.toml")
-            path.write_text("stores_crossover = true" + EXPERIMENT +
-                            'algorithm = ["podm", "podm-home"]\nradius_mm = 12\n' + CLAIM)
-            stored = path.with_name("crossover.json")
-            for _ in range(5):  # a run during whose rounds the machine changes its speed stores none
-                if not stored.exists():
-                    subprocess.run([os.environ["PODM_BENCH"], "run", path, "--again", "--results", folder, "--podm",
-                                    os.environ["PODM"], "--verifier", "none"], check=True, capture_output=True,
-                                   timeout=200)
-            subprocess.run([os.environ["PODM"], "mesh", "phantom:torus@24", "--algorithm", "auto",
-                            "-o", path.with_suffix(".vtu"), "--record", path.with_suffix(".record")],
-                           check=True, capture_output=True, timeout=200,
-                           env=os.environ | {"PODM_CROSSOVER": str(stored)})
-            followed = json.loads(path.with_suffix(".record").read_text())
-            self.assertEqual(followed["auto"]["measured"], json.loads(stored.read_text())["threads"])
-            self.assertEqual(followed["auto"]["measured_up_to"], 1)
-            self.assertEqual(followed["warnings"], [], "it is this processor's")
-
 
 if __name__ == "__main__":
     unittest.main()

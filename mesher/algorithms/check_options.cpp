@@ -72,6 +72,14 @@ void check_leaves(const LeafOptions& leaves) {
   if (!is_positive_or_zero(leaves.size_mm)) throw InputError("leaf size must be a positive number of mm");
 }
 
+void check_crossover(const MeshingOptions& options) {
+  const Algorithm algorithm = options.algorithm;
+  if (options.crossover > 0 && algorithm != Algorithm::kPdrPodm && algorithm != Algorithm::kAuto)
+    throw InputError(fmt::format("crossover: algorithm {} has none; pdr-podm and auto have", to_string(algorithm)));
+  if (options.crossover > 0 && options.leaves.with_schedule)
+    throw InputError("crossover and schedule exclude each other: below the crossover there are no leaves");
+}
+
 void check_dihedral(double min_dihedral_deg) {
   if (!(min_dihedral_deg >= 0 && min_dihedral_deg <= kMostMinDihedral))
     throw InputError(
@@ -118,6 +126,7 @@ void check_options(const LabelImage& image, const MeshingOptions& options) {
   check_smoothing(options.smoothing_mm);
   check_team_size(options.team, options.algorithm);
   check_leaves(options.leaves);
+  check_crossover(options);
   check_optimization(options);
 }
 

@@ -26,9 +26,15 @@ bool homes_are_on_nodes(const std::vector<Place>& places) {
   return true;
 }
 
-Algorithm automatic(const MeshingOptions& options, int workers, const std::vector<Place>& places) {
-  const bool is_home = options.crossover > 0 ? workers >= options.crossover : homes_are_on_nodes(places);
-  return is_home ? Algorithm::kPodmHome : Algorithm::kPodm;
+// Below the crossover PDR.PODM works exactly as PODM (section 4.3 of its paper), and so does kAuto.
+Algorithm algorithm_of(const MeshingOptions& options, int workers, const std::vector<Place>& places) {
+  const bool is_auto = options.algorithm == Algorithm::kAuto;
+  if (options.crossover > 0) {
+    if (workers < options.crossover) return Algorithm::kPodm;
+    return is_auto ? Algorithm::kPodmHome : options.algorithm;
+  }
+  if (!is_auto) return options.algorithm;
+  return homes_are_on_nodes(places) ? Algorithm::kPodmHome : Algorithm::kPodm;
 }
 
 int num_computing_nodes(const TeamOptions& options, Algorithm algorithm, const std::vector<Place>& places) {
@@ -70,8 +76,7 @@ int num_workers(const TeamOptions& options) {
 
 TeamSize team_size(const MeshingOptions& options, const std::vector<Place>& places) {
   const int workers = num_workers(options.team);
-  const bool is_auto = options.algorithm == Algorithm::kAuto;
-  const Algorithm algorithm = is_auto ? automatic(options, workers, places) : options.algorithm;
+  const Algorithm algorithm = algorithm_of(options, workers, places);
   return {.algorithm = algorithm,
           .num_workers = workers,
           .num_nodes = num_computing_nodes(options.team, algorithm, places),

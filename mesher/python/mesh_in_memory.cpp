@@ -20,7 +20,6 @@ MeshInMemory::MeshInMemory(cli::MeshCommand command, const Input& input, const P
       run_{.command = command_,
            .image = image_,
            .options = {},
-           .crossover = cli::choose_crossover(command_),
            .report = {},
            .mesh = {},
            .mesh_sha256 = {},
@@ -32,7 +31,6 @@ MeshInMemory::MeshInMemory(cli::MeshCommand command, const Input& input, const P
   image_ = read_input(input, command_, limit_bytes);
   run_.read_s = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
   run_.options = cli::options_for_image(command_, image_, limit_bytes);
-  run_.options.crossover = run_.crossover.threads;
   MeshingResult result = mesh_image(image_, run_.options, progress, stop);
   mesh_ = std::move(result.mesh);
   run_.take(std::move(result.report), mesh_);

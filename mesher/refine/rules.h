@@ -1,4 +1,4 @@
-// Rules R1..R5: what should be done about one cell. Pure questions; worker.cpp does the work, R6 included.
+// Rules R1..R5: what should be done about one cell. These functions only ask; attempt.h acts, R6 included.
 //
 // Foteinos, Chernikov, Chrisochoides, CGTA 47 (2014) 539-562. With t the cell, c its circumcentre, r its
 // circumradius, z the isosurface point nearest to c:
@@ -23,7 +23,7 @@
 //           side, at worst to m q^2 / sqrt(4 q^2 - 1), which is m for q = k, and 0.9991 m for 1.93.
 // So the published 1.93, k rounded down, lets R4 insert a vertex up to 0.1 % nearer than k s (one in a
 // thousand of R4's is), and R3 beside it a sample up to 0.09 % nearer than s, but only if three lengths are
-// within 0.3 % of their least. The floor of worker.cpp ends any chain of these. Without such, m = s. So the
+// within 0.3 % of their least. The floor of worker.h ends any chain of these. Without such, m = s. So the
 // process ends, on non-manifold interfaces too. Rules are tightened by kMargin (R5 by kGridMargin on a grid),
 // which is more than rounded arithmetic errs, unless the object is a million radii from the origin.
 #pragma once

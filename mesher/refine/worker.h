@@ -1,5 +1,5 @@
 // A worker: one refinement agent with its own poor element list, pool and counters. It does one operation at
-// a time and never blocks, spins or sleeps; the loop in algorithms/podm.cpp decides when it runs.
+// a time and never blocks, spins or sleeps; the loop in algorithms/podm_loop.h decides when it runs.
 #pragma once
 
 #include <array>

@@ -50,7 +50,6 @@ claim = "Claim"
 paper = "Table 1"
 tier = "full"
 expected_minutes = 1.5
-stores_crossover = true
 timeout_s = 7
 memory_limit_gib = 2
 repeats = 3
@@ -84,7 +83,6 @@ target_elements = 1_000
   EXPECT_EQ(experiment.claims[0].name, "all-pass");
   EXPECT_EQ(experiment.tier, Tier::kFull);
   EXPECT_EQ(experiment.expected_minutes, 1.5);
-  EXPECT_TRUE(experiment.stores_crossover);
   ASSERT_EQ(experiment.trials.size(), 2u);
   const Trial& first = experiment.trials[0];
   EXPECT_EQ(first.name, "first");

@@ -9,7 +9,7 @@ namespace podm::test {
 namespace {
 
 TeamSize size_of(Algorithm algorithm, const TeamOptions& team, const std::vector<int>& nodes_of_workers,
-                 int crossover = 4) {
+                 int crossover = 0) {
   std::vector<Place> places;
   for (const int node : nodes_of_workers) places.push_back({.processor = {}, .node = node});
   EXPECT_EQ(places.size(), static_cast<std::size_t>(num_workers(team)));
@@ -35,9 +35,18 @@ TEST(TeamSize, OtherPhasesHaveTheThreadsThatWereAskedForUnlessTimeIsVirtual) {
 }
 
 TEST(TeamSize, AutoIsPodmBelowTheCrossover) {
-  EXPECT_EQ(size_of(Algorithm::kAuto, {.threads = 3}, {0, 0, 0}).algorithm, Algorithm::kPodm);
-  EXPECT_EQ(size_of(Algorithm::kAuto, {.threads = 4}, {0, 0, 0, 0}).algorithm, Algorithm::kPodmHome);
+  EXPECT_EQ(size_of(Algorithm::kAuto, {.threads = 3}, {0, 0, 0}, 4).algorithm, Algorithm::kPodm);
+  EXPECT_EQ(size_of(Algorithm::kAuto, {.threads = 4}, {0, 0, 0, 0}, 4).algorithm, Algorithm::kPodmHome);
   EXPECT_EQ(size_of(Algorithm::kPdr, {.threads = 4}, {0, 0, 0, 0}).algorithm, Algorithm::kPdr);
+}
+
+TEST(TeamSize, PdrPodmIsPodmBelowTheCrossover) {
+  const TeamSize below = size_of(Algorithm::kPdrPodm, {.threads = 4, .nodes = 2}, {0, 0, 5, 5}, 5);
+  EXPECT_EQ(below.algorithm, Algorithm::kPodm);
+  EXPECT_EQ(below.num_nodes, 1);
+  const TeamSize from_it_on = size_of(Algorithm::kPdrPodm, {.threads = 4, .nodes = 2}, {0, 0, 5, 5}, 4);
+  EXPECT_EQ(from_it_on.algorithm, Algorithm::kPdrPodm);
+  EXPECT_EQ(from_it_on.num_nodes, 2);
 }
 
 TEST(TeamSize, AutoWithoutACrossoverIsPodmOnOneNumaNode) {

@@ -84,7 +84,6 @@ int run(const MeshCommand& command) {
   check_outputs(command, signals);
   std::optional<AppendedFile> records;
   if (!command.record_path.empty()) records.emplace(command.record_path);
-  Crossover crossover = choose_crossover(command);
   const std::uint64_t limit_bytes = memory_limit_bytes(command);
   LabelImage image;
   const double read_s = timed([&] {
@@ -94,7 +93,6 @@ int run(const MeshCommand& command) {
   MeshRun run{.command = command,
               .image = image,
               .options = options_for_image(command, image, limit_bytes),
-              .crossover = std::move(crossover),
               .report = {},
               .mesh = {},
               .mesh_sha256 = {},
@@ -102,7 +100,6 @@ int run(const MeshCommand& command) {
               .verification = nullptr};
   std::optional<OperationLogWriter> log;
   if (!command.log_path.empty()) run.options.log = &log.emplace(command.log_path);
-  run.options.crossover = run.crossover.threads;
   run.options.leaves.with_schedule = !command.schedule_path.empty();
   MeshingResult result = mesh_with_display(image, run.options, command.quiet, signals);
   run.take(std::move(result.report), result.mesh);

@@ -111,7 +111,6 @@ class Run {
     return {.command = command_,
             .image = *image_,
             .options = std::move(options),
-            .crossover = {},
             .report = {},
             .mesh = {},
             .mesh_sha256 = {},

@@ -36,7 +36,6 @@ double MeshRun::refine_cells_per_second() const {
 void MeshRun::take(MeshingReport&& finished, const TetMesh& made) {
   report = std::move(finished);
   mesh = numbers_of(made);
-  if (!crossover.warning.empty()) report.warnings.push_back(crossover.warning);
   report.warnings.insert(report.warnings.end(), image.warnings.begin(), image.warnings.end());
   if (const auto& sizes = options.sizes.image)
     report.warnings.insert(report.warnings.end(), sizes->warnings.begin(), sizes->warnings.end());

@@ -8,7 +8,6 @@
 #include <string>
 #include <vector>
 
-#include "cli/crossover.h"
 #include "cli/options/options.h"
 #include "cli/reports/appended_file.h"
 #include "podm/label_image.h"
@@ -35,7 +34,6 @@ struct MeshRun {
   const MeshCommand& command;
   const LabelImage& image;
   MeshingOptions options;  ///< as handed to mesh_image()
-  Crossover crossover;     ///< what --algorithm auto went by
   MeshingReport report;
   MeshNumbers mesh;
   std::string mesh_sha256;  ///< empty: nobody has the whole mesh
@@ -46,7 +44,7 @@ struct MeshRun {
   nlohmann::ordered_json ranks = nullptr;  ///< for the record; null: the mesh was made in one process
   std::string ranks_text = {};             ///< the same for the summary
 
-  /// Takes over what mesh_image() returned of this run, and adds the warnings of crossover and image.
+  /// Takes over what mesh_image() returned of this run, and adds the warnings of the image.
   void take(MeshingReport&& finished, const TetMesh& made);
   /// Seconds by phase: those of the library between "read" ("draw" where a phantom was drawn) and "write".
   std::map<std::string, double> phases_s() const;

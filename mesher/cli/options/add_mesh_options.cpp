@@ -5,7 +5,6 @@
 #include <limits>
 #include <tuple>
 
-#include "cli/crossover.h"
 #include "cli/options/add_options.h"
 #include "cli/options/options_for_image.h"
 #include "podm/bounds.h"
@@ -123,11 +122,10 @@ void add_algorithm_options(CLI::App& app, MeshCommand& command) {
   MeshingOptions& meshing = command.meshing;
   begin_group(app, kAlgorithmGroup);
   add_algorithm_option(app, meshing);
-  add_one(app, "--crossover", "N|FILE",
-          fmt::format("threads from which on auto is podm-home, or the file in which podm-bench stored\n"
-                      "what it measured here [default: the file named by {}, if any]",
-                      kCrossoverVariable),
-          into(command.crossover));
+  add_one(app, "--crossover", "N",
+          "number of threads below which pdr-podm and auto are exactly podm; from it on\n"
+          "auto is podm-home [default: pdr-podm has none, auto follows NUMA nodes]",
+          into_threads(meshing.crossover));
   add_one(app, "--nodes", "N", "computing nodes of pdr-podm and podm-home [default: NUMA nodes in use]",
           into_threads(meshing.team.nodes));
   add_one(app, "--cores-per-node", "N", "threads of each computing node [default: threads over nodes]",

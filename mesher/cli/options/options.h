@@ -46,8 +46,7 @@ struct MeshCommand {
   std::string log_path;       ///< empty: no linearization log
   std::string schedule_path;  ///< empty: no schedule
   std::string page_path;      ///< of --report; empty: no page
-  std::string crossover;      ///< a number of threads or a file; empty: not asked
-  MeshingOptions meshing;  ///< lacks crossover and the four fields below, which need files, image or machine
+  MeshingOptions meshing;     ///< lacks the four fields below, which need files, the image or the machine
   std::vector<std::pair<std::string, double>> radius_of_mm;  ///< by label name or value
   std::string size_image_path;                               ///< empty: none
   std::vector<NearLabels> size_near;

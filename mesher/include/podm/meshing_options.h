@@ -102,9 +102,9 @@ struct MeshingOptions {
   double smoothing_mm = 0;
   Space space = Space::kRas;
   Algorithm algorithm = Algorithm::kPodm;
-  /// Threads from which on kAuto is kPodmHome. 0: it is where pins make as many on each of several NUMA
-  /// nodes; in simulation that is faster for meshes that are worth the threads
-  /// (experiments/simulated_weak.toml).
+  /// With fewer threads kPdrPodm and kAuto are exactly kPodm; from this number on kAuto is kPodmHome. 0:
+  /// kPdrPodm has no threshold, and kAuto is kPodmHome where pins put equally many threads on each of several
+  /// NUMA nodes. Other algorithms have none.
   int crossover = 0;
   TeamOptions team = {};
   LeafOptions leaves = {};

@@ -15,7 +15,7 @@ OPTION_OF = {"keep": "labels", "names": "label-names"}
 FLAGS = {"optimize", "oversubscribe"}
 """Options without a value."""
 
-_PATHS = {"names", "size_image", "topology", "crossover"}
+_PATHS = {"names", "size_image", "topology"}
 
 
 def command_line(keywords: Mapping[str, Any]) -> list[bytes]:

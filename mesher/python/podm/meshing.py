@@ -34,7 +34,7 @@ def mesh(labels: npt.ArrayLike | StrPath, *, affine: npt.ArrayLike | None = None
          target_tolerance: float | None = None, smooth: float | None = None, min_dihedral: float | None = None,
          optimize: bool = False, dihedral_bounds: tuple[float, float] | None = None,
          max_elements: int | None = None, max_seconds: float | None = None, max_memory_gib: float | None = None,
-         space: str | None = None, algorithm: str | None = None, crossover: int | StrPath | None = None,
+         space: str | None = None, algorithm: str | None = None, crossover: int | None = None,
          nodes: int | None = None, cores_per_node: int | None = None, initial_ratio: float | None = None,
          initial_threads: int | None = None, leaf_size: float | None = None, threads: int | None = None,
          contention: str | None = None, begging: str | None = None, pin: str | None = None,

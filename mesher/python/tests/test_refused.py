@@ -68,7 +68,7 @@ class RefusedTest(TestCase):
     def test_texts_that_would_name_another_file_or_label(self):
         for text in ("no\0pe", "no\ud800pe"):
             self.assert_refused("labels: the name of a file, without NUL", repr(text), labels=text)
-            for keyword in ("names", "size_image", "topology", "crossover"):
+            for keyword in ("names", "size_image", "topology"):
                 self.assert_refused(f"{keyword}: the name of a file, without NUL", repr(text), **{keyword: text})
             for keyword, value in (("names", {3: text}), ("radius_of", {text: 2}), ("merge", {text: [3]}),
                                    ("keep", text), ("algorithm", text)):
