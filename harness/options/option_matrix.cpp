@@ -9,8 +9,10 @@
 #include <cstdio>
 #include <cstring>
 #include <filesystem>
+#include <fstream>
 #include <limits>
 
+#include "errors.h"
 #include "process/usable_processors.h"
 
 namespace podm::bench {
@@ -28,7 +30,6 @@ constexpr const char* kMillimetres = "_mm";  // ends keys of lengths, but no opt
 
 enum class Kind {
   kPositive,
-  kElements,
   kCount,
   kSeed,
   kWord,
@@ -43,17 +44,18 @@ enum class Kind {
 };
 
 struct MesherOption {
-  const char* key;
+  std::string key;
   Kind kind;
+  std::int64_t most = kMaxThreads;
+  std::string not_on_ranks = {};  // why
 };
 
 // These are the harness's own; no mesher is passed them.
 constexpr std::array kOfHarness{kMesher, kSchedule, kReplay,  kFidelity, kImageGrows, kSolve,
                                 kCopies, kCounters, kMeasure, kRanks,    kCarrier};
 
-// What podm does, or the harness with one process of it, and not ranks.
-constexpr std::array kNotOnRanks{kSchedule,    kReplay, kImageGrows, kCopies,   kCounters, kOptimize,
-                                 kMinDihedral, kSmooth, kSizeImage,  kSizeNear, kGrade,    kSolve,  kCrossover};
+// What the harness does with one process of podm, and not with ranks.
+constexpr std::array kOfOneProcess{kSchedule, kReplay, kImageGrows, kCopies, kCounters, kSolve};
 
 // Every mesher takes these.
 constexpr std::array kOfAll{kMesher, "radius_mm", "delta_mm", kTargetElements, kPerThread, "threads", kSolve};
@@ -63,47 +65,59 @@ bool is_among(const Keys& keys, std::string_view key) {
   return std::find(keys.begin(), keys.end(), key) != keys.end();
 }
 
-constexpr MesherOption kMesherOptions[] = {
-    {kMesher, Kind::kWord},
-    {"algorithm", Kind::kWord},
-    {"radius_mm", Kind::kPositive},
-    {"delta_mm", Kind::kPositive},
-    {kTargetElements, Kind::kElements},
-    {kPerThread, Kind::kElements},
-    {kPerRank, Kind::kElements},
-    {"threads", Kind::kThreads},
-    {kCrossover, Kind::kCount},
-    {"contention", Kind::kWord},
-    {"begging", Kind::kWord},
-    {"executor", Kind::kWord},
-    {"pin", Kind::kSwitch},
-    {"oversubscribe", Kind::kSwitch},
-    {"nodes", Kind::kCount},
-    {"cores_per_node", Kind::kCount},
-    {"initial_ratio", Kind::kPositive},
-    {"initial_threads", Kind::kThreads},
-    {"leaf_size", Kind::kPositive},
-    {"seed", Kind::kSeed},
-    {"topology", Kind::kFile},
-    {"cost_factor", Kind::kWord},
-    {kSmooth, Kind::kPositive},
-    {kSizeImage, Kind::kFile},
-    {kSizeNear, Kind::kWord},
-    {kGrade, Kind::kPositive},
-    {kMinDihedral, Kind::kPositive},
-    {kOptimize, Kind::kFlag},
-    {kSchedule, Kind::kFlag},
-    {kReplay, Kind::kFlag},
-    {kFidelity, Kind::kFlag},
-    {kSolve, Kind::kFlag},
-    {kImageGrows, Kind::kFlag},
-    {kCopies, Kind::kThreads},
-    {kCounters, Kind::kCounters},
-    {kMeasure, Kind::kMeasure},
-    {kRanks, Kind::kCount},
-    {kCarrier, Kind::kCarrier},
-    {kNetwork, Kind::kNetwork},
-};
+// The kind of an option as podm declares it.
+Kind kind_of(const Json& option) {
+  const std::string kind = option.at("kind"), key = option.at("key");
+  if (key == "threads" || key == "initial_threads") return Kind::kThreads;
+  if (key == "seed") return Kind::kSeed;
+  if (key == "pin" || key == "oversubscribe") return Kind::kSwitch;
+  if (kind == "real") return Kind::kPositive;
+  if (kind == "integer") return Kind::kCount;
+  if (kind == "flag") return Kind::kFlag;
+  return kind == "file" ? Kind::kFile : Kind::kWord;
+}
+
+// The options of podm that experiments may set, as the program declares them: `podm options`, written by the
+// build.
+std::vector<MesherOption> options_of_podm() {
+  std::ifstream file(PODM_OPTIONS);
+  const Json declared = Json::parse(file, nullptr, false);
+  if (!declared.is_array()) throw InputError(PODM_OPTIONS ": it is not what `podm options` prints");
+  std::vector<MesherOption> options;
+  for (const Json& option : declared)
+    if (const Json& uses = option.at("uses");
+        std::find(uses.begin(), uses.end(), "experiments") != uses.end())
+      options.push_back({option.at("key"), kind_of(option),
+                         option.value("most", Json(kMaxThreads)).is_number_integer()
+                             ? option.value("most", kMaxThreads)
+                             : kMaxThreads,
+                         option.at("not_on_ranks")});
+  return options;
+}
+
+// All keys that a trial may have, the mesher's name first: in this order names of trials list the keys given
+// as arrays.
+const std::vector<MesherOption>& mesher_options() {
+  static const std::vector<MesherOption> all = [] {
+    std::vector<MesherOption> options{{kMesher, Kind::kWord}};
+    for (MesherOption& option : options_of_podm()) {
+      const bool is_target = option.key == kTargetElements;
+      options.push_back(std::move(option));
+      if (is_target) options.push_back({kPerThread, Kind::kCount, kMaxElements});
+      if (is_target) options.push_back({kPerRank, Kind::kCount, kMaxElements});
+    }
+    for (const char* key : {kSchedule, kReplay, kFidelity, kSolve, kImageGrows})
+      options.push_back({key, Kind::kFlag});
+    options.push_back({kCopies, Kind::kThreads});
+    options.push_back({kCounters, Kind::kCounters});
+    options.push_back({kMeasure, Kind::kMeasure});
+    options.push_back({kRanks, Kind::kCount});
+    options.push_back({kCarrier, Kind::kCarrier});
+    options.push_back({kNetwork, Kind::kNetwork});
+    return options;
+  }();
+  return all;
+}
 
 // "all" is the number of usable processors, "1..all" the powers of two up to it and itself.
 std::vector<Json> thread_counts(const TomlSection& section, const toml::node& node, std::string_view key) {
@@ -165,10 +179,8 @@ std::vector<Json> read_value(const TomlSection& section, const toml::node& node,
   switch (option.kind) {
     case Kind::kPositive:
       return {section.positive_of(node, key)};
-    case Kind::kElements:
-      return {section.count_of(node, key, 1, kMaxElements)};
     case Kind::kCount:
-      return {section.count_of(node, key, 1, kMaxThreads)};
+      return {section.count_of(node, key, 1, option.most)};
     case Kind::kSeed:
       return {section.count_of(node, key, 0, kMaxSeed)};
     case Kind::kWord:
@@ -232,7 +244,7 @@ void refuse_options_of_podm(const TomlSection& section, const Json& options) {
 
 void refuse_options_of_meshers(const TomlSection& section, const Json& options) {
   if (!options.contains(kMeasure)) return;
-  for (const MesherOption& option : kMesherOptions)
+  for (const MesherOption& option : mesher_options())
     if (option.kind != Kind::kMeasure && section.has(option.key))
       section.fail(section.place(option.key), fmt::format("{} is an option of meshers", option.key));
 }
@@ -256,9 +268,10 @@ void refuse_strangers_to_ranks(const TomlSection& section, const Json& options) 
   need(kPerRank, kRanks, options.contains(kRanks));
   need(kNetwork, "ranks of carrier \"in-process\"", options.value(kCarrier, "") == kInProcess);
   if (!options.contains(kRanks)) return;
-  for (const char* key : kNotOnRanks)
-    if (options.contains(key))
-      section.fail(section.place(key), fmt::format("{} and {} exclude each other", kRanks, key));
+  for (const MesherOption& option : mesher_options())
+    if (options.contains(option.key) && (is_among(kOfOneProcess, option.key) || !option.not_on_ranks.empty()))
+      section.fail(section.place(option.key),
+                   fmt::format("{} and {} exclude each other", kRanks, option.key));
 }
 
 void scale_by(const char* key, const char* number, const TomlSection& section, Json& options) {
@@ -284,7 +297,7 @@ std::string in_name(const Json& value) {
 std::vector<Variant> read_matrix(TomlSection& section, const std::string& folder) {
   refuse_second_size(section);
   std::vector<Variant> variants{{"", {{"threads", 1}}}};
-  for (const MesherOption& option : kMesherOptions) {
+  for (const MesherOption& option : mesher_options()) {
     const std::vector<Json> values = read_values(section, option, folder);
     const bool in_suffix = section.is_array(option.key) || section.is_text(option.key, kPowersOfTwo);
     if (!values.empty()) multiply(variants, option.key, values, in_suffix);

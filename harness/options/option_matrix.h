@@ -20,12 +20,6 @@ inline constexpr const char* kCopies = "copies";
 /// The keys of what is asked of a mesh that is made: to equal the replay of its operations, and to follow the
 /// image closely, a claim of podm-verify.
 inline constexpr const char *kReplay = "replay", *kFidelity = "fidelity";
-/// The keys of dihedral angles: the bound below which vertices move, and whether cells are optimised.
-inline constexpr const char *kMinDihedral = "min_dihedral", *kOptimize = "optimize";
-/// The keys of what smooths interfaces, mm, and of sizes by place: a file, those near an interface, and by
-/// how much they may grow.
-inline constexpr const char *kSmooth = "smooth", *kSizeImage = "size_image", *kSizeNear = "size_near",
-                            *kGrade = "grade";
 /// The key that hands the mesh to a finite-element solver: harness/solvers/README.md.
 inline constexpr const char* kSolve = "solve";
 /// The key that has a phantom's voxels grow with the threads.
@@ -34,8 +28,6 @@ inline constexpr const char* kImageGrows = "image_grows";
 /// ranks of one process the modelled network, "MICROSECONDS,GB_PER_S".
 inline constexpr const char *kRanks = "ranks", *kCarrier = "carrier", *kMpi = "mpi",
                             *kInProcess = "in-process", *kNetwork = "network";
-/// The key of the number of threads below which PDR.PODM is PODM.
-inline constexpr const char* kCrossover = "crossover";
 /// The key of the number of cells aimed at, by a radius that is found once: radii.h.
 inline constexpr const char* kTargetElements = "target_elements";
 

@@ -212,6 +212,15 @@ struct TopologyRecord {
   }
 };
 
+/// What podm-verify needs to judge a mesh, beside the mesh and the image: claims, and options with their
+/// bounds.
+struct JudgingRecord {
+  std::vector<std::string> claims, options;
+  static constexpr auto fields() {
+    return std::tuple{field("claims", &JudgingRecord::claims), field("options", &JudgingRecord::options)};
+  }
+};
+
 /// A mesher's record of a mesh.
 struct MeshRecord {
   std::optional<int> schema;           ///< kMesherSchema; rows have their own instead
@@ -220,6 +229,7 @@ struct MeshRecord {
   std::optional<std::string> algorithm;
   std::optional<Json> options;  ///< what was asked for, by the mesher's own keys
   std::optional<UsedSizes> used;
+  std::optional<JudgingRecord> verify;  ///< rows of before November 2026 have none
   std::optional<std::uint64_t> seed;
   std::optional<ThreadsRecord> threads;
   std::optional<VirtualRecord> virtual_time;
@@ -255,6 +265,7 @@ struct MeshRecord {
                       field_if_any("algorithm", &M::algorithm),
                       field_if_any("options", &M::options),
                       field_if_any("used", &M::used),
+                      field_if_any("verify", &M::verify),
                       field_if_any("seed", &M::seed),
                       field_if_any("threads", &M::threads),
                       field_if_any("virtual", &M::virtual_time),

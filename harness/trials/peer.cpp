@@ -54,13 +54,27 @@ std::vector<std::string> peer_command(const Trial& trial, const Preparation& pre
   return command;
 }
 
+// A peer promises what its own documentation says; its rows show which claims of podm-verify its meshes meet.
+static Json judging_of_peers(double radius_mm) {
+  Json claims = {"structure", "radius_edge", "boundary_angles",  "conformity",
+                 "surface",   "labels",      "surface_vertices", "delaunay"};
+  Json options = Json::array();
+  if (radius_mm > 0) {
+    claims.push_back("size");
+    options = {"--radius", fmt::format("{}", radius_mm)};
+  }
+  return {{"claims", claims}, {"options", options}};
+}
+
 Json complete_record(const Trial& trial, const Preparation& preparation, Json record) {
   if (!record.is_object()) return record;
   record["schema"] = kMesherSchema;
   record["algorithm"] = trial.options[kMesher];
   record["guarantees"] = Json::object();  // it promises claims of the verifier instead
   record["stop_reason"] = kComplete;
-  record["used"]["radius_mm"] = resolved_options(trial, preparation).value("radius_mm", 0.0);
+  const double radius_mm = resolved_options(trial, preparation).value("radius_mm", 0.0);
+  record["used"]["radius_mm"] = radius_mm;
+  record["verify"] = judging_of_peers(radius_mm);
   const Json phases = record.value("phases_s", Json()), cells = record.value("cells", Json());
   const Json seconds = phases.is_object() ? phases.value("refine", Json()) : Json();
   if (seconds.is_number() && seconds > 0 && cells.is_number())

@@ -1,6 +1,7 @@
 #include "trials/verification.h"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <algorithm>
 #include <fstream>
@@ -104,16 +105,6 @@ bool asks_fidelity(const Trial& trial) {
   return trial.options.value(kFidelity, is_of_podm && trial.tier != Tier::kKickTires);
 }
 
-std::string claims_of(const Trial& trial, const MeshRecord& record, bool has_size) {
-  std::string claims = "structure,radius_edge,boundary_angles,conformity,surface,labels,surface_vertices";
-  const bool is_optimized = trial.options.value(kOptimize, false);
-  if (!is_optimized) claims += ",delaunay";
-  if (is_optimized || record.promised_dihedral_deg) claims += ",dihedral";
-  if (has_size) claims += ",size";
-  if (asks_fidelity(trial)) claims += ",fidelity";
-  return claims;
-}
-
 // The claims that the record promises and that are not proved. It promises all unless it names them.
 std::string fault_of(const ByName<Proof>& verdicts, const MeshRecord& record) {
   const auto is_promised = [&](const std::string& claim) {
@@ -139,19 +130,10 @@ Verification verify_mesh(const Trial& trial, const std::string& image, const Mes
   const auto add = [&command](const std::string& option, const std::string& value) {
     command.insert(command.end(), {option, value});
   };
-  const UsedSizes used = record.used.value_or(UsedSizes{});
-  const double radius_mm = used.radius_mm.value_or(0);
-  const std::string size_image = trial.options.value(kSizeImage, "");
-  const std::string size_near = trial.options.value(kSizeNear, "");
-  add("--claims", claims_of(trial, record, radius_mm > 0 || !size_image.empty() || !size_near.empty()));
-  if (radius_mm > 0) add("--radius", fmt::format("{}", radius_mm));
-  if (!size_image.empty()) {
-    add("--size-image", size_image);
-    add("--size-factor", fmt::format("{}", used.size_image_factor.value_or(1)));
-  }
-  if (!size_near.empty()) add("--size-near", size_near);
-  if (trial.options.contains(kGrade)) add("--grade", fmt::format("{}", trial.options[kGrade].get<double>()));
-  if (used.delta_mm) add("--delta", fmt::format("{}", *used.delta_mm));
+  JudgingRecord judging = record.verify.value_or(JudgingRecord{});
+  if (asks_fidelity(trial)) judging.claims.push_back("fidelity");
+  if (!judging.claims.empty()) add("--claims", fmt::format("{}", fmt::join(judging.claims, ",")));
+  command.insert(command.end(), judging.options.begin(), judging.options.end());
   if (trial.options.value(kSchedule, false)) add("--schedule", folder + kScheduleName);
   const ProcessOutcome outcome = ask(command, timeout_of_proof_s(trial), stop_requested).outcome;
   const auto report = read_report(report_path);

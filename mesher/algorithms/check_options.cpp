@@ -4,10 +4,10 @@
 
 #include <algorithm>
 #include <cmath>
+#include <concepts>
 
 #include "algorithms/team_size.h"
 #include "geometry/affine.h"
-#include "podm/bounds.h"
 
 namespace podm {
 
@@ -47,8 +47,6 @@ void check_size_image(const SizeImage& image) {
 }
 
 void check_sizes(const LabelImage& image, const SizeOptions& sizes) {
-  if (!is_positive_or_zero(sizes.radius_mm)) throw InputError("radius must be a positive number of mm");
-  if (!is_positive_or_zero(sizes.delta_mm)) throw InputError("delta must be a positive number of mm");
   for (const auto& [value, radius] : sizes.radius_of_mm) {
     if (!has_value(image.labels.begin() + 1, image.labels.end(), value))
       throw InputError("radius of label " + std::to_string(value) + ": the image has no such label");
@@ -59,43 +57,34 @@ void check_sizes(const LabelImage& image, const SizeOptions& sizes) {
   if (const auto& by_place = sizes.image) check_size_image(*by_place);
   if (!(std::isfinite(sizes.image_factor) && sizes.image_factor > 0))
     throw InputError("the factor of a size image must be a positive number");
-  if (!is_positive_or_zero(sizes.grade)) throw InputError("grade must be a positive number");
   if (sizes.target_elements > 0 && sizes.radius_mm > 0)
     throw InputError("a target number of elements excludes a radius");
-  if (!(sizes.target_tolerance_percent > 0 && sizes.target_tolerance_percent <= 100))
-    throw InputError("the tolerance of a target must be more than 0 and at most 100 percent");
-}
-
-void check_leaves(const LeafOptions& leaves) {
-  if (!(std::isfinite(leaves.initial_ratio) && leaves.initial_ratio >= 1))
-    throw InputError("the initial ratio must be 1 or more");
-  if (!is_positive_or_zero(leaves.size_mm)) throw InputError("leaf size must be a positive number of mm");
 }
 
 void check_crossover(const MeshingOptions& options) {
   const Algorithm algorithm = options.algorithm;
   if (options.crossover > 0 && algorithm != Algorithm::kPdrPodm && algorithm != Algorithm::kAuto)
-    throw InputError(fmt::format("crossover: algorithm {} has none; pdr-podm and auto have", to_string(algorithm)));
+    throw InputError(
+        fmt::format("crossover: algorithm {} has none; pdr-podm and auto have", to_string(algorithm)));
   if (options.crossover > 0 && options.leaves.with_schedule)
     throw InputError("crossover and schedule exclude each other: below the crossover there are no leaves");
 }
 
-void check_dihedral(double min_dihedral_deg) {
-  if (!(min_dihedral_deg >= 0 && min_dihedral_deg <= kMostMinDihedral))
-    throw InputError(
-        fmt::format("the least dihedral angle must be more than 0 and at most {} degrees", kMostMinDihedral));
-}
-
-// The image bounds it, too: smooth_interfaces.h.
-void check_smoothing(double smoothing_mm) {
-  if (!is_positive_or_zero(smoothing_mm))
-    throw InputError("the width by which interfaces are smoothed must be a positive number of mm");
+// Numbers are in the ranges of their declarations; 0 is the default of many, outside of the range.
+void check_ranges(const MeshingOptions& options) {
+  for_each_option(options, []<class Value>(const Declaration& of, const Value& value) {
+    if constexpr (std::same_as<Value, double>) {
+      const bool is_unset = value == 0 && *of.unset != 0;
+      if (!is_unset && !is_in_range(value, of))
+        throw InputError(fmt::format("{}: {:g} is not a {}", of.name, value, range_text(of)));
+    }
+  });
 }
 
 void check_optimization(const MeshingOptions& options) {
   const OptimizeOptions& optimize = options.optimize;
   if (!optimize.is_wanted) return;
-  const double least = optimize.least_dihedral_deg, largest = optimize.largest_dihedral_deg;
+  const auto [least, largest] = optimize.dihedral_bounds_deg;
   if (!(least > 0 && least <= 15) || !(largest >= 150 && largest < 180))
     throw InputError(
         "bounds on dihedral angles must be more than 0 and at most 15, and at least 150 and less than 180");
@@ -122,10 +111,8 @@ void check_options(const LabelImage& image, const MeshingOptions& options) {
     throw InputError("the image has no foreground");
   check_affine(image);
   check_sizes(image, options.sizes);
-  check_dihedral(options.min_dihedral_deg);
-  check_smoothing(options.smoothing_mm);
+  check_ranges(options);
   check_team_size(options.team, options.algorithm);
-  check_leaves(options.leaves);
   check_crossover(options);
   check_optimization(options);
 }

@@ -2,7 +2,9 @@
 
 #include <algorithm>
 #include <array>
+#include <concepts>
 #include <numeric>
+#include <string_view>
 
 #include "algorithms/check_options.h"
 #include "distributed/pieces.h"
@@ -19,22 +21,30 @@ namespace podm {
 namespace {
 
 void refuse(bool is_asked, const std::string& what) {
-  if (is_asked) throw InputError(what + " cannot be had on ranks yet; podm mesh has it, on one machine");
+  if (is_asked) throw InputError(what + " is not available on ranks");
+}
+
+// True if the option of this name has its default value.
+template <class Value>
+bool is_default(std::string_view name, const Value& value) {
+  bool is_equal = true;
+  for_each_option(MeshingOptions(), [&]<class Other>(const Declaration& of, const Other& other) {
+    if constexpr (std::same_as<Value, Other>)
+      if (of.name == name) is_equal = value == other;
+  });
+  return is_equal;
 }
 
 }  // namespace
 
 void check_options_on_ranks(const MeshingOptions& options) {
   refuse(options.algorithm == Algorithm::kPodmHome, "algorithm " + to_string(options.algorithm));
-  refuse(options.team.executor == Executor::kVirtual, "virtual workers");
-  refuse(options.sizes.target_elements > 0, "a target number of elements");
-  refuse(options.sizes.image != nullptr, "a size image");
-  refuse(!options.sizes.near.empty(), "a size near interfaces");
-  refuse(options.sizes.grade > 0, "a grade of sizes");
-  refuse(options.min_dihedral_deg > 0, "a least dihedral angle");
-  refuse(options.smoothing_mm > 0, "smooth interfaces");
-  refuse(options.optimize.is_wanted, "optimisation");
+  refuse(options.team.executor == Executor::kVirtual, "virtual time");
   refuse(options.leaves.with_schedule, "a schedule of leaves");
+  refuse(options.sizes.image || !options.sizes.near.empty(), "a size by place");
+  for_each_option(options, [](const Declaration& of, const auto& value) {
+    refuse(of.not_on_ranks && !is_default(of.name, value), spelled(of));
+  });
 }
 
 namespace {

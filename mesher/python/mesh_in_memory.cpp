@@ -64,7 +64,7 @@ std::string MeshInMemory::record() {
 std::vector<std::string> MeshInMemory::claims(bool with_fidelity,
                                               const std::function<std::string()>& write_image) {
   command_.verify_fidelity = with_fidelity;
-  return cli::claims_to_verify(run_, write_image);
+  return cli::verifier_options(run_, write_image);
 }
 
 }  // namespace podm::python

@@ -12,15 +12,15 @@
 
 #include "algorithms/team_size.h"
 #include "cli/commands/labelled_image.h"
-#include "cli/options/option_values.h"
 #include "cli/options/options_for_image.h"
+#include "cli/options/options_json.h"
 #include "cli/reports/json_text.h"
 #include "cli/reports/plan.h"
 #include "cli/reports/summary.h"
 #include "podm/errors.h"
 #include "podm/mesh_io.h"
 #include "python/beside_python.h"
-#include "python/error_text.h"
+#include "python/from_python.h"
 #include "python/mesh_in_memory.h"
 #include "run/measure_quality.h"
 
@@ -44,13 +44,6 @@ std::vector<py::str> texts(const std::vector<std::string>& all) {
   for (const std::string& bytes : all) decoded.push_back(text(bytes));
   return decoded;
 }
-
-cli::Command parse(std::vector<std::string> arguments) {
-  arguments.insert(arguments.begin(), "mesh");
-  return cli::parse_command_line(std::move(arguments), cli::Program::kPython);
-}
-
-std::string options_help() { return std::get<cli::ShowText>(parse({"--help"})).text; }
 
 // podm/images.py lets only such arrays through.
 VoxelType voxel_type(const py::dtype& dtype) {
@@ -79,8 +72,8 @@ VoxelArray voxel_array(const py::array& array) {
 }
 
 // The mesh, None where there is none, and the exception that ended the run early, None where nothing did.
-py::tuple mesh(const Input& input, std::vector<std::string> arguments, const py::object& progress) {
-  cli::MeshCommand command = std::get<cli::MeshCommand>(parse(std::move(arguments)));
+py::tuple mesh(const Input& input, const py::dict& options, const py::object& progress) {
+  cli::MeshCommand command = command_of(options, kInPython);
   std::shared_ptr<MeshInMemory> made;
   const Work work = [&](const ProgressCallback& tell, const std::stop_token& stop) {
     made = std::make_shared<MeshInMemory>(std::move(command), input, tell, stop);
@@ -89,20 +82,20 @@ py::tuple mesh(const Input& input, std::vector<std::string> arguments, const py:
   return py::make_tuple(made, exception);
 }
 
-py::tuple mesh_file(const std::string& path, const Names& names, std::vector<std::string> arguments,
+py::tuple mesh_file(const std::string& path, const Names& names, const py::dict& options,
                     const py::object& progress) {
-  return mesh({.path = path, .names = names}, std::move(arguments), progress);
+  return mesh({.path = path, .names = names}, options, progress);
 }
 
 py::tuple mesh_array(const py::array& array, const std::array<double, 12>& voxel_to_ras, const Names& names,
-                     std::vector<std::string> arguments, const py::object& progress) {
+                     const py::dict& options, const py::object& progress) {
   return mesh({.path = "labels", .array = voxel_array(array), .voxel_to_ras = voxel_to_ras, .names = names},
-              std::move(arguments), progress);
+              options, progress);
 }
 
 // JSON: what podm info --plan has of a run with these options of podm mesh.
-std::string plan(const Input& input, std::vector<std::string> arguments) {
-  cli::MeshCommand command = std::get<cli::MeshCommand>(parse(std::move(arguments)));
+std::string plan(const Input& input, const py::dict& options) {
+  cli::MeshCommand command = command_of(options, kInPlan);
   const py::gil_scoped_release others_run;
   command.image.path = input.path;
   command.image.is_array = input.array.has_value();
@@ -114,14 +107,14 @@ std::string plan(const Input& input, std::vector<std::string> arguments) {
   return cli::json_line(told);
 }
 
-std::string plan_file(const std::string& path, const Names& names, std::vector<std::string> arguments) {
-  return plan({.path = path, .names = names}, std::move(arguments));
+std::string plan_file(const std::string& path, const Names& names, const py::dict& options) {
+  return plan({.path = path, .names = names}, options);
 }
 
 std::string plan_array(const py::array& array, const std::array<double, 12>& voxel_to_ras, const Names& names,
-                       std::vector<std::string> arguments) {
+                       const py::dict& options) {
   return plan({.path = "labels", .array = voxel_array(array), .voxel_to_ras = voxel_to_ras, .names = names},
-              std::move(arguments));
+              options);
 }
 
 py::array read_only(py::array array) {
@@ -182,13 +175,11 @@ std::vector<std::pair<std::uint32_t, py::str>> labels_of(const MeshInMemory& mad
 }
 
 // Returns what write_mesh() does.
-std::vector<py::str> save(const MeshInMemory& made, const std::string& path,
-                          const std::optional<std::string>& gmsh_version) {
+std::vector<py::str> save(const MeshInMemory& made, const std::string& path, const py::object& gmsh_version) {
   std::vector<std::string> losses;
+  const MeshFileOptions options{gmsh_version_of(gmsh_version)};
   {
     const py::gil_scoped_release others_run;
-    MeshFileOptions options;
-    if (gmsh_version) options.gmsh_version = cli::parse_choice<GmshVersion>(*gmsh_version, "--gmsh-version");
     check_mesh_path(path, options);
     if (made.mesh().cells.empty()) throw InputError(path + ": the mesh has no cell, so that none is written");
     losses = write_mesh(made.mesh(), path, options);
@@ -251,7 +242,7 @@ void translate(std::exception_ptr thrown) {
   // Never released: the interpreter is gone when statics are.
   static const py::handle package_errors = py::module_::import("podm.errors").release();
   const auto raise = [](const char* name, const std::string& message) {
-    PyErr_SetObject(package_errors.attr(name).ptr(), text(in_python_terms(message)).ptr());
+    PyErr_SetObject(package_errors.attr(name).ptr(), text(message).ptr());
   };
   try {
     if (thrown) std::rethrow_exception(thrown);
@@ -274,13 +265,13 @@ PYBIND11_MODULE(_podm, module) {
   define_progress(module);
   define_mesh(module);
   module.attr("__version__") = PODM_VERSION;
-  module.def("options_help", &options_help);
-  module.def("in_python_terms", &in_python_terms, py::arg("message"));
-  module.def("mesh_file", &mesh_file, py::arg("path"), py::arg("names"), py::arg("arguments"),
+  podm::messages_are_for_python = true;
+  module.def("options", &podm::cli::options_json);
+  module.def("mesh_file", &mesh_file, py::arg("path"), py::arg("names"), py::arg("options"),
              py::arg("progress"));
   module.def("mesh_array", &mesh_array, py::arg("array"), py::arg("voxel_to_ras"), py::arg("names"),
-             py::arg("arguments"), py::arg("progress"));
-  module.def("plan_file", &plan_file, py::arg("path"), py::arg("names"), py::arg("arguments"));
+             py::arg("options"), py::arg("progress"));
+  module.def("plan_file", &plan_file, py::arg("path"), py::arg("names"), py::arg("options"));
   module.def("plan_array", &plan_array, py::arg("array"), py::arg("voxel_to_ras"), py::arg("names"),
-             py::arg("arguments"));
+             py::arg("options"));
 }

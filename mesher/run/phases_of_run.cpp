@@ -179,7 +179,7 @@ void PhasesOfRun::optimize(Mesh& mesh, MeshingReport& report) const {
   label_cells(mesh, *isosurface_, loop_threads_);
   StopControl stop(
       {.max_elements = 0, .max_seconds = options_.limits.max_seconds}, stop_, [](std::uint64_t) {}, start_);
-  const DihedralBounds bounds(asked.least_dihedral_deg, asked.largest_dihedral_deg);
+  const DihedralBounds bounds(asked.dihedral_bounds_deg[0], asked.dihedral_bounds_deg[1]);
   const OptimizerParameters parameters{CellQuality(aim_over(bounds)), bounds, *size_field_, sizes_.delta_mm};
   try {
     report.optimization = optimize_mesh(mesh, parameters, team_.team(), stop,

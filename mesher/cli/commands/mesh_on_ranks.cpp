@@ -25,16 +25,7 @@
 namespace podm::cli {
 namespace {
 
-void refuse(const std::string& path, const char* option) {
-  if (!path.empty())
-    throw InputError(fmt::format("{} cannot be had on ranks yet; podm mesh has it, on one machine", option));
-}
-
 void check_command(const MeshCommand& command) {
-  refuse(command.surface_path, "--surface");
-  refuse(command.schedule_path, "--schedule");
-  refuse(command.size_image_path, "--size-image");
-  refuse(command.size_near.empty() ? "" : command.size_near[0].labels[0], "--size-near");
   check_options_on_ranks(command.meshing);
   check_pieces_path(command.mesh_path);
   if (command.verify) check_verifier(command);
@@ -93,7 +84,7 @@ class Run {
   MeshRun prepare() {
     const std::uint64_t ranks_here = is_in_process() ? static_cast<std::uint64_t>(ranks_.size()) : 1;
     std::uint64_t limit_bytes = memory_limit_bytes(command_);
-    if (command_.max_memory_bytes == 0 && !is_in_process())
+    if (command_.max_memory.bytes == 0 && !is_in_process())
       limit_bytes /= static_cast<std::uint64_t>(machines_.num_ranks_here());
     const double start_s = ranks_.seconds();
     const auto make = [&] {

@@ -81,21 +81,27 @@ std::vector<std::string> size_options(const MeshRun& run) {
 
 }  // namespace
 
-std::vector<std::string> claims_to_verify(const MeshRun& run,
-                                          const std::function<std::string()>& write_image) {
-  std::vector<std::string> options;
-  std::string claims = "structure,radius_edge,boundary_angles,conformity,surface,labels,surface_vertices";
-  // The file tells what it promises of dihedral angles.
+Judging judging_of(const MeshRun& run) {
+  Judging judging{
+      {"structure", "radius_edge", "boundary_angles", "conformity", "surface", "labels", "surface_vertices"},
+      {"--delta", fmt::format("{}", run.report.delta_mm)}};
   const bool is_delaunay = !run.report.optimization;
-  if (is_delaunay) claims += ",delaunay";
-  if (run.report.promised_dihedral_deg) claims += ",dihedral";
+  if (is_delaunay) judging.claims.push_back("delaunay");
+  if (run.report.promised_dihedral_deg) judging.claims.push_back("dihedral");  // the file has the bounds
   const std::vector<std::string> sizes = size_options(run);
-  if (!sizes.empty()) claims += ",size";
-  if (run.command.verify_fidelity) claims += ",fidelity";
-  options.insert(options.end(), {"--delta", fmt::format("{}", run.report.delta_mm), "--claims", claims});
+  if (!sizes.empty()) judging.claims.push_back("size");
+  if (run.command.verify_fidelity) judging.claims.push_back("fidelity");
+  judging.options.insert(judging.options.end(), sizes.begin(), sizes.end());
+  return judging;
+}
+
+std::vector<std::string> verifier_options(const MeshRun& run,
+                                          const std::function<std::string()>& write_image) {
+  const Judging judging = judging_of(run);
+  std::vector<std::string> options{"--claims", fmt::format("{}", fmt::join(judging.claims, ","))};
+  options.insert(options.end(), judging.options.begin(), judging.options.end());
   const auto image = image_options(run, write_image);
   options.insert(options.end(), image.begin(), image.end());
-  options.insert(options.end(), sizes.begin(), sizes.end());
   return options;
 }
 
@@ -105,30 +111,30 @@ namespace {
 std::vector<std::string> verifier_command(const MeshRun& run, std::optional<TemporaryFolder>& scratch) {
   std::vector<std::string> command{verifier_path(), run.command.mesh_path, "--json", "-"};
   if (run.command.quiet) command.push_back("--quiet");
-  const auto claims = claims_to_verify(run, [&] {
+  const auto options = verifier_options(run, [&] {
     const std::string path = scratch.emplace(run.command.mesh_path) / "image.nii.gz";
     write_nifti(run.image, path);
     return path;
   });
-  command.insert(command.end(), claims.begin(), claims.end());
+  command.insert(command.end(), options.begin(), options.end());
   return command;
 }
 
-// Null where sizes are those of labels.
-const char* option_of_sizes_by_place(const MeshCommand& command) {
-  if (!command.size_image_path.empty()) return "--size-image";
-  if (!command.size_near.empty()) return "--size-near";
-  return command.meshing.sizes.grade > 0 ? "--grade" : nullptr;
+// The first option that gives sizes by place; empty where all sizes are those of labels.
+std::string option_of_sizes_by_place(const MeshCommand& command) {
+  if (!command.size_image_path.empty()) return "size-image";
+  if (!command.size_near.empty()) return "size-near";
+  return command.meshing.sizes.grade > 0 ? "grade" : "";
 }
 
 }  // namespace
 
 void check_verifier(const MeshCommand& command) {
   const std::string& mesh_path = command.mesh_path;
-  if (const char* option = option_of_sizes_by_place(command);
-      option != nullptr && command.meshing.space == Space::kVoxel)
+  if (const std::string option = option_of_sizes_by_place(command);
+      !option.empty() && command.meshing.space == Space::kVoxel)
     throw InputError(
-        fmt::format("--verify: podm-verify does not judge sizes of {} in --space voxel", option));
+        fmt::format("--verify: podm-verify does not judge sizes of --{} in --space voxel", option));
   if (mesh_path.ends_with(".xdmf"))
     throw InputError(fmt::format(
         "--verify: podm-verify does not read {}; it reads all other formats that are written", mesh_path));

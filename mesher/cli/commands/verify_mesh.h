@@ -14,10 +14,18 @@ namespace podm::cli {
 /// Throws InputError where there is no podm-verify that can be run, or none that can judge what is asked for.
 void check_verifier(const MeshCommand& command);
 
-/// The options of podm-verify by which it checks what the run promises of its mesh. Image and labels are
-/// those of the image's file; if it has none `write_image` is called, which writes it, with its labels
-/// selected, to a file whose name it returns.
-std::vector<std::string> claims_to_verify(const MeshRun& run,
+/// The claims of podm-verify that the mesh of a run promises, and the options with their bounds: all that
+/// podm-verify needs beside the mesh and the image.
+struct Judging {
+  std::vector<std::string> claims, options;
+};
+/// Fidelity is among the claims where --verify-fidelity asks for it.
+Judging judging_of(const MeshRun& run);
+
+/// The options by which podm-verify checks that. Image and labels are those of the image's file; if there is
+/// none `write_image` is called, which writes the image with its labels selected, and returns the name of the
+/// file.
+std::vector<std::string> verifier_options(const MeshRun& run,
                                           const std::function<std::string()>& write_image);
 
 /// Runs the podm-verify beside this program on the mesh that `run` wrote: all claims but fidelity, which is

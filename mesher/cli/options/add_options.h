@@ -33,6 +33,11 @@ CLI::Option* add_choice(CLI::App& app, const std::string& names, const std::stri
 }
 CLI::Option* add_flag(CLI::App& app, const std::string& names, bool& target, const std::string& description);
 void require(CLI::Option* option);
+/// The heading of a group in the help.
+const char* title_of(OptionGroup group);
+
+/// An option that is known and refused, with this message.
+void add_refusal(CLI::App& app, const std::string& names, const std::string& message);
 void exclude(CLI::Option* option, CLI::Option* other);
 /// `option` may be given only with `other`.
 void need(CLI::Option* option, CLI::Option* other);
@@ -40,7 +45,8 @@ void need(CLI::Option* option, CLI::Option* other);
 /// The same for all options of a group.
 void need_in_group(CLI::App& app, const std::string& title, CLI::Option* other);
 
-/// IMAGE and what is kept of its labels.
+void add_image_argument(CLI::App& app, ImageArguments& image);
+/// IMAGE and the labels that are kept.
 void add_image_options(CLI::App& app, ImageArguments& image);
 void add_label_options(CLI::App& app, ImageArguments& image);
 /// How a mesh file is written, beside what its extension says.
@@ -49,6 +55,7 @@ void add_mesh_file_options(CLI::App& app, MeshFileOptions& options);
 void add_planned_options(CLI::App& app, MeshCommand& command, CLI::Option* plan);
 void add_mesh_command(CLI::App& program, MeshCommand& command, Program which);
 void add_replay_command(CLI::App& program, ReplayCommand& command);
+void add_options_command(CLI::App& program);
 void add_convert_command(CLI::App& program, ConvertCommand& command);
 void add_info_command(CLI::App& program, InfoCommand& command);
 void add_phantom_command(CLI::App& program, PhantomCommand& command);

@@ -6,8 +6,8 @@
 #include <charconv>
 #include <cmath>
 #include <limits>
+#include <tuple>
 
-#include "cli/options/options.h"
 #include "podm/errors.h"
 
 namespace podm::cli {
@@ -38,7 +38,31 @@ std::uint64_t parse_integer(const std::string& text, const std::string& option, 
   return value;
 }
 
-std::pair<std::string, double> parse_label_length(const std::string& text, const std::string& option) {
+std::vector<double> parse_numbers(const std::string& text, const std::string& option, std::size_t count,
+                                  const std::string& form) {
+  std::vector<double> numbers;
+  for (std::size_t begin = 0; begin <= text.size();) {
+    const std::size_t end = std::min(text.find(',', begin), text.size());
+    if (!read_all(text.substr(begin, end - begin), numbers.emplace_back()) || !std::isfinite(numbers.back()))
+      numbers.resize(count + 1);  // of no use, as too many are
+    begin = end + 1;
+  }
+  if (numbers.size() != count) throw InputError(fmt::format("{}: '{}' is not {}", option, text, form));
+  return numbers;
+}
+
+namespace {
+
+std::pair<double, double> two_positive(const std::string& text, const std::string& option,
+                                       const std::string& form) {
+  const std::vector<double> numbers = parse_numbers(text, option, 2, form);
+  if (numbers[0] <= 0 || numbers[1] <= 0)
+    throw InputError(fmt::format("{}: '{}' is not {}", option, text, form));
+  return {numbers[0], numbers[1]};
+}
+
+// "liver=2" or "7=0.5".
+std::pair<std::string, double> label_length(const std::string& text, const std::string& option) {
   const std::size_t equals = text.rfind('=');
   if (equals == std::string::npos || equals == 0)
     throw InputError(fmt::format("{}: '{}' is not LABEL=MM, as in liver=2 or 7=0.5", option, text));
@@ -46,7 +70,8 @@ std::pair<std::string, double> parse_label_length(const std::string& text, const
   return {label, parse_positive(text.substr(equals + 1), option + " " + label, "length in mm")};
 }
 
-NearLabels parse_near_labels(const std::string& text, const std::string& option) {
+// "liver,0=1" or "3,4=0.5:2"; the width is the length unless it is given.
+NearLabels near_labels(const std::string& text, const std::string& option) {
   const std::size_t equals = text.rfind('='), comma = text.substr(0, equals).find(',');
   if (equals == std::string::npos || comma == std::string::npos || comma == 0 || comma + 1 == equals)
     throw InputError(fmt::format("{}: '{}' is not A,B=MM or A,B=MM:WIDTH, as in liver,0=1:3", option, text));
@@ -61,42 +86,69 @@ NearLabels parse_near_labels(const std::string& text, const std::string& option)
   return near;
 }
 
-std::vector<double> parse_numbers(const std::string& text, const std::string& option, std::size_t count,
-                                  const std::string& form) {
-  std::vector<double> numbers;
-  for (std::size_t begin = 0; begin <= text.size();) {
-    const std::size_t end = std::min(text.find(',', begin), text.size());
-    if (!read_all(text.substr(begin, end - begin), numbers.emplace_back()) || !std::isfinite(numbers.back()))
-      numbers.resize(count + 1);  // of no use, as too many are
-    begin = end + 1;
-  }
-  if (numbers.size() != count) throw InputError(fmt::format("{}: '{}' is not {}", option, text, form));
-  return numbers;
+}  // namespace
+
+std::uint64_t bytes_of_gib(double gib) {
+  constexpr double kMost = 1e18;  // far above any machine, and within an integer
+  return static_cast<std::uint64_t>(std::clamp(gib * kBytesPerGib, 1.0, kMost));
 }
 
-std::pair<double, double> parse_two_positive(const std::string& text, const std::string& option,
-                                             const std::string& quantity) {
-  const std::vector<double> numbers = parse_numbers(text, option, 2, quantity);
-  if (numbers[0] <= 0 || numbers[1] <= 0)
-    throw InputError(fmt::format("{}: '{}' is not {}", option, text, quantity));
-  return {numbers[0], numbers[1]};
+std::pair<std::uint64_t, std::uint64_t> range_of_integer(const Declaration& of) {
+  constexpr std::uint64_t kMost = std::numeric_limits<std::uint32_t>::max();
+  return {of.least == 0 ? 0 : 1, std::isinf(of.most) ? kMost : static_cast<std::uint64_t>(of.most)};
 }
+
+void parse_into(double& value, const std::string& text, const Declaration& of) {
+  const double parsed = parse_positive(text, spelled(of), of.quantity);
+  if (!is_in_range(parsed, of))
+    throw InputError(fmt::format("{}: '{}' is not a {}", spelled(of), text, range_text(of)));
+  value = parsed;
+}
+
+void parse_into(std::string& value, const std::string& text, const Declaration& of) {
+  if (text.empty()) throw InputError(spelled(of) + ": its value is empty");
+  value = text;
+}
+
+void parse_into(std::array<double, 2>& value, const std::string& text, const Declaration& of) {
+  std::tie(value[0], value[1]) = two_positive(text, spelled(of), "MIN,MAX, as in 8,165");
+}
+
+void parse_into(LabelLengths& value, const std::string& text, const Declaration& of) {
+  value.push_back(label_length(text, spelled(of)));
+}
+
+void parse_into(std::vector<NearLabels>& value, const std::string& text, const Declaration& of) {
+  value.push_back(near_labels(text, spelled(of)));
+}
+
+void parse_into(LabelRanges& value, const std::string& text, const Declaration& of) {
+  value = parse_label_ranges(text, spelled(of));
+}
+
+void parse_into(Merges& value, const std::string& text, const Declaration&) {
+  value.push_back(parse_merge(text));
+}
+
+void parse_into(MemoryLimit& value, const std::string& text, const Declaration& of) {
+  value.bytes = bytes_of_gib(parse_positive(text, spelled(of), of.quantity));
+}
+
+void parse_into(NetworkArguments& value, const std::string& text, const Declaration& of) {
+  std::tie(value.latency_us, value.gigabytes_per_s) =
+      two_positive(text, spelled(of), "US,GB/S, as in 2,12.5");
+}
+
+std::string shown(double value) { return value > 0 ? fmt::format("{:g}", value) : ""; }
+
+std::string shown(const std::array<double, 2>& value) { return fmt::format("{:g},{:g}", value[0], value[1]); }
 
 Target into(std::string& text) {
-  return {[&text](const std::string& told, const std::string& name) {
-            if (told.empty()) throw InputError(name + ": its value is empty");
-            text = told;
+  return {[&text](const std::string& given, const std::string& name) {
+            if (given.empty()) throw InputError(name + ": its value is empty");
+            text = given;
           },
           text};
-}
-
-Target into_length(double& length_mm) { return into_positive(length_mm, "length in mm"); }
-
-Target into_count(std::uint64_t& count) {
-  return {[&count](const std::string& text, const std::string& name) {
-            count = parse_integer(text, name, 1, std::numeric_limits<std::uint32_t>::max());
-          },
-          count > 0 ? std::to_string(count) : ""};
 }
 
 Target into_positive(double& value, const std::string& quantity) {
@@ -104,13 +156,6 @@ Target into_positive(double& value, const std::string& quantity) {
             value = parse_positive(text, name, quantity);
           },
           value > 0 ? fmt::format("{:g}", value) : ""};
-}
-
-Target into_threads(int& threads) {
-  return {[&threads](const std::string& text, const std::string& name) {
-            threads = static_cast<int>(parse_integer(text, name, 1, kMaxThreads));
-          },
-          threads > 0 ? std::to_string(threads) : ""};
 }
 
 }  // namespace podm::cli

@@ -1,36 +1,45 @@
-// What the text of an option means. Every function throws InputError naming the option and the fault.
+// Values of options: text, JSON. Every function that parses throws InputError with the option and the fault.
 #pragma once
 
+#include <array>
 #include <concepts>
 #include <cstdint>
 #include <functional>
+#include <optional>
 #include <string>
 #include <utility>
 #include <vector>
 
 #include "podm/choices.h"
 #include "podm/errors.h"
+#include "podm/image_io.h"
+#include "podm/option.h"
 
 namespace podm::cli {
 
-/// A finite number above zero; `quantity` says what it should be, e.g. "length in mm".
+/// A finite number above zero; `quantity` says what it is, e.g. "length in mm".
 double parse_positive(const std::string& text, const std::string& option, const std::string& quantity);
 
 /// An integer in [low, high], decimal digits only.
 std::uint64_t parse_integer(const std::string& text, const std::string& option, std::uint64_t low,
                             std::uint64_t high);
 
-/// "aggressive, random, global or local".
+/// "0.5,-1,2": `count` finite numbers; `form` says what they should be.
+std::vector<double> parse_numbers(const std::string& text, const std::string& option, std::size_t count,
+                                  const std::string& form);
+
+/// The choice of that name.
 template <Named Choice>
-std::string names_of_choices() {
-  const auto& all = Names<Choice>::kAll;
+Choice parse_choice(const std::string& text, const std::string& option) {
   std::string names;
-  for (std::size_t i = 0; i < all.size(); ++i)
-    names += (i == 0 ? "" : i + 1 < all.size() ? ", " : " or ") + std::string(all[i].second);
-  return names;
+  for (const auto& [value, name] : Names<Choice>::kAll) {
+    if (text == name) return value;
+    names.append(names.empty() ? "" : ", ").append(name);
+  }
+  throw InputError(option + ": '" + text + "' is not one of " + names);
 }
 
-/// "aggressive|random|global|local": as help writes what an option takes, which shells complete.
+/// "aggressive|random|global|local": as help writes the values of an option, which shells complete.
 template <Named Choice>
 std::string type_of_choices() {
   std::string names;
@@ -38,52 +47,96 @@ std::string type_of_choices() {
   return names;
 }
 
-/// The choice of that name.
-template <Named Choice>
-Choice parse_choice(const std::string& text, const std::string& option) {
-  for (const auto& [value, name] : Names<Choice>::kAll)
-    if (text == name) return value;
-  throw InputError(option + ": '" + text + "' is not one of " + names_of_choices<Choice>());
-}
-
-/// "liver=2" or "7=0.5": a label, by name or value, and a length in mm.
-std::pair<std::string, double> parse_label_length(const std::string& text, const std::string& option);
-
 /// A bound on cells near the interface of two labels.
 struct NearLabels {
   std::array<std::string, 2> labels;  ///< by name or value
   double radius_mm = 0, width_mm = 0;
 };
-/// "liver,0=1" or "3,4=0.5:2": labels, a length in mm and a width, which is that length where it is not
-/// given.
-NearLabels parse_near_labels(const std::string& text, const std::string& option);
+/// Lengths by label name or value.
+using LabelLengths = std::vector<std::pair<std::string, double>>;
+using LabelRanges = std::vector<std::pair<std::uint32_t, std::uint32_t>>;
+using Merges = std::vector<LabelSelection::Merge>;
 
-/// "0.5,-1,2": finite numbers, as many as asked for; `form` says what they should be.
-std::vector<double> parse_numbers(const std::string& text, const std::string& option, std::size_t count,
-                                  const std::string& form);
+/// The memory that the process may take.
+struct MemoryLimit {
+  std::uint64_t bytes = 0;  ///< 0: kPercentOfAvailableMemory of what is available
+};
+inline constexpr double kBytesPerGib = 1024.0 * 1024 * 1024;
+inline constexpr unsigned kPercentOfAvailableMemory = 80;
+/// A number of GiB above 0 as bytes, at least one and not more than any machine has.
+std::uint64_t bytes_of_gib(double gib);
 
-/// "2,12.5": two positive numbers; `quantity` says what they should be.
-std::pair<double, double> parse_two_positive(const std::string& text, const std::string& option,
-                                             const std::string& quantity);
+/// The time that a message takes in virtual time (distributed/in_process_ranks.h).
+struct NetworkArguments {
+  double latency_us = 0;
+  double gigabytes_per_s = std::numeric_limits<double>::infinity();
+};
+
+/// The least and the largest value of an integer option.
+std::pair<std::uint64_t, std::uint64_t> range_of_integer(const Declaration& of);
+
+// Each stores the text given to an option; of an option that may be repeated it appends.
+void parse_into(double& value, const std::string& text, const Declaration& of);
+void parse_into(std::string& value, const std::string& text, const Declaration& of);
+void parse_into(std::array<double, 2>& value, const std::string& text, const Declaration& of);
+void parse_into(LabelLengths& value, const std::string& text, const Declaration& of);
+void parse_into(std::vector<NearLabels>& value, const std::string& text, const Declaration& of);
+void parse_into(LabelRanges& value, const std::string& text, const Declaration& of);
+void parse_into(Merges& value, const std::string& text, const Declaration& of);
+void parse_into(MemoryLimit& value, const std::string& text, const Declaration& of);
+void parse_into(NetworkArguments& value, const std::string& text, const Declaration& of);
+template <std::integral Integer>
+void parse_into(Integer& value, const std::string& text, const Declaration& of) {
+  const auto [low, high] = range_of_integer(of);
+  value = static_cast<Integer>(parse_integer(text, spelled(of), low, high));
+}
+template <Named Choice>
+void parse_into(Choice& value, const std::string& text, const Declaration& of) {
+  value = parse_choice<Choice>(text, spelled(of));
+}
+template <Named Choice>
+void parse_into(std::optional<Choice>& value, const std::string& text, const Declaration& of) {
+  value = parse_choice<Choice>(text, spelled(of));
+}
+
+/// True for options that may be given several times.
+template <class Value>
+inline constexpr bool kIsRepeatable =
+    std::same_as<Value, LabelLengths> || std::same_as<Value, std::vector<NearLabels>> ||
+    std::same_as<Value, Merges>;
+
+// The default as help shows it; empty where Declaration::unset says it.
+std::string shown(double value);
+inline std::string shown(const std::string& value) { return value; }
+std::string shown(const std::array<double, 2>& value);
+template <std::integral Integer>
+std::string shown(Integer value) {
+  return value > 0 ? std::to_string(value) : "";
+}
+template <Named Choice>
+std::string shown(Choice value) {
+  return to_string(value);
+}
+template <class Other>
+std::string shown(const Other&) {
+  return "";
+}
 
 /// Stores the text given to the option of this name, or refuses it with an InputError.
 using Setter = std::function<void(const std::string& text, const std::string& name)>;
 
-/// Where an option's value goes, and its default, as help shows it. Empty: the default is 0 or no text, which
-/// stand for what help says in words.
+/// Stores the value of an option that is not declared beside its member, and its default as help shows it.
 struct Target {
   template <std::convertible_to<Setter> T>
-  Target(T sets, std::string shown = "") : set(std::move(sets)), default_value(std::move(shown)) {}
+  Target(T sets, std::string default_text = "")
+      : set(std::move(sets)), default_value(std::move(default_text)) {}
   Setter set;
   std::string default_value;
 };
 
 Target into(std::string& text);
-Target into_length(double& length_mm);
-Target into_count(std::uint64_t& count);
 /// `quantity`: as for parse_positive.
 Target into_positive(double& value, const std::string& quantity);
-Target into_threads(int& threads);
 template <Named Choice>
 Target into_choice(Choice& choice) {
   return {[&choice](const std::string& text, const std::string& name) {

@@ -9,6 +9,7 @@
 
 #include "cli/options/add_options.h"
 #include "cli/options/nearest_name.h"
+#include "cli/options/options_json.h"
 #include "cli/reports/build_info.h"
 #include "podm/errors.h"
 
@@ -65,6 +66,11 @@ CLI::Option* add_flag(CLI::App& app, const std::string& names, bool& target, con
 void need_in_group(CLI::App& app, const std::string& title, CLI::Option* other) {
   for (CLI::Option* option : app.get_options([&](const CLI::Option* o) { return o->get_group() == title; }))
     option->needs(other);
+}
+
+void add_refusal(CLI::App& app, const std::string& names, const std::string& message) {
+  const auto refuse = [message](const std::vector<std::string>&) { throw InputError(message); };
+  app.add_option_function<std::vector<std::string>>(names, refuse)->expected(0, 1);
 }
 
 void end_help(CLI::App& app, const std::string& text) { app.footer(text); }
@@ -127,9 +133,9 @@ Command parse_command_line(std::vector<std::string> arguments, Program which) {
   program.set_version_flag("--version", name + " " PODM_VERSION "\n" + build_info() + "\n",
                            "print the version and leave");
   program.allow_extras()->require_subcommand(0, 1);
-  if (which != Program::kPython)
-    program.footer(
-        "Exit codes: 0 success, 1 a guarantee or limit is unmet, 2 bad usage or input, 3 internal error.");
+  program.footer(
+      "Exit codes: 0 success, 1 a guarantee or limit is unmet, 2 bad usage or input, 3 internal error.");
+  if (which == Program::kPodmMpi) mesh.meshing.team.seed = mesh.meshing.cut_seed;
   add_mesh_command(program, mesh, which);
   if (which == Program::kPodm) {
     add_replay_command(program, replay);
@@ -137,6 +143,7 @@ Command parse_command_line(std::vector<std::string> arguments, Program which) {
     add_info_command(program, info);
     add_phantom_command(program, phantom);
     add_view_command(program, view);
+    add_options_command(program);
   }
   try {
     std::reverse(arguments.begin(), arguments.end());  // CLI11 takes them from the back
@@ -152,11 +159,13 @@ Command parse_command_line(std::vector<std::string> arguments, Program which) {
   refuse_unknown(program);
   const std::string chosen = program.get_subcommands().front()->get_name();
   mesh.verify = mesh.verify || mesh.verify_fidelity;
+  if (which == Program::kPodmMpi) mesh.meshing.cut_seed = mesh.meshing.team.seed;
   if (chosen == "mesh") return mesh;
   if (chosen == "replay") return replay;
   if (chosen == "convert") return convert;
   if (chosen == "info") return info;
   if (chosen == "view") return view;
+  if (chosen == "options") return ShowText{options_json() + "\n"};
   return phantom;
 }
 

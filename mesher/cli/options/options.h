@@ -6,6 +6,7 @@
 #include <limits>
 #include <optional>
 #include <string>
+#include <tuple>
 #include <utility>
 #include <variant>
 #include <vector>
@@ -15,6 +16,7 @@
 #include "podm/image_io.h"
 #include "podm/mesh_image.h"
 #include "podm/mesh_io.h"
+#include "podm/option.h"
 
 namespace podm::cli {
 
@@ -26,14 +28,19 @@ struct ImageArguments {
   std::string label_names_path;  ///< empty: none
 
   bool is_phantom() const { return !is_array && path.starts_with("phantom:"); }
-};
 
-inline constexpr int kMaxThreads = 1024;
-
-/// What virtual time takes for a message (distributed/in_process_ranks.h).
-struct NetworkArguments {
-  double latency_us = 0;
-  double gigabytes_per_s = std::numeric_limits<double>::infinity();
+  static constexpr auto options() {
+    using I = ImageArguments;
+    return std::tuple{
+        nested(&I::selection),
+        option(&I::label_names_path, {.name = "label-names",
+                                      .type = "FILE",
+                                      .group = OptionGroup::kLabels,
+                                      .help = "names of labels: an ITK-SNAP table or lines \"value name\"",
+                                      .unset = "none",
+                                      .uses = kInPodm | kOnRanks | kInPython,
+                                      .keyword = "names"})};
+  }
 };
 
 /// podm mesh
@@ -50,13 +57,148 @@ struct MeshCommand {
   std::vector<std::pair<std::string, double>> radius_of_mm;  ///< by label name or value
   std::string size_image_path;                               ///< empty: none
   std::vector<NearLabels> size_near;
-  std::uint64_t max_memory_bytes = 0;  ///< what the process may take; 0: as the machine has
-  int ranks_in_process = 0;            ///< podm-mpi's, and none of MPI's; 0: MPI's
-  NetworkArguments network;            ///< between ranks in process
+  MemoryLimit max_memory;
+  int ranks_in_process = 0;  ///< podm-mpi's, and none of MPI's; 0: MPI's
+  NetworkArguments network;  ///< between ranks in process
   bool verify = false;
   bool verify_fidelity = false;  ///< implies verify
   bool stats = false;
   bool quiet = false;
+
+  static constexpr auto options() {
+    using M = MeshCommand;
+    using enum OptionGroup;
+    constexpr unsigned kOfPlaces = kInAll | kInPlan;
+    constexpr const char* kNoSizesByPlace = "the grid of sizes covers the whole image";
+    return std::tuple{
+        nested(&M::image),
+        nested(&M::meshing),
+        option(&M::radius_of_mm,
+               {.name = "radius-of",
+                .type = "LABEL=MM",
+                .group = kSize,
+                .help = "the radius of one label, by name or value, e.g. liver=2; repeatable",
+                .unset = "--radius",
+                .record = "radius_of_mm",
+                .uses = kInPodm | kOnRanks | kInPlan | kInPython}),
+        option(&M::size_image_path,
+               {.name = "size-image",
+                .type = "FILE",
+                .group = kSize,
+                .help = "local bounds on circumradii: a volume of mm on its own grid; values that are\n"
+                        "not positive are no bounds",
+                .unset = "none",
+                .uses = kOfPlaces,
+                .not_on_ranks = kNoSizesByPlace}),
+        option(&M::size_near,
+               {.name = "size-near",
+                .type = "A,B=MM[:WIDTH]",
+                .group = kSize,
+                .help = "bound within WIDTH mm of the interface of two labels, by name or value (the\n"
+                        "background by its value), e.g. liver,0=1:3; repeatable",
+                .unset = "none; WIDTH: MM",
+                .uses = kOfPlaces,
+                .not_on_ranks = kNoSizesByPlace}),
+        option(&M::max_memory,
+               {.name = "max-memory-gib",
+                .type = "GIB",
+                .group = kLimits,
+                .help = "memory of the process, GiB",
+                .unset = "80 % of what is available",
+                .record = "max_memory_bytes",
+                .uses = kInPodm | kOnRanks | kInPython,
+                .quantity = "number of GiB",
+                .unset_on_ranks = "80 % of what is available\nover the ranks of the machine"}),
+        option(&M::mesh_path,
+               {.name = "output",
+                .type = "MESH",
+                .group = kOutput,
+                .help = "mesh file: .vtu or .vtk (VTK), .msh (Gmsh), .xdmf (DOLFINx), .inp (Abaqus,\n"
+                        "CalculiX), .e or .exo (Exodus II), .mesh (Medit), .node or .ele (TetGen)",
+                .uses = kOfFiles,
+                .help_on_ranks = "mesh: .pvtu, with one .vtu per rank, or .xdmf",
+                .short_name = "-o",
+                .is_required = true}),
+        nested(&M::mesh_file),
+        option(&M::surface_path, {.name = "surface",
+                                  .type = "FILE",
+                                  .group = kOutput,
+                                  .help = "also write the closed surface of each label: .stl or .ply",
+                                  .unset = "none",
+                                  .uses = kOfFiles,
+                                  .not_on_ranks = "no rank holds a closed surface"}),
+        option(&M::record_path, {.name = "record",
+                                 .type = "FILE",
+                                 .group = kOutput,
+                                 .help = "append one JSON line that describes the run",
+                                 .unset = "none",
+                                 .uses = kOfFiles}),
+        option(&M::page_path,
+               {.name = "report",
+                .type = "PAGE",
+                .group = kOutput,
+                .help = "an HTML page that needs no network: options, claims, histograms of quality per\n"
+                        "label, and the mesh to turn and cut",
+                .unset = "none",
+                .uses = kOfFiles,
+                .not_on_ranks = "the page needs the whole mesh"}),
+        option(&M::schedule_path, {.name = "schedule",
+                                   .type = "FILE",
+                                   .group = kOutput,
+                                   .help = "write when each leaf was refined, for podm-verify",
+                                   .unset = "none",
+                                   .uses = kOfFiles,
+                                   .not_on_ranks = "each rank has leaves of its own",
+                                   .excludes = "crossover"}),
+        option(&M::log_path,
+               {.name = "log",
+                .type = "FILE",
+                .group = kOutput,
+                .help = "write every operation in its order, for podm replay",
+                .unset = "none",
+                .uses = kOfFiles,
+                .help_on_ranks =
+                    "write every operation in its order, for podm replay: rank R to FILE.R, a single\n"
+                    "rank to FILE"}),
+        option(&M::ranks_in_process,
+               {.name = "in-process",
+                .type = "N",
+                .group = kRun,
+                .help = "ranks are threads of this process, one computing at a time, each with a virtual\n"
+                        "clock, for tests and predictions",
+                .unset = "ranks are those of mpirun or srun",
+                .uses = kOnRanks,
+                .most = kMostThreads}),
+        option(&M::network, {.name = "network",
+                             .type = "US,GB/S",
+                             .group = kRun,
+                             .help = "latency, us, and GB/s of the network between them, e.g. 2,12.5",
+                             .unset = "free",
+                             .uses = kOnRanks,
+                             .needs = "in-process"}),
+        option(&M::verify, {.name = "verify",
+                            .group = kRun,
+                            .help = "check the written mesh with podm-verify; exit 1 unless all claims hold",
+                            .unset = "no",
+                            .uses = kOfFiles}),
+        option(&M::verify_fidelity,
+               {.name = "verify-fidelity",
+                .group = kRun,
+                .help = "--verify, and also that surfaces of mesh and image are within a voxel or 2 delta\n"
+                        "of each other; a mesh much coarser than a structure may fail",
+                .unset = "no",
+                .uses = kOfFiles}),
+        option(&M::stats, {.name = "stats",
+                           .group = kRun,
+                           .help = "print a table of the work and the losses of each thread",
+                           .unset = "no",
+                           .uses = kOfFiles}),
+        option(&M::quiet, {.name = "quiet",
+                           .group = kRun,
+                           .help = "print neither progress nor summary",
+                           .unset = "both, on standard error",
+                           .uses = kOfFiles})};
+  }
 };
 
 /// podm replay
@@ -118,9 +260,8 @@ struct ShowText {
 using Command = std::variant<MeshCommand, ReplayCommand, ConvertCommand, InfoCommand, PhantomCommand,
                              ViewCommand, ShowText>;
 
-/// podm-mpi has the command mesh alone. So has the Python package, without what is about files or a terminal:
-/// the image is no argument there.
-enum class Program { kPodm, kPodmMpi, kPython };
+/// podm-mpi has the command mesh alone.
+enum class Program { kPodm, kPodmMpi };
 
 /// Parses the arguments after the program's name. Throws InputError naming the option and the fault.
 Command parse_command_line(std::vector<std::string> arguments, Program program = Program::kPodm);

@@ -35,8 +35,8 @@ void refuse_coarse_sampling(const MeshCommand& command, const LabelImage& image)
   for (std::size_t axis = 0; axis < 3; ++axis)
     longest_mm = std::max(longest_mm, image.size[axis] * image.spacing[axis]);
   if (command.meshing.sizes.delta_mm > longest_mm)
-    throw InputError(fmt::format("{}: --delta {:g} mm is longer than the image, {:g} mm", command.image.path,
-                                 command.meshing.sizes.delta_mm, longest_mm));
+    throw InputError(fmt::format("{}: {} {:g} mm is longer than the image, {:g} mm", command.image.path,
+                                 spelled("delta"), command.meshing.sizes.delta_mm, longest_mm));
 }
 
 // An element limit below the estimate bounds memory instead, and what has to be numbered.
@@ -51,16 +51,16 @@ void refuse_what_cannot_fit(const std::string& image_path, const LabelImage& ima
   if (memory_bytes > static_cast<double>(limit_bytes) && most_cells >= expected.cells)
     throw InputError(fmt::format(
         "{}: these options ask for about {:.2g} cells and {:.3g} GiB of memory{}, the limit is {:.3g} GiB; "
-        "use a larger radius or delta, or --max-memory-gib",
-        image_path, expected.cells, memory_bytes / kBytesPerGib, num_ranks > 1 ? " a rank" : "",
-        static_cast<double>(limit_bytes) / kBytesPerGib));
+        "use a larger radius or delta, or {}",
+        image_path, expected.cells, memory_bytes / kBytesPerGib, num_ranks > 1 ? " per rank" : "",
+        static_cast<double>(limit_bytes) / kBytesPerGib, spelled("max-memory-gib")));
   const double stored_cells = std::min(most_cells, kStoredCellsPerMeshCell * expected.cells) / num_ranks;
   if (stored_cells > static_cast<double>(kMostStoredCells))
     throw InputError(fmt::format(
         "{}: these options ask for about {:.2g} cells{} while the mesh is made, those of the "
         "background among them, and no more than 2^30 can be numbered; use a larger radius or delta, "
-        "or a smaller --max-elements",
-        image_path, stored_cells, num_ranks > 1 ? " a rank" : ""));
+        "or a smaller {}",
+        image_path, stored_cells, num_ranks > 1 ? " per rank" : "", spelled("max-elements")));
 }
 
 // What program, image, transform and sizes by place leave of the limit.
@@ -79,7 +79,7 @@ std::uint64_t bytes_for_mesh(std::uint64_t limit_bytes, const std::string& image
 }  // namespace
 
 std::uint64_t memory_limit_bytes(const MeshCommand& command) {
-  if (command.max_memory_bytes > 0) return command.max_memory_bytes;
+  if (command.max_memory.bytes > 0) return command.max_memory.bytes;
   return available_memory_bytes() / 100 * kPercentOfAvailableMemory;
 }
 

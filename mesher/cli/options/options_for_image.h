@@ -9,9 +9,6 @@
 
 namespace podm::cli {
 
-inline constexpr double kBytesPerGib = 1024.0 * 1024 * 1024;
-inline constexpr unsigned kPercentOfAvailableMemory = 80;
-
 /// What the process may take: as asked for, else that share of what is available now, before the image is
 /// read.
 std::uint64_t memory_limit_bytes(const MeshCommand& command);

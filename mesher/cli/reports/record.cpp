@@ -2,6 +2,8 @@
 
 #include <fmt/format.h>
 
+#include "cli/commands/verify_mesh.h"
+#include "cli/options/options_json.h"
 #include "cli/reports/input_sha256.h"
 #include "cli/reports/json_text.h"
 #include "io/sha256.h"
@@ -42,8 +44,8 @@ Json dropped_islands_of(const LabelImage& image) {
 // Of the bounds asked for; null: the mesh was left as it was.
 Json optimize_of(const OptimizeOptions& optimize) {
   if (!optimize.is_wanted) return nullptr;
-  return {{"least_dihedral_deg", optimize.least_dihedral_deg},
-          {"largest_dihedral_deg", optimize.largest_dihedral_deg}};
+  return {{"least_dihedral_deg", optimize.dihedral_bounds_deg[0]},
+          {"largest_dihedral_deg", optimize.dihedral_bounds_deg[1]}};
 }
 
 Json size_image_of(const MeshRun& run) {
@@ -59,30 +61,21 @@ Json size_near_of(const SizeOptions& sizes) {
   return all;
 }
 
-// The options that were asked for; 0 means what it means in MeshingOptions.
+// The options as given; 0 means what it means in MeshingOptions. Labels are those of the image.
 Json options_of(const MeshRun& run) {
-  const MeshingOptions& options = run.options;
-  Json radius_of = Json::object();
-  for (const auto& [value, radius_mm] : options.sizes.radius_of_mm)
+  Json options = Json::object();
+  for_each_option(run.command, [&](const Declaration& of, const auto& value) {
+    if ((of.uses & kInPython) != 0 && of.group != OptionGroup::kLabels)
+      options[record_key(of)] = json_of(value);
+  });
+  Json& radius_of = options["radius_of_mm"] = Json::object();
+  for (const auto& [value, radius_mm] : run.options.sizes.radius_of_mm)
     radius_of[std::to_string(value)] = radius_mm;
-  return {{"radius_mm", options.sizes.radius_mm},
-          {"radius_of_mm", radius_of},
-          {"size_image", size_image_of(run)},
-          {"size_near", size_near_of(options.sizes)},
-          {"grade", options.sizes.grade},
-          {"delta_mm", options.sizes.delta_mm},
-          {"target_elements", options.sizes.target_elements},
-          {"target_tolerance_percent", options.sizes.target_tolerance_percent},
-          {"optimize", optimize_of(options.optimize)},
-          {"algorithm", to_string(options.algorithm)},
-          {"crossover", options.crossover},
-          {"space", to_string(options.space)},
-          {"min_dihedral_deg", options.min_dihedral_deg},
-          {"smoothing_mm", options.smoothing_mm},
-          {"max_elements", options.limits.max_elements},
-          {"max_seconds", options.limits.max_seconds},
-          {"max_memory_bytes", run.command.max_memory_bytes},
-          {"labels", selection_of(run.command.image.selection)}};
+  options["size_image"] = size_image_of(run);
+  options["size_near"] = size_near_of(run.options.sizes);
+  options["optimize"] = optimize_of(run.options.optimize);
+  options["labels"] = selection_of(run.command.image.selection);
+  return options;
 }
 
 Json or_null(const std::optional<int>& value) { return value ? Json(*value) : Json(nullptr); }
@@ -270,6 +263,13 @@ Json optimization_of(const MeshingReport& report) {
           {"successes", counts_of(done.successes)}};
 }
 
+// What podm-verify needs to judge the mesh, beside mesh and image; null without a mesh.
+Json verify_of(const MeshRun& run) {
+  if (run.mesh.cells == 0) return nullptr;
+  const Judging judging = judging_of(run);
+  return {{"claims", judging.claims}, {"options", judging.options}};
+}
+
 Json promised_dihedral_of(const MeshingReport& report) {
   if (!report.promised_dihedral_deg) return nullptr;
   return *report.promised_dihedral_deg;
@@ -364,6 +364,7 @@ Json record(const MeshRun& run) {
       {"ranks", run.ranks},
       {"executor", to_string(run.options.team.executor)},
       {"virtual", virtual_of(run)},
+      {"verify", verify_of(run)},
       {"phases_s", run.phases_s()},
       {"calibration", calibration_of(report)},
       {"cells", run.mesh.cells},

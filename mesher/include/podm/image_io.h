@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "podm/label_image.h"
+#include "podm/option.h"
 #include "podm/size_image.h"
 
 namespace podm {
@@ -26,6 +27,47 @@ struct LabelSelection {
   std::vector<Merge> merges;
   /// Components of what is then a label, joined by faces, are given to a neighbour if smaller; 0: none are.
   double drop_islands_mm3 = 0;
+
+  static constexpr auto options() {
+    using L = LabelSelection;
+    using enum OptionGroup;
+    constexpr unsigned kUses = kInPodm | kOnRanks | kInPython;
+    return std::tuple{
+        option(&L::keep, {.name = "labels",
+                          .type = "RANGES",
+                          .group = kLabels,
+                          .help = "keep only these label values, e.g. 1,3-7",
+                          .unset = "all",
+                          .uses = kUses,
+                          .keyword = "keep"}),
+        option(&L::drop, {.name = "drop",
+                          .type = "RANGES",
+                          .group = kLabels,
+                          .help = "turn these label values into background",
+                          .unset = "none",
+                          .uses = kUses}),
+        option(&L::merges, {.name = "merge",
+                            .type = "VALUES=NAME",
+                            .group = kLabels,
+                            .help = "merge several labels into one, e.g. 2,3=kidney; repeatable",
+                            .unset = "none",
+                            .uses = kUses}),
+        option(&L::drop_islands_mm3,
+               {.name = "drop-islands",
+                .type = "MM3",
+                .group = kLabels,
+                .help = "relabel components (voxels joined by faces) smaller than this, mm^3, to the\n"
+                        "neighbour that shares the largest area",
+                .unset = "none",
+                .uses = kUses,
+                .quantity = "volume in mm^3"}),
+        option(&L::background, {.name = "background",
+                                .type = "VALUE",
+                                .group = kLabels,
+                                .help = "label value of the background",
+                                .uses = kUses,
+                                .least = 0})};
+  }
 };
 
 /// Parses "1,3-7". Throws InputError naming `option` and the fault.

@@ -39,6 +39,15 @@ std::string mesh_hash_text(std::uint64_t hash);
 
 struct MeshFileOptions {
   std::optional<GmshVersion> gmsh_version = {};  ///< for .msh alone; none: 4.1
+
+  static constexpr auto options() {
+    return std::tuple{option(&MeshFileOptions::gmsh_version,
+                             {.name = "gmsh-version",
+                              .group = OptionGroup::kOutput,
+                              .help = "version of a .msh file; FreeFem++ and SfePy read 2.2",
+                              .unset = "4.1",
+                              .uses = kInPodm})};
+  }
 };
 
 /// Throws InputError if `path` has no known mesh extension (those of write_mesh()), one that `options` are

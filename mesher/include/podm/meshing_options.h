@@ -1,6 +1,5 @@
-// What a run is asked for. A new option is a member here, with its default, and a line in
-// cli/add_mesh_options.cpp, whose help reads the default. Records tell it by a line in cli/record.cpp, and
-// check_options.cpp refuses what is senseless.
+// The options of a run. A new option is a member here, with its default, and a line in options(): see
+// podm/option.h.
 #pragma once
 
 #include <array>
@@ -10,13 +9,17 @@
 #include <string>
 #include <vector>
 
+#include "podm/bounds.h"
 #include "podm/choices.h"
 #include "podm/limits.h"
+#include "podm/option.h"
 #include "podm/size_image.h"
 
 namespace podm {
 
 class OperationLogWriter;
+
+inline constexpr int kMostThreads = 1024;
 
 /// A bound on cells whose circumcentre is within a width of the interface of some labels and others: of the
 /// faces between their voxels. Labels are given by value, the background by its own.
@@ -49,6 +52,54 @@ struct SizeOptions {
   std::uint64_t target_elements = 0;
   /// How far from the target the number of cells may be, in percent of it.
   double target_tolerance_percent = 5;
+
+  static constexpr auto options() {
+    using S = SizeOptions;
+    using enum OptionGroup;
+    return std::tuple{
+        option(&S::radius_mm, {.name = "radius",
+                               .type = "MM",
+                               .group = kSize,
+                               .help = "upper bound on the circumradius of each cell, mm",
+                               .unset = "unbounded, the surfaces alone decide",
+                               .record = "radius_mm",
+                               .uses = kInAll | kInPlan,
+                               .quantity = "length in mm"}),
+        option(&S::delta_mm, {.name = "delta",
+                              .type = "MM",
+                              .group = kSize,
+                              .help = "sampling distance of the surfaces, mm",
+                              .unset = "from the voxel size and the radius",
+                              .record = "delta_mm",
+                              .uses = kInAll | kInPlan,
+                              .quantity = "length in mm"}),
+        option(&S::target_elements,
+               {.name = "target-elements",
+                .type = "N",
+                .group = kSize,
+                .help = "choose the radius, and the factor of --size-image, for this number of cells",
+                .unset = "none",
+                .uses = kInAll | kInPlan,
+                .not_on_ranks = "the search for the radius needs the whole mesh several times",
+                .excludes = "radius"}),
+        option(&S::target_tolerance_percent,
+               {.name = "target-tolerance",
+                .type = "PERCENT",
+                .group = kSize,
+                .help = "largest difference of the number of cells from the target, %",
+                .record = "target_tolerance_percent",
+                .uses = kInAll | kInPlan,
+                .most = 100,
+                .quantity = "percentage",
+                .needs = "target-elements"}),
+        option(&S::grade, {.name = "grade",
+                           .type = "G",
+                           .group = kSize,
+                           .help = "limit the growth of all bounds on sizes, of labels too, to G mm per mm",
+                           .unset = "no limit",
+                           .uses = kInAll | kInPlan,
+                           .not_on_ranks = "the graded grid covers the whole image"})};
+  }
 };
 
 /// Who refines. Numbers that are 0 are left to the mesher.
@@ -74,6 +125,91 @@ struct TeamOptions {
   Executor executor = Executor::kThreads;
   VirtualCost virtual_cost = VirtualCost::kMeasured;
   std::uint64_t seed = 1;  ///< decides pauses of Contention::kRandom, and virtual time
+
+  static constexpr auto options() {
+    using T = TeamOptions;
+    using enum OptionGroup;
+    return std::tuple{
+        option(&T::threads,
+               {.name = "threads",
+                .type = "N",
+                .group = kRun,
+                .help = "threads of all phases; 1 makes the same mesh every time",
+                .unset = "one for refinement, all cores for the other phases",
+                .uses = kInAll | kInPlan,
+                .most = kMostThreads,
+                .help_on_ranks =
+                    "threads of each rank, in all phases; with 1 the same number of ranks makes the\n"
+                    "same mesh every time",
+                .unset_on_ranks = "processors over the ranks of the machine; 1 in process"}),
+        option(&T::contention, {.name = "contention",
+                                .group = kRun,
+                                .help = "policy of a thread that meets another thread's lock"}),
+        option(&T::begging, {.name = "begging",
+                             .group = kRun,
+                             .help = "idle thread that gets work first: random (the first that asked) or\n"
+                                     "hierarchical (the nearest in the machine)"}),
+        option(&T::executor,
+               {.name = "executor",
+                .group = kRun,
+                .help = "threads; or virtual: one core plays any number of threads in virtual time,\n"
+                        "with the same result for the same seed; times are then simulated"}),
+        option(&T::pin, {.name = "pin",
+                         .type = "PLAN",
+                         .group = kRun,
+                         .help = "bind threads to processors: compact, scatter, none,\n"
+                                 "or processors such as 0,2,4-7"}),
+        option(&T::oversubscribe, {.name = "oversubscribe",
+                                   .group = kRun,
+                                   .help = "allow more threads than processors",
+                                   .unset = "refused",
+                                   .uses = kInAll | kInPlan}),
+        option(&T::nodes, {.name = "nodes",
+                           .type = "N",
+                           .group = kAlgorithm,
+                           .help = "computing nodes of pdr-podm and podm-home",
+                           .unset = "NUMA nodes in use",
+                           .most = kMostThreads}),
+        option(&T::cores_per_node, {.name = "cores-per-node",
+                                    .type = "N",
+                                    .group = kAlgorithm,
+                                    .help = "threads of each computing node",
+                                    .unset = "threads over nodes",
+                                    .most = kMostThreads}),
+        option(&T::initial_threads, {.name = "initial-threads",
+                                     .type = "N",
+                                     .group = kAlgorithm,
+                                     .help = "threads that make the initial mesh of pdr and pdr-podm",
+                                     .unset = "all",
+                                     .most = kMostThreads}),
+        option(&T::seed,
+               {.name = "seed",
+                .type = "N",
+                .group = kRun,
+                .help = "seed of the pauses after conflicts and of virtual time",
+                .least = 0,
+                .help_on_ranks = "0: blocks of equal predicted work; otherwise the seed of where blocks are\n"
+                                 "cut, of pauses, and of the order in which ranks in process compute",
+                .unset_on_ranks = "0"}),
+        option(&T::topology_path,
+               {.name = "topology",
+                .type = "FILE",
+                .group = kRun,
+                .help = "machine that the threads stand for: hwloc XML, or TOML with its costs\n"
+                        "(NAME.toml, see experiments/machines)",
+                .unset = "this machine"}),
+        option(&T::cost_factor,
+               {.name = "cost-factor",
+                .type = "NAME=FACTOR",
+                .group = kRun,
+                .help = "multiply one constant of a machine in TOML by a factor; 0 switches it off.\n"
+                        "results/README.md lists the names",
+                .unset = "none"}),
+        option(&T::virtual_cost,
+               {.name = "virtual-cost",
+                .group = kRun,
+                .help = "virtual time of an attempt: unit (1 us) or measured (by its work)"})};
+  }
 };
 
 /// How kPdr and kPdrPodm divide space.
@@ -81,14 +217,55 @@ struct LeafOptions {
   double initial_ratio = 4;  ///< circumradius bound and delta of the initial mesh over those of the final one
   double size_mm = 0;        ///< side of the octree's leaves; 0: from the initial mesh's bound
   bool with_schedule = false;  ///< the report tells when which leaf was refined
+
+  static constexpr auto options() {
+    using L = LeafOptions;
+    using enum OptionGroup;
+    return std::tuple{option(&L::initial_ratio, {.name = "initial-ratio",
+                                                 .type = "X",
+                                                 .group = kAlgorithm,
+                                                 .help = "bounds of the initial mesh of pdr, pdr-podm and\n"
+                                                         "podm-mpi over the final ones",
+                                                 .least = 1}),
+                      option(&L::size_mm, {.name = "leaf-size",
+                                           .type = "MM",
+                                           .group = kAlgorithm,
+                                           .help = "side of the octree's leaves, mm",
+                                           .unset = "from the bounds of the initial mesh",
+                                           .quantity = "length in mm"})};
+  }
 };
 
 /// What happens to the finished mesh, which is no longer Delaunay then. A run that ends early is not
 /// optimised.
 struct OptimizeOptions {
   bool is_wanted = false;
-  /// Bounds on dihedral angles, degrees. Half as much again is aimed at, of cells whose neighbours allow it.
-  double least_dihedral_deg = 8, largest_dihedral_deg = 165;
+  /// Least and largest dihedral angle, degrees. The aim is one and a half times as far from 0 and 180, where
+  /// the neighbours of a cell allow it.
+  std::array<double, 2> dihedral_bounds_deg{8, 165};
+
+  static constexpr auto options() {
+    using O = OptimizeOptions;
+    using enum OptionGroup;
+    return std::tuple{
+        option(&O::is_wanted,
+               {.name = "optimize",
+                .group = kDihedral,
+                .help = "improve the worst cells of the finished mesh; surfaces and all other bounds\n"
+                        "stay, but the mesh is no longer Delaunay",
+                .unset = "no",
+                .uses = kInAll | kInPlan,
+                .not_on_ranks = "optimisation works on a whole mesh"}),
+        option(&O::dihedral_bounds_deg,
+               {.name = "dihedral-bounds",
+                .type = "MIN,MAX",
+                .group = kDihedral,
+                .help = "least and largest dihedral angle of a cell, degrees; the aim is half as much\n"
+                        "again; cells that surfaces keep beyond the bounds are counted",
+                .uses = kInAll | kInPlan,
+                .not_on_ranks = "optimisation works on a whole mesh",
+                .needs = "optimize"})};
+  }
 };
 
 struct MeshingOptions {
@@ -112,6 +289,63 @@ struct MeshingOptions {
   std::uint64_t cut_seed = 0;  ///< on ranks: draws where blocks are cut; 0: by predicted work
   Limits limits = {};
   OperationLogWriter* log = nullptr;  ///< learns of every operation of the last run; not finished
+
+  static constexpr auto options() {
+    using M = MeshingOptions;
+    using enum OptionGroup;
+    return std::tuple{
+        option(&M::algorithm,
+               {.name = "algorithm",
+                .group = kAlgorithm,
+                .help = "podm: all threads anywhere, with locks; pdr-podm: leaf by leaf of an octree,\n"
+                        "each by a node of several threads; pdr: leaf by leaf, one thread each, no locks;\n"
+                        "podm-home: podm by nodes of several threads, each in its own block of space;\n"
+                        "auto: podm, or podm-home on threads pinned to several NUMA nodes",
+                .uses = kInAll | kInPlan}),
+        nested(&M::sizes),
+        nested(&M::team),
+        nested(&M::leaves),
+        option(&M::crossover,
+               {.name = "crossover",
+                .type = "N",
+                .group = kAlgorithm,
+                .help = "number of threads below which pdr-podm and auto are exactly podm; from it\n"
+                        "on auto is podm-home",
+                .unset = "pdr-podm has none, auto follows NUMA nodes",
+                .not_on_ranks = "ranks have threads of their own",
+                .most = kMostThreads}),
+        option(&M::smoothing_mm,
+               {.name = "smooth",
+                .type = "MM",
+                .group = kSurfaces,
+                .help = "blur all labels with a Gaussian of this width, mm; interfaces lie where the two\n"
+                        "largest weights are equal, and voxels keep their labels; about 1.5 voxels;\n"
+                        "thin parts are blurred less",
+                .unset = "interfaces follow the voxels",
+                .record = "smoothing_mm",
+                .uses = kInAll | kInPlan,
+                .not_on_ranks = "the weights of all voxels would be on every rank",
+                .quantity = "length in mm"}),
+        option(&M::min_dihedral_deg,
+               {.name = "min-dihedral",
+                .type = "DEG",
+                .group = kDihedral,
+                .help = "at the end move vertices until almost no cell with an interior vertex has a\n"
+                        "dihedral angle below this, degrees, or above 175 less 1.25 times this; all\n"
+                        "bounds are kept, and the mesh stays Delaunay",
+                .unset = "nothing moves",
+                .record = "min_dihedral_deg",
+                .uses = kInAll | kInPlan,
+                .not_on_ranks = "vertices near the faces of blocks would have to move on two ranks at once",
+                .most = kMostMinDihedral,
+                .quantity = "angle in degrees"}),
+        nested(&M::optimize),
+        nested(&M::limits),
+        option(&M::space, {.name = "space",
+                           .group = kOutput,
+                           .help = "frame of the coordinates: RAS or LPS (mm), or voxel (indices)",
+                           .uses = kInPodm | kOnRanks | kInPython})};
+  }
 };
 
 }  // namespace podm

@@ -1,16 +1,15 @@
-"""podm.mesh and podm.plan: an image in, a mesh out, or what it will be."""
+"""podm.mesh and podm.plan: an image in, a mesh out, or a prediction of it."""
 
 from __future__ import annotations
 
+import inspect
 import json
 import os
-import re
 import warnings
 from collections.abc import Callable, Iterable, Mapping
 from typing import TYPE_CHECKING, Any
 
 from . import _podm
-from .arguments import command_line
 from .checks import expect, is_label_value, path_bytes, text_bytes
 from .errors import Error, Interrupted
 from .images import is_file, voxels_and_affine
@@ -20,102 +19,78 @@ if TYPE_CHECKING:
     import numpy.typing as npt
 
     StrPath = str | os.PathLike[str]
-    LabelValues = str | int | Iterable[int]
 
 
 def mesh(labels: npt.ArrayLike | StrPath, *, affine: npt.ArrayLike | None = None,
          spacing: npt.ArrayLike | None = None, names: Mapping[int, str] | StrPath | None = None,
-         keep: LabelValues | None = None, drop: LabelValues | None = None,
-         merge: Mapping[str, LabelValues] | None = None, drop_islands: float | None = None,
-         background: int | None = None, radius: float | None = None,
-         radius_of: Mapping[str | int, float] | None = None, size_image: StrPath | None = None,
-         size_near: Mapping[tuple[str | int, str | int], float | tuple[float, float]] | None = None,
-         grade: float | None = None, delta: float | None = None, target_elements: int | None = None,
-         target_tolerance: float | None = None, smooth: float | None = None, min_dihedral: float | None = None,
-         optimize: bool = False, dihedral_bounds: tuple[float, float] | None = None,
-         max_elements: int | None = None, max_seconds: float | None = None, max_memory_gib: float | None = None,
-         space: str | None = None, algorithm: str | None = None, crossover: int | None = None,
-         nodes: int | None = None, cores_per_node: int | None = None, initial_ratio: float | None = None,
-         initial_threads: int | None = None, leaf_size: float | None = None, threads: int | None = None,
-         contention: str | None = None, begging: str | None = None, pin: str | None = None,
-         oversubscribe: bool = False, topology: StrPath | None = None, cost_factor: str | None = None,
-         executor: str | None = None, virtual_cost: str | None = None, seed: int | None = None,
-         progress: Callable[[_podm.Progress], object] | None = None) -> Mesh:
+         progress: Callable[[_podm.Progress], object] | None = None, **options: Any) -> Mesh:
     """Meshes a label image into tetrahedra.
 
-    Everything but the image is optional; what is None is left to the mesher. Options have the names, meanings and
-    defaults of `podm mesh`, below.
+    Everything except the image is optional; None means the mesher's default. Options have the names, meanings and
+    defaults of `podm mesh`; they are listed below.
 
     labels
-        The image: an array of shape (ni, nj, nk) of any integer type, in any memory order, of values 0 to 2^32 - 1
-        (it is read, not copied: the mesher makes its own of 2 bytes a voxel); or an image of nibabel; or the name of a
-        NIfTI, NRRD, MetaImage or INR file, or phantom:NAME[@SIZE].
+        The image: an array of shape (ni, nj, nk) of any integer type, in any memory order, with values from 0 to
+        2^32 - 1 (it is read and not copied; the mesher makes its own labels of 2 bytes per voxel); or an image of
+        nibabel; or the name of a NIfTI, NRRD, MetaImage or INR file, or phantom:NAME[@SIZE].
     affine
-        The 4x4 matrix, as nibabel's, from voxel indices (i, j, k) to RAS coordinates in mm. Any that is invertible
-        serves. One that shears changes angles: the bounds on shape then hold in the image's own axes.
+        The 4x4 matrix, as nibabel's, from voxel indices (i, j, k) to RAS coordinates in mm. It must be invertible. A
+        matrix with shear changes angles: the bounds on shape then hold in the image's own axes.
     spacing
-        Instead of an affine, and of an array alone: the three distances of voxels, mm; voxel (0, 0, 0) lies at the
-        origin. Without either they are 1 mm.
+        The three distances of voxels, mm, in place of an affine, for arrays only; voxel (0, 0, 0) lies at the origin.
+        The default is 1 mm.
     names
         Names of labels, as {1: "liver"}; or a file of them, an ITK-SNAP table or lines "value name".
-    size_image
-        The name of a file; of an array, write it first, e.g. with nibabel.
-    size_near
-        A dict from pairs of labels to mm, or to mm and a width, as {("liver", 0): 1, ("liver", "vein"): (0.5, 3)}.
     progress
-        Is called with a podm.Progress some times a second, by the thread that called mesh(). What it raises ends the
-        run and is raised by mesh().
+        Is called with a podm.Progress a few times per second, by the thread that called mesh(). An exception that it
+        raises ends the run, and mesh() raises it again.
 
-    Other Python threads run meanwhile, and may mesh, too.
+    Other Python threads run meanwhile and may mesh, too.
 
     Raises podm.Error, a ValueError, for a fault of image or options; MemoryError; and podm.Interrupted, a
     KeyboardInterrupt, if Ctrl-C ends the run early: its `mesh` is the mesh so far, which is valid. A limit
-    (max_elements, max_seconds) is no exception: the mesh so far is returned, and its `is_complete` is False. What a
-    mesh misses, and what is odd about an image, is told by warnings.warn().
+    (max_elements, max_seconds) raises nothing: the mesh so far is returned, and its `is_complete` is False. Guarantees
+    that a mesh misses and oddities of an image are reported by warnings.warn().
     """
-    options = {keyword: value for keyword, value in locals().items()
-               if keyword not in ("labels", "affine", "spacing", "progress")}
-    made, exception = _of_image(_podm.mesh_file, _podm.mesh_array, labels, affine, spacing, options, progress)
+    _refuse_unknown("mesh", options)
+    made, exception = _of_image(_podm.mesh_file, _podm.mesh_array, labels, affine, spacing, names, options, progress)
     return _result(made, exception)
 
 
 def plan(labels: npt.ArrayLike | StrPath, *, affine: npt.ArrayLike | None = None,
          spacing: npt.ArrayLike | None = None, names: Mapping[int, str] | StrPath | None = None,
-         keep: LabelValues | None = None, drop: LabelValues | None = None,
-         merge: Mapping[str, LabelValues] | None = None, drop_islands: float | None = None,
-         background: int | None = None, radius: float | None = None,
-         radius_of: Mapping[str | int, float] | None = None, size_image: StrPath | None = None,
-         size_near: Mapping[tuple[str | int, str | int], float | tuple[float, float]] | None = None,
-         grade: float | None = None, delta: float | None = None, target_elements: int | None = None,
-         smooth: float | None = None, min_dihedral: float | None = None, optimize: bool = False,
-         algorithm: str | None = None, threads: int | None = None) -> dict[str, Any]:
-    """Tells what mesh() of the same image and options will cost and lose, without meshing it.
+         **options: Any) -> dict[str, Any]:
+    """Predicts the cost and the losses of mesh() of the same image and options, without meshing the image.
 
-    Returns what `podm info --plan --json` has under "plan": "cells", "memory_bytes" (the peak of this process),
-    "seconds" on this machine, "labels" (of each its cells, and the volumes of its components, mm^3, the largest first)
-    and "thin_parts" (what delta is too coarse for: label, kind, thickness_mm, volume_mm3, place_mm in RAS). "kind" is
-    "whole" for all of a component, "bridge" for what joins parts that stay, "detail" for fins, tips and edges.
+    Returns the contents of "plan" of `podm info --plan --json`: "cells", "memory_bytes" (the peak of this process),
+    "seconds" on this machine, "labels" (the cells of each, and the volumes of its components, mm^3, the largest first)
+    and "thin_parts" (structures too thin for delta: label, kind, thickness_mm, volume_mm3, place_mm in RAS). "kind" is
+    "whole" for an entire component, "bridge" for a part that joins parts which stay, "detail" for fins, tips and edges.
 
-    Raises podm.Error, as mesh() does. What is odd about the image is told by warnings.warn().
+    Raises podm.Error, as mesh() does. Oddities of the image are reported by warnings.warn().
     """
-    options = {keyword: value for keyword, value in locals().items() if keyword not in ("labels", "affine", "spacing")}
-    told: dict[str, Any] = json.loads(_of_image(_podm.plan_file, _podm.plan_array, labels, affine, spacing, options))
-    for text in told.pop("warnings"):
-        warnings.warn(_podm.in_python_terms(text), stacklevel=2)
-    return told
+    _refuse_unknown("plan", options)
+    predicted: dict[str, Any] = json.loads(
+        _of_image(_podm.plan_file, _podm.plan_array, labels, affine, spacing, names, options))
+    for text in predicted.pop("warnings"):
+        warnings.warn(text, stacklevel=2)
+    return predicted
 
 
 def _of_image(of_file: Callable[..., Any], of_array: Callable[..., Any], labels: Any, affine: Any, spacing: Any,
-              options: dict[str, Any], *more: Any) -> Any:
-    """What one of two functions of the extension returns, the one that takes such an image."""
-    names = options.pop("names") if isinstance(options["names"], Mapping) else {}
-    name_of, arguments = _name_of(names), command_line(options)
+              names: Any, options: dict[str, Any], *more: Any) -> Any:
+    """Returns the result of that one of two functions of the extension which takes the image."""
+    name_of = _name_of(names) if isinstance(names, Mapping) else {}
+    if names is not None and not isinstance(names, Mapping):
+        expect(isinstance(names, (str, os.PathLike)), "names",
+               'a dict from label values to names, as {1: "liver"}, or the name of a file', names)
+        options = options | {"names": names}
     if is_file(labels):
         if affine is not None or spacing is not None:
-            raise Error("labels: a file tells where its voxels lie, so that neither affine nor spacing is expected")
-        return of_file(path_bytes("labels", labels), name_of, arguments, *more)
+            raise Error("labels: a file has an affine of its own, so neither affine nor spacing is expected")
+        return of_file(path_bytes("labels", labels), name_of, options, *more)
     voxels, matrix = voxels_and_affine(labels, affine, spacing)
-    return of_array(voxels, matrix, name_of, arguments, *more)
+    return of_array(voxels, matrix, name_of, options, *more)
 
 
 def _name_of(names: Mapping[Any, Any]) -> dict[int, bytes]:
@@ -132,20 +107,59 @@ def _result(made: _podm.MeshInMemory | None, exception: BaseException | None) ->
         raise exception
     result = Mesh(made)
     for text in result.unmet + made.warnings:
-        warnings.warn(_podm.in_python_terms(text), stacklevel=3)
+        warnings.warn(text, stacklevel=3)
     return result
 
 
-def _options_text() -> str:
-    """The options by their keywords, in the format of the program's help."""
-    help_text = _podm.options_help()
-    lines = []
-    for line in help_text[help_text.index("Labels:"):].rstrip().splitlines():
-        option = re.match(r"  --\S+( \S+)?", line)  # and its type
-        width = len(option[0]) if option else 0
-        keyword = _podm.in_python_terms(line[:width]).ljust(width)  # descriptions stay below each other
-        lines.append(("    " + keyword + _podm.in_python_terms(line[width:])).rstrip())
+_OPTIONS = [option for option in json.loads(_podm.options())
+            if "python" in option["uses"] and option["keyword"] != "names"]
+_OF_PLAN = [option for option in _OPTIONS if "plan" in option["uses"] or option["group"] == "Labels"]
+
+TYPES = {"flag": bool, "choice": str | None, "real": float | None, "integer": int | None,
+         "file": str | os.PathLike[str] | None, "text": str | int | None, "two reals": tuple[float, float] | None,
+         "lengths of labels": Mapping[str | int, float] | None,
+         "lengths of pairs of labels": Mapping[tuple[str | int, str | int], float | tuple[float, float]] | None,
+         "label values": str | int | Iterable[int] | None,
+         "names of label values": Mapping[str, str | int | Iterable[int]] | None}
+"""The type of a keyword, by the kind of its option."""
+
+
+def _refuse_unknown(function: str, options: Mapping[str, Any]) -> None:
+    known = {option["keyword"] for option in (_OPTIONS if function == "mesh" else _OF_PLAN)}
+    for keyword in options:
+        if keyword not in known:
+            raise TypeError(f"{function}() got an unexpected keyword argument {keyword!r}")
+
+
+def _declare(function: Callable[..., Any], options: Iterable[Mapping[str, Any]]) -> None:
+    """Gives a function the signature and the description of its options."""
+    signature = inspect.signature(function)
+    own = [parameter for parameter in signature.parameters.values() if parameter.kind is not parameter.VAR_KEYWORD]
+    keywords = [inspect.Parameter(option["keyword"], inspect.Parameter.KEYWORD_ONLY,
+                                  default=False if option["kind"] == "flag" else None,
+                                  annotation=TYPES[option["kind"]]) for option in options]
+    function.__signature__ = signature.replace(parameters=own + keywords)  # type: ignore[attr-defined]
+    function.__doc__ = f"{function.__doc__}\n    Options and their defaults:\n{_options_text(options)}\n"
+
+
+def _options_text(options: Iterable[Mapping[str, Any]]) -> str:
+    lines, group = [], ""
+    for option in sorted(options, key=lambda option: _GROUPS.index(option["group"])):
+        if option["group"] != group:
+            group = option["group"]
+            lines += ["", f"    {group}"]
+        default = option["unset"] or option["default"]
+        text = f"{_in_keywords(option['help'])}\n[default: {_in_keywords(str(default))}]"
+        lines.append(f"      {option['keyword']:<18} " + text.replace("\n", "\n" + " " * 25))
     return "\n".join(lines)
 
 
-mesh.__doc__ = f"{mesh.__doc__}\n    Options and their defaults:\n\n{_options_text()}\n"
+def _in_keywords(text: str) -> str:
+    for option in json.loads(_podm.options()):
+        text = text.replace("--" + option["name"], option["keyword"])
+    return text
+
+
+_GROUPS = list(dict.fromkeys(option["group"] for option in _OPTIONS))
+_declare(mesh, _OPTIONS)
+_declare(plan, _OF_PLAN)

@@ -12,7 +12,6 @@ import numpy as np
 import numpy.typing as npt
 
 from . import _podm, verification
-from .arguments import number_or_text
 from .checks import path_bytes
 from .verification import Verification
 
@@ -120,8 +119,7 @@ class Mesh:
         The file appears whole or not at all: podm.Error says what is in the way. What the format does not hold of the
         mesh, as characters of names in .inp, is told by warnings.warn(). `gmsh_version`: of a .msh file alone, "4.1" or
         "2.2", as `podm mesh --gmsh-version`; None is the program's default."""
-        version = None if gmsh_version is None else number_or_text("gmsh_version", gmsh_version)
-        for loss in self._made.save(path_bytes("path", path), version):
+        for loss in self._made.save(path_bytes("path", path), gmsh_version):
             warnings.warn(f"{os.fsdecode(path)}: {loss}", stacklevel=2)
 
     def save_surfaces(self, path: str | os.PathLike[str]) -> None:
@@ -171,4 +169,4 @@ class Mesh:
 
     def __str__(self) -> str:
         """What the program tells of a run."""
-        return _podm.in_python_terms(self._made.summary())
+        return self._made.summary()
