@@ -12,8 +12,8 @@ namespace podm {
 /// arena. Ids of other nodes return home through the arena, so a node's cells stay in its own memory.
 class FreeIds {
  public:
-  /// `num_workers` share the arena. The block size limits the ids taken at once, so that no worker runs out
-  /// of ids long before the others.
+  /// `num_workers` share the arena. The block size limits the ids taken at once: other workers must not lack
+  /// ids long before the capacity is used up.
   FreeIds(IdArena& arena, NodeIndex node, std::size_t num_workers)
       : arena_(arena), node_(node), block_(arena.block_for(num_workers)) {}
   NodeIndex node() const { return node_; }
