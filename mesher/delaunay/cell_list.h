@@ -1,4 +1,4 @@
-// Cells in the order in which they were found, each once: those of a walk over neighbours.
+// Cells in the order in which a walk over neighbours found them, each once.
 #pragma once
 
 #include <cstdint>
@@ -14,7 +14,7 @@ class CellList {
     cells_.clear();
     table_.assign(kLeastSlots, kEmpty);
   }
-  /// False: it is there already.
+  /// Returns false if the cell is in the list already.
   bool add(CellId c) {
     if (2 * (cells_.size() + 1) > table_.size()) grow();
     if (!take_slot(c)) return false;

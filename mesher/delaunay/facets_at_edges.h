@@ -1,4 +1,4 @@
-// Where the cells of a star meet: the facet over each directed edge of the star's outside.
+// Finds where the cells of a star meet: the facet over each directed edge of the star's outside.
 #pragma once
 
 #include <bit>
@@ -9,7 +9,7 @@
 
 namespace podm {
 
-/// Of vertices by their numbers in the star. The facet over (a,b) lies against that over (b,a).
+/// Vertices are given by their numbers in the star. The facet over (a,b) coincides with the facet over (b,a).
 class FacetsAtEdges {
  public:
   void begin(unsigned num_vertices) {
@@ -19,7 +19,7 @@ class FacetsAtEdges {
   FacetId& over(unsigned a, unsigned b) { return facets_[(a << row_bits_) + b]; }
 
  private:
-  // Rows are as short as the number of vertices allows, so that the usual table lies in the first-level
+  // Rows are as short as the number of vertices allows. A usual table therefore fits in the first-level
   // cache.
   std::vector<FacetId> facets_;
   unsigned row_bits_ = 0;

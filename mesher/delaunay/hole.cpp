@@ -35,7 +35,7 @@ HoleFiller::Local HoleFiller::local_of(Mesh& mesh, VertexId v) {
   return vertex.local_index;
 }
 
-// False: too many vertices. Those of the boundary are among those of the cells.
+// Returns false if there are too many vertices. The vertices of the boundary are among those of the cells.
 bool HoleFiller::collect(Mesh& mesh, const Region& region, const Point* added) {
   ids_.clear();
   points_.clear();
@@ -49,7 +49,7 @@ bool HoleFiller::collect(Mesh& mesh, const Region& region, const Point* added) {
       if (std::find(region.removed.begin(), region.removed.end(), v) == region.removed.end())
         local_of(mesh, v);
     }
-    if (ids_.size() >= max_vertices_) return false;  // one more is added
+    if (ids_.size() >= max_vertices_) return false;  // keeps room for the added vertex
   }
   added_ = added != nullptr ? add_local(kNoVertex, *added) : kNoApex;
   for (const FacetId f : region.boundary) {
@@ -75,7 +75,7 @@ bool HoleFiller::plan(Mesh& mesh, const Region& region, const Point* added) {
     cells_.push_back(local);
     glued_.push_back({facet.other, FacetRef{first + 3, true}});
     for (unsigned k = 0; k < 3; ++k) {
-      const auto& turn = kFacetVertices[k];  // as the new cell sees it; the hole sees it the other way round
+      const auto& turn = kFacetVertices[k];  // seen from the new cell; the hole sees the reverse order
       add_or_match({{local[static_cast<unsigned>(turn[0])], local[static_cast<unsigned>(turn[2])],
                      local[static_cast<unsigned>(turn[1])]},
                     {first + k, true}});
@@ -118,7 +118,7 @@ void HoleFiller::list(const Mesh& mesh, CellId first, std::vector<Cell>& cells) 
   }
 }
 
-// A facet seen for the second time closes the hole there: glue its two sides.
+// A facet that is seen for the second time closes the hole there: its two sides are glued.
 void HoleFiller::add_or_match(const OpenFacet& facet) {
   if (4 * (used_slots_ + 1) > 3 * table_.size()) throw InternalError("gift wrapping does not close");
   const std::uint64_t key = key_of(facet.local);
@@ -155,8 +155,8 @@ bool HoleFiller::is_inner(const OpenFacet& facet, std::size_t i) const {
   return i != a && i != b && i != c && orientation(points_[a], points_[b], points_[c], points_[i]) > 0;
 }
 
-// Finds, by rounded arithmetic, the candidate on the inner side whose sphere with the facet has its centre
-// lowest along the facet's axis.
+// Finds, in rounded arithmetic, the candidate on the inner side whose sphere with the facet has the lowest
+// center along the facet's axis.
 unsigned HoleFiller::nearest_apex(const OpenFacet& facet) const {
   const Point& a = points_[facet.local[0]];
   const Vector ab = points_[facet.local[1]] - a, ac = points_[facet.local[2]] - a;
@@ -189,13 +189,13 @@ unsigned HoleFiller::nearest_apex(const OpenFacet& facet) const {
 }
 
 HoleFiller::Local HoleFiller::apex_of(const Mesh& mesh, const OpenFacet& facet) {
-  // Most cells of the hole have the added vertex: on all facets that have it not, it is tried first.
+  // Most cells of the hole have the added vertex: for all facets without it, it is tried first.
   unsigned best = added_ != kNoApex && is_inner(facet, added_) ? added_ : nearest_apex(facet);
   if (best == kNoApex) throw InternalError("no vertex on the inner side of a hole's facet");
   const Point &a = points_[facet.local[0]], &b = points_[facet.local[1]], &c = points_[facet.local[2]];
-  // The guess is now proved, or moved to a vertex inside its sphere. Spheres through the facet are nested on
-  // its inner side, so each move shrinks the set of vertices inside, and one pass over all candidates must
-  // end it.
+  // The guess is now proved, or replaced by a vertex inside its sphere. Spheres through the facet are nested
+  // on its inner side, so each replacement shrinks the set of vertices inside. Therefore one pass over all
+  // candidates ends without a replacement.
   Circumsphere sphere = circumsphere(a, b, c, points_[best], mesh.extent());
   for (unsigned checked = 0, i = 0; checked < points_.size(); ++checked, i = (i + 1) % points_.size()) {
     const Side side = side_of(sphere, points_[i]);

@@ -1,9 +1,8 @@
-// Filling any region by gift wrapping: removal of vertices, and insertions whose cavity is out of the
-// ordinary.
+// Fills any region by gift wrapping: removals of vertices, and insertions with an unusual cavity.
 //
-// From a boundary facet the next cell's apex is the one vertex on its inner side whose circumsphere with the
-// facet holds no other candidate. Candidates are all vertices of the region that stay, and the new vertex. By
-// the uniqueness of the perturbed triangulation the cells found from different facets fit together.
+// From a boundary facet, the next cell's apex is the one vertex on the inner side whose circumsphere with the
+// facet contains no other candidate. Candidates are all vertices of the region that stay, and the new vertex.
+// The perturbed triangulation is unique. Therefore the cells found from different facets fit together.
 #pragma once
 
 #include <array>
@@ -20,19 +19,19 @@ class HoleFiller {
   static constexpr std::size_t kMaxVertices = 0xffff;
   explicit HoleFiller(std::size_t max_vertices = kMaxVertices) : max_vertices_(max_vertices) {}
 
-  /// Finds the Delaunay cells of the region's remaining vertices and of `added`, if given. Writes nothing.
-  /// False: there are more vertices than it can number.
+  /// Finds the Delaunay cells of the region's remaining vertices and of `added`, if given. Writes nothing
+  /// except the scratch Vertex::local_index. Returns false if there are more vertices than it can number.
   bool plan(Mesh& mesh, const Region& region, const Point* added);
   std::size_t num_cells() const { return cells_.size(); }
-  /// The planned cells, of which none has an added vertex, as they would be in a store from the id `first`
-  /// on.
+  /// Lists the planned cells, none of which may have an added vertex, as they would be stored from the id
+  /// `first` on.
   void list(const Mesh& mesh, CellId first, std::vector<Cell>& cells) const;
-  /// Replaces the region by the planned cells; `added` is the vertex whose point was given, or kNoVertex.
+  /// Replaces the region by the planned cells. `added` is the vertex whose point was given, or kNoVertex.
   void fill(Mesh& mesh, Pool& pool, Region& region, VertexId added);
 
  private:
   using Local = std::uint16_t;  // a vertex, as numbered by the plan
-  // A facet of the triangulation or, as long as they have no ids, of the planned cells: 4 * number + index.
+  // A facet of the triangulation or of the planned cells, which have no ids yet: 4 * number + index.
   struct FacetRef {
     FacetId facet;
     bool is_planned;
@@ -59,9 +58,9 @@ class HoleFiller {
   static constexpr unsigned kNoApex = 0xffffffffu;
 
   std::size_t max_vertices_;
-  std::vector<VertexId> ids_;  // kNoVertex: the added one
+  std::vector<VertexId> ids_;  // kNoVertex: the added vertex
   std::vector<Point> points_;
-  unsigned added_ = kNoApex;  // the added one's place among them
+  unsigned added_ = kNoApex;  // the added vertex's index in ids_ and points_
   std::vector<OpenFacet> open_;
   std::vector<std::uint8_t> is_closed_;
   std::vector<Slot> table_;  // open addressing, power of two

@@ -1,6 +1,6 @@
-// Ids handed out in blocks. On a machine of several NUMA nodes each node has runs of ids of its own, so long
-// that what they index fills whole huge pages: first touch then puts a cell in its maker's memory, and an id
-// tells whose it is.
+// Ids handed out in blocks. On a machine with several NUMA nodes each node has its own runs of ids. The data
+// that one run indexes fills whole huge pages: first touch then puts a cell in its maker's memory, and the id
+// identifies the node.
 #pragma once
 
 #include <algorithm>
@@ -17,7 +17,8 @@ namespace podm {
 
 class IdArena {
  public:
-  /// Ids below `capacity`. 2^run_bits ids make a run, of which blocks are taken; none is larger.
+  /// Manages the ids below `capacity`. A run has 2^run_bits ids. Blocks are taken from runs; none is larger
+  /// than a run.
   IdArena(std::size_t capacity, int num_nodes, unsigned run_bits)
       : num_ids_(capacity),
         capacity_(capacity),
@@ -26,16 +27,16 @@ class IdArena {
     if (num_nodes > 1) node_of_run_.resize((capacity >> run_bits) + 1);
   }
 
-  /// How many ids each of so many workers should take at once: what lies unused in blocks is a thirty-second
-  /// at most.
+  /// Returns the number of ids that each of `num_workers` workers should take at once. Unused ids in blocks
+  /// are then at most 1/32 of all, unless the minimum block size applies.
   std::uint32_t block_for(std::size_t num_workers) const {
     constexpr std::size_t kLeast = 8, kMost = 1024, kBlocksAWorker = 32;
     const std::size_t longest = node_of_run_.empty() ? kMost : std::min(kMost, std::size_t{1} << run_bits_);
     return static_cast<std::uint32_t>(
         std::clamp(capacity_ / (kBlocksAWorker * num_workers), std::min(kLeast, longest), longest));
   }
-  /// A block of `count` ids; returns the first. Any worker, any time: the mutex is taken once in a thousand
-  /// cells. Throws std::bad_alloc when the capacity is used up.
+  /// Takes a block of `count` ids and returns the first. Any worker may call it at any time: the mutex is
+  /// taken about once per thousand cells. Throws std::bad_alloc when the capacity is used up.
   std::uint32_t take(std::uint32_t count, NodeIndex node) {
     const std::scoped_lock lock(mutex_);
     OfNode& own = nodes_[node];
@@ -43,21 +44,21 @@ class IdArena {
     own.next += count;
     return own.next - count;
   }
-  /// So many ids less may be taken than there are, whatever was withheld before; false: more are taken
-  /// already.
+  /// Reduces the number of ids that may be taken by `count`, and replaces any earlier reduction. Returns
+  /// false if more are taken already.
   bool withhold(std::size_t count) {
     const std::scoped_lock lock(mutex_);
     capacity_ = num_ids_ - std::min(num_ids_, count);
     return bound() <= capacity_;
   }
-  /// Whether somebody asked for more ids than there were.
+  /// True if more ids were requested than there were.
   bool is_used_up() const { return is_used_up_.load(std::memory_order_relaxed); }
-  /// Ids of any node that nobody uses; takes them out of `ids` one by one. Throws std::bad_alloc.
+  /// Returns unused ids of any node to the arena; takes them out of `ids` one by one. Throws std::bad_alloc.
   void give_back(std::vector<std::uint32_t>& ids) {
     const std::scoped_lock lock(mutex_);
     for (; !ids.empty(); ids.pop_back()) nodes_[node_of(ids.back())].returned.push_back(ids.back());
   }
-  /// Adds at most `count` of the node's own that were given back; false: there are none. `ids` has room.
+  /// Adds at most `count` returned ids of the node to `ids`, which has room. Returns false if there are none.
   bool take_returned(std::uint32_t count, NodeIndex node, std::vector<std::uint32_t>& ids) {
     const std::scoped_lock lock(mutex_);
     auto& returned = nodes_[node].returned;
@@ -71,7 +72,7 @@ class IdArena {
     return node_of_run_.empty() ? NodeIndex{0} : node_of_run_[id >> run_bits_];
   }
   int num_nodes() const { return static_cast<int>(nodes_.size()); }
-  /// Ids below it have been handed out, or lie in the run of a node.
+  /// Ids below it have been handed out or belong to the run of a node.
   std::uint32_t bound() const { return bound_.load(std::memory_order_relaxed); }
 
  private:

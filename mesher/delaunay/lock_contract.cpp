@@ -12,7 +12,7 @@ namespace podm {
 
 namespace {
 
-// The attempts of this thread by their fibres, which may stop in the middle of one; of no fibre: nullptr.
+// The attempts of this thread, by fibre, as a fibre may stop in the middle of an attempt; nullptr: no fibre.
 thread_local std::unordered_map<const Fibre*, const AttemptScope*> attempts;
 
 const AttemptScope* attempt_at_hand() {

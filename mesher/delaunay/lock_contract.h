@@ -1,16 +1,16 @@
-// The contract of vertex_locks.h, asserted at every access to a cell in a build with PODM_CHECK_LOCKS: in any
-// other there is nothing to it.
+// The contract of vertex_locks.h, asserted at every access to a cell in a build with PODM_CHECK_LOCKS. In any
+// other build the assertions do nothing.
 //
-//   A cell is read under locks on two of its vertices, or on two of a neighbour's. Its mirrors and its sphere
-//   are written under three, and it is replaced under all four. Locks may count as held what no other worker
-//   can reach (algorithms/leaf_locks.h). Where operations read beyond a zone but change nothing
-//   there, only its vertices count as held for a change (distributed/zone.h).
+//   A worker reads a cell under locks on two of its vertices, or on two of a neighbour's. It writes the
+//   cell's mirrors and sphere under three locks, and replaces the cell under all four. Vertices that no other
+//   worker can reach may count as held (algorithms/leaf_locks.h). Where operations read beyond a zone but
+//   change nothing there, only the zone's vertices count as held for a change (distributed/zone.h).
 //
-// Vertices go unchecked: whoever may read a cell may read its vertices, those that locks are tried on are
-// peeked at, and what is written of one is its maker's, or its cavity's owner's. The contract binds attempts.
-// Whoever uses the store outside of one has it alone: before workers run, after they have ended, and where
-// the master of a computing node ends a leaf; or all read it and none writes, where cells are distributed to
-// leaves. Peeks and prefetches are bound by nothing.
+// Vertices are not checked. A worker that may read a cell may read its vertices. Before a vertex is locked,
+// its point is only peeked at. Only the maker of a vertex, or the owner of its cavity, writes to it. The
+// contract binds attempts. Code that uses the store outside of an attempt has it alone: before workers run,
+// after they have ended, and where the master of a computing node ends a leaf; or all threads read it and
+// none writes, where cells are distributed to leaves. The contract does not bind peeks and prefetches.
 #pragma once
 
 #include <cstdint>
@@ -21,7 +21,7 @@ class Mesh;
 struct Vertex;
 
 #ifdef PODM_CHECK_LOCKS
-/// An attempt of this thread, or of this fibre, under these locks, until the scope ends.
+/// An attempt of this thread, or of this fibre, under these locks. It lasts until the scope ends.
 class AttemptScope {
  public:
   template <class Locks>
@@ -33,7 +33,8 @@ class AttemptScope {
   AttemptScope(const AttemptScope&) = delete;
   AttemptScope& operator=(const AttemptScope&) = delete;
   bool holds(const Vertex& v) const { return holds_(locks_, v); }
-  /// Whether v counts as held for a change: the locks' own answer, if they have one, else holds(v).
+  /// True if v counts as held for a change: the locks' own may_change(v) if they have one, otherwise
+  /// holds(v).
   bool may_change(const Vertex& v) const { return may_change_(locks_, v); }
 
  private:
@@ -58,10 +59,10 @@ class AttemptScope {
   Predicate* may_change_;
 };
 
-/// These abort, and say why, where the attempt at hand may not do so.
+/// Abort with a message if the current attempt may not access the cell in this way.
 void assert_may_read(const Mesh& mesh, std::uint32_t cell);
 void assert_may_write_mirrors(const Mesh& mesh, std::uint32_t cell);
-/// A slot without a living cell is its pool's, which may do so.
+/// Passes for a slot without a living cell, which belongs to its pool.
 void assert_may_replace(const Mesh& mesh, std::uint32_t cell);
 #else
 class AttemptScope {

@@ -1,5 +1,5 @@
-// How an operation begins at a cell of a list: it locks two of its vertices, by which it may be read, if the
-// cell is still the one that was listed.
+// The start of an operation at a cell of a list. It locks two of the cell's vertices, which is enough to read
+// the cell, if the cell is still the one that was listed.
 #pragma once
 
 #include <array>
@@ -11,11 +11,11 @@
 
 namespace podm {
 
-/// Calls lock(vertex) for two of them, if locks are shared. kStaleCell: the cell has not that stamp; whatever
-/// is not kDone, the caller lets go of all locks.
+/// Calls lock(vertex) for two vertices of the cell, if locks are shared. kStaleCell: the cell has another
+/// stamp. Unless the result is kDone, the caller releases all locks.
 //
-// The stamp is compared under the locks: who replaced the cell after our peek held both vertices before us,
-// and a peek of the new cell shows the new stamp as well.
+// The stamp is compared under the locks: a worker that replaced the cell after this peek held both vertices
+// before this worker did, and a peek that returns the new cell sees the new stamp as well.
 template <class Locks, class Lock>
 StepResult lock_to_read(const Mesh& mesh, CellId c, std::uint32_t stamp, const Lock& lock) {
   StepResult result = StepResult::kDone;

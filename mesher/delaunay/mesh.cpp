@@ -11,15 +11,15 @@ namespace podm {
 
 namespace {
 
-// A tetrahedralisation of V vertices has at most about 6.8 V cells on average inputs of refinement; ids of
-// vertices are bounded by cells / 4, which leaves slack for sparse starts.
+// A tetrahedralisation of V vertices has at most about 6.8 V cells on average inputs of refinement. The
+// number of vertex ids is bounded by cells / 4, which leaves slack for sparse starts.
 std::size_t vertex_capacity_for(std::size_t cell_capacity) { return cell_capacity / 4 + 4096; }
 
-// Runs of ids whose cells or vertices fill a huge page of 2 MiB.
+// The cells or vertices of one run of ids fill a huge page of 2 MiB.
 constexpr unsigned kCellRunBits = 15, kVertexRunBits = 16;
 static_assert(sizeof(Cell) << kCellRunBits == 1 << 21 && sizeof(Vertex) << kVertexRunBits == 1 << 21);
 
-// Shorter where a node would else have few runs of a small store, or none.
+// Runs are shorter in a small store, where a node would otherwise have few runs or none.
 unsigned run_bits_for(std::size_t capacity, int num_nodes, unsigned most_bits) {
   const std::size_t longest = capacity / (16 * static_cast<std::size_t>(num_nodes));
   constexpr unsigned kLeastBits = 3;  // the box takes eight vertices at once
@@ -42,7 +42,8 @@ Mesh::Mesh(const Box& box, std::size_t cell_capacity, int num_nodes)
       vertex_ids_(vertices_.capacity(), num_nodes,
                   run_bits_for(vertices_.capacity(), num_nodes, kVertexRunBits)) {
   // Kuhn's six cells around the diagonal from corner 0 to corner 7 (bit 0: x, 1: y, 2: z). All eight corners
-  // are cospherical; the perturbation of predicates.h, which lowers the largest corner most, picks these.
+  // are cospherical. The perturbation of predicates.h, which lowers the largest corner most, selects these
+  // cells.
   vertex_ids_.take(8, 0);
   for (unsigned corner = 0; corner < 8; ++corner) {
     vertices_[corner] = {{(corner & 1) ? box.high.x : box.low.x, (corner & 2) ? box.high.y : box.low.y,

@@ -1,4 +1,4 @@
-// The store of the triangulation: vertices and cells by 32-bit id, one cache line a cell.
+// The store of the triangulation: vertices and cells by 32-bit id, one cache line per cell.
 #pragma once
 
 #include <array>
@@ -31,8 +31,8 @@ inline constexpr int index_in_cell(FacetId f) { return static_cast<int>(f & 3); 
 enum class VertexKind : std::uint8_t {
   kUnused,
   kBox,           // corner of the virtual box, never removed
-  kIsosurface,    // put on the isosurface by R1 or R3, never removed
-  kCircumcenter,  // put at a circumcentre by R2, R4 or R5; R6 may remove it ("free")
+  kIsosurface,    // placed on the isosurface by R1 or R3, never removed
+  kCircumcenter,  // placed at a circumcenter by R2, R4 or R5; R6 may remove it ("free")
 };
 
 struct Vertex {
@@ -43,9 +43,9 @@ struct Vertex {
 };
 static_assert(sizeof(Vertex) == 32);
 
-/// The point as someone sees it who may not have locked the vertex: of a stale cell it may be in the middle
-/// of a change. Acquire, and release in place(): who sees a coordinate of the new point sees that the cells
-/// of the old one have died.
+/// Returns the point of a vertex that the caller may not have locked. The vertex of a stale cell may be in
+/// the middle of a change. Acquire here and release in place(): a reader that sees a coordinate of the new
+/// point also sees that the cells of the old point have died.
 inline Point peek_point(const Vertex& v) {
   const auto peek = [](const double& coordinate) {
     step();
@@ -53,7 +53,7 @@ inline Point peek_point(const Vertex& v) {
   };
   return {peek(v.point.x), peek(v.point.y), peek(v.point.z)};
 }
-/// Makes an unused vertex one at `p`.
+/// Turns an unused vertex into one at `p`.
 inline void place(Vertex& v, const Point& p, VertexKind kind) {
   store(v.point.x, p.x, std::memory_order_release);
   step();
@@ -65,26 +65,26 @@ inline void place(Vertex& v, const Point& p, VertexKind kind) {
 
 inline constexpr LabelIndex kUnknownLabel = 0xffff;
 
-/// Everything that is read of a cell, its state too: 64 bytes, one cache line.
+/// All data that is read of a cell, with its state: 64 bytes, one cache line.
 struct alignas(64) Cell {
-  Point center;                      // the circumcentre
+  Point center;                      // the circumcenter
   float squared_radius = 0;          // rounded, or NaN: circumsphere.h
   std::uint16_t stamp_and_bits = 0;  // Mesh::stamp, Mesh::is_marked and Mesh::relies_on_others
-  LabelIndex label = kUnknownLabel;  // the image's at the circumcentre, once asked for
+  LabelIndex label = kUnknownLabel;  // the image's label at the circumcenter, once looked up
   std::array<VertexId, 4> vertices{kNoVertex, kNoVertex, kNoVertex, kNoVertex};
-  std::array<FacetId, 4> mirrors{};  // the facet on the other side of each of ours
-  // A cell has four vertices; memory that nobody has touched has none, nor has a cell that died.
+  std::array<FacetId, 4> mirrors{};  // per facet, the mirror facet on its other side
+  // A living cell has four distinct vertices. Untouched memory and dead cells have equal ones.
   bool is_alive() const { return vertices[0] != vertices[1]; }
 };
 static_assert(sizeof(Cell) == 64);
 
 class Mesh {
  public:
-  /// The six cells of the virtual box, all vertices kBox. The capacity bounds the ids that pools may take;
-  /// `num_nodes` is how many NUMA nodes they are on.
+  /// Makes the six cells of the virtual box, all vertices kBox. The capacity bounds the ids that pools may
+  /// take. `num_nodes` is the number of NUMA nodes that the pools are on.
   Mesh(const Box& box, std::size_t cell_capacity, int num_nodes = 1);
 
-  // Builds that check the lock protocol do it here: step.h, lock_contract.h.
+  // Builds that check the lock protocol do so in these functions: step.h, lock_contract.h.
   const Cell& cell(CellId c) const { return note_read(c), assert_may_read(*this, c), cells_[c]; }
   LabelIndex& label(CellId c) { return step(), assert_may_read(*this, c), cells_[c].label; }
   LabelIndex label(CellId c) const { return assert_may_read(*this, c), cells_[c].label; }
@@ -92,14 +92,14 @@ class Mesh {
   const Vertex& vertex(VertexId v) const { return step(), vertices_[v]; }
   const Point& point(VertexId v) const { return step(), vertices_[v].point; }
 
-  /// Changes whenever the id is reused, so that a stale list entry is seen. Relaxed: without locks it is a
-  /// guess.
+  /// Changes whenever the id is reused, which exposes stale list entries. Relaxed: without locks the stamp is
+  /// a guess.
   std::uint16_t stamp(CellId c) const {
     step();
     return load(cells_[c].stamp_and_bits, std::memory_order_relaxed) & kStampBits;
   }
-  /// Two vertices as someone without locks sees them. Acquire, and release in renew(): who sees a vertex of
-  /// the new cell sees the new stamp too.
+  /// Returns two vertices for a caller without locks. Acquire here and release in renew(): a reader that sees
+  /// a vertex of the new cell also sees the new stamp.
   std::array<VertexId, 2> peek_two_vertices(CellId c) const {
     const auto& v = cells_[c].vertices;
     step();
@@ -107,8 +107,8 @@ class Mesh {
     step();
     return {last, load(v[0], std::memory_order_acquire)};
   }
-  /// Others that may be asked for without locks: of a cell that is being replaced the answer may be of the
-  /// old cell or the new, or of neither.
+  /// Return more data to callers without locks. If the cell is being replaced, the answer may belong to the
+  /// old cell, to the new cell or to neither.
   std::array<VertexId, 4> peek_vertices(CellId c) const { return peek(cells_[c].vertices); }
   std::array<FacetId, 4> peek_mirrors(CellId c) const { return peek(cells_[c].mirrors); }
   bool peek_is_alive(CellId c) const {
@@ -121,9 +121,9 @@ class Mesh {
     step();
     return {peek(center.x), peek(center.y), peek(center.z)};
   }
-  /// The address of a cell's slot, whatever is in it.
+  /// Returns the address of a cell's slot, whether or not a cell is in it.
   const void* address(CellId c) const { return &cells_[c]; }
-  /// Scratch of the operation that holds the locks: the cell is in its region.
+  /// True if the cell is in the region of the operation that holds the locks; scratch of that operation.
   bool is_marked(CellId c) const {
     step();
     assert_may_read(*this, c);
@@ -134,21 +134,20 @@ class Mesh {
     assert_may_replace(*this, c);
     put(c, kMark, is_marked);
   }
-  /// Whether R1 asks the cell for nothing because of vertices that are not its own, as who examined it last
-  /// told; false of a new cell.
+  /// True if only vertices of other cells may cover the cell's R1 sample (Examination::relies_on_others), as
+  /// set at the last examination. False for a new cell.
   bool relies_on_others(CellId c) const {
     step();
     assert_may_read(*this, c);
     return has(c, kReliance);
   }
-  /// By the operation that has reserved the cell, or made it.
+  /// Sets relies_on_others(). The caller has reserved the cell or made it.
   void tell_reliance(CellId c, bool relies_on_others) {
     step();
     assert_may_read(*this, c);
     if (has(c, kReliance) != relies_on_others) put(c, kReliance, relies_on_others);
   }
-  /// Puts a new cell in the slot c, or none (vertices kNoVertex). Its sphere and mirrors are the caller's to
-  /// set.
+  /// Puts a new cell in the slot c, or none (vertices kNoVertex). The caller sets its sphere and mirrors.
   void renew(CellId c, const std::array<VertexId, 4>& vertices) {
     Cell& cell = cells_[c];
     note_replaced(c);
@@ -162,7 +161,7 @@ class Mesh {
       store(cell.vertices[i], vertices[i], std::memory_order_release);
     }
   }
-  /// The sphere of a cell just renewed. Relaxed: who peeks at the centre may see some of the old one.
+  /// Sets the sphere of a cell just renewed. Relaxed: peek_center() may return a part of the old center.
   void set_sphere(CellId c, const Circumsphere& sphere) {
     assert_may_write_mirrors(*this, c);
     Cell& cell = cells_[c];
@@ -172,17 +171,17 @@ class Mesh {
     store(cell.center.z, sphere.center.z, std::memory_order_relaxed);
     cell.squared_radius = stored_squared_radius(sphere.squared_radius);
   }
-  /// Those of a cell just renewed.
+  /// Sets the mirrors of a cell just renewed.
   void set_mirrors(CellId c, const std::array<FacetId, 4>& mirrors) {
     step();
     assert_may_write_mirrors(*this, c);
     for (unsigned i = 0; i < 4; ++i) store(cells_[c].mirrors[i], mirrors[i], std::memory_order_relaxed);
   }
-  /// Puts the cell `from` in the slot `to`, its own or one without a cell, under other names of what it
-  /// refers to. Nobody else may use either.
+  /// Moves the cell in the slot `from` to the slot `to`, which is the same slot or holds no cell, with new
+  /// ids of its vertices and mirrors. No other worker may use either slot.
   void move_cell(CellId from, CellId to, const std::array<VertexId, 4>& vertices,
                  const std::array<FacetId, 4>& mirrors);
-  /// Tells the facet `of` that `mirror` lies on its other side. Nothing is beyond the box.
+  /// Records that `mirror` is the other side of the facet `of`. Does nothing beyond the box.
   void set_mirror(FacetId of, FacetId mirror) {
     step();
     if (of == kNoFacet) return;
@@ -191,8 +190,8 @@ class Mesh {
           std::memory_order_relaxed);
   }
 
-  /// Ask for cache lines before they are needed: of a cell, of a vertex, of a cell's vertices, of its
-  /// neighbours, and of both.
+  /// Prefetch cache lines: of a cell, of a vertex, of a cell's vertices, of its neighbours, and of vertices
+  /// and neighbours.
   void prefetch(CellId c) const { __builtin_prefetch(&cells_[c]); }
   void prefetch_vertex(VertexId v) const { __builtin_prefetch(&vertices_[v]); }
   void prefetch_vertices(CellId c) const {
@@ -212,31 +211,32 @@ class Mesh {
   CellId cell_bound() const { return cell_ids_.bound(); }
   VertexId vertex_bound() const { return vertex_ids_.bound(); }
   std::size_t cell_capacity() const { return cells_.capacity(); }
-  double extent() const { return extent_; }  // the largest coordinate, M of circumsphere.h
+  double extent() const { return extent_; }  // the largest absolute coordinate, M of circumsphere.h
   const Box& box() const { return box_; }
 
   void refresh_sphere(CellId c);
-  /// The same, of the vertices in the order of their coordinates: so that stores which have the cell in
-  /// common agree about its centre to the bit, and about its label, which has to be asked for again.
+  /// Recomputes the sphere from the vertices in the order of their coordinates. Stores that share the cell
+  /// then agree about its center to the bit, and therefore about its label. Resets the label, which has to be
+  /// looked up again.
   void make_canonical(CellId c);
   bool is_in_conflict(CellId c, const Point& p) const;  // exact, unique by perturbation
   std::uint64_t num_cells() const;
 
-  /// Give memory back while a finished mesh is taken apart. What is released is not to be asked for any more.
+  /// Give memory back while a finished mesh is taken apart. The caller must not access released items again.
   void release_cells(CellId begin, CellId end) { cells_.release(begin, end); }
   void release_vertices(VertexId begin, VertexId end) { vertices_.release(begin, end); }
 
-  /// The store is to have so many cells less than its capacity, whatever was withheld before: others need the
-  /// memory. False: it has more already, and gets none any more.
+  /// Reduces the capacity by `cells` and replaces any earlier reduction, because other data needs the memory.
+  /// Returns false if the store already holds more; it then gets no more ids.
   bool withhold(std::size_t cells) { return cell_ids_.withhold(cells); }
-  /// Whether a cell or a vertex was wanted beyond the capacity.
+  /// True if a cell or a vertex was requested beyond the capacity.
   bool is_used_up() const { return cell_ids_.is_used_up() || vertex_ids_.is_used_up(); }
 
-  /// These know which ids there are, and whose; pools take them.
+  /// The arenas that know which ids exist and which node owns them. Pools take ids from them.
   IdArena& cell_ids() { return cell_ids_; }
   IdArena& vertex_ids() { return vertex_ids_; }
   int num_nodes() const { return cell_ids_.num_nodes(); }
-  /// The node whose pool handed out the id.
+  /// Returns the node whose pool handed out the id.
   NodeIndex node_of_cell(CellId c) const { return cell_ids_.node_of(c); }
   NodeIndex node_of_vertex(VertexId v) const { return vertex_ids_.node_of(v); }
 
@@ -250,7 +250,7 @@ class Mesh {
   double extent_;
   HugeArray<Cell> cells_;
   HugeArray<Vertex> vertices_;
-  // Relaxed: others who may read the cell ask at the same time.
+  // Relaxed: other workers that may read the cell call this at the same time.
   bool has(CellId c, std::uint16_t bit) const {
     return (load(cells_[c].stamp_and_bits, std::memory_order_relaxed) & bit) != 0;
   }
@@ -263,10 +263,10 @@ class Mesh {
   IdArena cell_ids_, vertex_ids_;
 };
 
-/// Whether adjacency and orientation hold: what is left of is_valid() for an optimised mesh.
+/// True if adjacency and orientation hold: the part of is_valid() that holds for an optimised mesh.
 bool is_triangulation(const Mesh& mesh, std::string* fault = nullptr);
-/// Whether adjacency, orientation, circumspheres and the local Delaunay property all hold; `fault` tells what
-/// does not. Linear in the number of cells.
+/// True if adjacency, orientation, circumspheres and the local Delaunay property all hold; `fault` describes
+/// the first violation. Linear in the number of cells.
 bool is_valid(const Mesh& mesh, std::string* fault = nullptr);
 
 }  // namespace podm

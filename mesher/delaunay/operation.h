@@ -1,15 +1,16 @@
-// One operation on the triangulation: the insertion of a vertex, and with it the removal of others.
+// One operation on the triangulation: the insertion of a vertex, together with the removal of others.
 //
-// An operation is cautious. *Reserving* locks two vertices of the cell that asks for it, enough to read it.
-// *Planning* reads, locks and collects the region: the cells that will die. For an insertion these are the
-// cells in conflict with the point (the cavity), for a removal the cells around the vertex (its ball); an
-// isosurface insertion with its R6 removals takes their union. *Committing* replaces the region by new
-// Delaunay cells. A plan that cannot be carried out is rolled back, with nothing written. *Releasing* unlocks
-// all. Memory is asked for before the first write, so that std::bad_alloc from any step leaves a plan to roll
-// back.
+// An operation is cautious. *Reserving* locks two vertices of the cell that requests the operation; two are
+// enough to read it. *Planning* reads, locks and collects the region: the cells that will die. For an
+// insertion these are the cells in conflict with the point (the cavity), for a removal the cells around the
+// vertex (its ball); an isosurface insertion with its R6 removals takes their union. *Committing* replaces
+// the region by new Delaunay cells. A plan that cannot be carried out is rolled back, with nothing written.
+// *Releasing* unlocks all. Memory is allocated before the first write, so std::bad_alloc from any step leaves
+// a plan that can be rolled back.
 //
-// Why one region serves all: a cell of the old triangulation stays Delaunay unless it holds a removed vertex
-// or conflicts with the new one, so the region's boundary facets are facets of the new triangulation too.
+// One region serves all operations for this reason: a cell of the old triangulation stays Delaunay unless it
+// has a removed vertex or conflicts with the new one. Therefore the region's boundary facets are facets of
+// the new triangulation too.
 #pragma once
 
 #include <concepts>
@@ -27,8 +28,9 @@
 namespace podm {
 
 /// Locks of a worker whose store may differ from the whole triangulation beyond a horizon
-/// (distributed/zone.h): they tell which cells are of the whole, which may be read and replaced by an
-/// operation around a point that their balls have, and where a vertex may be inserted, in a cell's ball.
+/// (distributed/zone.h). They decide which cells belong to the whole triangulation, which cells may be read
+/// and replaced by an operation around a point in their balls, and where in a cell's ball a vertex may be
+/// inserted.
 template <class Locks>
 concept HasHorizon = requires(Locks& locks, const Mesh& mesh, const Cell& cell, const Point& p) {
   { locks.knows(cell) } -> std::same_as<bool>;
@@ -42,13 +44,13 @@ template <class Locks>
 class Operation {
  public:
   /// `tally`, if given, counts accesses to the mesh by the node whose pool made the cell or vertex. Locks
-  /// that nobody shares count none: such a run is on one node.
+  /// that are not shared count none: such a run is on one node.
   Operation(Mesh& mesh, Pool& pool, WorkerId self, AccessTally* tally = nullptr)
       : mesh_(mesh), pool_(pool), locks_(self), move_(mesh), tally_(tally) {}
 
-  /// Locks two vertices of the cell c of that stamp, so that it and its neighbours may be read. kStaleCell:
-  /// it has died. kLockConflict: conflicting_worker() tells with whom. kOutOfReach: it or a neighbour is
-  /// beyond the horizon. Unless done nothing is held.
+  /// Locks two vertices of the cell c with that stamp, after which it and its neighbours may be read.
+  /// kStaleCell: the cell has died. kLockConflict: conflicting_worker() holds a vertex. kOutOfReach: the cell
+  /// or a neighbour is beyond the horizon. Holds no lock unless it returns kDone.
   StepResult reserve(CellId c, std::uint32_t stamp);
   void release() {
     forget_reads();
@@ -57,13 +59,14 @@ class Operation {
   Locks& locks() { return locks_; }
   WorkerId conflicting_worker() const { return locks_.conflicting_worker(); }
 
-  /// Digs the cavity of p from `start`, a cell in conflict with p, reserved or beside it. Unless done the
-  /// caller must roll back. kNotInConflict: `start` is not. The plan may be extended by plan_removal.
+  /// Digs the cavity of p from `start`, a cell in conflict with p that is reserved or next to a reserved
+  /// cell. kNotInConflict: `start` is not in conflict. The caller must roll back unless the result is kDone.
+  /// plan_removal() may extend the plan.
   StepResult plan_insertion(const Point& p, CellId start);
   /// Adds the ball of v, a vertex of the cell `seed`, to the region.
   StepResult plan_removal(VertexId v, CellId seed);
-  /// Calls visit(VertexId, CellId) for the vertices of every cell of the region, some more than once. `visit`
-  /// may extend the plan; the cells so added are visited too.
+  /// Calls visit(VertexId, CellId) for the vertices of every cell of the region, for some more than once.
+  /// `visit` may extend the plan; the added cells are visited too.
   template <class Visit>
   void for_each_region_vertex(Visit&& visit) const {
     for (std::size_t i = 0; i < region_.cells.size(); ++i) {
@@ -73,19 +76,19 @@ class Operation {
   }
   bool removes(VertexId v) const;
 
-  /// Plans the move of v, a vertex of the cell `seed`, to places that are still to be tried: v's ball is the
-  /// region. kTooNear: it has too many vertices. Unless done the caller must roll back.
+  /// Plans the move of v, a vertex of the cell `seed`, to places that are given later. v's ball becomes the
+  /// region. kTooNear: the ball has too many vertices. The caller must roll back unless the result is kDone.
   StepResult plan_move(VertexId v, CellId seed);
-  /// Plans the move to p, instead of where it was planned to before: move() has the cells. p is nearer to
-  /// where the vertex is than to all others. Unless done the caller must roll back; kNotInConflict: or try
-  /// another point.
+  /// Plans the move to p in place of any earlier p; move() has the cells. p must be nearer to the vertex's
+  /// present place than to all other vertices. The caller must roll back unless the result is kDone; after
+  /// kNotInConflict it may try another point instead.
   StepResult plan_move_to(const Point& p);
   VertexMove& move() { return move_; }
-  /// Locks two vertices of c, which may be read already: then so may its neighbours. kOutOfReach: one of them
-  /// is beyond the horizon. There is nothing to do for a planned cell.
+  /// Locks two vertices of c, which may be read already; afterwards its neighbours may be read too.
+  /// kOutOfReach: one of these cells is beyond the horizon. Does nothing for a planned cell.
   StepResult reach(CellId c);
-  /// Calls visit(CellId) for the neighbours of a planned cell, or of one of the store that has been reached,
-  /// but for those of the store that the move replaces.
+  /// Calls visit(CellId) for the neighbours of a planned cell or of a stored cell that has been reached,
+  /// except for stored cells that the move replaces.
   template <class Visit>
   void for_each_neighbor(CellId c, Visit&& visit) const {
     for (const FacetId mirror : move_.cell(c).mirrors) {
@@ -94,32 +97,32 @@ class Operation {
       if (VertexMove::is_planned(neighbor) || !mesh_.is_marked(neighbor)) visit(neighbor);
     }
   }
-  /// What the plan replaces; of a move the first num_in_ball() have the vertex.
+  /// The cells that the plan replaces. For a move, the first num_in_ball() of them have the vertex.
   std::span<const CellId> region_cells() const { return region_.cells; }
   std::size_t num_in_ball() const { return num_in_ball_; }
 
   std::size_t num_planned_removals() const { return region_.removed.size(); }
 
-  /// Carries the plan out; created() then lists the new cells.
-  /// kTooNear: a vertex that stays lies nearer to p than `min_distance` (mm), or the region has more
-  /// vertices than HoleFiller numbers; nothing was written, roll back.
+  /// Carries the plan out; created() then lists the new cells. kTooNear: a vertex that stays is nearer to p
+  /// than `min_distance` (mm), or the region has more vertices than HoleFiller can number. Nothing was
+  /// written then, and the caller must roll back.
   StepResult commit_insertion(const Point& p, VertexKind kind, double min_distance);
-  /// Carries out the move that was planned last; inserted() is the vertex then.
+  /// Carries out the move that was planned last; inserted() is then the vertex.
   void commit_move();
-  /// The same of a plan that has removals alone.
+  /// Carries out a plan that consists of removals only; kTooNear: the region has too many vertices.
   StepResult commit_removals();
-  /// Gives the plan up; nothing was written. Locks are kept until release().
+  /// Gives up the plan; nothing was written. Locks are held until release().
   void rollback();
 
   /// The vertex that the last committed insertion made.
   VertexId inserted() const { return inserted_; }
-  /// What the last commit made and took away.
+  /// The cells that the last commit made and the vertices that it removed.
   const std::vector<CellId>& created() const { return region_.created; }
   const std::vector<VertexId>& removed() const { return removed_; }
-  /// The worker counts here too.
+  /// The worker adds its own counts here.
   Counters& counters() { return counters_; }
   const Counters& counters() const { return counters_; }
-  /// Cells made less cells taken away, by all commits.
+  /// The number of cells made minus the number of cells removed, over all commits.
   std::int64_t net_cells() const { return net_cells_; }
 
  private:
@@ -158,9 +161,9 @@ class Operation {
   StarFiller star_;
   HoleFiller hole_;
   VertexMove move_;
-  std::size_t num_in_ball_ = 0;  // of the region's cells, where a move is planned
-  std::vector<CellId> cavity_;   // scratch of plan_move_to: planned cells, and some of the store
-  bool is_cavity_ = false;       // the region is one point's cavity, its boundary collected while digging
+  std::size_t num_in_ball_ = 0;  // cells of the region around the vertex of a planned move
+  std::vector<CellId> cavity_;   // scratch of plan_move_to: planned and stored cells
+  bool is_cavity_ = false;       // the region is one point's cavity; its boundary was collected while digging
   VertexId inserted_ = kNoVertex;
   std::vector<VertexId> removed_;
   Counters counters_;

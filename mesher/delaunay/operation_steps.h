@@ -1,5 +1,5 @@
-// The definitions of Operation's members, for those who bring locks of their own: they include this in one
-// source, which instantiates Operation for them. Everybody else includes operation.h.
+// The definitions of Operation's members, for code that defines its own locks: one of its sources includes
+// this file and instantiates Operation for these locks. All other code includes operation.h.
 #pragma once
 
 #include <algorithm>
@@ -45,7 +45,7 @@ inline void Operation<Locks>::begin_around([[maybe_unused]] const Point& p) {
   if constexpr (HasHorizon<Locks>) locks_.begin_around(p);
 }
 
-// Of a cell whose ball has the point that the operation is around.
+// Precondition: the point that the operation is around lies in the cell's ball.
 template <class Locks>
 inline bool Operation<Locks>::may_replace([[maybe_unused]] CellId c) const {
   if constexpr (HasHorizon<Locks>) {
@@ -70,8 +70,8 @@ StepResult Operation<Locks>::lock_cell(CellId c) {
   return StepResult::kDone;
 }
 
-// Locks the cell that `facet` belongs to; the facet's own vertices are held. Who needs no lock on its other
-// vertex asks for its line: who fills the hole will read it.
+// Locks the cell that `facet` belongs to; the facet's own vertices are already held. If no lock on the other
+// vertex is needed, prefetches the vertex, because filling the hole will read it.
 template <class Locks>
 StepResult Operation<Locks>::lock_beyond(FacetId facet) {
   if (!may_replace(cell_of(facet))) return StepResult::kOutOfReach;
@@ -88,7 +88,7 @@ void Operation<Locks>::add_to_region(CellId c) {
   mesh_.mark(c, true);
   ++counters_.region_cells;
   for (const FacetId mirror : mesh_.cell(c).mirrors) {
-    if (mirror != kNoFacet) mesh_.prefetch(cell_of(mirror));  // read when the front gets to c
+    if (mirror != kNoFacet) mesh_.prefetch(cell_of(mirror));  // read when the front reaches c
   }
 }
 
@@ -140,7 +140,7 @@ StepResult Operation<Locks>::plan_removal(VertexId v, CellId seed) {
   is_cavity_ = false;
   region_.removed.push_back(v);
   begin_around(mesh_.point(v));
-  // Cells around v that the region already has are passed through, so the walk keeps its own list.
+  // The walk passes through cells around v that are already in the region, so it keeps its own list.
   ball_.assign(1, seed);
   if (const StepResult locked = lock_cell(seed); locked != StepResult::kDone) return locked;
   if (!mesh_.is_marked(seed)) add_to_region(seed);
@@ -214,7 +214,7 @@ StepResult Operation<Locks>::reach(CellId c) {
   return may_read(c) ? StepResult::kDone : StepResult::kOutOfReach;
 }
 
-// A planned cell goes into the cavity, if it is in conflict.
+// Puts a planned cell into the cavity if it is in conflict.
 template <class Locks>
 StepResult Operation<Locks>::dig(CellId c, const Point& p) {
   if (move_.is_dug(c)) return StepResult::kDone;
@@ -225,7 +225,7 @@ StepResult Operation<Locks>::dig(CellId c, const Point& p) {
   return StepResult::kDone;
 }
 
-// So does a cell of the store beyond the hole, to which the facet belongs.
+// Puts a stored cell beyond the hole, to which the facet belongs, into the cavity if it is in conflict.
 template <class Locks>
 StepResult Operation<Locks>::dig_beyond(FacetId facet, const Point& p) {
   const CellId c = cell_of(facet);
@@ -265,7 +265,7 @@ double Operation<Locks>::squared_distance_to_region(const Point& p) const {
   return nearest;
 }
 
-// What the commit writes to has room for it: nothing after this throws.
+// Reserves all memory that the commit writes to: nothing after this throws.
 template <class Locks>
 void Operation<Locks>::reserve_memory(std::size_t num_created) {
   region_.created.reserve(num_created);
@@ -284,7 +284,7 @@ StepResult Operation<Locks>::commit_insertion(const Point& p, VertexKind kind, d
   reserve_memory(is_star ? star_.num_cells() : hole_.num_cells());
   count_gluing();
   inserted_ = pool_.take_vertex();
-  place(mesh_.vertex(inserted_), p, kind);  // its lock may be tried by who has a stale entry
+  place(mesh_.vertex(inserted_), p, kind);  // a worker with a stale entry may try its lock
   const std::size_t num_destroyed = region_.cells.size();
   if (is_star) {
     star_.fill(mesh_, pool_, region_, inserted_);
@@ -321,8 +321,7 @@ StepResult Operation<Locks>::commit_removals() {
   return StepResult::kDone;
 }
 
-// Called before the filling: it counts the cells beyond the boundary, each as often as a facet of it is
-// glued.
+// Counts the cells beyond the boundary, once per glued facet. Must be called before the filling.
 template <class Locks>
 void Operation<Locks>::count_gluing() {
   if (!counts()) return;
@@ -332,7 +331,8 @@ void Operation<Locks>::count_gluing() {
   }
 }
 
-// Called after it: it counts the cells made, the slots that stay empty and the vertices that go.
+// Counts the cells made, the slots that stay empty and the vertices removed. Must be called after the
+// filling.
 template <class Locks>
 void Operation<Locks>::count_filling() {
   if (!counts()) return;

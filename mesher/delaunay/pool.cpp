@@ -6,7 +6,7 @@ namespace podm {
 
 namespace {
 
-// Room for `count` more elements; doubles, so that many small calls cost little.
+// Makes room for `count` more elements. Doubles the capacity: many small calls therefore cost little.
 template <class T>
 void reserve_more(std::vector<T>& vector, std::size_t count) {
   const std::size_t needed = vector.size() + count;

@@ -1,4 +1,4 @@
-// The cells that an operation replaces, and what bounds them.
+// The cells that an operation replaces, and the facets that bound them.
 #pragma once
 
 #include <vector>
@@ -8,10 +8,10 @@
 namespace podm {
 
 struct Region {
-  std::vector<CellId> cells;      // die; marked (Mesh::mark)
+  std::vector<CellId> cells;      // cells to replace; marked (Mesh::mark)
   std::vector<FacetId> boundary;  // facets of `cells` whose other side stays
-  std::vector<VertexId> removed;  // vertices that go with them
-  std::vector<CellId> created;    // filled by the committing step
+  std::vector<VertexId> removed;  // vertices removed with them
+  std::vector<CellId> created;    // filled by the commit
   void clear() {
     cells.clear();
     boundary.clear();

@@ -12,10 +12,10 @@ Relocation::Relocation(Mesh& mesh, const std::vector<NodeIndex>& nodes)
       vertices_now_(mesh.vertex_bound()) {
   for (WorkerId worker = 0; worker < nodes.size(); ++worker) movers_[nodes[worker]].push_back(worker);
   for (std::vector<WorkerId>& movers : movers_)
-    if (movers.empty()) movers.push_back(0);  // what is there stays, but what it refers to may not
+    if (movers.empty()) movers.push_back(0);  // items there stay, but the items that they refer to may move
 }
 
-// Calls visit(found, node) for what the worker moves.
+// Calls visit(found, node) for the items that the worker moves.
 template <class Visit>
 void Relocation::for_each_found(WorkerId mover, const Visit& visit) const {
   for (std::size_t node = 0; node < movers_.size(); ++node) {

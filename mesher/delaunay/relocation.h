@@ -1,10 +1,11 @@
-// The move of a mesh to the memory of those who go on with it: cells and vertices get ids of other NUMA
+// Moves a mesh to the memory of the workers that will use it next: cells and vertices get ids of other NUMA
 // nodes.
 //
-//   In three steps, each by all workers, none before all have ended the one before. Workers meet nowhere: in
-//   the first, each looks at a part of the ids; then each has the cells and vertices that it moves to its own
-//   node, and nobody else touches their old slots or their new ones. What it needs of others, their new
-//   names, is known before the last step.
+//   The move has three steps. All workers carry out each step, and no worker starts a step before all have
+//   ended the previous one. Workers do not conflict: in the first step, each looks at its own part of the
+//   ids. In the later steps, each owns the cells and vertices that it moves to its own node, and no other
+//   worker touches their old or new slots. The new ids of other workers' cells and vertices, which it also
+//   needs, are known before the last step.
 #pragma once
 
 #include <array>
@@ -20,11 +21,11 @@ class Relocation {
  public:
   static constexpr NodeIndex kStay = 0xffff;
 
-  /// Worker i of nodes.size() is on nodes[i]. Nobody carries out operations until the move is over.
+  /// Worker i of nodes.size() is on nodes[i]. No operation may run until the move is over.
   Relocation(Mesh& mesh, const std::vector<NodeIndex>& nodes);
 
-  /// Step 1: where cells with that circumcentre and vertices at that point are to lie is node_of(point), a
-  /// worker's node or kStay. Throws std::bad_alloc.
+  /// Step 1: node_of(point) is the node to which cells with that circumcenter and vertices at that point
+  /// move: a worker's node or kStay. Throws std::bad_alloc.
   template <class NodeOf>
   void look(WorkerId self, const NodeOf& node_of) {
     for_part(cells_now_, self, [&](CellId c) {
@@ -36,21 +37,21 @@ class Relocation {
         found_at(node_of(mesh_.point(v)), mesh_.node_of_vertex(v), self).vertices.push_back(v);
     });
   }
-  /// Step 2: takes ids from the worker's pool. Throws std::bad_alloc; then nothing may be moved.
+  /// Step 2: takes ids from the worker's pool. Throws std::bad_alloc; then step 3 must not run.
   void rename(WorkerId self, Pool& pool);
-  /// Step 3: what the worker moves has its new names, and the old ones are in its pool. Returns how many
-  /// cells it has rewritten.
+  /// Step 3: moves the worker's cells and vertices to their new ids and returns the old ids to its pool.
+  /// Returns the number of cells rewritten.
   std::size_t move(WorkerId self, Pool& pool);
 
-  /// What it is called since: the same, if it stayed.
+  /// Returns the id after the move; it is the same if the item stayed.
   CellId cell_now(CellId c) const { return cells_now_[c]; }
   VertexId vertex_now(VertexId v) const { return vertices_now_[v]; }
-  /// The old ids are below it.
+  /// All old vertex ids are below it.
   VertexId vertex_bound() const { return static_cast<VertexId>(vertices_now_.size()); }
 
  private:
   using Ids = std::vector<std::uint32_t>;
-  // What one worker found that is to lie on one node.
+  // The items found by one worker that move to one node.
   struct Found {
     Ids cells, vertices;
   };

@@ -38,7 +38,7 @@ bool StarFiller::prepare(Mesh& mesh, const Region& region, const Point& p) {
 }
 
 void StarFiller::collect_offsets() {
-  // The last facet again in what is left of the last lanes.
+  // The unused part of the last lanes repeats the last facet.
   for (unsigned lane = 0; lane < (num_facets_ + Lanes::kSize - 1) / Lanes::kSize * Lanes::kSize; ++lane) {
     Lanes& lanes = lanes_[lane / Lanes::kSize];
     const Facet& facet = facets_[std::min(lane, num_facets_ - 1)];
@@ -49,7 +49,8 @@ void StarFiller::collect_offsets() {
   }
 }
 
-// By the formula of circumsphere.h, to the bit. False: some sphere is not certified by it.
+// Computes the spheres with the formula of circumsphere.h; the results are equal to the bit. Returns false if
+// the formula does not certify some sphere.
 bool StarFiller::Lanes::compute_spheres(Point p, double extent) {
   const auto& e = offsets;
   unsigned num_certified = 0;

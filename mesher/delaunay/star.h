@@ -1,5 +1,5 @@
-// Filling a cavity with the star of its new vertex: one cell per boundary facet. The common case, and the
-// hottest code of the mesher.
+// Fills a cavity with the star of its new vertex: one cell per boundary facet. This is the common case and
+// the hottest code of the mesher.
 #pragma once
 
 #include <array>
@@ -13,13 +13,13 @@ namespace podm {
 
 class StarFiller {
  public:
-  /// Numbers the boundary's vertices and measures them from p; writes nothing. False if there are more than
-  /// fit; then HoleFiller must be used.
+  /// Numbers the boundary's vertices and measures their distances from p. Writes nothing except the scratch
+  /// Vertex::local_index. Returns false if there are more than fit; then HoleFiller must be used.
   bool prepare(Mesh& mesh, const Region& region, const Point& p);
   std::size_t num_cells() const { return num_facets_; }
   /// The squared distance from p to the nearest vertex of the prepared boundary, mm^2.
   double squared_distance() const { return squared_distance_; }
-  /// Replaces the region by the star of `apex`, whose point is p. Cells get their spheres here.
+  /// Replaces the region by the star of `apex`, whose point is p, and sets the spheres of the new cells.
   void fill(Mesh& mesh, Pool& pool, Region& region, VertexId apex);
 
  private:
@@ -31,12 +31,12 @@ class StarFiller {
     std::array<std::uint16_t, 3> local;
     FacetId mirror;
   };
-  // Some facets side by side, in the loops that compilers turn into vector instructions.
+  // A group of facets, laid out for loops that compilers turn into vector instructions.
   struct alignas(64) Lanes {
     static constexpr unsigned kSize = 8;
     using Row = std::array<double, kSize>;
     std::array<Row, 12> offsets;  // of the three vertices
-    std::array<Row, 4> spheres;   // of the new cells: centre, squared radius
+    std::array<Row, 4> spheres;   // of the new cells: center, squared radius
     bool compute_spheres(Point p, double extent);
   };
   void compute_spheres(const Mesh& mesh, const Point& p);

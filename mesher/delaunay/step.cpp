@@ -15,14 +15,15 @@ namespace podm {
 
 namespace {
 
-// An operation has some hundred steps: about one thread in two yields in its middle.
+// An operation has on the order of a hundred steps: about one thread in two yields in its middle.
 constexpr std::uint64_t kStepsToYield = 256;
 
-// The cells that attempts rely on. Those of threads are not known.
+// The cells that attempts of fibres rely on. Reads of threads without fibres are not recorded.
 using Reads = std::unordered_map<const Fibre*, std::unordered_set<std::uint32_t>>;
 thread_local Reads reads;
 
-// Threads draw differently. Relaxed: what orders threads would hide their races from the thread sanitizer.
+// Each thread has its own seed. Relaxed: an order between threads would hide their races from the thread
+// sanitizer.
 std::uint32_t next_seed() {
   static std::atomic<std::uint32_t> seed = 1;
   return seed.fetch_add(1, std::memory_order_relaxed);
@@ -40,7 +41,7 @@ void note_read(std::uint32_t cell) {
   step();
   const Fibre* const self = Fibre::current();
   if (self != nullptr && self->is_limited())
-    reads[self].insert(cell);  // an attempt, no other use of the store
+    reads[self].insert(cell);  // an attempt, not another use of the store
 }
 
 void forget_reads() {

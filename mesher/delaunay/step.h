@@ -1,9 +1,9 @@
-// The places where a worker reads or writes what others share. In an ordinary build there is nothing to them.
+// The places where a worker reads or writes shared data. In an ordinary build they do nothing.
 //
-// With PODM_INTERLEAVING another worker may go on at each of them, as it would with a core to each worker: a
-// thread yields now and then, and an attempt in virtual time (workers/virtual_time.h) stops there and goes on
-// later. What that attempt has read must be as it was until it is over: replacing a cell that another has
-// read is an error.
+// With PODM_INTERLEAVING another worker may go on at each of them, as it could if each worker had its own
+// core: a thread yields now and then, and an attempt in virtual time (workers/virtual_time.h) stops there and
+// goes on later. The data that an attempt has read must stay unchanged until the attempt is over: replacing a
+// cell that another attempt has read is an error.
 #pragma once
 
 #include <cstdint>
@@ -12,10 +12,10 @@ namespace podm {
 
 #ifdef PODM_INTERLEAVING
 void step();
-/// The attempt reads a cell, and relies on it until it calls forget_reads().
+/// Notes that the attempt reads a cell, and relies on it until it calls forget_reads().
 void note_read(std::uint32_t cell);
 void forget_reads();
-/// The attempt replaces a cell. Throws InternalError when another attempt relies on it.
+/// Notes that the attempt replaces a cell. Throws InternalError if another attempt relies on the cell.
 void note_replaced(std::uint32_t cell);
 #else
 inline void step() {}

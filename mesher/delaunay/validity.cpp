@@ -1,6 +1,7 @@
-// is_triangulation: every cell positive, every mirror mutual over the same three vertices. is_valid: every
-// sphere honest, too, and every interior facet locally Delaunay. Locally Delaunay everywhere is globally
-// Delaunay (Delaunay's lemma).
+// is_triangulation() requires that every cell is positive and every mirror is mutual over the same three
+// vertices. is_valid() also requires that every sphere passes through its vertices and every interior facet
+// is locally Delaunay. A triangulation that is locally Delaunay everywhere is globally Delaunay (Delaunay's
+// lemma).
 #include <algorithm>
 #include <string>
 

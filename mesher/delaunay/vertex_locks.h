@@ -1,20 +1,23 @@
-// Vertex locks: the protocol, why it is safe, and the reason for each memory order. What is read without
-// locks is in mesh.h, likewise.
+// Vertex locks: the protocol, why it is safe, and the reason for each memory order. mesh.h does the same for
+// reads without locks.
 //
-// An operation try-locks every vertex of every cell it is going to replace before it writes anything, and
-// keeps them to its end. (Nobody locks the vertex that it inserts: a cell that gets it has three others, all
-// locked.) That guards the cells around the region too, without their far vertices: a cell has four vertices,
-// so two workers that each hold three of them share one, which cannot be. Hence whoever holds three vertices
-// of a cell may read it and write its mirrors, and nobody can replace it meanwhile.
-// And two regions that are locked at the same time have no facet in common: each facet of the result borders
-// cells of only one of them or an unchanged cell, so it is locally Delaunay by that operation's own work, and
-// a triangulation of the box whose facets all are is the Delaunay triangulation.
+// An operation try-locks every vertex of every cell that it will replace. It takes these locks before it
+// writes anything, and holds them to its end. (The inserted vertex stays unlocked: every cell with it has
+// three other vertices, all locked.) The locks also protect the cells around the region, although their far
+// vertices are not locked: a cell has four vertices, so two workers that each held three of them would share
+// one, which is impossible. Therefore a worker that holds three vertices of a cell may read it and write its
+// mirrors, and no other worker can replace it meanwhile.
+// Two regions that are locked at the same time have no facet in common. Each facet of the result therefore
+// borders cells of only one of them or an unchanged cell, so it is locally Delaunay by that operation's own
+// work. A triangulation of the box whose facets are all locally Delaunay is the Delaunay triangulation.
 //
-// Two vertices of a cell are enough to read it and its neighbours. Who replaces the cell, or a neighbour and
-// with it a mirror, holds three of the cell's four vertices, hence one of the two. So nobody does meanwhile.
-// Who did before has released a lock that the reader took later, or made the cell as well as the neighbour,
-// and the reader learnt of the cell after that. The points of their vertices stay, too, locked or not: a
-// vertex goes with all cells around it. Only labels are written by readers, all the same (Rules::label_of).
+// Locks on two vertices of a cell are enough to read it and its neighbours. A worker that replaces the cell,
+// or replaces a neighbour and with it a mirror of the cell, holds three of the cell's four vertices and
+// therefore one of these two. So no worker does it meanwhile. A worker that did it earlier has released a
+// lock that the reader took later; or it made the cell as well as the neighbour, and the reader learnt of the
+// cell after that. The points of their vertices do not change either, locked or not: a vertex is removed only
+// together with all cells around it. Readers write only labels, and all write the same label
+// (Rules::label_of).
 #pragma once
 
 #include <cstdint>
@@ -26,7 +29,7 @@
 
 namespace podm {
 
-/// The locks of a run that nobody shares: every attempt succeeds and costs nothing.
+/// The locks of a run with a single worker: every attempt succeeds and costs nothing.
 class NoLocks {
  public:
   static constexpr bool kIsShared = false;
@@ -37,22 +40,22 @@ class NoLocks {
   static constexpr WorkerId conflicting_worker() { return kNoWorker; }
 };
 
-/// What one worker holds. A vertex's lock word is 0 when free, else the holder's id + 1.
+/// The locks that one worker holds. A vertex's lock word is 0 when free, otherwise the holder's id + 1.
 class VertexLocks {
  public:
   static constexpr bool kIsShared = true;
   explicit VertexLocks(WorkerId self) : mine_(self + 1) {}
 
-  /// kDone: the vertex is held, maybe from before. kLockConflict: conflicting_worker() holds it.
+  /// kDone: the vertex is held, perhaps since an earlier call. kLockConflict: conflicting_worker() holds it.
   StepResult try_lock(Vertex& v) {
     const std::atomic_ref<std::uint32_t> lock(v.lock);
     step();
-    // Relaxed: only we write our own id, so seeing it needs nobody else's writes.
+    // Relaxed: only this worker writes its own id, so reading it requires no other worker's writes.
     std::uint32_t holder = lock.load(std::memory_order_relaxed);
     if (holder == mine_) return StepResult::kDone;
-    if (held_.size() == held_.capacity()) held_.reserve(2 * held_.size() + 64);  // may throw, so first
+    if (held_.size() == held_.capacity()) held_.reserve(2 * held_.size() + 64);  // may throw, therefore first
     step();
-    // Acquire: sees what the last holder wrote. Relaxed on failure: nothing but the id is used.
+    // Acquire: sees the writes of the last holder. Relaxed on failure: only the id is used.
     if (holder == 0 &&
         lock.compare_exchange_strong(holder, mine_, std::memory_order_acquire, std::memory_order_relaxed)) {
       held_.push_back(&v);
@@ -61,10 +64,10 @@ class VertexLocks {
     conflicting_worker_ = holder - 1;
     return StepResult::kLockConflict;
   }
-  /// Relaxed: only we write our own id.
+  /// Relaxed: only this worker writes its own id.
   bool holds(const Vertex& v) const { return load(v.lock, std::memory_order_relaxed) == mine_; }
   void unlock_all() {
-    // Release: the next holder sees what we wrote.
+    // Release: the next holder sees this worker's writes.
     for (Vertex* v : held_) {
       step();
       std::atomic_ref<std::uint32_t>(v->lock).store(0, std::memory_order_release);

@@ -8,7 +8,7 @@ namespace podm {
 
 void VertexMove::begin(VertexId v, const HoleFiller& hole) {
   v_ = v;
-  moved_.point = mesh_.point(v);  // never its lock word, which others read at any time
+  moved_.point = mesh_.point(v);  // not the lock word, which other workers read at any time
   moved_.kind = mesh_.vertex(v).kind;
   hole.list(mesh_, kFirstPlanned, cells_);
   num_in_hole_ = cells_.size();
@@ -82,7 +82,7 @@ void VertexMove::number_star() {
 
 void VertexMove::glue_star() {
   relies_.assign(cells_.size(), 0);
-  ids_.assign(cells_.size(), 0);  // fill() must not ask for memory
+  ids_.assign(cells_.size(), 0);  // fill() must not allocate memory
   number_star();
   facets_at_edges_.begin(static_cast<unsigned>(star_vertices_.size()));
   for (CellId c = first_of_star(); c < end(); ++c) {

@@ -6,8 +6,8 @@ namespace podm {
 
 namespace {
 
-// The cell on the other side of a facet that p lies beyond, but for the one that the walk comes from; else c
-// itself.
+// Returns the cell on the other side of a facet that p lies beyond, except the cell that the walk comes from;
+// otherwise c itself.
 CellId next_towards(const Mesh& mesh, const Point& p, CellId c, CellId previous) {
   const Cell& cell = mesh.cell(c);
   for (unsigned k = 0; k < 4; ++k) {

@@ -1,12 +1,12 @@
-// Visibility walk to the cell that has a point in it. In a Delaunay triangulation such walks end.
-// (Edelsbrunner, Combinatorica 10 (1990) 251-260.) Nobody may change the mesh meanwhile.
+// Visibility walk to the cell that contains a point. In a Delaunay triangulation such walks end
+// (Edelsbrunner, Combinatorica 10 (1990) 251-260). The mesh must not change meanwhile.
 #pragma once
 
 #include "delaunay/mesh.h"
 
 namespace podm {
 
-/// A cell that has p, a point within the box, inside or on its boundary. `from` is alive.
+/// Returns a cell that contains p, a point in the box or on its boundary. `from` must be alive.
 CellId cell_with(const Mesh& mesh, const Point& p, CellId from);
 
 }  // namespace podm

@@ -1,5 +1,5 @@
-// A file that appears whole or not at all: the bytes go to a temporary beside the target, which takes the
-// target's place by rename once every byte is on the disk. Until then an older target stays as it was.
+// A file that appears whole or not at all. The bytes go to a temporary file beside the target. It is renamed
+// to the target once every byte is on the disk. Until then an older target stays unchanged.
 #pragma once
 
 #include <cstddef>
@@ -16,13 +16,13 @@ namespace podm {
 
 class AtomicFile {
  public:
-  /// Creates the temporary. Every member throws InputError naming `path` and the system's reason on failure.
+  /// Creates the temporary. On failure every member throws InputError with `path` and the system's reason.
   explicit AtomicFile(const std::string& path);
 
   void write(const void* bytes, std::size_t size);
   void write(std::string_view text) { write(text.data(), text.size()); }
 
-  /// Appends the bytes of `value` as they lie in memory.
+  /// Appends the bytes of `value` as they are in memory.
   template <class T>
   void put(const T& value) {
     static_assert(std::is_trivially_copyable_v<T> && sizeof(T) <= kBufferBytes);
@@ -31,9 +31,9 @@ class AtomicFile {
     buffered_ += sizeof(T);
   }
 
-  /// Brings the bytes to the disk, still under the temporary's name. Nothing may be written afterwards.
+  /// Writes the bytes to the disk, still under the temporary's name. Nothing may be written afterwards.
   void finish();
-  /// Finishes and gives the file its name.
+  /// Finishes the file and gives it its name.
   void publish();
 
  private:
@@ -47,7 +47,7 @@ class AtomicFile {
   std::size_t buffered_ = 0;
 };
 
-/// Publishes files that belong together: none gets its name before all of them are on the disk.
+/// Publishes files that belong together: no file gets its name before all are on the disk.
 void publish_together(std::deque<AtomicFile>& files);
 
 }  // namespace podm

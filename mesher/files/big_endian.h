@@ -1,4 +1,4 @@
-// Numbers in a file with their most significant byte first.
+// Writes numbers to a file with the most significant byte first.
 #pragma once
 
 #include <array>

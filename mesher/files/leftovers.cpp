@@ -21,13 +21,13 @@ struct Leftovers {
   std::set<pid_t> children;
 };
 
-// They are never destroyed: threads may come here while the process ends.
+// Never destroyed, because threads may use them while the process ends.
 Leftovers& leftovers() {
   static Leftovers& only = *new Leftovers;
   return only;
 }
 
-// Nobody lets go of them again. False: another thread held them for too long.
+// Holds the leftovers and never releases them. Returns false if another thread held them for too long.
 bool hold_leftovers() {
   for (int pause = 0; pause < kMostPauses; ++pause) {
     if (leftovers().mutex.try_lock()) return true;
@@ -57,10 +57,10 @@ void remove_leftovers_for_good() noexcept {
 }
 
 void remove_file_or_folder(const std::string& path) noexcept try {
-  if (::unlink(path.c_str()) == 0) return;  // which takes no memory
+  if (::unlink(path.c_str()) == 0) return;  // unlink() allocates no memory
   std::error_code error;
   std::filesystem::remove_all(path, error);
-} catch (const std::bad_alloc&) {  // the others may go
+} catch (const std::bad_alloc&) {  // the other paths may still be removed
 }
 
 }  // namespace podm

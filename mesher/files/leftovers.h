@@ -1,5 +1,5 @@
-// What this process has made and must not leave behind: temporary files and folders, programs that it
-// started. Whoever ends it because of a signal removes them first.
+// The things that this process has made and must not leave behind: temporary files and folders, and programs
+// that it started. Code that ends the process because of a signal removes them first.
 #pragma once
 
 #include <sys/types.h>
@@ -9,19 +9,20 @@
 
 namespace podm {
 
-/// The leftovers, held: as long as one lives no other thread holds them, so that the process does not end by
-/// remove_leftovers_for_good(). They are to be held for a few system calls that do not wait for others; these
-/// are then done all or not at all.
+/// Holds the leftovers: while an object lives, no other thread holds them, so remove_leftovers_for_good()
+/// cannot end the process. Hold them only for a few system calls that do not wait for other processes; these
+/// calls are then done all or not at all.
 class HeldLeftovers {
  public:
   HeldLeftovers();
-  /// Must come before the path is made; what is not there yet may be removed too.
+  /// Must be called before the path is made; a path that does not exist yet may be removed too.
   void add(const std::string& path);
-  /// It is gone, or has become something that stays.
+  /// Must be called when the path is removed, or has become something that stays.
   void drop(const std::string& path);
   bool has(const std::string& path) const;
 
-  /// A child process, added and dropped while held since before it is started and until it is waited for.
+  /// Adds a child process, or drops it. The caller holds the leftovers from before its start until it is
+  /// added, and from before the wait for its end until it is dropped.
   void add_child(pid_t child);
   void drop_child(pid_t child);
 
@@ -29,13 +30,13 @@ class HeldLeftovers {
   std::unique_lock<std::mutex> lock_;
 };
 
-/// Kills the children, removes the paths, folders with what is in them, and holds all ever after: the thread
-/// that calls it ends the process next. Another that makes, renames or removes such a file waits meanwhile.
-/// Gives up within a second where another thread holds them that the system does not let go on, as a dead
-/// disk does.
+/// Kills the children, removes the paths, folders with their contents, and holds the leftovers from then on:
+/// the calling thread ends the process next. Another thread that makes, renames or removes such a file waits
+/// meanwhile. Gives up within a second if another thread holds the leftovers and the system does not let it
+/// continue, for example on a dead disk.
 void remove_leftovers_for_good() noexcept;
 
-/// Removes whatever is there under that name; links are not followed.
+/// Removes the file or folder with that name; does not follow links.
 void remove_file_or_folder(const std::string& path) noexcept;
 
 }  // namespace podm

@@ -23,12 +23,12 @@ std::string resolve_target(const std::string& path) {
   if (std::filesystem::is_directory(status)) fail_to_write(path, EISDIR);
   if (!std::filesystem::is_regular_file(status))
     throw InputError(fmt::format("cannot write {}: not a regular file", path));
-  if (::faccessat(AT_FDCWD, path.c_str(), W_OK, AT_EACCESS) != 0)  // rename would not ask
+  if (::faccessat(AT_FDCWD, path.c_str(), W_OK, AT_EACCESS) != 0)  // rename() would not check this
     fail_to_write(path, errno);
   return std::filesystem::canonical(path).string();
 }
 
-// mkstemp does not serve: it makes files that only the owner may read.
+// mkstemp() is unsuitable: only the owner may read the files that it makes.
 int make_file(const char* path) { return ::open(path, O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC, 0666); }
 
 int make_folder(const char* path) {
@@ -73,8 +73,8 @@ void TemporaryFile::finish() {
   if (const int error_number = sync_error(temporary_.descriptor); error_number != 0)
     fail_to_write(path_, error_number);
   is_finished_ = true;
-  // It stays open, thus locked, until it has its name; but for surfaces of labels so many that half of the
-  // descriptors are in use.
+  // The file stays open, and therefore locked, until it has its name. It is closed earlier only when half of
+  // the descriptors are in use, as with the surfaces of a great number of labels.
   if (temporary_.descriptor < ::sysconf(_SC_OPEN_MAX) / 2) return;
   ::close(temporary_.descriptor);
   temporary_.descriptor = -1;
@@ -96,11 +96,11 @@ void TemporaryFile::publish(std::span<TemporaryFile* const> files) {
     if (folders.insert(folder_of(file->target_)).second) file->sync_folder();
 }
 
-// A new name might not outlive a power cut, nor an old one be gone, without this.
+// Without this, a new name might be lost in a power cut, or an old one might survive it.
 void TemporaryFile::sync_folder() const {
   const std::string folder = folder_of(target_);
   const int descriptor = ::open(folder.empty() ? "." : folder.c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC);
-  if (descriptor < 0) return;  // one may write there, not read
+  if (descriptor < 0) return;  // the process may write there, but not read
   const int error_number = sync_error(descriptor);
   ::close(descriptor);
   if (error_number != 0) fail_to_write(path_, error_number);

@@ -1,5 +1,6 @@
-// A new file beside another, whose name it takes once every byte is on the disk; else it goes away. A process
-// that is killed leaves it behind: the next that writes the same file removes it.
+// A new file beside another file. It takes the other file's name once every byte is on the disk; otherwise it
+// is removed. A process that is killed leaves it behind, and the next process that writes the same file
+// removes it.
 #pragma once
 
 #include <cstddef>
@@ -10,12 +11,12 @@
 
 namespace podm {
 
-/// Throws InputError: "cannot write PATH: " and what the system says.
+/// Throws InputError: "cannot write PATH: " and the system's message.
 [[noreturn]] void fail_to_write(const std::string& path, int error_number);
 
 class TemporaryFile {
  public:
-  /// Makes the file beside `path`. Every member fails by fail_to_write().
+  /// Makes the file beside `path`. Every member reports failure through fail_to_write().
   explicit TemporaryFile(const std::string& path);
   /// Removes the file unless it is published.
   ~TemporaryFile();
@@ -23,29 +24,29 @@ class TemporaryFile {
   TemporaryFile& operator=(const TemporaryFile&) = delete;
 
   int descriptor() const { return temporary_.descriptor; }
-  /// Where the bytes are until publish(), for a writer that wants a name.
+  /// Returns the path of the bytes until publish(), for writers that need a name.
   const std::string& temporary_path() const { return temporary_.path; }
   void write(const char* bytes, std::size_t size);
-  /// Brings the bytes to the disk. Nothing may be written afterwards.
+  /// Writes the bytes to the disk. Nothing may be written afterwards.
   void finish();
 
-  /// Finishes the files and gives them their names: none before all are on the disk, and a signal that ends
-  /// the program comes before the first or after the last.
+  /// Finishes the files and gives them their names. No file gets its name before all are on the disk, and a
+  /// signal that ends the program takes effect before the first renaming or after the last.
   static void publish(std::span<TemporaryFile* const> files);
 
  private:
   void sync_folder() const;
 
-  std::string path_;     // as the caller wrote it, for messages
+  std::string path_;     // as given by the caller, for messages
   std::string target_;   // path_ with symbolic links followed: a link is kept, its target replaced
   Temporary temporary_;  // without a path once published
   bool is_finished_ = false;
 };
 
-/// A folder beside a file that goes away with all it holds, and whenever a temporary file of it would.
+/// A folder beside a file. It is removed with its contents whenever a temporary file of that file would be.
 class TemporaryFolder {
  public:
-  /// Makes the folder beside `path`. Fails by fail_to_write().
+  /// Makes the folder beside `path`. Reports failure through fail_to_write().
   explicit TemporaryFolder(const std::string& path);
   ~TemporaryFolder();
   TemporaryFolder(const TemporaryFolder&) = delete;

@@ -21,14 +21,14 @@
 namespace podm {
 namespace {
 
-constexpr std::string_view kMark = ".tmp";  // then the process, a dash and a number
+constexpr std::string_view kMark = ".tmp";  // followed by the process, a dash and a number
 
 struct OldTemporary {
   std::string path;
   pid_t process;
 };
 
-// The process in "TARGET.tmpPROCESS-NUMBER"; 0: another name.
+// Returns the process in "TARGET.tmpPROCESS-NUMBER"; 0 for another name.
 pid_t process_of(std::string_view name) {
   const std::size_t mark = name.rfind(kMark);
   if (mark == std::string_view::npos) return 0;
@@ -41,8 +41,8 @@ pid_t process_of(std::string_view name) {
   return last.ec == std::errc() && last.ptr == end ? process : 0;
 }
 
-// Takes what was found of `target`. A folder is looked through once a process: there may be a file a label,
-// and many others.
+// Takes the old temporaries of `target` from those found. A folder is searched once per process, because it
+// may contain one file per label and many other files.
 std::vector<OldTemporary> take_old_temporaries(const std::string& target, const HeldLeftovers&) {
   static auto& folders = *new std::set<std::string>;
   static auto& found = *new std::map<std::string, std::vector<OldTemporary>>;
@@ -68,7 +68,8 @@ Lock try_lock(int descriptor) {
   return errno == EWOULDBLOCK ? Lock::kOfAnother : Lock::kImpossible;
 }
 
-// Whoever removes a temporary has locked it: one that is locked and has its name keeps it.
+// A process locks a temporary before it removes it. A temporary that this process has locked and that still
+// has its name therefore keeps the name.
 bool has_name(int descriptor, const std::string& path) {
   struct stat opened, named;
   return ::fstat(descriptor, &opened) == 0 && ::lstat(path.c_str(), &named) == 0 &&
@@ -77,7 +78,7 @@ bool has_name(int descriptor, const std::string& path) {
 
 int open_to_lock(const char* path) {
   constexpr int kFlags = O_NOFOLLOW | O_NONBLOCK | O_CLOEXEC;
-  const int file = ::open(path, O_RDWR | kFlags);  // network file systems lock what one may write
+  const int file = ::open(path, O_RDWR | kFlags);  // network file systems lock only writable files
   return file < 0 && errno == EISDIR ? ::open(path, O_RDONLY | O_DIRECTORY | kFlags) : file;
 }
 
@@ -86,8 +87,9 @@ bool is_file_or_folder(int descriptor) {
   return ::fstat(descriptor, &status) == 0 && (S_ISREG(status.st_mode) || S_ISDIR(status.st_mode));
 }
 
-// Nobody, on this machine or another, in this container or another, has it locked. Its process tells only
-// where there are no locks: the number of one that is gone is soon that of another.
+// Removes a temporary that no process, on this machine or another, in this container or another, has locked.
+// Its process number decides only where there are no locks, because the number of an ended process is soon
+// reused.
 void remove_if_abandoned(const OldTemporary& old, const HeldLeftovers& ours) {
   if (ours.has(old.path)) return;
   const int descriptor = open_to_lock(old.path.c_str());
@@ -100,7 +102,7 @@ void remove_if_abandoned(const OldTemporary& old, const HeldLeftovers& ours) {
   ::close(descriptor);
 }
 
-// Unless another process found it before it was locked.
+// False if another process found the temporary before it was locked.
 bool is_kept(const Temporary& made) {
   const Lock lock = try_lock(made.descriptor);
   return lock == Lock::kImpossible || (lock == Lock::kOurs && has_name(made.descriptor, made.path));

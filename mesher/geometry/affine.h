@@ -1,4 +1,4 @@
-// Affine maps as images have them.
+// Affine maps of images.
 #pragma once
 
 #include <array>
@@ -8,20 +8,20 @@
 
 namespace podm {
 
-using Affine = std::array<double, 12>;  // row-major 3x4: a linear part, then what is added
+using Affine = std::array<double, 12>;  // row-major 3x4: in each row the linear part, then the translation
 
-/// The minor of the linear part without row r and column c, with its sign.
+/// Returns the signed minor of the linear part without row r and column c.
 inline double cofactor(const Affine& a, std::size_t r, std::size_t c) {
   const std::size_t r1 = (r + 1) % 3, r2 = (r + 2) % 3, c1 = (c + 1) % 3, c2 = (c + 2) % 3;
   return a[4 * r1 + c1] * a[4 * r2 + c2] - a[4 * r1 + c2] * a[4 * r2 + c1];
 }
 
-/// The determinant of the linear part: the signed volume of a voxel where the map takes voxels to mm.
+/// Returns the determinant of the linear part: the signed volume of a voxel if the map takes voxels to mm.
 inline double determinant(const Affine& a) {
   return a[0] * cofactor(a, 0, 0) + a[1] * cofactor(a, 0, 1) + a[2] * cofactor(a, 0, 2);
 }
 
-/// The determinant of `a` must not be 0.
+/// Returns the inverse map. The determinant of `a` must not be 0.
 inline Affine inverse(const Affine& a) {
   const double det = determinant(a);
   Affine b{};

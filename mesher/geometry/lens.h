@@ -1,4 +1,4 @@
-// What two balls have in common.
+// The intersection of two balls.
 #pragma once
 
 #include <algorithm>
@@ -13,9 +13,9 @@ struct Ball {
   double radius;
 };
 
-/// An upper bound of the distance from q to the points of both balls, rounding apart the least one; negative
-/// if there are none. The farthest of one ball is the farthest of both if the other has it; otherwise it is
-/// where the spheres meet.
+/// Returns an upper bound of the distance from q to the points in both balls; except for rounding it is the
+/// least one. Negative if no point is in both. If the farthest point of one ball lies in the other ball, it
+/// is the farthest of both. Otherwise the farthest point of both lies where the spheres meet.
 inline double farthest_in_both(const Point& q, const Ball& a, const Ball& b) {
   const Vector axis = b.center - a.center;
   const double d = std::sqrt(squared_length(axis));
@@ -29,7 +29,7 @@ inline double farthest_in_both(const Point& q, const Ball& a, const Ball& b) {
   };
   if (has_farthest(a, b)) return farthest(a);
   if (has_farthest(b, a)) return farthest(b);
-  // The circle lies at `along` from a's centre.
+  // The circle in which the spheres meet lies at `along` from a's center.
   const double along = (d * d + a.radius * a.radius - b.radius * b.radius) / (2 * d);
   const double circle = std::sqrt(std::max(0.0, a.radius * a.radius - along * along));
   const Vector to_q = q - a.center;

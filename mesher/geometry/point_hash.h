@@ -1,4 +1,4 @@
-// Points as keys: by the bits of their coordinates, in which -0 is 0.
+// Points as hash keys. The hash uses the bits of the coordinates, with -0 as 0.
 #pragma once
 
 #include <bit>

@@ -16,15 +16,15 @@ using ExactKernel = CGAL::Simple_cartesian<CGAL::Exact_rational>;
 
 ExactKernel::Point_3 convert_exactly(const Point& p) { return {p.x, p.y, p.z}; }
 
-// Bounds of the errors of determinants in rounded arithmetic, over the sum of the sizes of their products:
-// Shewchuk, Discrete & Computational Geometry 18 (1997) 305-363, stage A. Unlike intervals they need no
-// rounding mode, which tools that simulate a processor ignore.
+// Error bounds of determinants in rounded arithmetic, relative to the sum of the absolute values of their
+// products: Shewchuk, Discrete & Computational Geometry 18 (1997) 305-363, stage A. Unlike interval
+// arithmetic, they need no rounding mode, which tools that simulate a processor ignore.
 constexpr double kEpsilon = 0x1p-53;
 constexpr double kOrientationError = (7 + 56 * kEpsilon) * kEpsilon;
 constexpr double kSphereError = (16 + 224 * kEpsilon) * kEpsilon;
-constexpr double kUnderflow = 1e-290;  // far above what products that underflow can add
+constexpr double kUnderflow = 1e-290;  // far above the error that underflowing products can add
 
-// A sum of products, and the sum of their sizes.
+// A sum of products, and the sum of their absolute values.
 struct Sum {
   double value = 0, size = 0;
 
@@ -36,7 +36,7 @@ struct Sum {
   }
 };
 
-// a x b, along one axis.
+// Returns one component of the cross product of two vectors.
 Sum minor(double a, double b, double c, double d) {
   const double first = a * d, second = b * c;
   return {first - second, std::fabs(first) + std::fabs(second)};
@@ -49,7 +49,8 @@ Sum determinant(const Vector& u, const Vector& v, const Vector& w) {
           std::fabs(w.x) * x.size + std::fabs(w.y) * y.size + std::fabs(w.z) * z.size};
 }
 
-// The power of p, the origin of all four, against the circumsphere of a positive cell: above 0 inside.
+// Returns the power of p, the origin of all four vectors, against the circumsphere of a positive cell;
+// positive inside.
 Sum power(const Vector& a, const Vector& b, const Vector& c, const Vector& d) {
   const Sum without_a = determinant(b, c, d), without_b = determinant(a, c, d),
             without_c = determinant(a, b, d), without_d = determinant(a, b, c);
@@ -58,8 +59,8 @@ Sum power(const Vector& a, const Vector& b, const Vector& c, const Vector& d) {
           a2 * without_a.size + b2 * without_b.size + c2 * without_c.size + d2 * without_d.size};
 }
 
-// The sign of p's power against the cell once every height is perturbed. With barycentric coordinates
-// lambda_i of p it is sign(sum lambda_i eps_i - eps_p): the largest point with a non-zero factor decides.
+// True if p is inside once every height is perturbed. With barycentric coordinates lambda_i of p, it is
+// inside if sum lambda_i eps_i - eps_p < 0: the largest point with a non-zero factor decides.
 bool in_perturbed_circumsphere(const std::array<const Point*, 4>& cell, const Point& p) {
   std::array<const Point*, 5> by_size{cell[0], cell[1], cell[2], cell[3], &p};
   std::sort(by_size.begin(), by_size.end(),
@@ -71,7 +72,7 @@ bool in_perturbed_circumsphere(const std::array<const Point*, 4>& cell, const Po
     const int lambda = orientation(*replaced[0], *replaced[1], *replaced[2], *replaced[3]);
     if (lambda != 0) return lambda < 0;
   }
-  return true;  // not reached: p itself always decides
+  return true;  // unreachable: p itself always decides
 }
 
 }  // namespace

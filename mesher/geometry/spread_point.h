@@ -1,4 +1,4 @@
-// Points that fill a cube evenly, however many are taken.
+// Points that fill a cube evenly, for any number of points.
 #pragma once
 
 #include <cmath>
@@ -8,9 +8,9 @@
 
 namespace podm {
 
-/// The n-th point of an additive recurrence in the unit cube with the powers of g, g^4 = g + 1, which leaves
-/// no large gaps; no two points share a coordinate. (M. Roberts, "The unreasonable effectiveness of
-/// quasirandom sequences", 2018.)
+/// Returns the n-th point of an additive recurrence in the unit cube with the powers of g, g^4 = g + 1. The
+/// recurrence leaves no large gaps, and no two points share a coordinate (M. Roberts, "The unreasonable
+/// effectiveness of quasirandom sequences", 2018).
 inline Point spread_point(std::size_t n) {
   constexpr double kG = 1.2207440846057596;
   const auto step = static_cast<double>(n);

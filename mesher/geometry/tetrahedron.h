@@ -19,8 +19,8 @@ inline constexpr std::array<std::array<int, 3>, 4> kFacetVertices{
     {{1, 3, 2}, {0, 2, 3}, {0, 3, 1}, {0, 1, 2}}};
 inline constexpr std::array<std::array<int, 2>, 6> kEdgeVertices{
     {{0, 1}, {0, 2}, {0, 3}, {1, 2}, {1, 3}, {2, 3}}};
-/// The others of each edge, in such an order that after the edge's they make a positive cell. They are also
-/// the facets that meet at it.
+/// The other two vertices of each edge, in such an order that the edge's vertices followed by them make a
+/// positive cell. They are also the indices of the facets that meet at the edge.
 inline constexpr std::array<std::array<unsigned, 2>, 6> kOtherVertices{
     {{2, 3}, {3, 1}, {1, 2}, {0, 3}, {2, 0}, {0, 1}}};
 

@@ -7,7 +7,7 @@ namespace podm {
 
 namespace {
 
-// A cube of side 2^level is named by its Morton code without the last 3 level bits.
+// A cube of side 2^level is identified by its Morton code without the last 3 * level bits.
 class Splits {
  public:
   Splits(const GridPoint& size, const std::function<bool(const GridCube&)>& is_too_large,
@@ -37,7 +37,7 @@ class Splits {
         sorted.emplace_back(child << 3 * (level - 1), cube(child, level - 1));
       });
     }
-    if (stop_.stop_requested()) return whole;  // some may be missing
+    if (stop_.stop_requested()) return whole;  // some cubes may be missing
     std::sort(sorted.begin(), sorted.end(), [](const auto& a, const auto& b) { return a.first < b.first; });
     std::vector<GridCube> cubes;
     for (const auto& [code, cube] : sorted) cubes.push_back(cube);
@@ -53,7 +53,8 @@ class Splits {
   bool is_inside(const GridCube& cube) const {
     return cube.corner[0] < size_[0] && cube.corner[1] < size_[1] && cube.corner[2] < size_[2];
   }
-  // Lists the cubes that are split, but for those beyond the grid. After a stop request some are missing.
+  // Visits the parts of the cubes that are split, except parts beyond the grid. After a stop request some are
+  // missing.
   template <class Visit>
   void for_each_child(unsigned level, const Visit& visit) const {
     for (const MortonCode code : split_[level]) {
@@ -63,18 +64,19 @@ class Splits {
     }
   }
 
-  // A split cube D has parts of half its side, so whatever touches D must not be larger than D: of each
-  // neighbour of D's size, the cube around is split. One pass from the finest cubes up makes that true.
-  // Enough, because an unsplit cube E that touches a part of D touches D, and if E were larger than D it
-  // would be around a neighbour of D, hence split. The cubes around D and its neighbours are eight: along
-  // each axis D's own, or that of the neighbour which is not beside D in it.
+  // A split cube D has parts of half its side, so no larger cube than D may touch D. Therefore, for each
+  // neighbour of D's size, the cube of twice the side around the neighbour is split. One pass from the finest
+  // cubes up achieves that. It is enough, because an unsplit cube E that touches a part of D touches D, and
+  // if E were larger than D, it would contain a neighbour of D and would therefore be split. D and its
+  // neighbours have eight such cubes around them: along each axis D's own, or that of the one neighbour
+  // outside D's own.
   void balance() {
     for (unsigned level = 1; level < root_level_; ++level) {
       std::vector<MortonCode>& parents = split_[level + 1];
       for (const MortonCode code : split_[level]) {
         if (stop_.stop_requested()) return;
         const GridPoint p = morton_point(code);
-        for (unsigned i = 0; i < 8; ++i) {  // an x of -1 wraps round and is found outside
+        for (unsigned i = 0; i < 8; ++i) {  // an x of -1 wraps round and is found to be outside
           const auto across = [&](unsigned axis) { return p[axis] + (p[axis] % 2 == 1 ? 1u : ~0u); };
           const auto along = [&](unsigned axis) { return (i >> axis & 1u) != 0 ? across(axis) : p[axis]; };
           const GridPoint q{along(0), along(1), along(2)};

@@ -6,7 +6,8 @@ namespace podm {
 
 LeafRegion::LeafRegion(const Octree& octree, LeafId leaf) : octree_(&octree), leaf_(leaf) {
   const GridCube& cube = octree.cube(leaf);
-  // Sides are aligned, so cubes with sides of at least m that touch the leaf hold all within m <= side of it.
+  // Sides are aligned. The cubes that touch the leaf have sides of at least m <= side, so they contain all
+  // points within m of it.
   std::int64_t m = cube.side;
   std::array<std::int64_t, 3> low, high, outer_low, outer_high;
   outer_low.fill(std::numeric_limits<std::int64_t>::max());

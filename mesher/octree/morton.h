@@ -1,6 +1,6 @@
-// Morton codes: the bits of three coordinates interleaved, x lowest. A cube whose side is a power of two and
-// divides its corner owns consecutive codes; dropping three bits of a code leads to the cube of twice the
-// side around it.
+// Morton codes: the bits of three coordinates interleaved, x lowest. A cube whose side is a power of two that
+// divides its corner owns consecutive codes. Dropping three bits of a code gives the enclosing cube of twice
+// the side.
 #pragma once
 
 #include <array>
@@ -11,7 +11,7 @@ namespace podm {
 using GridPoint = std::array<std::uint32_t, 3>;
 using MortonCode = std::uint64_t;
 
-inline constexpr unsigned kMortonBits = 21;  // a coordinate has so many
+inline constexpr unsigned kMortonBits = 21;  // bits per coordinate
 
 inline MortonCode morton_code(const GridPoint& p) {
   const auto spread = [](std::uint64_t x) {  // two zeros between any two bits

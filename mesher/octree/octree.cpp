@@ -51,7 +51,7 @@ void Octree::set_grid(const Point& low, const Point& high) {
   size_ = {cells_along(extent.x), cells_along(extent.y), cells_along(extent.z)};
 }
 
-// The corner that lies `steps` along each axis from the cube's own.
+// Returns the point that lies `steps` along each axis from the cube's corner.
 Point Octree::to_mm(const GridCube& cube, std::uint32_t steps) const {
   const auto coordinate = [&](unsigned axis) { return static_cast<double>(cube.corner[axis] + steps); };
   return origin_ + finest_side_mm_ * Vector{coordinate(0), coordinate(1), coordinate(2)};
@@ -85,13 +85,13 @@ Octree::CubeId Octree::search(const Block& block, const GridPoint& cell) const {
   return static_cast<CubeId>(after - cubes_.begin()) - 1;
 }
 
-// Those that have the cells at every `step` of the cube's surroundings.
+// Returns the cubes that contain the grid cells at every `step` of the cube and of the margin around it.
 std::vector<Octree::CubeId> Octree::cubes_around(const GridCube& cube, std::uint32_t margin,
                                                  std::uint32_t step) const {
   const std::uint32_t num_steps = (cube.side + 2 * margin) / step;
   std::vector<CubeId> found;
   for (std::uint32_t i = 0; i < num_steps * num_steps * num_steps; ++i) {
-    const GridPoint cell{cube.corner[0] - margin + i % num_steps * step,  // below 0 it wraps round
+    const GridPoint cell{cube.corner[0] - margin + i % num_steps * step,  // a value below 0 wraps round
                          cube.corner[1] - margin + i / num_steps % num_steps * step,
                          cube.corner[2] - margin + i / num_steps / num_steps * step};
     if (cell[0] < size_[0] && cell[1] < size_[1] && cell[2] < size_[2]) found.push_back(cube_at(cell));
@@ -100,7 +100,7 @@ std::vector<Octree::CubeId> Octree::cubes_around(const GridCube& cube, std::uint
   return found;
 }
 
-// Neighbours have half the cube's side at least.
+// A neighbour's side is at least half the cube's.
 std::vector<Octree::CubeId> Octree::touching(CubeId id) const {
   const std::uint32_t side = cubes_[id].side, least_side = is_uniform_ ? side : std::max(1u, side / 2);
   return cubes_around(cubes_[id], least_side, least_side);

@@ -1,18 +1,18 @@
-// The octree of PDR and PDR.PODM: cubes of space, of which some are the leaves that are refined one by one.
+// The octree of PDR and PDR.PODM: cubes of space. Some of them are leaves, which are refined one by one.
 //
-// The cubes tile the box. Those that the caller needs are leaves, in Morton order; the others are *gaps*:
-// nobody refines them, but they still keep leaves apart. Cubes that touch, if only in a corner, differ by a
-// factor of two in side at most. In a uniform tree, the common case, all are equal.
+// The cubes tile the box. Cubes that the caller needs are leaves, in Morton order; the others are *gaps*:
+// they are not refined, but they still keep leaves apart. Sides of cubes that touch, even in a single corner,
+// differ at most by a factor of two. In a uniform tree, the common case, all sides are equal.
 //
-// Grid coordinates are mm from the box's low corner in units of the finest side. A cube owns
-// [i, i+side) x [j, j+side) x [k, k+side) of them, and at the box's faces all that lies beyond too, so that
-// every point of space is in exactly one cube.
+// Grid coordinates are mm from the box's low corner in units of the finest side. A cube owns the coordinates
+// [i, i+side) x [j, j+side) x [k, k+side); a cube at a face of the box also owns all points beyond the face.
+// Every point of space is therefore in exactly one cube.
 //
-// The *region* of a leaf L is all cubes that touch it, L included: the leaves among them are its first ring
-// B1. Its second ring B2 is the leaves whose regions share a cube with L's. So leaves that are not within two
-// rings of each other have no point of their regions in common, and operations that lock vertices in their
-// own leaf's region only never meet. Gaps belong to regions because a vertex may lie in one: were rings made
-// of leaves alone, leaves on either side of a gap could both reach into it.
+// The *region* of a leaf L is all cubes that touch it, L included. The leaves among them, except L, are its
+// first ring B1. Its second ring B2 is the leaves whose regions share a cube with L's. Leaves that are not
+// within two rings of each other therefore have disjoint regions, and operations that lock vertices only in
+// their own leaf's region never meet. Gaps belong to regions because a vertex may lie in a gap: if rings
+// consisted of leaves alone, leaves on either side of a gap could both reach into it.
 #pragma once
 
 #include <algorithm>
@@ -30,15 +30,16 @@ inline constexpr LeafId kNoLeaf = 0xffffffffu;
 
 class Octree {
  public:
-  /// These are asked of the cube [low, high], mm: which side a cube in there may have at most, and whether to
-  /// make it a leaf.
+  /// Callbacks for the cube [low, high], mm. LargestSide returns the largest side that a cube in there may
+  /// have; IsNeeded returns true if the cube is to be a leaf.
   using LargestSide = std::function<double(const Point& low, const Point& high)>;
   using IsNeeded = std::function<bool(const Point& low, const Point& high)>;
 
   /// Tiles the box [low, high] with cubes whose sides are finest_side_mm times a power of two, as large as
   /// `largest_side` and balance allow, never smaller than the finest. A constant makes the tree uniform.
-  /// InputError: an empty box, or a side that is not positive or of which the box takes more than 2^20.
-  /// A stop request ends the asking: leaves are too few then, and cubes perhaps too large.
+  /// Throws InputError if an extent of the box is negative, if the side is not positive, or if the box is
+  /// more than 2^20 sides long. A stop request ends the calls of the callbacks: leaves may then be missing,
+  /// and cubes may be too large.
   Octree(const Point& low, const Point& high, double finest_side_mm, const LargestSide& largest_side,
          const IsNeeded& is_needed, const std::stop_token& stop = {});
 
@@ -47,25 +48,25 @@ class Octree {
   std::size_t num_cubes() const { return cubes_.size(); }
   const GridCube& cube(LeafId leaf) const { return cubes_[cube_of_leaf_[leaf]]; }
 
-  /// The grid coordinates of p, (p - origin()) / finest_side_mm() but for rounding.
+  /// Returns the grid coordinates of p: (p - origin()) / finest_side_mm(), up to rounding.
   Point to_grid(const Point& p) const { return inverse_side_ * (p - origin_); }
   const Point& origin() const { return origin_; }
   double finest_side_mm() const { return finest_side_mm_; }
-  /// The box, in cubes of the finest side.
+  /// The extent of the box, in cubes of the finest side.
   const GridPoint& grid_size() const { return size_; }
 
-  /// The leaf that has the point; kNoLeaf in a gap and outside the box.
+  /// Returns the leaf that contains the point; kNoLeaf in a gap and outside the box.
   LeafId leaf_at(const Point& p) const {
     const Point g = to_grid(p);
     const bool is_inside =
         g.x >= 0 && g.y >= 0 && g.z >= 0 && g.x <= size_[0] && g.y <= size_[1] && g.z <= size_[2];
     return is_inside ? leaf_of_cube_[cube_at(cell_at(g))] : kNoLeaf;
   }
-  /// Whether the leaf's region has the point with grid coordinates g. LeafRegion is faster.
+  /// True if the leaf's region contains the point with grid coordinates g. LeafRegion is faster.
   bool is_in_region(LeafId leaf, const Point& g) const {
     return touch(cube(leaf), cubes_[cube_at(cell_at(g))]);
   }
-  /// These answer in Morton order.
+  /// These functions return cubes and leaves in Morton order.
   std::vector<GridCube> region(LeafId leaf) const;
   std::vector<LeafId> first_ring(LeafId leaf) const;
   std::vector<LeafId> second_ring(LeafId leaf) const;
@@ -73,7 +74,8 @@ class Octree {
  private:
   using CubeId = std::uint32_t;  // leaves and gaps, in Morton order
 
-  // The cubes in a part of the grid: consecutive in Morton order, or one, that may reach beyond the block.
+  // The cubes in a part of the grid: a consecutive run in Morton order, or a single cube that may reach
+  // beyond the block.
   struct Block {
     CubeId first = 0;
     std::uint32_t count = 0;
@@ -89,8 +91,9 @@ class Octree {
     const std::size_t x = cell[0] >> block_shift_, y = cell[1] >> block_shift_, z = cell[2] >> block_shift_;
     return (z * num_blocks_[1] + y) * num_blocks_[0] + x;
   }
-  // One look-up in a dense table, faster than a search, and small: of uniform leaves there are some 10^5 at
-  // most. The finest grid of a graded tree may be too large for a table; then blocks hold several cubes.
+  // A look-up in a dense table is faster than a search. The table is small: uniform trees have at most about
+  // 10^5 leaves. The finest grid of a graded tree may be too large for a table; a block then holds several
+  // cubes.
   CubeId cube_at(const GridPoint& cell) const {
     const Block& block = blocks_[block_at(cell)];
     return block.count == 1 ? block.first : search(block, cell);

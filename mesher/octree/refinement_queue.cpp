@@ -35,8 +35,8 @@ void RefinementQueue::share_out(const std::stop_token& stop) {
   count_rivals(stop);
 }
 
-// Divides the leaves into shares of equal work by recursive bisection. (Berger, Bokhari, IEEE Trans. Comput.
-// C-36, 1987.)
+// Divides the leaves into shares of equal work by recursive bisection (Berger, Bokhari, IEEE Trans. Comput.
+// C-36, 1987).
 void RefinementQueue::divide(std::span<LeafId> leaves, std::size_t first_share, std::size_t num_shares,
                              const std::stop_token& stop) {
   if (stop.stop_requested()) return;
@@ -50,8 +50,8 @@ void RefinementQueue::divide(std::span<LeafId> leaves, std::size_t first_share, 
   divide(leaves.subspan(middle), first_share + half, num_shares - half, stop);
 }
 
-// Sorts the leaves along the longest side of their box; so many have that share of the poor cells, or where
-// there are none, of the leaves.
+// Sorts the leaves along the longest side of their box. Returns the number of first leaves that have the
+// given share of the work: the poor cells, plus one for each leaf.
 std::size_t RefinementQueue::bisect(std::span<LeafId> leaves, double share) const {
   GridPoint low{~0u, ~0u, ~0u}, high{};
   double total = 0;
@@ -66,7 +66,7 @@ std::size_t RefinementQueue::bisect(std::span<LeafId> leaves, double share) cons
   unsigned longest = 0;
   for (unsigned axis = 1; axis < 3; ++axis)
     if (high[axis] - low[axis] > high[longest] - low[longest]) longest = axis;
-  std::vector<std::uint64_t> by_corner;  // beside the leaf: comparisons look nothing up
+  std::vector<std::uint64_t> by_corner;  // the corner and the leaf: comparisons need no look-up
   by_corner.reserve(leaves.size());
   for (const LeafId leaf : leaves)
     by_corner.push_back(std::uint64_t{octree_.cube(leaf).corner[longest]} << 32 | leaf);
@@ -87,7 +87,7 @@ void RefinementQueue::move(LeafId leaf, std::size_t to) {
   if (is_ready(leaf)) ready_of(leaf).insert(key(leaf));
 }
 
-// A leaf that is taken over keeps its number.
+// Sets num_rivals_. A leaf that is taken over later keeps its number.
 void RefinementQueue::count_rivals(const std::stop_token& stop) {
   for (LeafId leaf = 0; leaf < octree_.num_leaves() && !stop.stop_requested(); ++leaf) {
     const std::vector<LeafId> zones = buffer_zones(leaf);
@@ -98,8 +98,8 @@ void RefinementQueue::count_rivals(const std::stop_token& stop) {
   }
 }
 
-// Half of the share that has most poor cells, if the node's own has none. Waiting nodes come here at every
-// change, so that leaves are looked through only when there is something to take.
+// Moves half of the share with most poor cells to the node, if the node's own share has none. Waiting nodes
+// call this at every change, so leaves are scanned only if there are poor cells to take.
 void RefinementQueue::take_over(unsigned node) {
   const auto most = std::max_element(num_poor_of_share_.begin(), num_poor_of_share_.end());
   if (num_poor_of_share_[node] > 0 || *most == 0) return;
@@ -151,7 +151,7 @@ void RefinementQueue::finish(LeafId leaf) {
 }
 
 std::uint64_t RefinementQueue::home_rank(LeafId leaf) const {
-  constexpr std::uint64_t kMostDigits = 64, kMostRivals = 1023;  // in uniform trees there are 124 at most
+  constexpr std::uint64_t kMostDigits = 64, kMostRivals = 1023;  // in uniform trees there are at most 124
   const auto num_digits = static_cast<std::uint64_t>(std::bit_width(num_poor_[leaf]));
   return (kMostDigits - num_digits) * (kMostRivals + 1) +
          (kMostRivals - std::min<std::uint64_t>(num_rivals_[leaf], kMostRivals));
@@ -177,7 +177,7 @@ RefinementQueue::Key RefinementQueue::key(LeafId leaf) const {
   return rank() << 32 | leaf;
 }
 
-// L, B1 and B2.
+// Returns L, B1 and B2.
 std::vector<LeafId> RefinementQueue::buffer_zones(LeafId leaf) const {
   std::vector<LeafId> zones = octree_.second_ring(leaf);
   const std::vector<LeafId> first = octree_.first_ring(leaf);

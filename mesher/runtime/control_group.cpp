@@ -18,7 +18,7 @@ bool lists(const std::string& names, const std::string& name) {
   return ("," + names + ",").find("," + name + ",") != std::string::npos;
 }
 
-// Mountinfo writes blanks and backslashes as three octal digits.
+// Mountinfo writes blanks and backslashes as a backslash and three octal digits.
 std::string unescaped(const std::string& text) {
   std::string plain;
   for (std::size_t i = 0; i < text.size(); ++i) {
@@ -47,8 +47,9 @@ bool is_in_tree(const std::string& group, const std::string& tree) {
   return tree == "/" || group == tree || group.starts_with(tree + "/");
 }
 
-// The mount that shows most of the groups around `group`, among those that show it. Another's group may be
-// mounted as well; that counts only where no mount shows ours, as in containers that are told other paths.
+// Returns the mount that shows most of the groups around `group`, among the mounts that show `group`. Groups
+// of other processes may be mounted as well; they count only if no mount shows `group`, as in containers that
+// see other paths.
 std::optional<Mount> find_mount(const std::string& root, const std::string& type,
                                 const std::string& controller, const std::string& group) {
   std::ifstream file(root + "/proc/self/mountinfo");
@@ -63,9 +64,8 @@ std::optional<Mount> find_mount(const std::string& root, const std::string& type
   return best;
 }
 
-// The path of this process's group in the hierarchy that has the controller; without a name in that of
-// version
-// 2. The lines are like "4:memory:/some/group".
+// Returns the path of this process's group in the hierarchy that has the controller; without a controller, in
+// the hierarchy of version 2. The lines are like "4:memory:/some/group".
 std::optional<std::string> group_path(const std::string& root, const std::string& controller) {
   std::ifstream file(root + "/proc/self/cgroup");
   for (std::string line; std::getline(file, line);) {
@@ -78,8 +78,8 @@ std::optional<std::string> group_path(const std::string& root, const std::string
   return {};
 }
 
-// The folder of the group and those around it, up to what is mounted. A container may see less of the path
-// than it is told.
+// Returns the folder of the group and the folders around it, up to the mount point. A container may see only
+// a part of the path.
 std::vector<std::string> folders_of(const std::string& root, const Mount& mount, const std::string& group) {
   std::string inside = group;
   if (mount.root != "/") inside = is_in_tree(group, mount.root) ? group.substr(mount.root.size()) : "";
@@ -91,7 +91,7 @@ std::vector<std::string> folders_of(const std::string& root, const Mount& mount,
   return folders;
 }
 
-// One number; none where the file is missing or says "max".
+// Reads one number; none if the file is missing or contains "max".
 std::optional<std::uint64_t> read_number(const std::string& path) {
   std::ifstream file(path);
   std::uint64_t number = 0;
@@ -99,7 +99,7 @@ std::optional<std::uint64_t> read_number(const std::string& path) {
   return {};
 }
 
-// The number beside `key` in a file of such lines; 0 where there is none.
+// Returns the number beside `key` in a file of such lines; 0 if there is none.
 std::uint64_t read_value(const std::string& path, const std::string& key) {
   std::ifstream file(path);
   std::uint64_t value = 0;
@@ -108,8 +108,8 @@ std::uint64_t read_value(const std::string& path, const std::string& key) {
   return 0;
 }
 
-// Version 1 writes a number near 2^63 for none. Above memory.high the kernel takes memory back and holds the
-// process up, which is the end of meshing as well.
+// Version 1 writes a number near 2^63 if there is no limit. Above memory.high the kernel reclaims memory and
+// throttles the process, which ends meshing as well.
 std::uint64_t memory_limit_of(const std::string& folder, bool is_unified) {
   constexpr std::uint64_t kNone = std::uint64_t{1} << 62;
   std::uint64_t least = kNoLimit;

@@ -16,14 +16,14 @@ struct NamedConstant {
   const char* name;
   double MachineModel::*member;
 };
-// A core without speed would never end; hops without latency keep their order.
+// core_speed must not be 0, as work would never end. A hop_latency of 0 keeps the order of hops.
 constexpr std::array<NamedConstant, 6> kOfMachine{{{"core_speed", &MachineModel::core_speed},
                                                    {"hop_latency", &MachineModel::hop_latency_s},
                                                    {"miss_share", &MachineModel::miss_share},
                                                    {"retries", &MachineModel::retries},
                                                    {"wake", &MachineModel::wake_s},
                                                    {"lock", &MachineModel::lock_s}}};
-// What an access keeps a hub or a router busy for: the first so many stations are hubs.
+// The time that an access keeps a hub or a router busy. The first num_nodes() stations are hubs.
 constexpr const char *kHubService = "hub_service", *kRouterService = "router_service";
 
 bool is_known(const std::string& name) {

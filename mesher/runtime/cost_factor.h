@@ -1,4 +1,5 @@
-// One constant of a described machine, or of what work takes, times a factor: what hangs on that constant?
+// Multiplies one constant of a described machine, or one cost of work, by a factor. This shows what depends
+// on that constant.
 #pragma once
 
 #include <string>
@@ -12,9 +13,9 @@ struct CostFactor {
   std::string name;
   double factor = 1;
 
-  /// Throws TopologyError when the text is no factor, or its name none of a constant.
+  /// Throws TopologyError if the text has no valid factor, or names no constant.
   static CostFactor parse(const std::string& text);
-  /// Throws TopologyError when the machine cannot have such a constant.
+  /// Throws TopologyError if the machine cannot have such a constant.
   void apply_to(MachineModel& machine) const;
 };
 

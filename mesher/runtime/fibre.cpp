@@ -29,14 +29,14 @@ namespace podm {
 
 namespace {
 
-// Whoever needs more meets the page behind it, which is nobody's.
+// A call that needs more reaches the guard page behind the stack.
 constexpr std::size_t kStackBytes = 256 << 10;
 
 thread_local Fibre* running = nullptr;
 
 }  // namespace
 
-// Sanitizers must be told of every change of stacks. They call a stack that was left a fake one.
+// Sanitizers must be notified of every change of stacks. They call a stack that was left a fake one.
 struct Fibre::Stacks {
 #ifdef PODM_TELLS_ADDRESS_SANITIZER
   void* own_fake = nullptr;
@@ -91,7 +91,7 @@ Fibre::State Fibre::resume() {
   return state_;
 }
 
-// The bottom of the stack: nothing may be thrown past it.
+// The bottom of the stack: no exception may pass it.
 boost::context::fiber Fibre::run(boost::context::fiber&& resumer) {
   stacks_->entered();
   resumer_ = std::move(resumer);

@@ -1,4 +1,4 @@
-// A call on a stack of its own that can stop in its middle and go on later, all on one thread.
+// A call with its own stack that can stop in its middle and continue later, all on one thread.
 #pragma once
 
 #include <boost/context/fiber.hpp>
@@ -16,23 +16,24 @@ class Fibre {
   enum class State { kEnded, kSuspended, kOutOfSteps };
   static constexpr std::uint64_t kUnlimited = std::numeric_limits<std::uint64_t>::max();
 
-  /// Makes a call ready, which the first resume() begins. It must not be destroyed before the call has ended.
+  /// Prepares a call, which the first resume() begins. It must not be destroyed before the call has ended.
   explicit Fibre(std::function<void()> call);
   ~Fibre();
   Fibre(const Fibre&) = delete;
   Fibre& operator=(const Fibre&) = delete;
 
-  /// Lets the call go on until it suspends, ends, or is out of steps. Throws what the call throws; that ends
-  /// it.
+  /// Lets the call continue until it suspends, ends or runs out of steps. Rethrows an exception of the call,
+  /// which ends the call.
   State resume();
   State state() const { return state_; }
 
-  /// Whose call makes this one; nullptr: no fibre's.
+  /// Returns the fibre whose call is running; nullptr outside of any fibre.
   static Fibre* current();
-  /// The call stops here. Not while it handles an exception: those that are being handled belong to the
-  /// thread, and another fibre would get this one's.
+  /// Stops the call here. Must not be called while the call handles an exception: exceptions that are being
+  /// handled belong to the thread, and another fibre would get this one's.
   void suspend() { stop(State::kSuspended); }
-  /// So many calls of step() from now, at least one, the call stops there, or where it may next.
+  /// Stops the call at the given number of step() calls from now, at least one, or at the next where it may
+  /// stop.
   void allow(std::uint64_t steps) { steps_left_ = steps; }
   bool is_limited() const { return steps_left_ < kUnlimited / 2; }
   void step() {
@@ -40,7 +41,7 @@ class Fibre {
   }
 
  private:
-  struct Stacks;  // what sanitizers are told
+  struct Stacks;  // data for the sanitizers
 
   boost::context::fiber run(boost::context::fiber&& resumer);
   void stop(State state);
@@ -51,7 +52,7 @@ class Fibre {
   std::uint64_t steps_left_ = kUnlimited;
   std::exception_ptr failure_;
   std::unique_ptr<Stacks> stacks_;
-  const std::byte* bottom_ = nullptr;  // of its stack
+  const std::byte* bottom_ = nullptr;  // of this fibre's stack
   boost::context::fiber own_, resumer_;
 };
 

@@ -1,5 +1,5 @@
-// Arrays that grow without moving: address space is reserved once, memory arrives at first touch, in huge
-// pages where the kernel grants them. No copy at growth, no page that was never used.
+// Arrays that grow without moving. Address space is reserved once; memory is allocated at first touch, in
+// huge pages where the kernel grants them. Growth copies nothing, and unused pages take no memory.
 #pragma once
 
 #include <sys/mman.h>
@@ -18,12 +18,12 @@ class HugeArray {
   static_assert(std::is_trivially_copyable_v<T>);
 
  public:
-  /// Reserves room for `capacity` elements. Throws std::bad_alloc when not even addresses can be had.
+  /// Reserves room for `capacity` elements. Throws std::bad_alloc if the address space is not available.
   explicit HugeArray(std::size_t capacity) : capacity_(capacity) {
     void* memory = mmap(nullptr, capacity * sizeof(T), PROT_READ | PROT_WRITE,
                         MAP_PRIVATE | MAP_ANONYMOUS | MAP_NORESERVE, -1, 0);
     if (memory == MAP_FAILED) throw std::bad_alloc();
-    madvise(memory, capacity * sizeof(T), MADV_HUGEPAGE);  // a wish, not a need
+    madvise(memory, capacity * sizeof(T), MADV_HUGEPAGE);  // optional: a failure is harmless
     data_ = static_cast<T*>(memory);
   }
   ~HugeArray() {
@@ -35,7 +35,8 @@ class HugeArray {
   T& operator[](std::size_t i) { return data_[i]; }
   const T& operator[](std::size_t i) const { return data_[i]; }
   std::size_t capacity() const { return capacity_; }
-  /// Gives the memory of elements begin to end back, whole pages of it. They are not to be read any more.
+  /// Returns the whole pages of the elements begin to end to the system. The elements must not be read any
+  /// more.
   void release(std::size_t begin, std::size_t end) {
     const auto page = static_cast<std::uintptr_t>(sysconf(_SC_PAGESIZE));
     const auto address = [&](std::size_t i) { return reinterpret_cast<std::uintptr_t>(data_ + i); };

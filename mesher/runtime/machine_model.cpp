@@ -16,11 +16,11 @@ namespace podm {
 
 namespace {
 
-// No machine is larger by far; beyond, a figure is taken for a slip.
+// Known machines are far smaller. A larger figure is treated as an error.
 constexpr std::int64_t kMostNodes = 256, kMostRouters = 1024, kMostSockets = 64, kMostCores = 1024;
 constexpr std::int64_t kMostProcessors = 16'384;  // of all nodes
 constexpr double kMostCycles = 1e9, kMostAccesses = 1e15, kMostMicroseconds = 1e6, kMostGib = 1e6;
-constexpr double kLeast = 1e-9;  // of what must be positive
+constexpr double kLeast = 1e-9;  // for values that must be positive
 
 std::vector<std::string> read_sources(TomlSection& file) {
   std::vector<std::string> sources;
@@ -66,7 +66,7 @@ struct Network {
   Neighbours neighbours;  // of the nodes, then of the routers
 };
 
-// "node 3" or "router 1" as a vertex.
+// Returns the vertex of "node 3" or "router 1".
 int link_end(const TomlSection& section, const toml::node& node, const Network& network) {
   const std::string text = section.text_of(node, "an end of a link");
   const bool is_router = text.starts_with("router ");

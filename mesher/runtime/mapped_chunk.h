@@ -1,6 +1,6 @@
-// Pieces of lists that grow and shrink a lot. Each is a mapping of its own, so that its memory goes back to
-// the system with it: what the heap is given back it may keep, under what is still in use. Too small for the
-// huge pages of huge_array.h.
+// Pieces of lists that grow and shrink a lot. Each piece has its own mapping, so its memory returns to the
+// system with it. The heap, in contrast, may keep freed memory that lies below memory in use. The pieces are
+// too small for the huge pages of huge_array.h.
 #pragma once
 
 #include <sys/mman.h>
@@ -12,7 +12,7 @@
 
 namespace podm {
 
-/// kSize elements, zero at first; memory arrives at first touch, in pages.
+/// An array of kSize elements, zero at first; memory is allocated at first touch, in pages.
 template <class T, std::size_t kSize>
 class MappedChunk {
   static_assert(std::is_trivially_copyable_v<T>);

@@ -1,4 +1,4 @@
-// Which NUMA node the pieces of a shared array belong to: arrays that no worker's pool made.
+// The NUMA nodes that own the pieces of a shared array: for arrays that no worker's pool made.
 #pragma once
 
 #include <cstddef>
@@ -14,17 +14,17 @@ namespace podm {
 
 class MemoryOwners {
  public:
-  /// Asks this machine on which node the first page of each 64 KiB lies; where it does not tell,
-  /// unavailable() says why.
+  /// Queries this machine for the node of the first page of each 64 KiB. If the query fails, unavailable()
+  /// gives the reason.
   template <class T>
   static MemoryOwners ask(std::span<const T> array, const Topology& machine, const PageQuery& query) {
     MemoryOwners owners(std::as_bytes(array), sizeof(T), kBytesAskedOnce);
     owners.ask(machine, query);
     return owners;
   }
-  /// Draws owners for a described machine, whose memory nobody touches: parallel loops give pieces of
-  /// 2^`piece_bits` bytes to whoever is free, so each piece belongs to a worker drawn at random, the same for
-  /// the same seed. `nodes` are the workers'.
+  /// Draws owners for a described machine, where no thread touches the memory. Parallel loops give pieces of
+  /// 2^`piece_bits` bytes to any free worker. Therefore each piece belongs to a worker drawn at random; the
+  /// same seed gives the same owners. `nodes` are the workers' nodes.
   template <class T>
   static MemoryOwners deal(std::span<const T> array, unsigned piece_bits, std::span<const NodeIndex> nodes,
                            std::uint64_t seed) {
@@ -33,9 +33,9 @@ class MemoryOwners {
     return owners;
   }
 
-  /// Why no piece's owner is known; otherwise empty.
+  /// Returns the reason why no piece's owner is known; otherwise empty.
   const std::string& unavailable() const { return unavailable_; }
-  /// The node of an element of the array.
+  /// Returns the node of an element of the array.
   NodeIndex node_of(std::size_t element) const { return node_of_piece_[element >> piece_bits_]; }
   const void* address_of(std::size_t element) const { return array_.data() + byte_of(element); }
   std::size_t byte_of(std::size_t element) const { return element * element_bytes_; }

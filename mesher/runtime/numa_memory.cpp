@@ -18,8 +18,8 @@ PageNodes nodes_of_pages(std::span<const void* const> addresses) {
   for (const void* address : addresses)
     pages.push_back(reinterpret_cast<void*>(reinterpret_cast<std::uintptr_t>(address) & ~(page_size - 1)));
   std::vector<int> status(pages.size(), PageNodes::kNowhere);
-  // Without target nodes move_pages moves nothing and tells where each page is: minus an error for what is
-  // nowhere.
+  // Without target nodes, move_pages() moves nothing and returns the node of each page: a negative error
+  // number for a page that is nowhere.
   if (move_pages(0, pages.size(), pages.data(), nullptr, status.data(), 0) != 0)
     return {{}, std::string("the system refuses the query: ") + std::strerror(errno)};
   for (int& node : status) node = std::max(node, PageNodes::kNowhere);

@@ -1,5 +1,6 @@
-// Where memory lies. Placement itself is the kernel's first touch: a page comes to the node of the thread
-// that first writes to it, so a worker's arrays (HugeArray) lie near it when it fills them itself.
+// Queries of the node where memory lies. The kernel places memory by first touch: a page lies on the node of
+// the thread that first writes to it. A worker's arrays (HugeArray) therefore lie near the worker if it fills
+// them itself.
 #pragma once
 
 #include <functional>
@@ -14,12 +15,12 @@ struct PageNodes {
 
   std::vector<int>
       os_indices;           // by address: the operating system's number of the node (Topology::node_os_index)
-  std::string unavailable;  // why none were told; otherwise empty
+  std::string unavailable;  // why there are none; otherwise empty
 };
 
-/// The nodes that hold the pages of some addresses.
+/// Returns the nodes that hold the pages of the given addresses.
 using PageQuery = std::function<PageNodes(std::span<const void* const>)>;
-/// The system's answer. Looks only: a page that was never touched stays so.
+/// Queries the system. Only reads: a page that was never touched stays untouched.
 PageNodes nodes_of_pages(std::span<const void* const> addresses);
 
 }  // namespace podm

@@ -1,4 +1,4 @@
-// Loops whose rounds any thread may take.
+// Loops whose iterations any thread may take.
 #pragma once
 
 #include <algorithm>
@@ -9,13 +9,13 @@
 
 namespace podm {
 
-/// The number of threads that was asked for; that of all cores where it is 0.
+/// Returns the requested number of threads, or the number of all cores if `asked` is 0.
 inline std::size_t num_threads(int asked) {
   return asked > 0 ? static_cast<std::size_t>(asked) : std::max(1u, std::thread::hardware_concurrency());
 }
 
-/// Calls work(i, thread) once for each i < count, on `threads` threads numbered from 0, the caller's. Whoever
-/// is free takes the next i. `work` must not throw.
+/// Calls work(i, thread) once for each i < count, on `threads` threads numbered from 0, which is the
+/// caller's. A free thread takes the next i. `work` must not throw.
 template <class Work>
 void parallel_for(std::size_t count, std::size_t threads, const Work& work) {
   std::atomic<std::size_t> next{0};
@@ -27,7 +27,8 @@ void parallel_for(std::size_t count, std::size_t threads, const Work& work) {
   run(0);
 }
 
-/// The same for consecutive ranges of [0, size), `length` long but for the last: work(begin, end, thread).
+/// Does the same for consecutive ranges of [0, size): work(begin, end, thread). All have the given length
+/// except the last.
 template <class Work>
 void parallel_for_ranges(std::size_t size, std::size_t length, std::size_t threads, const Work& work) {
   parallel_for((size + length - 1) / length, threads, [&](std::size_t i, std::size_t thread) {

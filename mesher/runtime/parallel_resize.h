@@ -1,5 +1,5 @@
-// Large vectors whose memory arrives on all threads, in huge pages where the kernel grants them: small page
-// faults cost four times what the zeros do.
+// Large vectors whose memory is allocated on all threads, in huge pages where the kernel grants them: faults
+// of small pages cost four times as much as writing the zeros.
 #pragma once
 
 #include <sys/mman.h>
@@ -11,7 +11,7 @@
 
 namespace podm {
 
-/// The vector grows to `size` elements, the new ones zeros. Reserve first what several calls will need.
+/// Grows the vector to `size` elements; new elements are zero. Reserve first if several calls follow.
 template <class T>
 void parallel_resize(std::vector<T>& vector, std::size_t size, std::size_t threads) {
   constexpr std::uintptr_t kPage = 4096, kPiece = 1 << 21;
@@ -20,9 +20,10 @@ void parallel_resize(std::vector<T>& vector, std::size_t size, std::size_t threa
   const std::uintptr_t begin = (address(vector.size()) + kPage - 1) / kPage * kPage,
                        end = std::max(begin, address(size) / kPage * kPage),
                        last = std::max(end, address(vector.capacity()) / kPage * kPage);
-  if (last - begin >= kPiece) madvise(reinterpret_cast<void*>(begin), last - begin, MADV_HUGEPAGE);  // a wish
+  if (last - begin >= kPiece)
+    madvise(reinterpret_cast<void*>(begin), last - begin, MADV_HUGEPAGE);  // optional
   parallel_for_ranges(end - begin, kPiece, threads, [&](std::size_t from, std::size_t to, std::size_t) {
-    // Where the kernel cannot, resize() meets the faults.
+    // Where the kernel does not support this, resize() takes the faults.
     madvise(reinterpret_cast<void*>(begin + from), to - from, MADV_POPULATE_WRITE);
   });
   vector.resize(size);

@@ -15,11 +15,11 @@ namespace podm {
 
 namespace {
 
-constexpr int kMaxProcessors = 8192;  // as many as Linux is built for
+constexpr int kMaxProcessors = 8192;  // the maximum that Linux is built for
 
 using ProcessorSet = std::array<cpu_set_t, kMaxProcessors / CPU_SETSIZE>;
 
-// The number that all of the text spells.
+// Returns the number that the whole text spells.
 std::optional<int> parse_os_index(std::string_view text) {
   int value = -1;
   const char* end = text.data() + text.size();
@@ -68,7 +68,7 @@ std::vector<Processor> listed_processors(const Topology& machine, const std::vec
   return listed;
 }
 
-// The processors in the order in which workers take them.
+// Returns the processors in the order in which workers take them.
 std::vector<Processor> processors_in_order(const Topology& machine, const PinPlan& plan) {
   if (plan.kind == PinPlan::Kind::kList) return listed_processors(machine, plan.os_indices);
   std::vector<Processor> order = machine.processors();
@@ -78,7 +78,7 @@ std::vector<Processor> processors_in_order(const Topology& machine, const PinPla
     });
     return order;
   }
-  std::map<std::pair<int, int>, std::map<int, int>> turns;  // by node and thread: of each core, its place
+  std::map<std::pair<int, int>, std::map<int, int>> turns;  // by node and thread: per core, its turn
   for (const Processor& p : order) {
     auto& cores = turns[{p.node, p.thread}];
     cores.emplace(p.core, static_cast<int>(cores.size()));
@@ -156,7 +156,7 @@ ScopedBinding::~ScopedBinding() {
   try {
     bind_this_thread(before_);
   } catch (const PlacementError&) {
-    // Processors that were taken away meanwhile: the thread stays where it is.
+    // Processors were taken away meanwhile: the thread stays where it is.
   }
 }
 

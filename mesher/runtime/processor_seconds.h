@@ -5,8 +5,8 @@
 
 namespace podm {
 
-/// Seconds that the calling thread has had a processor for: what others do to the machine counts less than in
-/// time on the wall.
+/// Returns the seconds for which the calling thread has had a processor. Other load on the machine affects
+/// this less than wall-clock time.
 inline double processor_seconds() {
   std::timespec time{};
   clock_gettime(CLOCK_THREAD_CPUTIME_ID, &time);

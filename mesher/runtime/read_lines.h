@@ -1,5 +1,5 @@
-// Which lines of an array that nobody writes the caches of each node have: those that it has read. They are
-// taken to keep all of them.
+// The lines of a read-only array that each node's caches contain: the lines that the node has read. The model
+// assumes that caches keep all of them.
 #pragma once
 
 #include <cstddef>
@@ -9,7 +9,7 @@
 
 namespace podm {
 
-/// For one thread alone, which plays the workers of all nodes.
+/// For one thread only, which simulates the workers of all nodes.
 class ReadLines {
  public:
   static constexpr std::size_t kBytesPerLine = 64;
@@ -17,7 +17,7 @@ class ReadLines {
   ReadLines(std::size_t num_bytes, int num_nodes)
       : of_node_(static_cast<std::size_t>(num_nodes), std::vector<bool>(num_bytes / kBytesPerLine + 1)) {}
 
-  /// Whether the node has not read the line of that byte before; now it has.
+  /// Returns true if the node has not read the line of that byte before, and marks it as read.
   bool is_first(NodeIndex node, std::size_t byte) {
     std::vector<bool>& is_read = of_node_[node];
     const std::size_t line = byte / kBytesPerLine;

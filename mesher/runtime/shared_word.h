@@ -1,13 +1,13 @@
-// Words that one worker may read while another writes. Either the writer holds the locks that guard them, and
-// the reader only guesses: it locks what the guess names and then looks again (Operation::reserve). Or all
-// write the same (Rules::label_of).
+// Words that one worker may read while another writes them. Either the writer holds the locks that guard
+// them, and the reader only guesses: it locks the vertices that the guess names and then reads again
+// (Operation::reserve). Or all workers write the same value (Rules::label_of).
 #pragma once
 
 #include <atomic>
 
 namespace podm {
 
-// std::atomic_ref of C++20 takes no const word; a load writes nothing.
+// C++20's std::atomic_ref takes no const word; a load writes nothing.
 template <class T>
 T load(const T& word, std::memory_order order) {
   return std::atomic_ref<T>(const_cast<T&>(word)).load(order);

@@ -6,7 +6,8 @@ namespace podm {
 
 namespace {
 
-// Backwards from `to`: `links` are those from the start, and `load` the ways that lead through each vertex.
+// Builds the way backwards from `to`. `links` counts links from the start, `load` the ways through each
+// vertex.
 std::vector<int> way_to(const Neighbours& neighbours, const std::vector<int>& links, int to,
                         std::vector<int>& load) {
   std::vector<int> way = {to};

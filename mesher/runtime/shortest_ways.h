@@ -1,20 +1,21 @@
-// The shortest ways between the nodes of a network, one for each pair, chosen so that equal ways share the
-// load.
+// The shortest ways between the nodes of a network, one for each pair. Ways of equal length are chosen to
+// share the load.
 #pragma once
 
 #include <vector>
 
 namespace podm {
 
-/// The vertices that one link leads to, by vertex. A link leads both ways.
+/// For each vertex, the vertices that one link leads to. A link leads both ways.
 using Neighbours = std::vector<std::vector<int>>;
 
-/// The links on the shortest way from `start` to each vertex; -1: no way leads there.
+/// Returns the number of links on the shortest way from `start` to each vertex; -1 if there is no way.
 std::vector<int> links_from(const Neighbours& neighbours, int start);
 
-/// A shortest way from each of the first `num_ends` vertices to each of them, in rows: all its vertices, both
-/// ends included; none from an end to itself. Of equal ways that one is taken on whose vertices fewer ways
-/// have met, pair after pair, so that the same network always gives the same ways. The network is connected.
+/// Returns a shortest way from each of the first `num_ends` vertices to each of them, in rows: all its
+/// vertices, both ends included; empty from an end to itself. Among equal ways it chooses vertices that fewer
+/// earlier ways have met, pair after pair; the same network therefore always gives the same ways. The network
+/// must be connected.
 std::vector<std::vector<int>> shortest_ways(const Neighbours& neighbours, int num_ends);
 
 }  // namespace podm

@@ -1,13 +1,14 @@
-// The constants of virtual time: what work takes on the reference core, each with its source. The cores of a
-// described machine work `core_speed` times as fast (runtime/machine_model.h).
+// The constants of virtual time: the time that work takes on the reference core, each with its source. The
+// cores of a described machine work `core_speed` times as fast (runtime/machine_model.h).
 //
-// The reference core is one of experiments/machines/epyc_zen5_2_cores.toml, with what `make build` compiles.
-// The costs of attempts are the parts of a profile, the liver at 3 million cells, each over the count that it
-// goes with, all lengthened by 6 % for the median of eleven images and sizes; the others were timed one by
-// one. Commit 584d07f has counts, seconds and residuals, in
+// The reference core is one of experiments/machines/epyc_zen5_2_cores.toml, with the code that `make build`
+// compiles. The costs of attempts are the parts of a profile (the liver, 3 million cells), each divided by
+// its count. All are increased by 6 % to match the median of eleven images and sizes. The other costs were
+// timed one by one. Commit 584d07f has counts, seconds and residuals, in
 // results/reference/amd-epyc-zen5-2-cores/README.md.
 //
-// The model is frozen: another value, or another rule that charges them, is another model with a new version.
+// The model is frozen: a changed value, or a changed rule that charges the values, is another model with a
+// new version.
 #pragma once
 
 #include <array>
@@ -15,58 +16,59 @@
 
 namespace podm {
 
-/// Of the rules by which virtual time goes and of the values below.
+/// The version of the rules of virtual time and of the values below.
 inline constexpr int kTimeModelVersion = 1;
 
-/// Seconds on the reference core, but for the shares at the end.
+/// Seconds on the reference core, except for the shares at the end.
 struct TimeCosts {
   // ---- An attempt ----
 
-  /// The entry that it takes off the list; where that is stale, all of it.
+  /// An entry taken off the list; if the entry is stale, the whole attempt.
   double list_looked_up = 0.011e-6;
-  /// A cell that is examined: its label and bound, R3 to R5.
+  /// An examined cell: its label and bound, R3 to R5.
   double classified = 0.19e-6;
-  /// The search for the nearest point of the isosurface.
+  /// A search for the nearest point of the isosurface.
   double searched = 0.435e-6;
   /// A cell tested against a point.
   double tested = 0.0225e-6;
-  /// A cell made and glued, the clearing of its page and the cells that removals leave included.
+  /// A cell made and glued, including the clearing of its page and the cells that removals leave.
   double created = 0.0945e-6;
-  /// A cell that R7 plans, to carry it out or not.
+  /// A cell that R7 plans, whether or not the plan is carried out.
   double planned = 0.2e-6;
 
   // ---- Between attempts ----
 
-  /// A worker that begs puts itself on a list, under its lock; so does one that serves it.
+  /// A begging worker puts itself on a list, under the list's lock; or a worker serves it.
   double begging = 0.2e-6;
   /// An entry of a poor element list that changes hands.
   double entry_given = 0.01e-6;
-  /// An entry that is listed with the leaf that has its circumcentre.
+  /// An entry listed with the leaf that contains its circumcenter.
   double entry_to_leaf = 0.055e-6;
   /// A cell of the initial mesh that moves to another node's memory.
   double cell_moved = 0.1e-6;
-  /// A cell whose dihedral angles are looked at.
+  /// A cell whose dihedral angles are checked.
   double cell_judged = 0.05e-6;
-  /// The label at a point of space.
+  /// A look-up of the label at a point of space.
   double place_looked_up = 0.1e-6;
-  /// A leaf whose cells the queue is told of, and that is shared out.
+  /// A leaf whose poor cells are pushed to the queue, and that is shared out.
   double leaf_shared_out = 1.3e-6;
-  /// A leaf is taken off the refinement queue or given back, with its buffer zones, under the queue's lock.
+  /// A leaf taken off the refinement queue or returned, with its buffer zones, under the queue's lock.
   double leaf_handed_out = 20e-6;
 
-  // ---- Before and after refinement, of one thread; loops share it among all ----
+  // ---- Before and after refinement, on one thread; loops divide it among all threads ----
 
   double voxel_read = 3e-9;          ///< from a compressed file, on one thread
-  double voxel_transformed = 50e-9;  ///< on all
-  double thread_started = 15e-6;     ///< by the thread that the run is called from
+  double voxel_transformed = 50e-9;  ///< on all threads
+  double thread_started = 15e-6;     ///< by the thread that calls the run
   double cube_made = 2e-6;           ///< of the octree, on one thread
-  double cell_extracted = 37e-9;     ///< on all
+  double cell_extracted = 37e-9;     ///< on all threads
 
   // ---- Shares of an attempt ----
 
-  /// Locks make it longer by this share.
+  /// Locks lengthen an attempt by this share.
   double locked = 0.04;
-  /// Attempts of equal work do not end together: each is longer or shorter by a random share up to this.
+  /// Attempts of equal work do not end together: each is longer or shorter by a random share up to this
+  /// value.
   double spread = 0.5;
 };
 
@@ -74,7 +76,7 @@ struct NamedTimeCost {
   const char* name;
   double TimeCosts::*member;
 };
-/// Every constant once, in the order of their declaration.
+/// Every constant once, in the order of declaration.
 inline constexpr std::array<NamedTimeCost, 21> kTimeCosts{{
     {"list_looked_up", &TimeCosts::list_looked_up},
     {"classified", &TimeCosts::classified},
@@ -100,7 +102,8 @@ inline constexpr std::array<NamedTimeCost, 21> kTimeCosts{{
 }};
 static_assert(sizeof(TimeCosts) == kTimeCosts.size() * sizeof(double), "a constant has no name");
 
-/// The model as text, whose hash names it: its version, then a line a constant, "name value".
+/// Returns the model as text, whose hash identifies it: its version, then one line per constant, "name
+/// value".
 std::string time_model_text(const TimeCosts& costs);
 
 }  // namespace podm

@@ -1,4 +1,4 @@
-// A table of a TOML file, asked key by key; whatever is not as asked for is refused with its place.
+// A table of a TOML file, read key by key. An unexpected or invalid entry is refused with its place.
 #pragma once
 
 #include <toml++/toml.h>
@@ -13,18 +13,18 @@
 
 namespace podm {
 
-/// A TOML file that is not as asked for; what() is "file:line:column: fault".
+/// A TOML file with an invalid entry; what() is "file:line:column: fault".
 class TomlError : public std::runtime_error {
  public:
   using std::runtime_error::runtime_error;
 };
 
-/// Throws TomlError when the file is not there or no TOML.
+/// Throws TomlError if the file does not exist or is not valid TOML.
 toml::table parse_toml(const std::string& path);
-/// Refuses other letters than ASCII's as well: in keys they lead toml++ 3.3 into undefined behaviour.
+/// Also refuses non-ASCII characters: in keys they lead toml++ 3.3 into undefined behaviour.
 toml::table parse_ascii_toml(const std::string& path);
 
-/// Every member throws TomlError "file:line:column: fault". The table outlives the section.
+/// Every member throws TomlError "file:line:column: fault". The table must outlive the section.
 class TomlSection {
  public:
   TomlSection(std::string path, const toml::table& table, std::string name)
@@ -33,7 +33,7 @@ class TomlSection {
   [[noreturn]] void fail(const toml::source_region& place, const std::string& fault) const;
   const toml::source_region& place() const { return table_->source(); }
   const toml::source_region& place(std::string_view key) const { return table_->find(key)->second.source(); }
-  /// "file:line:column" of the value at `key`, which is there.
+  /// Returns "file:line:column" of the value at `key`, which must exist.
   std::string where(std::string_view key) const;
   bool has(std::string_view key) const { return table_->contains(key); }
   bool is_array(std::string_view key) const { return has(key) && table_->get(key)->is_array(); }
@@ -42,31 +42,32 @@ class TomlSection {
     return has(key) && table_->get(key)->value<std::string>() == text;
   }
 
-  /// Non-empty; `otherwise` where the key may be absent.
+  /// The text must not be empty. The second function returns `otherwise` if the key is absent.
   std::string text(std::string_view key);
   std::string text(std::string_view key, const std::string& otherwise);
   bool flag(std::string_view key);
   double positive(std::string_view key, double otherwise);
-  /// From `least` to `most`; the second: `otherwise` when the key is absent.
+  /// The value must be from `least` to `most`. The second function returns `otherwise` if the key is absent.
   double number(std::string_view key, double least, double most);
   double number(std::string_view key, double otherwise, double least, double most);
-  /// Any number; nothing when the key is absent.
+  /// Returns any number; nothing if the key is absent.
   std::optional<double> number(std::string_view key);
   std::int64_t count(std::string_view key, std::int64_t least, std::int64_t most);
   std::int64_t count(std::string_view key, std::int64_t otherwise, std::int64_t least, std::int64_t most);
-  /// The members of an array, or the one value; none when the key is absent. An empty array is refused.
+  /// Returns the members of an array, or the single value; empty if the key is absent. Refuses an empty
+  /// array.
   std::vector<const toml::node*> values(std::string_view key);
-  /// The table at `key`, which is there.
+  /// Returns the table at `key`, which must exist.
   TomlSection table(std::string_view key);
-  /// The table at `key`; an empty one where it is absent.
+  /// Returns the table at `key`; an empty one if it is absent.
   TomlSection optional_table(std::string_view key);
-  /// The keys in the order of the file; each counts as asked for.
+  /// Returns the keys in the order of the file; each counts as read.
   std::vector<std::string> keys();
-  /// The tables [key.NAME], by name.
+  /// Returns the tables [key.NAME], by name.
   std::vector<std::pair<std::string, TomlSection>> tables(std::string_view key);
-  /// The tables [[key]], in the order of the file.
+  /// Returns the tables [[key]], in the order of the file.
   std::vector<TomlSection> table_array(std::string_view key);
-  /// Refuses the keys that nobody asked for.
+  /// Refuses keys that were not read.
   void done() const;
 
   std::string text_of(const toml::node& node, std::string_view key) const;

@@ -23,7 +23,7 @@ std::string read_text(const std::filesystem::path& path) {
   return text.str();
 }
 
-// The first NUMA node beside the nearest ancestor that has one; null where none has.
+// Returns the first NUMA node beside the nearest ancestor that has one; null if none has.
 hwloc_obj_t nearest_node(hwloc_obj_t object) {
   while (object != nullptr && object->memory_arity == 0) object = object->parent;
   if (object == nullptr) return nullptr;
@@ -39,7 +39,7 @@ int os_index_of(hwloc_obj_t object, const std::string& machine_name) {
   return static_cast<int>(object->os_index);
 }
 
-// Where hwloc knows of no such ancestor: `otherwise`.
+// Returns `otherwise` if hwloc knows no such ancestor.
 int ancestor_index(hwloc_topology_t machine, hwloc_obj_type_t type, hwloc_obj_t object, unsigned otherwise) {
   const hwloc_obj_t ancestor = hwloc_get_ancestor_obj_by_type(machine, type, object);
   return static_cast<int>(ancestor != nullptr ? ancestor->logical_index : otherwise);
@@ -76,7 +76,7 @@ Topology Topology::of_this_machine() {
   if (hwloc_topology_load(machine.get()) != 0) throw TopologyError("hwloc cannot read this machine");
   if (hwloc_topology_is_thissystem(machine.get()) == 0)
     throw TopologyError("HWLOC_XMLFILE or HWLOC_SYNTHETIC in the environment hides this machine: unset it");
-  // hwloc leaves out what the cgroup forbids; the affinity (taskset, a batch system) it does not look at.
+  // hwloc omits the processors that the cgroup forbids, but ignores the affinity (taskset, a batch system).
   const std::shared_ptr<hwloc_bitmap_s> usable(hwloc_bitmap_alloc(), hwloc_bitmap_free);
   if (hwloc_get_cpubind(machine.get(), usable.get(), HWLOC_CPUBIND_PROCESS) == 0 &&
       hwloc_topology_restrict(machine.get(), usable.get(), 0) != 0)
@@ -87,7 +87,7 @@ Topology Topology::of_this_machine() {
 Topology Topology::from_file(const std::filesystem::path& path) {
   const std::string xml = read_text(path);
   Handle machine = make_handle();
-  // hwloc counts the final zero.
+  // hwloc includes the final zero in the size.
   if (hwloc_topology_set_xmlbuffer(machine.get(), xml.c_str(), static_cast<int>(xml.size() + 1)) != 0 ||
       hwloc_topology_load(machine.get()) != 0)
     throw TopologyError(path.string() + ": not an hwloc XML description of a machine");
@@ -140,7 +140,8 @@ void Topology::read_hops() {
                                   HWLOC_DISTANCES_KIND_MEANS_LATENCY, 0) != 0 ||
       num_matrices == 0)
     return;
-  std::map<hwloc_uint64_t, std::vector<std::pair<unsigned, unsigned>>> pairs;  // by latency, the slower way
+  std::map<hwloc_uint64_t, std::vector<std::pair<unsigned, unsigned>>>
+      pairs;  // by latency, in the slower direction
   for (unsigned i = 0; i < matrix->nbobjs; ++i)
     for (unsigned j = 0; j < i; ++j)
       pairs[std::max(matrix->values[i * matrix->nbobjs + j], matrix->values[j * matrix->nbobjs + i])]

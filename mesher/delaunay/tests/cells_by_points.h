@@ -1,4 +1,4 @@
-// Test helper: triangulations compared without regard to ids.
+// Test helper: compares triangulations without regard to ids.
 #pragma once
 
 #include <algorithm>
@@ -9,7 +9,7 @@
 
 namespace podm::test {
 
-/// Every cell as four sorted points: equal for equal triangulations, whatever the ids.
+/// Returns every cell as four sorted points. Equal triangulations give equal results, whatever their ids.
 inline std::vector<std::array<std::array<double, 3>, 4>> cells_by_points(const Mesh& mesh) {
   std::vector<std::array<std::array<double, 3>, 4>> all;
   for (CellId c = 0; c < mesh.cell_bound(); ++c) {

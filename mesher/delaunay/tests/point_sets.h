@@ -1,4 +1,4 @@
-// Point sets that break careless kernels, all inside kBox.
+// Point sets that expose careless kernels, all inside kBox.
 #pragma once
 
 #include <algorithm>
@@ -45,8 +45,8 @@ inline std::vector<Point> shuffled(std::vector<Point> points, unsigned seed) {
   return points;
 }
 
-// Exactly representable points of one sphere: permutations and signs of Pythagorean quadruples with r = 9
-// and 3.
+// Returns exactly representable points of one sphere: permutations and signs of Pythagorean quadruples with r
+// = 9.
 inline std::vector<Point> cospherical() {
   std::vector<Point> points;
   for (const Point q : {Point{1, 4, 8}, Point{4, 4, 7}, Point{0, 0, 9}, Point{3, 6, 6}}) {

@@ -1,5 +1,5 @@
-// The lock contract lets an attempt do so much with so many vertices of a cell held, and aborts beyond it.
-// Only builds with PODM_CHECK_LOCKS have it.
+// The lock contract allows an attempt the accesses that match the number of held vertices of a cell, and
+// aborts on any other. Only builds with PODM_CHECK_LOCKS have it.
 #include <gtest/gtest.h>
 
 #include "delaunay/lock_contract.h"
@@ -18,7 +18,7 @@ class LockContract : public testing::Test {
   }
   void TearDown() override { locks_.unlock_all(); }
 
-  // Locks the first so many vertices of the cell.
+  // Locks the first `num_vertices` vertices of the cell.
   void hold(CellId c, unsigned num_vertices) {
     locks_.unlock_all();
     const auto vertices = t_.mesh.peek_vertices(c);
@@ -50,7 +50,8 @@ TEST_F(LockContractDeathTest, LetsReadUnderTwoLocks) {
 TEST_F(LockContractDeathTest, LetsReadNextToACellOfTwoLocks) {
   const FacetId mirror = t_.mesh.peek_mirrors(cell_)[0];
   ASSERT_NE(mirror, kNoFacet);
-  // The neighbour's vertex off the common facet, and one on it: of the cell itself one is held.
+  // Holds the neighbour's vertex off the common facet and one vertex on it; only one vertex of the cell
+  // itself is held.
   const auto vertices = t_.mesh.peek_vertices(cell_of(mirror));
   const auto far = static_cast<unsigned>(index_in_cell(mirror));
   locks_.try_lock(t_.mesh.vertex(vertices[far]));

@@ -10,7 +10,7 @@ namespace {
 
 constexpr int kNumNodes = 3;
 
-// Workers of three nodes that take ids and set any of them free, as insertions and removals do.
+// Workers of three nodes take ids and release arbitrary ones, as insertions and removals do.
 TEST(FreeIds, AreOfTheWorkersNodeAndNobodyElses) {
   IdArena arena(1 << 20, kNumNodes, 12);
   std::vector<FreeIds> workers;
@@ -37,7 +37,8 @@ TEST(FreeIds, AreOfTheWorkersNodeAndNobodyElses) {
   }
 }
 
-// One node sets free what another has made, again and again: the ids go home, and no new ones are needed.
+// One node repeatedly releases the ids that another node took: the ids return home, and no new ones are
+// needed.
 TEST(FreeIds, GoHome) {
   IdArena arena(1 << 16, 2, 12);
   FreeIds maker(arena, 0, 2), eater(arena, 1, 2);

@@ -1,4 +1,4 @@
-// A mesh that moves to other NUMA nodes is the same mesh, and lies where it was told to.
+// A mesh that moves to other NUMA nodes stays the same mesh, and lies on the requested nodes.
 #include <gtest/gtest.h>
 
 #include <set>
@@ -13,9 +13,10 @@ namespace podm::test {
 namespace {
 
 constexpr int kNodesOfMesh = 4;
-const std::vector<NodeIndex> kNodes{0, 0, 0, 1, 3};  // of workers; node 2 has none
+const std::vector<NodeIndex> kNodes{0, 0, 0, 1, 3};  // per worker; node 2 has none
 
-// A triangulation that workers of three nodes made in turn, with vertices and cells set free by others.
+// A triangulation that workers of three nodes made in turn, with vertices and cells released by other
+// workers.
 class Relocated : public testing::Test {
  protected:
   Relocated() {
@@ -32,7 +33,7 @@ class Relocated : public testing::Test {
     operations_[worker]->plan_insertion(p, start);
     ASSERT_EQ(operations_[worker]->commit_insertion(p, VertexKind::kCircumcenter, 1e-100), StepResult::kDone);
   }
-  // By slabs, one of which stays where it is.
+  // Assigns nodes by slabs. One slab stays where it is.
   static NodeIndex node_of(const Point& p) {
     return p.x < -5 ? 0 : p.x < 0 ? 1 : p.x < 5 ? 3 : Relocation::kStay;
   }
@@ -87,7 +88,7 @@ TEST_F(Relocated, LiesWhereItWasTold) {
   EXPECT_EQ(nodes, (std::set<NodeIndex>{0, 1, 3}));
 }
 
-// Old ids are free, new ones are not.
+// Old ids are reused; no new ids are needed.
 TEST_F(Relocated, IsGoneOnWith) {
   relocate(1);
   const CellId bound = mesh_.cell_bound();
@@ -98,7 +99,7 @@ TEST_F(Relocated, IsGoneOnWith) {
   EXPECT_EQ(mesh_.cell_bound(), bound);
 }
 
-// From side to side, again and again: the old ids are used again.
+// The mesh moves from side to side repeatedly: the old ids are used again.
 TEST_F(Relocated, TakesNoMoreRoomInTheEnd) {
   for (int i = 0; i < 4; ++i) relocate(1, i % 2 == 0 ? -1 : 1);
   const CellId cells = mesh_.cell_bound();
@@ -108,7 +109,7 @@ TEST_F(Relocated, TakesNoMoreRoomInTheEnd) {
   EXPECT_LE(mesh_.vertex_bound(), 2 * vertices);
 }
 
-// An entry of a list from before finds another stamp, or no cell.
+// A list entry from before the move finds another stamp, or no cell.
 TEST_F(Relocated, IsNotTakenForWhatItWas) {
   std::vector<std::uint16_t> stamps;
   for (CellId c = 0; c < mesh_.cell_bound(); ++c) stamps.push_back(mesh_.stamp(c));

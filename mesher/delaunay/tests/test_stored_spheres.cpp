@@ -1,4 +1,4 @@
-// The filter on spheres as the store keeps them: what it decides, the exact predicate decides likewise.
+// The filter on stored spheres: each decision of the filter equals that of the exact predicate.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -16,7 +16,7 @@ struct PositiveCell {
   float stored = 0;
 };
 
-// Cells of the given size around random places; some are flat, and so not certified.
+// Returns cells of the given size at random places. Some are flat and therefore not certified.
 std::vector<PositiveCell> random_cells(double size) {
   std::vector<PositiveCell> cells;
   std::mt19937_64 random(7);
@@ -32,7 +32,7 @@ std::vector<PositiveCell> random_cells(double size) {
   return cells;
 }
 
-// A point at (1 + relative) radii from the centre.
+// Returns a point at (1 + relative) radii from the center.
 Point beside_sphere(const PositiveCell& cell, const Vector& direction, double relative) {
   const double radius = distance(cell.sphere.center, cell.p[3]);
   return cell.sphere.center + ((1 + relative) * radius / std::sqrt(squared_length(direction))) * direction;
@@ -61,7 +61,7 @@ TEST_P(StoredSpheres, DecideAsTheExactPredicateDoes) {
   EXPECT_GT(undecided, 0);
 }
 
-// The largest and the smallest have squared radii that are normal floats still.
+// The squared radii of the largest and the smallest size are still normal floats.
 INSTANTIATE_TEST_SUITE_P(Sizes, StoredSpheres, testing::Values(1e-17, 1e-3, 1.0, 1e5, 1e17));
 
 TEST(StoredSpheresEdge, LeaveEveryPointUndecidedBeyondNormalFloats) {

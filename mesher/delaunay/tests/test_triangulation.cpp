@@ -1,4 +1,4 @@
-// Properties of the kernel alone: validity, uniqueness, and that a removal undoes an insertion.
+// Properties of the kernel alone: validity, uniqueness, and a removal undoes an insertion.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -62,7 +62,7 @@ TEST_P(Triangulation, CombinedOperationEqualsItsParts) {
   EXPECT_EQ(combined.cells(), expected.cells());
 }
 
-// Spheres are computed side by side; the reference computes one.
+// The kernel computes several spheres side by side; the reference computes one.
 TEST_P(Triangulation, SpheresAreThoseOfTheFormulaToTheBit) {
   Triangulator t(kBox);
   for (const Point& p : shuffled(GetParam().make(), 6)) t.insert(p);
@@ -103,7 +103,8 @@ TEST(TriangulationEdge, PointTooNearIsRejectedAndNothingChanges) {
   EXPECT_TRUE(is_valid(t.mesh));
 }
 
-// The cavity of a point among many, planned by fillers that number fewer vertices than it has, or as many.
+// The cavity of a point among many, planned by fillers that can number fewer vertices than it has, or as
+// many.
 TEST(TriangulationEdge, HoleOfMoreVerticesThanCanBeNumberedIsNotPlanned) {
   Triangulator t(kBox);
   for (const Point& p : random_points(4, 200, 9)) t.insert(p);

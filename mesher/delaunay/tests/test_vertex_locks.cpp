@@ -1,4 +1,4 @@
-// Locks on vertices: who holds which.
+// Vertex locks: which worker holds which vertex.
 #include <gtest/gtest.h>
 
 #include "delaunay/vertex_locks.h"

@@ -1,4 +1,4 @@
-// Test helper: triangulates given points one by one, finding each point's first conflict by scanning.
+// Test helper: triangulates given points one by one, and finds each point's first conflict by scanning.
 #pragma once
 
 #include <algorithm>
@@ -37,7 +37,7 @@ class Triangulator {
     }
     throw std::runtime_error("vertex in no cell");
   }
-  /// The cells that `is_of_it(CellId)` picks, marked, and their boundary.
+  /// Returns the cells that `is_of_it(CellId)` selects, marked, with their boundary.
   template <class Predicate>
   Region region_of(const Predicate& is_of_it) {
     Region region;
@@ -54,7 +54,7 @@ class Triangulator {
     }
     return region;
   }
-  /// Removes v and puts nothing in its place, as no operation of the mesher does.
+  /// Removes v and inserts nothing in its place. No operation of the mesher does this.
   void remove(VertexId v) {
     Region region = region_of([&](CellId c) {
       const auto& vertices = mesh.cell(c).vertices;

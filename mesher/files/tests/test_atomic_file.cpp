@@ -72,7 +72,8 @@ TEST(AtomicFile, NamesFileAndFault) {
   EXPECT_EQ(error_of(folder / "d.vtu"), "cannot write " + (folder / "d.vtu") + ": Is a directory");
 }
 
-// While it lives, root, who may write everywhere, is nobody; anyone else is who they were.
+// While an object lives, root, which may write everywhere, has the rights of an unprivileged user; any other
+// user is unchanged.
 class OrdinaryUser {
  public:
   OrdinaryUser() : user_(::geteuid()) { EXPECT_EQ(::seteuid(user_ == 0 ? 65534 : user_), 0); }

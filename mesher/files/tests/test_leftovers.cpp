@@ -1,4 +1,4 @@
-// What is left when a process ends itself: in a child process, for nobody goes on after that.
+// Checks what remains when a process ends itself. Runs in a child process, because the process ends.
 #include "files/leftovers.h"
 
 #include <gtest/gtest.h>
@@ -19,7 +19,7 @@ namespace {
 
 using Names = std::set<std::string>;
 
-// Ends itself by _exit(): destructors would wait for ever.
+// `action` ends the child by _exit(): destructors would wait for ever.
 template <class Action>
 void in_a_child(const Action& action) {
   const pid_t child = fork();

@@ -1,4 +1,4 @@
-// What other processes left of a file, and that a new name reaches the disk.
+// Checks that files which ended processes left behind are removed, and that a new name reaches the disk.
 #include "files/temporary_file.h"
 
 #include <fcntl.h>
@@ -24,15 +24,15 @@ namespace {
 
 using Names = std::set<std::string>;
 
-// Asked of every file that is brought to the disk, and before one is locked; an error number ends the
-// attempt.
+// Called for every file that is written to the disk, and before a file is locked. A returned error number
+// ends the attempt.
 std::function<int(const struct stat&)> on_sync;
 std::function<int()> on_lock;
 
 }  // namespace
 }  // namespace podm
 
-// These take the place of the system's in this program.
+// These functions replace the system's in this program.
 extern "C" int flock(int descriptor, int operation) noexcept {
   if (podm::on_lock) {
     errno = podm::on_lock();
@@ -70,7 +70,7 @@ class TemporaryFiles : public testing::Test {
   const ScratchFolder folder_;
 };
 
-// The number of a process that is no more.
+// Returns the number of a process that has ended.
 pid_t gone() {
   const pid_t child = fork();
   if (child == 0) _exit(0);
@@ -95,7 +95,7 @@ TEST_F(TemporaryFiles, WhatProcessesThatAreGoneLeftOfTheSameFileGoes) {
   EXPECT_EQ(folder_.files(), others);
 }
 
-// Locks decide, for its number may be that of another process by now.
+// Locks decide, because another process may have its number by now.
 TEST_F(TemporaryFiles, WhatNobodyHasLockedGoesAlthoughAProcessOfThatNumberLives) {
   make(of_process("a", ::getppid()));
   make(of_process("a", 1));
@@ -132,7 +132,7 @@ TEST_F(TemporaryFiles, AFolderGoesAtTheEnd) {
   EXPECT_EQ(folder_.files(), Names{});
 }
 
-// Another process that found it before it was locked has removed it.
+// Another process found the temporary before it was locked, and has removed it.
 TEST_F(TemporaryFiles, OneThatWasTakenForAbandonedIsMadeAnew) {
   int removed = 0;
   on_lock = [&] {
@@ -158,7 +158,7 @@ TEST_F(TemporaryFiles, OneThatAnotherProcessIsAboutToRemoveIsMadeAnew) {
   ::close(other);
 }
 
-// A container uses the numbers of processes again at once.
+// A container reuses process numbers at once.
 TEST_F(TemporaryFiles, WhatAnEarlierProcessOfTheSameNumberLeftGoes) {
   make("a.tmp" + std::to_string(::getpid()) + "-4000000");
   const AtomicFile ours(folder_ / "b");
@@ -187,7 +187,7 @@ TEST_F(TemporaryFiles, IsLockedUntilItHasItsName) {
   ::close(descriptor);
 }
 
-// A mesh has as many surfaces as labels.
+// A mesh has one surface per label.
 TEST_F(TemporaryFiles, ThereMayBeMoreThanDescriptors) {
   rlimit before;
   ASSERT_EQ(::getrlimit(RLIMIT_NOFILE, &before), 0);
@@ -229,7 +229,7 @@ TEST_F(TemporaryFiles, AFolderThatDoesNotReachTheDiskIsReported) {
     EXPECT_EQ(error.what(), "cannot write " + (folder_ / "a") + ": Input/output error");
   }
   on_sync = [](const struct stat& synced) { return S_ISDIR(synced.st_mode) ? EINVAL : 0; };
-  write("b");  // a file system that cannot
+  write("b");  // a file system without fsync
 }
 
 TEST_F(TemporaryFiles, ADiskThatIsFullOnlyWhenAskedKeepsTheOlderFile) {

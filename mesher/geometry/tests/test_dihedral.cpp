@@ -1,4 +1,4 @@
-// Dihedral angles: what their definition by planes says, and a quality that tells which cell is worse.
+// Checks dihedral angles against their definition by planes, and that the quality identifies the worse cell.
 #include "geometry/dihedral.h"
 
 #include <gtest/gtest.h>
@@ -15,7 +15,7 @@ using Corners = std::array<Point, 4>;
 
 DihedralExtremes extremes(const Corners& p) { return dihedral_extremes(p[0], p[1], p[2], p[3]); }
 
-// The angle at the edge ij, between the planes through it and either of the other two corners.
+// Returns the angle at the edge ij between the planes through it and each of the other two corners.
 double dihedral_at(const Corners& p, unsigned i, unsigned j) {
   unsigned k = 0;
   while (k == i || k == j) ++k;
@@ -33,7 +33,7 @@ Corners random_positive_cell(std::mt19937_64& random, double flatness) {
   }
 }
 
-// Two facets meet at the x axis, at this angle; the other four angles are moderate.
+// Returns a cell whose two facets at the x axis meet at this angle; the other angles are moderate.
 Corners wedge(double degrees) {
   const double angle = degrees / kRadToDeg;
   return {{{-1, 0, 0}, {1, 0, 0}, {0, 1, 0}, {0, std::cos(angle), std::sin(angle)}}};
@@ -73,7 +73,7 @@ TEST(DihedralBounds, QualityIs1AtEitherBound) {
   EXPECT_NEAR(bounds.quality(extremes(wedge(8))), 1, 1e-12);
   EXPECT_LT(bounds.quality(extremes(wedge(7.999))), 1);
   EXPECT_GT(bounds.quality(extremes(wedge(8.001))), 1);
-  // A cell with an angle of 165 degrees whose small ones are larger than 8.
+  // A cell with an angle of 165 degrees whose small angles are larger than 8.
   const DihedralExtremes large{1, -1 / std::pow(std::tan(15 / kRadToDeg), 2), 1};
   EXPECT_NEAR(large.largest_deg(), 165, 1e-9);
   EXPECT_NEAR(bounds.quality(large), 1, 1e-12);

@@ -16,8 +16,8 @@ using Five = std::array<Point, 5>;
 
 Exact::Point_3 exact(const Point& p) { return {p.x, p.y, p.z}; }
 
-// Points of a lattice and of a sphere, a few of whose coordinates are off by their last bits: next to all are
-// almost, or just, coplanar or cospherical.
+// Points of a lattice plane and of a sphere, where the last bits of a few coordinates are changed. Nearly all
+// are almost or exactly coplanar or cospherical.
 class NearlyDegenerate {
  public:
   Five next(bool is_on_sphere) {
@@ -39,7 +39,7 @@ class NearlyDegenerate {
     const double x = digit(), y = digit();
     return {x, y, x + 2 * y};
   }
-  // (3,4,0) and the like, of radius 5.
+  // Returns a point such as (3,4,0), on the sphere of radius 5.
   Point on_sphere() {
     static constexpr std::array<std::array<double, 3>, 3> kPoints{{{3, 4, 0}, {0, 5, 0}, {4, 0, 3}}};
     auto p = kPoints[random_() % kPoints.size()];
@@ -81,14 +81,15 @@ TEST(Predicates, PointsInSpheresAreThoseOfTheExactPower) {
   for (const int of_side : count) EXPECT_GT(of_side, 100);
 }
 
-// Of five cospherical points the two Delaunay triangulations of the perturbed heights are one.
+// The perturbed heights of five cospherical points have a single Delaunay triangulation. The tests from both
+// cells must agree on it.
 TEST(Predicates, CosphericalPointsAreToldApartAlikeFromAllSides) {
   NearlyDegenerate points;
   int num_cospherical = 0;
   for (int n = 0; n < 40'000; ++n) {
     const auto [a, b, c, d, p] = points.next(true);
     if (orientation(a, b, c, d) <= 0 || orientation(p, b, d, c) <= 0)
-      continue;  // p beyond the facet of b, c and d
+      continue;  // keeps p beyond the facet of b, c and d
     if (CGAL::side_of_oriented_sphere(exact(a), exact(b), exact(c), exact(d), exact(p)) !=
         CGAL::ON_ORIENTED_BOUNDARY)
       continue;

@@ -1,4 +1,4 @@
-// Octrees of all kinds, by seed: uniform and graded, of cubes, slabs and needles, whole and with gaps.
+// Random octrees by seed: uniform and graded, of cubes, slabs and needles, with and without gaps.
 #pragma once
 
 #include <cmath>
@@ -25,7 +25,7 @@ struct RandomOctree {
 
   double uniform(double from, double to) { return std::uniform_real_distribution(from, to)(random); }
   double finest_side_mm() const { return is_graded ? side_mm / 4 : side_mm; }
-  // It grows as the distance of the fine point from the cube, to the side of a leaf.
+  // Grows with the distance of the cube from the fine point, up to the side of a leaf.
   double largest_side(const Point& from, const Point& to) const {
     if (!is_graded) return side_mm;
     const auto gap = [](double x, double a, double b) { return std::max({0.0, a - x, x - b}); };
@@ -46,8 +46,8 @@ struct RandomOctree {
     return {low, high, finest_side_mm(),
             [this](const Point& a, const Point& b) { return largest_side(a, b); }, is_leaf};
   }
-  // It lies in the box or around it; every third coordinate is on a face of a cube, as exactly as rounding
-  // lets it.
+  // Returns a point in the box or around it. Every third coordinate is on a face of a cube, as exactly as
+  // rounding permits.
   Point point() {
     const auto coordinate = [&](double from, double to) {
       const double x = uniform(from - side_mm, to + side_mm);
@@ -69,13 +69,13 @@ inline std::vector<GridCube> cubes_of(const Octree& octree) {
   return cubes;
 }
 
-/// The cube's low corner, moved by `steps` of the finest side along each axis.
+/// Returns the cube's low corner, moved by `steps` of the finest side along each axis.
 inline Point corner_mm(const Octree& octree, const GridCube& cube, std::uint32_t steps) {
   const auto x = [&](unsigned axis) { return static_cast<double>(cube.corner[axis] + steps); };
   return octree.origin() + octree.finest_side_mm() * Vector{x(0), x(1), x(2)};
 }
 
-/// Whether the regions share a cube. `whole` is the same octree without gaps.
+/// True if the regions share a cube. `whole` is the same octree without gaps.
 inline bool is_within_two_rings(const std::vector<GridCube>& whole, const GridCube& a, const GridCube& b) {
   return std::any_of(whole.begin(), whole.end(),
                      [&](const GridCube& cube) { return touch(cube, a) && touch(cube, b); });

@@ -1,4 +1,4 @@
-// What a refinement queue has at a moment, and whose it is.
+// Test access to the state of a refinement queue.
 #pragma once
 
 #include <mutex>
@@ -12,9 +12,9 @@ class RefinementQueueState {
   explicit RefinementQueueState(RefinementQueue& queue) : queue_(queue) {}
 
   struct Counts {
-    std::size_t pending, ready;  // leaves with poor cells; those of them that may be handed out
+    std::size_t pending, ready;  // leaves with poor cells; leaves of these that may be handed out
     std::size_t active;
-    std::size_t waiting;  // nodes that are to be woken
+    std::size_t waiting;  // nodes to be woken
   };
   Counts counts() const {
     const std::scoped_lock lock(queue_.mutex_);
@@ -23,7 +23,7 @@ class RefinementQueueState {
     return {queue_.num_pending_, num_ready, queue_.num_active_, queue_.num_waiting_};
   }
 
-  /// A leaf for the node; nothing if it would have to wait for one.
+  /// Returns a leaf for the node; nothing if the node would have to wait.
   std::optional<LeafId> pop(unsigned node) {
     const std::scoped_lock lock(queue_.mutex_);
     return queue_.take(node);

@@ -55,19 +55,19 @@ TEST_P(LeafRegionOfSeed, IsDisjointFromThoseNotWithinTwoRings) {
 
 INSTANTIATE_TEST_SUITE_P(Seeds, LeafRegionOfSeed, testing::Range(0, kNumSeeds));
 
-// Operations at their farthest or at random, of cells that the bounds of leaf_side() allow, in a leaf.
+// Operations in a leaf, at their farthest or at random, for cells within the bounds of leaf_side().
 class Reach {
  public:
   Reach(double radius_mm, double delta_mm) : radius_mm_(radius_mm), delta_mm_(delta_mm) {}
 
-  /// A vertex that an operation for a cell with this circumcentre may lock.
+  /// Returns a vertex that an operation for a cell with this circumcenter may lock.
   Point locked_vertex(const Point& circumcenter) {
     Point p = circumcenter;
     const auto rule = random_() % 3;
     if (rule == 1) p = near(p, radius_mm_);                           // R1, R2
-    if (rule == 2) p = near(near(p, radius_mm_), radius_mm_);         // R3: by way of a vertex of the cell
+    if (rule == 2) p = near(near(p, radius_mm_), radius_mm_);         // R3: through a vertex of the cell
     if (rule != 0 && random_() % 2 == 0) p = near(p, 2 * delta_mm_);  // R6
-    return near(near(p, radius_mm_), radius_mm_);  // it goes by the centre of a cell with p in its ball
+    return near(near(p, radius_mm_), radius_mm_);  // through the center of a cell with p in its ball
   }
 
  private:
@@ -86,7 +86,7 @@ class Reach {
 TEST(LeafSide, KeepsOperationsInTheirRegion) {
   const double delta_mm = 0.7;
   for (const double initial_radius_mm : {0.5, 2.0, 8.0}) {
-    // A hair more than needed, for rounding.
+    // Slightly more than needed, for rounding.
     const double side_mm = leaf_side(initial_radius_mm, delta_mm) * (1 + 1e-9);
     const auto constant = [&](const Point&, const Point&) { return side_mm; };
     const Octree octree({0, 0, 0}, {5 * side_mm, 5 * side_mm, 5 * side_mm}, side_mm, constant,
@@ -104,7 +104,7 @@ TEST(LeafSide, KeepsOperationsInTheirRegion) {
       ASSERT_TRUE(region.contains(vertex)) << vertex.x << " " << vertex.y << " " << vertex.z;
       has_neared_the_end = has_neared_the_end || vertex.x > 4 * side_mm * (1 - 1e-6);
     }
-    EXPECT_TRUE(has_neared_the_end);  // no smaller side would do for these
+    EXPECT_TRUE(has_neared_the_end);  // no smaller side would suffice for these operations
   }
 }
 

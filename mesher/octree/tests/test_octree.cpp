@@ -33,7 +33,7 @@ GridCube around(const GridCube& cube, std::uint32_t side) {
   return parent;
 }
 
-// The leaf that has grid coordinates g, by its definition.
+// Returns the leaf that owns the grid coordinates g, computed from the definition.
 LeafId owner_of(const Octree& octree, const Point& g) {
   const double coordinates[] = {g.x, g.y, g.z};
   for (LeafId leaf = 0; leaf < octree.num_leaves(); ++leaf) {
@@ -80,7 +80,7 @@ TEST_P(OctreeOfSeed, LeavesAreTheNeededCubesInMortonOrder) {
   }
 }
 
-// Balanced, no larger than asked for, and no smaller than those two demand.
+// Cubes are balanced, no larger than requested, and no smaller than these two conditions demand.
 TEST_P(OctreeOfSeed, SidesAreTheLargestAllowed) {
   const std::vector<GridCube> cubes = cubes_of(whole);
   const auto is_too_large = [&](const GridCube& cube) {

@@ -15,14 +15,14 @@ namespace {
 constexpr LeafOrder kOrders[] = {LeafOrder::kHome, LeafOrder::kMostWork, LeafOrder::kMorton,
                                  LeafOrder::kColoring};
 
-// So many leaves.
+// Returns a row of `num_leaves` leaves.
 Octree row_of(double num_leaves) {
   const auto side = [](const Point&, const Point&) { return 1.0; };
   const auto always = [](const Point&, const Point&) { return true; };
   return {{0, 0, 0}, {num_leaves, 1, 1}, 1, side, always};
 }
 
-// Threads that wait for leaves.
+// Blocks threads that wait for leaves.
 class Waiting {
  public:
   explicit Waiting(unsigned num_nodes) : woken_(num_nodes) {}
@@ -52,7 +52,7 @@ class Queue : public testing::TestWithParam<std::tuple<LeafOrder, int>> {
   }
 };
 
-// Calls at random as one thread for several nodes makes them, checked against what has to hold after each.
+// Makes random calls, as one thread would for several nodes, and checks the invariants after each call.
 TEST_P(Queue, HandsOutEveryPendingLeafAwayFromActiveOnes) {
   constexpr unsigned kNumNodes = 5;
   Waiting waiting(kNumNodes);
@@ -116,14 +116,15 @@ TEST_P(Queue, RepeatsItselfForTheSameCalls) {
   EXPECT_EQ(run(), run());
 }
 
-// What a node writes without locks while its leaf is active. Sanitizers see two that do so at once.
+// Each node writes data without locks while its leaf is active. Sanitizers detect two nodes that write at
+// once.
 TEST_P(Queue, ThreadsRefineEveryLeafWithItsRegionToThemselves) {
   constexpr unsigned kNumNodes = 4;
   Waiting waiting(kNumNodes);
   RefinementQueue queue(octree, kNumNodes, order, waiting.wake());
   queue.share_out();
-  std::vector<unsigned> user_of(cubes.size());         // of each cube: node + 1, or 0
-  std::vector<unsigned> poor_of(octree.num_leaves());  // poor cells, given by the leaf itself or its ring
+  std::vector<unsigned> user_of(cubes.size());         // per cube: node + 1, or 0
+  std::vector<unsigned> poor_of(octree.num_leaves());  // poor cells, given by the leaf itself or by its ring
   std::atomic<unsigned> num_pushed = octree.num_leaves(), num_refined = 0, num_shared = 0;
   for (LeafId leaf = 0; leaf < octree.num_leaves(); ++leaf) {
     poor_of[leaf] = 1;
@@ -157,7 +158,7 @@ TEST_P(Queue, ThreadsRefineEveryLeafWithItsRegionToThemselves) {
         }
       });
     }
-    for (std::jthread& node : nodes) node.join();  // the destructor would ask them to stop
+    for (std::jthread& node : nodes) node.join();  // the destructor would request a stop
   }
   EXPECT_EQ(num_shared, 0u);
   EXPECT_EQ(num_refined, num_pushed);
@@ -169,7 +170,8 @@ INSTANTIATE_TEST_SUITE_P(Orders, Queue, testing::Combine(testing::ValuesIn(kOrde
 
 class Shares : public testing::TestWithParam<std::uint64_t> {};
 
-// A leaf may be on either side of a cut, and shares of three nodes have two cuts between them.
+// The tolerance has this reason: a leaf may be on either side of a cut, and the shares of three nodes have
+// two cuts between them.
 TEST_P(Shares, HaveEqualWorkAndGoToTheirNodes) {
   constexpr unsigned kNumNodes = 3, kMost = 100;
   RandomOctree seeded{GetParam()};
@@ -195,7 +197,7 @@ TEST_P(Shares, HaveEqualWorkAndGoToTheirNodes) {
   }
 }
 
-// Node 1 has refined its share when node 0 has begun: it takes over half of what is left.
+// Node 1 has finished its share when node 0 has just begun: node 1 takes over half of the rest.
 TEST(Share, OfWhoHasMostIsHalvedForWhoHasNone) {
   const Octree octree = row_of(32);
   RefinementQueue queue(octree, 2);
@@ -210,7 +212,7 @@ TEST(Share, OfWhoHasMostIsHalvedForWhoHasNone) {
   EXPECT_EQ(queue.home_of(*taken), 1u);
 }
 
-// Of a row of two shares the leaves beside the cut are the rivals of the other's.
+// In a row of two shares, the leaves beside the cut are rivals of the other share's leaves.
 TEST(Share, IsRefinedFromItsContendedLeavesInwards) {
   const Octree octree = row_of(32);
   RefinementQueue queue(octree, 2);
@@ -224,7 +226,7 @@ TEST(Share, IsRefinedFromItsContendedLeavesInwards) {
   EXPECT_EQ(pop(queue, 0), LeafId{3}) << "most poor cells first";
 }
 
-// Node 0's leaves are near an active one, node 1 has leaves to spare.
+// Node 0's leaves are near an active leaf; node 1 has leaves to spare.
 TEST(Share, IsNotLeftWhileItHasPoorCells) {
   const Octree octree = row_of(32);
   RefinementQueue queue(octree, 2);

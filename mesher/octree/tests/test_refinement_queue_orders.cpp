@@ -1,6 +1,6 @@
-// How busy each order keeps the nodes, and how much of their work is near what they did before: simulated for
-// a ball of 2176 leaves, which take from half to one and a half of a unit of time at first. A finished leaf
-// gives its first ring a fifth of what it had.
+// Measures how busy each order keeps the nodes, and how much of their work is near their earlier work.
+// Simulates a ball of 2176 leaves, each of which takes from 0.5 to 1.5 units of time at first. A finished
+// leaf gives its first ring a fifth of its work.
 //
 //               8 nodes               16 nodes              32 nodes              64 nodes
 //               busy   own    visits  busy   own    visits  busy   own    visits  busy   own    visits
@@ -10,9 +10,9 @@
 //   coloring    1.000  0.124  2.34    1.000  0.065  2.39    0.982  0.032  2.73    0.689  0.024  4.87
 //
 // busy: share of the time at work; own: share of the first ring, weighted by work, that the node itself was
-// the last to refine; visits: activations a leaf. No more than some 80 of these leaves can be active
-// together. Home is nearly as busy as any and does most of its work where it was before, for few visits. From
-// 64 nodes on no order keeps them busy: the leaves are too few.
+// the last to refine; visits: activations per leaf. At most about 80 of these leaves can be active at once.
+// Home is nearly as busy as any other order. It does most of its work where it worked before, with few
+// visits. From 64 nodes on no order keeps the nodes busy: there are too few leaves.
 #include <gtest/gtest.h>
 
 #include <map>

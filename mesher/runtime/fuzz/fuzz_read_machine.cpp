@@ -1,5 +1,5 @@
-// Machines in TOML: a file either describes one whose ways all lead from node to node, or is refused with a
-// TopologyError that begins with its path.
+// Machines in TOML: a file either describes a machine whose ways all lead from node to node, or is refused
+// with a TopologyError that begins with its path.
 #include <cmath>
 
 #include "fuzz_scratch.h"

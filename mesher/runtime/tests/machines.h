@@ -1,4 +1,4 @@
-// Described machines that the tests of the runtime share.
+// Described machines that the runtime tests share.
 #pragma once
 
 #include <algorithm>
@@ -14,7 +14,7 @@ inline Topology two_sockets() { return Topology::synthetic("pack:2 numa:2 core:4
 
 inline Topology one_node() { return Topology::synthetic("pack:1 core:8 pu:1"); }
 
-// Latency from each of `num_nodes` nodes to each, in rows.
+// Returns the latencies from each of `num_nodes` nodes to each, in rows.
 template <class Latency>
 std::vector<std::uint64_t> latency_rows(int num_nodes, const Latency& latency) {
   std::vector<std::uint64_t> rows;
@@ -23,7 +23,7 @@ std::vector<std::uint64_t> latency_rows(int num_nodes, const Latency& latency) {
   return rows;
 }
 
-// A ring of four nodes: neighbours are one hop apart, opposite ones two.
+// Returns a ring of four nodes: neighbours are one hop apart, opposite nodes two.
 inline Topology four_nodes() {
   return Topology::synthetic("numa:4 core:4 pu:1", latency_rows(4, [](int a, int b) {
                                const auto apart = static_cast<std::uint64_t>(a > b ? a - b : b - a);

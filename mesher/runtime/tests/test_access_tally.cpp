@@ -1,4 +1,4 @@
-// Counts of accesses by kind and node, and the sample of them that is kept.
+// Counts of accesses by kind and node, and the stored sample.
 #include "runtime/access_tally.h"
 
 #include <gtest/gtest.h>

@@ -1,4 +1,4 @@
-// Limits of control groups, from trees of /proc and /sys as such systems show them.
+// Limits of control groups, read from trees of /proc and /sys like those of real systems.
 #include <gtest/gtest.h>
 
 #include <cstdlib>
@@ -23,7 +23,7 @@ class Tree : public testing::Test {
     fs::create_directories(fs::path(root_ + path).parent_path());
     std::ofstream(root_ + path) << text << "\n";
   }
-  // A group of version 2 with its limit, what it uses and what of that are files that can be dropped.
+  // Writes a group of version 2 with its limit, its use, and the part of the use that is droppable files.
   void unified_group(const std::string& path, const std::string& most, int used, int droppable = 0) {
     write(path + "/memory.max", most);
     write(path + "/memory.current", std::to_string(used));
@@ -58,7 +58,7 @@ TEST_F(Tree, NestedGroupsOfVersion2AllCount) {
   EXPECT_EQ(group.folders.front(), root_ + job + "/step");
 }
 
-// The group's own folder is what the container sees mounted.
+// The container sees its group's own folder as the mount.
 TEST_F(Tree, ContainersSeeTheirGroupAsTheRoot) {
   write("/proc/self/mountinfo", "40 30 0:26 /docker/17 /sys/fs/cgroup ro - cgroup2 cgroup rw");
   write("/proc/self/cgroup", "0::/docker/17");
@@ -70,7 +70,7 @@ TEST_F(Tree, ContainersSeeTheirGroupAsTheRoot) {
   EXPECT_EQ(left(), 2000u) << "outside of the namespace";
 }
 
-// A container's group, say, that is mounted for those who watch it.
+// For example, a container's group that is mounted for monitoring.
 TEST_F(Tree, MountsOfOtherGroupsAreNotOurs) {
   const std::string own = "30 24 0:26 / /sys/fs/cgroup rw - cgroup2 cgroup2 rw";
   const std::string others =

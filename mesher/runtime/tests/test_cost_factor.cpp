@@ -1,4 +1,4 @@
-// Constants of a machine times a factor: each changes what it names and nothing else.
+// Checks that a factor changes the constant that it names and nothing else.
 #include "runtime/cost_factor.h"
 
 #include <gmock/gmock.h>
@@ -15,7 +15,7 @@ using testing::HasSubstr;
 
 MachineModel blacklight() { return MachineModel::from_file(PODM_MACHINES + std::string("/blacklight.toml")); }
 
-// All that costs depend on, by the names that factors know.
+// Returns all constants that costs depend on, by the names that factors use.
 std::map<std::string, double> constants_of(const MachineModel& machine) {
   std::map<std::string, double> constants{
       {"core_speed", machine.core_speed}, {"hop_latency", machine.hop_latency_s},

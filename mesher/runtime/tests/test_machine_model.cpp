@@ -1,4 +1,4 @@
-// Machines described in TOML: every file of experiments/machines, what follows from a network, and refusals.
+// Machines described in TOML: every file of experiments/machines, properties of networks, and refusals.
 #include "runtime/machine_model.h"
 
 #include <gmock/gmock.h>
@@ -56,7 +56,7 @@ std::string replaced(std::string text, const std::string& old, const std::string
   return text.replace(place, old.size(), by);
 }
 
-// The ways that lead through each station but their own ends.
+// Returns the number of ways through each station, without the ways that end there.
 std::vector<int> ways_through(const MachineModel& model) {
   std::vector<int> ways(model.stations.size());
   for (const std::vector<int>& route : model.routes)
@@ -162,7 +162,7 @@ TEST(MachineModel, OfOneNodeNeedsNoNetwork) {
   EXPECT_EQ(model.stations.front().service_s, 0) << "no limit";
 }
 
-// What of the ring is replaced by what, the place of the fault and a word of it.
+// A text of the ring, its replacement, the place of the fault and a word of the message.
 struct Fault {
   std::string old, by, place, word;
 };

@@ -1,5 +1,5 @@
-// Whose the pieces of a shared array are: as a made-up machine of four nodes answers, and as described ones
-// are dealt.
+// Owners of the pieces of a shared array: queried from a made-up machine of four nodes, and dealt for
+// described machines.
 #include <gtest/gtest.h>
 
 #include <numeric>
@@ -11,9 +11,9 @@
 namespace podm::test {
 namespace {
 
-constexpr std::size_t kPiece = 1 << 16;  // bytes asked about at once
+constexpr std::size_t kPiece = 1 << 16;  // bytes per query
 
-// The made-up machine has page n of `array` on the node that is n modulo 4 by the system's number.
+// Places page n of `array` on the node with the operating system's number n modulo 4.
 template <class T>
 PageQuery in_turn(const std::vector<T>& array) {
   return [&array](std::span<const void* const> addresses) {
@@ -64,7 +64,7 @@ TEST(MemoryOwners, SayWhyTheyAreUnknown) {
 TEST(MemoryOwners, AreDealtToAllWorkersAndTheSameForTheSameSeed) {
   const std::vector<std::uint32_t> array(1 << 20);
   constexpr unsigned kPieceBits = 12;
-  const std::vector<NodeIndex> nodes{0, 0, 1, 3};  // of four workers
+  const std::vector<NodeIndex> nodes{0, 0, 1, 3};  // per worker
   const auto deal = [&](std::uint64_t seed) {
     const auto owners = MemoryOwners::deal(std::span(array), kPieceBits, nodes, seed);
     std::vector<NodeIndex> dealt;

@@ -1,4 +1,4 @@
-// Where pages lie. Containers may forbid the query; it must then say so.
+// Queries of the node of pages. Containers may forbid the query; it must then return the reason.
 #include <gtest/gtest.h>
 
 #include <algorithm>

@@ -1,4 +1,5 @@
-// Orders of processors by their properties, pin plans and their refusals, and a thread that is really bound.
+// Orders of processors by their properties, pin plans and their refusals, and a thread that is actually
+// bound.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
@@ -19,7 +20,7 @@ using testing::AllOf;
 using testing::ElementsAre;
 using testing::HasSubstr;
 
-// Every worker's place; there are `more` workers than processors.
+// Returns every worker's place; there are `more` workers than processors.
 std::vector<Place> places_on(const Topology& machine, const char* plan, int more = 0) {
   const int num_workers = static_cast<int>(machine.processors().size()) + more;
   return place_workers(machine, PinPlan::parse(plan), num_workers, more > 0);
@@ -37,7 +38,7 @@ std::vector<Processor> processors_of(const Topology& machine, const std::vector<
   return result;
 }
 
-// Machines have one or many nodes, sockets, cores and hardware threads.
+// The machines have one or several nodes, sockets, cores and hardware threads.
 class Order : public testing::TestWithParam<const char*> {
  protected:
   const Topology machine_ = Topology::synthetic(GetParam());

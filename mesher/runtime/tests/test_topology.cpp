@@ -1,4 +1,4 @@
-// Machines by description, by file and the one at hand: numbering, hops, round trips and refusals.
+// Machines by description, by file and this machine: numbering, hops, round trips and refusals.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 #include <sched.h>
@@ -55,7 +55,7 @@ void expect_consistent(const Topology& machine) {
   EXPECT_EQ(machine.max_hops(), max_hops);
 }
 
-// What becomes of a machine whose XML is `text`.
+// Returns the machine that is read from a file with the XML `text`.
 Topology read_back(const std::string& text, const std::string& path) {
   std::ofstream(path) << text;
   return Topology::from_file(path);
@@ -87,7 +87,7 @@ TEST(Topology, OfTwoSocketsWithTwoNodesEach) {
 }
 
 TEST(Topology, HopsRankTheLatencies) {
-  // A ring whose links grow slower with distance, and faster one way round than the other.
+  // A ring whose latencies grow with the square of the distance, and are slower in one direction.
   const auto ring = [](int a, int b) { return std::min((a - b + 16) % 16, (b - a + 16) % 16); };
   const auto latency = [&](int a, int b) {
     return 10 + 7 * ring(a, b) * ring(a, b) + (a < b && ring(a, b) > 0);
@@ -134,7 +134,7 @@ TEST(Topology, OfThisMachineHeedsTheAffinity) {
   const auto is_all = [](const Topology& machine, int processor) {
     return machine.processors().size() == 1 && machine.processors().front().os_index == processor;
   };
-  EXPECT_EXIT(  // in a process of its own, as its one thread is bound for good
+  EXPECT_EXIT(  // in a separate process, because its thread stays bound
       {
         pin_this_thread(os_index);
         std::exit(is_all(Topology::of_this_machine(), os_index) ? 0 : 1);

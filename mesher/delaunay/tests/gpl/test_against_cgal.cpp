@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The kernel against CGAL's Delaunay triangulation (GPL): kept apart from everything else, never installed.
+// Compares the kernel with CGAL's Delaunay triangulation (GPL). Kept apart from everything else and never
+// installed.
 #include <CGAL/Delaunay_triangulation_3.h>
 #include <CGAL/Exact_predicates_inexact_constructions_kernel.h>
 #include <gtest/gtest.h>
@@ -60,8 +61,8 @@ std::vector<CellPoints> away_from_corners(std::vector<CellPoints> cells) {
 
 class AgainstCgal : public testing::TestWithParam<PointSet> {};
 
-// In general position the triangulations are equal; cospherical ties may be cut otherwise, but every ball
-// stays empty and the box stays full.
+// In general position the triangulations are equal. Cospherical ties may be cut in another way, but every
+// ball stays empty and the box stays full.
 TEST_P(AgainstCgal, IsADelaunayTriangulationOfTheSamePoints) {
   Triangulator ours(kBox);
   for (const Point& p : shuffled(GetParam().make(), 1)) ours.insert(p);
@@ -80,7 +81,7 @@ TEST_P(AgainstCgal, IsADelaunayTriangulationOfTheSamePoints) {
       EXPECT_TRUE(is_empty_ball(c, reference));
     }
   }
-  // Corners of one box face are cocircular; away from them general position leaves no choice.
+  // Corners of one box face are cocircular. Away from them, general position determines the triangulation.
   if (std::string(GetParam().name) == "random" || std::string(GetParam().name) == "clustered") {
     EXPECT_TRUE(away_from_corners(cells) == away_from_corners(expected));
   }
