@@ -33,7 +33,7 @@ void check_near(const LabelImage& image, const std::vector<SizeNear>& near) {
   }
 }
 
-// Readers see to it; others may not have.
+// Readers of files ensure these properties; other callers may not.
 void check_size_image(const SizeImage& image) {
   std::size_t voxels = 1;
   for (const int n : image.size) voxels *= static_cast<std::size_t>(std::max(n, 0));
@@ -92,7 +92,7 @@ void check_optimization(const MeshingOptions& options) {
     throw InputError("an optimised mesh has no log of operations: those of optimisation are not logged");
 }
 
-// Readers see to it; others may have left the affine out.
+// Readers of files ensure this; other callers may have left the affine out.
 void check_affine(const LabelImage& image) {
   const Affine& a = image.voxel_to_ras;
   for (std::size_t axis = 0; axis < 3; ++axis) {

@@ -1,12 +1,12 @@
-// What mesh_image() refuses.
+// Checks the input of mesh_image().
 #pragma once
 
 #include "podm/mesh_image.h"
 
 namespace podm {
 
-/// Throws InputError, naming the fault, on options that contradict themselves or the image, and on an image
-/// that has no foreground or whose affine is not that of its voxels.
+/// Throws InputError, which names the fault, on options that contradict each other or the image, and on an
+/// image without foreground or with an affine that does not match its voxels.
 void check_options(const LabelImage& image, const MeshingOptions& options);
 
 }  // namespace podm

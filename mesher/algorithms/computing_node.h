@@ -1,4 +1,4 @@
-// A computing node of PDR.PODM: a group of workers that are confined to one leaf after the other.
+// A computing node of PDR.PODM: a group of workers that is confined to one leaf after the other.
 #pragma once
 
 #include <algorithm>
@@ -31,18 +31,19 @@ class ComputingNode {
   Worker<Locks>& master() const { return *workers_.front(); }
   Coordination& group() { return group_; }
 
-  /// The workers keep to the leaf from now on. None works while this is called, or end().
+  /// Confines the workers to the leaf from now on. No worker may work during this call or end().
   void begin(const Octree& octree, LeafId leaf, double now_s);
-  /// The leaf ends: new cells of others go to them, cells that need vertices outside its region are deferred.
-  /// Returns what happened meanwhile, but for the time, which the caller takes when nobody works there any
-  /// more.
+  /// Ends the leaf: hands new cells of other leaves over to them, and defers cells that need vertices outside
+  /// the leaf's region. Returns the activation without its end time, which the caller adds once no worker
+  /// works there any more.
   LeafSchedule::Activation end(LeafCells& cells, RefinementQueue& queue, const std::stop_token& stop);
-  /// New cells of other leaves that end() will hand over.
+  /// The number of new cells of other leaves that end() will hand over.
   std::size_t num_foreign() const;
-  /// Whether each worker is to hand its foreign cells over before it begs. Set while the others beg.
+  /// True if each worker is to hand its foreign cells over before it begs. Set while all workers but the
+  /// master beg.
   bool hands_over() const { return hands_over_; }
   void set_hands_over(bool hands_over) { hands_over_ = hands_over; }
-  /// Whether a leaf has begun that has not ended.
+  /// True between begin() and end().
   bool has_leaf() const { return region_.has_value(); }
   LeafId leaf() const { return region_->leaf(); }
 

@@ -56,7 +56,7 @@ void Construction::sample_pages(const std::string& phase) {
   for (SampledAccesses& of_worker : accesses_) of_worker.addresses.clear();
 }
 
-// Before the team goes on, so that operations on vertices come after their moves.
+// Called before the team goes on, so that operations on vertices come after the vertices' moves.
 void Construction::log(const Relocation& relocation) {
   OperationBatch moves;
   for (VertexId v = 0; v < relocation.vertex_bound(); ++v) {
@@ -74,7 +74,7 @@ void Construction::log(const Relocation& relocation) {
   team_.log->append(moves);
 }
 
-// Memory may be left where there are no more numbers for cells.
+// Distinguishes a store without memory from one without cell numbers, which may have memory left.
 Refinement Construction::finish() {
   result_.stop_reason = stop_.reason();
   if (result_.stop_reason == StopReason::kMemoryLimit && mesh().is_used_up() &&

@@ -1,4 +1,4 @@
-// A mesh under construction: its store, the pools of those who refine it, and what each phase took.
+// A mesh under construction: its store, the pools of its workers, and the time that each phase took.
 #pragma once
 
 #include <chrono>
@@ -32,36 +32,37 @@ struct Problem {
   Box object;  // bounds of the foreground
   double delta_mm = 0;
   SizeField sizes;
-  std::size_t cell_capacity = 0;  // the most cells the store may hold
-  // What store, workers and leaves may take together. The capacity takes workers into account, not leaves.
+  std::size_t cell_capacity = 0;  // the most cells that the store may hold
+  // Bytes that store, workers and leaves may take together. The capacity accounts for workers, not for
+  // leaves.
   std::uint64_t memory_bytes = std::numeric_limits<std::uint64_t>::max();
-  // A store of this capacity has run out of numbers, not of memory. Tests set it lower.
+  // A full store of this capacity has run out of cell numbers, not of memory. Tests set a lower value.
   std::size_t most_numbered_cells = kMostStoredCells;
-  std::optional<DihedralBounds> dihedral_bounds = {};  // for R7; none: it is not asked for
-  /// Told of R7's progress, from 0 to 1, and of the cells of the store.
+  std::optional<DihedralBounds> dihedral_bounds = {};  // for R7; none: R7 is not requested
+  /// Receives R7's progress, from 0 to 1, and the number of cells in the store.
   std::function<void(double fraction, std::uint64_t cells)> observe_perturbation = {};
 };
 
-/// Who refines.
+/// The workers of a run.
 struct Team {
   Executor executor = Executor::kThreads;
   CoordinationOptions coordination;
   int num_nodes = 1;        // computing nodes, which divide the workers evenly; PODM has one
-  int initial_workers = 1;  // so many make their initial mesh
+  int initial_workers = 1;  // workers that make the initial mesh
   VirtualCost cost = VirtualCost::kMeasured;
-  const MachineModel* model = nullptr;  // what `machine` costs virtual workers; none: nothing but their work
+  const MachineModel* model = nullptr;  // costs of `machine` for virtual workers; none: only their work costs
   OperationLogWriter* log = nullptr;
-  const Topology* machine = nullptr;    // the places name its nodes; none: all are on one
+  const Topology* machine = nullptr;    // has the nodes of the places; none: all workers are on one node
   std::vector<Place> places = {};       // the workers' places; none: anywhere
-  const ImageOwners* owners = nullptr;  // nodes that own image and transform; none: these are not counted
-  const PageSampler* pages = nullptr;   // asked at the end of each phase, if any
+  const ImageOwners* owners = nullptr;  // nodes that own image and transform; none: reads are not counted
+  const PageSampler* pages = nullptr;   // sampled at the end of each phase, if given
 };
 
 /// The constants of virtual time on the team's machine.
 inline TimeCosts costs_of(const Team& team) {
   return team.model != nullptr ? team.model->costs : TimeCosts();
 }
-/// Virtual seconds of so many pieces of work that cost as much each, where `num_working` share them.
+/// Virtual seconds of `count` pieces of work of equal cost that `num_working` workers share.
 inline double virtual_seconds(const Team& team, double TimeCosts::*cost, std::uint64_t count,
                               int num_working = 1) {
   const double reference_s = costs_of(team).*cost * static_cast<double>(count);
@@ -84,7 +85,7 @@ struct Refinement {
   std::optional<Perturbed> perturbed;
 };
 
-/// The phase in which store, pools, workers and threads are made ready.
+/// The phase that prepares store, pools, workers and threads.
 inline constexpr const char* kAllocate = "allocate";
 
 class Construction {
@@ -93,11 +94,11 @@ class Construction {
   template <class Locks>
   using Workers = std::vector<std::unique_ptr<Worker<Locks>>>;
 
-  /// The store begins as the six cells of a box around `clamp_box`.
+  /// The store begins with the six cells of a box around `clamp_box`.
   Construction(const Problem& problem, const Box& clamp_box, const Team& team, StopControl& stop);
 
   const Mesh& mesh() const { return *result_.mesh; }
-  /// Between phases.
+  /// For use between phases.
   Mesh& mesh() { return *result_.mesh; }
   Pool& pool(WorkerId worker) { return *pools_[worker]; }
   const Problem& problem() const { return problem_; }
@@ -107,11 +108,11 @@ class Construction {
   /// Every cell of the store.
   Entries all_cells() const;
 
-  /// Keeps so much memory free of the store, instead of what was withheld before. Where the store has it
-  /// already the run is over.
+  /// Keeps `bytes` of memory free of the store, instead of the amount withheld before. Ends the run if the
+  /// store already uses them.
   void withhold(std::uint64_t bytes);
-  /// The first so many of the team, with their pools. They keep a reference to the parameters. The phase is
-  /// charged with their making.
+  /// Makes the first `num_workers` workers of the team, with their pools. The workers keep a reference to the
+  /// parameters. The time is charged to `phase`.
   template <class Locks>
   Workers<Locks> make_workers(const Parameters& parameters, int num_workers, const char* phase = kAllocate) {
     Workers<Locks> workers;
@@ -123,7 +124,7 @@ class Construction {
     return workers;
   }
 
-  /// Charges the phase with the action's seconds, but for those that were charged to others meanwhile.
+  /// Charges the phase with the seconds of the action, except those charged to other phases meanwhile.
   template <class Action>
   void timed(const std::string& phase, Action&& action) {
     const auto start = std::chrono::steady_clock::now();
@@ -132,8 +133,8 @@ class Construction {
     const std::chrono::duration<double> elapsed = std::chrono::steady_clock::now() - start;
     charge(phase, elapsed.count() - (charged_s_ - charged_before_s));
   }
-  /// Calls action(time) with the first so many of the team in their time, and takes down what it took of
-  /// them. The phase `starting` is charged with the starting of their threads.
+  /// Calls action(time) with the time of the first `num_workers` workers of the team, and records the virtual
+  /// time spent or the processors that threads were bound to. The start of threads is charged to `starting`.
   template <class Action>
   void in_time(const std::string& phase, int num_workers, Action&& action, const char* starting = kAllocate) {
     const auto count = static_cast<std::size_t>(num_workers);
@@ -154,9 +155,9 @@ class Construction {
     if (team_.executor != Executor::kVirtual) return;
     result_.virtual_phases_s[phase] += virtual_seconds(team_, cost, count);
   }
-  /// Moves the mesh between operations: what is at a point goes to the NUMA node of worker_of(point), and
-  /// stays where that is kNoWorker. All of the team move it, in their time. Nothing: the run is over, and
-  /// all is where it was. A run that ends later has moved all.
+  /// Moves the mesh between operations: cells and vertices at a point go to the NUMA node of
+  /// worker_of(point), and stay if that is kNoWorker. All workers of the team move them, in their time.
+  /// Returns nothing if the run is over and nothing has moved. If the run ends later, everything has moved.
   template <class Time, class WorkerOf>
   std::optional<Relocation> relocate(Time& time, const WorkerOf& worker_of) {
     const std::vector<NodeIndex> nodes = nodes_of_first(static_cast<std::size_t>(num_workers()));
@@ -177,12 +178,12 @@ class Construction {
       has_moved[self] = 1;
       time.spend(self, time.costs().cell_moved * static_cast<double>(num_cells));
     });
-    for (WorkerId self = 0; self < has_moved.size(); ++self)  // moves allocate nothing, starting workers does
+    for (WorkerId self = 0; self < has_moved.size(); ++self)  // only starting workers allocates
       if (has_moved[self] == 0) relocation->move(self, *pools_[self]);
     if (team_.log != nullptr) log(*relocation);
     return relocation;
   }
-  /// What workers did in a phase that has ended.
+  /// Accounts for the workers' counts and overhead in a phase that has ended.
   template <class Locks, class Time>
   void account(const Workers<Locks>& workers, const Time& time) {
     for (WorkerId id = 0; id < workers.size(); ++id) {
@@ -190,7 +191,7 @@ class Construction {
       add_counters(*workers[id], time.overhead(*workers[id]));
     }
   }
-  /// Called at the end of a phase; no phase is charged for it.
+  /// Called at the end of a phase. No phase is charged for it.
   void sample_pages(const std::string& phase);
   void report_leaves(std::uint64_t num_leaves, std::optional<LeafSchedule> schedule) {
     result_.num_leaves = num_leaves;
@@ -219,7 +220,7 @@ class Construction {
   const Team& team_;
   StopControl& stop_;
   std::vector<std::unique_ptr<Pool>> pools_;  // workers keep them from phase to phase
-  std::vector<SampledAccesses> accesses_;     // what each worker accessed in the last phase
+  std::vector<SampledAccesses> accesses_;     // accesses of each worker in the last phase
   Refinement result_;
   double charged_s_ = 0;  // the sum over all phases
 };

@@ -1,4 +1,4 @@
-// Which NUMA nodes the image and its feature transform lie on.
+// The NUMA nodes that own the image and its feature transform.
 #pragma once
 
 #include "algorithms/placement_of_team.h"
@@ -7,8 +7,8 @@
 
 namespace podm {
 
-/// Asks `query` for the owners where the run is on this machine's threads. For other runs it draws a worker
-/// for each piece, of the size that one thread touches first: a huge page.
+/// Asks `query` for the owners if the workers are threads of this machine. Otherwise draws a worker for each
+/// piece of the size that one thread touches first: a huge page.
 ImageOwners owners_of_image(const LabelImage& image, const FeatureTransform& transform,
                             const PlacementOfTeam& placement, std::uint64_t seed, const PageQuery& query);
 

@@ -103,8 +103,8 @@ LeafCells::Entries LeafCells::take_leftover() {
   return left;
 }
 
-// Calls action(leaf, keys) by ascending leaf, kNoLeaf the last, until it returns false. Keys are in the order
-// of the cells.
+// Calls action(leaf, keys) by ascending leaf, with kNoLeaf last, until it returns false. The keys of a leaf
+// are in the order of the cells.
 template <class Action>
 void LeafCells::for_each_leaf(const Entries& cells, Action&& action) const {
   std::vector<Key> keys;

@@ -1,4 +1,4 @@
-// Operations and workers that keep to a leaf: the kernel and the rules know nothing of leaves.
+// Operations and workers that are confined to a leaf: the kernel and the rules do not depend on leaves.
 #include "algorithms/leaf_locks.h"
 
 #include "delaunay/operation_steps.h"

@@ -1,7 +1,8 @@
-// Locks confined to the region of one leaf of an octree: a vertex outside of it cannot be had. Regions of
-// leaves that are refined at the same time are disjoint (octree/octree.h), so their workers never meet: what
-// holds for two or three locked vertices of a cell (vertex_locks.h) holds for as many in the region. Within
-// one leaf `Inner` locks; with NoLocks a leaf has one worker, as in PDR. A horizon of `Inner` is kept, too.
+// Locks confined to the region of one leaf of an octree: a vertex outside the region cannot be locked.
+// Regions of leaves that are refined at the same time are disjoint (octree/octree.h), so workers of different
+// leaves never meet. The argument for two or three locked vertices of a cell (vertex_locks.h) therefore holds
+// for two or three vertices in the region. Within one leaf `Inner` locks. With NoLocks a leaf has one worker,
+// as in PDR. A horizon of `Inner` is respected, too.
 #pragma once
 
 #include <algorithm>
@@ -20,11 +21,11 @@ class LeafLocks {
   static constexpr bool kIsShared = true;
   explicit LeafLocks(WorkerId self) : inner_(self) {}
 
-  /// Nothing is held meanwhile. The region must outlive the operations.
+  /// No lock may be held. The region must outlive the operations.
   void confine(const LeafRegion& region) { region_ = &region; }
   const LeafRegion& region() const { return *region_; }
   Inner& inner() { return inner_; }
-  /// Remembers, from now on, the leaves that locked vertices lie in.
+  /// From now on records the leaves that contain locked vertices.
   void record_leaves() { is_recording_ = true; }
   std::vector<LeafId>& touched_leaves() { return touched_leaves_; }
 

@@ -1,16 +1,16 @@
-// PDR.PODM: parallel Delaunay refinement leaf by leaf, by a PODM mesh generator on each computing node.
-// (Feng, Tsolakis, Chernikov, Chrisochoides, IMR 2015, section 3; numbers behind lines are those of its
-// Fig. 3.) With one worker a node it is PDR. (Chernikov, Chrisochoides, ICS 2004; SISC 28 (2006).)
+// PDR.PODM: parallel Delaunay refinement leaf by leaf, with a PODM mesh generator on each computing node.
+// (Feng, Tsolakis, Chernikov, Chrisochoides, IMR 2015, section 3; numbers in comments are lines of its Fig.
+// 3.) With one worker per node it is PDR. (Chernikov, Chrisochoides, ICS 2004; SISC 28 (2006).)
 //
-// A coarse mesh is made first, with PODM. Then an octree divides space into leaves, and a queue hands those
-// out that have poor cells, to nodes that refine them at the same time.
+// PODM first makes a coarse mesh. Then an octree divides space into leaves. A queue hands the leaves with
+// poor cells out to nodes, which refine them at the same time.
 //
-//   Nodes lock nothing against each other: an operation keeps to the region of its leaf, and active leaves'
-//   regions have no point in common (octree/octree.h). What would lock a vertex outside waits for the end,
-//   when all workers refine what is left anywhere, with PODM. That ends the run with the same guarantees as
-//   PODM's, whatever leaves there were (octree/leaf_region.h).
+//   Nodes take no locks against each other: an operation stays in the region of its leaf, and the regions of
+//   active leaves have no point in common (octree/octree.h). A cell whose operation would lock a vertex
+//   outside the region waits for the end, when all workers refine the remaining cells anywhere, with PODM.
+//   The run therefore ends with the same guarantees as PODM, for any leaves (octree/leaf_region.h).
 //
-// Sources that bring locks of their own include this file; all others include podm.h.
+// Sources that bring their own locks include this file. All other sources include podm.h.
 #pragma once
 
 #include <algorithm>
@@ -24,7 +24,7 @@
 
 namespace podm {
 
-// What the computing nodes share while they refine leaf after leaf.
+// The state that computing nodes share while they refine leaf after leaf.
 template <class Locks, class Time>
 struct Leaves {
   const Octree& octree;
@@ -33,13 +33,14 @@ struct Leaves {
   Time& time;
   std::stop_token over;
   bool with_schedule;
-  // New cells of other leaves, by worker, for which it pays to wake the others of the node: these take ten
-  // times as long as a thread to wake.
+  // The number of new cells of other leaves, per worker, above which it pays to wake the other workers of the
+  // node: handing them over takes ten times as long as waking a thread.
   static constexpr std::size_t kForeignToShare = 1000;
   std::mutex mutex = {};  // guards the schedule
   std::vector<LeafSchedule::Activation> schedule = {};
 
-  // 9 to 28, by a node's master; its other workers call refine() alone, and beg between leaves.
+  // Lines 9 to 28, run by a node's master. The node's other workers only call refine(), and beg between
+  // leaves.
   void refine_one_by_one(ComputingNode<Locks>& node) {
     Worker<Locks>& master = node.master();
     const auto wait = [&] { time.block(master.id(), &Overhead::begging_s); };
@@ -47,7 +48,7 @@ struct Leaves {
       time.spend_in(&queue, master.id(), time.costs().leaf_handed_out);
       return queue.wait_and_pop(node.number(), wait, over);
     };
-    while (const auto leaf = pop()) {  // 9, 10: with B1 and B2
+    while (const auto leaf = pop()) {  // 9, 10: B1 and B2 included
       node.begin(octree, *leaf, time.now_s());
       const LeafCells::Entries poor = cells.take(*leaf);
       time.spend(master.id(), time.costs().entry_given * static_cast<double>(poor.size()));
@@ -65,8 +66,9 @@ struct Leaves {
     });
   }
 
-  // New cells go to the leaves that have them. Where these are many each worker hands over those it made:
-  // one alone would keep the others of its node waiting. False: the run is over.
+  // Hands many new cells over to the leaves that contain them: each worker hands over the cells that it made,
+  // as one worker alone would keep the others of its node waiting. Few cells are left to end_leaf(). Returns
+  // false if the run is over.
   bool hand_over(ComputingNode<Locks>& node) {
     if (node.num_foreign() < kForeignToShare * node.num_workers()) return true;
     node.set_hands_over(true);
@@ -81,7 +83,7 @@ struct Leaves {
     cells.add(worker.take_foreign(), queue, over);
   }
 
-  // This leaf goes back to the queue, if others have listed cells of it.
+  // Ends the leaf. It goes back to the queue if other nodes have listed cells of it.
   void end_leaf(ComputingNode<Locks>& node) {
     const LeafId leaf = node.leaf();
     const double handing_over_s = time.costs().entry_to_leaf * static_cast<double>(node.num_foreign());
@@ -89,7 +91,7 @@ struct Leaves {
     time.spend(node.master().id(), handing_over_s);
     if (with_schedule) {
       const std::scoped_lock lock(mutex);
-      activation.end_s = time.now_s();  // under the lock: they are listed by their ends
+      activation.end_s = time.now_s();  // under the lock: activations are listed by their ends
       schedule.push_back(std::move(activation));
     }
     time.spend_in(&queue, node.master().id(), time.costs().leaf_handed_out);
@@ -117,7 +119,7 @@ inline CoordinationOptions coordination_of_node(const Team& team) {
   return options;
 }
 
-// 5, 6, by all workers: the last to end shares out what they listed.
+// Lines 5, 6, run by all workers: the last one to end shares out the listed cells.
 template <class Time>
 void distribute(LeafCells& cells, RefinementQueue& queue, LeafId num_leaves, int num_workers, Time& time,
                 const std::stop_token& over) {
@@ -133,9 +135,9 @@ void distribute(LeafCells& cells, RefinementQueue& queue, LeafId num_leaves, int
   });
 }
 
-// Each node's share of the initial mesh goes to its memory: only then do its workers find there what they
-// work on, and its vertices, which stay. They are few, but the first of the leaf, and had a third of its far
-// accesses and more.
+// Moves each node's share of the initial mesh to the node's memory. Only then do its workers find in that
+// memory the cells that they work on, and the vertices, which stay. These vertices are few, but they are the
+// first ones of a leaf and took a third or more of its remote accesses.
 template <class Time>
 void settle(Construction& construction, const Octree& octree, const RefinementQueue& queue,
             std::size_t workers_per_node, LeafCells& cells, Time& time) {
@@ -151,8 +153,8 @@ void settle(Construction& construction, const Octree& octree, const RefinementQu
   });
 }
 
-/// Refines leaf by leaf the cells of the store, or `only` some of them, which live, with all workers of the
-/// team. Returns those that no leaf could refine.
+/// Refines the cells of the store, or only the living cells `only`, leaf by leaf with all workers of the
+/// team. Returns the cells that no leaf could refine.
 template <class Locks, class Time>
 Construction::Entries refine_leaf_by_leaf(Construction& construction,
                                           const Construction::Workers<Locks>& workers, const Octree& octree,

@@ -29,7 +29,7 @@ Radii radii_of_labels(const Problem& problem) {
   return radii;
 }
 
-// Calls use(p, label) for the points of a grid in the box, so many an axis, that have a label.
+// Calls use(p, label) for the foreground points of a grid in the box with `num_samples` points per axis.
 template <class Use>
 void for_each_sample(const Problem& problem, const Point& low, const Point& high, int num_samples,
                      const Use& use) {
@@ -65,13 +65,13 @@ Radii radii_of(const Problem& problem) {
 
 namespace {
 
-// Leaves are this many circumradius bounds of the initial mesh long. leaf_side() proves what always suffices;
-// cavities are rarely half as large, and what does not fit is deferred: on the liver 0.03 % of the operations
-// at 2, 10 % at 1.4. See experiments/leaf_size.toml.
+// The side of a leaf as a multiple of the circumradius bound of the initial mesh. leaf_side() proves a side
+// that always suffices. Cavities are rarely half as large, and an operation that does not fit is deferred: on
+// the liver 0.03 % of the operations at 2, 10 % at 1.4. See experiments/leaf_size.toml.
 constexpr double kLeafSizeOverRadius = 2;
 
-// The largest bound in the cube, by samples: leaves shorter than the coarse cells in them would
-// defer most of their operations.
+// Returns the largest bound in the cube, by samples: leaves shorter than the coarse cells in them would defer
+// most of their operations.
 double radius_in_cube(const Problem& problem, const Radii& radii, const Point& low, const Point& high) {
   constexpr int kSamples = 5;
   double radius = 0;
@@ -96,15 +96,16 @@ Octree octree_of_sides(const Problem& problem, const Radii& radii, const Box& bo
   return Octree(box.low, box.high, finest_mm, largest_side, is_needed, stop);
 }
 
-// Cubes of that side that fill the box.
+// Returns the number of cubes of this side that fill the box.
 double num_cubes(const Box& box, double side_mm) {
   const auto along = [&](double length_mm) { return std::max(1.0, std::ceil(length_mm / side_mm)); };
   const Vector extent = box.high - box.low;
   return along(extent.x) * along(extent.y) * along(extent.z);
 }
 
-// The longest side, but for a step, of which so many cubes fill the box. One that is thinner than the cubes
-// has one of them across, and they are longer than their share of its volume.
+// Returns the longest side, up to a factor `step`, of which at least `num_wanted` cubes fill the box. A box
+// that is thinner than the cubes has one cube across, and the cubes are longer than their share of its
+// volume.
 double side_for(const Box& box, double num_wanted, double step) {
   const Vector extent = box.high - box.low;
   double side_mm = std::cbrt(extent.x * extent.y * extent.z / num_wanted);
@@ -132,9 +133,9 @@ std::uint64_t checked_bytes_of_leaves(const Problem& problem, const LeafOptions&
       told, leaves * kMostBytesPerLeaf / kBytesPerGib, most_bytes / kBytesPerGib, enough_mm));
 }
 
-// Leaves are as large as they may be for each node to find enough that are two rings from all others at work:
-// what is remote, deferred, handed over or in the way of a leaf's other workers lies along its sides. Where
-// the initial mesh is too coarse for that they are as short as it allows.
+// Leaves are as large as possible while each node finds enough leaves beyond two rings of all active leaves.
+// Remote accesses, deferred cells, cells handed over and conflicts among a leaf's workers occur along the
+// leaf's sides. Where the initial mesh is too coarse for enough leaves, they are as short as it allows.
 std::unique_ptr<const Octree> make_octree(const Problem& problem, const Radii& radii, const Box& box,
                                           const LeafOptions& options, std::uint64_t num_nodes,
                                           const std::stop_token& stop) {

@@ -1,4 +1,4 @@
-// How large leaves are, and which there are.
+// The size of leaves, and the octree of leaves.
 #pragma once
 
 #include <memory>
@@ -10,25 +10,26 @@
 
 namespace podm {
 
-/// The circumradius bound of a label at p, mm; twice delta where only the surface drives.
+/// Returns the circumradius bound of a label at p, mm; twice delta where only the surface bounds the size.
 double radius_at(const Problem& problem, LabelIndex label, const Point& p);
 
-/// The least and the largest of them in the object, by samples where they are not those of the labels alone.
+/// The least and the largest bound in the object, mm, by samples if a size grid contributes.
 struct Radii {
   double least, most;
 };
 Radii radii_of(const Problem& problem);
-/// The least of the labels alone, mm.
+/// Returns the least bound of the labels alone, mm.
 double least_radius_of_labels(const Problem& problem);
 
-/// What leaves of the size that was asked for take at most, bytes. 0: no size was asked for, and they are
-/// few. Throws InputError where they take more than their share of the memory: leaves of such a size fill the
-/// whole box.
+/// Returns an upper bound of the bytes of leaves of the requested size, which are taken to fill the whole
+/// box. 0: no size was requested, and leaves are few. Throws InputError if the leaves are too many or exceed
+/// their share of the memory.
 std::uint64_t checked_bytes_of_leaves(const Problem& problem, const LeafOptions& options, const Box& box);
 
-/// Leaves near the object; the cells elsewhere are few, and left to the closing phase. Their sides follow
-/// from the labels' bounds, longer where a leaf has to feed several workers, then shorter until there are
-/// leaves enough to keep so many computing nodes at work. A stop request leaves them unfit.
+/// Makes an octree of leaves near the object. The cells elsewhere are few, and left to the closing phase. The
+/// sides follow from the circumradius bounds. They are longer while there are enough leaves to keep
+/// `num_nodes` computing nodes at work, and shorter until there are. After a stop request the leaves are
+/// unfit for use.
 std::unique_ptr<const Octree> make_octree(const Problem& problem, const Radii& radii, const Box& box,
                                           const LeafOptions& options, std::uint64_t num_nodes,
                                           const std::stop_token& stop);

@@ -11,10 +11,11 @@ namespace podm {
 
 namespace {
 
-// Scratch of operations, and what is touched of a stack.
+// Scratch of operations, and the touched part of a stack.
 constexpr std::uint64_t kBytesPerWorker = (5 << 15) + (1 << 16);
-// What the allocator holds back of lists that have grown, or that other threads have freed. It grows with the
-// threads at first, then no more: their lists become shorter. 1 to 224 threads were measured.
+// Memory that the allocator holds back after lists have grown or other threads have freed it. It grows with
+// the number of threads at first and then stays constant, because the threads' lists become shorter. Measured
+// for 1 to 224 threads.
 constexpr std::uint64_t kBytesHeldPerThread = 3 << 18, kMostThreadsThatHold = 16;
 constexpr std::uint64_t kLeastCells = 1 << 12;
 static_assert(4 * kMostStoredCells - 1 < kNoFacet);
@@ -26,7 +27,7 @@ std::uint64_t bytes_of_threads(std::uint64_t threads) {
 }
 
 std::uint64_t transform_bytes(const LabelImage& image, std::uint64_t limit_bytes, int threads) {
-  constexpr std::uint64_t kLittle = 32;  // a part of the limit that need not be known
+  constexpr std::uint64_t kLittle = 32;  // 1 / kLittle of the limit need not be known exactly
   const std::uint64_t most = FeatureTransform::most_bytes(image);
   return most <= limit_bytes / kLittle ? most : FeatureTransform::num_bytes(image, threads);
 }

@@ -6,12 +6,12 @@ namespace podm {
 
 namespace {
 
-constexpr std::size_t kMostSamples = 1000;  // of an array
+constexpr std::size_t kMostSamples = 1000;  // per array
 
-// All that is asked at one moment, in one query.
+// All addresses of one point in time, for one query.
 class Question {
  public:
-  /// Some of `size` elements, spread evenly.
+  /// Adds samples of `size` elements, spread evenly.
   template <class AddressOf, class NodeOf>
   void add(const std::string& name, std::size_t size, const AddressOf& address_of, const NodeOf& node_of) {
     const std::size_t step = std::max<std::size_t>(1, size / kMostSamples);
@@ -35,11 +35,11 @@ class Question {
  private:
   struct Array {
     std::string name;
-    std::size_t end;  // of its part of addresses_, which begins where the last one ends
+    std::size_t end;  // of its part of addresses_, which begins at the end of the previous one
   };
   std::vector<Array> arrays_;
   std::vector<const void*> addresses_;
-  std::vector<int> nodes_;  // by address: the owner's or, after the arrays, the accessor's
+  std::vector<int> nodes_;  // per address: the owner's or, after the arrays, the accessor's
 };
 
 PageSamples::AtPhase Question::judge(const std::string& phase, const std::vector<int>& os_indices,

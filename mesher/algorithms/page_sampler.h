@@ -1,4 +1,4 @@
-// Whether memory is where its owners say, and where workers' accesses went.
+// Samples that show if memory is where its owners claim, and where workers' accesses went.
 #pragma once
 
 #include <span>
@@ -13,7 +13,7 @@
 
 namespace podm {
 
-/// Some addresses that a worker read or wrote, and the node that it stood on.
+/// Some addresses that a worker read or wrote, and the worker's node.
 struct SampledAccesses {
   int node = 0;
   std::vector<const void*> addresses;
@@ -21,12 +21,12 @@ struct SampledAccesses {
 
 class PageSampler {
  public:
-  /// `owners` may be unknown; then the image is not sampled.
+  /// `owners` may be unknown; the image is not sampled then.
   PageSampler(const Topology& machine, const ImageOwners& owners, PageQuery query)
       : machine_(machine), owners_(owners), query_(std::move(query)) {}
 
-  /// Asks where some pages of the store, the image and the transform are, and those of `accesses`, and adds
-  /// the answers to `samples`. Once the system has refused it is not asked again.
+  /// Queries the nodes of some pages of the store, the image and the transform, and of `accesses`, and adds
+  /// the results to `samples`. After the system has refused a query no more queries are made.
   void sample(const std::string& phase, const Mesh& mesh, std::span<const SampledAccesses> accesses,
               PageSamples& samples) const;
 

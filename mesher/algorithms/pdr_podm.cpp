@@ -1,5 +1,5 @@
-// PDR.PODM as a run: the initial mesh, the octree, the leaves, and what they leave over. The numbers behind
-// lines are those of Fig. 3; the loop over leaves is in leaf_loop.h.
+// PDR.PODM as a run: the initial mesh, the octree, the leaves, and the closing phase. Numbers in comments are
+// lines of Fig. 3. The loop over leaves is in leaf_loop.h.
 #include "algorithms/leaf_loop.h"
 #include "algorithms/leaf_size.h"
 #include "algorithms/memory_model.h"
@@ -25,7 +25,7 @@ Construction::Entries refine_leaves(Construction& construction, const Parameters
   return left;
 }
 
-// Every run has a phase of refinement. No octree is made for nothing: it may be one that cannot be.
+// Every run has a phase of refinement. No octree is made without need: the one requested may be impossible.
 Refinement ended_early(Construction& construction) {
   construction.timed("refine", [] {});
   return construction.finish();

@@ -11,7 +11,7 @@ namespace {
 
 constexpr const char* kPerturb = "perturb";
 
-// The few cells that the first round leaves are worth more points, and farther ones.
+// The few cells that the first round leaves justify more points, and more distant ones.
 constexpr std::array kRounds{MoveEffort{12, 0.25}, MoveEffort{36, 0.4}, MoveEffort{36, 0.4},
                              MoveEffort{36, 0.4}, MoveEffort{36, 0.4}};
 
@@ -28,7 +28,7 @@ class Phase {
       worker->perturb(*construction.problem().dihedral_bounds, seed + worker->id());
   }
   ~Phase() {
-    construction_.stop().observe_by([](std::uint64_t) {});  // whom it would ask is gone
+    construction_.stop().observe_by([](std::uint64_t) {});  // the workers that it reads are destroyed
   }
 
   Perturbed operator()() {
@@ -43,7 +43,7 @@ class Phase {
       if (&effort != &kRounds.back()) list_kept();
     }
     tell_kept(told);
-    if (time_.is_over()) {  // what is kept was reached
+    if (time_.is_over()) {  // the cells in `unmoved` have been tried
       told.after = list_poor(false);
       told.not_reached =
           told.after.number() - std::accumulate(told.unmoved.begin(), told.unmoved.end(), 0ull);
@@ -56,7 +56,8 @@ class Phase {
   using Kept = typename Worker<Locks>::Kept;
   static constexpr CellId kLookahead = 8;
 
-  // Each worker lists those of its part of the store; nobody changes it meanwhile.
+  // Counts the poor cells, and lists them if `gives`. Each worker has a part of the store, which does not
+  // change meanwhile.
   Perturbed::Cells list_poor(bool gives) {
     std::vector<Perturbed::Cells> found(workers_.size());
     const auto list = [&](WorkerId self) {
@@ -86,7 +87,7 @@ class Phase {
     return sum;
   }
 
-  // False: the run is over, or there was nothing to try.
+  // Returns false if the run is over or there was nothing to try.
   bool try_listed(const MoveEffort& effort) {
     bool has_work = false;
     for (const auto& worker : workers_) {
@@ -108,7 +109,8 @@ class Phase {
         if (mesh_.stamp(kept.entry.cell) == kept.entry.stamp) worker->give(kept.entry.cell);
   }
 
-  // The last round's. A cell that was made poor was listed, and one that was tried in vain was kept.
+  // Reports the cells that the last round kept. A cell that became poor was listed, and one that was tried
+  // without success was kept.
   void tell_kept(Perturbed& told) {
     for (const auto& worker : workers_) {
       for (const auto& [entry, why] : worker->take_kept()) {
@@ -120,7 +122,7 @@ class Phase {
     }
   }
 
-  // By the first worker's part.
+  // Estimates the progress from the first worker's part.
   void observe(std::uint64_t num_poor) {
     if (!construction_.problem().observe_perturbation) return;
     construction_.stop().observe_by([this, num_poor](std::uint64_t cells) {
@@ -140,7 +142,7 @@ class Phase {
 void perturb(Construction& construction, const Parameters& parameters) {
   if (!construction.problem().dihedral_bounds || construction.stop().is_over()) return;
   construction.timed(kPerturb, [&] {
-    // Memory for lists between rounds may end as well as that of workers.
+    // Memory may run out for the lists between rounds, too, not only for workers.
     const auto run = [&](auto& time) {
       using Time = std::remove_reference_t<decltype(time)>;
       if (construction.num_workers() > 1 || construction.team().executor == Executor::kVirtual) {

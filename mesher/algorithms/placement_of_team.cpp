@@ -11,7 +11,7 @@ namespace podm {
 
 namespace {
 
-// The groups of one level, unless they tell nothing: all in one, or each alone.
+// Adds the groups of one level, unless they distinguish nothing: all workers in one group, or each alone.
 void add_level(const std::vector<Place>& places, int Place::*member, WorkerGroups& groups) {
   std::vector<int> level;
   for (const Place& place : places) level.push_back(place.*member);
@@ -19,7 +19,7 @@ void add_level(const std::vector<Place>& places, int Place::*member, WorkerGroup
   if (num_groups > 1 && num_groups < places.size()) groups.push_back(std::move(level));
 }
 
-// Sockets may be in nodes or nodes in sockets: the level of more groups is the inner one.
+// Sockets may be in nodes or nodes in sockets: the level with more groups is the inner one.
 WorkerGroups groups_of(const std::vector<Place>& places) {
   WorkerGroups groups;
   add_level(places, &Place::socket, groups);

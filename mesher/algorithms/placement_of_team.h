@@ -13,15 +13,15 @@
 namespace podm {
 
 struct PlacementOfTeam {
-  Topology machine;  // this one, or the one described
+  Topology machine;  // this machine, or the described one
   std::vector<Place> places;
-  WorkerGroups groups;                     // as the begging list needs them
-  std::optional<MachineModel> model = {};  // of the described machine, where its description tells costs
-  bool is_real = true;  // threads of this machine, neither virtual workers nor those of a described one
+  WorkerGroups groups;                     // as the begging list requires them
+  std::optional<MachineModel> model = {};  // of the described machine, if its description includes costs
+  bool is_real = true;  // workers are threads of this machine, not virtual and not of a described machine
 };
 
-/// A place for each worker. Those of a described machine, and virtual ones, are bound to nothing.
-/// Throws InputError on a plan, machine or number that cannot be had.
+/// Returns a place for each worker. Virtual workers and workers of a described machine are not bound. Throws
+/// InputError on a plan, machine or number of workers that is not available.
 PlacementOfTeam place_team(const TeamOptions& options);
 
 }  // namespace podm

@@ -1,4 +1,4 @@
-// PODM as a run, and as a phase of other algorithms' runs. Its loop is in podm_loop.h.
+// PODM as a run, and as a phase of the runs of other algorithms. Its loop is in podm_loop.h.
 #include "algorithms/podm.h"
 
 #include <algorithm>

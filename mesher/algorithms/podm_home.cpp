@@ -1,13 +1,13 @@
-// PODM at home: PODM whose computing nodes keep to their own blocks of space.
+// PODM at home: PODM whose computing nodes each refine their own block of space.
 //
-// What PDR.PODM is for is that a computing node finds in its own memory what it works on. It pays with an
-// initial mesh, and with nodes that wait for leaves two rings from all others. Here nobody waits: operations
-// lock vertices, as in PODM, wherever they are. But a new cell is refined by the node in whose block its
-// circumcentre lies, which so makes what lies there, in its own memory; other nodes' memory is touched along
-// the blocks' sides alone. Nodes without work take some of others', as beggars do, and send home what they
-// make.
+// The purpose of PDR.PODM is that a computing node finds in its own memory the cells that it works on. It
+// pays with an initial mesh, and with nodes that wait for leaves beyond two rings of all active ones. Here no
+// node waits: operations lock vertices anywhere, as in PODM. A new cell, however, is refined by the node
+// whose block contains its circumcenter. That node therefore makes the cells of its block in its own memory,
+// and accesses the memory of other nodes only along the block's sides. Nodes without work take cells of other
+// nodes, as begging workers do, and send home the cells that they make.
 //
-//   Safety is PODM's, and so is the end of the run: see workers/coordination.h for cells on their way.
+//   Safety and the end of the run are those of PODM: see workers/coordination.h for cells on their way.
 #include <optional>
 #include <vector>
 
@@ -24,7 +24,7 @@ namespace {
 
 constexpr std::size_t kSamplesPerHome = 256;
 
-// Cells are expected where the object is, as many in a volume as its bound makes.
+// Expects cells inside the object, with a density per volume that follows from the circumradius bound.
 std::vector<Homes::Work> expected_work(const Problem& problem, std::size_t num_samples) {
   const Point& low = problem.object.low;
   const Vector extent = problem.object.high - low;

@@ -1,17 +1,19 @@
 // PODM, Parallel Optimistic Delaunay Meshing. (Foteinos, Chrisochoides, JPDC 74 (2014) 2123-2140.)
 //
-// Every worker has a list of cells that may be poor. It takes one, and by the first rule that the cell breaks
-// plans an insertion, with removals where R6 asks for them. It locks each vertex of each cell that it is
-// about to replace, and never waits for one: an operation that meets another's vertex is rolled back, with
-// nothing written, and its cell goes back on the list. New cells go on the list of their maker.
+// Every worker has a list of cells that may be poor. It takes a cell and plans an insertion by the first rule
+// that the cell violates, with removals where R6 requires them. It locks each vertex of each cell that it is
+// about to replace, and never waits for a lock: an operation that meets a vertex of another operation is
+// rolled back, with nothing written, and its cell goes back on the list. New cells go on the list of the
+// worker that made them.
 //
 //   Between any two operations the cells are the Delaunay triangulation of the vertices
-//   (delaunay/vertex_locks.h). Between any two operations vertices keep the distances I1 to I3
-//   (refine/rules.h), so that insertions end. Every cell that may break a rule is on a list, in a gift, on
-//   its way home (podm_home.cpp), or in an operation. So when all workers beg, no cell breaks a rule any
-//   more. Who waits, waits for one who runs (workers/contention_manager.h): the last to run never waits.
+//   (delaunay/vertex_locks.h). Between any two operations vertices keep the distances of I1 to I3
+//   (refine/rules.h), so insertions end. Every cell that may violate a rule is on a list, in a gift, on its
+//   way home (podm_home.cpp), or in an operation. Therefore no cell violates a rule when all workers beg.
+//   Each worker that waits, waits for one that runs (workers/contention_manager.h): the last running worker
+//   never waits.
 //
-// Sources that bring locks of their own include this file and instantiate refine(); all others include
+// Sources that bring their own locks include this file and instantiate refine(). All other sources include
 // podm.h.
 #pragma once
 
@@ -24,7 +26,7 @@
 
 namespace podm {
 
-// New cells of other homes go there when they are so many, or when the worker has no others.
+// New cells of other homes are sent there when there are this many, or when the worker has no other cells.
 inline constexpr std::size_t kAwayToSend = 128;
 
 template <class Locks, class Time>
@@ -75,8 +77,8 @@ bool refine(Worker<Locks>& worker, Coordination& group, Time& time,
   return is_done;
 }
 
-/// The workers of a group refine these cells. All start at once; those without cells beg until the first has
-/// some to share.
+/// Refines these cells with the workers of a group. All workers start at once. Workers without cells beg
+/// until the first one has cells to share.
 template <class Locks, class Time>
 void refine(Construction& construction, const Construction::Workers<Locks>& workers,
             const CoordinationOptions& options, const Construction::Entries& cells, Time& time) {

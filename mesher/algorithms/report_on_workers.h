@@ -1,4 +1,4 @@
-// What workers did, as the public report tells it.
+// The counts of workers for the public report.
 #pragma once
 
 #include <vector>
@@ -9,10 +9,10 @@
 
 namespace podm {
 
-/// Accesses of a worker on that node, by hops.
+/// Returns the accesses of a worker on node `own_node`, by hops.
 HopsByKind hops_of(const std::optional<AccessTally>& accesses, int own_node, const Topology* machine);
 
-/// `machine` gives the hops between its nodes; none: one node.
+/// `machine` gives the hops between its nodes; none: there is one node.
 template <class Locks>
 Counters counters_of(const Worker<Locks>& worker, const Overhead& overhead, const Place& place,
                      const Topology* machine) {

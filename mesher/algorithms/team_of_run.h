@@ -1,5 +1,5 @@
-// The team of a run: how many refine, where in which machine they stand, and on which of its nodes the image
-// lies.
+// The team of a run: the number of workers, their places in a machine, and the nodes of the machine that hold
+// the image.
 #pragma once
 
 #include <optional>
@@ -14,22 +14,23 @@ namespace podm {
 
 class TeamOfRun {
  public:
-  /// Throws InputError on a team that the machine cannot have. The options must outlive the team.
+  /// Throws InputError on a team that the machine cannot have. The options must outlive this object.
   explicit TeamOfRun(const MeshingOptions& options);
   TeamOfRun(const TeamOfRun&) = delete;
   TeamOfRun& operator=(const TeamOfRun&) = delete;
 
-  /// Finds out whose memory is what, unless all is on one node. The image must outlive the team.
+  /// Determines the owners of image and transform, unless all memory is on one node. The image must outlive
+  /// this object.
   void locate_memory(const LabelImage& image, const FeatureTransform& transform);
 
-  /// A mesh begins: the caches of virtual workers' nodes have nothing of the image, whatever meshes of the
-  /// run were made before.
+  /// Called when a mesh begins: the caches of virtual workers' nodes then hold nothing of the image, although
+  /// the run may have made other meshes before.
   void forget_reads();
 
   const TeamSize& size() const { return size_; }
-  /// The team as algorithms take it; it refers to this.
+  /// Returns the team for the algorithms; it refers to this object.
   Team team() const;
-  /// Takes down who refined and where pages were.
+  /// Records the team, and the nodes of sampled pages.
   void report_to(MeshingReport& report, PageSamples pages) const;
 
  private:

@@ -15,8 +15,8 @@ int num_numa_nodes(const std::vector<Place>& places) {
   return static_cast<int>(used.size());
 }
 
-// A home is its computing node's, whose workers follow one another: it is of use where these are on one NUMA
-// node, and other computing nodes on others.
+// A home belongs to a computing node, whose workers are consecutive. Returns true if homes are of use: the
+// workers of each computing node are on one NUMA node, and those of other computing nodes on others.
 bool homes_are_on_nodes(const std::vector<Place>& places) {
   const auto nodes = static_cast<std::size_t>(num_numa_nodes(places));
   if (nodes == 1 || places.size() % nodes != 0) return false;

@@ -1,5 +1,5 @@
-// How many threads do what. Here alone is refused what options ask for in vain, and decided what they leave
-// open.
+// The number of threads for each purpose. Only this file refuses numbers that options cannot have, and
+// decides those that they leave open.
 #pragma once
 
 #include <vector>
@@ -9,29 +9,30 @@
 
 namespace podm {
 
-/// Whether workers are threads of this machine, neither virtual ones nor those of a described machine.
+/// True if workers are threads of this machine, neither virtual nor those of a described machine.
 bool is_of_this_machine(const TeamOptions& options);
 
-/// Threads of all phases but refinement; 0: all cores. The threads of virtual time are none of this
-/// machine's.
+/// Returns the threads of all phases except refinement; 0: all cores. The threads of virtual time are not
+/// threads of this machine.
 int loop_threads(const TeamOptions& options);
 
-/// Throws InputError where numbers of threads contradict each other or the algorithm.
+/// Throws InputError if numbers of threads contradict each other or the algorithm.
 void check_team_size(const TeamOptions& options, Algorithm algorithm);
 
-/// Workers that refine: as many as threads, else as all computing nodes have cores.
+/// Returns the number of workers that refine: the threads, if given, otherwise the cores of all computing
+/// nodes.
 int num_workers(const TeamOptions& options);
 
-/// A team of which nothing is left open.
+/// A team with nothing left open.
 struct TeamSize {
   Algorithm algorithm;  // not kAuto
   int num_workers;
   int num_nodes;        // computing nodes, which divide the workers evenly; kPodm has one
-  int initial_workers;  // so many make the initial mesh
+  int initial_workers;  // workers that make the initial mesh
 };
 
-/// `places` are those of the workers: where options name no computing nodes, each NUMA node in use is one, if
-/// these divide the workers evenly.
+/// `places` are those of the workers. If the options name no computing nodes, each NUMA node in use is one,
+/// provided that they divide the workers evenly.
 TeamSize team_size(const MeshingOptions& options, const std::vector<Place>& places);
 
 }  // namespace podm

@@ -83,7 +83,7 @@ StepResult Cavity<Locks>::add(CellId c) {
   return StepResult::kDone;
 }
 
-// Cells that the cavity has already are passed through, so the walk keeps its own list.
+// Passes through cells that the cavity already has, and therefore keeps its own list.
 template <class Locks>
 StepResult Cavity<Locks>::add_ball(VertexId v, CellId seed, LabelIndex label) {
   ball_.assign(1, seed);
@@ -128,7 +128,8 @@ void Cavity<Locks>::collect_boundary(std::vector<LocalFacet>& facets) const {
   }
 }
 
-// The two sides of each facet, side by side.
+// Makes the two sides of each facet adjacent in sides_. Throws InternalError if a facet does not have two
+// sides.
 template <class Locks>
 void Cavity<Locks>::match(const std::vector<LocalCell>& cells) {
   sides_.clear();

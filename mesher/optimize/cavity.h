@@ -1,12 +1,13 @@
-// A cavity: cells that optimisation replaces by others with the same boundary. The Delaunay property is given
-// up; that all cells are positive is not: positive cells whose boundary is that of the cavity cover it once,
-// since a point's number of cells changes at a facet of the boundary alone.
+// A cavity: cells that optimisation replaces by other cells with the same boundary. The Delaunay property is
+// given up, but all cells stay positive. Positive cells whose boundary is that of the cavity cover it once,
+// because the number of cells that contain a point changes only at a facet of the boundary.
 //
-// As an operation of refinement (delaunay/operation.h) it is cautious: all vertices of all cells that it has
-// are locked before it writes anything, and memory is asked for before that too. A point is read under its
-// vertex's lock alone. A vertex that moves is a new one: the old one goes with all the cells around it.
-// So the argument of delaunay/vertex_locks.h holds for cavities, but for the Delaunay property. Labels stay
-// as they are unless a cell is replaced, and so nobody but the holder of all its locks writes one.
+// Like an operation of refinement (delaunay/operation.h) it is cautious: all vertices of all its cells are
+// locked before anything is written, and memory is requested before that, too. A point is read only under its
+// vertex's lock. A vertex that moves becomes a new vertex: the old one is removed with all cells around it.
+// The argument of delaunay/vertex_locks.h therefore holds for cavities, except for the Delaunay property. A
+// label changes only when its cell is replaced, so only the worker that holds all locks of the cell writes
+// it.
 #pragma once
 
 #include <array>
@@ -20,12 +21,12 @@
 
 namespace podm {
 
-/// A vertex of a cavity by its number there, and a cell by those of its vertices.
+/// The number of a vertex in a cavity, and a cell and a facet as the numbers of their vertices.
 using Local = std::uint8_t;
 using LocalCell = std::array<Local, 4>;
 using LocalFacet = std::array<Local, 3>;
 
-/// The facet opposite vertex k, counter-clockwise seen from there.
+/// Returns the facet opposite vertex k, counter-clockwise seen from there.
 inline LocalFacet facet_of(const LocalCell& cell, unsigned k) {
   const auto& turn = kFacetVertices[k];
   return {cell[static_cast<unsigned>(turn[0])], cell[static_cast<unsigned>(turn[1])],
@@ -39,20 +40,20 @@ class Cavity {
 
   Cavity(Mesh& mesh, Pool& pool, WorkerId self) : mesh_(mesh), pool_(pool), locks_(self) {}
 
-  /// Locks two vertices of the cell c of that stamp, so that it and its neighbours may be read. kStaleCell:
-  /// it has died. Unless done nothing is held.
+  /// Locks two vertices of the cell c of that stamp, so that it and its neighbors may be read. kStaleCell:
+  /// the cell has died. Unless the result is kDone, no lock is held.
   StepResult reserve(CellId c, std::uint32_t stamp);
   void release();
   const Locks& locks() const { return locks_; }
 
-  /// No cells; what is locked stays so.
+  /// Removes all cells from the cavity. Locks are kept.
   void clear();
-  /// Adds a cell that may be read, and locks its vertices. kTooNear: it has too many vertices.
+  /// Adds a cell that may be read, and locks its vertices. kTooNear: the cavity has too many vertices.
   StepResult add(CellId c);
-  /// Adds all cells around a vertex of the cell `seed`. They have `label` all, or kOutOfReach: then the
-  /// vertex is on an interface, and some are added.
+  /// Adds all cells around a vertex of the cell `seed`. kOutOfReach: not all of them have `label`, so the
+  /// vertex is on an interface; some cells have been added.
   StepResult add_ball(VertexId v, CellId seed, LabelIndex label);
-  /// Adds a vertex that is no one's yet.
+  /// Adds a point that is not yet a vertex of the mesh.
   Local add_point(const Point& p);
 
   std::size_t num_cells() const { return cells_.size(); }
@@ -62,29 +63,29 @@ class Cavity {
   std::size_t num_vertices() const { return ids_.size(); }
   const Point& point(Local v) const { return points_[v]; }
   const std::vector<Point>& points() const { return points_; }
-  /// The number of a vertex that it has.
+  /// Returns the number of a vertex that the cavity has.
   Local local_of(VertexId v) const { return static_cast<Local>(mesh_.vertex(v).local_index); }
   bool has_vertex(VertexId v) const;
   CellPoints points_of(const LocalCell& c) const {
     return {points_[c[0]], points_[c[1]], points_[c[2]], points_[c[3]]};
   }
-  /// The quality of its worst cell.
+  /// Returns the quality of the cavity's worst cell.
   double worst(const CellQuality& quality) const;
-  /// Facets of its cells whose other side stays, each counter-clockwise seen from inside.
+  /// Lists the facets of the cavity's cells whose other side stays, each counter-clockwise seen from inside.
   void collect_boundary(std::vector<LocalFacet>& facets) const;
 
-  /// Puts `cells`, of that label, in its place. They must be positive; vertices that none of them has are
-  /// removed, and points that were added become vertices of that kind, one at most. Throws InternalError,
-  /// with nothing written, when they have another boundary, and std::bad_alloc likewise.
+  /// Replaces the cavity by `cells` with that label. The cells must be positive. Vertices that none of them
+  /// has are removed. Points that were added, at most one, become vertices of that kind. Throws InternalError
+  /// if the cells have another boundary, or std::bad_alloc; then nothing is written.
   void replace_by(const std::vector<LocalCell>& cells, LabelIndex label, VertexKind kind);
-  /// What the last replacement made.
+  /// The cells that the last replacement made.
   const std::vector<CellId>& created() const { return created_; }
   std::int64_t net_cells() const { return net_cells_; }
 
  private:
   struct FacetSide {
     std::uint32_t key;    // the facet's vertices, sorted
-    std::uint32_t facet;  // 4 * number of a new cell + index, or of outer_
+    std::uint32_t facet;  // 4 * number of a new cell + index, or position in outer_
     bool is_outer;
   };
 

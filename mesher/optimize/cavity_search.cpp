@@ -8,11 +8,11 @@ namespace podm {
 namespace {
 
 constexpr std::size_t kPoints = CavitySearch::kMaxPoints;
-static_assert(kPoints <= 32);  // a set of them is a word
+static_assert(kPoints <= 32);  // a set of points is a word
 constexpr std::size_t kKeys = kPoints * (kPoints - 1) * (kPoints - 2) / 6;
 
-// The number of sets of three vertices that come before a facet's, and whether it turns in the order of their
-// numbers.
+// The number of sets of three vertices that come before the facet's set, and whether the facet has its
+// vertices in the order of their numbers.
 struct Key {
   std::size_t key;
   bool is_ascending;
@@ -31,14 +31,14 @@ Key key_of_facet(LocalFacet f) {
   return {a + b * (b - 1) / 2 + c * (c - 1) * (c - 2) / 6, is_ascending};
 }
 
-// The three other facets of the cell on `facet`, as seen from inside the cell.
+// Returns the three other facets of the cell on `facet`, as seen from inside the cell.
 std::array<LocalFacet, 3> sides(const LocalFacet& facet, Local apex) {
   const auto& [a, b, c] = facet;
   return {{{b, apex, c}, {a, c, apex}, {a, apex, b}}};
 }
 LocalFacet turned(const LocalFacet& f) { return {f[0], f[2], f[1]}; }
 
-// The number of sets of four that come before this one.
+// Returns the number of sets of four that come before this one.
 std::size_t rank_of(const std::array<Local, 4>& v) {
   const std::size_t a = v[0], b = v[1], c = v[2], d = v[3];
   return a + b * (b - 1) / 2 + c * (c - 1) * (c - 2) / 6 + d * (d - 1) * (d - 2) * (d - 3) / 24;
@@ -125,7 +125,7 @@ bool CavitySearch::fill() {
   return false;
 }
 
-// Those that fit what is open now.
+// Returns the apexes of good cells that fit the facets open now.
 std::uint32_t CavitySearch::apexes_on(const LocalFacet& facet) {
   std::uint32_t apexes = good_apexes_on(facet);
   for (std::uint32_t left = apexes; left != 0; left &= left - 1) {
@@ -148,7 +148,7 @@ std::uint32_t CavitySearch::good_apexes_on(const LocalFacet& facet) {
   return apexes.set;
 }
 
-// Whether the cell stands on the right side of the open facets that it has.
+// Returns true if the cell is on the right side of each open facet that it has.
 bool CavitySearch::fits(const LocalFacet& facet, Local apex) const {
   for (const LocalFacet& side : sides(facet, apex)) {
     const Key key = key_of_facet(side);
@@ -178,7 +178,7 @@ void CavitySearch::open(const LocalFacet& facet) {
   open_.push_back(facet);
 }
 
-// Takes it off the list, and notes that in changes_.
+// Takes the facet off the list, and records that in changes_.
 void CavitySearch::close(std::size_t key) {
   const std::size_t place = (opened_[key] - 1u) / 2;
   changes_.push_back({open_[place], false});
@@ -238,7 +238,7 @@ float CavitySearch::find_quality(const std::array<Local, 4>& v) const {
   return static_cast<float>(is_positive ? quality : -quality);
 }
 
-// On the same side of each of its facets as the cell's own vertex.
+// A vertex is inside if it is on the same side of each facet as the cell's own opposite vertex.
 bool CavitySearch::holds_vertex(const std::array<Local, 4>& own) const {
   const auto& p = points_;
   const Point &a = p[own[0]], &b = p[own[1]], &c = p[own[2]], &d = p[own[3]];

@@ -1,11 +1,11 @@
-// The last resort: any cells at all that fill a small cavity and are all good enough, found by search (idea:
-// Liu, Sun, Chen, "The small polyhedron reconnection for mesh improvement and its implementation", 2009).
+// The last resort: any cells that fill a small cavity and are all good enough, found by search (idea: Liu,
+// Sun, Chen, "The small polyhedron reconnection for mesh improvement and its implementation", 2009).
 //
-// From the facets that are still open it takes the one that the fewest cells may stand on, and tries these
-// in turn, best first. Cells are positive, so that when no facet is open they cover the cavity once
-// (cavity.h): nothing has to be intersected. What would cover a place twice is cut off early by three signs:
-// a cell on a facet from the wrong side, one with a vertex of the boundary inside, and more volume than there
-// is. Vertices inside the cavity may be left out.
+// The search takes the open facet on which the fewest cells may stand, and tries these cells in turn, best
+// first. Cells are positive, so they cover the cavity once when no facet is open (cavity.h): no intersections
+// have to be computed. A filling that would cover a place twice is cut off early by three signs: a cell on
+// the wrong side of a facet, a boundary vertex inside a cell, and more volume than the cavity has. Vertices
+// inside the cavity may be left out.
 #pragma once
 
 #include <array>
@@ -23,16 +23,15 @@ class CavitySearch {
 
   explicit CavitySearch(const CellQuality& quality);
 
-  /// Points that are given from now on have nothing to do with those before. Until then each has the same
-  /// number whenever it is given.
+  /// Starts a new set of points. Until the next begin() each point has the same number in every fill().
   void begin(const LabelBound& bound);
-  /// Fills the inside of the boundary, whose facets turn counter-clockwise seen from there, with cells that
-  /// are better than `floor`. False: there are none, or they were not found in so many steps. The points are
-  /// `points` and, if there is one, `added`, which is numbered as the last.
+  /// Fills the inside of the boundary with cells that are better than `floor`. The facets of the boundary are
+  /// counter-clockwise seen from inside. Returns false if there are no such cells, or if they were not found
+  /// in `max_steps` steps. The points are `points` and, if given, `added`, which has the last number.
   bool fill(const std::vector<Point>& points, const std::optional<Point>& added,
             const std::vector<LocalFacet>& boundary, double floor, unsigned max_steps);
   const std::vector<LocalCell>& cells() const { return cells_; }
-  /// Steps of the last search.
+  /// The number of steps of the last search.
   unsigned num_steps() const { return num_steps_; }
 
  private:
@@ -44,9 +43,9 @@ class CavitySearch {
     LocalFacet facet;
     bool is_opened;
   };
-  // Of four points: the quality of their cell, with the sign of its orientation in the order of their
-  // numbers, 0: it breaks a bound; and whether a vertex of the boundary lies inside. Each is known since some
-  // begin() or fill().
+  // Data of four points: the quality of their cell, with the sign of its orientation in the order of their
+  // numbers, or 0 if it violates a bound; and whether a boundary vertex lies inside. Each value is valid for
+  // the begin() or fill() in which it was found.
   struct Known {
     std::uint32_t quality_since = 0, holds_since = 0;
     float quality = 0;
@@ -72,16 +71,15 @@ class CavitySearch {
   LabelBound bound_;
   double floor_ = 0, volume_ = 0, filled_ = 0;
   unsigned max_steps_ = 0, num_steps_ = 0;
-  std::size_t num_kept_ = 0;  // points that are no added one
+  std::size_t num_kept_ = 0;  // points except the added one
   std::uint32_t calls_ = 0, begun_at_ = 0;
-  std::vector<Known> known_;           // by the rank of four numbers
-  std::vector<LocalFacet> open_;       // turned to the inside
-  std::vector<std::uint16_t> opened_;  // by key: 1 + 2 * the place in open_ + whether it turns with its key
+  std::vector<Known> known_;           // indexed by the rank of four numbers
+  std::vector<LocalFacet> open_;       // counter-clockwise seen from inside
+  std::vector<std::uint16_t> opened_;  // indexed by key: 0, or 1 + 2 * position in open_ + is_ascending
   struct Apexes {
     std::uint32_t since = 0, set = 0;
   };
-  std::vector<Apexes>
-      apexes_;  // with which a facet makes a good cell: by 2 * key + whether it turns with that
+  std::vector<Apexes> apexes_;  // that make good cells on a facet; indexed by 2 * key + is_ascending
   std::vector<Change> changes_;
   std::vector<LocalCell> cells_;
 };

@@ -4,7 +4,7 @@
 
 namespace podm {
 
-// The worse of the two cells over and under it.
+// Returns the quality of the worse of the two cells over and under the triangle.
 double EdgeRemoval::quality_of_triangle(unsigned i, unsigned k, unsigned j) const {
   const double over = quality_.of_new({points_[i], points_[k], points_[j], top_}, bound_);
   if (over <= floor_) return 0;
@@ -12,7 +12,7 @@ double EdgeRemoval::quality_of_triangle(unsigned i, unsigned k, unsigned j) cons
   return under <= floor_ ? 0 : std::min(over, under);
 }
 
-// best_[i][j]: of the part of the ring from i to j that the chord ij cuts off.
+// best_[i][j]: the quality of the part of the ring from i to j that the chord ij cuts off.
 double EdgeRemoval::plan(const std::vector<Point>& points, const EdgeRing& ring, const LabelBound& bound,
                          double floor) {
   const unsigned n = ring.size;

@@ -1,6 +1,6 @@
-// Edge removal: the cells around an edge are replaced by those over and under a triangulation of the ring
-// of vertices around it, the one whose worst cell is best; by dynamic programming (Klincsek, "Minimal
-// triangulations of polygonal domains", 1980; Freitag and Ollivier-Gooch, IJNME 40 (1997)).
+// Edge removal: replaces the cells around an edge by the cells over and under a triangulation of the ring of
+// vertices around it. Dynamic programming finds the triangulation whose worst cell is best (Klincsek,
+// "Minimal triangulations of polygonal domains", 1980; Freitag and Ollivier-Gooch, IJNME 40 (1997)).
 #pragma once
 
 #include <array>
@@ -11,9 +11,9 @@
 namespace podm {
 
 /// The cells around an edge: (bottom, top, ring[i], ring[i + 1]) is positive, the last i + 1 is 0. Seen from
-/// the top the ring turns counter-clockwise.
+/// the top the ring is counter-clockwise.
 struct EdgeRing {
-  static constexpr unsigned kMax = 9;  // beyond, there is hardly ever a way
+  static constexpr unsigned kMax = 9;  // larger rings hardly ever have a solution
   Local bottom = 0, top = 0;
   unsigned size = 0;
   std::array<Local, kMax> vertices{};
@@ -23,10 +23,10 @@ class EdgeRemoval {
  public:
   explicit EdgeRemoval(const CellQuality& quality) : quality_(quality) {}
 
-  /// Finds the triangulation whose worst cell is best: returns its quality, 0 if all have cells that break a
-  /// bound or are no better than `floor`. `bound` is that of the new cells.
+  /// Finds the triangulation whose worst cell is best. Returns its quality, or 0 if each triangulation has a
+  /// cell that violates a bound or is no better than `floor`. `bound` is that of the new cells.
   double plan(const std::vector<Point>& points, const EdgeRing& ring, const LabelBound& bound, double floor);
-  /// The cells of the plan, of that ring.
+  /// Lists the cells of the plan for that ring.
   void list_cells(const EdgeRing& ring, std::vector<LocalCell>& cells) const;
 
  private:

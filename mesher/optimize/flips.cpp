@@ -49,7 +49,7 @@ StepResult Flips<Locks>::plan_best(const Subject& subject) {
     if (const StepResult planned = plan_facet(subject, facet); planned == StepResult::kLockConflict)
       return planned;
   if (best_.quality == 0) return StepResult::kNotBetter;
-  // The cavity is that of the last plan: so once more, as when it was found.
+  // The cavity is that of the last plan. The best flip is therefore planned again, as when it was found.
   const Best best = best_;
   best_ = {};
   if (best.is_edge) {
@@ -70,9 +70,9 @@ StepResult Flips<Locks>::plan_edge(const Subject& subject, unsigned edge) {
   return StepResult::kDone;
 }
 
-// Removes the facet between the cell and another, the inverse of edge removal, and those beside it that lie
-// between the same two vertices, as far as that makes better cells (Shewchuk, "Two discrete optimization
-// algorithms for the topological improvement of tetrahedral meshes", 2002).
+// Plans the removal of the facet between the cell and another one, the inverse of edge removal, and of the
+// facets beside it between the same two vertices, as far as that makes better cells (Shewchuk, "Two discrete
+// optimization algorithms for the topological improvement of tetrahedral meshes", 2002).
 template <class Locks>
 StepResult Flips<Locks>::plan_facet(const Subject& subject, unsigned facet) {
   const FacetId mirror = mesh_.cell(subject.cell).mirrors[facet];
@@ -98,7 +98,7 @@ StepResult Flips<Locks>::plan_facet(const Subject& subject, unsigned facet) {
   }
   if (quality <= best_.quality) return StepResult::kDone;
   cavity_.clear();
-  for (const CellId c : on_facets_) cavity_.add(c);  // they were added before
+  for (const CellId c : on_facets_) cavity_.add(c);  // all were added before
   if (quality <= step_over(cavity_.worst(quality_))) return StepResult::kDone;
   best_ = {quality, false, facet};
   new_cells_.clear();
@@ -108,8 +108,7 @@ StepResult Flips<Locks>::plan_facet(const Subject& subject, unsigned facet) {
   return StepResult::kDone;
 }
 
-// The cell that stands on the edge xy in place of facets, or those on the edges beyond it, where they are
-// better.
+// Plans the cell that replaces facets at the edge xy, or the cells at the edges beyond it if they are better.
 template <class Locks>
 StepResult Flips<Locks>::plan_side(const Subject& subject, const Side& side, double& quality) {
   constexpr int kMaxDepth = 2;
@@ -131,7 +130,7 @@ StepResult Flips<Locks>::plan_side(const Subject& subject, const Side& side, dou
   return StepResult::kDone;
 }
 
-// The facet beside xy lies between the same two vertices, or kOutOfReach.
+// Plans the cells beyond the edge xy. kOutOfReach: no facet beside xy lies between the same two vertices.
 template <class Locks>
 StepResult Flips<Locks>::plan_beyond(const Subject& subject, const Side& side, double& quality) {
   const FacetId over = beyond(side.over, side.z), under = beyond(side.under, side.z);

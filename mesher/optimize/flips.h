@@ -1,4 +1,4 @@
-// Flips around a bad cell: the removal of one of its edges, or of one of its facets together with those
+// Flips around a bad cell: the removal of one of its edges, or of one of its facets together with facets
 // beside it.
 #pragma once
 
@@ -10,8 +10,8 @@
 
 namespace podm {
 
-/// The cell that an attempt is about, and the label that new cells get: its own, or the one that a peel gives
-/// it. It counts as one of that label.
+/// The cell of an attempt, and the label of the new cells: the cell's own, or the one that a peel gives it.
+/// The cell counts as one of that label.
 struct Subject {
   CellId cell = 0;
   LabelIndex label = kBackground;
@@ -20,8 +20,8 @@ struct Subject {
   LabelIndex label_of(const Mesh& mesh, CellId c) const { return c == cell ? label : mesh.label(c); }
 };
 
-/// What a step makes of a quality: whoever replaces cells of this quality has to make better ones. So no new
-/// cell is nearly flat: each has volume enough for its sign to be right in rounded arithmetic.
+/// Returns the quality that new cells must exceed if they replace cells of this quality. No new cell is
+/// therefore nearly flat: each has enough volume for its sign to be right in rounded arithmetic.
 inline double step_over(double quality) { return 1.02 * quality + 1e-4; }
 
 template <class Locks>
@@ -30,11 +30,11 @@ class Flips {
   Flips(const Mesh& mesh, const CellQuality& quality, Cavity<Locks>& cavity)
       : mesh_(mesh), quality_(quality), cavity_(cavity), edge_removal_(quality) {}
 
-  /// The cavity becomes the cells around the edge, and ring() those around it. kOutOfReach: the edge is on an
-  /// interface, or has too many cells.
+  /// Puts the cells around the edge into the cavity, and the vertices around it into ring_. kOutOfReach: the
+  /// edge is on an interface, or has too many cells.
   StepResult walk_ring(const Subject& subject, unsigned edge);
-  /// Finds the flip whose worst new cell is best, puts what it replaces into the cavity and lists the new
-  /// cells. kNotBetter: no flip makes better cells.
+  /// Finds the flip whose worst new cell is best, puts the cells that it replaces into the cavity and lists
+  /// the new cells. kNotBetter: no flip makes better cells.
   StepResult plan_best(const Subject& subject);
   const std::vector<LocalCell>& new_cells() const { return new_cells_; }
 
@@ -44,8 +44,8 @@ class Flips {
     bool is_edge = false;
     unsigned index = 0;
   };
-  // Facets between the same two vertices, over one edge of which the next lies: cells `over` and `under` it
-  // share the facet of the edge xy and z.
+  // An edge xy of a facet xyz that lies between the same two vertices as the first facet. The cells `over`
+  // and `under` share the facet; the next such facet may lie beyond xy.
   struct Side {
     CellId over, under;
     VertexId x, y, z;
@@ -67,7 +67,7 @@ class Flips {
   std::vector<LocalCell> new_cells_;
   VertexId top_ = kNoVertex, bottom_ = kNoVertex;  // over and under the facets
   std::vector<VertexId> around_;                   // the vertices around them
-  std::vector<CellId> on_facets_;                  // the cells on both sides of them
+  std::vector<CellId> on_facets_;                  // the cells on both sides of the facets
 };
 
 extern template class Flips<NoLocks>;

@@ -7,15 +7,14 @@ namespace podm {
 
 namespace {
 
-// Mixes as SplitMix64 does (Steele, Lea, Flood, "Fast splittable pseudorandom number generators", OOPSLA
-// 2014).
+// Mixes like SplitMix64 (Steele, Lea, Flood, "Fast splittable pseudorandom number generators", OOPSLA 2014).
 constexpr std::uint64_t mixed(std::uint64_t x) {
   x = (x ^ x >> 30) * 0xbf58476d1ce4e5b9;
   x = (x ^ x >> 27) * 0x94d049bb133111eb;
   return x ^ x >> 31;
 }
 
-// With the sign of the order in which the facet has its vertices.
+// Returns a hash with the sign of the order in which the facet has its vertices.
 std::uint64_t signed_hash(std::array<VertexId, 3> v) {
   bool is_odd = false;
   const auto sort = [&](VertexId& a, VertexId& b) {

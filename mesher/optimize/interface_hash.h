@@ -1,10 +1,10 @@
-// A hash of the facets between labels, to which each cell adds its share without a look at its neighbours.
+// A hash of the facets between labels, to which each cell adds its share without reading its neighbors.
 //
-// A cell's share is the weight of its label times the sum of its facets' hashes, each with a sign that is the
-// other one from the facet's other side. So a facet between two cells of one label adds nothing to the sum
-// over all cells, and one between two labels its hash times the difference of their weights. Sums are modulo
-// 2^64. Who gives a cell to another label changes the sum by the difference of its two shares, and who puts
-// other cells of its label in a cavity's place not at all.
+// A cell's share is the weight of its label times the sum of its facets' hashes. The sign of a facet's hash
+// is opposite on the two sides of the facet. A facet between two cells of one label therefore adds nothing to
+// the sum over all cells, and a facet between two labels adds its hash times the difference of their weights.
+// Sums are modulo 2^64. A worker that gives a cell to another label changes the sum by the difference of the
+// cell's two shares. A worker that replaces a cavity by other cells of its label does not change the sum.
 #pragma once
 
 #include <cstdint>
@@ -13,7 +13,7 @@
 
 namespace podm {
 
-/// What the cell adds to the hash if it has that label; nothing if that is the background.
+/// Returns the cell's share of the hash if it has that label; 0 for the background.
 std::uint64_t share_of_interface_hash(const Mesh& mesh, CellId c, LabelIndex label);
 
 }  // namespace podm

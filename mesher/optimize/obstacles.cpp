@@ -7,7 +7,7 @@ namespace podm {
 namespace {
 
 // Calls visit(squared cotangent, label across one facet, label across the other) for each edge of the cell at
-// which two facets of interfaces meet.
+// which two interface facets meet.
 template <class Visit>
 void for_each_frozen_edge(const Mesh& mesh, CellId c, const Visit& visit) {
   const Cell& cell = mesh.cell(c);

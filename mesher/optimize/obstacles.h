@@ -1,4 +1,4 @@
-// What keeps a bad cell from being made better.
+// The obstacles that keep a bad cell from being improved.
 #pragma once
 
 #include "delaunay/mesh.h"
@@ -7,11 +7,11 @@
 
 namespace podm {
 
-/// Whether two facets of interfaces meet at an angle below the bound: then nothing but a peel helps. An angle
-/// that is too large may be shared by two cells.
+/// True if two interface facets of the cell meet at an angle below the bound: then only a peel helps. An
+/// angle that is too large may be shared by two cells.
 bool has_frozen_small_angle(const Mesh& mesh, CellId c, const DihedralBounds& bounds);
 
-/// Of a cell beyond the bounds.
+/// Returns the obstacle of a cell beyond the bounds.
 OptimizationObstacle obstacle_of(const Mesh& mesh, CellId c, const DihedralBounds& bounds);
 
 }  // namespace podm

@@ -17,7 +17,7 @@ namespace {
 
 using Means = OptimizationMeans;
 
-// What a peel leaves beyond the bounds is searched once more, with more patience.
+// Cells that a peel leaves beyond the bounds are searched once more, with more steps.
 constexpr std::array kPasses{
     OptimizerPass{Means::kFlips, false, 0},          OptimizerPass{Means::kMoves, false, 0},
     OptimizerPass{Means::kSearches, false, 400},     OptimizerPass{Means::kAddedVertices, false, 400},
@@ -51,9 +51,9 @@ class Optimization {
       report_all_cells();
     }
     report_successes();
-    return std::move(report_);  // a copy would ask for memory
+    return std::move(report_);  // a copy would allocate memory
   }
-  /// How much is done, while workers are at it. It falls a little where cells are tried again.
+  /// The fraction of the work that is done, while workers run. It falls a little when cells are tried again.
   double fraction() const {
     const auto taken = static_cast<double>(std::min(next_.load(), num_cells_.load()));
     const double of_pass = num_cells_ == 0 ? 0 : taken / static_cast<double>(num_cells_);
@@ -78,10 +78,11 @@ class Optimization {
     report_cells(bad);
   }
 
-  // Cells are found by chunks, and workers take shares: few of those that take long.
+  // Cells are found in chunks, and workers take them in shares, which are small for passes with slow
+  // attempts.
   static constexpr std::size_t kChunk = 1 << 12, kMostShared = 64;
 
-  // Calls visit(c) for each cell of a label but the background, and returns the hash of interfaces.
+  // Calls visit(c) for each cell except those of the background, and returns the hash of interfaces.
   template <class Visit>
   std::uint64_t hash_and_visit(const Visit& visit) const {
     const CellId bound = mesh_.cell_bound();
@@ -101,7 +102,7 @@ class Optimization {
     return hash_and_visit([](CellId) {});
   }
 
-  // Nothing is allocated by threads of a parallel loop, which must not throw.
+  // The threads of a parallel loop must not throw, and therefore allocate nothing.
   Entries find_bad_cells(std::uint64_t& hash_of_interfaces) const {
     std::vector<std::uint8_t> is_bad(mesh_.cell_bound());
     hash_of_interfaces = hash_and_visit([&](CellId c) {
@@ -115,8 +116,8 @@ class Optimization {
   }
   static constexpr CellId kLookahead = 8;
 
-  // A pass over these cells; returns those that are bad still. Cells that met others' locks are tried again
-  // by half as many workers, and at last by one, whom nobody is in the way of.
+  // Makes a pass over these cells and returns the cells that are still bad. Cells that met locks of other
+  // workers are tried again by half as many workers, and finally by one, which meets no locks.
   template <class Time>
   Entries make(const OptimizerPass& pass, Entries cells, Time& time) {
     Entries left;
@@ -168,12 +169,12 @@ class Optimization {
         std::count_if(cells.begin(), cells.end(), [&](const Entry& e) { return is_beyond_bounds(e.cell); }));
   }
 
-  // Every bad cell that lives is among those left.
+  // Every living bad cell is in `left`.
   void report_cells(const Entries& left) {
     for (const Entry& entry : left)
       if (mesh_.stamp(entry.cell) == entry.stamp) report_bad_cell(entry.cell);
   }
-  // Where the list is lost.
+  // Used when the list of bad cells is lost.
   void report_all_cells() {
     for (CellId c = 0; c < mesh_.cell_bound(); ++c)
       if (mesh_.cell(c).is_alive() && mesh_.label(c) != kBackground && is_beyond_aim(c)) report_bad_cell(c);
@@ -194,8 +195,9 @@ class Optimization {
   std::vector<std::unique_ptr<Pool>> pools_;
   std::vector<std::unique_ptr<Optimizer<Locks>>> workers_;
   OptimizationReport report_;
-  int num_passes_ = 0;                                 // done
-  std::atomic<std::size_t> next_ = 0, num_cells_ = 0;  // of the pass at hand: the next cell to take, and all
+  int num_passes_ = 0;                                 // completed
+  std::atomic<std::size_t> next_ = 0, num_cells_ = 0;  // of the current pass: the next cell to take, and the
+                                                       // number of cells
 };
 
 using Observe = std::function<void(double)>;
@@ -207,7 +209,7 @@ OptimizationReport optimize_in(Time& time, Mesh& mesh, const OptimizerParameters
   double most = 0;
   stop.observe_by([&](std::uint64_t) { observe(most = std::max(most, optimization.fraction())); });
   OptimizationReport report = optimization(time, stop);
-  stop.observe_by([](std::uint64_t) {});  // what it would be asked of is gone
+  stop.observe_by([](std::uint64_t) {});  // the object that it reads is destroyed
   return report;
 }
 

@@ -1,5 +1,5 @@
-// What happens to a finished mesh that is asked for better dihedral angles: its bad cells are found, and a
-// team of workers makes them better in passes, each with other means than the one before.
+// Optimisation of a finished mesh on request: finds its cells with bad dihedral angles, and improves them by
+// a team of workers in passes, each with other means than the one before.
 #pragma once
 
 #include <functional>
@@ -10,14 +10,16 @@
 
 namespace podm {
 
-/// Half as much again as the bounds.
+/// Returns the aim for these bounds: 3/2 of the least angle, and a largest angle 4/3 as far below 180
+/// degrees.
 DihedralBounds aim_over(const DihedralBounds& bounds);
 
-/// Betters the cells of all labels but the background; mesh.label() must tell that of every cell. Goes on
-/// until it can do no more or the stop control ends it: the mesh is valid and no worse at any time. Cells'
-/// circumspheres are of no use afterwards. One worker does the same every time. Throws std::bad_alloc before
-/// it changes anything; memory that ends later ends it as a limit does. `observe` is told a few times a
-/// second, by the calling thread, how much of it is done: a share of passes and of their cells, not of time.
+/// Improves the cells of all labels except the background; mesh.label() must be known for every cell. Runs
+/// until it can do no more or the stop control ends it: the mesh is valid and no worse at any time.
+/// Circumspheres of cells are not valid afterwards. One worker gives the same result every time. Throws
+/// std::bad_alloc before it changes anything. If memory runs out later, the optimisation ends as at a limit.
+/// The calling thread calls `observe` a few times per second with the fraction that is done, in passes and
+/// their cells, not in time.
 OptimizationReport optimize_mesh(
     Mesh& mesh, const OptimizerParameters& parameters, const Team& team, StopControl& stop,
     const std::function<void(double fraction)>& observe = [](double) {});

@@ -15,11 +15,12 @@ namespace {
 
 constexpr CellId kNoCell = 0xffffffffu;
 constexpr std::array kSearchSizes{10u, 14u, 18u, 22u};  // vertices
-// What larger ones do for cells within the bounds, 70 of a million on Colin27, costs as much as all flips.
+// Larger cavities improve few cells within the bounds, 70 of a million on Colin27, and cost as much as all
+// flips.
 constexpr std::size_t kNumSizesWithinBounds = 1;
 static_assert(kSearchSizes.back() + 2 <= CavitySearch::kMaxPoints);
-constexpr double kNearlyGood = 0.6;  // just within bounds, where these are two thirds of the aim
-// A new vertex's distance from a bad cell, by the length of its edges.
+constexpr double kNearlyGood = 0.6;  // just within bounds that are two thirds of the aim
+// A new vertex's distance from a bad cell, as a multiple of the length of the cell's edges.
 constexpr std::array kCandidateOffsets{0.0, 0.3, -0.3, 0.6, -0.6, 0.9, -0.9};
 
 }  // namespace
@@ -92,7 +93,7 @@ template <class Locks>
 void Optimizer<Locks>::commit(const std::vector<LocalCell>& cells, OptimizationMeans means) {
   const CellId c = subject_.cell;
   const std::uint64_t change = share_of_interface_hash(mesh_, c, subject_.label) -
-                               share_of_interface_hash(mesh_, c, mesh_.label(c));  // 0 but for a peel
+                               share_of_interface_hash(mesh_, c, mesh_.label(c));  // 0 except for a peel
   cavity_.replace_by(cells, subject_.label, VertexKind::kCircumcenter);
   interface_change_ += change;
   ++successes_[static_cast<std::size_t>(means)];
@@ -119,7 +120,7 @@ StepResult Optimizer<Locks>::move_a_vertex() {
   return StepResult::kNotBetter;
 }
 
-// Its cells have one label.
+// Moves a vertex whose cells all have one label.
 template <class Locks>
 StepResult Optimizer<Locks>::move(VertexId v) {
   cavity_.clear();
@@ -142,7 +143,7 @@ StepResult Optimizer<Locks>::move(VertexId v) {
   return StepResult::kDone;
 }
 
-// Looks in larger and larger cavities.
+// Searches in larger and larger cavities.
 template <class Locks>
 StepResult Optimizer<Locks>::search(OptimizationMeans means, bool adds_vertex) {
   cavity_.clear();
@@ -183,7 +184,7 @@ bool Optimizer<Locks>::fill_cavity(OptimizationMeans means) {
   return false;
 }
 
-// In the middle of the cell, and over and under it by parts of its edges' length.
+// Places candidates in the middle of the cell, and over and under it at fractions of its edges' length.
 template <class Locks>
 void Optimizer<Locks>::place_candidates() {
   const auto [a, b, c, d] = cavity_.points_of(cavity_.vertices(0));
@@ -196,7 +197,7 @@ void Optimizer<Locks>::place_candidates() {
   for (const double offset : kCandidateOffsets) candidates_.push_back(center + offset / edge_length * normal);
 }
 
-// Adds cells beside the cavity until it has so many vertices, as far as there are any of its label.
+// Adds cells of the label beside the cavity, as long as there are any, until it has `max_vertices` vertices.
 template <class Locks>
 StepResult Optimizer<Locks>::grow(std::size_t max_vertices, bool& has_grown) {
   has_grown = false;
@@ -205,7 +206,7 @@ StepResult Optimizer<Locks>::grow(std::size_t max_vertices, bool& has_grown) {
   return StepResult::kDone;
 }
 
-// One without a new vertex, or one with the vertex that most of the cells beside it have.
+// Returns a cell without a new vertex, or a cell with the vertex that most cells beside the cavity have.
 template <class Locks>
 CellId Optimizer<Locks>::cell_beside_cavity(std::size_t max_vertices) {
   beside_.clear();
@@ -245,8 +246,9 @@ StepResult Optimizer<Locks>::peel() {
   return StepResult::kNotBetter;
 }
 
-// The edge that comes to the interface, if any, has cells of one label all around: it is on no interface yet.
-// A cell of the background is gone. One of another label is replaced in the same operation, by better ones.
+// Gives the cell to the label. The edge that comes to the interface, if any, must have cells of one label all
+// around: it is on no interface yet. A cell that goes to the background leaves the object. A cell that goes
+// to another label is replaced in the same operation by better cells.
 template <class Locks>
 StepResult Optimizer<Locks>::peel_to(LabelIndex label) {
   const Peel peel(mesh_, subject_.cell, label);

@@ -1,14 +1,14 @@
-// A worker that makes bad cells better, one at an attempt; as a worker of refinement it never blocks, spins
-// or sleeps (refine/worker.h).
+// A worker that improves bad cells, one per attempt. Like a worker of refinement it never blocks, spins or
+// sleeps (refine/worker.h).
 //
-// An attempt looks for cells in place of some around a bad one. They are accepted only if the worst of them
-// is better than the worst before, by a step (flips.h), and if all keep the bounds on ratio and size. They
-// have one label, as the cells before, so that no facet between labels changes, but by a peel (peel.h), which
-// is for cells beyond the bound alone.
+// An attempt looks for cells that replace some cells around a bad one. They are accepted only if the worst of
+// them is better by a step (flips.h) than the worst before, and if all keep the bounds on ratio and size.
+// They have one label, like the cells before, so no facet between labels changes, except by a peel (peel.h),
+// which is only for cells beyond the bound.
 //
-// Why it ends: new cells that are bad are listed again, and each is better by the step than the worst of
-// those that it comes from. So a chain of cells, each made in place of the one before, is no longer than
-// there are steps to the aim. What is given up on is not tried again by the same means.
+// It terminates: bad new cells are listed again, and each is better by the step than the worst of the cells
+// that it replaces. A chain of cells, each made in place of the one before, is therefore no longer than the
+// number of steps to the aim. A cell that was given up is not tried again by the same means.
 #pragma once
 
 #include <cstdint>
@@ -31,15 +31,15 @@ inline constexpr std::size_t kNumMeans = Names<OptimizationMeans>::kAll.size();
 
 struct OptimizerParameters {
   CellQuality aim;       // a cell of quality 1 is good
-  DihedralBounds bound;  // a cell whose quality by these is less than 1 is beyond it
+  DihedralBounds bound;  // a cell whose quality by this bound is less than 1 is beyond it
   SizeField sizes;
   double delta_mm = 0;
 };
 
-/// The means of an attempt: flips, and if that does not help, moves and the one named.
+/// The means of an attempt: flips and, if they do not help, moves and the named means.
 struct OptimizerPass {
   OptimizationMeans means = OptimizationMeans::kFlips;
-  bool is_for_cells_beyond_bound = false;  // others are given up at once
+  bool is_for_cells_beyond_bound = false;  // other cells are given up at once
   unsigned max_search_steps = 0;
 };
 
@@ -59,14 +59,14 @@ class Optimizer {
   void begin(const OptimizerPass& pass) { pass_ = pass; }
   void give(const Entry& entry) { listed_.push_back(entry); }
   bool has_work() const { return !listed_.empty(); }
-  /// Cells that were given up, that met others' locks, and that are listed still.
+  /// Cells that were given up, that met locks of other workers, and that are still listed.
   std::vector<Entry> take_given_up() { return std::exchange(given_up_, {}); }
   std::vector<Entry> take_conflicts() { return std::exchange(conflicts_, {}); }
   std::vector<Entry> take_listed() { return std::exchange(listed_, {}); }
 
-  /// Tries to make the last cell listed better. Locks are held until release(), which must come before the
-  /// next attempt. What is thrown (std::bad_alloc) leaves a valid mesh and no lock, but may lose entries of
-  /// the list.
+  /// Tries to improve the last listed cell. Locks are held until release(), which must come before the next
+  /// attempt. An exception (std::bad_alloc) leaves a valid mesh and no lock, but may lose entries of the
+  /// list.
   Outcome attempt();
   void release() { cavity_.release(); }
 
@@ -75,7 +75,7 @@ class Optimizer {
   const std::optional<AccessTally>& accesses() const { return accesses_; }
   const std::array<std::uint64_t, kNumMeans>& successes() const { return successes_; }
   std::int64_t net_cells() const { return cavity_.net_cells(); }
-  /// By how much peels changed the hash of interfaces (interface_hash.h).
+  /// The change of the hash of interfaces by peels (interface_hash.h).
   std::uint64_t interface_change() const { return interface_change_; }
 
  private:
@@ -106,7 +106,7 @@ class Optimizer {
   std::optional<AccessTally> accesses_;
   std::array<std::uint64_t, kNumMeans> successes_{};
   std::uint64_t interface_change_ = 0;
-  // Of the attempt at hand.
+  // Data of the current attempt.
   Subject subject_;
   std::vector<LocalCell> new_cells_;
   std::vector<LocalFacet> boundary_;

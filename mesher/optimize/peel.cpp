@@ -9,11 +9,12 @@ namespace podm {
 
 namespace {
 
-// Of delta. No point of an interface facet is further than 2 delta from the isosurface, so this is a fortieth
-// of what is promised. On Colin27 at 1 M cells 57 cells beyond 8 and 165 degrees are left so, if R7 moves no
-// vertex before, 17 with 0.1 and 3 with 0.2; none in any case if it does.
+// The largest height as a fraction of delta. No point of an interface facet is farther than 2 delta from the
+// isosurface, so this is a fortieth of the guaranteed distance. On Colin27 at 1 M cells 57 cells beyond 8 and
+// 165 degrees remain if R7 moves no vertex before, 17 with 0.1 and 3 with 0.2. None remains in any case if R7
+// does.
 constexpr double kMostHeight = 0.05;
-// Angles keep their bound in the file, too, whose coordinates are rounded.
+// Angles keep their bound in the file, too, where coordinates are rounded.
 constexpr double kAngleMargin = 1 + 1e-9;
 
 using Corners = std::array<Point, 4>;
@@ -23,8 +24,8 @@ Corners corners_of(const Mesh& mesh, CellId c) {
   return {mesh.point(v[0]), mesh.point(v[1]), mesh.point(v[2]), mesh.point(v[3])};
 }
 
-// The least distance of two parallel planes with the cell between them: one has a facet and the other a
-// vertex, or either has an edge.
+// Returns the least distance of two parallel planes with the cell between them: one plane contains a facet
+// and the other a vertex, or each contains an edge.
 double height(const Corners& p) {
   const double six_volumes = std::abs(dot(cross(p[1] - p[0], p[2] - p[0]), p[3] - p[0]));
   double most = 0;

@@ -7,8 +7,8 @@ namespace podm {
 
 namespace {
 
-// The mixture of the vectors that is nearest to the origin, by Gilbert's algorithm: some turns towards the
-// vector that lies farthest back.
+// Returns the convex combination of the vectors that is nearest to the origin, by a few iterations of
+// Gilbert's algorithm: each goes towards the vector that lies farthest back.
 Vector nearest_mixture(const std::vector<Vector>& vectors) {
   constexpr int kTurns = 12;
   Vector x = vectors.front();
@@ -32,8 +32,7 @@ double Smoothing::worst(const Point& at, double floor) const {
   return worst;
 }
 
-// The direction in which all cells that are nearly worst get better, and its length how fast; 0: there is
-// none.
+// Returns the direction in which all nearly worst cells improve; its length is the rate. 0: there is none.
 Vector Smoothing::ascent(const Point& at, double scale) {
   constexpr double kNearlyWorst = 1.3;
   double worst = std::numeric_limits<double>::infinity();

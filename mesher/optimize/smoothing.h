@@ -1,7 +1,7 @@
-// Smoothing by non-smooth optimisation: a vertex goes where the worst of the cells around it is best. The
-// worst cells change on the way, so that their quality as a whole has no gradient: the way up is the point
-// nearest to the origin among the mixtures of the gradients of all that are nearly worst (Freitag, Jones,
-// Plassmann, "An efficient parallel algorithm for mesh smoothing", 1995).
+// Smoothing by non-smooth optimisation: moves a vertex to where the worst of the cells around it is best. The
+// worst cells change on the way, so the worst quality has no gradient. The direction of ascent is the point
+// nearest to the origin among the convex combinations of the gradients of all nearly worst cells (Freitag,
+// Jones, Plassmann, "An efficient parallel algorithm for mesh smoothing", 1995).
 #pragma once
 
 #include <span>
@@ -27,7 +27,7 @@ class Smoothing {
     const Triangle& t = triangles_[i];
     return quality_.of_new({t.a, t.b, t.c, at}, bound_);
   }
-  double worst(const Point& at, double floor) const;  // if it is better than that
+  double worst(const Point& at, double floor) const;  // exact only if better than `floor`
   Vector ascent(const Point& at, double scale);
 
   struct Triangle {

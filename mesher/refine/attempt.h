@@ -1,5 +1,5 @@
-// The definitions of Worker's members, for those who bring locks of their own: they include this in one
-// source, which instantiates Worker for them. Everybody else includes worker.h.
+// Definitions of Worker's members. A source with its own type of locks includes this file and instantiates
+// Worker for it. All other sources include worker.h.
 #pragma once
 
 #include "refine/r7_attempt.h"
@@ -7,7 +7,7 @@
 
 namespace podm {
 
-// A run that nobody shares is on one node.
+// A run with a single worker counts no accesses: it is on one node.
 template <class Locks>
 std::optional<AccessTally> Worker<Locks>::tally_for(const Mesh& mesh) {
   if (!Locks::kIsShared || mesh.num_nodes() == 1) return std::nullopt;
@@ -67,8 +67,8 @@ Outcome Worker<Locks>::attempt_next() {
   return outcome;
 }
 
-// Two entries of three are stale, and their turns take no time: so it looks far, and asks for what a cell
-// needs beyond its own line only if the cell still lives.
+// Two thirds of the entries are stale and take no time. The look-ahead is therefore long, and data beyond a
+// cell's own cache line is requested only if the cell is still alive.
 template <class Locks>
 void Worker<Locks>::look_ahead() {
   mesh_.prefetch(poor_.upcoming(kTurnsToCell).cell);
@@ -135,8 +135,8 @@ Outcome Worker<Locks>::apply_r7(CellId c) {
   return Outcome::kCommitted;
 }
 
-// The point and its R6 removals are one operation. kRejected: the point is covered already, or the ball only
-// touches the isosurface there.
+// Inserts z and applies its R6 removals in one operation. kRejected: the point is already covered, or the
+// ball only touches the isosurface there.
 template <class Locks>
 Outcome Worker<Locks>::insert_on_isosurface(const Point& z, CellId start, Rule rule) {
   StepResult planned = operation_.plan_insertion(z, start);
@@ -215,7 +215,7 @@ void Worker<Locks>::list_created() {
   }
 }
 
-// Before the commit, so that no operation is missing when memory runs out.
+// Runs before the commit, so that no operation is missing from the log when memory runs out.
 template <class Locks>
 void Worker<Locks>::make_room_in_log() {
   if (log_ == nullptr) return;

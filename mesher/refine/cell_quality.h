@@ -1,4 +1,4 @@
-// How good a cell's dihedral angles are, in a mesh or in what an operation would make of it.
+// Quality of a cell's dihedral angles, in a mesh or in the cells that an operation plans.
 #pragma once
 
 #include "delaunay/mesh.h"
@@ -6,7 +6,7 @@
 
 namespace podm {
 
-/// By the bounds: 1 at a bound, less beyond it.
+/// Returns the quality with respect to the bounds: 1 at a bound, less beyond it.
 template <class Cells>
 double cell_quality(const Cells& cells, CellId c, const DihedralBounds& bounds) {
   const auto& v = cells.cell(c).vertices;

@@ -1,5 +1,5 @@
-// Homes: blocks that tile space, one for each computing node. A cell's home is the block that has its
-// circumcentre.
+// Homes: blocks that tile space, one per computing node. A cell's home is the block that contains its
+// circumcenter.
 #pragma once
 
 #include <cstddef>
@@ -17,9 +17,8 @@ class Homes {
     double amount;
   };
 
-  /// Blocks that have equal shares of the work, by recursive coordinate bisection: as long as there are
-  /// several homes for a block, it is cut across its longest side. (Berger, Bokhari, IEEE Trans. Comput.
-  /// C-36, 1987.)
+  /// Makes blocks with equal shares of the work by recursive coordinate bisection: a block that stands for
+  /// several homes is cut across its longest side. (Berger, Bokhari, IEEE Trans. Comput. C-36, 1987.)
   Homes(std::vector<Work> work, unsigned num_homes);
 
   unsigned number() const { return number_; }
@@ -45,7 +44,7 @@ class Homes {
   void divide(std::span<Work> work, unsigned num_homes);
 
   unsigned number_;
-  std::vector<Cut> cuts_;  // a block's, those of its low part, those of its high part
+  std::vector<Cut> cuts_;  // of a block, then of its low part, then of its high part
 };
 
 }  // namespace podm

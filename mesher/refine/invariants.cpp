@@ -15,8 +15,8 @@ const char* name_of(bool a_on_isosurface, bool b_on_isosurface) {
 
 bool is_on_isosurface(const Mesh& mesh, VertexId v) { return mesh.vertex(v).kind == VertexKind::kIsosurface; }
 
-// Calls visit(VertexId, VertexId, distance) for the edges of every cell, some more than once, until it
-// returns false.
+// Calls visit(VertexId, VertexId, distance) for the edges of every cell, for some edges more than once, until
+// it returns false.
 template <class Visit>
 bool all_of_edges(const Mesh& mesh, const Visit& visit) {
   for (CellId c = 0; c < mesh.cell_bound(); ++c) {

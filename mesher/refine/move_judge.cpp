@@ -8,7 +8,7 @@
 
 namespace podm {
 
-// Calls visit(CellId) for each, until it returns false.
+// Calls visit(CellId) for each planned cell that is not dug, until it returns false.
 template <class Visit>
 bool MoveJudge::all_of_planned(const Visit& visit) const {
   for (CellId c = VertexMove::kFirstPlanned; c < move_.end(); ++c)
@@ -16,7 +16,7 @@ bool MoveJudge::all_of_planned(const Visit& visit) const {
   return true;
 }
 
-// The nearest is among those of the star.
+// It is enough to test the vertices of the star: the nearest vertex is one of them.
 bool MoveJudge::keeps_spacing(const Point& from) const {
   const Point& p = move_.point();
   const double squared_step = squared_distance(from, p);
@@ -30,7 +30,7 @@ bool MoveJudge::keeps_spacing(const Point& from) const {
   return true;
 }
 
-// Labels are asked for where something depends on them.
+// Looks up a label only where the result depends on it.
 std::optional<double> MoveJudge::quality(double least) {
   const double smallest = parameters_.sizes.smallest_squared_radius() * (1 - kGridMargin);
   double lowest = std::numeric_limits<double>::infinity();
@@ -61,14 +61,14 @@ Ball MoveJudge::ball_of(CellId c) const {
   return {cell.center, distance(cell.center, move_.point(cell.vertices[3])) * (1 + kMargin)};
 }
 
-// Without a root, and without a vertex: with d the distance, r and s the radii, d <= r + s if d^2 - r^2 - s^2
-// is not positive, or its square at most 4 r^2 s^2.
+// Avoids a square root and the read of a vertex. With d the distance of the centers and r and s the radii, d
+// <= r + s if d^2 - r^2 - s^2 is not positive, or if its square is at most 4 r^2 s^2.
 bool MoveJudge::reaches(CellId c, const Point& from) const {
   const Cell& cell = move_.cell(c);
   const double r2 = cell.squared_radius * (1 + 2 * kStoredSphereTolerance);
   const double s = covered_from(from).radius, s2 = s * s;
   const double beyond = squared_distance(cell.center, from) - r2 - s2;
-  return !(beyond > 0 && beyond * beyond > 4 * r2 * s2);  // true where the radius is not certified, NaN
+  return !(beyond > 0 && beyond * beyond > 4 * r2 * s2);  // also true if the radius is NaN, not certified
 }
 
 bool MoveJudge::may_be_uncovered(CellId c, const Point& from) const {

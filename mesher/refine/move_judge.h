@@ -1,4 +1,4 @@
-// Whether a planned move is accepted: R7's conditions, in the order of what they cost.
+// Decides if a planned move is accepted: the conditions of R7, cheapest first.
 #pragma once
 
 #include <optional>
@@ -14,8 +14,8 @@ namespace podm {
 
 class MoveJudge {
  public:
-  /// The move may be planned later. What oracles are asked for is counted in `counters`, and in `reads`, if
-  /// given.
+  /// The move may be planned after construction. Oracle searches are counted in `counters`, and reads of the
+  /// image and its transform in `reads`, if given.
   MoveJudge(VertexMove& move, const Isosurface& isosurface, const Parameters& parameters,
             const DihedralBounds& bounds, Counters& counters, const std::optional<CountedReads>& reads)
       : move_(move),
@@ -24,28 +24,29 @@ class MoveJudge {
         bounds_(bounds),
         counters_(counters) {}
 
-  /// Whether the vertex, which leaves `from`, keeps the spacing of I1 to I3 from all others, and is nearer to
-  /// there than to any of them.
+  /// True if the vertex, which leaves `from`, keeps the spacing of I1 to I3 from all other vertices and is
+  /// nearer to `from` than to any of them.
   bool keeps_spacing(const Point& from) const;
-  /// What is to be between vertices of these kinds, mm.
+  /// The spacing required between vertices of these kinds, mm.
   double spacing_mm(VertexKind a, VertexKind b) const {
     const bool is_i1 = a == VertexKind::kIsosurface && b == VertexKind::kIsosurface;
     return is_i1 ? parameters_.spacing_mm : kRadiusEdgeBound * parameters_.spacing_mm;
   }
-  /// The least quality of the planned cells that are inside; none if one of them is below `least`, or breaks
-  /// R4 or R5.
+  /// Returns the least quality of the planned cells inside the object, or none if one of them is below
+  /// `least` or violates R4 or R5.
   std::optional<double> quality(double least);
-  /// What the rules need to know of a planned cell, or of one that stays.
+  /// Returns the data that the rules need about a planned cell, or about one that stays.
   Examination examine(CellId c);
-  /// R1's sample, unless the cell's vertices or those of its neighbours cover it.
+  /// Returns R1's sample, unless the vertices of the cell or of its neighbors cover it.
   std::optional<Point> sample(const Examination& t) const { return rules_.r1_sample(t); }
   bool covers(VertexId v, const Point& z) const { return rules_.is_covered(z, v); }
-  /// Whether the cell breaks none of R2 to R5.
+  /// True if the cell violates none of R2 to R5.
   bool obeys_r2_to_r5(const Examination& t) const {
     return !rules_.r2_center(t) && !rules_.r3_surface_center(t) && !rules_.volume_rule(t);
   }
-  /// Of a vertex that leaves `from`, on the isosurface, and a cell that stays: whether it may have covered a
-  /// sample in the cell's ball; whether it may not do so from where it goes; and whether it covered z.
+  /// For an isosurface vertex that leaves `from`, and a cell that stays: reaches() is true if the vertex may
+  /// have covered a sample in the cell's ball, may_be_uncovered() if it may not cover such a sample from its
+  /// new place, and was_covered() if it covered z.
   bool reaches(CellId c, const Point& from) const;
   bool may_be_uncovered(CellId c, const Point& from) const;
   bool was_covered(const Point& z, const Point& from) const {

@@ -8,8 +8,8 @@ namespace podm {
 
 namespace {
 
-constexpr double kLeastStep = 0.2;           // of random points, over their reach
-constexpr double kBeyondSpacing = 1 + 1e-6;  // more than rounding takes
+constexpr double kLeastStep = 0.2;           // of random points, as a fraction of their reach
+constexpr double kBeyondSpacing = 1 + 1e-6;  // the excess is larger than rounding errors
 constexpr int kPushes = 3;
 
 Vector random_in_unit_ball(std::mt19937_64& random) {

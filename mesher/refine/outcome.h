@@ -1,4 +1,4 @@
-// What becomes of a worker's attempt at one cell.
+// The outcome of a worker's attempt at one cell.
 #pragma once
 
 #include "delaunay/step_result.h"
@@ -7,16 +7,16 @@
 namespace podm {
 
 enum class Outcome {
-  kCommitted,     ///< a vertex was inserted, or moved, or cells were replaced by better ones
-  kSound,         ///< the cell breaks no rule, or is good
+  kCommitted,     ///< a vertex was inserted or moved, or cells were replaced by better ones
+  kSound,         ///< the cell violates no rule, or is good
   kStaleCell,     ///< the cell has died
   kLockConflict,  ///< nothing was changed, and the cell is back on the list
   kRejected,      ///< nothing was changed: a vertex is too near to the point or covers it, or the point lies
-                  ///< outside the ball of its cell, or R7 found none; or there are no better cells
-  kOutOfLeaf,     ///< nothing was changed, and the cell is among the deferred
+                  ///< outside the ball of its cell, or R7 found no point, or there are no better cells
+  kOutOfLeaf,     ///< nothing was changed, and the cell is deferred
 };
 
-/// The outcome of an attempt that ends at a step which is not done.
+/// Returns the outcome of an attempt that ends at a step other than kDone. Throws InternalError for kDone.
 inline Outcome outcome_of(StepResult result) {
   switch (result) {
     case StepResult::kLockConflict:

@@ -1,36 +1,40 @@
-// Rule R7: a cell inside with a dihedral angle out of bounds is poor, and one of its vertices moves, if that
-// makes the angles around it better and breaks nothing. It comes last, on a mesh that breaks no other rule.
+// Rule R7: a cell inside the object with a dihedral angle out of bounds is poor. One of its vertices moves if
+// that improves the angles around the vertex and violates no rule. R7 runs last, on a mesh that violates no
+// other rule.
 //
 // (CGAL's perturbation moves vertices of slivers, too: Tournois, Srinivasan, Alliez, "Perturbing slivers in
 // 3D Delaunay meshes", IMR 2009. It gives up ratio and facet angles.)
 //
-// A move is one operation: the vertex is removed, and inserted elsewhere; the cells are then the Delaunay
-// triangulation again. It is planned (delaunay/vertex_move.h), and carried out if of the planned cells
-//   (i)   those inside all have a quality (geometry/dihedral.h) of 1, or of kQualityStep more than the least
-//         among the cells that they replace,
-//   (ii)  none asks for anything by R1 to R5, nor does any other cell, and
-//   (iii) the vertex keeps what I1 to I3 (rules.h) ask for with s in m's place from all others.
-// What stays asks for nothing by R2 to R5: they ask about a cell and its neighbours, and a facet's dual edge
-// changes only with one of its cells. R1 asks for isosurface vertices: where a free one moves, they stay. One
-// of these moves near its tangent plane and back onto the isosurface, and may uncover samples of cells that
-// stay, within delta of where it was; their balls have the samples, so they are among the cells whose balls
-// reach into that ball of radius delta. Of these, cells that a vertex of their own covers keep it; the
-// others, as whoever examined them has told (Mesh::relies_on_others), are asked again. So all guarantees of
-// R1 to R6 hold after each move as they did before it.
+// A move is one operation: the vertex is removed and inserted elsewhere, and the cells are the Delaunay
+// triangulation again. The move is planned (delaunay/vertex_move.h), and committed if
+//   (i)   all planned cells inside the object have a quality (geometry/dihedral.h) of 1, or of kQualityStep
+//         more than the least among the cells that they replace,
+//   (ii)  no planned cell violates R1 to R5, and no other cell does, and
+//   (iii) the vertex keeps the distances of I1 to I3 (rules.h) from all others, with s in place of m.
+// The cells that stay obey R2 to R5: these rules depend on a cell and its neighbors, and the dual edge of a
+// facet changes only with one of the facet's cells. R1 depends on isosurface vertices, which stay when a free
+// vertex moves. An isosurface vertex moves to another point of the isosurface, and may uncover samples of
+// cells that stay. Such a sample lies within delta of the vertex's old position and in the ball of its cell.
+// The cell is therefore among the cells whose balls reach into the ball of radius delta around the old
+// position. Among these cells, a cell whose sample is covered by one of its own vertices keeps that vertex.
+// The other cells, as marked by their last examination (Mesh::relies_on_others), are examined again.
+// Therefore all guarantees of R1 to R6 hold after each move as they did before it.
 //
-// It ends. Let n_i be the number of poor cells inside with a quality from i to i + 1 times kQualityStep. If i
-// is the least class of what a move replaces, it makes no cell of class i or less, and n_i falls: so (n_0,
-// n_1, ...) falls in lexicographic order, and of such finite tuples of natural numbers there is no infinite
-// falling sequence. In between each poor cell is tried once in each of a few rounds.
+// R7 terminates. Let n_i be the number of poor cells inside the object with a quality from i to i + 1 times
+// kQualityStep. If i is the lowest class among the cells that a move replaces, the move makes no cell of
+// class i or lower, and n_i falls. The tuple (n_0, n_1, ...) therefore falls in lexicographic order, and
+// there is no infinite falling sequence of such finite tuples of natural numbers. Apart from moves, each poor
+// cell is tried once in each of a few rounds.
 //
-// Workers do this at the same time as they do R1 to R6, and for the same reasons (delaunay/vertex_locks.h).
-// All vertices of what a move replaces are locked before anything is written, and so are two of each cell
-// that is asked, or looked at beyond it: it stays as it is until the move is over, and whoever changes it
-// later sees the move. What is asked about a planned cell, or one that stays, depends on vertices of such
-// cells and of their neighbours alone. Could two moves each rely on a vertex that the other takes away? The
-// one relies on it as a vertex of a cell which it has locked two vertices of, or beside such; the other
-// replaces all cells around the vertex, so all their vertices are its own. Hence in any run moves are those
-// of some serial run, where each is as above, and they end.
+// Workers apply R7 concurrently, as they apply R1 to R6, and for the same reasons (delaunay/vertex_locks.h).
+// All vertices of the cells that a move replaces are locked before anything is written. Two vertices are
+// locked of each cell that is examined, or read in addition: the cell does not change until the move is over,
+// and a worker that changes it later sees the move. The examination of a planned cell, or of a cell that
+// stays, depends only on vertices of such cells and of their neighbors. Could two moves each rely on a vertex
+// that the other takes away? The first move relies on it as a vertex of a cell of which it has locked two
+// vertices, or of a neighbor of such a cell. The second move replaces all cells around the vertex, so it
+// holds all their vertices. A lock has one holder, so this cannot be. Therefore the moves of any run are
+// those of some serial run in which each move is as above, and they end.
 #pragma once
 
 #include <algorithm>
@@ -50,13 +54,13 @@
 
 namespace podm {
 
-/// Of DihedralBounds::quality, which is squared.
+/// A step of DihedralBounds::quality, which is squared.
 inline constexpr double kQualityStep = 0.05;
 
 template <class Locks>
 class Perturbation {
  public:
-  /// All references are kept. `seed` draws the points that are tried.
+  /// Keeps all references. `seed` seeds the random points.
   Perturbation(Mesh& mesh, const Isosurface& isosurface, const Parameters& parameters, const Rules& rules,
                Operation<Locks>& operation, const DihedralBounds& bounds, std::uint64_t seed,
                const std::optional<CountedReads>& reads)
@@ -67,7 +71,7 @@ class Perturbation {
         judge_(operation.move(), isosurface, parameters, bounds_, operation.counters(), reads),
         random_(seed) {}
 
-  /// Whether the cell is inside and has an angle out of bounds.
+  /// True if the cell is inside the object and has an angle out of bounds.
   bool is_poor(CellId c) const {
     return cell_quality(mesh_, c, bounds_) < 1 && rules_.label_of(c) != kBackground;
   }
@@ -75,10 +79,11 @@ class Perturbation {
     const auto& vertices = mesh_.cell(c).vertices;
     return std::any_of(vertices.begin(), vertices.end(), [&](VertexId v) { return is_free(v); });
   }
-  /// Of the cells to come.
+  /// Sets the effort for the next cells.
   void set_effort(const MoveEffort& effort) { effort_ = effort; }
-  /// Plans a move that makes a poor cell better. kDone: the operation is to insert move().point() and commit.
-  /// kNoMove: none is accepted, as why_not() tells. Unless done the caller must roll back.
+  /// Plans a move that improves a poor cell. kDone: the caller is to commit the move to move().point().
+  /// kNoMove: no move is accepted; why_not() gives the reason. Unless the result is kDone the caller must
+  /// roll back.
   StepResult plan(CellId poor);
   Unmoved why_not() const { return why_not_; }
 
@@ -111,7 +116,7 @@ class Perturbation {
   std::vector<VertexId> neighbors_;    // of the vertex
   CellList beyond_;                    // scratch of keeps_samples_covered
   CellList around_;                    // scratch of is_covered
-  std::vector<Candidate> candidates_;  // better, but not good
+  std::vector<Candidate> candidates_;  // improved, but still with poor cells
   Unmoved why_not_ = Unmoved::kSpacing;
 };
 

@@ -1,9 +1,9 @@
-// The poor element list (PEL): cells that may break a rule, last in first out. Entries are classified only
-// when their turn comes; by then most have died, which their stamp shows. Last-in-first-out keeps the work
-// where the cache is warm.
+// The poor element list (PEL): cells that may violate a rule, last in first out. Entries are classified only
+// when their turn comes. Most of their cells have died by then, which the stamp shows. Last in first out
+// keeps the work where the cache is warm.
 //
-// In the middle of a run the list is as long as the store, at its end it is empty. So it is in pieces, which
-// are given back as it shrinks: the store grows into what the list had.
+// In the middle of a run the list is as long as the store; at the end it is empty. It therefore consists of
+// chunks, which are given back as the list shrinks, and the store grows into their memory.
 #pragma once
 
 #include <algorithm>
@@ -21,12 +21,13 @@ class PoorElementList {
     CellId cell;
     std::uint16_t stamp;
   };
-  /// It is cleaned when it has grown so many times since.
+  /// The list is cleaned when it has grown by this factor since the last cleaning.
   static constexpr std::size_t kGrowth = 3;
-  /// It is a worker's, on a store of so many cells.
+  /// Makes the list of one worker, for a store of `cell_capacity` cells.
   explicit PoorElementList(std::size_t cell_capacity)
       : first_cleaning_(std::min(kFirstCleaning, cell_capacity / kCellsAnEntry)) {}
-  /// Bytes that the lists of so many workers take at most beside kGrowth entries a live cell and two chunks.
+  /// An upper bound of the bytes that the lists of `num_workers` workers take in addition to kGrowth entries
+  /// per live cell and two chunks.
   static std::size_t stale_bytes(std::size_t cell_capacity, std::size_t num_workers) {
     return num_workers * 2 * sizeof(Entry) * std::min(kFirstCleaning, cell_capacity / kCellsAnEntry);
   }
@@ -39,7 +40,7 @@ class PoorElementList {
     }
     top_[end_++ % kChunk] = {cell, stamp};
   }
-  /// Many entries are stale; dropping them keeps the list short.
+  /// True if many entries may be stale. Dropping them keeps the list short.
   bool is_due_for_cleaning() const { return size() >= next_cleaning_; }
   void drop_stale(const Mesh& mesh) {
     std::size_t kept = begin_;
@@ -56,7 +57,8 @@ class PoorElementList {
     give_back();
     next_cleaning_ = std::max(first_cleaning_, kGrowth * size());
   }
-  /// Removes the older half, of which the live entries are returned, at most `max`.
+  /// Removes the oldest entries, until `max` live ones are found or half of the list is removed. Returns the
+  /// live ones.
   std::vector<Entry> take_oldest(std::size_t max, const Mesh& mesh) {
     std::vector<Entry> taken;
     for (const std::size_t half = begin_ + size() / 2; begin_ < half && taken.size() < max; ++begin_)
@@ -66,8 +68,8 @@ class PoorElementList {
   }
   bool is_empty() const { return begin_ == end_; }
   std::size_t size() const { return end_ - begin_; }
-  /// The entry whose turn comes `turns` from now, or as late as any, to be prefetched; the list must not be
-  /// empty.
+  /// Returns the entry whose turn comes `turns` from now, or the oldest entry of a shorter list, for
+  /// prefetching. The list must not be empty.
   Entry upcoming(std::size_t turns) const {
     const std::size_t in_top = end_ % kChunk;
     if (size() > turns && in_top > turns) return top_[in_top - 1 - turns];
@@ -82,15 +84,15 @@ class PoorElementList {
   }
 
  private:
-  // A list that is not due for its first cleaning is short, in a small store too.
+  // A list that is not yet due for its first cleaning is short, in a small store too.
   static constexpr std::size_t kFirstCleaning = 1 << 16, kCellsAnEntry = 64;
-  static constexpr std::ptrdiff_t kLookahead = 16;  // in a scan, whose cells lie anywhere
+  static constexpr std::ptrdiff_t kLookahead = 16;  // in a scan, whose cells lie anywhere in the store
   static constexpr std::size_t kChunkBits = 13, kChunk = 1 << kChunkBits;
   using Chunk = MappedChunk<Entry, kChunk>;
 
   Entry& at(std::size_t i) { return chunks_[i >> kChunkBits][i % kChunk]; }
   const Entry& at(std::size_t i) const { return chunks_[i >> kChunkBits][i % kChunk]; }
-  // One chunk beyond the last entry's is kept: it may soon be wanted.
+  // Keeps one chunk beyond that of the last entry: it may soon be needed.
   void give_back() {
     const auto unused = static_cast<std::ptrdiff_t>(begin_ >> kChunkBits),
                used = static_cast<std::ptrdiff_t>((end_ + kChunk - 1) >> kChunkBits) + 1;
@@ -103,8 +105,8 @@ class PoorElementList {
 
   std::size_t first_cleaning_;
   std::vector<Chunk> chunks_;
-  std::size_t begin_ = 0, end_ = 0;  // places in the chunks, the oldest entry's and the next one's
-  Entry* top_ = nullptr;             // the chunk in which end_ is, unless that is where a chunk begins
+  std::size_t begin_ = 0, end_ = 0;  // positions of the oldest entry and of the next one to be pushed
+  Entry* top_ = nullptr;             // the chunk of position end_, unless a chunk begins there
   std::size_t next_cleaning_ = first_cleaning_;
 };
 

@@ -1,4 +1,4 @@
-// The definitions of Perturbation's members, included as those of Worker are (attempt.h).
+// Definitions of Perturbation's members, included in the same way as those of Worker (attempt.h).
 #pragma once
 
 #include <algorithm>
@@ -22,7 +22,8 @@ StepResult Perturbation<Locks>::plan(CellId poor) {
   return StepResult::kNoMove;
 }
 
-// The first point at which all cells are good will do, else the best one that the rules allow.
+// Takes the first point at which all cells are good and obey the rules, otherwise the best point that the
+// rules allow.
 template <class Locks>
 StepResult Perturbation<Locks>::plan_of(VertexId v, CellId poor) {
   if (const StepResult planned = operation_.plan_move(v, poor); planned != StepResult::kDone)
@@ -55,7 +56,7 @@ void Perturbation<Locks>::begin(VertexId v, CellId poor) {
   points_.begin(mesh_.point(v), others, effort_);
 }
 
-// An isosurface vertex moves near its tangent plane and back onto the isosurface.
+// Projects the point of an isosurface vertex to the isosurface.
 template <class Locks>
 std::optional<Point> Perturbation<Locks>::next_point() {
   const Point p = points_.next(random_);
@@ -68,7 +69,7 @@ std::optional<Point> Perturbation<Locks>::next_point() {
   return second && points_.is_spaced(*second) ? second : std::nullopt;
 }
 
-// Of the cells from the number `first` on.
+// Returns the least quality among the region's cells inside the object, from the cell number `first` on.
 template <class Locks>
 double Perturbation<Locks>::least_quality_in_region(std::size_t first) {
   double least = std::numeric_limits<double>::infinity();
@@ -79,7 +80,7 @@ double Perturbation<Locks>::least_quality_in_region(std::size_t first) {
   return least;
 }
 
-// kDone: it is accepted.
+// kDone: the point is accepted.
 template <class Locks>
 StepResult Perturbation<Locks>::try_point(const Point& p, double in_ball) {
   ++operation_.counters().points_tried;
@@ -97,7 +98,8 @@ StepResult Perturbation<Locks>::try_point(const Point& p, double in_ball) {
   return StepResult::kNoMove;
 }
 
-// These are done if what the move leaves breaks no rule, and otherwise kNoMove.
+// Both functions return kDone if the cells violate no rule after the move, kNoMove if one does, and otherwise
+// the result of the step that was not done.
 template <class Locks>
 StepResult Perturbation<Locks>::obeys_rules() {
   VertexMove& move = operation_.move();
@@ -119,7 +121,8 @@ StepResult Perturbation<Locks>::obeys_rules(CellId planned) {
   return judge_.obeys_r2_to_r5(t) ? StepResult::kDone : StepResult::kNoMove;
 }
 
-// The nearest isosurface vertex to z would be joined to it, so that it is one of a cell whose ball has z.
+// If z were inserted, the isosurface vertex nearest to z would be joined to it. That vertex therefore belongs
+// to a cell whose ball contains z.
 template <class Locks>
 StepResult Perturbation<Locks>::is_covered(const Point& z, CellId start) {
   const VertexMove& move = operation_.move();
@@ -138,8 +141,9 @@ StepResult Perturbation<Locks>::is_covered(const Point& z, CellId start) {
   return StepResult::kNoMove;
 }
 
-// Of cells that stay, and rely on vertices which they have not. Those whose balls reach into the one around
-// the vertex's old place, in which it covered samples, are connected with the planned ones.
+// Examines the cells that stay and rely on vertices other than their own. The cells whose balls reach into
+// the ball around the vertex's old position, in which the vertex covered samples, are connected with the
+// planned cells.
 template <class Locks>
 StepResult Perturbation<Locks>::keeps_samples_covered() {
   const VertexMove& move = operation_.move();

@@ -11,7 +11,7 @@ namespace podm {
 namespace {
 
 constexpr double square(double x) { return x * x; }
-// The nearest point that the oracle finds is the true one up to a small error.
+// The nearest point that the oracle finds is the true one, up to a small error.
 constexpr double kNearestTrust = 0.9;
 constexpr double kSquaredRatio = square(kRadiusEdgeBound * (1 - kMargin));
 
@@ -28,7 +28,8 @@ RulesOn<Cells>::RulesOn(Cells& mesh, const Isosurface& isosurface, const Paramet
   if (reads) counted_.emplace(isosurface.counted(*reads));
 }
 
-// Several workers may ask for a neighbour's label at a time. Relaxed: all of them write the same.
+// Several workers may look up the label of the same neighbor at once. Relaxed: all of them write the same
+// value.
 template <class Cells>
 LabelIndex RulesOn<Cells>::label_of(CellId c) const {
   LabelIndex label = load(mesh_.label(c), std::memory_order_relaxed);
@@ -44,8 +45,8 @@ double RulesOn<Cells>::distance_lower_bound(const Point& p, double radius) const
   return ask([&](const auto& oracle) { return oracle.distance_lower_bound(p, radius); });
 }
 
-// Below r = delta/2 a vertex of the cell on the isosurface, which is within 2r of z, silences R1, and R2 with
-// it.
+// If r < delta/2, an isosurface vertex of the cell is within 2r < delta of z. R1 then does not apply, nor
+// does R2.
 template <class Cells>
 bool RulesOn<Cells>::obeys_r1_and_r2(const Cell& cell, double squared_radius) const {
   return 4 * squared_radius < squared_delta_ &&
@@ -76,7 +77,7 @@ Examination RulesOn<Cells>::examine(CellId c) const {
   return t;
 }
 
-// The balls of the cell's own vertices.
+// The balls around the cell's own isosurface vertices.
 template <class Cells>
 Cover RulesOn<Cells>::covered_by(const Cell& cell) const {
   Cover cover{{}, 0, squared_delta_};
@@ -106,8 +107,8 @@ std::optional<Point> RulesOn<Cells>::settled(const Point& p, double radius_mm) c
   return ask([&](const auto& oracle) { return oracle.polished(*near, p); });
 }
 
-// By a vertex opposite to one of the cell's facets. The caller would find it among the cavity's, or one
-// nearer to z, at the price of the cavity.
+// True if a vertex opposite to one of the cell's facets covers z. The caller would find this vertex, or one
+// nearer to z, among the cavity's vertices, but at the cost of the cavity.
 template <class Cells>
 bool RulesOn<Cells>::is_covered_beside(CellId c, const Point& z) const {
   const auto& mirrors = mesh_.cell(c).mirrors;
@@ -125,8 +126,8 @@ std::optional<Point> RulesOn<Cells>::r2_center(const Examination& t) const {
                std::clamp(t.center.z, box.low.z, box.high.z)};
 }
 
-// It does if a vertex is off the isosurface or an angle is at most 30 degrees: a side is then at most as long
-// as the facet's circumradius (side = 2 R sin(opposite angle)).
+// Returns true if a vertex is off the isosurface or an angle is at most 30 degrees: a side is then at most as
+// long as the facet's circumradius (side = 2 R sin(opposite angle)).
 template <class Cells>
 bool RulesOn<Cells>::needs_sample(CellId c, unsigned facet) const {
   const auto& vertices = mesh_.cell(c).vertices;
@@ -142,16 +143,16 @@ bool RulesOn<Cells>::needs_sample(CellId c, unsigned facet) const {
   return std::min({a2, b2, c2}) * 4 * squared_length(cross(ab, ac)) <= a2 * b2 * c2 * (1 + kMargin);
 }
 
-// Whether the facet's dual edge may meet the isosurface: only if it is longer than the distance to it. Labels
-// that differ show it where that distance is not proven.
+// Returns true if the facet's dual edge may meet the isosurface, which needs an edge longer than the distance
+// to the isosurface. Where that distance is not proven, labels that differ also show it.
 template <class Cells>
 bool RulesOn<Cells>::may_be_restricted(const Examination& t, CellId neighbor) const {
   if (square(t.isosurface_distance) < squared_distance(t.center, mesh_.cell(neighbor).center)) return true;
   return !t.is_distance_proven && label_of(neighbor) != t.label;
 }
 
-// Whether the isosurface meets the facet's dual edge. The part in a ball that is proven to hold none of it
-// need not be walked.
+// Returns true if the isosurface meets the facet's dual edge. The part of the edge in a ball that is proven
+// to contain no isosurface point need not be searched.
 template <class Cells>
 bool RulesOn<Cells>::is_restricted(const Examination& t, CellId neighbor) const {
   if (label_of(neighbor) != t.label) return true;
@@ -168,7 +169,8 @@ std::optional<SurfaceCenter> RulesOn<Cells>::r3_surface_center(const Examination
     if (mirror == kNoFacet) continue;
     const CellId neighbor = cell_of(mirror);
     if (!may_be_restricted(t, neighbor) || !needs_sample(t.cell, k) || !is_restricted(t, neighbor)) continue;
-    // The search goes from the smaller centre to the larger: the same point whichever cell asks.
+    // The search goes from the lexicographically smaller center to the larger one: both cells of the facet
+    // find the same point.
     const Point *from = &t.center, *to = &mesh_.cell(neighbor).center;
     if (lexicographically_less(*to, *from)) std::swap(from, to);
     const std::optional<Point> z =
@@ -226,9 +228,9 @@ bool RulesOn<Cells>::is_large_in_shell(const Examination& t) const {
          is_in(parameters_.clamp_box, t.center) && distance_lower_bound(t.center, reach_mm) < reach_mm;
 }
 
-// Of a grid the less of the bounds at both points counts: else samples where cells are large would take what
-// was inserted where they are small, over and over. Outside of the object a grid may ask for less than
-// inside.
+// With a grid, the smaller of the bounds at both points counts. Otherwise samples where cells are large would
+// remove vertices inserted where cells are small, again and again. Outside the object the grid's bound may be
+// below the smallest bound inside, which then applies.
 template <class Cells>
 bool RulesOn<Cells>::r6_removes(VertexId v, const Point& z) const {
   if (mesh_.vertex(v).kind != VertexKind::kCircumcenter) return false;

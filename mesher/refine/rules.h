@@ -1,31 +1,36 @@
-// Rules R1..R5: what should be done about one cell. These functions only ask; attempt.h acts, R6 included.
+// Rules R1 to R5: they decide what to do about one cell and change nothing. Worker (attempt.h) carries the
+// operations out, R6 included.
 //
-// Foteinos, Chernikov, Chrisochoides, CGTA 47 (2014) 539-562. With t the cell, c its circumcentre, r its
+// Foteinos, Chernikov, Chrisochoides, CGTA 47 (2014) 539-562. With t the cell, c its circumcenter, r its
 // circumradius, z the isosurface point nearest to c:
 //   R1  insert z if t meets the isosurface and no isosurface vertex is closer than delta to z
 //   R2  insert c if t meets the isosurface and r >= 2 delta
-//   R3  insert a restricted facet's surface centre if the facet has a vertex off the isosurface
+//   R3  insert a restricted facet's surface center if the facet has a vertex off the isosurface
 //       or an angle of at most 30 degrees
 //   R4  insert c if it is inside and radius-edge >= 1.93
 //   R5  insert c if it is inside and r > r_t
-//   R6  after R1 and R3, whose point is z: remove circumcentre vertices closer than 2 delta to z, or than
-//       r_t is at z or at theirs, where a grid asks for small cells (size_grid.h)
-// r_t is the label's, and at most what a grid asks for at c. What follows needs but its least value in the
-// object, where all points of R4, R5 and R6 are: r_t from here on.
+//   R6  after R1 and R3, whose point is z: remove circumcenter vertices closer than 2 delta to z and, where
+//       a grid requests small cells (size_grid.h), closer than r_t at z and than r_t at the vertex
+// r_t is the bound of the label, and at most the bound of the grid at c. From here on r_t is its least value
+// in the object, which contains all points of R4, R5 and R6.
+//
 // Spacing. Let q = 1.93, k = sqrt(2 + sqrt(3)) = 1.93185, s = min(delta, r_t / k), and m the least distance
-// of two isosurface vertices, or s where that is less. Isosurface vertices stay, so m never grows.
-//   I2, I3  All other pairs are q m apart: R2 keeps 2 delta from every vertex, R6 that or r_t from free ones;
-//           R5 keeps r_t >= k s, and R4 q times an edge, none of which is shorter than m.
-//   I1      m >= s, but for what q < k costs. R1 keeps delta >= s. R3's ball is empty and no smaller than its
-//           facet's circumcircle, whose radius is no less than a side if the facet has a small angle, and
-//           q m / sqrt(3) if two of its vertices are free. If one is, the sides are at least q m, q m and m.
-//           Right or obtuse triangles of such have radii above m. Those of acute ones shrink with each
-//           side, at worst to m q^2 / sqrt(4 q^2 - 1), which is m for q = k, and 0.9991 m for 1.93.
-// So the published 1.93, k rounded down, lets R4 insert a vertex up to 0.1 % nearer than k s (one in a
-// thousand of R4's is), and R3 beside it a sample up to 0.09 % nearer than s, but only if three lengths are
-// within 0.3 % of their least. The floor of worker.h ends any chain of these. Without such, m = s. So the
-// process ends, on non-manifold interfaces too. Rules are tightened by kMargin (R5 by kGridMargin on a grid),
-// which is more than rounded arithmetic errs, unless the object is a million radii from the origin.
+// of two isosurface vertices, at most s. R1 to R6 never remove isosurface vertices, so m never grows.
+//   I2, I3  All other pairs are at least q m apart. R2 keeps 2 delta from every vertex. R6 keeps 2 delta or
+//           r_t from free vertices. R5 keeps r_t >= k s. R4 keeps q times the length of an edge, and no edge
+//           is shorter than m.
+//   I1      m >= s, except for the loss due to q < k. R1 keeps delta >= s. R3's ball is empty and no smaller
+//           than its facet's circumcircle. The radius of the circumcircle is no less than a side if the facet
+//           has a small angle, and no less than q m / sqrt(3) if two of its vertices are free. If one vertex
+//           is free, the sides are at least q m, q m and m. Right or obtuse triangles with such sides have
+//           circumradii above m. The circumradius of an acute triangle shrinks with each side, at worst to
+//           m q^2 / sqrt(4 q^2 - 1), which is m for q = k, and 0.9991 m for q = 1.93.
+// The published bound 1.93 is k rounded down. It lets R4 insert a vertex up to 0.1 % nearer than k s (one in
+// a thousand of R4's insertions does). It also lets R3 insert a sample beside that vertex up to 0.09 % nearer
+// than s, but only if three lengths are within 0.3 % of their least values. kSpacingFloor (worker.h) ends any
+// chain of such insertions. Without them m = s. Therefore refinement terminates, on non-manifold interfaces
+// too. Rules are tightened by kMargin (R5 by kGridMargin on a grid), which exceeds the rounding errors unless
+// the object is a million radii from the origin.
 #pragma once
 
 #include <concepts>
@@ -45,26 +50,26 @@ enum class Rule { kR1, kR2, kR3, kR4, kR5 };
 struct Parameters {
   double delta_mm = 0;
   SizeField sizes;
-  Box clamp_box;          // circumcentres beyond it are moved onto it, see virtual_box.h
+  Box clamp_box;          // circumcenters beyond it are moved onto it, see virtual_box.h
   double spacing_mm = 0;  // s
-  /// The initial mesh of PDR also bounds cells around the object: R5 holds outside too, with
-  /// `shell_radius_mm`, for circumcentres up to `shell_mm` from the isosurface; both are less where a grid of
-  /// sizes asks for smaller cells. 0: there is no such shell.
+  /// The initial mesh of PDR also bounds cells around the object: R5 holds outside, too, with
+  /// `shell_radius_mm`, for circumcenters up to `shell_mm` from the isosurface. Both are less where a size
+  /// grid requests smaller cells. 0: there is no such shell.
   double shell_mm = 0, shell_radius_mm = 0;
 };
 
-/// What the rules need to know of a cell, asked of the oracle once.
+/// The data that the rules need about a cell, requested from the oracle once.
 struct Examination {
   CellId cell;
   Point center;
   double squared_radius;
-  LabelIndex label;            // the image's at the centre
-  double isosurface_distance;  // a lower bound, from the centre
-  bool is_distance_proven;     // else it rests on the nearest point found
-  // z, if the circumball meets the isosurface and R1 or R2 may care
+  LabelIndex label;            // the image's at the center
+  double isosurface_distance;  // a lower bound, from the center, mm
+  bool is_distance_proven;     // otherwise it rests on the nearest point found
+  // z, if the circumball meets the isosurface and R1 or R2 may apply
   std::optional<NearPoint> nearest;
-  bool is_covered;  // z, by a vertex of the cell: R1 asks for nothing
-  /// Whether R1 asks for nothing only if other vertices cover z.
+  bool is_covered;  // z is covered by a vertex of the cell, so R1 does not apply
+  /// True if R1 applies unless vertices of other cells cover z.
   bool relies_on_others() const { return nearest && !is_covered; }
 };
 
@@ -73,7 +78,7 @@ struct SurfaceCenter {
   CellId start;  // a cell in conflict with it
 };
 
-/// `Cells` is the mesh, or what an operation would make of it (delaunay/vertex_move.h).
+/// `Cells` is the mesh, or the cells that an operation plans (delaunay/vertex_move.h).
 template <class Cells>
 class RulesOn {
  public:
@@ -82,35 +87,38 @@ class RulesOn {
           const std::optional<CountedReads>& reads = {});
 
   Examination examine(CellId c) const;
-  /// Asks for what examine(c) will read of the mesh, the cell itself apart. Without locks it is a guess.
+  /// Prefetches what examine(c) reads first of the image and its transform. The center is read without locks
+  /// and is therefore only a guess.
   void prefetch([[maybe_unused]] CellId c) const {
     if constexpr (std::same_as<Cells, Mesh>) isosurface_.prefetch(mesh_.peek_center(c));
   }
 
-  /// R1's point, unless a vertex of the cell itself or of a neighbour already covers it. The caller must
-  /// still look for isosurface vertices closer than delta among the point's cavity: the nearest one would be
-  /// joined to it by a Gabriel edge, hence is among the cavity's vertices.
+  /// Returns R1's point, unless a vertex of the cell itself or of a neighbor already covers it. The caller
+  /// must still look for isosurface vertices closer than delta among the vertices of the point's cavity: the
+  /// nearest one would be joined to the point by a Gabriel edge and is therefore among them.
   std::optional<Point> r1_sample(const Examination& t) const;
   bool is_covered(const Point& z, VertexId by) const;
-  /// The isosurface point nearest to p, if within `radius_mm`.
+  /// Returns the isosurface point nearest to p, if within `radius_mm`.
   std::optional<Point> settled(const Point& p, double radius_mm) const;
   std::optional<Point> r2_center(const Examination& t) const;
   std::optional<SurfaceCenter> r3_surface_center(const Examination& t) const;
-  /// R4 and R5 insert the circumcentre.
+  /// Returns R4 or R5 if it applies; both insert the circumcenter.
   std::optional<Rule> volume_rule(const Examination& t) const;
-  /// What R4 and R5 ask of a cell inside.
+  /// The conditions of R4 and R5 for a cell inside the object.
   bool has_poor_ratio(CellId c, double squared_radius) const;
   bool is_large(double squared_radius, LabelIndex label, const Point& center) const;
-  /// Whether the cell asks for nothing. False may be said of one whose R1 sample is covered farther away.
+  /// True if no rule applies to the cell. May be false although a vertex farther away covers the cell's R1
+  /// sample.
   bool is_sound(CellId c) const;
-  /// Whether R6 removes v when z is inserted.
+  /// True if R6 removes v when z is inserted.
   bool r6_removes(VertexId v, const Point& z) const;
 
-  /// Label at the circumcentre, remembered in the store so that all cells around see the same.
+  /// Returns the label at the circumcenter. It is kept in the store, so that all cells around see the same
+  /// label.
   LabelIndex label_of(CellId c) const;
 
  private:
-  // Answers are the same; a run that counts nothing pays for one test a question.
+  // Both oracles give the same answers. A run that counts nothing pays one branch per question.
   template <class Question>
   auto ask(const Question& question) const {
     if (counted_) [[unlikely]]

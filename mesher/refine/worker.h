@@ -1,5 +1,5 @@
-// A worker: one refinement agent with its own poor element list, pool and counters. It does one operation at
-// a time and never blocks, spins or sleeps; the loop in algorithms/podm_loop.h decides when it runs.
+// A worker: one refinement agent with its own poor element list, pool and counters. It performs one operation
+// at a time and never blocks, spins or sleeps. The loop in algorithms/podm_loop.h decides when it runs.
 #pragma once
 
 #include <array>
@@ -19,8 +19,9 @@ namespace podm {
 template <class Locks>
 class Worker {
  public:
-  /// `log`, if given, learns of every commit. `owners` of the image, if given and known, let its reads be
-  /// counted too; accesses are counted where the mesh lies on several nodes.
+  /// `log`, if given, receives every commit. Accesses to the mesh are counted if the workers share a mesh
+  /// that lies on several nodes, and reads of the image are counted, too, if its `owners` are given and
+  /// known.
   Worker(Mesh& mesh, const Isosurface& isosurface, const Parameters& parameters, WorkerId self, Pool& pool,
          OperationLogWriter* log = nullptr, const ImageOwners* owners = nullptr);
   Worker(const Worker&) = delete;
@@ -33,17 +34,17 @@ class Worker {
   }
   bool has_work() const { return !poor_.is_empty(); }
   std::size_t num_listed() const { return poor_.size(); }
-  /// Takes the oldest cells off the list, for another worker; about half of them, at most `max`.
+  /// Removes the oldest cells from the list for another worker: about half of them, at most `max` live ones.
   std::vector<PoorElementList::Entry> share(std::size_t max) { return poor_.take_oldest(max, mesh_); }
 
-  /// From now on new cells whose home is another are kept apart, for others to refine. The homes must outlive
-  /// this.
+  /// From now on new cells with another home are kept apart, for the workers of that home. The homes must
+  /// outlive this object.
   void keep_to(const Homes& homes, unsigned home) {
     homes_ = &homes;
     home_ = home;
   }
-  /// From now on R7 alone is applied, to a mesh that breaks no other rule. `seed` draws where to vertices
-  /// move.
+  /// From now on only R7 is applied, to a mesh that violates no other rule. `seed` seeds the choice of new
+  /// places for vertices.
   void perturb(const DihedralBounds& bounds, std::uint64_t seed);
   Perturbation<Locks>& perturbation() { return *perturbation_; }
   /// A poor cell that R7 could not change.
@@ -51,7 +52,7 @@ class Worker {
     PoorElementList::Entry entry;
     Unmoved why;
   };
-  /// Some may be stale.
+  /// Some entries may be stale.
   std::vector<Kept> take_kept() { return std::exchange(kept_, {}); }
 
   struct Away {
@@ -61,41 +62,42 @@ class Worker {
   std::size_t num_away() const { return away_.size(); }
   std::vector<Away> take_away() { return std::exchange(away_, {}); }
 
-  /// Takes one entry of the poor element list and applies the first rule that its cell breaks.
-  /// After a conflict conflicting_worker() tells with whom. Locks are held until release(), which must come
-  /// before the next attempt. What is thrown (std::bad_alloc) leaves a valid triangulation and no lock, but
-  /// may lose entries of the list.
+  /// Takes one entry of the poor element list and applies the first rule that its cell violates. After a lock
+  /// conflict conflicting_worker() returns the worker that holds the lock. Locks are held until release(),
+  /// which must come before the next attempt. An exception (std::bad_alloc) leaves a valid triangulation and
+  /// no lock, but may lose entries of the list.
   Outcome attempt();
   void release() { operation_.release(); }
   WorkerId conflicting_worker() const { return operation_.conflicting_worker(); }
 
-  /// Confined to the region of the leaf that the next attempts are for; new cells whose circumcentre is
-  /// elsewhere are kept apart.
+  /// Locks of leaves are confined to the region of the leaf that the next attempts are for. New cells with a
+  /// circumcenter elsewhere are kept apart.
   Locks& locks() { return operation_.locks(); }
   std::size_t num_foreign() const { return foreign_.size(); }
   std::vector<PoorElementList::Entry> take_foreign() { return std::exchange(foreign_, {}); }
   /// Cells of the leaf that need vertices outside its region.
   std::vector<PoorElementList::Entry> take_deferred() { return std::exchange(deferred_, {}); }
 
-  /// Hands the last operations to the log.
+  /// Appends the buffered operations to the log.
   void flush_log();
 
-  /// What it counts itself, and the seconds of rollback in real time, estimated; hops are in accesses().
+  /// Counts of this worker, and its estimated real time of rollbacks, s; hops are in accesses().
   const Counters& counters() const { return operation_.counters(); }
-  /// None where nothing is counted.
+  /// None if accesses are not counted.
   const std::optional<AccessTally>& accesses() const { return accesses_; }
-  /// Cells this worker has added to the mesh, net.
+  /// The number of cells that this worker has added to the mesh, net.
   std::int64_t net_cells() const { return operation_.net_cells(); }
 
  private:
-  // Invariants keep vertices s apart, to a thousandth at a time (rules.h). Only an oracle that errs about the
-  // nearest point can bring them much closer; far below s the insertion is refused, so that the process ends
-  // whatever the image.
+  // The invariants keep vertices s apart, up to a thousandth at a time (rules.h). Only an oracle that errs
+  // about the nearest point can bring them much closer. An insertion far below s is refused, so that
+  // refinement terminates for every image.
   static constexpr double kSpacingFloor = 0.1;
   static constexpr std::size_t kOperationsToFlush = 4096;
-  // Attempts between the look ahead for a cell, for what lies around it, and its turn.
+  // The number of attempts between the prefetch of a cell and its turn, and between that of its surroundings
+  // and its turn.
   static constexpr std::size_t kTurnsToCell = 24, kTurnsToSurroundings = 8;
-  // A clock costs 2 % when every attempt reads it; one in so many stands for the others.
+  // Reading the clock in every attempt costs 2 %. One attempt in this number stands for the others.
   static constexpr std::uint64_t kAttemptsForOneTimed = 16;
 
   static std::optional<AccessTally> tally_for(const Mesh& mesh);
@@ -124,10 +126,10 @@ class Worker {
   const std::optional<CountedReads> reads_;
   Rules rules_;
   Operation<Locks> operation_;
-  std::optional<Perturbation<Locks>> perturbation_;  // none: R1 to R6
+  std::optional<Perturbation<Locks>> perturbation_;  // none: R1 to R6 are applied
   PoorElementList poor_;
   std::vector<PoorElementList::Entry> foreign_, deferred_;
-  const Homes* homes_ = nullptr;  // none: all cells are at home
+  const Homes* homes_ = nullptr;  // none: every cell is at home
   unsigned home_ = 0;
   std::vector<Away> away_;
   std::vector<Kept> kept_;

@@ -8,7 +8,8 @@ namespace podm {
 
 namespace {
 
-// A group has as many members as the level below has groups within it; the smallest has workers.
+// Returns the number of workers in a smallest group, or the number of groups of the level below in any other
+// group.
 int num_members(const WorkerGroups& groups, std::size_t level, int group) {
   std::set<int> members;
   for (std::size_t worker = 0; worker < groups[level].size(); ++worker)
@@ -30,7 +31,7 @@ BeggingList::BeggingList(int num_workers, WorkerGroups groups) : groups_(std::mo
   }
 }
 
-// Whoever would fill a list is the last of its group to beg.
+// A worker that would fill a list is the last of its group to beg, and goes to the list of the next level.
 bool BeggingList::add(WorkerId worker) {
   for (std::size_t level = 0;; ++level) {
     Group& group = group_of(level, worker);
@@ -84,8 +85,8 @@ void BeggingList::remove(WorkerId worker) {
   }
 }
 
-// Lists are closed from the smallest groups upwards, as add() goes: whoever finds one full either reaches the
-// next before it is closed, and is returned, or finds that one closed.
+// Closes the lists from the smallest groups upwards, in the order of add(). A worker that finds a list full
+// either reaches the next list before it is closed, and is returned, or finds that list closed.
 std::vector<WorkerId> BeggingList::close() {
   std::vector<WorkerId> beggars;
   for (std::size_t level = 0; level < levels_.size(); ++level)
@@ -100,7 +101,7 @@ std::vector<WorkerId> BeggingList::close() {
   return beggars;
 }
 
-// The count is only a hint to those who do not hold the lock.
+// The count is only a hint for threads that do not hold the lock.
 void BeggingList::count(Group& group) {
   group.num_beggars.store(static_cast<int>(group.beggars.size()), std::memory_order_relaxed);
 }

@@ -1,11 +1,12 @@
-// The begging list: idle workers ask here for cells; a busy worker that has enough gives some to the first it
-// serves. Givers push; nobody takes from another's list. Foteinos, Chrisochoides, JPDC 74 (2014), section 6:
+// The begging list: idle workers request cells here. A busy worker that has enough cells gives some to the
+// first worker that it serves. Givers push; no worker takes cells from another worker's poor element list.
+// Foteinos, Chrisochoides, JPDC 74 (2014), section 6:
 //   random        one list for all, first come first served
-//   hierarchical  a list for each group of workers, level by level: socket, node, machine. A beggar is on the
-//                 list of its own group; the last of a group to beg, on that of the group around it. Givers
-//                 serve the nearest first, so that most cells stay near the memory they lie in.
+//   hierarchical  one list per group of workers, level by level: socket, node, machine. A begging worker is
+//                 on the list of its own group. The last of a group to beg is on the list of the group around
+//                 it. Givers serve the nearest group first, so that most cells stay near their memory.
 //
-// Each list has a lock of its own, and no call holds two. A call takes one or two of them as a rule.
+// Each list has its own lock, and no call holds two locks. Most calls take one or two locks.
 #pragma once
 
 #include <atomic>
@@ -18,8 +19,8 @@
 
 namespace podm {
 
-/// groups[level][worker]: the group it is in, level 0 the smallest; groups nest. The machine, which holds
-/// all, goes without saying: no level at all makes the list random.
+/// groups[level][worker] is the group of the worker. Level 0 has the smallest groups; groups nest. The
+/// machine, which holds all workers, is not listed: with no levels the begging list is random.
 using WorkerGroups = std::vector<std::vector<int>>;
 
 /// Any worker may make any call at any time.
@@ -27,22 +28,22 @@ class BeggingList {
  public:
   BeggingList(int num_workers, WorkerGroups groups);
 
-  /// False: the list is closed. A worker that is on the list must not be added.
+  /// Returns false if the list is closed. The worker must not be on the list.
   bool add(WorkerId worker);
   struct Beggar {
     WorkerId worker = kNoWorker;
     std::size_t level = 0;  // of the list that it was on
   };
-  /// Takes the beggar off the list that `giver` should serve; kNoWorker: it sees none. The last worker that
-  /// does not beg sees one.
+  /// Takes the begging worker that `giver` should serve off its list. Returns kNoWorker if `giver` sees none.
+  /// The last worker that does not beg sees one.
   Beggar take_first_for(WorkerId giver);
-  /// Puts it back where it was, first of all. The list must not have been closed meanwhile.
+  /// Puts the worker back at the front of its list, which must not have been closed meanwhile.
   void put_back(const Beggar& beggar);
-  /// A hint: whether take_first_for(giver) would name somebody.
+  /// A hint: true if take_first_for(giver) would return a worker.
   bool may_serve(WorkerId giver) const;
-  /// Takes `worker` off, if it is on the list.
+  /// Takes `worker` off its list, if it is on one.
   void remove(WorkerId worker);
-  /// Nobody is added any more. Returns who was on the list.
+  /// Closes all lists: no worker is added any more. Returns the workers that were on them.
   std::vector<WorkerId> close();
 
  private:

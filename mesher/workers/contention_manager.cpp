@@ -89,7 +89,8 @@ void ContentionManager::stop_running(Queue& own) {
   }
 }
 
-// A woken worker is taken for one that waits until its lock is had: others try on meanwhile.
+// A woken worker counts as waiting until its lock is acquired here. Until then other workers that meet it try
+// again instead of waiting.
 void ContentionManager::run_again(WorkerId worker) {
   if (kind_ == Contention::kGlobal) {
     ++num_running_;

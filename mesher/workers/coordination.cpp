@@ -54,8 +54,8 @@ void Coordination::send(unsigned home, const Entries& cells) {
   serve(home);
 }
 
-// Those of the home who beg get its cells, until none does or none are left. Of those who were listed before
-// the home's lock was had, hints tell.
+// Gives cells of the home to its begging workers, until none of them begs or no cells are left. The hints of
+// may_serve() include every worker that was listed before the home's lock was acquired.
 void Coordination::serve(unsigned home) {
   Home& from = homes_[home];
   for (WorkerId i = 0; i < workers_per_home_; ++i) {
@@ -95,21 +95,21 @@ Coordination::Begging Coordination::beg(WorkerId id) {
   const Begging answer = look_home_or_join(self);
   if (answer == Begging::kHasGift) {
     contention_.run_again(self);
-    Entries gift = take_from(homes_[self / workers_per_home_]);  // others may be quicker
+    Entries gift = take_from(homes_[self / workers_per_home_]);  // may be empty: another worker may be faster
     const std::scoped_lock lock(members_[self].mutex);
     members_[self].gift = std::move(gift);
   }
   if (answer != Begging::kListed) return answer;
   const bool is_last = ++num_begging_ == static_cast<int>(members_.size());
   if (!is_last) return answer;
-  // None is left to take the master off the list but this worker.
+  // Only this worker is left to take the master off its list.
   begging_.remove(kMaster);
   if (self == kMaster) {
     --num_begging_;
     contention_.run_again(kMaster);
     return Begging::kOver;
   }
-  end_begging(kMaster);  // it shall see that nobody has cells
+  end_begging(kMaster);  // it begs again and finds that no worker has cells
   return Begging::kListed;
 }
 
@@ -119,7 +119,7 @@ Coordination::Entries Coordination::take_gift(WorkerId self) {
   return std::exchange(member.gift, {});
 }
 
-// Who begs again meanwhile may be roused twice, but not for ever.
+// A worker that begs again meanwhile may be roused twice, but the number of rounds is bounded.
 void Coordination::rouse(WorkerId self) {
   for (std::size_t others = members_.size() - 1; others > 0; --others) {
     const BeggingList::Beggar beggar = begging_.take_first_for(self - first_id_);

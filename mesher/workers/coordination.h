@@ -1,22 +1,24 @@
-// How the workers of one group get along: who runs, who waits after a conflict, who begs and is given cells.
-// What a worker does after an attempt is decided here alone; time, real or virtual, does the blocking.
+// Coordination of the workers of one group: which ones run, which wait after a conflict, which beg and are
+// given cells. Only this class decides what a worker does after an attempt. Time, real or virtual, does the
+// blocking.
 //
-// Workers meet at locks of single workers and of begging lists, and count those who beg: an operation that
-// succeeds alone touches none of them. Where each use of a lock is charged 0.5 us, one after the other, the
-// refinement of 0.5 million cells by 256 virtual workers takes 1.05 times as long; with one lock for all it
-// took 2.4 times as long.
+// Workers synchronize through locks of single workers, through locks of begging lists and through a count of
+// begging workers. An operation that succeeds, and neither wakes a worker nor shares cells, takes no lock. If
+// uses of a lock are serialized and each is charged 0.5 us, the refinement of 0.5 million cells by 256
+// virtual workers takes 1.05 times as long. With one lock for all it took 2.4 times as long.
 //
-// A worker counts for one from when it is on a begging list and has counted itself. Whoever takes it off the
-// list counts it down once its gift is there, and is not counted until then. So when all are counted, each is
-// on a list: none runs, none has a gift, and none waits, for whoever waits, waits for one that runs
-// (workers/contention_manager.h).
+// A worker counts as begging once it is on a begging list and has counted itself. A worker that takes it off
+// the list decrements the count once the gift is in place, and is not counted itself until then. When all
+// workers are counted, each is therefore on a list: none runs, none has a gift, and none waits, because each
+// worker that waits, waits for one that runs (workers/contention_manager.h).
 //
-// Cells that are sent to a home wait there. Who begs looks for them first, and goes on a list under the lock
-// of its home only if there are none. Who sends puts them there under that lock, and then serves those of the
-// home who beg, and maybe others whom these lists hold, until none does or none are left. So whoever of the
-// home was on a list before they came is served, or served by another; whoever comes later finds them. Who
-// takes a beggar off a list and puts it back, serves its home then, as a sender may have missed it. When all
-// are counted, and so nobody sends any more, no home has cells. No cells are left.
+// Cells that are sent to a home wait there. A worker that begs looks for them first, and joins a list, under
+// the lock of its home, only if there are none. A sender adds cells under that lock. It then serves begging
+// workers of the home, and maybe others on the same lists, until none begs or no cells are left. A worker of
+// the home that was on a list before the cells came is therefore served, by the sender or by another worker.
+// A worker that begs later finds the cells. A worker that takes a beggar off a list and puts it back then
+// serves the beggar's home, because a sender may have missed the beggar. When all workers are counted, none
+// sends any more, so no home has cells. No cells are left.
 #pragma once
 
 #include <atomic>
@@ -32,30 +34,30 @@
 
 namespace podm {
 
-/// How many workers run, and how they get out of each other's way.
+/// The number of workers in a group, and how they avoid each other.
 struct CoordinationOptions {
   int num_workers = 1;
   Contention contention = Contention::kLocal;
-  WorkerGroups groups = {};  // as the begging list needs them
-  // Workers i with equal i / workers_per_home have a home together; 0: none has one.
+  WorkerGroups groups = {};  // as the begging list requires them
+  // Workers i with equal i / workers_per_home have a home in common; 0: there are no homes.
   int workers_per_home = 0;
   std::uint64_t seed = 1;
 };
 
-/// It coordinates the workers from `first_id` on, as locks name them. The first is the master, to whom the
-/// others' end is told. Any worker may call for itself at any time.
+/// Coordinates the workers with ids from `first_id` on, as the locks use them. The first worker is the
+/// master, which learns when no worker has cells. Any worker may make any call for itself at any time.
 class Coordination {
  public:
   using Entries = std::vector<PoorElementList::Entry>;
   using Answer = ContentionManager::Answer;
 
-  /// `resume(worker)` is called for each worker that was blocked and runs again.
+  /// Calls `resume(worker)` for each worker that was blocked and runs again.
   Coordination(const CoordinationOptions& options, std::function<void(WorkerId)> resume,
                WorkerId first_id = 0);
 
-  /// What `self` does after an attempt, whose locks are released. After a conflict it must block (kWait) or
-  /// sleep (kPause), or may try on; nobody waits for a worker of another group. A success may wake a worker,
-  /// and share cells.
+  /// Decides what `self` does after an attempt, whose locks are released. After a lock conflict the worker
+  /// must block (kWait) or sleep (kPause), or may try again. No worker waits for a worker of another group.
+  /// After a success the worker may wake another one and share cells.
   template <class Worker>
   Answer after(Outcome outcome, WorkerId self, Worker& worker) {
     const WorkerId number = self - first_id_;
@@ -66,29 +68,30 @@ class Coordination {
     return {};
   }
 
-  /// Cells for the workers of a home. The caller runs.
+  /// Sends cells to the workers of a home. The calling worker must run: it neither waits nor begs.
   void send(unsigned home, const Entries& cells);
   enum class Begging {
-    kListed,   // it must block, and then take its gift, which may be empty
-    kHasGift,  // it may take that at once
-    kOver      // no worker has cells, and it is the master; or the master has dismissed it
+    kListed,   // the worker must block and then take its gift, which may be empty
+    kHasGift,  // the worker may take its gift at once
+    kOver      // no worker has cells, and the worker is the master; or the master has dismissed it
   };
   /// `self` has no cells left.
   Begging beg(WorkerId self);
   Entries take_gift(WorkerId self);
-  /// Gives an empty gift to each who begs. `self` does not.
+  /// Gives an empty gift to each begging worker. `self` does not beg.
   void rouse(WorkerId self);
-  /// Called by the master, when beg() has told it that no worker has cells, and there will be no more.
+  /// Called by the master when beg() has returned kOver to it and there will be no more cells.
   void dismiss();
 
  private:
-  // A worker shares when it lists this many cells or more; most are dead, as their turn tells.
+  // A worker shares when it lists at least kEnoughToShare cells. Most of them are dead, which shows when
+  // their turn comes.
   static constexpr std::size_t kEnoughToShare = 64, kMostToShare = 1024;
   static constexpr WorkerId kMaster = 0;
 
-  // What belongs to one worker, in cache lines of its own.
+  // Data of one worker, in cache lines of its own.
   struct alignas(128) Member {
-    int conflicts = 0, successes = 0;  // in a row, as the worker alone counts them
+    int conflicts = 0, successes = 0;  // in a row; only the worker itself counts them
     std::mutex mutex;                  // guards the gift
     Entries gift;
   };
@@ -98,7 +101,7 @@ class Coordination {
     Entries cells;
   };
 
-  // All below number workers from 0 on.
+  // All functions below number workers from 0 on.
   Answer conflict(WorkerId self, WorkerId holder);
   bool is_due_to_wake(WorkerId self) {
     Member& member = members_[self];
@@ -106,7 +109,7 @@ class Coordination {
     return ++member.successes % ContentionManager::kSuccessesToWake == 0 && contention_.may_wake(self);
   }
   void wake_one(WorkerId self);
-  // A hint whether somebody begs whom `giver`, which lists so many cells, could serve.
+  // A hint: true if a worker begs that `giver`, which lists `num_listed` cells, could serve.
   bool may_share(WorkerId giver, std::size_t num_listed) const {
     return num_begging_.load(std::memory_order_relaxed) > 0 && num_listed >= kEnoughToShare &&
            begging_.may_serve(giver);
@@ -114,7 +117,7 @@ class Coordination {
   template <class Worker>
   void share(WorkerId giver, Worker& worker) {
     const BeggingList::Beggar beggar = begging_.take_first_for(giver);
-    if (beggar.worker == kNoWorker) return;  // another giver was quicker
+    if (beggar.worker == kNoWorker) return;  // another giver was faster
     Entries cells = worker.share(kMostToShare);
     if (cells.empty()) {
       begging_.put_back(beggar);

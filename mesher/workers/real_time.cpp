@@ -19,9 +19,9 @@ void RealTime::run(const std::function<void(WorkerId)>& work) {
       threads.reserve(states_.size());
       for (WorkerId self = 1; self < states_.size(); ++self)
         threads.emplace_back([&, self] { work_on_thread(work, self); });
-    } catch (const std::bad_alloc&) {  // those that run already end now
+    } catch (const std::bad_alloc&) {  // threads that already run end now
       stop_.end(StopReason::kMemoryLimit);
-    } catch (...) {  // a thread was not to be had
+    } catch (...) {  // a thread could not be started
       fail();
     }
     start_s_ += seconds_since(start);
@@ -40,7 +40,7 @@ void RealTime::work_on_thread(const std::function<void(WorkerId)>& work, WorkerI
   fail();
 }
 
-// The exception that is being handled ends the run.
+// Ends the run with the exception that is being handled.
 void RealTime::fail() {
   {
     const std::scoped_lock lock(mutex_);

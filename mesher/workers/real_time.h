@@ -1,4 +1,4 @@
-// Workers on threads, one each, which block in real time.
+// Workers that run on one thread each and block in real time.
 #pragma once
 
 #include <chrono>
@@ -20,47 +20,49 @@ namespace podm {
 
 class RealTime {
  public:
-  /// Binds the thread of worker i to the processor of places[i], if it has one; no places: to none.
+  /// Binds the thread of worker i to the processor of places[i], if it has one. Binds no thread if `places`
+  /// is empty.
   RealTime(StopControl& stop, std::size_t num_workers, std::vector<Place> places);
 
-  /// Calls work(self) for each worker on a thread of its own, worker 0's on the calling one, and returns when
-  /// all have returned; then it may be called again. What one throws ends the run and is thrown again here,
-  /// but for std::bad_alloc, which ends it as a limit does.
+  /// Calls work(self) for each worker on a thread of its own, for worker 0 on the calling thread, and returns
+  /// when all calls have returned. It may then be called again. An exception of a worker ends the run and is
+  /// rethrown here, except std::bad_alloc, which ends the run as a limit does.
   void run(const std::function<void(WorkerId)>& work);
 
-  /// Makes an attempt, after which nothing is locked.
+  /// Makes an attempt and releases its locks.
   template <class Worker>
   Outcome attempt(Worker& worker) {
     const Outcome outcome = worker.attempt();
     worker.release();
-    // Who holds the vertices may want this processor. Without this `aggressive` hardly ends where threads
-    // outnumber processors.
+    // The worker that holds the vertices may need this processor. Without the yield `aggressive` hardly
+    // terminates where threads outnumber processors.
     if (outcome == Outcome::kLockConflict) std::this_thread::yield();
     if (++states_[worker.id()].attempts % StopControl::kAttemptsBetweenChecks == 0) check_limits(worker);
     return outcome;
   }
-  /// Virtual time charges these; here they take what they take.
+  /// Virtual time charges these costs. In real time they take the time they take.
   static void spend(WorkerId, double) {}
   static void spend_in(const void*, WorkerId, double) {}
   static constexpr TimeCosts costs() { return {}; }
-  /// Ends the run if a limit is passed, as is looked at now and then, and when a worker has nothing to do.
+  /// Ends the run if a limit is exceeded. Called now and then, and when a worker has nothing to do.
   template <class Worker>
   void check_limits(const Worker& worker) {
     states_[worker.id()].meter.report(worker, stop_);
     stop_.check_limits();
     if (worker.id() == 0) stop_.observe();
   }
-  /// Waits until another resumes it, maybe before, or the run is over. The time is charged to `cause`.
+  /// Waits until another worker resumes `self`, which may have happened before, or until the run is over. The
+  /// time is charged to `cause`.
   void block(WorkerId self, double Overhead::*cause);
   void resume(WorkerId worker) { states_[worker].resumed.release(); }
   void pause(WorkerId self, double seconds);
   bool is_over() const { return stop_.is_over(); }
 
-  /// Seconds since this was made.
+  /// Seconds since construction.
   double now_s() const { return seconds_since(start_); }
-  /// Seconds of run() that went by before worker 0 began: threads were started for the others.
+  /// Seconds of run() before worker 0 began, in which the threads of the other workers were started.
   double start_s() const { return start_s_; }
-  /// What the system said of the worker's thread after it was bound.
+  /// Where the worker's thread ran after it was bound, as reported by the system.
   const ThreadProcessor& processor(WorkerId worker) const { return states_[worker].processor; }
   template <class Worker>
   Overhead overhead(const Worker& worker) const {
@@ -75,7 +77,7 @@ class RealTime {
     return std::chrono::duration<double>(Clock::now() - start).count();
   }
 
-  // What belongs to one worker, in cache lines of its own.
+  // Data of one worker, in cache lines of its own.
   struct alignas(128) WorkerState {
     std::counting_semaphore<> resumed{0};
     unsigned attempts = 0;
@@ -94,7 +96,7 @@ class RealTime {
   double start_s_ = 0;
   std::mutex mutex_;  // guards failure_
   std::exception_ptr failure_;
-  std::stop_callback<std::function<void()>> on_over_;  // the last: it may be called before it is made
+  std::stop_callback<std::function<void()>> on_over_;  // last: it may be called while it is constructed
 };
 
 }  // namespace podm

@@ -1,19 +1,19 @@
-// What the memory of other nodes costs the workers of a described machine: the way there and back, and the
+// The cost of remote access on a described machine: the way to the other node and back, and the time spent
 // waiting where the network is busy.
 //
-//   A counted access to another node's cell or vertex goes there with the machine's `miss_share`; the rest
-//   are answered by caches. It then takes longer than one at home by the latency of the links between.
-//   Of image and transform, which nobody writes, each line goes over the network once to each node, whose
-//   caches keep it.
-//   On its way an access keeps each station (a node's hub, a router) busy for a while. Stations serve one
-//   access after the other, the first to come first. Those of an attempt come to the queue at its beginning,
-//   but one needs what the other brings: each waits as long as the queue was then. When a station is asked
-//   for more than it can do, its queue grows until the workers, who wait in it, ask for no more than that.
-//   Where accesses that find a station busy come again, as requests do that a directory turns away, they take
-//   it longer the more of them wait (`retries`).
+//   The fraction `miss_share` of the counted accesses to another node's cells and vertices goes to that node;
+//   caches answer the rest. Such an access takes longer than a local one by the latency of the links between.
+//   The image and its transform are never written: each of their cache lines goes over the network to each
+//   node once, and the node's caches keep it.
+//   An access keeps each station on its way (a node's hub, a router) busy for a while. A station serves one
+//   access after the other, first come first served. The accesses of an attempt join the queue when the
+//   attempt begins, but one needs the result of another: each waits as long as the queue was then. If a
+//   station is requested beyond its capacity, its queue grows until the workers that wait in it request no
+//   more than the capacity. Where accesses that find a station busy try again, like requests that a directory
+//   rejects, they occupy the station the longer, the more of them wait (`retries`).
 //
 // Each worker waits for the accesses of one attempt at a time, which bounds the queues. Counted accesses
-// times a share are no whole numbers: they stand for their mean.
+// times a fraction are not integers: they stand for the mean.
 #pragma once
 
 #include <deque>
@@ -27,25 +27,25 @@ namespace podm {
 
 class RemoteMemory {
  public:
-  /// Worker i stands on node nodes[i].
+  /// Worker i is on node nodes[i].
   RemoteMemory(const MachineModel& machine, std::vector<NodeIndex> nodes);
 
   struct Delay {
     double latency_s = 0, network_s = 0;
   };
-  /// Of the worker's accesses since it was asked for the last time, which set out at `now_s`. Calls come in
-  /// the order of time.
+  /// Returns the delay of the accesses that the worker has made since its last call; they start at `now_s`.
+  /// Calls must come in the order of time.
   Delay delay(WorkerId worker, const AccessTally& accesses, double now_s);
 
  private:
-  // Who waits at a station, or is served there.
+  // The accesses that wait at a station or are served there.
   struct Queue {
     struct Batch {
       double served_at_s;
       double num_accesses;
     };
-    std::deque<Batch> batches;  // in their order
-    double num_accesses = 0;    // of all of them
+    std::deque<Batch> batches;  // in order of service
+    double num_accesses = 0;    // in all batches
 
     void drop_served(double now_s);
   };
@@ -55,9 +55,9 @@ class RemoteMemory {
 
   const MachineModel& machine_;
   std::vector<NodeIndex> nodes_;
-  std::vector<double> charged_;  // by worker and node: accesses that went there, in all calls until now
-  std::vector<double> asked_;    // by station: what an attempt asks of it
-  std::vector<Queue> queues_;    // by station
+  std::vector<double> charged_;  // per worker and node: accesses that went there, in all calls until now
+  std::vector<double> asked_;    // per station: accesses that an attempt requests
+  std::vector<Queue> queues_;    // per station
 };
 
 }  // namespace podm

@@ -1,4 +1,4 @@
-// When a run ends: for limits, or because somebody asks for it. Workers look here between operations.
+// Ends a run at a limit or on request. Workers check it between operations.
 #pragma once
 
 #include <atomic>
@@ -13,15 +13,15 @@
 
 namespace podm {
 
-/// Shared by all workers of a run, and by its phases. Any thread may call, but for those that say so.
+/// Shared by all workers of a run and by its phases. Any thread may call, except where noted.
 class StopControl {
  public:
   using Clock = std::chrono::steady_clock;
   static constexpr int kAttemptsBetweenChecks = 1 << 8;  // a worker makes them in well below a millisecond
 
-  /// Cells are those of the store, and seconds count from `start`; lack of memory shows itself.
-  /// `observe(cells)` is called a few times a second. Whoever requests the stop ends the run, so that over()
-  /// tells of it even while nobody asks for reasons.
+  /// Limits the cells of the store, and the seconds from `start` on. A lack of memory shows itself.
+  /// `observe(cells)` is called a few times per second. A request of `stop` ends the run at once, so that
+  /// over() shows it even while no worker checks.
   StopControl(const Limits& limits, std::stop_token stop, std::function<void(std::uint64_t)> observe,
               Clock::time_point start = Clock::now())
       : max_elements_(static_cast<std::int64_t>(limits.max_elements)),
@@ -32,26 +32,26 @@ class StopControl {
         observe_(std::move(observe)),
         on_stop_(std::move(stop), [this] { end(StopReason::kCancelled); }) {}
 
-  /// All stores together have so many cells: from now on this one may grow by one of so many even shares of
-  /// what the limit leaves. Between phases.
+  /// All stores together have `cells_of_all` cells. From now on this store may grow by one of `num_shares`
+  /// equal shares of what the limit leaves. To be called between phases.
   void share_limit(std::int64_t cells_of_all, int num_shares);
-  /// The store has so many more cells.
+  /// The store has `more` additional cells.
   void add_cells(std::int64_t more) { num_cells_.fetch_add(more, std::memory_order_relaxed); }
-  /// Those that were added.
+  /// The number of cells added.
   std::int64_t num_cells() const { return num_cells_; }
-  /// Ends the run if a limit is passed.
+  /// Ends the run if a limit is exceeded.
   void check_limits();
   /// Ends the run. The first reason counts.
   void end(StopReason reason);
-  /// kComplete as long as nothing has ended it.
+  /// Returns kComplete as long as the run has not been ended.
   StopReason reason() const { return reason_; }
-  /// Relaxed: a worker that has not heard of the end yet does one more operation.
+  /// Relaxed: a worker that does not see the end yet does one more operation.
   bool is_over() const { return reason_.load(std::memory_order_relaxed) != StopReason::kComplete; }
-  /// Requested when the run has to end.
+  /// A stop is requested of this token when the run has to end.
   std::stop_token over() const { return over_.get_token(); }
-  /// Only the thread that the run was called from calls these.
+  /// This function and the next may only be called by the thread that called the run.
   void observe();
-  /// From now on observe() calls this, soon for the first time.
+  /// From now on observe() calls this function, for the first time at its next call.
   void observe_by(std::function<void(std::uint64_t)> observe) {
     observe_ = std::move(observe);
     next_observation_ = Clock::now();
@@ -63,13 +63,13 @@ class StopControl {
   Clock::time_point deadline_;
   std::function<void(std::uint64_t)> observe_;
   std::atomic<std::int64_t> num_cells_ = 0;
-  std::atomic<StopReason> reason_ = StopReason::kComplete;  // the end's, once there is one
+  std::atomic<StopReason> reason_ = StopReason::kComplete;  // kComplete until the end
   std::stop_source over_;
   Clock::time_point next_observation_ = Clock::now();
-  std::stop_callback<std::function<void()>> on_stop_;  // the last: it may be called before it is made
+  std::stop_callback<std::function<void()>> on_stop_;  // last: it may be called while it is constructed
 };
 
-/// Tells of the cells that a worker adds.
+/// Reports the cells that a worker adds.
 class CellMeter {
  public:
   template <class Worker>

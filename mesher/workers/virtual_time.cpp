@@ -63,7 +63,7 @@ void VirtualTime::run(const std::function<void(WorkerId)>& work) try {
   throw;
 }
 
-// A run ends between operations: those that have begun end as well.
+// A run ends between operations: operations that have begun are finished.
 void VirtualTime::finish_all() {
   std::exception_ptr failure;
   for (WorkerState& state : states_) {
@@ -71,7 +71,7 @@ void VirtualTime::finish_all() {
       state.fibre->allow(Fibre::kUnlimited);
       try {
         state.fibre->resume();
-      } catch (const std::bad_alloc&) {  // it has rolled back
+      } catch (const std::bad_alloc&) {  // the attempt has rolled back
       } catch (...) {
         if (!failure) failure = std::current_exception();
       }
@@ -84,7 +84,7 @@ void VirtualTime::go_on(WorkerId worker) {
   WorkerState& state = states_[worker];
   if (state.most_steps > 0) allow_part(state);
   if (state.fibre->resume() != Fibre::State::kOutOfSteps) return;
-  // Most stops are short, and a few so long that others carry out whole operations.
+  // Most stops are short. A few are so long that other workers carry out whole operations.
   schedule(worker, 1e-9 * std::exp(std::uniform_real_distribution(0.0, 12.0)(random_)));
 }
 
@@ -97,7 +97,7 @@ void VirtualTime::begin_attempt(WorkerId self) {
   state.since_s = now_s_;
   if (!kIsInParts || is_over()) return;
   state.most_steps =
-      1u << std::uniform_int_distribution(3, 9)(random_);  // some stop at many steps, some at few
+      1u << std::uniform_int_distribution(3, 9)(random_);  // some attempts stop at many steps, some at few
   allow_part(state);
 }
 
@@ -106,7 +106,7 @@ void VirtualTime::end_attempt(WorkerId self, const Work& work, const std::option
   WorkerState& state = states_[self];
   state.most_steps = 0;
   state.fibre->allow(Fibre::kUnlimited);
-  // Seeded perturbation: attempts of equal work do not end together.
+  // A seeded variation: attempts of equal work do not end together.
   const double stretch = std::uniform_real_distribution(1 - costs_.spread, 1 + costs_.spread)(random_);
   const double whole_s = stretch * reference_seconds(work) / speed_;
   const bool has_failed = outcome == Outcome::kLockConflict;
@@ -124,7 +124,7 @@ void VirtualTime::end_attempt(WorkerId self, const Work& work, const std::option
   }
 }
 
-// The part of a failed attempt in which a real one has no locks yet.
+// Spends the part of a failed attempt in which a real attempt holds no locks yet.
 void VirtualTime::pass_unlocked(WorkerId self) {
   const double since_s = now_s_;
   pass(self, unlocked_seconds());

@@ -1,18 +1,18 @@
-// Any number of workers on one core, in virtual time: each works on a fibre, and an attempt is carried out at
-// once at its beginning, but its locks are held to its virtual end, so that workers conflict as they would on
-// as many cores. An attempt that fails holds its locks as long, but for the while in which a real one looks
-// up its list before it takes any. So attempts may make each other fail for ever under
-// Contention::kAggressive, as they may on threads; more easily here, as real attempts take their locks one
-// after the other. The same seed gives the same run to the bit. This serves tests of interleavings, and
-// studies of machines that nobody has at hand; times are simulated, not measured.
+// Any number of workers on one core, in virtual time. Each worker runs on a fibre. An attempt is executed at
+// once when it begins, but its locks are held until its virtual end, so that workers conflict as they would
+// on as many cores. A failed attempt holds its locks as long, except for the time in which a real attempt
+// looks up its list before it takes any lock. Attempts may therefore make each other fail forever under
+// Contention::kAggressive, as on threads, and more easily here, because real attempts take their locks one
+// after the other. The same seed gives the same run to the bit. Virtual time serves tests of interleavings,
+// and studies of machines that are not at hand. Times are simulated, not measured.
 //
-// A worker's time goes on by what it does: attempts by their counted work (workers/work_cost.h) and, on a
-// described machine, by the memory of other nodes that they touch (workers/remote_memory.h); what it does
-// between attempts by what the algorithm says that it spends. No cost knows the algorithm or how many workers
-// there are.
+// A worker's time advances by what it does. Attempts are charged for their counted work (workers/work_cost.h)
+// and, on a described machine, for the memory of other nodes that they access (workers/remote_memory.h).
+// Between attempts a worker is charged what the algorithm says that it spends. No cost depends on the
+// algorithm or on the number of workers.
 //
 // In a build with PODM_INTERLEAVING an attempt takes its virtual time in parts and holds its locks meanwhile:
-// it stops at steps (delaunay/step.h), between which others go on.
+// it stops at steps (delaunay/step.h), and other workers run in between.
 #pragma once
 
 #include <functional>
@@ -32,29 +32,29 @@
 
 namespace podm {
 
-/// What the virtual seconds of all workers went into, those lost to Overhead apart.
+/// The uses of the virtual seconds of all workers, except those lost to Overhead.
 struct VirtualSpending {
-  double work_s = 0;           ///< attempts, by their counted work
-  double remote_memory_s = 0;  ///< attempts, for the way to other nodes' memory
+  double work_s = 0;           ///< attempts, for their counted work
+  double remote_memory_s = 0;  ///< attempts, for the way to the memory of other nodes
   double network_s = 0;        ///< attempts, waiting where the network is busy
-  double between_s = 0;        ///< what lies between attempts: lists, gifts, leaves
-  double queueing_s = 0;       ///< waiting for what one worker has at a time
+  double between_s = 0;        ///< between attempts: lists, gifts, leaves
+  double queueing_s = 0;       ///< waiting for sections that admit one worker at a time
 
   VirtualSpending& operator+=(const VirtualSpending& b);
 };
 
 class VirtualTime {
  public:
-  /// `machine`, if given, is where the workers stand: worker i on node nodes[i]. It must outlive this.
+  /// On `machine`, if given, worker i is on node nodes[i]. The machine must outlive this object.
   VirtualTime(StopControl& stop, std::size_t num_workers, VirtualCost cost, std::uint64_t seed,
               const MachineModel* machine = nullptr, std::vector<NodeIndex> nodes = {});
 
-  /// Calls work(self) for each worker, on a fibre of its own, and returns when all have returned; then it may
-  /// be called again, and time goes on. What one throws ends the run and is thrown again here, but for
-  /// std::bad_alloc, which ends it as a limit does.
+  /// Calls work(self) for each worker on a fibre of its own, and returns when all calls have returned. It may
+  /// then be called again, and time goes on. An exception of a worker ends the run and is rethrown here,
+  /// except std::bad_alloc, which ends the run as a limit does.
   void run(const std::function<void(WorkerId)>& work);
 
-  /// Makes an attempt, after whose virtual end nothing is locked.
+  /// Makes an attempt and releases its locks at its virtual end.
   template <class Worker>
   Outcome attempt(Worker& worker) {
     const WorkerId self = worker.id();
@@ -68,30 +68,30 @@ class VirtualTime {
     if (outcome == Outcome::kLockConflict) pass_unlocked(self);
     return outcome;
   }
-  /// The worker does something else, which takes so long on the reference core. It holds no locks, and no
-  /// other may be about to resume it.
+  /// The worker does something else, which takes `reference_s` seconds on the reference core. It holds no
+  /// locks, and no other worker may be about to resume it.
   void spend(WorkerId self, double reference_s);
-  /// The same, in a section that one worker at a time is in, the first to come first.
+  /// Does the same in a section that admits one worker at a time, first come first served.
   void spend_in(const void* section, WorkerId self, double reference_s);
-  /// Ends the run if a limit is passed; as in RealTime.
+  /// Ends the run if a limit is exceeded, as in RealTime.
   template <class Worker>
   void check_limits(const Worker&) {
     stop_.check_limits();
   }
-  /// Waits until another resumes it, or the run is over. The time is charged to `cause`.
+  /// Waits until another worker resumes `self`, or until the run is over. The time is charged to `cause`.
   void block(WorkerId self, double Overhead::*cause);
   void resume(WorkerId worker) { schedule(worker, wake_s_); }
   void pause(WorkerId self, double seconds);
   bool is_over() const { return stop_.is_over(); }
 
-  /// Virtual time that passed.
+  /// Virtual seconds that have passed.
   double now_s() const { return now_s_; }
   template <class Worker>
   const Overhead& overhead(const Worker& worker) const {
     return states_[worker.id()].overhead;
   }
   const VirtualSpending& spending() const { return spending_; }
-  /// What one may spend.
+  /// The costs that a worker may spend.
   const TimeCosts& costs() const { return costs_; }
 
  private:
@@ -103,14 +103,14 @@ class VirtualTime {
 
   struct WorkerState {
     std::unique_ptr<Fibre> fibre;
-    double since_s = 0;            // its attempt began
-    std::uint64_t most_steps = 0;  // a part of it takes at most so many
+    double since_s = 0;            // the beginning of its attempt
+    std::uint64_t most_steps = 0;  // of one part of its attempt, at most; 0 outside of attempts
     CellMeter meter;
     Overhead overhead;
   };
   struct Event {
     double time_s;
-    std::uint64_t number;  // events of the same time come in the order they were made
+    std::uint64_t number;  // events of the same time come in the order of their creation
     WorkerId worker;
     bool operator>(const Event& other) const {
       return time_s != other.time_s ? time_s > other.time_s : number > other.number;
@@ -134,7 +134,7 @@ class VirtualTime {
   TimeCosts costs_;
   double speed_ = 1, wake_s_ = 0, lock_s_ = 0;  // of the machine's cores and system
   std::optional<RemoteMemory> remote_;          // of a machine of several nodes
-  std::map<const void*, double> free_at_;       // when a section's last worker leaves it
+  std::map<const void*, double> free_at_;       // the time when a section's last worker leaves it
   VirtualSpending spending_;
   std::mt19937_64 random_;
   std::vector<WorkerState> states_;

@@ -1,4 +1,4 @@
-// What the counted work of attempts takes in virtual time. runtime/time_costs.h has the constants.
+// The virtual time that the counted work of attempts takes. The constants are in runtime/time_costs.h.
 #pragma once
 
 #include <cstdint>
@@ -8,7 +8,7 @@
 
 namespace podm {
 
-/// Counted work, of a worker so far or between two moments.
+/// Counted work of a worker, so far or between two points in time.
 struct Work {
   std::uint64_t classified = 0, searches = 0, tests = 0, created = 0, planned = 0;
 
@@ -22,7 +22,8 @@ inline Work work_of(const Counters& counters) {
           counters.cells_created, counters.planned_cells};
 }
 
-/// Seconds of an attempt with that work. Where others may want the same vertices it takes locks.
+/// Returns the seconds of an attempt with this work. An attempt takes locks if other workers may use the same
+/// vertices.
 double attempt_seconds(const Work& work, const TimeCosts& costs, bool takes_locks);
 
 }  // namespace podm

@@ -1,4 +1,4 @@
-// Whether a finished mesh leaves the rules anything to ask for.
+// Checks that a finished mesh violates no rule.
 #pragma once
 
 #include <string>
@@ -7,8 +7,8 @@
 
 namespace podm::test {
 
-/// Which of R1 to R5 asks for what of which cell; empty if none does. Looks at all vertices for those that R1
-/// may have missed.
+/// Returns the rule of R1 to R5 that a cell violates, and the cell, or an empty string. Looks for vertices
+/// that cover a sample of R1 among all vertices.
 inline std::string broken_rule(Mesh& mesh, const Isosurface& isosurface, const Parameters& parameters) {
   const Rules rules(mesh, isosurface, parameters);
   for (CellId c = 0; c < mesh.cell_bound(); ++c) {

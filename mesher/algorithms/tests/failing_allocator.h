@@ -1,4 +1,4 @@
-// The allocator of a test program, which runs dry once, at the moment a test chooses.
+// The allocator of a test program. It fails once, at the moment that a test chooses.
 #pragma once
 
 #include <atomic>
@@ -6,7 +6,7 @@
 
 namespace podm::test {
 
-/// Allocations until one fails; negative: none will.
+/// The number of allocations until one fails; negative: none fails.
 extern std::atomic<std::int64_t> allocations_left;
 
 }  // namespace podm::test

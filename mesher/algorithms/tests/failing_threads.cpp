@@ -9,7 +9,7 @@ namespace podm::test {
 std::atomic<int> threads_left = -1;
 }  // namespace podm::test
 
-// Stands before the C library's.
+// Replaces the function of the C library.
 extern "C" int pthread_create(pthread_t* thread, const pthread_attr_t* attributes, void* (*run)(void*),
                               void* argument) noexcept {
   auto& left = podm::test::threads_left;

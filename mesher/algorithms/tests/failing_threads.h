@@ -1,11 +1,11 @@
-// Threads of a test program, of which one cannot be started, at the moment a test chooses.
+// Threads of a test program. One cannot be started, at the moment that a test chooses.
 #pragma once
 
 #include <atomic>
 
 namespace podm::test {
 
-/// Threads that start until one does not; negative: all do.
+/// The number of threads that start until one does not; negative: all start.
 extern std::atomic<int> threads_left;
 
 }  // namespace podm::test

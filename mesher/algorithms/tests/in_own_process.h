@@ -1,4 +1,4 @@
-// A schedule in a process of its own: a broken triangulation may crash it, or never let it end.
+// Runs a schedule in a process of its own: a broken triangulation may crash it or keep it from ending.
 #pragma once
 
 #include <sys/resource.h>
@@ -10,7 +10,8 @@
 
 namespace podm::test {
 
-/// Whether has_fault() is true or crashes. What does not end within so many seconds is not counted.
+/// True if has_fault() returns true or crashes. A process that does not end within `most_seconds` does not
+/// count.
 template <class HasFault>
 bool fails_in_own_process(unsigned most_seconds, const HasFault& has_fault) {
   const pid_t child = fork();

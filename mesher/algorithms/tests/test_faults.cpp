@@ -1,5 +1,5 @@
-// Memory that ends, and limits that strike, at any moment of a run with any executor: all workers stop
-// between operations, and the mesh is a valid triangulation.
+// Memory that runs out, and limits that are reached, at any moment of a run with any executor: all workers
+// stop between operations, and the mesh is a valid triangulation.
 #include <gtest/gtest.h>
 #include <unistd.h>
 
@@ -39,7 +39,7 @@ Topology machine_of_nodes(int num_nodes) {
   return Topology::synthetic("numa:" + std::to_string(num_nodes) + " core:3 pu:1");
 }
 
-// Workers node after node, bound to nothing.
+// Workers node after node, not bound.
 std::vector<Place> places_in(const Topology& machine, int num_workers) {
   std::vector<Place> places = place_workers(machine, {}, num_workers, true);
   for (Place& place : places) place.processor.reset();
@@ -91,8 +91,8 @@ class Faults : public testing::TestWithParam<Setup> {
   std::vector<Place> places_ = places_in(machine_, GetParam().num_workers);
 };
 
-// Each of the first, which are all of a run of podm on one thread; of the thousands of leaf by leaf some, at
-// distances that grow.
+// Fails each of the first allocations, which are all of a run of podm on one thread. A run leaf by leaf has
+// thousands; some fail, at growing distances.
 TEST_P(Faults, AllocationsThatFailLeaveAValidMesh) {
   constexpr std::int64_t kOneByOne = 150;
   int num_ended = 0, num_complete = 0;
@@ -167,7 +167,7 @@ TEST_P(Faults, StopRequestsAndLimitsLeaveAValidMesh) {
 
 class RelocationFaults : public testing::TestWithParam<Executor> {};
 
-// Each allocation of the move alone: of its lists, and of the threads or fibres of its steps.
+// Fails each allocation of the move alone: for its lists, and for the threads or fibres of its steps.
 TEST_P(RelocationFaults, AllocationsThatFailLeaveAValidMeshOrNone) {
   constexpr int kWorkers = 4;
   const LabelImage image = ball(16, 6);
@@ -185,7 +185,7 @@ TEST_P(RelocationFaults, AllocationsThatFailLeaveAValidMeshOrNone) {
                   .places = places_in(machine, kWorkers)};
   const Box clamp = grown(problem.object, 4);
   const Parameters parameters = parameters_for(problem, 1, clamp);
-  // The lower half goes to the second node, what the first worker made above it stays.
+  // The lower half goes to the second node. Cells that the first worker made above it stay.
   const auto worker_of = [&](const Point& p) { return p.z < 7.5 ? WorkerId{kWorkers - 1} : kNoWorker; };
   int num_unmoved = 0, num_moved = 0;
   bool has_failed = true;
@@ -213,7 +213,8 @@ TEST_P(RelocationFaults, AllocationsThatFailLeaveAValidMeshOrNone) {
   EXPECT_GT(num_moved, 0);
 }
 
-// Nodes whose masters run already end at once, instead of refining everything before anybody learns of it.
+// Nodes whose masters already run end at once. They do not refine everything before they learn of the
+// failure.
 TEST(Threads, ThatCannotBeStartedEndTheRun) {
   const LabelImage image = ball(32, 13);
   const Isosurface isosurface(image, 1);

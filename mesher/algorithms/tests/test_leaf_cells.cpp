@@ -34,8 +34,8 @@ class OneLeaf : public testing::Test {
   RefinementQueue queue_{octree_, 2};
 };
 
-// Another node lists a cell of a leaf between the moments when its number and its cells are taken: the cell
-// goes with the others, and the leaf is handed out once more, with none.
+// Another node lists a cell of a leaf after the leaf is popped and before its cells are taken: the cell goes
+// with the others, and the leaf is handed out once more, with no cells.
 TEST_F(OneLeaf, CellsThatComeLateAreTakenOnce) {
   cells_.add(entries({0, 1}), queue_, {});
   const auto leaf = pop(queue_, 0);
@@ -68,8 +68,8 @@ TEST_F(OneLeaf, WhatIsDeferredIsLeftOver) {
   EXPECT_EQ(left, (std::multiset<CellId>{1, 2}));
 }
 
-// The mesh of a ball, several slices of it, on leaves around a gap: the ball's middle and all but a part of
-// its surface. Cells have died in every slice.
+// The mesh of a ball, with several slices, on leaves around a gap that contains the ball's middle and all but
+// a part of its surface. Cells have died in every slice.
 class Distribution : public testing::Test {
  protected:
   Distribution() {
@@ -96,7 +96,7 @@ class Distribution : public testing::Test {
     return std::all_of(entries.begin(), entries.end(),
                        [&](const auto& entry) { return mesh_.stamp(entry.cell) == entry.stamp; });
   }
-  // Every living cell is in the leaf that has its centre, once, or in none, by ascending id.
+  // Every living cell is once in the leaf that contains its center, or in none, by ascending id.
   void expect_all_by_id(LeafCells& cells) const {
     for (LeafId leaf = 0; leaf < octree_.num_leaves(); ++leaf) {
       const LeafCells::Entries taken = cells.take(leaf);
@@ -190,7 +190,7 @@ TEST_F(Distribution, TellsTheQueueNothingWhenTheRunIsOver) {
   EXPECT_EQ(RefinementQueueState(queue).counts().pending, 0u);
 }
 
-// Refined leaves hand cells over to a leaf that still has those that were distributed.
+// Refined leaves hand cells over to a leaf that still has its distributed cells.
 TEST_F(Distribution, CellsAddedComeAfterThoseDistributedAsTheyWereAdded) {
   LeafCells cells(mesh_, octree_);
   RefinementQueue queue(octree_, 2);
@@ -209,7 +209,7 @@ TEST_F(Distribution, CellsAddedComeAfterThoseDistributedAsTheyWereAdded) {
   EXPECT_EQ(ids(cells.take(leaf)), expected);
 }
 
-// As many nodes as there are threads end leaves at the same time, whose cells belong to all leaves.
+// As many nodes as there are threads end leaves at the same time. The cells belong to all leaves.
 TEST_F(Distribution, CellsThatNodesAddAtTheSameTimeAreTakenOnce) {
   constexpr std::size_t kNodes = 8;
   LeafCells cells(mesh_, octree_);

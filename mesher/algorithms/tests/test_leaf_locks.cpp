@@ -1,4 +1,4 @@
-// Locks that keep to the region of a leaf: what they give, and what they hold.
+// Locks that are confined to the region of a leaf: the vertices that they lock, and those that they hold.
 #include "algorithms/leaf_locks.h"
 
 #include <gtest/gtest.h>

@@ -1,4 +1,4 @@
-// Leaves are as large as nodes find enough of them, whatever the shape of the box.
+// Leaves are as large as possible while nodes find enough of them, for any shape of the box.
 #include "algorithms/leaf_size.h"
 
 #include <gtest/gtest.h>
@@ -12,9 +12,9 @@ namespace podm::test {
 namespace {
 
 constexpr double kLeavesPerNode = 64;
-constexpr double kLongerSide = 1.27;  // somewhat more than a step in which sides are tried
+constexpr double kLongerSide = 1.27;  // slightly more than a step between the sides that are tried
 
-// Objects that fill their box, with bounds that allow leaves far smaller than are wanted.
+// Objects that fill their box, with bounds that allow leaves far smaller than needed.
 class LeafSizeIn : public testing::TestWithParam<std::array<int, 3>> {};
 
 TEST_P(LeafSizeIn, NextLongerSideMakesTooFewLeaves) {

@@ -12,7 +12,8 @@
 namespace podm::test {
 namespace {
 
-// Answers of a made-up system: all of image and transform is on the last node, the rest by address, in turn.
+// Answers of a made-up system: the whole image and transform are on the last node, all other pages on the
+// nodes in turn, by address.
 PageQuery fake_pages(const RunOn& run) {
   const auto is_in = [](const void* address, auto array) {
     return address >= array.data() && address < array.data() + array.size();
@@ -65,7 +66,8 @@ TEST(Pages, AreSampledOfTheWholeStoreAtTheEndOfEachPhase) {
   }
 }
 
-// A store whose pages lie where the pools say, then all one node further; a refusal; and memory of nobody.
+// A store whose pages are where the pools claim, then all one node further; a refusal; and memory without
+// owner.
 TEST(Pages, AreJudgedAgainstTheirOwnersAndAccessors) {
   const Topology machine = four_nodes();
   RunOn run(machine, 16);

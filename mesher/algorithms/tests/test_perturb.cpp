@@ -1,5 +1,5 @@
-// R7: better angles, told as they are, the same from one thread each time, and what is left of a run that
-// ends in it. That the other rules stay silent and that the invariants hold is in test_refinement.cpp.
+// R7: better angles, reported correctly, the same from one thread each time, and the result of a run that
+// ends in R7. test_refinement.cpp tests that no other rule applies and that the invariants hold.
 #include <gtest/gtest.h>
 
 #include <optional>
@@ -19,7 +19,7 @@ class Perturb : public testing::Test {
     problem_.dihedral_bounds = bounds;
     return podm(problem_, {.coordination = {.num_workers = num_workers}}, stop_);
   }
-  // Cells inside out of bounds, by another look at all of them.
+  // Counts the cells inside with angles out of bounds, by an independent pass over all cells.
   Perturbed::Cells poor(const Mesh& mesh, const DihedralBounds& bounds) const {
     Perturbed::Cells cells;
     for (CellId c = 0; c < mesh.cell_bound(); ++c) {

@@ -1,4 +1,4 @@
-// The machine that a run's workers stand for: this one, or one that a file describes.
+// The machine of a run's workers: this one, or one that a file describes.
 #include "algorithms/placement_of_team.h"
 
 #include <gmock/gmock.h>

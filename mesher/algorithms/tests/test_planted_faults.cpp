@@ -1,5 +1,5 @@
-// The lock contract notices an operation that takes a lock too few. Only builds with
-// PODM_CHECK_LOCKS have it.
+// The lock contract detects an operation that takes one lock too few. Only builds with PODM_CHECK_LOCKS have
+// the contract.
 #include <gtest/gtest.h>
 
 #include "algorithms/podm.h"
@@ -17,7 +17,7 @@ class PlantedFaultDeathTest : public testing::Test {
     StopControl stop({}, {}, [](std::uint64_t) {});
     podm(problem_, {.executor = Executor::kVirtual, .coordination = workers_}, stop);
   }
-  // Two workers a leaf. One worker makes the initial mesh, and locks nothing.
+  // Two workers per leaf. One worker makes the initial mesh and takes no locks.
   void pdr_podm_with(LocksTaken locks) {
     plant_fault(locks);
     StopControl stop({}, {}, [](std::uint64_t) {});

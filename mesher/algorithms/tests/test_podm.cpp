@@ -1,5 +1,5 @@
-// PODM's loop on a group whose master calls it again and again, as for one leaf after the other, now and then
-// with no cells at all: other nodes may have taken a leaf's cells with its last ones.
+// PODM's loop on a group whose master calls it repeatedly, like leaf after leaf, sometimes without any cells:
+// other nodes may have taken a leaf's cells with its last ones.
 #include <gtest/gtest.h>
 
 #include "algorithms/podm.h"

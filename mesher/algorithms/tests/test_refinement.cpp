@@ -1,5 +1,5 @@
-// The refinement on the store: Delaunay, the invariants behind termination, and no cell left that breaks a
-// rule.
+// Refinement on the store: the mesh is Delaunay, the invariants behind termination hold, and no cell is left
+// that violates a rule.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -24,7 +24,7 @@ struct Method {
   int num_workers, num_nodes;
   Contention contention = Contention::kLocal;
   Executor executor = Executor::kThreads;
-  bool is_perturbed = false;  // R7 comes after the others
+  bool is_perturbed = false;  // R7 runs after the other rules
 
   Refinement operator()(const Problem& problem, StopControl& stop) const {
     const Team team{.executor = executor,
@@ -102,7 +102,8 @@ TEST_P(Refined, LeavesNoCellThatBreaksARule) {
 
 TEST_P(Refined, NoFreeVertexStaysNearTheIsosurfaceVertices) {
   const Mesh& mesh = *refinement_.mesh;
-  // I2 in its global form: R6 and the rules together keep free vertices from every isosurface vertex.
+  // I2 in its global form: R6 and the other rules together keep free vertices away from every isosurface
+  // vertex.
   const double required = kRadiusEdgeBound * least_sample_distance(mesh, spacing()) * (1 - 1e-6);
   for (VertexId v = 0; v < mesh.vertex_bound(); ++v) {
     if (mesh.vertex(v).kind != VertexKind::kIsosurface) continue;

@@ -1,4 +1,4 @@
-// Every count is summed; accesses by kind and distance, of runs on made-up machines.
+// Every count is summed. Accesses are counted by kind and distance, in runs on made-up machines.
 #include "algorithms/report_on_workers.h"
 
 #include <gtest/gtest.h>
@@ -46,7 +46,7 @@ TEST(Accesses, OfEveryKindAreCountedByDistance) {
     }
     const HopsByKind& hops = refinement.counters.hops;
     EXPECT_GE(total(hops.mesh_reads), refinement.counters.conflict_tests);
-    // A star's cells are made, and every facet but those of the box is glued.
+    // The cells of a star are made, and every facet except those of the box is glued.
     EXPECT_GE(total(hops.mesh_writes), refinement.counters.cells_created);
     EXPECT_GE(total(hops.transform_reads), refinement.counters.classified_cells);
   }
@@ -62,7 +62,7 @@ TEST(Accesses, DoNotDependOnWhereWorkersStandButTheirDistancesDo) {
         << "more is near on fewer nodes";
     EXPECT_EQ(on_ring.counters.hops.*kind, again.counters.hops.*kind) << "the same for the same seed";
     if (kind == &HopsByKind::mesh_writes)
-      continue;  // slots of other nodes' cells are emptied, own ones refilled
+      continue;  // slots of other nodes' cells are emptied, own slots are refilled
     EXPECT_EQ(total(on_ring.counters.hops.*kind), total(on_pair.counters.hops.*kind));
   }
   EXPECT_GT(total(on_ring.counters.hops.mesh_writes), total(on_pair.counters.hops.mesh_writes));
@@ -74,7 +74,7 @@ TEST(Accesses, AreNotCountedOnOneNode) {
   for (const auto kind : kKinds) EXPECT_TRUE((refinement.counters.hops.*kind).empty());
 }
 
-// Vertices in their order: what the run did, to the bit.
+// The vertices in order: the result of the run, to the bit.
 std::vector<Point> points_of(const Mesh& mesh) {
   std::vector<Point> points;
   for (VertexId v = 0; v < mesh.vertex_bound(); ++v) points.push_back(mesh.point(v));

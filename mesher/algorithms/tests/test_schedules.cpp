@@ -1,6 +1,6 @@
-// Seeded schedules of workers that go on in the middle of each other's operations (delaunay/step.h): all end
-// in a right mesh, but not with a fault planted in the lock protocol. $PODM_SCHEDULES: how many of each;
-// $PODM_SCHEDULE: the seed of a single sound one.
+// Seeded schedules of workers that continue in the middle of each other's operations (delaunay/step.h). All
+// end in a correct mesh, but not with a fault planted in the lock protocol. $PODM_SCHEDULES: the number of
+// each kind; $PODM_SCHEDULE: the seed of a single sound schedule.
 #include <gtest/gtest.h>
 
 #include <unistd.h>
@@ -31,10 +31,10 @@
 namespace podm::test {
 namespace {
 
-constexpr unsigned kMostSeconds = 20;  // a schedule may take them; most take some hundredths
+constexpr unsigned kMostSeconds = 20;  // limit of a schedule; most take some hundredths
 
 constexpr int kSound = 100, kMostToFind = 10000;
-// Their meshes have a vertex of R4 nearer than sqrt(2 + sqrt(3)) s, as rules.h allows.
+// Meshes of these seeds have a vertex of R4 nearer than sqrt(2 + sqrt(3)) s, as rules.h allows.
 constexpr std::array kWithNearVertices{6276, 7193, 9434};
 
 bool counts_all() { return std::getenv("PODM_SCHEDULES") != nullptr; }
@@ -67,7 +67,7 @@ struct Scene {
   SizeField sizes{std::vector<double>(image.labels.size(), radius_mm)};
 };
 
-// Some hundred operations each.
+// Scenes with some hundred operations each.
 const std::vector<std::unique_ptr<Scene>>& scenes() {
   static const auto all = [] {
     std::vector<std::unique_ptr<Scene>> made;
@@ -86,7 +86,7 @@ const std::vector<std::unique_ptr<Scene>>& scenes() {
   return all;
 }
 
-// PODM whose workers have the cells of a coarse mesh dealt out to them, so that they meet from the start.
+// PODM that deals the cells of a coarse mesh out to its workers, so that they meet from the start.
 Refinement crowded_podm(const Problem& problem, const Team& team, StopControl& stop) {
   const Box clamp = clamp_box(problem.object, problem.delta_mm);
   Construction construction(problem, clamp, team, stop);
@@ -151,7 +151,7 @@ class Schedules : public testing::Test {
     return {{}, {}, [](std::uint64_t) {}};
   }
 
-  // What is wrong with the mesh that a schedule makes; nothing if it is right.
+  // Returns the fault of the mesh that a schedule makes, or nothing if the mesh is correct.
   std::string fault_of(int seed) const try {
     const Scene& scene = scene_of(seed);
     OperationLogWriter log(log_path_);
@@ -173,7 +173,7 @@ class Schedules : public testing::Test {
     return error.what();
   }
 
-  // Whether the planted fault shows in a schedule.
+  // True if the planted fault shows in a schedule.
   bool is_found_in(int seed) const {
     return fails_in_own_process(kMostSeconds, [&] { return !fault_of(seed).empty(); });
   }
@@ -197,8 +197,7 @@ class Schedules : public testing::Test {
     return true;
   }
 
-  // It lies in memory where there is such a folder: a log is written through to the disk, which may take
-  // seconds.
+  // In memory if there is such a folder: a log is written through to the disk, which may take seconds.
   std::filesystem::path folder_ =
       std::filesystem::path(std::filesystem::exists("/dev/shm") ? "/dev/shm" : testing::TempDir()) /
       ("podm_schedules_" + std::to_string(getpid()));

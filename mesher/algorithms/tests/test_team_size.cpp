@@ -1,4 +1,4 @@
-// What is decided of a team that options leave open, and what they ask for in vain.
+// The team that is chosen where options leave it open, and options that are refused.
 #include "algorithms/team_size.h"
 
 #include <gtest/gtest.h>

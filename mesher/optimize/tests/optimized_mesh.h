@@ -1,4 +1,4 @@
-// A small mesh to optimise, and what of it optimisation must keep.
+// A small mesh to optimise, and the properties that optimisation must keep.
 #pragma once
 
 #include <array>
@@ -23,7 +23,7 @@ inline CellPoints points_of(const Mesh& mesh, CellId c) {
 
 inline const DihedralBounds kBounds{8, 165};
 
-/// Refined by one worker; all cells have their labels.
+/// The mesh is refined by one worker; all its cells have labels.
 class MeshToOptimize {
  public:
   MeshToOptimize(const LabelImage& image, double radius_mm, double delta_mm)
@@ -64,7 +64,7 @@ class MeshToOptimize {
     for_each_cell([&](CellId c) { count += bounds.quality(points_of(*mesh_, c).dihedral()) < 1; });
     return count;
   }
-  /// Cells that break the bound on ratio or size, in rounded arithmetic.
+  /// The number of cells that violate the bound on ratio or size, in rounded arithmetic.
   std::uint64_t num_over_bounds() const {
     std::uint64_t count = 0;
     for_each_cell([&](CellId c) {
@@ -85,7 +85,7 @@ class MeshToOptimize {
         [&](CellId c) { volumes[mesh_->label(c)] += points_of(*mesh_, c).dihedral().determinant / 6; });
     return volumes;
   }
-  /// Facets between labels by their vertices, the larger label before the smaller.
+  /// The facets between labels by their vertices, with the larger label before the smaller.
   std::map<std::array<VertexId, 3>, std::array<LabelIndex, 2>> interface_facets() const {
     std::map<std::array<VertexId, 3>, std::array<LabelIndex, 2>> facets;
     for_each_cell([&](CellId c) {

@@ -1,5 +1,5 @@
-// Cavities filled by search: what is found fills the cavity and is good enough, and nothing is found where
-// there is nothing.
+// Cavities filled by search: cells that are found fill the cavity and are good enough, and none are found
+// where there are none.
 #include "optimize/cavity_search.h"
 
 #include <gtest/gtest.h>
@@ -18,7 +18,7 @@ double six_volumes(const std::vector<Point>& p, const LocalCell& c) {
   return dot(cross(p[c[1]] - p[c[0]], p[c[2]] - p[c[0]]), p[c[3]] - p[c[0]]);
 }
 
-// The facets that cells have on one side only, as seen from inside.
+// Returns the facets that the cells have on one side only, as seen from inside.
 std::vector<LocalFacet> boundary_of(const std::vector<LocalCell>& cells) {
   std::map<std::array<Local, 3>, std::vector<LocalFacet>> by_vertices;
   for (const LocalCell& cell : cells) {
@@ -34,7 +34,7 @@ std::vector<LocalFacet> boundary_of(const std::vector<LocalCell>& cells) {
   return boundary;
 }
 
-// Rotated so that it begins with the least.
+// Rotates each facet so that it begins with its least vertex.
 std::vector<LocalFacet> normalized(std::vector<LocalFacet> facets) {
   for (LocalFacet& f : facets) std::rotate(f.begin(), std::min_element(f.begin(), f.end()), f.end());
   std::sort(facets.begin(), facets.end());
@@ -62,7 +62,7 @@ TEST(CavitySearch, FindsTheBetterDiagonalOfAnOctahedron) {
   expect_filled(search, points, boundary, before / 2);
 }
 
-// Schoenhardt's polyhedron, a twisted prism: no tetrahedra without another vertex fill it.
+// Schoenhardt's polyhedron, a twisted prism: tetrahedra cannot fill it without an additional vertex.
 TEST(CavitySearch, FillsSchoenhardtsPolyhedronByAnAddedVertexAlone) {
   std::vector<Point> points;
   for (const double z : {0.0, 1.0}) {
@@ -74,7 +74,7 @@ TEST(CavitySearch, FillsSchoenhardtsPolyhedronByAnAddedVertexAlone) {
   std::vector<LocalFacet> boundary{{0, 1, 2}, {3, 5, 4}};
   for (Local i = 0; i < 3; ++i) {
     const auto j = static_cast<Local>((i + 1) % 3);
-    // The diagonals are those that the twist bends inwards.
+    // The twist bends these diagonals inwards.
     boundary.push_back({i, static_cast<Local>(j + 3), j});
     boundary.push_back({i, static_cast<Local>(i + 3), static_cast<Local>(j + 3)});
   }

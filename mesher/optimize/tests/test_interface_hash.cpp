@@ -1,4 +1,4 @@
-// The hash is one of the facets between labels alone.
+// The hash depends only on the facets between labels.
 #include "optimize/interface_hash.h"
 
 #include <gtest/gtest.h>

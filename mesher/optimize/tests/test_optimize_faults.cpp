@@ -1,4 +1,4 @@
-// Memory that ends at any moment of an optimisation leaves a sound mesh that is no worse.
+// Memory that runs out at any moment of an optimisation leaves a valid mesh that is no worse.
 #include <gtest/gtest.h>
 
 #include "algorithms/tests/failing_allocator.h"

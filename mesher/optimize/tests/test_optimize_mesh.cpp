@@ -1,5 +1,5 @@
-// An optimised mesh keeps what it had, and its cells are better: by any number of workers, and wherever they
-// stop.
+// An optimised mesh keeps its properties and its cells are better, for any number of workers, and wherever
+// they stop.
 #include "optimize/optimize_mesh.h"
 
 #include <gtest/gtest.h>

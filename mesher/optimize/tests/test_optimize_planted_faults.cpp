@@ -1,5 +1,5 @@
-// The lock contract notices an optimisation that takes a lock too few. Only builds with PODM_CHECK_LOCKS have
-// it.
+// The lock contract detects an optimisation that takes one lock too few. Only builds with PODM_CHECK_LOCKS
+// have the contract.
 #include <gtest/gtest.h>
 
 #include "delaunay/planted_fault.h"

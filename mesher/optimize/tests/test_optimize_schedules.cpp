@@ -1,6 +1,6 @@
-// Seeded schedules of optimising workers that go on in the middle of each other's attempts (delaunay/step.h):
-// all end in a sound mesh, but not with a fault planted in the lock protocol. $PODM_SCHEDULES: how many of
-// each.
+// Seeded schedules of optimising workers that continue in the middle of each other's attempts
+// (delaunay/step.h). All end in a valid mesh, but not with a fault planted in the lock protocol.
+// $PODM_SCHEDULES: the number of each kind.
 #include <gtest/gtest.h>
 
 #include <cstdlib>
@@ -14,7 +14,7 @@
 namespace podm::test {
 namespace {
 
-constexpr unsigned kMostSeconds = 20;  // a schedule may take them
+constexpr unsigned kMostSeconds = 20;  // limit of a schedule
 constexpr int kSound = 60, kMostToFind = 2000;
 
 int num_schedules(int otherwise) {
@@ -26,14 +26,14 @@ class OptimizeSchedules : public testing::Test {
  protected:
   ~OptimizeSchedules() override { plant_fault({}); }
 
-  // Bad cells lie side by side in so small a mesh, so that workers meet.
+  // Bad cells are side by side in such a small mesh, so workers meet.
   static MeshToOptimize mesh_of(int seed) {
     if (seed % 2 == 0) return {ball(12, 5), 1.8, 1};
     return {make_image({9, 9, 9}, {1, 1, 1}, 3, [](int i, int j, int) { return i < 4 ? 1 : 2 + j / 5; }), 1.8,
             1};
   }
 
-  // What is wrong with the mesh that a schedule leaves; nothing if it is right.
+  // Returns the fault of the mesh that a schedule leaves, or nothing if the mesh is correct.
   static std::string fault_of(int seed) try {
     MeshToOptimize optimized = mesh_of(seed);
     const auto facets = optimized.interface_facets();
@@ -54,7 +54,7 @@ class OptimizeSchedules : public testing::Test {
     return error.what();
   }
 
-  // Whether the planted fault shows in a schedule.
+  // True if the planted fault shows in a schedule.
   static bool is_found_in(int seed) {
     return fails_in_own_process(kMostSeconds, [&] { return !fault_of(seed).empty(); });
   }

@@ -33,7 +33,7 @@ TEST_P(HomesOfSeed, HaveEqualSharesOfTheWork) {
   for (const double amount : amounts) EXPECT_NEAR(amount * num_homes_ / total, 1, 0.1);
 }
 
-// What lies between two points of a block lies in it.
+// A point in the bounding box of points of one block lies in that block.
 TEST_P(HomesOfSeed, AreBlocks) {
   const Homes homes(some_work(200 * num_homes_), num_homes_);
   std::vector<std::pair<Point, Point>> corners(num_homes_, {{1e9, 1e9, 1e9}, {-1e9, -1e9, -1e9}});

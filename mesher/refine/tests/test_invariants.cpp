@@ -1,4 +1,4 @@
-// The bounds of the invariants: what the rules may do holds them, a little more does not.
+// Bounds of the invariants: an operation that the rules allow keeps them, one slightly beyond does not.
 #include "refine/invariants.h"
 
 #include <gtest/gtest.h>
@@ -18,7 +18,7 @@ namespace {
 constexpr double kSlack = 1e-6;
 constexpr double kSpacing = 1;
 
-// A cell deep in a ball of one label: vertices on a sphere of the given radius, and the shortest edge 1.
+// A cell deep in a ball of one label, with vertices on a sphere of the given radius and a shortest edge of 1.
 class NeedleInABall {
  public:
   explicit NeedleInABall(double radius) {
@@ -53,7 +53,7 @@ class NeedleInABall {
                          .spacing_mm = kSpacing};
 };
 
-// Ratios between the published bound and sqrt(2 + sqrt(3)) are tried, too.
+// Includes ratios between the published bound and sqrt(2 + sqrt(3)).
 TEST(Invariants, HoldForTheNearestVertexThatR4MayInsert) {
   for (const double ratio : {1.93, 1.9301, 1.9305, 1.931, 1.9318, 1.94}) {
     NeedleInABall scene(ratio);
@@ -86,7 +86,7 @@ TEST(Invariants, HoldForASampleAsNearAsR3MayPutIt) {
   }
 }
 
-// Samples nearer than s bring what R4 inserts nearer, in proportion.
+// Samples nearer than s let R4 insert vertices nearer, in proportion.
 TEST(Invariants, HoldForR4BesideANearSample) {
   for (const double ratio : {1.93, 1.93 * (1 - 1e-5)}) {
     NeedleInABall scene(ratio);
@@ -96,7 +96,7 @@ TEST(Invariants, HoldForR4BesideANearSample) {
   }
 }
 
-// The least of triangles with two sides of at least `ratio` and a third of at least 1.
+// The least circumradius of triangles with two sides of at least `ratio` and a third of at least 1.
 double least_circumradius(double ratio) {
   constexpr int kSteps = 60;
   double least = std::numeric_limits<double>::infinity();

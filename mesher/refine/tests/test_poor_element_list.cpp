@@ -1,4 +1,4 @@
-// The list against a plain vector of its entries, and the memory that it gives back.
+// Compares the list with a plain vector of its entries, and measures the memory that it gives back.
 #include "refine/poor_element_list.h"
 
 #include <gtest/gtest.h>
@@ -35,7 +35,7 @@ class PoorElements : public testing::Test {
       ASSERT_EQ(list_.upcoming(reference_.size() + 5).cell, reference_.front().cell);
     }
   }
-  // What take_oldest() is to do with the reference.
+  // Does to the reference what take_oldest() is to do to the list.
   std::vector<Entry> take_oldest(std::size_t max) {
     std::vector<Entry> taken;
     std::size_t scanned = 0;

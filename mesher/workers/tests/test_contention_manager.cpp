@@ -9,7 +9,7 @@ namespace {
 
 enum class State { kRunning, kWaiting, kBegging };
 
-// Random conflicts, successes and workers that run out of work, one after the other.
+// Random conflicts, random successes, and workers that run out of work, one event after the other.
 class Crowd {
  public:
   Crowd(Contention contention, int num_workers, std::uint64_t seed)

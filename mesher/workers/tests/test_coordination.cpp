@@ -1,5 +1,5 @@
-// Workers of all kinds of coordination, who use up cells that are numbers: every cell is used once, and the
-// master learns that none is left, whoever met, waited for, begged from or sent cells home to whom.
+// Workers under every kind of coordination use up cells that are mere numbers. Every cell is used once, and
+// the master learns when no cell is left, for any order of conflicts, waits, gifts and cells sent home.
 #include <gtest/gtest.h>
 
 #include <atomic>
@@ -15,7 +15,8 @@ namespace {
 
 constexpr int kNumWorkers = 12, kNumHomes = 4;
 
-// One that meets others at random, and whose cells make more while there are any to be made.
+// A worker that meets other workers at random. Using its cells makes more cells while any are left to be
+// made.
 class Player {
  public:
   Player(WorkerId self, std::atomic<int>& num_left_to_make, std::atomic<int>& num_used)
@@ -45,11 +46,11 @@ class Player {
     return Outcome::kCommitted;
   }
   void release() {}
-  // Cells that are to be refined elsewhere.
+  // Cells that are to be refined at another home.
   Coordination::Entries take_away() { return std::exchange(away_, {}); }
   unsigned any_home() { return random_() % kNumHomes; }
   WorkerId conflicting_worker() const { return holder_; }
-  // They stay 0: virtual time charges all attempts alike.
+  // All counts stay 0: virtual time charges all attempts alike.
   const Counters& counters() const { return counters_; }
   const std::optional<AccessTally>& accesses() const { return accesses_; }
   std::int64_t net_cells() const { return 0; }
@@ -65,7 +66,7 @@ class Player {
 
 class Coordinated : public testing::TestWithParam<std::tuple<Contention, bool, bool>> {
  protected:
-  // Players do what PODM's loop does, round after round of the master, as for one leaf after the other.
+  // The players do what PODM's loop does, in one round of the master after the other, like leaf after leaf.
   template <class Time>
   void play(Time& time) {
     constexpr int kRounds = 15, kCells = 3000;
@@ -142,8 +143,8 @@ INSTANTIATE_TEST_SUITE_P(Managers, Coordinated,
                                   (std::get<2>(of.param) ? "AtHome" : "");
                          });
 
-// It finds nothing to share, so that a beggar is taken off its list and put back, while another sends cells
-// home.
+// Finds nothing to share, so that a beggar is taken off its list and put back while another worker sends
+// cells home.
 struct Dry {
   Coordination& group;
   std::size_t num_listed() const { return 64; }

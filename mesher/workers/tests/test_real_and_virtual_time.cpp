@@ -1,4 +1,4 @@
-// Real and virtual time: who works, blocks and is resumed, and how runs end.
+// Real and virtual time: how workers run, block and are resumed, and how runs end.
 #include <gtest/gtest.h>
 
 #include <array>
@@ -37,7 +37,7 @@ TYPED_TEST(Times, LetEveryWorkerWorkOnce) {
   for (const auto& of_worker : calls) EXPECT_EQ(of_worker, 1);
 }
 
-// Who works in the second run sees what all did in the first, and time goes on.
+// Each worker of the second run sees what all workers did in the first, and time goes on.
 TYPED_TEST(Times, RunAgain) {
   auto time = TypeParam::make(this->stop_);
   std::array<std::atomic<int>, kThree> calls{};
@@ -56,7 +56,7 @@ TYPED_TEST(Times, RunAgain) {
   for (const auto& of_worker : calls) EXPECT_EQ(of_worker, 2);
 }
 
-// Worker 0 is resumed before it blocks, or while it does; the others when it has been.
+// Worker 0 is resumed before or while it blocks. Each other worker that blocks is resumed by the next one.
 TYPED_TEST(Times, ResumeWhoBlocks) {
   auto time = TypeParam::make(this->stop_);
   std::atomic<int> num_resumed = 0;
@@ -170,7 +170,7 @@ TEST(VirtualTime, LetsOneWorkerAtATimeIntoASection) {
   EXPECT_DOUBLE_EQ(time.spending().queueing_s, 1);
 }
 
-// A worker whose attempts fail, and what it holds meanwhile.
+// A worker whose attempts fail. Records if it holds its locks.
 struct Failing {
   WorkerId id() const { return 0; }
   Outcome attempt() {
@@ -211,7 +211,7 @@ TEST(VirtualTime, AFailingAttemptHoldsItsLocksButForAWhile) {
   EXPECT_EQ(time.spending().work_s, 0) << "what is rolled back is no work";
 }
 
-// The making of leaves asks for no reasons, and looks at this.
+// The construction of leaves checks over() and not reason().
 TEST(StopControl, IsOverAsSoonAsAStopIsRequested) {
   std::stop_source source;
   StopControl stop({}, source.get_token(), [](std::uint64_t) {});

@@ -1,4 +1,4 @@
-// What the memory of other nodes costs: latency by links, waiting at busy stations, lines that caches keep.
+// The cost of remote access: latency per link, waiting at busy stations, lines that caches keep.
 #include "workers/remote_memory.h"
 
 #include <gtest/gtest.h>
@@ -13,7 +13,7 @@ namespace {
 
 constexpr double kHop = 1e-6, kService = 1e-7;
 
-// Three nodes in a row: 0 - 1 - 2, each with its hub, of which the middle one's may be slow.
+// Three nodes in a row, 0 - 1 - 2, each with its hub. The hub of the middle node may be slow.
 MachineModel row_of_three(double miss_share, double service_s, double retries = 0) {
   MachineModel machine{.name = "row", .topology = Topology::synthetic("numa:3 core:4 pu:1")};
   machine.hop_latency_s = kHop;
@@ -56,7 +56,7 @@ TEST(RemoteMemory, OfWhatNobodyWritesIsFetchedWholly) {
       << "caches keep it";
 }
 
-// The second finds the first's accesses at the station, the third, later, none.
+// The second worker finds accesses of the first at the station. The third, later, finds none.
 TEST(RemoteMemory, StationsServeOneAccessAfterTheOther) {
   const MachineModel machine = row_of_three(1, kService);
   RemoteMemory memory(machine, {0, 0, 2});
@@ -65,8 +65,8 @@ TEST(RemoteMemory, StationsServeOneAccessAfterTheOther) {
   EXPECT_DOUBLE_EQ(memory.delay(2, tally_of(1, 20), 1).network_s, 0);
 }
 
-// Workers that each wait for their accesses get no more out of a station than it can do; with retries less,
-// and the less the more of them wait.
+// Workers that each wait for their accesses get no more from a station than its capacity. With retries they
+// get less, and the less, the more of them wait.
 double accesses_a_second(double retries, WorkerId num_workers) {
   const MachineModel machine = row_of_three(1, kService, retries);
   RemoteMemory memory(machine, std::vector<NodeIndex>(num_workers, 0));

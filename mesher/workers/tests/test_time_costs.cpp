@@ -1,4 +1,4 @@
-// The frozen model of virtual time: its hash, and that every constant is part of it.
+// The frozen model of virtual time: its hash, which depends on every constant.
 #include "runtime/time_costs.h"
 
 #include <gmock/gmock.h>

@@ -1,4 +1,4 @@
-// The machine on which tests of workers run: two sockets of two nodes of three workers.
+// The machine of the workers' tests: two sockets of two nodes of three workers.
 #pragma once
 
 #include "workers/begging_list.h"
