@@ -1,24 +1,26 @@
-// The nearest surface voxel of every voxel, by centers, in mm. It is exact, and is stored where the isosurface is near.
+// The nearest surface voxel of every voxel, by centers, in mm. It is exact, and is stored where the
+// isosurface is near.
 //
-// A *surface voxel* has a 6-neighbor of another label. Voxels outside the grid count as background. The grid is
-// cut into bricks of 4^3 voxels. A table has an entry of 8 bytes per brick:
-//   A near brick has a surface voxel in its surroundings (brick_features.h), which include the brick itself. The
-//     entry holds the position of the brick's words, and its label if it has no surface voxel.
-//   A far brick is any other brick. All its voxels have one label: if two differed, two adjacent voxels on the
-//     way between them would differ too. The entry holds that label and a lower bound of the distance, box to
-//     box, between the brick and all bricks with surface voxels.
+// A *surface voxel* has a 6-neighbor of another label. Voxels outside the grid count as background. The grid
+// is cut into bricks of 4^3 voxels. A table has an entry of 8 bytes per brick:
+//   A near brick has a surface voxel in its surroundings (brick_features.h), which include the brick itself.
+//     The entry holds the position of the brick's words, and its label if it has no surface voxel.
+//   A far brick is any other brick. All its voxels have one label: if two differed, two adjacent voxels on
+//     the way between them would differ too. The entry holds that label and a lower bound of the distance,
+//     box to box, between the brick and all bricks with surface voxels.
+//
 // A near brick has a 16-bit word per voxel: the offset to the voxel's feature, unless the feature is
 // Surroundings::reach_mm() or more away. A surface voxel is its own feature, therefore its word is free and
-// holds its label. After the words of a brick with surface voxels come their mask and their neighborhoods. One
-// read of the table and one of a line of words and of neighborhoods therefore give the label and the shape of
-// the isosurface.
+// holds its label. After the words of a brick with surface voxels come their mask and their neighborhoods.
+// One read of the table and one of a line of words and of neighborhoods therefore give the label and the
+// shape of the isosurface.
 //
-// The bound is found as follows. A box of voxels contains all points whose nearest voxel is one of its voxels,
-// and all isosurface points within half a voxel of its surface voxels. The distance between boxes is therefore a
-// lower bound of the distance between such points. Along an axis, the boxes of bricks n > 0 apart have a gap of
-// n - 1 bricks. The first brick is also n - 1 apart from the nearest of the three bricks around the second. The
-// distance between boxes is therefore the distance to the nearest of all bricks that have surface voxels or
-// touch a brick that has (brick_distances.h).
+// The bound is found as follows. A box of voxels contains all points whose nearest voxel is one of its
+// voxels, and all isosurface points within half a voxel of its surface voxels. The distance between boxes is
+// therefore a lower bound of the distance between such points. Along an axis, the boxes of bricks n > 0 apart
+// have a gap of n - 1 bricks. The first brick is also n - 1 apart from the nearest of the three bricks around
+// the second. The distance between boxes is therefore the distance to the nearest of all bricks that have
+// surface voxels or touch a brick that has (brick_distances.h).
 #pragma once
 
 #include <bit>

@@ -1,22 +1,23 @@
-// The isosurface oracle: the labels of points, and the nearest points of the object's boundary and interfaces.
+// The isosurface oracle: the labels of points, and the nearest points of the object's boundary and
+// interfaces.
 //
 // The label at a point is the one with the greatest trilinear weight among the eight voxels around it. A tie
 // goes to the smaller label index. Outside the grid everything is background. The isosurface is the set of
 // points where that label changes. Points are in mm, in the working frame.
 //
 // Lemma. An isosurface point s lies within half a voxel, along every axis, of a surface voxel's center
-// (feature_transform.h). Proof: let c be the corner nearest to s of the block that holds s. Let
-// s = c + (x,y,z) in units of voxels, with 0 <= x,y,z <= 1/2. Suppose that c is not a surface voxel. Then its
-// three neighbors in the block have the same label as c. The weight of these four corners is
-// (1-y)(1-z) + (1-x)(y(1-z) + z(1-y)). It does not grow with x, y or z. It is therefore at least its value 1/2
-// at (1/2,1/2,1/2), and exceeds 1/2 elsewhere, where the label of c wins. So s is the block's center, which is
+// (feature_transform.h). Proof: let c be the corner nearest to s of the block that holds s. Let s = c +
+// (x,y,z) in units of voxels, with 0 <= x,y,z <= 1/2. Suppose that c is not a surface voxel. Then its three
+// neighbors in the block have the same label as c. The weight of these four corners is (1-y)(1-z) +
+// (1-x)(y(1-z) + z(1-y)). It does not grow with x, y or z. It is therefore at least its value 1/2 at
+// (1/2,1/2,1/2), and exceeds 1/2 elsewhere, where the label of c wins. So s is the block's center, which is
 // equally near to all corners, and some corner is a surface voxel.
 //
-// Where interfaces are smoothed, each voxel has a weight of its own (voxel_strengths.h). A block with one label
-// still has that label throughout, as all other weights are 0. An isosurface point therefore lies in a block
-// with an edge between two labels. The ends of the edge are surface voxels. The point is within *one* voxel,
-// along every axis, of their centers. Half a voxel beyond the grid, background still ties, as voxels there have
-// the weights of their neighbors inside.
+// Where interfaces are smoothed, each voxel has a weight of its own (voxel_strengths.h). A block with one
+// label still has that label throughout, as all other weights are 0. An isosurface point therefore lies in a
+// block with an edge between two labels. The ends of the edge are surface voxels. The point is within *one*
+// voxel, along every axis, of their centers. Half a voxel beyond the grid, background still ties, as voxels
+// there have the weights of their neighbors inside.
 #pragma once
 
 #include <algorithm>

@@ -3,9 +3,9 @@
 //
 // The weight of a label at a point is the trilinear interpolation of the weights of its voxels, with 0 at all
 // other voxels. Between two neighbors of different labels, of weights a and b, the label changes at a/(a+b)
-// of the way: halfway where all weights are equal, as in an image that is not smoothed. A voxel's center keeps
-// its label, whatever the weights. So does the segment between neighbors of one label. No component of a label
-// (by faces) is therefore ever lost, split or joined to another along an axis.
+// of the way: halfway where all weights are equal, as in an image that is not smoothed. A voxel's center
+// keeps its label, whatever the weights. So does the segment between neighbors of one label. No component of
+// a label (by faces) is therefore ever lost, split or joined to another along an axis.
 #pragma once
 
 #include <algorithm>
