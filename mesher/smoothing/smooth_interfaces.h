@@ -1,30 +1,32 @@
 // Smooths the interfaces, which are otherwise stairs of voxels: finds voxel weights (voxel_strengths.h) that
 // place the interfaces where blurred labels tie.
 //
-// The weight of a label, its indicator w, is blurred to 2 G_s w - G_2s w, where G_s is the Gaussian of width s.
-// A surface of curvature c moves inward by s^2 c / 2 under G_s, and its slope there is 1/s. The value there
-// therefore sinks by s c, to first order. Twice the narrow blur minus the wide one thus keeps the surface in
+// The weight of a label, its indicator w, is blurred to 2 G_s w - G_2s w, where G_s is the Gaussian of width
+// s. A surface of curvature c moves inward by s^2 c / 2 under G_s, and its slope there is 1/s. The value
+// there therefore sinks by s c, to first order. Twice the narrow blur minus the wide one keeps the surface in
 // place, and with it the volume. At a voxel of label l
 //
 //   d = s sqrt(2 pi) / 3 (w_l - the greatest weight of another label)
 //
-// is the distance to where l ties, by the slope of the blur of a plane. In thin structures d may be negative: l
-// has lost its own voxel. A voxel is lost to a blur of this width if it lies more than a quarter of a voxel
-// beyond its interface. Then all voxels within 2 s of it, along each axis, take half the width, and so on. Below
-// half a voxel, stairs remain. (Distances scale with widths, therefore a plane passes on smoothly.) Every other
-// voxel whose distance is below a twentieth of a voxel takes a twentieth of a voxel, the least distance.
+// is the distance to where l ties, by the slope of the blur of a plane. In thin structures d may be negative:
+// l has lost its own voxel. A voxel is lost to a blur of this width if it lies more than a quarter of a voxel
+// beyond its interface. Then all voxels within 2 s of it, along each axis, take half the width, and so on.
+// Below half a voxel, stairs remain. (Distances scale with widths, therefore a plane passes on smoothly.)
+// Every other voxel whose distance is below a twentieth of a voxel takes a twentieth of a voxel, the least
+// distance.
 //
-// Last, volumes are corrected. Where a blur is as wide as a part is thick, the part's label has grown or shrunk.
-// The shift of its interface is averaged over all faces of its voxels within twice the whole width along each
-// axis (interface_shift.h). It is subtracted from the distances of the label's voxels, which stay within the
-// least and the greatest distance that can be represented. This is done twice, as labels share interfaces. Slabs
-// and rods of cubic voxels therefore keep their volume, and a sheet of one voxel stays one voxel thick. Rods as
-// thin as voxels that are not cubes lose some volume. Stairs do not come back: s smooths no stairs that are
-// longer than these averages.
+// Last, volumes are corrected. Where a blur is as wide as a part is thick, the part's label has grown or
+// shrunk. The shift of its interface is averaged over all faces of its voxels within twice the whole width
+// along each axis (interface_shift.h). It is subtracted from the distances of the label's voxels, which stay
+// within the least and the greatest distance that can be represented. This is done twice, as labels share
+// interfaces. Slabs and rods of cubic voxels therefore keep their volume, and a sheet of one voxel stays one
+// voxel thick. Rods as thin as voxels that are not cubes lose some volume. Stairs do not come back: s smooths
+// no stairs that are longer than these averages.
 //
 // "A voxel" as a length is the side of a cube of its volume. Beyond the grid the image continues as at its
-// border. The taps of a Gaussian reach three widths and are normalised. Lengths are compared with whole voxels
-// and with half a voxel. In these comparisons a relative difference of kLengthRounding counts as equal.
+// border. The taps of a Gaussian reach three widths and are normalised. Lengths are compared with whole
+// voxels and with half a voxel. In these comparisons a relative difference of kLengthRounding counts as
+// equal.
 #pragma once
 
 #include <memory>
