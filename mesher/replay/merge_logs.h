@@ -4,10 +4,11 @@
 // the mesh within a part of space that no other rank changes in this step, or learns from other ranks what
 // they have changed. Operations of different ranks in one step therefore change no vertex in common, and any
 // order of them makes the same mesh. Here they are ordered by rank.
-//   Each rank has its own numbers of vertices. In the whole a vertex is identified by its point: vertices
-//   that exist at the same time have different points. A removed vertex may come back, therefore the step
-//   decides. Everything that a rank has learnt is compared with the whole as it was at that time. A rank that
-//   received wrong data is therefore found, even if the wrong data had no effect.
+//
+// Each rank has its own numbers of vertices. In the whole a vertex is identified by its point: vertices that
+// exist at the same time have different points. A removed vertex may come back, therefore the step decides.
+// Everything that a rank has learnt is compared with the whole as it was at that time. A rank that received
+// wrong data is therefore found, even if the wrong data had no effect.
 #pragma once
 
 #include <string>
