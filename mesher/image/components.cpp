@@ -7,7 +7,7 @@ namespace podm {
 
 namespace {
 
-// Union and find, with paths halved; the root of a set is its least member.
+// Union-find with path halving. The root of a set is its least member.
 class Sets {
  public:
   explicit Sets(std::size_t size) : parent_(size) { std::iota(parent_.begin(), parent_.end(), 0u); }
@@ -47,7 +47,7 @@ Components::Components(const LabelImage& image) : size_(image.size) {
   number(sets.roots(), label_of_run);
 }
 
-// Each run is a component of its own at first.
+// Each run is its own component at first.
 std::vector<LabelIndex> Components::cut_into_runs(const LabelImage& image) {
   std::vector<LabelIndex> label_of_run;
   for (int k = 0; k < size_[2]; ++k)

@@ -1,9 +1,9 @@
-// Components of an image's labels: maximal sets of voxels of one label, the background's too, that are joined
-// by faces. Faces are what joins the regions of a label: along an edge or at a corner their isosurfaces
+// Components of an image's labels, including the background: maximal sets of voxels of one label that are
+// joined by faces. Only faces join the regions of a label: along an edge or at a corner their isosurfaces
 // pinch.
 //
-// Rows along x are cut into runs of one label, and runs of neighbouring rows that share a face are joined: a
-// segmentation has some tens of times fewer runs than voxels.
+// Rows along x are cut into runs of one label. Runs of neighboring rows that share a face are joined. A
+// segmentation has tens of times fewer runs than voxels.
 #pragma once
 
 #include <array>
@@ -20,7 +20,7 @@ namespace podm {
 struct Component {
   LabelIndex label;
   std::uint64_t num_voxels = 0;
-  Voxel first;  ///< of its voxels, x fastest
+  Voxel first;  ///< the first of its voxels, x fastest
 };
 
 class Components {
@@ -28,18 +28,18 @@ class Components {
   using Id = std::uint32_t;
   static constexpr Id kOutside = std::numeric_limits<Id>::max();
 
-  /// Numbers them by their first voxels. The image is not kept.
+  /// Numbers the components by their first voxels. The image is not kept.
   explicit Components(const LabelImage& image);
 
   std::size_t size() const { return components_.size(); }
   const Component& operator[](Id component) const { return components_[component]; }
   Id of(const Voxel& v) const;
 
-  /// Calls visit(component, voxel, length) for each run: so many voxels along x.
+  /// Calls visit(component, first voxel, length) for each run of `length` voxels along x.
   template <class Visit>
   void for_each_run(const Visit& visit) const;
-  /// Calls visit(a, b, axis, faces) for faces between two components across that axis, a few at a time and
-  /// each once. Beyond the grid is kOutside, which is b.
+  /// Calls visit(a, b, axis, faces) for the faces between two components across the axis, a few at a time and
+  /// each face once. Everything beyond the grid is the component kOutside, which is always b.
   template <class Visit>
   void for_each_contact(const Visit& visit) const;
 
@@ -54,11 +54,11 @@ class Components {
   std::size_t row(int j, int k) const {
     return static_cast<std::size_t>(k) * static_cast<std::size_t>(size_[1]) + static_cast<std::size_t>(j);
   }
-  /// The end of a row's run r.
+  /// The end of run `r` of a row.
   int end_of(std::span<const Run> row, std::size_t r) const {
     return r + 1 < row.size() ? row[r + 1].begin : size_[0];
   }
-  /// Calls visit(run of a, run of b, length) for the stretches that two runs share along x.
+  /// Calls visit(run of a, run of b, length) for each stretch along x that two runs share.
   template <class Visit>
   void for_each_overlap(std::span<const Run> a, std::span<const Run> b, const Visit& visit) const;
   std::vector<LabelIndex> cut_into_runs(const LabelImage& image);
@@ -66,7 +66,7 @@ class Components {
 
   std::array<int, 3> size_;
   std::vector<Run> runs_;
-  std::vector<std::size_t> first_run_;  // of each row, and where the last ends
+  std::vector<std::size_t> first_run_;  // by row, followed by the end of the last row
   std::vector<Component> components_;
 };
 

@@ -11,7 +11,7 @@
 namespace podm {
 namespace {
 
-// Voxels of each label.
+// The number of voxels of each label.
 struct VoxelCounts {
   std::vector<std::uint64_t> of_label;
   void add_row(const LabelIndex* row, int size) {
@@ -25,7 +25,7 @@ struct VoxelCounts {
   }
 };
 
-// Bounds of the foreground that one thread has seen.
+// The bounds of the foreground that one thread has visited.
 struct alignas(64) VoxelBounds {
   std::array<int, 3> low, high{-1, -1, -1};
 
@@ -69,7 +69,8 @@ Box foreground_bounds(const LabelImage& image, int threads) {
   const VoxelBounds& all = bounds[0];
   if (all.high[0] < 0) throw InputError("the image has no foreground");
   const Affine a = voxels_to_working(image);
-  const auto bound = [&](std::size_t row, bool is_low) {  // a sum of each axis' own least, or greatest
+  const auto bound = [&](std::size_t row,
+                         bool is_low) {  // the sum of the least, or greatest, term of each axis
     double sum = a[4 * row + 3];
     for (std::size_t axis = 0; axis < 3; ++axis) {
       const double entry = a[4 * row + axis];

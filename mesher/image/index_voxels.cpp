@@ -21,7 +21,8 @@ namespace {
 constexpr std::size_t kChunk = 1 << 18;  // voxels
 constexpr std::size_t kMostValues = std::numeric_limits<LabelIndex>::max();
 
-// Small integers index an array of all there are. Others come in runs of equal ones: the last is remembered.
+// Small integers index an array of all possible values. Other values come in runs of equal ones, therefore
+// the last value is remembered.
 template <class Voxel>
 constexpr bool kIsSmall = sizeof(Voxel) <= 2;
 constexpr std::size_t kNumSmall = 1 << 16;
@@ -30,7 +31,7 @@ template <class Voxel>
 bool is_label(Voxel voxel) {
   constexpr double kEnd = 4294967296.0;
   const auto value = static_cast<double>(voxel);
-  return value >= 0 && value < kEnd && std::floor(value) == value;  // NaN is none
+  return value >= 0 && value < kEnd && std::floor(value) == value;  // NaN is not a label
 }
 
 template <class Voxel>
@@ -40,7 +41,7 @@ Voxel voxel_at(const char* place) {
   return voxel;
 }
 
-// Whether voxels follow each other without gaps, x fastest.
+// True if the voxels follow each other without gaps, x fastest.
 bool is_dense(const VoxelArray& array) {
   auto expected = static_cast<std::ptrdiff_t>(bytes_of(array.type));
   for (std::size_t axis = 0; axis < 3; ++axis) {
@@ -52,7 +53,7 @@ bool is_dense(const VoxelArray& array) {
 
 const char* first_of(const VoxelArray& array) { return static_cast<const char*>(array.first); }
 
-// Cuts an array of any strides into blocks, within which neither the array's voxels nor the image's are far
+// Cuts an array of any strides into blocks. Within a block neither the array's voxels nor the image's are far
 // apart in memory.
 class Blocks {
  public:
@@ -104,10 +105,10 @@ class Blocks {
   const VoxelArray& array_;
   std::array<std::ptrdiff_t, 3> image_strides_;
   std::array<int, 3> numbers_{};
-  std::array<std::size_t, 3> axes_{0, 1, 2};  // of the array's strides the shortest first
+  std::array<std::size_t, 3> axes_{0, 1, 2};  // axes by the array's strides, the shortest first
 };
 
-// Names the first voxel whose value is no label; there must be one.
+// Throws InputError that names the first voxel whose value is not a label. There must be such a voxel.
 template <class Voxel>
 [[noreturn]] void refuse_first_without_label(const VoxelArray& array, const std::string& path) {
   for (int k = 0; k < array.size[2]; ++k)
@@ -124,12 +125,12 @@ template <class Voxel>
   refuse(path, "its voxels change while they are read");
 }
 
-// The different voxels that one thread meets, while they are not too many and all are labels: a set of values
-// that differ from themselves would take forever.
+// The different voxel values that one thread meets, as long as they are not too many and all are labels.
+// Values that differ from themselves (NaN) are not inserted: a set of them would take forever.
 template <class Voxel>
 class VoxelSet {
  public:
-  /// Voxels of a dense array.
+  /// Adds voxels of a dense array.
   void add(const char* voxels, std::size_t begin, std::size_t end) {
     for_each_stretch(voxels, sizeof(Voxel), begin, end,
                      [&](std::size_t from, std::size_t to, bool is_uniform) {
@@ -147,7 +148,7 @@ class VoxelSet {
     }
   }
 
-  /// Whether a large voxel was met that is no label; what comes after it is not looked at.
+  /// True if a large voxel was met that is not a label. The voxels after it are not examined.
   bool has_other() const { return has_other_; }
 
   template <class Use>
@@ -176,7 +177,7 @@ class VoxelSet {
   bool has_other_ = false;
 };
 
-// The position of a voxel that is a value, among the values; 0 of one that has become another meanwhile.
+// The position of a voxel's value in `values`; 0 if the voxel has changed in the meantime to another value.
 template <class Voxel>
 class Positions {
  public:
@@ -236,7 +237,7 @@ std::vector<std::uint32_t> different_values(const VoxelArray& array, const std::
   return {values.begin(), values.end()};
 }
 
-// Voxels of a dense array.
+// Indexes a range of voxels of a dense array.
 template <class Voxel>
 void index_range(const char* array, std::size_t begin, std::size_t end, Positions<Voxel>& position,
                  LabelIndex* voxels) {

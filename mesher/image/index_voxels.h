@@ -1,4 +1,4 @@
-// The numbers that a file or an array stores become label indices.
+// Turns the numbers that a file or an array stores into label indices.
 #pragma once
 
 #include <cstddef>
@@ -9,8 +9,9 @@
 
 namespace podm {
 
-/// Fills `labels`, every value that occurs, ascending, and `voxels`, as many as the image's size says. Throws
-/// InputError naming `path`: a number that is no label, too many different ones.
+/// Fills `labels` with every value that occurs, in ascending order, and `voxels` according to the image's
+/// size. Throws InputError naming `path` if a number is not a label, or if there are too many different
+/// numbers.
 void index_voxels(const VoxelArray& array, const std::string& path, std::size_t threads, LabelImage& image);
 
 }  // namespace podm

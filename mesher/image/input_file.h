@@ -1,4 +1,5 @@
-// A file read front to back, gunzipped where it is gzipped, that never gives fewer bytes than asked for.
+// A file that is read front to back, and gunzipped if it is gzipped. A read never returns fewer bytes than
+// requested.
 #pragma once
 
 #include <zlib.h>
@@ -10,10 +11,11 @@
 
 namespace podm {
 
-/// The best ratio of deflate.
+/// The best compression ratio of deflate.
 inline constexpr std::uint64_t kBestCompression = 1032;
 
-/// Bytes of a regular file. Throws InputError: missing, not a file, empty.
+/// The size of a regular file in bytes. Throws InputError if the file is missing, not a regular file or
+/// empty.
 std::uint64_t file_bytes(const std::string& path);
 
 class InputFile {
@@ -21,12 +23,13 @@ class InputFile {
   /// Every member throws InputError naming `path` and the fault.
   explicit InputFile(const std::string& path);
 
-  /// Reads exactly `size` bytes; a file that ends before is truncated.
+  /// Reads exactly `size` bytes. A file that ends before is refused as truncated.
   void read(void* bytes, std::size_t size);
   void skip(std::uint64_t size);
-  /// Throws unless every byte has been read and, of a gzipped file, the checksum holds.
+  /// Throws unless every byte has been read and, for a gzipped file, the checksum holds.
   void expect_end();
-  /// Throws if the file cannot hold `size` bytes even at the best compression: ask before allocating them.
+  /// Throws if the file cannot contain `size` bytes even at the best compression. To be called before the
+  /// bytes are allocated.
   void expect_room_for(std::uint64_t size) const;
 
  private:

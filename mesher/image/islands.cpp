@@ -15,7 +15,7 @@ namespace podm {
 
 namespace {
 
-// Volumes and areas that are equal but for rounding are equal.
+// Volumes and areas that differ only by rounding are equal.
 constexpr double kRounding = 1e-6;
 
 using Faces = std::array<std::uint64_t, 3>;  // across each axis
@@ -28,7 +28,7 @@ class Dropping {
         most_voxels_(below_mm3 * (1 - kRounding) / voxel_mm3_),
         dropped_(image.labels.size()) {}
 
-  /// False where there is no island any more.
+  /// Returns false if no island is left.
   bool drop_round() {
     const Components components(image_);
     const auto is_island = [&](Components::Id c) {
@@ -85,7 +85,7 @@ class Dropping {
   std::vector<DroppedIslands> dropped_;  // by label
 };
 
-// Labels without voxels go; the others keep their order.
+// Removes labels without voxels. The other labels keep their order.
 void remove_empty_labels(LabelImage& image, const std::string& path) {
   std::vector<char> has_voxels(image.labels.size());
   for (const LabelIndex label : image.voxels) has_voxels[label] = true;

@@ -1,5 +1,5 @@
-// Label tables: ITK-SNAP's (IDX R G B A VIS MSH "NAME") and plain "value name ..." lines as MRIcron ships
-// them.
+// Label tables: those of ITK-SNAP (IDX R G B A VIS MSH "NAME"), and plain "value name ..." lines as in the
+// tables of MRIcron.
 #include <cctype>
 #include <fstream>
 #include <sstream>
@@ -11,7 +11,7 @@ namespace podm {
 
 namespace {
 
-// The quoted name of an ITK-SNAP line, or the word after the value.
+// The quoted name in an ITK-SNAP line, or the word after the value.
 std::string name_in(const std::string& rest) {
   const std::size_t open = rest.find('"'), close = rest.rfind('"');
   if (open != std::string::npos && close > open) return rest.substr(open + 1, close - open - 1);

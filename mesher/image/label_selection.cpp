@@ -73,8 +73,8 @@ void replace_voxels(std::vector<LabelIndex>& voxels, const std::vector<LabelInde
   });
 }
 
-// What each value becomes that the image has and the selection keeps; the background's value has no place in
-// it.
+// The final label of each value that the image has and the selection keeps. The background's value is not
+// among them.
 class SelectedLabels {
  public:
   SelectedLabels(const LabelImage& image, const LabelSelection& selection, const std::string& path,

@@ -1,4 +1,4 @@
-// What is kept of an image's labels, and their final order.
+// Selects the labels of an image that are kept, and their final order.
 #pragma once
 
 #include <string>
@@ -7,10 +7,10 @@
 
 namespace podm {
 
-/// Takes an image whose voxels index `labels` in any order; leaves the background first, then the labels that
-/// have voxels and that the selection keeps, by value. Keeping and dropping come before merging,
-/// islands go last. Throws InputError naming `path`: a value asked for by itself that is absent, a
-/// contradictory merge, a bad volume of islands, nothing left.
+/// Takes an image whose voxels index `labels` in any order. Leaves the background first, followed by the
+/// labels that have voxels and that the selection keeps, by value. Keeping and dropping come before merging;
+/// islands are dropped last. Throws InputError naming `path` if a value that is given by itself is absent, a
+/// merge is contradictory, the volume of islands is invalid, or nothing is left.
 void select_labels(LabelImage& image, const LabelSelection& selection, const std::string& path,
                    std::size_t threads);
 

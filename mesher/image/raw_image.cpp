@@ -15,12 +15,13 @@ namespace {
 
 using Matrix = std::array<std::array<double, 3>, 3>;  // by rows
 
-// A direction closer to orthonormal than this differs from it by the rounding of the file's header only.
+// A direction whose deviation from orthonormal is smaller differs from it only by the rounding of the file's
+// header.
 constexpr double kHeaderRounding = 1e-5;
 constexpr double kSmallestDeterminant = 1e-6;  // of three unit axes
 constexpr double kSmallestSpacing = 1e-30,
-                 kLargestSpacing = 1e30;    // fifth powers neither over- nor underflow
-constexpr double kFurthestVoxels = 0x1p33;  // doubles tell a millionth of a voxel apart there
+                 kLargestSpacing = 1e30;    // their fifth powers neither overflow nor underflow
+constexpr double kFurthestVoxels = 0x1p33;  // up to here doubles resolve a millionth of a voxel
 
 double determinant(const Matrix& m) {
   return m[0][0] * (m[1][1] * m[2][2] - m[1][2] * m[2][1]) -
@@ -50,7 +51,8 @@ double deviation_from_orthonormal(const Matrix& m) {
   return largest;
 }
 
-// Newton's iteration for the polar factor; it converges quadratically, so three steps from 1e-5 suffice.
+// Newton's iteration for the polar factor. It converges quadratically, therefore three steps from 1e-5
+// suffice.
 Matrix nearest_orthonormal(Matrix m) {
   for (int step = 0; step < 3; ++step) {
     const Matrix other = inverse_transposed(m);
@@ -155,8 +157,8 @@ std::array<double, 3> checked_spacing(const std::string& path, std::array<double
   return spacing;
 }
 
-// Going from the world to voxels adds up one term of each coordinate, whose rounding is a part of the
-// largest.
+// The map from the world to voxels adds up one term per coordinate. Its rounding error is relative to the
+// largest term.
 void check_distance(const std::string& path, const std::vector<int>& size,
                     const std::array<double, 12>& voxel_to_ras) {
   std::array<double, 3> furthest{};

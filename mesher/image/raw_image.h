@@ -1,4 +1,4 @@
-// An image as its file stores it, and the checks every reader shares.
+// An image as its file stores it, and the checks that all readers share.
 #pragma once
 
 #include <array>
@@ -15,40 +15,40 @@ std::size_t bytes_of(VoxelType type);
 
 struct RawImage {
   std::string path;       ///< for messages
-  std::vector<int> size;  ///< voxels per axis, as many axes as the file has
+  std::vector<int> size;  ///< voxels per axis, for all axes of the file
   VoxelType type = VoxelType::kUint8;
   double slope = 1, intercept = 0;         ///< a value is slope * voxel + intercept
   std::array<double, 12> voxel_to_ras{};   ///< row-major 3x4, mm
   std::vector<unsigned char> bytes;        ///< voxels, x fastest, this machine's byte order
-  std::vector<std::string> warnings = {};  ///< become those of LabelImage
+  std::vector<std::string> warnings = {};  ///< are copied to the LabelImage
 };
 
-/// Where its voxels lie.
+/// The memory layout of its voxels.
 VoxelArray array_of(const RawImage& raw);
 
-/// Turns values of `width` bytes into the other byte order.
+/// Reverses the byte order of values of `width` bytes.
 void swap_bytes(std::vector<unsigned char>& bytes, std::size_t width);
 
 /// Throws InputError "path: fault".
 [[noreturn]] void refuse(const std::string& path, const std::string& fault);
 
-/// The number of voxels. Throws InputError unless the image has three axes (further ones of length 1), none
-/// empty, and at most kMaxVoxels.
+/// The number of voxels. Throws InputError unless the image has three axes (further axes must have length 1),
+/// no axis is empty, and there are at most kMaxVoxels voxels.
 std::size_t checked_num_voxels(const std::string& path, const std::vector<int>& size);
 
-/// Throws InputError where voxels that take `bytes` while they are read take more than `most_bytes`.
+/// Throws InputError if `bytes`, the memory that the voxels take while they are read, exceeds `most_bytes`.
 void check_room(const std::string& path, std::uint64_t bytes, std::uint64_t most_bytes);
 
-/// Bytes of all voxels, checked as above before memory is asked for. Throws InputError where these and their
-/// labels take more than `most_bytes` while they are read.
+/// The bytes of all voxels, checked as above before any memory is allocated. Throws InputError if the voxels
+/// and their labels take more than `most_bytes` while they are read.
 std::size_t checked_num_bytes(const RawImage& raw, std::uint64_t most_bytes);
 
-/// The voxel spacing, mm. Axes that are orthogonal but for the rounding of the file's header are made exactly
-/// so, in place. Throws InputError on an affine that is singular, not finite, or of voxels out of all
-/// proportion.
+/// The voxel spacing, mm. Axes that are orthogonal except for the rounding of the file's header are made
+/// exactly orthogonal, in place. Throws InputError if the affine is singular or not finite, or if a spacing
+/// is not between 1e-30 and 1e30 mm.
 std::array<double, 3> checked_spacing(const std::string& path, std::array<double, 12>& voxel_to_ras);
 
-/// Throws InputError where world coordinates cannot tell a millionth of a voxel apart.
+/// Throws InputError if world coordinates cannot resolve a millionth of a voxel.
 void check_distance(const std::string& path, const std::vector<int>& size,
                     const std::array<double, 12>& voxel_to_ras);
 

@@ -1,4 +1,4 @@
-// A path or an array becomes a label image: a reader is picked, voxels become labels, labels are selected.
+// Turns a path or an array into a label image: picks a reader, turns voxels into labels and selects labels.
 #include <algorithm>
 #include <charconv>
 #include <initializer_list>
@@ -20,7 +20,7 @@ bool has_ending(const std::string& path, std::initializer_list<const char*> endi
                      [&](const char* ending) { return path.ends_with(ending); });
 }
 
-// Labels by value: the background is not known yet.
+// Indexes labels by value, as the background is not known yet.
 LabelImage index_array(const VoxelArray& array, std::array<double, 12> voxel_to_ras, const std::string& path,
                        std::size_t threads) {
   LabelImage image;

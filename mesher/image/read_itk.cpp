@@ -1,6 +1,6 @@
-// NRRD and MetaImage through ITK's readers, guarded: the true size of the voxel data is checked first. The
-// compressed voxels of a MetaImage are read here: ITK takes as many bytes as the header says, whatever the
-// stream needs, and headers that other programs have changed say what it was before.
+// Reads NRRD and MetaImage through ITK's readers. The true size of the voxel data is checked first.
+// Compressed voxels of a MetaImage are read here: ITK reads as many bytes as the header announces, whatever
+// the stream needs. If another program has changed the image, the header may still announce the old number.
 #include <itkMetaImageIO.h>
 #include <itkNrrdImageIO.h>
 
@@ -54,7 +54,7 @@ VoxelType voxel_type(const std::string& path, const itk::ImageIOBase& io) {
   }
 }
 
-// ITK's world is LPS.
+// ITK's world frame is LPS.
 std::array<double, 12> voxel_to_ras(const std::string& path, const itk::ImageIOBase& io) {
   std::array<double, 12> a{};
   for (unsigned axis = 0; axis < 3; ++axis) {

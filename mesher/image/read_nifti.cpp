@@ -1,5 +1,5 @@
-// NIfTI-1 by libnifti's header functions. ITK's reader is not used: it aborts on an affine that is not
-// finite, refuses shear or falls back to the qform in silence, and fills missing voxels with zeros.
+// Reads NIfTI-1 with libnifti's header functions. ITK's reader is not used: it aborts on an affine that is
+// not finite, refuses shear or silently falls back to the qform, and fills missing voxels with zeros.
 #include <nifti/nifti1_io.h>
 
 #include <cmath>
@@ -67,7 +67,7 @@ std::vector<int> sizes(const nifti_1_header& header, const std::string& path) {
   return {header.dim + 1, header.dim + 1 + header.dim[0]};
 }
 
-// mm per unit of the header; a header that names no unit means mm.
+// mm per unit of the header. The unit is mm if the header names none.
 double unit_mm(const nifti_1_header& header) {
   switch (XYZT_TO_SPACE(header.xyzt_units)) {
     case NIFTI_UNITS_METER:
@@ -97,7 +97,7 @@ mat44 affine(const nifti_1_header& h, const std::string& path) {
   return a;
 }
 
-// Where the voxels begin; an offset too small to be true stands for the end of the header.
+// The position of the first voxel. An offset that is too small stands for the end of the header.
 std::uint64_t voxel_offset(const nifti_1_header& header, const std::string& path) {
   constexpr float kSmallest = 352, kLargest = 1 << 24;  // exact in a float
   if (!(header.vox_offset <= kLargest)) refuse(path, "the NIfTI header is damaged (vox_offset)");

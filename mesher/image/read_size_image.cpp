@@ -1,4 +1,4 @@
-// A path becomes a size image: values of any type, as the header scales them, become radii in mm.
+// Turns a path into a size image: values of any type, scaled as in the header, become radii in mm.
 #include <cmath>
 #include <cstring>
 

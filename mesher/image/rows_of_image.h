@@ -9,7 +9,7 @@
 
 namespace podm {
 
-/// Sums what `count(counts, j, k)` adds for all rows along x; `none` is the sum of no row.
+/// Sums over all rows along x. `count(counts, j, k)` adds one row. `none` is the sum of no rows.
 template <class Counts, class Count>
 Counts sum_over_rows(const LabelImage& image, int threads, const Counts& none, const Count& count) {
   struct alignas(64) OfThread {

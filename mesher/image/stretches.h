@@ -1,4 +1,4 @@
-// Voxels by short stretches, of which a label image has nearly all of one value each.
+// Visits voxels in short stretches. In a label image nearly all stretches have a single value.
 #pragma once
 
 #include <algorithm>
@@ -7,8 +7,8 @@
 
 namespace podm {
 
-/// Calls use(from, to, is_uniform) for stretches of [begin, end): whether the voxels, of `width` bytes each,
-/// are the same to the bit all over the stretch.
+/// Calls use(from, to, is_uniform) for consecutive stretches of [begin, end). `is_uniform` is true if all
+/// voxels of the stretch, of `width` bytes each, are equal bit by bit.
 template <class Use>
 void for_each_stretch(const void* voxels, std::size_t width, std::size_t begin, std::size_t end,
                       const Use& use) {

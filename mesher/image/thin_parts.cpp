@@ -13,14 +13,14 @@ namespace podm {
 namespace {
 
 constexpr double kDepthOverDelta = 0.7;
-// Of the shortest side of a voxel: so much larger balls reach the steps of an oblique surface. Below a half
-// no centre of another label is as near.
+// Slack added to the radius of a ball, relative to the shortest side of a voxel. Balls with this slack cover
+// the steps of an oblique surface. With less than half a side, they contain no center of another label.
 constexpr double kSlackOverSide = 0.4;
 float squared(float x) { return x * x; }
 
 constexpr float kInfinite = std::numeric_limits<float>::infinity();
 
-// A number for each voxel, changed line by line along one axis after the other.
+// A number for each voxel. It is updated line by line, along one axis after another.
 class VoxelField {
  public:
   VoxelField(const LabelImage& image, float value, int threads)
@@ -28,8 +28,8 @@ class VoxelField {
 
   float& operator[](std::size_t voxel) { return values_[voxel]; }
 
-  /// Calls change(labels, before, i, spacing in mm) for each foreground voxel i of each line, along x, then
-  /// y, then z: its new value.
+  /// Sets each foreground voxel i of each line, along x, then y, then z, to change(labels, before, i, spacing
+  /// in mm).
   template <class Change>
   void sweep(const Change& change) {
     for (std::size_t axis = 0; axis < 3; ++axis) sweep(axis, change);
@@ -66,13 +66,14 @@ class VoxelField {
   std::vector<float> values_;
 };
 
-// Squared depths, mm^2, up to that of `most_mm`.
+// Finds squared depths, mm^2, up to that of `most_mm`.
 void find_depths(VoxelField& depths, double most_mm) {
   depths.sweep([&](const std::vector<LabelIndex>& labels, const std::vector<float>& before, std::size_t i,
                    double spacing_mm) {
     float least = before[i];
     const auto look = [&](std::size_t at, float cost) {
-      const bool is_own = at < labels.size() && labels[at] == labels[i];  // before the first wraps around
+      const bool is_own =
+          at < labels.size() && labels[at] == labels[i];  // an index before the first wraps around
       least = std::min(least, (is_own ? before[at] : 0) + cost);
     };
     for (std::size_t n = 1; (static_cast<double>(n) - 0.5) * spacing_mm < most_mm; ++n) {
@@ -86,8 +87,9 @@ void find_depths(VoxelField& depths, double most_mm) {
   });
 }
 
-// Turns minus the squared radii of balls, infinity where there is none, into numbers that are positive beyond
-// all balls. A ball stays within its label, and so does the way along the axes from its centre.
+// The input is minus the squared radius of the ball at each voxel, or infinity if there is none. The output
+// is positive outside all balls. A ball stays within its label, and so does the path along the axes from its
+// center.
 void unite_balls(VoxelField& balls, double most_mm) {
   balls.sweep([&](const std::vector<LabelIndex>&, const std::vector<float>& before, std::size_t i,
                   double spacing_mm) {
@@ -146,11 +148,11 @@ class ThinParts {
   }
 
  private:
-  // A depth grows by no more than a side from voxel to voxel: balls of greater ones add nothing near a
-  // surface.
+  // From voxel to voxel the depth grows by at most a side. Balls of greater depths therefore add nothing near
+  // a surface.
   double most_mm() const { return least_mm_ + longest_mm_; }
 
-  // Thin voxels and those kept, each an image in which the others are background.
+  // Makes an image of the thin voxels and one of the kept voxels. All other voxels are background there.
   void split_image(int threads) {
     constexpr float kRounding = 1e-5F;
     VoxelField balls(image_, kInfinite, threads);

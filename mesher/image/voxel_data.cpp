@@ -27,7 +27,7 @@ struct TextHeader {
     const auto found = fields.find(key);
     return found == fields.end() ? "" : found->second;
   }
-  // ITK takes a value for true by its first letter.
+  // ITK takes a value as true by its first letter.
   bool flag(const std::string& key) const {
     const std::string text = field(key);
     return !text.empty() && std::string("tT1").find(text[0]) != std::string::npos;
@@ -44,8 +44,8 @@ std::string trimmed(const std::string& text) {
   return begin == std::string::npos ? "" : text.substr(begin, end + 1 - begin);
 }
 
-// Lines "key SEPARATOR value" up to the one of key `last`, the key of an empty line being empty, or the end.
-// `check(line, number)`, from 1, comes before.
+// Reads lines "key SEPARATOR value" up to the line with key `last`, or to the end. An empty line has an empty
+// key. `check(line, number)` is called for each line first, with numbers from 1.
 template <class Check>
 TextHeader read_text_header(const std::string& path, char separator, const std::string& last, Check check) {
   file_bytes(path);
@@ -64,8 +64,8 @@ TextHeader read_text_header(const std::string& path, char separator, const std::
   return header;
 }
 
-// ITK tells of a line that it cannot parse, and of the path, in messages for which it has a thousand bytes,
-// whatever their length. It parses any line of the form 'name:=value'.
+// ITK reports a line that it cannot parse, and the path, in a message buffer of a thousand bytes, whatever
+// their length. It can parse any line of the form 'name:=value'.
 constexpr std::size_t kLongestInMessage = 500;
 
 void expect_nrrd_line(const std::string& path, const std::string& line, int number) {
@@ -77,9 +77,9 @@ void expect_nrrd_line(const std::string& path, const std::string& line, int numb
                      std::to_string(kLongestInMessage) + " bytes");
 }
 
-// ITK copies names and some values into 255 bytes, whatever their length, and takes the value of a name
-// without '=' from the next line, beyond the last one too. A carriage return that ends no line is part of a
-// value to it, and leaks what opens the file of that name.
+// ITK copies names and some values into 255 bytes, whatever their length. It takes the value of a name
+// without '=' from the next line, even beyond the last line. It takes a carriage return inside a line as a
+// part of the value, and then leaks the object that opens the file of that name.
 void expect_meta_line(const std::string& path, const std::string& line, int number) {
   constexpr std::size_t kLongestLine = 254;
   const std::string place = "wrong magic or header (line " + std::to_string(number);
@@ -92,7 +92,7 @@ void expect_meta_line(const std::string& path, const std::string& line, int numb
     refuse(path, place + " is not of the form 'name = value')");
 }
 
-// The path of a file that the header of `path` names.
+// The path of a file that is named in the header of `path`.
 std::string beside(const std::string& path, const std::string& name) {
   const std::string data_path = (std::filesystem::path(path).parent_path() / name).string();
   std::error_code error;
@@ -101,7 +101,7 @@ std::string beside(const std::string& path, const std::string& name) {
   return data_path;
 }
 
-// One zlib or gzip stream, from where the data begin.
+// One zlib or gzip stream, from the beginning of the data.
 class Inflater {
  public:
   Inflater(const std::string& path, const VoxelData& data)
@@ -111,7 +111,7 @@ class Inflater {
     file_.seekg(static_cast<std::streamoff>(data.offset));
   }
 
-  // Bytes put into `out`, fewer than `size` only at the end of the stream.
+  // Returns the number of bytes put into `out`, which is less than `size` only at the end of the stream.
   std::size_t read(unsigned char* out, std::size_t size) {
     constexpr std::size_t kMostAtOnce = 1 << 30;  // zlib counts in int
     std::size_t made = 0;
@@ -154,7 +154,7 @@ class Inflater {
   bool is_at_end_ = false;
 };
 
-// Reads the rest of the stream, which only counts: a hostile one costs time alone.
+// Reads the rest of the stream and only counts it. A hostile stream therefore costs time but no memory.
 std::uint64_t bytes_left(Inflater& stream) {
   std::vector<unsigned char> out(1 << 17);
   std::uint64_t total = 0;
@@ -211,9 +211,10 @@ VoxelData find_meta_voxels(const std::string& path) {
   if (const std::string skip = header.field("headersize"); !skip.empty() && skip != "0")
     refuse(path, "'HeaderSize' is not supported");
   if (lower(header.field("binarydata")) == "false") refuse(path, "voxels written as text are not supported");
-  for (const char* key : {"dimsize", "elementtype"})  // ITK prints what it misses
+  for (const char* key : {"dimsize", "elementtype"})  // ITK prints a message if one is missing
     if (header.field(key).empty()) refuse(path, std::string("the MetaImage header has no '") + key + "'");
-  const bool is_local = file == "LOCAL" || file == "Local" || file == "local";  // as ITK has it
+  const bool is_local =
+      file == "LOCAL" || file == "Local" || file == "local";  // the spellings that ITK accepts
   return {is_local ? path : beside(path, file), is_local ? header.bytes : 0, header.flag("compresseddata"),
           header.flag("binarydatabyteordermsb") || header.flag("elementbyteordermsb"),
           header.field("compresseddatasize")};

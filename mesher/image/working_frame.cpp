@@ -6,10 +6,11 @@
 namespace podm {
 namespace {
 
-// Images come with more, or with what rounding leaves (checked_spacing in raw_image.h).
+// Larger than the error that rounding leaves in orthogonal images (checked_spacing in raw_image.h), smaller
+// than that of sheared ones.
 constexpr double kRounding = 1e-12;
 
-// Whether some columns of the affine are not orthogonal.
+// True if some columns of the affine are not orthogonal.
 bool is_sheared(const LabelImage& image) {
   const Affine& a = image.voxel_to_ras;
   double worst = 0;

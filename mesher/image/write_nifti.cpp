@@ -1,4 +1,4 @@
-// NIfTI-1 label images.
+// Writes label images as NIfTI-1.
 #include <nifti/nifti1_io.h>
 #include <unistd.h>
 #include <zlib.h>
@@ -31,7 +31,7 @@ struct VoxelFormat {
   std::size_t bytes;
 };
 
-// int32 rather than uint32 where it will do: more programs read it.
+// Prefers int32 to uint32 where it suffices, as more programs read it.
 VoxelFormat smallest_format(const LabelImage& image) {
   std::uint32_t largest = 0;
   for (const Label& label : image.labels) largest = std::max(largest, label.value);
@@ -41,7 +41,7 @@ VoxelFormat smallest_format(const LabelImage& image) {
   return {DT_UINT32, 4};
 }
 
-// The quaternion form holds rotations and spacings alone: the columns must be orthogonal.
+// The quaternion form can only represent rotations and spacings: the columns must be orthogonal.
 bool has_orthogonal_columns(const std::array<double, 12>& m) {
   constexpr double kLargestCosine = 1e-6;
   const auto product = [&](std::size_t a, std::size_t b) {
@@ -91,11 +91,11 @@ nifti_1_header header_of(const LabelImage& image, const VoxelFormat& format) {
   return header;
 }
 
-// A temporary beside `path`, compressed or not.
+// A temporary file beside `path`, compressed or not.
 class PendingFile {
  public:
   PendingFile(const std::string& path, bool is_compressed) : path_(path), file_(path) {
-    // The stream gets a descriptor of its own: gzclose() would take the one that fsync() needs.
+    // The stream gets its own descriptor, as gzclose() would close the one that fsync() needs.
     stream_ = ::gzdopen(::dup(file_.descriptor()), is_compressed ? "wb6" : "wbT");
     if (stream_ == nullptr) fail_to_write(path_, errno);
   }

@@ -13,12 +13,13 @@ namespace {
 
 constexpr double square(double x) { return x * x; }
 
-// One line of bricks; the parabolas are cost + (side * (i - position))^2.
+// One line of bricks. Its parabolas are cost + (side * (i - position))^2.
 class Line {
  public:
   explicit Line(std::size_t most) : sites_(most) {}
 
-  /// Costs of the line of `length` bricks, `stride` apart, become its lower envelope.
+  /// Replaces the costs of a line of `length` bricks, `stride` apart, by the lower envelope of their
+  /// parabolas.
   void transform(std::uint64_t* first, std::size_t length, std::size_t stride, double side) {
     squared_side_ = square(side);
     count_ = 0;
@@ -45,7 +46,7 @@ class Line {
   double height(const Site& s, std::size_t i) const {
     return s.cost + squared_side_ * square(static_cast<double>(i) - s.position);
   }
-  // Whether b, between a and c, is nowhere lower than both.
+  // True if b, which lies between a and c, is nowhere lower than both of them.
   bool is_hidden(const Site& a, const Site& b, const Site& c) const {
     const double ab = b.position - a.position, bc = c.position - b.position, ac = ab + bc;
     return ac * b.cost - bc * a.cost - ab * c.cost > ab * bc * ac * squared_side_;

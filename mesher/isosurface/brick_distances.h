@@ -1,6 +1,7 @@
-// How far bricks are from the marked ones: the exact Euclidean distance transform, one pass an axis, from the
-// lower envelopes of the parabolas that the pass before left along the lines (Maurer, Qi, Raghavan, PAMI 25
-// (2003) 265-270; Felzenszwalb, Huttenlocher, Theory of Computing 8 (2012) 415-428).
+// Computes the distance from each brick to the nearest marked brick. This is the exact Euclidean distance
+// transform. It makes one pass per axis. Each pass takes the lower envelope of the parabolas that the
+// previous pass left along a line (Maurer, Qi, Raghavan, PAMI 25 (2003) 265-270; Felzenszwalb, Huttenlocher,
+// Theory of Computing 8 (2012) 415-428).
 #pragma once
 
 #include <array>
@@ -11,8 +12,9 @@
 
 namespace podm {
 
-/// `squared`: the bits of a double by brick, 0 where it is marked and infinity elsewhere, which becomes the
-/// least squared distance to a marked one, as between corners alike. `side`: a brick's, along each axis.
+/// `squared` holds the bits of a double per brick: 0 for a marked brick, infinity for any other. They are
+/// replaced by the least squared distance to a marked brick, measured between equal corners of the two
+/// bricks. `side` is the length of a brick along each axis.
 void find_squared_distances(const BrickGrid& bricks, const std::array<double, 3>& side, std::size_t threads,
                             std::span<std::uint64_t> squared);
 

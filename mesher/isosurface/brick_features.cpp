@@ -11,10 +11,11 @@ namespace podm {
 
 namespace {
 
-// Voxels of the window along an axis, if it is two bricks on each side: the brick's four begin at kFirst.
+// The window has kWindow voxels along an axis if it spans two bricks on each side. The brick's four begin at
+// kFirst.
 constexpr int kWindow = 20, kFirst = 8, kMostOffset = 11, kNoOffset = 12;
 
-// Rows or slices of the window from the brick outwards, and how far from it each is.
+// Rows or slices of the window from the brick outwards, and the distance of each from the brick.
 struct Outward {
   int at, gap;
 };
@@ -33,8 +34,8 @@ constexpr double kInfinity = std::numeric_limits<double>::infinity();
 
 constexpr double square(double x) { return x * x; }
 
-// The offset from voxel x to the nearest in a row of the window that is not empty, a bit each; the first of
-// equals.
+// The offset from voxel x to the nearest voxel in a row of the window, one bit per voxel. The row must not be
+// empty. If two are equally near, the lower one is returned.
 int nearest_in_row(std::uint32_t row, int x) {
   const std::uint32_t up_to_x = row & ((2u << x) - 1), from_x = row >> x;
   const int below = up_to_x != 0 ? x - 31 + std::countl_zero(up_to_x) : kNoOffset;
@@ -42,7 +43,7 @@ int nearest_in_row(std::uint32_t row, int x) {
   return below <= above ? -below : above;
 }
 
-// Four voxels beside each other in x: the least squared distance so far, and the bits of its offset.
+// Four adjacent voxels along x: the least squared distance found yet, and the bits of its offset.
 struct Four {
   alignas(32) std::array<double, 4> squared{kInfinity, kInfinity, kInfinity, kInfinity};
   alignas(32) std::array<std::int64_t, 4> bits{};
@@ -58,7 +59,6 @@ struct Four {
   }
 };
 
-// The greatest of the squared distances.
 double greatest(const std::array<Four, 16>& rows) {
   std::array<double, 4> most{};
   for (const Four& four : rows)
@@ -74,12 +74,12 @@ Surroundings::Surroundings(const LabelImage& image) : reach_mm_(kInfinity) {
   const double shortest = std::min({image.spacing[0], image.spacing[1], image.spacing[2]});
   for (std::size_t a = 0; a < 3; ++a) {
     num_bricks_[a] = 5 * image.spacing[a] < 8 * shortest ? kMostBricks : 1;
-    // Even from the brick's end.
+    // The first voxel beyond the searched bricks is this far from the last voxel of the brick.
     reach_mm_ = std::min(reach_mm_, (4 * num_bricks_[a] + 1) * image.spacing[a]);
   }
 }
 
-// The masks of the bricks around one, at most 5^3.
+// The masks of the bricks around one brick, at most 5^3.
 struct BrickFeatures::Window {
   Window(const BrickFeatures& of, const Voxel& brick) : num_bricks(of.surroundings_.num_bricks()) {
     const auto& [x, y, z] = num_bricks;
@@ -94,7 +94,7 @@ struct BrickFeatures::Window {
         }
   }
   static std::size_t index(int j, int k) { return static_cast<std::size_t>(25 * k + 5 * j); }
-  /// The surface voxels of a row, a bit each.
+  /// The surface voxels of a row, one bit per voxel.
   std::uint32_t row(int y, int z) const {
     const unsigned shift = place_in_brick({0, y, z});
     if ((any[static_cast<std::size_t>(z / 4)][static_cast<std::size_t>(y / 4)] >> shift & 15) == 0) return 0;
@@ -111,7 +111,7 @@ struct BrickFeatures::Window {
 
   std::array<int, 3> num_bricks;
   std::array<std::uint64_t, 125> mask{};
-  std::array<std::array<std::uint64_t, 5>, 5> any{};  // by k, then j: of all i
+  std::array<std::array<std::uint64_t, 5>, 5> any{};  // by k, then j: the union over all i
 };
 
 BrickFeatures::BrickFeatures(const LabelImage& image, const BrickGrid& bricks, const SurfaceMasks& masks,
@@ -123,9 +123,9 @@ BrickFeatures::BrickFeatures(const LabelImage& image, const BrickGrid& bricks, c
   }
 }
 
-// The nearest of a slice has its nearest of each row, and the nearest of all its nearest of each slice: as
-// distances along axes add up, the least sums are found one axis after the other. Rows and slices that are
-// farther than all features found, or than the reach, are passed over.
+// Distances along the axes add up. The least sums are therefore found one axis after another: the nearest
+// voxel of a slice is the nearest of one of its rows, and the nearest voxel of all is the nearest of one of
+// the slices. Rows and slices farther than all features found yet, or than the reach, are skipped.
 std::array<FeatureOffset, 64> BrickFeatures::offsets(const Voxel& brick) const {
   const Window window(*this, brick);
   const auto squared = [&](std::size_t axis, int offset) {

@@ -1,5 +1,6 @@
-// The features of a brick's voxels among the surface voxels of the bricks around, and what is around its own.
-// One pass an axis, all in a window of voxels that stays in the first cache.
+// Finds the features of a brick's voxels among the surface voxels of the surrounding bricks, and the
+// neighborhoods of the brick's own surface voxels. It makes one pass per axis, in a window of voxels that
+// stays in the L1 cache.
 #pragma once
 
 #include <array>
@@ -12,7 +13,7 @@
 
 namespace podm {
 
-/// Where the nearest surface voxel lies, from a voxel of a brick.
+/// The offset from a voxel of a brick to its nearest surface voxel.
 class FeatureOffset {
  public:
   constexpr FeatureOffset() = default;
@@ -20,10 +21,10 @@ class FeatureOffset {
       : bits_(static_cast<std::uint16_t>((i + kZero) | (j + kZero) << 5 | (k + kZero) << 10)) {}
   constexpr explicit FeatureOffset(std::uint16_t bits) : bits_(bits) {}
 
-  /// No surface voxel of the bricks around is certain to be the nearest.
+  /// True if no surface voxel of the surrounding bricks is certain to be the nearest.
   constexpr bool is_beyond() const { return bits_ == 0; }
   constexpr Voxel offset() const { return {along<0>(+bits_), along<1>(+bits_), along<2>(+bits_)}; }
-  /// Of one offset, or of many in a register.
+  /// Decodes one offset, or several in a register.
   template <int axis, class Bits>
   static constexpr Bits along(const Bits& bits) {
     return (bits >> (5 * axis) & 31) - kZero;
@@ -32,18 +33,20 @@ class FeatureOffset {
 
  private:
   static constexpr int kZero = 16;
-  std::uint16_t bits_ = 0;  // five an axis; the uppermost is free
+  std::uint16_t bits_ = 0;  // five bits per axis; the top bit is free
 };
 
-/// How many bricks on each side of one, along each axis, are looked at for features: two of short voxels, so
-/// that the features of at least eight of the shortest sides are told, one of those that are longer by 1.6.
+/// The number of bricks on each side of a brick, along each axis, that are searched for features. It is two
+/// along an axis where the voxels are short, and one where they are at least 1.6 times as long as the
+/// shortest side. All features within eight shortest sides are therefore found.
 class Surroundings {
  public:
   static constexpr int kMostBricks = 2;
 
   explicit Surroundings(const LabelImage& image);
   const std::array<int, 3>& num_bricks() const { return num_bricks_; }
-  /// Surface voxels elsewhere are not nearer to any voxel of the brick, by centres.
+  /// Surface voxels outside the searched bricks are at least this far, by centers, from every voxel of the
+  /// brick.
   double reach_mm() const { return reach_mm_; }
 
  private:
@@ -51,14 +54,14 @@ class Surroundings {
   double reach_mm_;
 };
 
-/// Of the voxels of one brick after the other.
+/// Finds the features of the voxels of one brick after another.
 class BrickFeatures {
  public:
-  /// Keeps references.
+  /// Keeps references to `bricks`, `masks` and `surroundings`.
   BrickFeatures(const LabelImage& image, const BrickGrid& bricks, const SurfaceMasks& masks,
                 const Surroundings& surroundings);
 
-  /// By place; only features nearer than Surroundings::reach_mm() are told.
+  /// The offsets by place in the brick. Only features nearer than Surroundings::reach_mm() are returned.
   std::array<FeatureOffset, 64> offsets(const Voxel& brick) const;
 
  private:
@@ -67,19 +70,19 @@ class BrickFeatures {
   const BrickGrid& bricks_;
   const SurfaceMasks& masks_;
   const Surroundings& surroundings_;
-  std::array<std::array<double, 24>, 3> squared_;  // mm, by axis and offset + kMostOffset
+  std::array<std::array<double, 24>, 3> squared_;  // mm^2, by axis and offset + kMostOffset
 };
 
-/// What is around the surface voxels of a brick: reads the 6^3 labels in and around it once.
+/// The neighborhoods of the surface voxels of a brick. It reads the 6^3 labels in and around the brick once.
 class BrickNeighborhoods {
  public:
   BrickNeighborhoods(const LabelImage& image, const Voxel& brick);
-  /// `place`: of a surface voxel in the brick.
+  /// `place` must be that of a surface voxel in the brick.
   Neighborhood around(unsigned place) const;
   LabelIndex label(unsigned place) const { return labels_[first_around(place) + 7 * kRow + 1]; }
 
  private:
-  static constexpr std::size_t kRow = 8;  // so that four labels can be read from each place
+  static constexpr std::size_t kRow = 8;  // leaves room to read four labels from each place
   static std::size_t first_around(unsigned place) {
     return (6 * (place >> 4) + (place >> 2 & 3)) * kRow + (place & 3);
   }

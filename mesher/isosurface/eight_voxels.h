@@ -1,4 +1,4 @@
-// The voxels at a block's corners, or the features of those, all at a time.
+// Eight voxels that are processed together: those at the corners of a block, or their features.
 #pragma once
 
 #include <array>
@@ -9,11 +9,11 @@
 
 namespace podm {
 
-/// Eight voxels, of which some may be equal. A register holds a number of each.
+/// Eight voxels, some of which may be equal. Each register holds one number per voxel.
 struct EightVoxels {
   static constexpr unsigned kNum = 8;
   using Ints [[gnu::vector_size(4 * kNum)]] = std::int32_t;
-  using Numbers = std::array<std::uint32_t, kNum>;  // a register's, none negative
+  using Numbers = std::array<std::uint32_t, kNum>;  // the numbers of a register, none negative
 
   Ints i, j, k;
 

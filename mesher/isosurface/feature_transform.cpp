@@ -18,10 +18,11 @@ namespace podm {
 namespace {
 
 constexpr std::size_t kWordsOfLine = 8;
-// Of a near brick, words of 8 bytes: those of its voxels, then the mask of surface voxels and so on.
+// The layout of a near brick in words of 8 bytes: first the words of its voxels, then the mask of surface
+// voxels and their neighborhoods.
 constexpr std::size_t kMaskAt = 16, kMostLines = 7;
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
-// Squares and roots err by less.
+// The relative error of squares and roots is smaller.
 constexpr double kRoundedDown = 1 - 1e-12;
 
 std::size_t in_lines(std::size_t words) { return (words + kWordsOfLine - 1) / kWordsOfLine; }
@@ -39,20 +40,20 @@ std::size_t lines_of(std::uint64_t mask) {
   return in_lines(num_surface == 0 ? kMaskAt : kMaskAt + 1 + (num_surface + 1) / 2);
 }
 
-// With so many lines: table, masks and words.
+// The bytes of the table, the masks and this number of lines of words.
 std::uint64_t bytes_of(const BrickGrid& bricks, std::size_t lines) {
   return sizeof(std::uint64_t) * (2 * (bricks.count() + kWordsOfLine) + lines * kWordsOfLine);
 }
 
 }  // namespace
 
-// Makes the table and the words, a row of bricks at a time.
+// Makes the table and the words, one row of bricks at a time.
 class FeatureWriter {
  public:
   using Layout = Features<NoReads>;
   static_assert(kWordsOfLine * sizeof(std::uint64_t) == Layout::kLineBytes &&
                 kMaskAt * sizeof(std::uint64_t) == Layout::kBytesOfWords);
-  /// A thread's, by brick of a row.
+  /// One thread's scratch memory, by brick of a row.
   struct Scratch {
     std::vector<std::uint64_t> any, around;
   };
@@ -81,14 +82,16 @@ class FeatureWriter {
     return lines;
   }
 
-  // The table gets 0 for bricks beside those with surface voxels, infinity for others, as numbers.
+  // Writes into the table, as doubles, 0 for bricks with surface voxels and their neighbors, and infinity for
+  // all other bricks.
   void mark_beside_surface(std::size_t row, HugeArray<std::uint64_t>& words, Scratch& scratch) const {
     const std::vector<std::uint64_t>& beside = surface_around(row, {1, 1, 1}, scratch);
     for (std::size_t i = 0; i < row_; ++i)
       words[row * row_ + i] = std::bit_cast<std::uint64_t>(beside[i] != 0 ? 0.0 : kInfinity);
   }
 
-  // The table has squared distances, and gets what it is for; words of this row's bricks begin at `line`.
+  // Replaces the squared distances in the table by its final entries. The words of this row's bricks begin at
+  // `line`.
   void write(std::size_t row, std::size_t line, double step_mm, HugeArray<std::uint64_t>& words,
              Scratch& scratch) const {
     const std::vector<std::uint64_t>& around = surface_around(row, surroundings_.num_bricks(), scratch);
@@ -117,7 +120,7 @@ class FeatureWriter {
     return {i, static_cast<int>(row % rows), static_cast<int>(row / rows)};
   }
 
-  // Not 0 for the bricks of a row that have surface voxels in so many bricks on each side.
+  // Nonzero for each brick of a row that has surface voxels within `num_bricks` bricks on each side.
   const std::vector<std::uint64_t>& surface_around(std::size_t row, const std::array<int, 3>& num_bricks,
                                                    Scratch& scratch) const {
     const auto [x, y, z] = num_bricks;

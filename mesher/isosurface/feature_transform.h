@@ -1,24 +1,26 @@
-// For every voxel the nearest surface voxel, by centres, in mm: exactly, and stored where the isosurface is
-// near.
+// The nearest surface voxel of every voxel, by centers, in mm. It is exact, and is stored where the
+// isosurface is near.
 //
-// A *surface voxel* has a 6-neighbour of another label; outside the grid counts as background. The grid is
-// cut into bricks of 4^3 voxels, of which a table tells, 8 bytes each:
-//   A near brick: one of its surroundings (brick_features.h), itself included, has a surface voxel. The table
-//     has where its words lie, and its label if it has just one.
-//   A far brick: the others. All its voxels have one label (two that differ have two beside each other on the
-//     way), and the table has it, with a lower bound of the distance between the brick and all bricks with
-//     surface voxels, box to box.
-// A near brick's words are 16 bits for each voxel: the offset to its feature, unless that is
-// Surroundings::reach_mm() or more away. A surface voxel is its own feature, which leaves its word free: it
-// tells its label. After the words of a brick with surface voxels come their mask and their neighborhoods. So
-// a look at the table and one at a line of words and of neighborhoods give the label and the shape of the
-// isosurface.
+// A *surface voxel* has a 6-neighbor of another label. Voxels outside the grid count as background. The grid
+// is cut into bricks of 4^3 voxels. A table has an entry of 8 bytes per brick:
+//   A near brick has a surface voxel in its surroundings (brick_features.h), which include the brick itself.
+//     The entry holds the position of the brick's words, and its label if it has no surface voxel.
+//   A far brick is any other brick. All its voxels have one label: if two differed, two adjacent voxels on
+//     the way between them would differ too. The entry holds that label and a lower bound of the distance,
+//     box to box, between the brick and all bricks with surface voxels.
 //
-// A box of voxels holds all points of which one of its voxels is the nearest, and all isosurface points
-// within half a voxel of its surface voxels. So the distance of boxes bounds that of points. Along an axis
-// boxes of bricks n > 0 apart are n - 1 bricks apart, as is the first from the nearest of the three around
-// the second. So it is the distance to the nearest of all bricks beside those with surface voxels
-// (brick_distances.h).
+// A near brick has a 16-bit word per voxel: the offset to the voxel's feature, unless the feature is
+// Surroundings::reach_mm() or more away. A surface voxel is its own feature, therefore its word is free and
+// holds its label. After the words of a brick with surface voxels come their mask and their neighborhoods.
+// One read of the table and one of a line of words and of neighborhoods therefore give the label and the
+// shape of the isosurface.
+//
+// The bound is found as follows. A box of voxels contains all points whose nearest voxel is one of its
+// voxels, and all isosurface points within half a voxel of its surface voxels. The distance between boxes is
+// therefore a lower bound of the distance between such points. Along an axis, the boxes of bricks n > 0 apart
+// have a gap of n - 1 bricks. The first brick is also n - 1 apart from the nearest of the three bricks around
+// the second. The distance between boxes is therefore the distance to the nearest of all bricks that have
+// surface voxels or touch a brick that has (brick_distances.h).
 #pragma once
 
 #include <bit>
@@ -38,10 +40,10 @@
 
 namespace podm {
 
-/// What the table tells of a brick.
+/// The table's entry of a brick.
 class Brick {
  public:
-  /// No label: kMaxLabels is less.
+  /// Not a label, as kMaxLabels is smaller.
   static constexpr LabelIndex kMixed = 0xffff;
   static constexpr std::uint16_t kMostSteps = 0xffff;
 
@@ -54,11 +56,11 @@ class Brick {
   constexpr explicit Brick(std::uint64_t word) : word_(word) {}
 
   constexpr bool is_near() const { return line() != 0; }
-  /// Where its words begin, in lines of 64 bytes.
+  /// The position of the brick's words, in lines of 64 bytes.
   constexpr std::uint32_t line() const { return static_cast<std::uint32_t>(word_); }
-  /// Of all its voxels; kMixed where some are surface voxels.
+  /// The label of all its voxels, or kMixed if the brick has surface voxels.
   constexpr LabelIndex label() const { return static_cast<LabelIndex>(word_ >> 32); }
-  /// Of a far brick: how far the isosurface is at least, in FeatureTransform::step_mm().
+  /// For a far brick: the least distance to the isosurface, in units of FeatureTransform::step_mm().
   constexpr std::uint16_t steps() const { return static_cast<std::uint16_t>(word_ >> 48); }
   constexpr std::uint64_t word() const { return word_; }
 
@@ -66,23 +68,23 @@ class Brick {
   std::uint64_t word_;
 };
 
-/// The table and the words.
 class FeatureTransform {
  public:
-  /// Runs on `threads` threads (0: all cores); the result is the same for any number.
-  /// Throws InputError if the image has more than kMaxVoxels.
+  /// Runs on `threads` threads (0: all cores). The result is the same for any number of threads. Throws
+  /// InputError if the image has more than kMaxVoxels.
   FeatureTransform(const LabelImage& image, int threads);
-  /// What the transform of an image takes while it is made, as counted in a tenth of the time.
+  /// The memory that the transform of an image takes while it is made, in bytes. Counting takes a tenth of
+  /// the transform's time.
   static std::uint64_t num_bytes(const LabelImage& image, int threads);
-  /// The most that images of this size can take.
+  /// The largest num_bytes() of any image of this size.
   static std::uint64_t most_bytes(const LabelImage& image);
 
   const BrickGrid& bricks() const { return bricks_; }
   const SurfaceTree& tree() const { return tree_; }
-  /// Infinite without surface voxels.
+  /// Infinite if the image has no surface voxels.
   double step_mm() const { return step_mm_; }
   double reach_mm() const { return reach_mm_; }
-  /// The table, by brick, and the lines of words, which begin at the next multiple of eight.
+  /// The table, by brick, followed by the lines of words, which begin at the next multiple of eight.
   std::span<const std::uint64_t> words() const { return {&words_[0], num_words_}; }
 
  private:
@@ -93,7 +95,7 @@ class FeatureTransform {
   double step_mm_ = 0, reach_mm_ = 0;
 };
 
-/// Questions to a transform, to which it keeps a reference. `Reads` is told of each word read.
+/// Queries a transform, to which it keeps a reference. `Reads` receives each word that is read.
 template <class Reads>
 class Features {
  public:
@@ -106,14 +108,15 @@ class Features {
   bool is_empty() const { return transform_->tree().is_empty(); }
   Brick brick_of(const Voxel& v) const { return brick(bricks_.index_of_voxel(v)); }
 
-  /// The surface voxels near u, see SurfaceTree::visit().
+  /// Visits the surface voxels near u, see SurfaceTree::visit().
   template <class Take>
   void visit(const Point& u, double& squared_reach, const Take& take) const {
     transform_->tree().visit(
         u, squared_reach,
         [&](const Voxel& at) { return surface_mask(brick(bricks_.index(at.i, at.j, at.k))); }, take);
   }
-  /// The surface voxel whose centre is nearest to u, if within `reach_mm`: a search of some microseconds.
+  /// The surface voxel whose center is nearest to u, if it lies within `reach_mm`. The search takes some
+  /// microseconds.
   std::optional<Voxel> nearest(const Point& u, double reach_mm) const {
     std::optional<Voxel> nearest;
     double squared_reach = reach_mm * reach_mm;
@@ -124,14 +127,15 @@ class Features {
     });
     return nearest;
   }
-  /// Whether the centre of one is that near: a shorter search.
+  /// True if the center of a surface voxel lies within `reach_mm` of u. The search is shorter than that of
+  /// nearest().
   bool is_surface_within(const Point& u, double reach_mm) const {
     constexpr double kEnd = -1;
     double squared_reach = reach_mm * reach_mm;
     visit(u, squared_reach, [&](const Voxel&, double) { squared_reach = kEnd; });
     return squared_reach == kEnd;
   }
-  /// `v` lies in `brick`; none where the words do not tell.
+  /// The offset from `v`, which lies in `brick`, to its feature; none if the words do not store it.
   std::optional<Voxel> offset_to_nearest(Brick brick, const Voxel& v) const {
     if (!brick.is_near()) return std::nullopt;
     const std::uint16_t word = word_at(brick, place_in_brick(v));
@@ -139,8 +143,8 @@ class Features {
     const FeatureOffset offset(word);
     return offset.is_beyond() ? std::nullopt : std::optional(offset.offset());
   }
-  /// The surface voxels nearest to eight voxels; none where the words do not tell all. Asks for what
-  /// neighborhoods() reads of them.
+  /// The features of eight voxels; none if the words do not store all of them. Prefetches what
+  /// neighborhoods() reads of these features.
   std::optional<EightVoxels> nearest(const EightVoxels& voxels) const {
     const auto bricks = voxels.bricks(bricks_), places = voxels.places_in_bricks();
     EightVoxels::Ints words;
@@ -160,7 +164,6 @@ class Features {
     }
     return features;
   }
-  /// What is around eight surface voxels.
   EightVoxels::Numbers neighborhoods(const EightVoxels& surface_voxels) const {
     const auto bricks = surface_voxels.bricks(bricks_), places = surface_voxels.places_in_bricks();
     EightVoxels::Numbers bits;
@@ -170,13 +173,15 @@ class Features {
     }
     return bits;
   }
-  /// A lower bound of the distance from the points nearest to voxels of a far brick to the isosurface, mm.
+  /// A lower bound, mm, of the distance between the isosurface and any point whose nearest voxel lies in the
+  /// far `brick`.
   double distance_from_far(Brick brick) const { return brick.steps() * transform_->step_mm(); }
-  /// The same between the centres of a voxel of a near brick and of a surface voxel, where the words do not
-  /// tell the nearest.
+  /// A lower bound, mm, of the distance by centers between a voxel of a near brick and any surface voxel, if
+  /// the words do not store the voxel's feature.
   double reach_mm() const { return transform_->reach_mm(); }
 
-  /// The label of v, which lies in `brick`, if v is a surface voxel; kUntold where words have no room for it.
+  /// The label of v, which lies in `brick`, if v is a surface voxel; kUntold if the label does not fit in a
+  /// word.
   std::optional<LabelIndex> label_if_surface(Brick brick, const Voxel& v) const {
     if (brick.label() != Brick::kMixed) return std::nullopt;
     const std::uint16_t word = word_at(brick, place_in_brick(v));
@@ -184,7 +189,7 @@ class Features {
   }
   static constexpr LabelIndex kUntold = 0x7fff;
 
-  /// A voxel off the surface has none.
+  /// None if `v` is not a surface voxel.
   std::optional<Neighborhood> neighborhood_if_surface(const Voxel& v) const {
     const Brick brick = brick_of(v);
     if (brick.label() != Brick::kMixed) return std::nullopt;
@@ -192,14 +197,14 @@ class Features {
     const unsigned place = place_in_brick(v);
     return (mask >> place & 1) != 0 ? std::optional(neighborhood_at(brick, mask, place)) : std::nullopt;
   }
-  /// `v`, in `brick`, must be a surface voxel.
+  /// `v` must be a surface voxel in `brick`.
   Neighborhood neighborhood(Brick brick, const Voxel& v) const {
     return neighborhood_at(brick, surface_mask(brick), place_in_brick(v));
   }
   /// `v` must be a surface voxel.
   Neighborhood neighborhood(const Voxel& v) const { return neighborhood(brick_of(v), v); }
 
-  /// Asks for the line of v's word; reads the table.
+  /// Prefetches the line of v's word. Reads the table.
   void prefetch(const Voxel& v) const {
     const Brick brick(words_[bricks_.index_of_voxel(v)]);
     __builtin_prefetch(bytes() + byte_of_word(brick, place_in_brick(v)));
@@ -207,7 +212,7 @@ class Features {
 
  private:
   friend class FeatureWriter;
-  static constexpr std::uint16_t kSurface = 0x8000;  // the rest is the label, or kUntold
+  static constexpr std::uint16_t kSurface = 0x8000;  // the other bits are the label, or kUntold
   static constexpr std::size_t kLineBytes = 64, kBytesOfWords = 64 * sizeof(std::uint16_t);
 
   const std::byte* bytes() const { return reinterpret_cast<const std::byte*>(words_); }

@@ -11,10 +11,10 @@ namespace {
 
 double square(double x) { return x * x; }
 
-// The number of [low, high] that is nearest to x; low if x is not a number.
+// The number in [low, high] that is nearest to x, or low if x is not a number.
 double clamped(double x, double low, double high) { return std::max(low, std::min(x, high)); }
 
-// More than 1 by more than roundings.
+// Exceeds 1 by more than the rounding errors.
 constexpr double kSomewhatMore = 1 + 1e-9;
 
 }  // namespace
@@ -37,8 +37,8 @@ Oracle<Reads>::Oracle(const LabelImage& image, std::shared_ptr<const FeatureTran
       to_surface_voxel_mm_(strengths_ != nullptr ? 2 * half_diagonal_mm_ : half_diagonal_mm_),
       beyond_bricks_mm_(to_surface_voxel_mm_ - half_diagonal_mm_) {}
 
-// Which corners of u's block differ from v is known; where there are two labels their weights decide, and no
-// label of the block has to be read unless the other one wins.
+// The neighborhood of v gives the corners of u's block that differ from v. If there are two labels, their
+// weights decide. A label of the block then has to be read only if the other label wins.
 template <class Reads>
 LabelIndex Oracle<Reads>::label_by_neighborhood(const Point& u, const Voxel& v, Brick brick,
                                                 LabelIndex own) const {
@@ -65,8 +65,8 @@ LabelIndex Oracle<Reads>::label_by_block(const Point& u) const {
   });
 }
 
-// Its block may still have several labels, but only if a surface voxel is beside v: the nearest, which may be
-// another where voxels are long, is then no farther than a diagonal.
+// The block of u may still have several labels, but only if a voxel next to v is a surface voxel. The feature
+// of v may be another voxel where voxels are long, but it is then at most one diagonal away.
 template <class Reads>
 LabelIndex Oracle<Reads>::label_off_surface(const Point& u, const Voxel& v, Brick brick) const {
   const std::optional<Voxel> offset = features_.offset_to_nearest(brick, v);
@@ -85,8 +85,8 @@ double Oracle<Reads>::distance_lower_bound(const Point& p, double radius) const 
   return std::max(clearance(to_voxels(p), radius), 0.0);
 }
 
-// The isosurface lies within half a voxel of the grid. p projects to p' on that convex box, and
-// |p - s|^2 >= |p - p'|^2 + |p' - s|^2 for any s in it.
+// The isosurface lies in the convex box of the grid grown by half a voxel. Let p' be the projection of p on
+// that box. Then |p - s|^2 >= |p - p'|^2 + |p' - s|^2 for any s in the box.
 template <class Reads>
 double Oracle<Reads>::bound_from_outside(const Point& u, double radius) const {
   const Point inside{clamped(u.x, -0.5, end_.x), clamped(u.y, -0.5, end_.y), clamped(u.z, -0.5, end_.z)};
@@ -95,9 +95,10 @@ double Oracle<Reads>::bound_from_outside(const Point& u, double radius) const {
   return std::sqrt(squared_length(to_mm(u - inside)) + square(bound));
 }
 
-// The lemma says that every isosurface point is within half a voxel of a surface voxel: within the bricks
-// that have some, and within half a diagonal of a surface voxel's centre, of which none is nearer to v's than
-// its feature. Where interfaces are smoothed it is half a voxel, and half a diagonal, more.
+// The lemma states that every isosurface point is within half a voxel of a surface voxel. It therefore lies
+// in a brick that has surface voxels, and within half a diagonal of a surface voxel's center. No surface
+// voxel's center is nearer to that of v than that of v's feature. Where interfaces are smoothed, the two
+// bounds grow by half a voxel and by half a diagonal.
 template <class Reads>
 double Oracle<Reads>::bound_by_feature(const Point& u, const Voxel& v, double radius) const {
   const Brick brick = features_.brick_of(v);
@@ -111,7 +112,7 @@ double Oracle<Reads>::bound_by_feature(const Point& u, const Voxel& v, double ra
   return features_.is_surface_within(u, reach) ? bound : reach - to_surface_voxel_mm_;
 }
 
-// Members are spread over files, each of which makes its own for both oracles.
+// Each file that defines members instantiates its own for both oracles.
 template Oracle<NoReads>::Oracle(const LabelImage&, std::shared_ptr<const FeatureTransform>,
                                  std::shared_ptr<const VoxelStrengths>, const NoReads&);
 template Oracle<CountedReads>::Oracle(const LabelImage&, std::shared_ptr<const FeatureTransform>,

@@ -1,21 +1,23 @@
-// The isosurface oracle: what the object's boundary is, and where its nearest point lies.
+// The isosurface oracle: the labels of points, and the nearest points of the object's boundary and
+// interfaces.
 //
-// The label at a point is the one with the greatest trilinear weight among the eight voxels around it, ties
-// to the smaller label index; outside the grid everything is background. The isosurface is the set of points
-// where that label changes. Points are mm in the working frame.
+// The label at a point is the one with the greatest trilinear weight among the eight voxels around it. A tie
+// goes to the smaller label index. Outside the grid everything is background. The isosurface is the set of
+// points where that label changes. Points are in mm, in the working frame.
 //
-// Lemma. An isosurface point s lies within half a voxel, along every axis, of a surface voxel's centre
-// (feature_transform.h). Proof: let c be the corner nearest to s of the block that holds s, s = c + (x,y,z)
-// in units of voxels with 0 <= x,y,z <= 1/2. If c is no surface voxel, it has its label in common with its
-// three neighbours in the block, and that label's weight, (1-y)(1-z) + (1-x)(y(1-z) + z(1-y)), does not
-// grow with x, y or z, hence is at least its value 1/2 at (1/2,1/2,1/2), and exceeds 1/2 elsewhere. So s is
-// the block's centre, as near to all corners, and some corner is a surface voxel.
+// Lemma. An isosurface point s lies within half a voxel, along every axis, of a surface voxel's center
+// (feature_transform.h). Proof: let c be the corner nearest to s of the block that holds s. Let s = c +
+// (x,y,z) in units of voxels, with 0 <= x,y,z <= 1/2. Suppose that c is not a surface voxel. Then its three
+// neighbors in the block have the same label as c. The weight of these four corners is (1-y)(1-z) +
+// (1-x)(y(1-z) + z(1-y)). It does not grow with x, y or z. It is therefore at least its value 1/2 at
+// (1/2,1/2,1/2), and exceeds 1/2 elsewhere, where the label of c wins. So s is the block's center, which is
+// equally near to all corners, and some corner is a surface voxel.
 //
-// Where interfaces are smoothed, voxels weigh as much as they are strong (voxel_strengths.h). A block with
-// one label still has it throughout, as all other weights are 0. So an isosurface point lies in a block with
-// an edge between two labels, whose ends are surface voxels: within *one* voxel, along every axis, of a
-// surface voxel's centre. Half a voxel beyond the grid background still ties, as voxels there are as strong
-// as their neighbours inside.
+// Where interfaces are smoothed, each voxel has a weight of its own (voxel_strengths.h). A block with one
+// label still has that label throughout, as all other weights are 0. An isosurface point therefore lies in a
+// block with an edge between two labels. The ends of the edge are surface voxels. The point is within *one*
+// voxel, along every axis, of their centers. Half a voxel beyond the grid, background still ties, as voxels
+// there have the weights of their neighbors inside.
 #pragma once
 
 #include <algorithm>
@@ -35,12 +37,13 @@ namespace podm {
 
 /// A point of the isosurface that is near to another point.
 struct NearPoint {
-  Point point;  // to about a hundredth of a voxel
+  Point point;  // accurate to about a hundredth of a voxel
   Voxel surface_voxel;
-  bool is_midpoint;  // of two neighbouring voxels
+  bool is_midpoint;  // `point` is where the label changes between two neighboring voxel centers
 };
 
-/// Up to four balls of one radius, in which no isosurface point is searched for any further.
+/// Up to four balls of one radius. A near point in one of them is good enough: the search for a nearer one
+/// ends.
 struct Cover {
   std::array<Point, 4> centers;
   unsigned num_balls = 0;
@@ -52,20 +55,21 @@ struct Cover {
   }
 };
 
-/// `Reads` is told of every read of the image and of its transform.
+/// `Reads` receives every read of the image and of its transform.
 template <class Reads>
 class Oracle {
  public:
-  /// Keeps a reference to `image`, whose transform is given, and the strengths of its voxels if they differ.
+  /// Keeps a reference to `image`. `transform` is the image's; `strengths` are its voxel weights, or null if
+  /// all are 1.
   Oracle(const LabelImage& image, std::shared_ptr<const FeatureTransform> transform,
          std::shared_ptr<const VoxelStrengths> strengths, const Reads& reads);
   const LabelImage& image() const { return *image_; }
   const FeatureTransform& transform() const { return *transform_; }
 
-  /// Greatest trilinear weight; a single look-up away from any label change.
+  /// The label of greatest trilinear weight. Away from any label change this is a single look-up.
   LabelIndex label_at(const Point& p) const { return label_at_voxels(to_voxels(p)); }
 
-  /// Asks for the cache lines that the questions about p begin with.
+  /// Prefetches the cache lines that the queries about p read first.
   void prefetch(const Point& p) const {
     const Point u = to_voxels(p);
     if (!is_inside(u)) return;
@@ -74,32 +78,34 @@ class Oracle {
     grid_.prefetch(v);
   }
 
-  /// A lower bound of the distance from p to the isosurface, mm; 0 when p may lie on it. A look-up,
-  /// and some more where only that can tell whether the distance is above `radius`. In the grid the bound is
-  /// above if the distance is, by two diagonals of a voxel.
+  /// A lower bound of the distance from p to the isosurface, mm; 0 if p may lie on it. This is a look-up,
+  /// followed by a search only if the search is needed to decide if the distance exceeds `radius`. Inside the
+  /// grid the bound exceeds `radius` if the distance exceeds it by two diagonals of a voxel.
   double distance_lower_bound(const Point& p, double radius) const;
 
-  /// The isosurface point nearest to p, as found by local search from the nearest surface voxels, if within
-  /// `radius` of p. Among several bumps of voxel size the search may take the second nearest: on smooth
-  /// shapes it exceeds the nearest distance typically by nothing, in 1 % of cases by more than 0.25 and never
-  /// by more than 1 of a voxel's shortest side, as long as no side is much longer; of sides of 1, 1 and 5
-  /// by more than 0.55 and never by more than 0.75 of the longest. From far outside of the grid it may exceed
-  /// by 4 sides. One of the first points found will do if `cover` contains it.
+  /// The isosurface point nearest to p, found by local search from the nearest surface voxels, if within
+  /// `radius` of p. Among several bumps of voxel size the search may take the second nearest. On smooth
+  /// shapes the excess over the nearest distance is typically zero. If no voxel side is much longer than the
+  /// others, it exceeds 0.25 of the shortest side in 1 % of cases, and never 1 of it. For voxel sides of 1, 1
+  /// and 5 it exceeds 0.55 of the longest side in 1 % of cases, and never 0.75 of it. From far outside the
+  /// grid it may be 4 sides. The search may return one of the first points that it finds, if `cover` contains
+  /// it.
   std::optional<NearPoint> near_point(const Point& p, double radius, const Cover& cover = {}) const;
-  /// p's near point, brought to less than 1e-6 voxel from the isosurface. May be a little beyond `radius`.
+  /// The near point of p, moved to less than 1e-6 voxel from the isosurface. It may lie slightly beyond
+  /// `radius`.
   Point polished(const NearPoint& near, const Point& p) const;
 
-  /// The point where the label changes along segment ab, searched from a; none if there is no change.
-  /// If the labels at a and b differ one is always found. Double crossings are found down to 1e-6 of the
+  /// The point where the label changes along segment ab, searched from a; none if there is no change. If the
+  /// labels at a and b differ, a point is always returned. Double crossings are found down to 1e-6 of the
   /// segment's part in a block.
   std::optional<Point> segment_intersection(const Point& a, const Point& b) const;
-  /// Whether the same search finds a change along ab, at whose ends the label is `label`.
+  /// True if the same search finds a change along ab. The label at both ends must be `label`.
   bool is_crossed(const Point& a, const Point& b, LabelIndex label) const;
 
  protected:
   const LabelImage* image_;
   std::shared_ptr<const FeatureTransform> transform_;
-  std::shared_ptr<const VoxelStrengths> strengths_;  // null: all are equally strong
+  std::shared_ptr<const VoxelStrengths> strengths_;  // null if all weights are 1
 
  private:
   struct LabelChange {
@@ -110,7 +116,7 @@ class Oracle {
 
   Point to_voxels(const Point& p) const { return map(to_voxels_, p); }
   Point from_voxels(const Point& u) const { return map(from_voxels_, u); }
-  // Both convert directions, which lie along the image's axes.
+  // These two convert directions, which lie along the image's axes.
   Vector to_mm(const Vector& d) const { return {d.x * spacing_.x, d.y * spacing_.y, d.z * spacing_.z}; }
   Vector per_mm(const Vector& gradient) const {
     return {gradient.x * inverse_spacing_.x, gradient.y * inverse_spacing_.y,
@@ -118,11 +124,11 @@ class Oracle {
   }
   double length_mm(const Vector& d) const { return std::sqrt(squared_length(to_mm(d))); }
 
-  // All below take points in voxels; bounds and normals are mm.
+  // All functions below take points in voxels. Bounds and normals are in mm.
   bool is_inside(const Point& u) const {
     const auto is_in = [](double x, double end) {
       return x > -0.5 && x + 0.5 < end + 0.5;
-    };  // as rounded below
+    };  // rounded as in nearest_voxel()
     return is_in(u.x, end_.x) && is_in(u.y, end_.y) && is_in(u.z, end_.z);
   }
   /// `u` must be inside.
@@ -130,23 +136,23 @@ class Oracle {
     return {static_cast<int>(u.x + 0.5), static_cast<int>(u.y + 0.5), static_cast<int>(u.z + 0.5)};
   }
   LabelIndex label_at_voxels(const Point& u) const;
-  /// `v` is the surface voxel nearest to u, in `brick`.
+  /// `v`, the voxel nearest to u, is a surface voxel of `brick`.
   LabelIndex label_by_neighborhood(const Point& u, const Voxel& v, Brick brick, LabelIndex own) const;
   LabelIndex label_by_block(const Point& u) const;
-  /// `v`, nearest to u, is no surface voxel.
+  /// `v`, the voxel nearest to u, is not a surface voxel.
   LabelIndex label_off_surface(const Point& u, const Voxel& v, Brick brick) const;
-  /// ask(strengths) of a block's corners.
+  /// Returns ask(weights of the block's corners).
   template <class Ask>
   auto with_strengths(const Voxel& block, const Ask& ask) const {
     if (strengths_ != nullptr) [[unlikely]]
       return ask(strengths_->block(block));
     return ask(EquallyStrong{});
   }
-  /// The nearest point of the box of all voxel centres; (0,0,0) for NaN.
+  /// The nearest point of the box of all voxel centers; (0,0,0) for NaN.
   Point clamped_to_grid(const Point& u) const;
   bool is_empty() const { return features_.is_empty(); }
-  /// May be negative. Beyond the words of the transform it is searched for only where that can tell whether
-  /// the distance is above `radius`.
+  /// May be negative. Where the transform stores no feature, surface voxels are searched for only if that can
+  /// decide if the distance exceeds `radius`.
   double clearance(const Point& u, double radius) const {
     return is_inside(u) ? bound_by_feature(u, nearest_voxel(u), radius) : bound_from_outside(u, radius);
   }
@@ -170,23 +176,23 @@ class Oracle {
 
   LabelGrid<Reads> grid_;
   Features<Reads> features_;
-  Affine from_voxels_, to_voxels_;              // to the working frame, from it
-  Vector spacing_, inverse_spacing_;            // mm a voxel, voxels a mm
-  Point end_;                                   // half a voxel beyond the last
-  double half_diagonal_mm_, shortest_side_mm_;  // a voxel's
-  double to_surface_voxel_mm_;                  // from an isosurface point, at most
-  double beyond_bricks_mm_;  // by which the isosurface may leave the bricks of surface voxels
+  Affine from_voxels_, to_voxels_;              // to and from the working frame
+  Vector spacing_, inverse_spacing_;            // mm per voxel, voxels per mm
+  Point end_;                                   // half a voxel beyond the last voxel
+  double half_diagonal_mm_, shortest_side_mm_;  // of a voxel
+  double to_surface_voxel_mm_;                  // the largest distance from an isosurface point
+  double beyond_bricks_mm_;  // the farthest that the isosurface lies outside the bricks with surface voxels
 };
 
-/// The oracle as most ask it: nobody counts.
+/// The oracle without read counts, for most callers.
 class Isosurface : public Oracle<NoReads> {
  public:
-  /// Runs the feature transform on `threads` threads (0: all cores). Keeps a reference to `image`;
-  /// `strengths` are null unless its interfaces are smoothed. Throws InputError if the image has more than
+  /// Runs the feature transform on `threads` threads (0: all cores). Keeps a reference to `image`.
+  /// `strengths` is null unless the interfaces are smoothed. Throws InputError if the image has more than
   /// 2^31 - 1 voxels.
   Isosurface(const LabelImage& image, int threads, std::shared_ptr<const VoxelStrengths> strengths = nullptr)
       : Oracle(image, std::make_shared<FeatureTransform>(image, threads), std::move(strengths), {}) {}
-  /// The same answers, by one whose reads are counted; strengths are not.
+  /// An oracle with the same results that counts its reads, except those of voxel weights.
   Oracle<CountedReads> counted(const CountedReads& reads) const {
     return {*image_, transform_, strengths_, reads};
   }
@@ -194,14 +200,15 @@ class Isosurface : public Oracle<NoReads> {
 
 template <class Reads>
 inline LabelIndex Oracle<Reads>::label_at_voxels(const Point& u) const {
-  // Half a voxel outside the grid background has at least half the weight.
+  // Half a voxel outside the grid, background has at least half the weight.
   if (!is_inside(u)) return kBackground;
   const Voxel v = nearest_voxel(u);
   const Brick brick = features_.brick_of(v);
   if (const auto own = features_.label_if_surface(brick, v)) return label_by_neighborhood(u, v, brick, *own);
   if (strengths_ != nullptr) [[unlikely]]
     return label_off_surface(u, v, brick);
-  // The lemma leaves only a tie at the block's centre to take the label from a voxel off the surface.
+  // The lemma leaves one case in which u has another label than v, a voxel off the surface: a tie at the
+  // block's center.
   constexpr double kNotCenter = 1.5 - 1e-9;
   const Vector offset = u - center(v);
   if (std::fabs(offset.x) + std::fabs(offset.y) + std::fabs(offset.z) > kNotCenter) {

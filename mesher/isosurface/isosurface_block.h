@@ -1,7 +1,7 @@
-// Labels by voxel and by block. A *block* is the box between eight voxel centres; inside it every label has a
-// trilinear weight, of corners that are 1 or as strong as their voxels, and the greatest weight wins.
-// Coordinates here are in voxels: voxel (i,j,k) is centred at (i,j,k), and block (i,j,k) reaches from there
-// to (i+1,j+1,k+1).
+// Labels by voxel and by block. A *block* is the box between eight voxel centers. Inside it every label has a
+// trilinear weight, interpolated from the corners: a corner contributes 1, or the weight of its voxel. The
+// greatest weight wins. Coordinates are in voxels: voxel (i,j,k) is centered at (i,j,k), and block (i,j,k)
+// extends from there to (i+1,j+1,k+1).
 #pragma once
 
 #include <array>
@@ -23,9 +23,9 @@ inline Voxel block_of(const Point& u) {
           static_cast<int>(std::floor(u.z))};
 }
 
-/// Four labels in a word, and the same label four times.
+/// Four copies of the label in a word.
 inline std::uint64_t repeated(LabelIndex label) { return label * 0x0001'0001'0001'0001u; }
-/// Bit l: whether the l-th label of one word differs from that of the other.
+/// Bit l is set if the l-th labels of the two words differ.
 inline unsigned differing(std::uint64_t four_labels, std::uint64_t others) {
   constexpr std::uint64_t kLow = 0x7fff'7fff'7fff'7fff;
   const std::uint64_t x = four_labels ^ others;
@@ -33,12 +33,13 @@ inline unsigned differing(std::uint64_t four_labels, std::uint64_t others) {
   return static_cast<unsigned>((top_bits >> 15) * 0x0001'0002'0004'0008 >> 48 & 0xf);
 }
 
-/// A set of a block's corners, a bit each; corner i + 2 j + 4 k lies at (i,j,k) from the block's own voxel.
+/// A set of a block's corners, one bit per corner. Corner i + 2 j + 4 k lies at (i,j,k) from the block's own
+/// voxel.
 using CornerMask = unsigned;
 inline constexpr CornerMask kAllCorners = 0xff;
 using CornerValues = std::array<double, 8>;
 
-/// The bits of each number below 16, as numbers.
+/// The bits of each number below 16, as doubles.
 inline constexpr auto kBits = [] {
   std::array<std::array<double, 4>, 16> bits{};
   for (std::size_t m = 0; m < 16; ++m) {
@@ -52,7 +53,6 @@ constexpr CornerValues indicator(CornerMask mask) {
   return {low[0], low[1], low[2], low[3], high[0], high[1], high[2], high[3]};
 }
 
-/// The labels of a block's corners.
 struct BlockLabels {
   std::array<LabelIndex, 8> corner;
 
@@ -64,11 +64,11 @@ struct BlockLabels {
     const auto words = std::bit_cast<std::array<std::uint64_t, 2>>(corner);
     return ~(differing(words[0], repeated(label)) | differing(words[1], repeated(label)) << 4) & kAllCorners;
   }
-  /// The label of the first corner of a set that is not empty.
+  /// The label of the first corner in a set that is not empty.
   LabelIndex first(CornerMask mask) const { return corner[static_cast<std::size_t>(std::countr_zero(mask))]; }
 };
 
-/// A function that is linear along each axis, given by its values at a block's corners.
+/// A function that is linear along each axis, given by its values at the corners of a block.
 class Trilinear {
  public:
   constexpr explicit Trilinear(const CornerValues& v)
@@ -81,7 +81,7 @@ class Trilinear {
         yz_(v[6] - v[4] - y_),
         xyz_(v[7] - v[6] - v[5] + v[4] - xy_) {}
 
-  /// The value at f, which is given in voxels from the block's own voxel.
+  /// The value at f, which is in voxels from the block's own voxel.
   double value(const Point& f) const {
     return value_ + f.x * x_ + f.y * (y_ + f.x * xy_) + f.z * (z_ + f.x * xz_ + f.y * (yz_ + f.x * xyz_));
   }
@@ -89,12 +89,12 @@ class Trilinear {
     return {x_ + f.y * xy_ + f.z * (xz_ + f.y * xyz_), y_ + f.x * xy_ + f.z * (yz_ + f.x * xyz_),
             z_ + f.x * xz_ + f.y * (yz_ + f.x * xyz_)};
   }
-  /// The second derivative of value(f + s d) by s, at s = 0.
+  /// The second derivative of value(f + s d) with respect to s, at s = 0.
   double second_derivative(const Point& f, const Vector& d) const {
     return 2 *
            (d.x * d.y * (xy_ + f.z * xyz_) + d.x * d.z * (xz_ + f.y * xyz_) + d.y * d.z * (yz_ + f.x * xyz_));
   }
-  /// Coefficients of the powers of s in value(f + s d).
+  /// The coefficients of the powers of s in value(f + s d).
   std::array<double, 4> along(const Point& f, const Vector& d) const {
     return {value(f), dot(gradient(f), d), 0.5 * second_derivative(f, d), d.x * d.y * d.z * xyz_};
   }
@@ -103,15 +103,15 @@ class Trilinear {
   double value_, x_, y_, z_, xy_, xz_, yz_, xyz_;
 };
 
-/// Of corners of a block that are equally strong, 1 each.
+/// Corners of a block that all have weight 1.
 struct EquallyStrong {
   constexpr CornerValues of(CornerMask mask) const { return indicator(mask); }
 };
-/// Of corners each with a strength of its own (voxel_strengths.h).
+/// Corners that each have a weight of their own (voxel_strengths.h).
 struct CornerStrengths {
   CornerValues values;
 
-  /// Of the corners of the set; 0 elsewhere.
+  /// The weights of the corners in the set, and 0 elsewhere.
   CornerValues of(CornerMask mask) const {
     CornerValues v = indicator(mask);
     for (std::size_t c = 0; c < 8; ++c) v[c] *= values[c];
@@ -119,7 +119,7 @@ struct CornerStrengths {
   }
 };
 
-/// The weight of the corners `a` less that of the corners `b`.
+/// The weight of the corners `a` minus that of the corners `b`.
 template <class Strengths = EquallyStrong>
 constexpr Trilinear weight_difference(CornerMask a, CornerMask b, const Strengths& strengths = {}) {
   CornerValues v = strengths.of(a);
@@ -141,15 +141,15 @@ struct Winner {
   LabelIndex label;
   double weight;
 };
-/// The label of greatest weight at `f`, ties to the smaller label.
+/// The label of greatest weight at `f`; a tie goes to the smaller label.
 template <class Strengths = EquallyStrong>
 Winner winner(const BlockLabels& labels, const Point& f, const Strengths& strengths = {});
 
 extern template Winner winner(const BlockLabels&, const Point&, const EquallyStrong&);
 extern template Winner winner(const BlockLabels&, const Point&, const CornerStrengths&);
 
-/// Labels of an image, background outside. Keeps a reference to its voxels. `Reads` is told of each piece of
-/// a row that is read.
+/// Labels of an image, with background outside. Keeps a reference to the voxels. `Reads` receives each part
+/// of a row that is read.
 template <class Reads>
 class LabelGrid {
  public:
@@ -170,7 +170,7 @@ class LabelGrid {
     return is_in(v.i, num_x_) && is_in(v.j, num_y_) && is_in(v.k, num_z_);
   }
 
-  /// `v` must be in the grid.
+  /// `v` must be inside the grid.
   LabelIndex label_inside(const Voxel& v) const { return *row_from(index(v)); }
   LabelIndex label(const Voxel& v) const { return contains(v) ? label_inside(v) : kBackground; }
   void prefetch(const Voxel& v) const { __builtin_prefetch(voxels_ + index(v)); }

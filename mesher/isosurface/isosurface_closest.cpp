@@ -1,8 +1,8 @@
-// The isosurface point nearest to a point u. Start: the midpoint of two neighbouring voxels of different
-// labels is on the isosurface, or of such that are not as strong a point between; take the one whose midpoint
-// is nearest beside the features of the eight voxels around u. Then
-// descend: step along the tangent plane towards the foot of u, pull the result back to the isosurface, and
-// keep it if it is nearer to u, otherwise try a shorter step.
+// Finds the isosurface point nearest to a point u. Start: between two neighboring voxels of different labels
+// the isosurface passes through the midpoint of their centers, or through another point between them if their
+// weights differ ("midpoint" below means either). Take the midpoint nearest to u beside the features of the
+// eight voxels around u. Then descend: step along the tangent plane towards the foot of u and pull the result
+// back to the isosurface. Keep the result if it is nearer to u, otherwise try a shorter step.
 #include <algorithm>
 #include <bit>
 #include <limits>
@@ -15,11 +15,11 @@ namespace podm {
 namespace {
 
 constexpr double kFar = 2;            // shortest voxel sides
-constexpr int kMaxSteps = 8;          // tried, taken or not
-constexpr double kShorter = 0.35;     // what is left of a step that leads no nearer
-constexpr double kNegligible = 0.01;  // voxel sides: twice the least gain in distance of a step
-constexpr double kMostOfTangent = 2;  // what a step may be of the way to u in the tangent plane
-constexpr double kTowards = 1e-3;     // a share of the way to u
+constexpr int kMaxSteps = 8;          // steps tried, taken or not
+constexpr double kShorter = 0.35;     // remaining part of a step that leads no nearer
+constexpr double kNegligible = 0.01;  // voxel sides: twice the least expected gain of a step in distance
+constexpr double kMostOfTangent = 2;  // longest step, relative to the way to u in the tangent plane
+constexpr double kTowards = 1e-3;     // part of the way to u
 constexpr int kMaxPulls = 8;
 constexpr double kOnIsosurface = 1e-7;  // voxels
 constexpr double kAside = 0.01;         // voxels
@@ -27,14 +27,14 @@ constexpr double kIrregular = 1e4;
 
 constexpr double square(double x) { return x * x; }
 
-// Two labels meet where the weights of their corners of the block balance: one function for each choice of
+// Two labels meet where the weights of their corners of the block are equal: one function for each choice of
 // corners.
 constexpr auto kBalances = []<std::size_t... mask>(std::index_sequence<mask...>) {
   return std::array{weight_difference(mask, ~mask & kAllCorners)...};
 }
 (std::make_index_sequence<kAllCorners + 1>());
 
-// The edges from a voxel to its six neighbours.
+// The edges from a voxel to its six neighbors.
 constexpr unsigned kNumEdges = 6;
 constexpr std::array<unsigned, kNumEdges> kNeighbors{
     Neighborhood::position(-1, 0, 0), Neighborhood::position(1, 0, 0),  Neighborhood::position(0, -1, 0),
@@ -46,9 +46,9 @@ struct EdgeOfEight {
   unsigned voxel, edge;
 };
 
-// The edge to a neighbour of another label whose midpoint is nearest to `from`, given in voxels from the
-// first of the eight. Single precision tells them apart, which leaves the last bits of a squared distance to
-// say whose it is.
+// The edge to a neighbor of another label whose midpoint is nearest to `from`, which is in voxels from the
+// first of the eight. Single precision suffices to compare the distances. The last bits of each squared
+// distance are therefore free to hold the number of its edge and voxel.
 EdgeOfEight nearest_edge(const EightVoxels& voxels, const EightVoxels::Numbers& neighborhoods,
                          const Vector& from, const Vector& spacing) {
   using Ints = EightVoxels::Ints;
@@ -73,7 +73,7 @@ EdgeOfEight nearest_edge(const EightVoxels& voxels, const EightVoxels::Numbers& 
     const Floats not_negative = to_midpoint > 0 ? to_midpoint : Floats{};
     const Ints ids = kFirstIds + static_cast<std::int32_t>(edge * EightVoxels::kNum);
     const Ints keys = (reinterpret_cast<Ints>(not_negative) & -kMostIds) | ids;
-    const Ints same = ((differing >> static_cast<int>(kNeighbors[edge])) & 1) - 1;  // all bits
+    const Ints same = ((differing >> static_cast<int>(kNeighbors[edge])) & 1) - 1;  // all bits set
     const Ints candidates = keys | (same & kNone);
     least = candidates < least ? candidates : least;
   }
@@ -92,16 +92,16 @@ struct Oracle<Reads>::Nearest {
   double squared_mm = std::numeric_limits<double>::infinity();
 };
 
-// The function that vanishes on the isosurface around a point: the weight of the label of a surface voxel
-// less the greatest weight of another label.
+// The function that is zero on the isosurface around a point: the weight of the label of a surface voxel
+// minus the greatest weight of another label.
 template <class Reads>
 class Oracle<Reads>::Sheet {
  public:
   Sheet(const Oracle& oracle, const Voxel& surface_voxel)
       : oracle_(oracle), center_(surface_voxel), around_(oracle.features_.neighborhood(surface_voxel)) {}
 
-  /// Goes to the sheet at u; false if no isosurface passes through its block, or none around u's nearest
-  /// voxel.
+  /// Moves to the sheet at u. Returns false if no isosurface passes through the block of u, or none around
+  /// the voxel nearest to u.
   bool move_to(const Point& u) {
     const Voxel block = block_of(u);
     if (lead_ != nullptr && block == block_) {
@@ -114,7 +114,7 @@ class Oracle<Reads>::Sheet {
     if (others == 0) return false;
     at_ = u - podm::center(block);
     block_ = block;
-    // Between several labels the lead is a point's, not the block's.
+    // Where more than two labels meet, the lead depends on the point, not only on the block.
     lead_ = around_.has_two_labels() ? lead_of(others) : lead_of_many(block, others);
     return true;
   }
@@ -142,7 +142,7 @@ class Oracle<Reads>::Sheet {
     around_ = *around;
     return true;
   }
-  // The voxel nearest to a point of a smoothed interface may be none of the surface's.
+  // The voxel nearest to a point of a smoothed interface may not be a surface voxel.
   bool recenter_on_corner(const Voxel& block) {
     for (int c = 0; c < 8; ++c) {
       const Voxel corner{block.i + (c & 1), block.j + (c >> 1 & 1), block.k + (c >> 2)};
@@ -150,13 +150,13 @@ class Oracle<Reads>::Sheet {
     }
     return false;
   }
-  // Of the block that was moved to, where all other corners have one label.
+  // The lead in the current block if all other corners have one label.
   const Trilinear* lead_of(CornerMask others) {
     if (oracle_.strengths_ == nullptr) return &kBalances[others];
     lead_here_ = weight_difference(others, ~others & kAllCorners, oracle_.strengths_->block(block_));
     return &lead_here_;
   }
-  // Null if more than two labels meet in the block; the lead at_ is then `lead_here_`.
+  // Null if more than two labels meet in the block. The lead at `at_` is then `lead_here_`.
   const Trilinear* lead_of_many(const Voxel& block, CornerMask others) {
     const BlockLabels labels = oracle_.grid_.block(block);
     CornerMask strongest = 0;
@@ -183,7 +183,7 @@ class Oracle<Reads>::Sheet {
   Neighborhood around_;
   Voxel block_;
   Vector at_{};                      // from the block's own voxel
-  const Trilinear* lead_ = nullptr;  // in all of block_
+  const Trilinear* lead_ = nullptr;  // valid in all of block_
   Trilinear lead_here_ = kBalances[0];
 };
 
@@ -202,7 +202,8 @@ auto Oracle<Reads>::nearest_midpoint(const EightVoxels& surface_voxels, const Po
   return best;
 }
 
-// How far the label of `from` reaches along the edge, whose other end has another label.
+// The part of the edge, from `from` on, that has the label of `from`. The voxel at the other end has another
+// label.
 template <class Reads>
 double Oracle<Reads>::share_to_change(const Voxel& from, unsigned edge) const {
   if (strengths_ == nullptr) return 0.5;
@@ -214,7 +215,7 @@ double Oracle<Reads>::share_to_change(const Voxel& from, unsigned edge) const {
   return strength / (strength + strengths_->strength(to));
 }
 
-// None if the words do not tell all: u is deep.
+// None if the words do not store all features: u is far from the isosurface.
 template <class Reads>
 auto Oracle<Reads>::features_around(const Point& u) const -> std::optional<EightVoxels> {
   const Point inside = clamped_to_grid(u);
@@ -224,7 +225,7 @@ auto Oracle<Reads>::features_around(const Point& u) const -> std::optional<Eight
   return features_.nearest(EightVoxels::corners(low, high));
 }
 
-// Goes on from midpoint to midpoint, each the nearest to u beside the features around the one before.
+// Moves from midpoint to midpoint. Each is the nearest to u beside the features around the previous one.
 template <class Reads>
 bool Oracle<Reads>::find_nearer_midpoint(const Point& u, Nearest& best) const {
   bool is_found = false;
@@ -237,7 +238,7 @@ bool Oracle<Reads>::find_nearer_midpoint(const Point& u, Nearest& best) const {
   return is_found;
 }
 
-// One step of Newton from z along the gradient of the sheet, which has to be there.
+// One Newton step from z along the gradient of the sheet. The sheet must be at z.
 template <class Reads>
 bool Oracle<Reads>::pull(Sheet& sheet, Point& z) const {
   const Vector gradient = sheet.gradient(), normal = per_mm(per_mm(gradient));
@@ -247,16 +248,16 @@ bool Oracle<Reads>::pull(Sheet& sheet, Point& z) const {
   return sheet.move_to(z);
 }
 
-// The step along the tangent plane at z towards the foot of u, by the sheet at or beside z; none if its
-// squared length is below `negligible`, mm^2.
+// The step along the tangent plane at z towards the foot of u. The sheet must be at z or beside it. None if
+// the squared length of the step is below `negligible`, mm^2.
 template <class Reads>
 std::optional<Vector> Oracle<Reads>::tangent_step(const Sheet& sheet, const Point& u, const Point& z,
                                                   double negligible) const {
-  const Vector gradient = sheet.gradient(), normal = per_mm(per_mm(gradient));  // a voxel; voxels a mm^2
+  const Vector gradient = sheet.gradient(), normal = per_mm(per_mm(gradient));  // per voxel; voxels per mm^2
   const double length2 = dot(gradient, normal);
   if (length2 == 0) return std::nullopt;
-  // Stationary: u - z = multiplier * normal. The rest of u - z lies in the tangent plane; a step along it is
-  // right on a plane, and shortened where the isosurface bends away.
+  // At a stationary point, u - z = multiplier * normal. The rest of u - z lies in the tangent plane. A step
+  // along it is exact for a plane. It is shortened where the isosurface bends away.
   const double multiplier = dot(gradient, u - z) / length2;
   const Vector tangent = u - z - multiplier * normal;
   const double tangent2 = squared_length(to_mm(tangent));
@@ -267,14 +268,14 @@ std::optional<Vector> Oracle<Reads>::tangent_step(const Sheet& sheet, const Poin
   return part * tangent;
 }
 
-// The least gain in squared distance for which a step is taken, mm^2.
+// The least expected gain in squared distance for which a step is taken, mm^2.
 template <class Reads>
 double Oracle<Reads>::negligible_gain(const Nearest& best) const {
   return kNegligible * shortest_side_mm_ * std::sqrt(best.squared_mm);
 }
 
 // Moves best.u, a midpoint, along the isosurface to the foot of u, as long as a step brings it noticeably
-// nearer. A midpoint lies on an edge of four blocks: the one that holds the way to u counts.
+// nearer. A midpoint lies on an edge of four blocks. The block that contains the way to u is taken.
 template <class Reads>
 void Oracle<Reads>::descend(Sheet& sheet, const Point& u, Nearest& best) const {
   if (!sheet.move_to(best.u + kTowards * (u - best.u)) && !sheet.move_to(best.u)) return;
@@ -295,10 +296,10 @@ void Oracle<Reads>::descend(Sheet& sheet, const Point& u, Nearest& best) const {
   }
 }
 
-// The isosurface point that a descent from `midpoint` finds, if within `radius` of u.
+// The isosurface point that a descent from `midpoint` finds, if it is within `radius` of u.
 template <class Reads>
 std::optional<NearPoint> Oracle<Reads>::foot(const Nearest& midpoint, const Point& u, double radius) const {
-  // Of a million descents on CT and MR images none gained more than 0.86 of half a voxel's diagonal.
+  // In a million descents on CT and MR images none gained more than 0.86 of half a voxel's diagonal.
   if (midpoint.squared_mm > square(radius + to_surface_voxel_mm_)) return std::nullopt;
   Nearest best = midpoint;
   Sheet sheet(*this, best.surface_voxel);
@@ -307,9 +308,11 @@ std::optional<NearPoint> Oracle<Reads>::foot(const Nearest& midpoint, const Poin
   return NearPoint{from_voxels(best.u), best.surface_voxel, best.u == midpoint.u};
 }
 
-// From kFar on the eight features may all miss the surface voxel that has the nearest midpoint; from outside
-// the grid the features around its nearest point are a start alone; and so is the surface voxel nearest to a
-// deep point, with midpoints within half a side and the isosurface within half a diagonal of it.
+// There are three cases in which the first midpoint is only a start. From a distance of kFar on, the eight
+// features may all miss the surface voxel that has the nearest midpoint. Outside the grid, the features are
+// those around the nearest point of the grid. Where the words store no features, the surface voxel nearest to
+// u is searched for. Its midpoints are within half a side of it, and the isosurface is within half a diagonal
+// of it.
 template <class Reads>
 std::optional<NearPoint> Oracle<Reads>::near_point(const Point& p, double radius, const Cover& cover) const {
   if (is_empty()) return std::nullopt;
@@ -337,8 +340,8 @@ std::optional<NearPoint> Oracle<Reads>::near_point(const Point& p, double radius
   return is_nearer ? other : near;
 }
 
-// Midpoints lie on a lattice, and vertices of a lattice make flat cells that rounding can turn inside out:
-// take a point of the isosurface a little beside it, as irregular as p itself.
+// Midpoints lie on a lattice, and vertices on a lattice make flat cells that rounding can turn inside out. A
+// midpoint is therefore replaced by an isosurface point slightly beside it, as irregular as p itself.
 template <class Reads>
 Point Oracle<Reads>::polished(const NearPoint& near, const Point& p) const {
   const Point u = to_voxels(p);

@@ -7,16 +7,17 @@ namespace podm {
 namespace {
 
 constexpr int kMaxHalvings = 20;
-// A step this short leaves an error of its square at a simple zero, of its length at a double one.
+// A step this short leaves an error of the order of its square at a simple zero, and of its length at a
+// double zero.
 constexpr double kLastStep = 1e-9;
 
 double middle(double a, double b) { return 0.5 * (a + b); }
 
-// The only zero in (0,1) of a cubic that starts at or above zero and ends below: Newton's steps, and
-// bisection where they leave the bracket.
+// The only zero in (0,1) of a cubic that starts at or above zero and ends below zero. Takes Newton steps, and
+// bisects where they leave the bracket.
 double only_zero(const std::array<double, 4>& c, double end) {
   double low = 0, high = 1, s = c[0] / (c[0] - end);
-  if (s > 0.99) s = 0.5;  // where the cubic ends at almost zero, a rounded value tells nothing there
+  if (s > 0.99) s = 0.5;  // where the cubic ends almost at zero, a rounded value there has no meaning
   for (int i = 0; i < 60; ++i) {
     const double value = c[0] + s * (c[1] + s * (c[2] + s * c[3]));
     (value >= 0 ? low : high) = s;
@@ -31,8 +32,8 @@ double only_zero(const std::array<double, 4>& c, double end) {
   return s;
 }
 
-// `b` are Bernstein coefficients: the cubic lies in their convex hull, and has at most as many zeros in (0,1)
-// as they change sign, of the same parity.
+// `b` are Bernstein coefficients. The cubic lies in their convex hull. The number of its zeros in (0,1) is at
+// most the number of their sign changes, and has the same parity.
 std::optional<double> first_fall_by_halves(const std::array<double, 4>& b, bool zero_holds, int halvings) {
   const auto is_low = [&](double value) { return zero_holds ? value < 0 : value <= 0; };
   if (is_low(b[0])) return 0;

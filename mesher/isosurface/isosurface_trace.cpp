@@ -1,4 +1,4 @@
-// Following a segment from block to block to where the label changes.
+// Follows a segment from block to block to the point where the label changes.
 #include <algorithm>
 #include <limits>
 
@@ -42,7 +42,7 @@ class BlockWalk {
   std::array<int, 3> block_;
 };
 
-// Narrows [begin,end] to the part of u + t d within [low,high]; false if nothing is left.
+// Narrows [begin,end] to the part of u + t d within [low,high]. Returns false if nothing is left.
 bool clip(double u, double d, double low, double high, double& begin, double& end) {
   if (u >= low && u <= high && u + d >= low && u + d <= high) return true;
   if (d == 0) return false;
@@ -76,7 +76,7 @@ auto Oracle<Reads>::change_in_block(const Point& from, const Vector& d, const Vo
   return first;
 }
 
-// The first point of u + t d, t in [0,1], where `label`, the label at u, no longer wins.
+// The first point of u + t d, with t in [0,1], where `label`, the label at u, no longer wins.
 template <class Reads>
 auto Oracle<Reads>::first_change(const Point& u, const Vector& d, LabelIndex label) const
     -> std::optional<LabelChange> {
@@ -120,7 +120,7 @@ std::optional<Point> Oracle<Reads>::segment_intersection(const Point& a, const P
   const LabelIndex label = label_at_voxels(u);
   if (const auto change = first_change(u, v - u, label)) return a + change->t * (b - a);
   if (label_at_voxels(v) == label) return std::nullopt;
-  return b;  // a change too close to b for the roundings above
+  return b;  // the change is so close to b that rounding hides it from first_change()
 }
 
 template <class Reads>

@@ -1,28 +1,28 @@
-// What is around a surface voxel.
+// The labels around a surface voxel, compared with its own.
 #pragma once
 
 #include <cstdint>
 
 namespace podm {
 
-/// Which voxels around a surface voxel have another label than its own.
+/// The set of the voxels around a surface voxel that have another label than its own.
 class Neighborhood {
  public:
   constexpr explicit Neighborhood(std::uint32_t bits) : bits_(bits) {}
 
-  /// Bit of the voxel that is (i,j,k) away, each -1, 0 or 1.
+  /// The bit of the voxel that is (i,j,k) away, each -1, 0 or 1.
   static constexpr unsigned position(int i, int j, int k) {
     return static_cast<unsigned>(13 + i + 3 * j + 9 * k);
   }
-  /// A bit at each position.
+  /// One bit for each position.
   constexpr std::uint32_t bits() const { return bits_; }
-  /// The eight corners of the block whose lowest corner is (i,j,k) away, each -1 or 0: a bit for each that
-  /// differs, corner i + 2 j + 4 k.
+  /// The differing corners of the block whose lowest corner is (i,j,k) away, each -1 or 0. The bit of corner
+  /// i + 2 j + 4 k is set if the corner differs.
   constexpr unsigned differing_corners(int i, int j, int k) const {
     const std::uint32_t b = bits_ >> position(i, j, k);
     return (b & 0x3) | (b >> 1 & 0xc) | (b >> 5 & 0x30) | (b >> 6 & 0xc0);
   }
-  /// Whether all that differ have one label.
+  /// True if all voxels that differ have one label.
   constexpr bool has_two_labels() const { return (bits_ >> 30 & 1) != 0; }
 
  private:

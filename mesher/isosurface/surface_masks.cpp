@@ -10,7 +10,7 @@ namespace podm {
 
 namespace {
 
-// Marks rows of voxels, a byte a voxel at first.
+// Marks a row of voxels, at first in one byte per voxel.
 class RowMarker {
  public:
   explicit RowMarker(const LabelImage& image)
@@ -19,7 +19,7 @@ class RowMarker {
         slice_(row_ * static_cast<std::size_t>(image.size[1])),
         is_surface_((row_ + 3) / 4 * 4) {}
 
-  /// Four bytes for each brick that the row passes.
+  /// Returns four bytes for each brick that the row passes.
   const std::vector<std::uint8_t>& operator()(int y, int z) {
     const LabelIndex* row = &image_.voxels[image_.index(0, y, z)];
     std::fill(is_surface_.begin(), is_surface_.end(), std::uint8_t{0});
@@ -35,8 +35,8 @@ class RowMarker {
   }
 
  private:
-  // The voxels from `begin` to `end`; `other` null: outside the grid. Locals all: bytes may alias members,
-  // and the loops would not be vectorised.
+  // Marks the voxels from `begin` to `end` that differ; `other` is null outside the grid. All variables of
+  // the loops are local: bytes may alias members, and the loops would then not be vectorised.
   void mark_differing(const LabelIndex* row, const LabelIndex* other, std::size_t begin, std::size_t end) {
     std::uint8_t* const is_surface = is_surface_.data();
     if (other == nullptr) {
@@ -51,7 +51,7 @@ class RowMarker {
   std::vector<std::uint8_t> is_surface_;
 };
 
-// Four bytes, each 0 or 1, to four bits.
+// Packs four bytes, each 0 or 1, into four bits.
 std::uint64_t packed(const std::uint8_t* bytes) {
   std::uint32_t four;
   std::memcpy(&four, bytes, sizeof four);

@@ -1,4 +1,4 @@
-// Which voxels are surface voxels: those with a 6-neighbour of another label, outside the grid counting as
+// Marks the surface voxels: those with a 6-neighbor of another label. Outside the grid everything counts as
 // background.
 #pragma once
 
@@ -10,10 +10,10 @@
 
 namespace podm {
 
-/// By brick, a bit for each place in it. Voxels beyond the grid are none.
+/// One word per brick, with one bit for each place in it. Places beyond the grid are not marked.
 using SurfaceMasks = HugeArray<std::uint64_t>;
 
-/// `masks`, all zero, has room for every brick. Runs on `threads` threads.
+/// `masks` must be all zero, with room for every brick. Runs on `threads` threads.
 void mark_surface(const LabelImage& image, const BrickGrid& bricks, std::size_t threads, SurfaceMasks& masks);
 
 }  // namespace podm

@@ -1,5 +1,6 @@
-// The surface voxel nearest to any point: a tree of bricks, of bricks of bricks and so on, a bit for each of
-// the 64 children that hold a surface voxel. For points too deep for the words of the feature transform.
+// Finds the surface voxel nearest to any point. The tree consists of bricks, bricks of bricks and so on. Each
+// node has a bit for each of its 64 children that contains a surface voxel. It serves points for which the
+// feature transform stores no feature.
 #pragma once
 
 #include <array>
@@ -16,15 +17,15 @@ namespace podm {
 class SurfaceTree {
  public:
   SurfaceTree() = default;
-  /// `masks`: the surface voxels, by brick. `spacing`: of voxels, mm.
+  /// `masks` holds the surface voxels by brick. `spacing` is that of the voxels, mm.
   SurfaceTree(const BrickGrid& bricks, std::span<const std::uint64_t> masks,
               const std::array<double, 3>& spacing);
 
   bool is_empty() const { return levels_.empty() || levels_.back().masks[0] == 0; }
 
-  /// Calls take(voxel, squared) for surface voxels whose centres are at most `squared_reach` from u, which is
-  /// in voxels, the nearest among the first: all of them, unless `take` makes `squared_reach` less.
-  /// `mask_of(brick)` tells the surface voxels of a brick that has some. Squares are of mm.
+  /// Calls take(voxel, squared) for the surface voxels whose centers are within sqrt(squared_reach) of u, the
+  /// nearest among the first. It visits all of them unless `take` reduces `squared_reach`. `mask_of(brick)`
+  /// returns the surface voxels of a brick that has some. u is in voxels, squares are in mm^2.
   template <class MaskOf, class Take>
   void visit(const Point& u, double& squared_reach, const MaskOf& mask_of, const Take& take) const {
     Search<MaskOf, Take>{*this, u, squared_reach, mask_of, take}.visit(levels_.size(), {0, 0, 0});
@@ -39,7 +40,7 @@ class SurfaceTree {
   template <class MaskOf, class Take>
   struct Search;
 
-  std::vector<Level> levels_;  // the first has a bit a brick, the last is one node
+  std::vector<Level> levels_;  // the first level has one bit per brick, the last is one node
   std::array<double, 3> spacing_{};
 };
 
@@ -51,7 +52,7 @@ struct SurfaceTree::Search {
   const MaskOf& mask_of;
   const Take& take;
 
-  // A node of level 0 is a brick, its children are voxels.
+  // A node of level 0 is a brick. Its children are voxels.
   void visit(std::size_t level, const Voxel& node) {
     const std::uint64_t mask = level == 0 ? mask_of(node) : tree.levels_[level - 1].mask(node);
     const Four x2 = along(0, from.x, node.i, level), y2 = along(1, from.y, node.j, level),
@@ -79,12 +80,12 @@ struct SurfaceTree::Search {
   }
 
  private:
-  // Of the four children in a row along x.
+  // Values of the four children in a row along x.
   using Four [[gnu::vector_size(32)]] = double;
   using FourMasks [[gnu::vector_size(32)]] = std::int64_t;
   static constexpr FourMasks kFirstRow{1, 2, 4, 8};  // each child's own bit
 
-  /// Squared distances to the children of a node along one axis; they are 4^level voxels long.
+  /// The squared distances to the children of a node along one axis. A child is 4^level voxels long.
   Four along(std::size_t axis, double at, int node, std::size_t level) const {
     const double side = static_cast<double>(std::int64_t{1} << (2 * level));
     const Four low = side * (4.0 * node + Four{0, 1, 2, 3});

@@ -1,11 +1,11 @@
-// How strong each voxel is in the label function: about as strong as the smoothed interface is far from its
-// centre.
+// The weight of each voxel in the smoothed label function. It is about proportional to the distance from the
+// voxel's center to the smoothed interface.
 //
-// The weight of a label at a point is the trilinear interpolation of the strengths of its voxels, 0 at all
-// others. Between two neighbours of different labels, of strengths a and b, the label changes a / (a + b) of
-// the way: halfway where all are as strong, as in an image that is not smoothed. A voxel's centre keeps its
-// label, whatever the strengths; so does the way between neighbours of one label, and no component of a label
-// (by faces) is ever lost, split or joined to another along an axis.
+// The weight of a label at a point is the trilinear interpolation of the weights of its voxels, with 0 at all
+// other voxels. Between two neighbors of different labels, of weights a and b, the label changes at a/(a+b)
+// of the way: halfway where all weights are equal, as in an image that is not smoothed. A voxel's center
+// keeps its label, whatever the weights. So does the segment between neighbors of one label. No component of
+// a label (by faces) is therefore ever lost, split or joined to another along an axis.
 #pragma once
 
 #include <algorithm>
@@ -18,23 +18,25 @@
 
 namespace podm {
 
-/// Told of voxels beside one of another label; there, in (0,1]. Two bytes a voxel.
+/// Voxel weights in (0,1], set for voxels beside one of another label and unset elsewhere. They take two
+/// bytes per voxel.
 class VoxelStrengths {
  public:
   static constexpr std::uint16_t kMost = 0xffff, kUntold = 0;
 
-  /// None is told yet.
+  /// All weights are unset at first.
   explicit VoxelStrengths(const std::array<int, 3>& size)
       : size_(size),
         row_(static_cast<std::size_t>(size[0])),
         slice_(row_ * static_cast<std::size_t>(size[1])),
         strengths_(slice_ * static_cast<std::size_t>(size[2])) {}
 
-  /// In parts of kMost.
+  /// In units of 1 / kMost.
   std::uint16_t& at(std::size_t voxel) { return strengths_[voxel]; }
   std::uint16_t at(std::size_t voxel) const { return strengths_[voxel]; }
 
-  /// Outside the grid a voxel is as strong as the nearest inside, so that a cut through an object stays flat.
+  /// A voxel outside the grid has the weight of the nearest voxel inside. A cut through an object therefore
+  /// stays flat.
   double strength(const Voxel& v) const { return share(strengths_[index(clamped(v))]); }
   CornerStrengths block(const Voxel& b) const {
     CornerValues values;

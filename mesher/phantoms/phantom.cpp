@@ -1,4 +1,4 @@
-// Analytic phantoms: images for machines without data, at any resolution and of one physical size.
+// Analytic phantoms: images for machines without data, at any resolution and of a fixed physical size.
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -19,8 +19,8 @@ constexpr int kMarginVoxels = 2;
 
 struct Phantom {
   std::vector<Organ> organs;
-  Vector half_extent_mm;          // around the origin, holds every organ
-  double relative_z_spacing = 1;  // to the spacing along x and y
+  Vector half_extent_mm;          // around the origin; contains every organ
+  double relative_z_spacing = 1;  // relative to the spacing along x and y
 };
 
 std::vector<Organ> spheres() {
@@ -43,13 +43,13 @@ Phantom phantom_of(const std::string& name) {
   throw InputError("phantom:" + name + ": unknown phantom (known:" + known + ")");
 }
 
-/// Positions of voxel centres along one axis.
+/// The positions of voxel centers along one axis.
 struct Axis {
   double first, spacing;
   int size;
 
   double at(int i) const { return first + spacing * i; }
-  /// The first position not below `low`, and the first one above `high`, within the axis.
+  /// The first position that is not below `low`, and the first one above `high`, within the axis.
   int first_not_below(double low) const {
     return static_cast<int>(std::clamp(std::ceil((low - first) / spacing), 0.0, static_cast<double>(size)));
   }
@@ -63,13 +63,14 @@ Axis axis_of(const LabelImage& image, std::size_t axis) {
   return {image.voxel_to_ras[4 * axis + 3], image.spacing[axis], image.size[axis]};
 }
 
-/// An organ ready for voxels.
+/// An organ with its label index.
 struct Paint {
   Shape shape;
   LabelIndex label;
 };
 
-// The last paint covers the others: paints go from it to the first, on the voxels that are still background.
+// The last paint covers the others. Paints are therefore applied from the last to the first, on voxels that
+// are still background.
 void fill_row(LabelIndex* row, const std::vector<const Paint*>& paints, const Axis& x, double y, double z) {
   for (auto paint = paints.rbegin(); paint != paints.rend(); ++paint) {
     const Shape& shape = (*paint)->shape;
@@ -107,8 +108,8 @@ void fill(LabelImage& image, const std::vector<Organ>& organs, int threads) {
                [&](std::size_t k, std::size_t) { fill_slice(image, paints, static_cast<int>(k)); });
 }
 
-// Rounds up, to so few bits that the spacing, and times half a number of voxels too, is exact in the single
-// precision of NIfTI: the phantom and its file are the same image.
+// Rounds up to a few bits. The spacing, and its product with half a number of voxels, is then exact in the
+// single precision of NIfTI. The phantom and its file are therefore the same image.
 double in_few_bits(double spacing) {
   constexpr int kBits = 12;
   int exponent = 0;
@@ -133,7 +134,7 @@ LabelImage make_phantom(const std::string& name, int size, int threads) {
   image.spacing = {in_few_bits(spacing), in_few_bits(spacing),
                    in_few_bits(phantom.relative_z_spacing * spacing)};
   for (std::size_t axis = 0; axis < 3; ++axis) {
-    constexpr double kRoundOff = 1e-9;  // else the longest axis might get a voxel too many
+    constexpr double kRoundOff = 1e-9;  // without it the longest axis could get one voxel too many
     const double voxels = std::ceil(2 * half[axis] / image.spacing[axis] - kRoundOff);
     image.size[axis] = static_cast<int>(voxels) + 2 * kMarginVoxels;
     image.voxel_to_ras[5 * axis] = image.spacing[axis];

@@ -1,4 +1,4 @@
-// The abdomen, from the skin inwards: a patient lying on the back, cut off above the liver and below the
+// The abdomen, from the skin inwards: a patient who lies on the back, cut off above the liver and below the
 // navel.
 #include "phantoms/phantom_abdomen.h"
 
@@ -9,14 +9,14 @@ namespace podm {
 
 namespace {
 
-// What is left of the body `depth` mm below the skin.
+// The part of the body at least `depth` mm below the skin.
 Shape body(double depth) { return slab({0, 0, 0}, kAbdomenHalfExtent - Vector{depth, depth, depth}); }
 
 Shape cavity() { return slab({0, 8, 0}, {137, 82, 84}); }
 Shape right_dome() { return dome({60, 4, 22}, {86, 84, 56}); }
 Shape left_dome() { return dome({-66, 0, 14}, {80, 84, 58}); }
 
-// Fat around a kidney is this much wider than the kidney; neighbours keep off it.
+// The fat around a kidney is this much wider than the kidney, mm. Neighbors keep this distance.
 constexpr double kPerirenalFat = 4;
 constexpr Point kRightKidney{80, -44, -8}, kLeftKidney{-80, -44, 4};
 Shape kidney(const Point& c, double widened_by) {
@@ -31,7 +31,7 @@ void add_wall(std::vector<Organ>& organs) {
   organs.push_back({4, "visceral fat", cavity()});
 }
 
-// The lungs reach down in a wedge between the wall and the diaphragm.
+// The lungs extend downwards in a wedge between the wall and the diaphragm.
 void add_chest(std::vector<Organ>& organs) {
   const Shape chest = within(cavity(), above(24));
   organs.push_back({5, "lung", chest});
@@ -55,8 +55,8 @@ void add_muscles(std::vector<Organ>& organs) {
 }
 
 void add_bones(std::vector<Organ>& organs) {
-  constexpr double kLevel = 34, kY = -48;  // height of vertebra and disc, the middle of the bodies
-  const Shape clip = body(7);              // short of the skin
+  constexpr double kLevel = 34, kY = -48;  // distance of vertebrae, and y of the middle of their bodies
+  const Shape clip = body(7);              // ends below the skin
   for (int level = -3; level <= 3; ++level) {
     const double z = kLevel * level;
     organs.push_back({10, "disc", within(ellipsoid({0, kY, z - kLevel / 2}, {24, 20, 9}), clip)});
@@ -97,8 +97,8 @@ void add_bones(std::vector<Organ>& organs) {
 
 void add_liver(std::vector<Organ>& organs) {
   const Shape room = within(dome({60, 4, 17}, {81, 79, 56}), slab({0, 8, 0}, {135, 80, 82}));
-  const Shape hollow = ellipsoid({22, -2, -26}, {62, 62, 44});  // where gut and pancreas lie
-  const Shape back = ellipsoid({4, -50, 30}, {50, 44, 120});    // where spine and great vessels lie
+  const Shape hollow = ellipsoid({22, -2, -26}, {62, 62, 44});  // holds gut and pancreas
+  const Shape back = ellipsoid({4, -50, 30}, {50, 44, 120});    // holds spine and great vessels
   const Shape right = without(without(without(ellipsoid({70, 2, 20}, {72, 78, 60}), hollow), back),
                               kidney(kRightKidney, kPerirenalFat));
   organs.push_back({14, "liver", within(right, room)});
@@ -160,7 +160,7 @@ void add_stomach_and_bowel(std::vector<Organ>& organs) {
   const Shape inside = tube(widened(stomach, -kWall));
   organs.push_back({23, "stomach fluid", inside});
   organs.push_back(
-      {24, "stomach gas", within(inside, in_front_of(34))});  // rises: the patient lies on the back
+      {24, "stomach gas", within(inside, in_front_of(34))});  // gas rises: the patient lies on the back
 
   const auto small_bowel = smooth({{-36, 16, -38},
                                    {-58, 28, -40},

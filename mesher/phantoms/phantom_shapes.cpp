@@ -79,7 +79,7 @@ Shape slab(const Point& centre, const Vector& half_extent) {
 
 Point on_slab_outline(const Vector& half_extent, double angle, double z) {
   const double x = std::sin(angle), y = -std::cos(angle);
-  // rr - mixed * rr^2 = 1, written so that mixed = 0 is no special case.
+  // r solves rr - mixed * rr^2 = 1, in a form without a special case for mixed = 0.
   const double mixed = kSlabSquareness * x * x * y * y;
   const double r = std::sqrt(2 / (1 + std::sqrt(1 - 4 * mixed)));
   return {half_extent.x * r * x, half_extent.y * r * y, z};

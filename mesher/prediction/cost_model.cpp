@@ -24,7 +24,7 @@ std::uint64_t count_foreground(const LabelIndex* row, int size) {
   return count;
 }
 
-// Sides of interfaces that have a label.
+// Counts the sides of interfaces that have a label.
 std::uint64_t count_sides(const LabelIndex* a, const LabelIndex* b, int size) {
   std::uint32_t count = 0;
   for (int i = 0; i < size; ++i)
@@ -32,8 +32,9 @@ std::uint64_t count_sides(const LabelIndex* a, const LabelIndex* b, int size) {
   return count;
 }
 
-// Counts sides between voxels `lag` apart along the axis, for all pairs whose first is in the row or whose
-// second is its first in the image. Outside is background.
+// Counts sides between voxels `lag` apart along the axis. Counts all pairs whose first voxel is in the row,
+// and those pairs whose second voxel is in the row and whose first is outside the image. Outside is
+// background.
 std::uint64_t count_sides(const LabelImage& image, std::size_t axis, int lag, int j, int k) {
   const int size = image.size[0];
   const LabelIndex* const row = &image.voxels[image.index(0, j, k)];
@@ -52,7 +53,7 @@ std::uint64_t count_sides(const LabelImage& image, std::size_t axis, int lag, in
   return after + (position < lag ? foreground : 0);
 }
 
-// Adds sides by label, the background's too, of the same pairs of voxels.
+// Adds the sides by label, including the background, for the same pairs of voxels.
 void add_sides(const LabelImage& image, std::size_t axis, int lag, int j, int k,
                std::vector<std::uint64_t>& sides) {
   const int size = image.size[0], position = axis == 0 ? 0 : axis == 1 ? j : k;
@@ -141,7 +142,8 @@ std::vector<double> CostModel::areas_by_label_mm2(double distance_mm) const {
   return areas_mm2;
 }
 
-// The radius that makes as many cells of the label as its places make with theirs; infinity: unbounded.
+// The radius with which the label has the same number of cells as its places have with their own radii;
+// infinity if unbounded.
 double CostModel::mean_radius_mm(LabelIndex label, const SizeOptions& sizes) const {
   const double asked_mm = radius_mm_of(sizes, image_.labels[label]);
   const double of_label = asked_mm > 0 ? asked_mm : std::numeric_limits<double>::infinity();
@@ -153,7 +155,8 @@ double CostModel::mean_radius_mm(LabelIndex label, const SizeOptions& sizes) con
   return std::cbrt(1 / density);
 }
 
-// How many times as many cells stand on interfaces as where delta alone decides; `share` tells which.
+// The ratio of the number of cells at interfaces to that where delta alone decides. `share` selects the
+// interfaces.
 double CostModel::surface_growth(const SizeOptions& sizes, double SizeCensus::Places::*share) const {
   if (!census_) return 1;
   double growth = 0, shares = 0;
@@ -202,18 +205,18 @@ double CostModel::cells(double volume_mm3, double area_mm2, double radius_mm, do
          volume_cells(volume_mm3, area_mm2, radius_mm, delta_mm);
 }
 
-// At a depth z of the ball there are A (1 - z / depth)^2 dz, and cells of a radius u = first + kGrowth z:
-// what is integrated is (a - b u)^2 / u^3.
+// A shell of the ball at depth z has the volume A (1 - z / depth)^2 dz. Its cells have the radius u = first +
+// kGrowth z. The integrand is therefore (a - b u)^2 / u^3.
 double CostModel::volume_cells(double volume_mm3, double area_mm2, double radius_mm, double delta_mm) {
   const double first = std::min(radius_mm, kFirstOverDelta * delta_mm);
   if (area_mm2 == 0) return kVolumeCells * volume_mm3 / std::pow(radius_mm, 3);
   const double growth_to_center = kGrowth * 3 * volume_mm3 / area_mm2;
-  if (growth_to_center < 1e-3 * first)  // where what is integrated would cancel out
+  if (growth_to_center < 1e-3 * first)  // the integral would lose all digits to cancellation
     return kVolumeCells * std::max(volume_mm3, 0.0) / std::pow(first, 3);
   const double last = std::min(radius_mm, first + growth_to_center);
   const double core = kVolumeCells * volume_mm3 * std::pow((1 - (last - first) / growth_to_center) / last, 3);
   if (last == first) return core;
-  // In units of the first radius, as the square of an absurdly small one is 0.
+  // In units of the first radius, as the square of a tiny radius would underflow to 0.
   const double b = first / growth_to_center, a = 1 + b;
   const auto integral_to = [&](double u) {
     return -a * a / (2 * u * u) + 2 * a * b / u + b * b * std::log(u);

@@ -1,4 +1,4 @@
-// What a mesh will cost, from the image alone: its cells grow from delta at the interfaces to r_t inside.
+// Predicts the cost of a mesh from the image alone: cells grow from delta at the interfaces to r_t inside.
 // `threads`: 0 for all cores.
 #pragma once
 
@@ -13,53 +13,60 @@
 
 namespace podm {
 
-/// Cells that the labels' volumes and interfaces ask for. At interfaces their circumradius is kFirstOverDelta
-/// delta, inside it grows by kGrowth of the way until it is r_t; kVolumeCells fill the cube of the radius,
-/// and kSurfaceCells more stand on a square of delta of an interface. How much is how deep is what a ball of
-/// the same volume and surface has. The surface A counts an interface for each label at it, since cells stand
-/// on both sides of one between two labels, and in voxel faces. What is thinner than surfaces are sampled is
-/// missed: A is that of label changes between voxels so far apart, each counted once.
-/// Constants were fitted to 105 meshes of seven segmentations of 20 thousand to 3 million cells, with deltas
-/// of 0.1 to 1 of r_t: 104 were predicted within 15 %, the root mean square was 5 %.
+/// Predicts the number of cells from the volumes and interfaces of the labels. At interfaces the circumradius
+/// is kFirstOverDelta delta. Inside it grows by kGrowth per distance from the interface, up to r_t. A cube
+/// with the radius as side contains kVolumeCells cells. A square of an interface with side delta adds
+/// kSurfaceCells cells. The volume at each depth is that of a ball of the same volume and surface. The
+/// surface A is measured in voxel faces. It counts an interface once per label at it, as there are cells on
+/// both sides of an interface between two labels. A mesh misses parts that are thinner than the distance of
+/// surface samples. A is therefore the area of the label changes between voxels at that distance, each
+/// counted once.
+///
+/// The constants were fitted to 105 meshes of seven segmentations, of 20 thousand to 3 million cells, with
+/// deltas of 0.1 to 1 of r_t. 104 of them were predicted within 15 %; the root mean square error was 5 %.
 class CostModel {
  public:
-  /// The image must outlive the model, which looks at its interfaces as they are asked for. `census`: of
-  /// sizes by place; none, and those of labels are all.
+  /// The image must outlive the model, which examines its interfaces on demand. `census` describes local
+  /// sizes; without it sizes depend on labels only.
   CostModel(const LabelImage& image, int threads, std::optional<SizeCensus> census = std::nullopt);
 
-  /// Null: there are no sizes by place.
+  /// Null if there are no local sizes.
   const SizeCensus* census() const { return census_ ? &*census_ : nullptr; }
 
-  /// The cells that these radii and this delta, which is not 0, make; places have those of
-  /// the census, with the factor that these have for the image.
+  /// The number of cells with these radii and this delta, which must not be 0. Local sizes are those of the
+  /// census, with the size image's factor in `sizes`.
   double cells(const SizeOptions& sizes) const;
-  /// The same by label: each label's own volume and interfaces; together they are cells(). What is thinner
-  /// than delta is put down to the wrong label more often: of labels of 1000 cells and more, in 32 meshes of
-  /// eight segmentations, nineteen in twenty were predicted within 15 %, the root mean square was 7 %.
+  /// The number of cells by label, from each label's own volume and interfaces. The sum is cells(). Parts
+  /// thinner than delta are more often assigned to the wrong label. Among labels of at least 1000 cells, in
+  /// 32 meshes of eight segmentations, 19 of 20 were predicted within 15 %; the root mean square error was 7
+  /// %.
   std::vector<double> cells_by_label(const SizeOptions& sizes) const;
-  /// Cells of the background that the mesh is made with, those outside of the object among them:
-  /// kOutsideCells times its area in cells of delta, or of sizes by place, within 25 %.
+  /// The number of background cells that the mesh is made with, including those outside the object:
+  /// kOutsideCells per square of its area with side delta, or with the spacing of local sizes. It is accurate
+  /// within 25 %.
   double background_cells(const SizeOptions& sizes) const;
-  /// Squares of delta that cover the interfaces, those between two labels from both sides.
+  /// The number of squares with side delta that cover the interfaces. An interface between two labels counts
+  /// from both sides.
   double squares(const SizeOptions& sizes) const;
-  /// Of a part of a label, and of the interface at it. `radius_mm`: infinity if unbounded.
+  /// The number of cells of a part of a label and of the interface at it. `radius_mm` is infinity if
+  /// unbounded.
   static double cells(double volume_mm3, double area_mm2, double radius_mm, double delta_mm);
 
  private:
   static constexpr double kVolumeCells = 4.69, kSurfaceCells = 0.54, kOutsideCells = 2.55;
   static constexpr double kFirstOverDelta = 1.34, kGrowth = 0.52;
-  static constexpr double kSpacingOverRadius = 0.65;  // of surface samples where cells are small
-  // Distances of the voxels compared, for the object's cells and those outside.
+  static constexpr double kSpacingOverRadius = 0.65;  // spacing of surface samples where cells are small
+  // Distances of the compared voxels, for the object's cells and for those outside.
   static constexpr double kSeenOverDelta = 0.8, kSeenOutsideOverDelta = 1.6;
-  // Areas are found at these distances, in voxels, and interpolated between them.
+  // Areas are computed at these distances, in voxels, and interpolated between them.
   static constexpr std::array<int, 13> kLags{1, 2, 3, 4, 6, 8, 12, 16, 24, 32, 48, 64, 96};
 
-  // Calls add(axis, lag, share): by which areas of lags are interpolated.
+  // Calls add(axis, lag, share) with the shares by which the areas at the lags are interpolated.
   template <class Add>
   void interpolate(double distance_mm, const Add& add) const;
   static double volume_cells(double volume_mm3, double area_mm2, double radius_mm, double delta_mm);
   double area_mm2(double distance_mm) const;
-  std::vector<double> areas_by_label_mm2(double distance_mm) const;  // the background's, too
+  std::vector<double> areas_by_label_mm2(double distance_mm) const;  // including the background
   std::vector<double> areas_along_mm2(std::size_t axis, std::size_t lag) const;
   double area_along_mm2(std::size_t axis, std::size_t lag) const;
   double mean_radius_mm(LabelIndex label, const SizeOptions& sizes) const;
@@ -73,7 +80,8 @@ class CostModel {
   mutable std::array<std::array<std::optional<double>, kLags.size()>, 3> area_along_mm2_;  // by axis and lag
 };
 
-/// estimate() where the grid of the options' sizes is made already; null: there is none.
+/// As estimate() with the options alone, if the grid of the options' sizes already exists; null if there is
+/// no grid.
 Estimate estimate(const LabelImage& image, const MeshingOptions& options, const SizeGrid* grid);
 
 }  // namespace podm

@@ -17,18 +17,19 @@ namespace podm {
 
 namespace {
 
-// The phantom is full of interfaces, as segmentations are.
+// The phantom has many interfaces, as segmentations have.
 constexpr const char* kPhantom = "abdomen";
 constexpr int kPhantomSize = 64, kTrials = 2;
 constexpr std::uint64_t kTrialCellsPerThread = 60'000;
-constexpr int kMostThreadsOfTrial = 16;  // its mesh grows so far with the threads
-// What any run takes besides, fitted to processor seconds: files made, hashes begun, memory given back.
+constexpr int kMostThreadsOfTrial = 16;  // up to this number the trial's mesh grows with the threads
+// Fixed time of any run, fitted to processor seconds: creates files, starts hashes, returns memory.
 constexpr double kSecondsOfAnyRun = 0.02;
-// The trial's mesh is small enough for caches: by so much the work of others takes longer, in 32 runs.
+// The trial's mesh is small enough for the caches. Other runs need this factor more time for their work, as
+// measured in 32 runs.
 constexpr double kOverTrial = 1.25;
 
-// A cell of the background, and a square of delta of an interface, cost so much of a cell of the mesh: fitted
-// to processor seconds of 28 runs.
+// The cost of a background cell, and of a square of an interface with side delta, relative to that of a cell
+// of the mesh. The factors were fitted to processor seconds of 28 runs.
 double work_of(double cells, double stored_cells, double squares) {
   constexpr double kBackgroundOverMesh = 0.93, kSquareOverMesh = 0.98;
   return cells + kBackgroundOverMesh * (stored_cells - cells) + kSquareOverMesh * squares;
@@ -41,13 +42,14 @@ SizeOptions resolved(const LabelImage& image, const SizeOptions& asked, const Co
   return sizes;
 }
 
-// Seconds that this machine takes now for the work of a cell, of the phantom: the best of some trials.
+// The seconds that this machine presently takes for the work of one cell of the phantom: the best of several
+// trials.
 double trial_seconds_of_work(const MeshingOptions& options) {
   const int threads = num_workers(options.team);
   const LabelImage phantom = make_phantom(kPhantom, kPhantomSize, loop_threads(options.team));
   MeshingOptions trial = options;
   trial.log = nullptr;
-  trial.smoothing_mm = 0;  // mm of another image
+  trial.smoothing_mm = 0;  // the length is for the other image
   trial.limits = {};
   const auto cells =
       kTrialCellsPerThread * static_cast<std::uint64_t>(std::min(threads, kMostThreadsOfTrial));

@@ -1,5 +1,5 @@
-// What a run will cost, before it: cells and memory by models of the image, seconds by what this machine
-// takes for a mesh of a phantom now.
+// Predicts the cost of a run: cells and memory by models of the image, seconds by the time that this machine
+// presently takes for a mesh of a phantom.
 #pragma once
 
 #include <map>
@@ -12,22 +12,22 @@
 namespace podm {
 
 struct Cost {
-  SizeOptions sizes;                   ///< with radius and delta as the run will use them
-  std::vector<double> cells_of_label;  ///< by position in LabelImage::labels; the background has none
+  SizeOptions sizes;                   ///< with the radius and delta of the run
+  std::vector<double> cells_of_label;  ///< by position in LabelImage::labels; 0 for the background
   double cells = 0;                    ///< of the mesh
-  double stored_cells = 0;             ///< the background's, too: what memory and seconds go by
-  double mesh_bytes = 0;               ///< at the peak, image and transform apart
-  double mesh_s = 0;                   ///< of all phases after the transform, writing among them
+  double stored_cells = 0;             ///< includes the background; determines memory and seconds
+  double mesh_bytes = 0;               ///< at the peak, without image and transform
+  double mesh_s = 0;                   ///< of all phases after the transform, including output
 };
 
-/// Predicts what mesh_image() makes of these options, of which size, team, algorithm and what is done about
-/// dihedral angles count. Meshes some 10^5 cells of a phantom, for less than a second on the same threads;
-/// the image is not meshed. Measured against runs of eight segmentations: see scripts/check_plan. Throws
-/// InputError as mesh_image() does.
+/// Predicts the cost of mesh_image() with these options. Relevant are the sizes, the team, the algorithm and
+/// the options for dihedral angles. Meshes about 10^5 cells of a phantom, which takes less than a second on
+/// the same threads. The image itself is not meshed. scripts/check_plan compares predictions with runs of
+/// eight segmentations. Throws InputError as mesh_image() does.
 Cost predict_cost(const LabelImage& image, const MeshingOptions& options);
 
-/// A clock for work on so many threads: one thread's work is timed by the processor time of the process,
-/// which other load of the machine does not lengthen, that of several on the wall.
+/// A clock for work on a number of threads. Work of one thread is timed by the processor time of the process,
+/// which other load of the machine does not lengthen. Work of several threads is timed by the wall clock.
 class WorkTimer {
  public:
   explicit WorkTimer(int threads) : threads_(threads), start_s_(now_s()) {}

@@ -13,7 +13,8 @@ namespace podm {
 
 namespace {
 
-// By how much the model may err before a target is refused, or cells of one mesh are believed for the next.
+// The factor by which the model may err before a target is refused, and the largest factor by which the cells
+// of one mesh correct the prediction for the next.
 constexpr double kErrorAllowed = 1.3, kMostCorrection = 10;
 
 bool has_fixed_sizes(const SizeOptions& sizes) { return !sizes.near.empty() || !sizes.radius_of_mm.empty(); }
@@ -43,7 +44,7 @@ SizeOptions RadiusSearch::at(double radius_mm) const {
   return sizes;
 }
 
-// Cells become fewer as the radius grows.
+// The number of cells decreases as the radius grows.
 double RadiusSearch::radius_for(double cells) const {
   double low = 1e-9 * largest_mm_, high = largest_mm_;
   while (high / low > 1.0001) {
@@ -53,8 +54,9 @@ double RadiusSearch::radius_for(double cells) const {
   return high;
 }
 
-// The first mesh tells by what factor the model errs, more of them how cells follow the radius: not by a
-// power where a sheet comes or goes with it, but between one that has too many and one that has too few.
+// The first mesh gives the factor by which the model errs. Further meshes show how the number of cells
+// depends on the radius. This is no power law where a sheet appears or vanishes with the radius. The search
+// then interpolates between a mesh with too many cells and one with too few.
 bool RadiusSearch::learn(double cells) {
   const double target = static_cast<double>(asked_.target_elements);
   const Sample mesh{radius_mm_, cells};

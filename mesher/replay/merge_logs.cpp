@@ -18,7 +18,7 @@ namespace {
 
 Point point_of(const LoggedOperation& logged) { return {logged.point[0], logged.point[1], logged.point[2]}; }
 
-// One rank's log, read from front to back.
+// Reads one rank's log from front to back.
 class Reader {
  public:
   explicit Reader(const LogOfRank& of) : path_(of.path), head_(of.log.head), all_(of.log.all) {}
@@ -28,7 +28,7 @@ class Reader {
   bool is_over() const { return next_ == all_.operations.size(); }
   const LoggedOperation& next() const { return all_.operations[next_]; }
   bool is_in(std::uint64_t step) const { return !is_over() && step_of(next().sequence) == step; }
-  /// Vertices that the next entry removes.
+  /// The vertices that the next entry removes.
   std::span<const std::uint32_t> removed() const {
     return {all_.removed.data() + next_removed_, next().num_removed};
   }
@@ -40,7 +40,7 @@ class Reader {
     if (!holds) throw InputError(fmt::format("{}: {}: {}", path_, operation_text(next().sequence), fault));
   }
 
-  std::unordered_map<std::uint32_t, Point> vertices;  // those that the rank knows, by its numbers
+  std::unordered_map<std::uint32_t, Point> vertices;  // the vertices that the rank knows, by its numbers
 
  private:
   const std::string& path_;
@@ -67,7 +67,7 @@ class Merge {
     std::uint32_t id, kind;
   };
 
-  // The least that comes in any log.
+  // The least step that comes next in any log.
   std::optional<std::uint64_t> next_step() const {
     std::optional<std::uint64_t> step;
     for (const Reader& rank : ranks_) {
@@ -98,7 +98,7 @@ class Merge {
     rank.expect(!vertices_.contains(p), "forgets a vertex that nobody has removed");
   }
 
-  // The whole knows the vertex by its point.
+  // The vertex stays the same in the whole, where its point identifies it.
   void move(Reader& rank) {
     rank.expect(rank.removed().size() == 1, "moves other than one vertex");
     const Point p = take_removed(rank, rank.removed().front());
@@ -144,12 +144,12 @@ class Merge {
   }
 
   std::vector<Reader> ranks_;
-  ByPoint<Vertex> vertices_;  // of the whole, now
+  ByPoint<Vertex> vertices_;  // the present vertices of the whole
   std::uint64_t num_vertices_ = 0;
   OperationBatch whole_;
 };
 
-// All of one run, each rank's once; they are in the order of ranks.
+// Checks that all logs are of one run, with one log per rank. They are sorted by rank.
 void expect_one_run(const std::vector<LogOfRank>& logs) {
   const auto run_of = [](const OperationLogHead& head) {
     return std::tie(head.num_ranks, head.box, head.image_sha256, head.space, head.mesh_sha256,

@@ -1,13 +1,14 @@
-// The logs of ranks that share no memory become one: the serial run that they claim to equal.
+// Merges the logs of ranks that share no memory into one: the serial run that they claim to equal.
 //
-// The first rank makes a coarse mesh, and then all take steps together. In a step each rank either changes
-// the mesh within a part of space that no other changes in this step, or learns from others what they have
-// changed. So operations of different ranks in one step change no vertex in common, and any order of them
-// makes the same mesh; it is by rank here.
-//   Numbers of vertices are each rank's own. In the whole a vertex is where it is: vertices that are there at
-//   the same time are at different points, and a removed one may come back, so it is the step that decides.
-//   What a rank has learnt is compared with the whole, as it was at that time: so a rank that has been told
-//   wrong is found, even if nothing came of it.
+// The first rank makes a coarse mesh. Then all ranks take steps together. In a step each rank either changes
+// the mesh within a part of space that no other rank changes in this step, or learns from other ranks what
+// they have changed. Operations of different ranks in one step therefore change no vertex in common, and any
+// order of them makes the same mesh. Here they are ordered by rank.
+//
+// Each rank has its own numbers of vertices. In the whole a vertex is identified by its point: vertices that
+// exist at the same time have different points. A removed vertex may come back, therefore the step decides.
+// Everything that a rank has learnt is compared with the whole as it was at that time. A rank that received
+// wrong data is therefore found, even if the wrong data had no effect.
 #pragma once
 
 #include <string>
@@ -22,13 +23,13 @@ struct LogOfRank {
   OperationLog log;
 };
 
-/// The operations of all logs of a run, with the numbers of the whole's vertices, and the head of rank 0's.
-/// Sequence numbers stay each rank's; workers are numbered by worker_in_whole(). The log of a run on one
-/// machine is returned as it is. `logs` are in any order, at least one, of the same run, one a rank. Throws
-/// InputError, naming path and operation, unless they are and fit together.
+/// The operations of all logs of a run, with the vertex numbers of the whole, and the head of rank 0's log.
+/// Sequence numbers stay those of each rank. Workers are numbered by worker_in_whole(). The log of a run on
+/// one machine is returned unchanged. `logs` are in any order, at least one, of the same run, one log per
+/// rank. Throws InputError, naming path and operation, if the logs are not of one run or do not fit together.
 OperationLog merge_logs(std::vector<LogOfRank> logs);
 
-/// A worker of a rank among all: the rank in the high 16 bits.
+/// The number of a rank's worker among all workers: the rank is in the high 16 bits.
 inline constexpr unsigned kBitsInWorker = 16;
 inline std::uint32_t worker_in_whole(int rank, std::uint32_t worker) {
   return static_cast<std::uint32_t>(rank) << kBitsInWorker | (worker & ((1u << kBitsInWorker) - 1));

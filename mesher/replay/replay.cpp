@@ -37,13 +37,14 @@ class Replay {
 
  private:
   double box(std::size_t i) const { return log_.head.box[i]; }
-  // They have cells in common, whose labels go by canonical centres.
+  // Ranks have cells in common. The labels of these cells are those at canonical circumcenters.
   bool is_of_ranks() const { return log_.head.num_ranks > 1; }
   std::string name_of(const LoggedOperation& logged) const {
     const std::string text = operation_text(logged.sequence);
     return is_of_ranks() ? text + " of rank " + std::to_string(logged.worker >> kBitsInWorker) : text;
   }
-  // An insertion makes some 7 cells more than it takes; a hole may be filled before its cells are free.
+  // An insertion creates about 7 cells more than it destroys. A cavity may be filled before its cells are
+  // free.
   std::size_t capacity() const {
     return std::min<std::size_t>(16 * log_.all.operations.size() + (1 << 20), 1u << 30);
   }
@@ -86,7 +87,7 @@ class Replay {
     start = operation_.created().front();
   }
 
-  // From a cell of the same worker's last operation: it is near.
+  // Starts from a cell of the same worker's last operation, which is near.
   CellId walk(CellId from, const Point& p) const {
     return cell_with(*mesh_, p, mesh_->cell(from).is_alive() ? from : last_created_alive());
   }
@@ -105,9 +106,9 @@ class Replay {
   std::unique_ptr<Mesh> mesh_;
   Pool pool_;
   Operation<NoLocks> operation_;
-  std::unordered_map<std::uint32_t, VertexId> vertex_of_;  // by the id in the log
+  std::unordered_map<std::uint32_t, VertexId> vertex_of_;  // by vertex number in the log
   std::unordered_map<std::uint32_t, CellId> last_cell_;    // by worker
-  std::vector<VertexId> to_remove_;                        // removed by the operation at hand
+  std::vector<VertexId> to_remove_;                        // removed by the present operation
 };
 
 }  // namespace

@@ -1,5 +1,5 @@
-// Replay of a linearization log, or of merge_logs(), on one thread: the serial run that a parallel run claims
-// to equal.
+// Replays a linearization log, or the result of merge_logs(), on one thread: the serial run that a parallel
+// run claims to equal.
 #pragma once
 
 #include <memory>
@@ -9,8 +9,8 @@
 
 namespace podm {
 
-/// The triangulation that the logged operations make, one after the other. Throws InputError, naming the
-/// operation, when one cannot be carried out as logged; std::bad_alloc.
+/// The triangulation that the logged operations make, one after another. Throws InputError, naming the
+/// operation, if an operation cannot be carried out as logged. Throws std::bad_alloc.
 std::unique_ptr<Mesh> replay(const OperationLog& log);
 
 }  // namespace podm

@@ -20,7 +20,7 @@ double seconds_between(Clock::time_point start, Clock::time_point end) {
 }
 
 constexpr std::size_t kMostTrialMeshes = 5;
-constexpr double kShareOfTolerance = 0.9;  // the search aims at somewhat less than is promised
+constexpr double kShareOfTolerance = 0.9;  // the search aims at a smaller tolerance than promised
 
 bool is_near(std::uint64_t cells, const SizeOptions& sizes) {
   const double tolerance = kShareOfTolerance * sizes.target_tolerance_percent / 100;
@@ -29,8 +29,8 @@ bool is_near(std::uint64_t cells, const SizeOptions& sizes) {
 
 }  // namespace
 
-// Where a predicted radius does not meet the target with the first mesh, its cells tell how the
-// prediction errs, and it is made again.
+// If the first mesh with the predicted radius misses the target, its number of cells gives the error of the
+// prediction. A further mesh is then made with a corrected radius.
 Refinement refine_to_target(const LabelImage& image, const Isosurface& isosurface, const SizeOptions& sizes,
                             int threads, const MakeMesh& make_mesh, MeshingReport& report) {
   const Clock::time_point start = Clock::now();

@@ -1,4 +1,4 @@
-// A mesh of a target number of cells. What is spent on meshes that miss it is calibration.
+// Makes a mesh with a target number of cells. Calibration is the time spent on meshes that miss the target.
 #pragma once
 
 #include <functional>
@@ -12,8 +12,9 @@ namespace podm {
 /// Makes a mesh with these sizes, whose radius and delta are not 0.
 using MakeMesh = std::function<Refinement(const SizeOptions& sizes)>;
 
-/// Makes meshes until one has as many cells as `sizes` ask for, or no radius brings it nearer, and returns
-/// the last. Tells of the search, and of a target that was not met, in `report`. `threads`: 0 for all cores.
+/// Makes meshes until one has the number of cells that `sizes` requests, or no radius brings it nearer, or
+/// the limit of trial meshes is reached. Returns the last mesh. `report` gets the search, and a warning if
+/// the target was missed. `threads`: 0 for all cores.
 Refinement refine_to_target(const LabelImage& image, const Isosurface& isosurface, const SizeOptions& sizes,
                             int threads, const MakeMesh& make_mesh, MeshingReport& report);
 

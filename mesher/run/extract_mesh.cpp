@@ -16,12 +16,12 @@ namespace podm {
 
 namespace {
 
-// Threads share out chunks of ids.
+// Threads share the work in chunks of ids.
 constexpr std::size_t kChunk = 1 << 13;
 
 std::size_t num_chunks(std::uint32_t num_ids) { return (num_ids + kChunk - 1) / kChunk; }
 
-/// Calls work(chunk, begin, end) for every chunk of the ids from `first`, where one begins, to `last`.
+/// Calls work(chunk, begin, end) for every chunk of the ids from `first`, which begins a chunk, to `last`.
 template <class Work>
 void for_each_chunk(std::uint32_t first, std::uint32_t last, std::size_t threads, const Work& work) {
   parallel_for_ranges(last - first, kChunk, threads, [&](std::size_t begin, std::size_t end, std::size_t) {
@@ -30,7 +30,8 @@ void for_each_chunk(std::uint32_t first, std::uint32_t last, std::size_t threads
   });
 }
 
-/// Calls work(begin, end) for some sixteen slices of the ids below `num_ids`, chunks each, one after another.
+/// Calls work(begin, end) for about sixteen slices of the ids below `num_ids`, one after another. Each slice
+/// consists of whole chunks.
 template <class Work>
 void for_each_slice(std::uint32_t num_ids, const Work& work) {
   const auto length = static_cast<std::uint32_t>(kChunk * std::max<std::size_t>(1, num_chunks(num_ids) / 16));
@@ -38,12 +39,13 @@ void for_each_slice(std::uint32_t num_ids, const Work& work) {
     work(begin, begin + std::min(length, num_ids - begin));
 }
 
-// One number a chunk: how many it adds to the output; summed up, where in the output they begin.
+// One number per chunk: the number of items that it adds to the output. After sum_up() it is the position in
+// the output where they begin.
 class Starts {
  public:
   explicit Starts(std::uint32_t num_ids) : starts_(num_chunks(num_ids) + 1) {}
   std::size_t& operator[](std::size_t chunk) { return starts_[chunk]; }
-  /// That of all chunks before the id, where one ends.
+  /// The number of items of all chunks before `id`, which must end a chunk.
   std::size_t before(std::uint32_t id) const { return starts_[num_chunks(id)]; }
   void sum_up() { std::exclusive_scan(starts_.begin(), starts_.end(), starts_.begin(), std::size_t{0}); }
   std::size_t total() const { return starts_.back(); }
@@ -52,7 +54,7 @@ class Starts {
   std::vector<std::size_t> starts_;
 };
 
-// Asks the image where nobody has; dead cells are background.
+// Queries the image if the label is unknown. Dead cells are background.
 LabelIndex label_of(Mesh& mesh, const Isosurface& isosurface, CellId c) {
   LabelIndex& label = mesh.label(c);
   if (label == kUnknownLabel)
@@ -60,15 +62,16 @@ LabelIndex label_of(Mesh& mesh, const Isosurface& isosurface, CellId c) {
   return label;
 }
 
-// A facet on its way out: vertices by their ids in the store.
+// A facet of the output, with vertices by their ids in the store.
 struct BoundaryFacet {
   std::array<VertexId, 3> vertices;
   std::array<LabelIndex, 2> labels;
 };
 
-// A pass over the cells gives them labels and counts them. A second writes cells, with vertices by their ids
-// in the store, finds facets and which vertices are in use, and sets the store's memory free behind it. Then
-// vertices get numbers, in the order of their ids, and cells and facets learn them.
+// A first pass over the cells labels and counts them. A second pass writes the cells with vertices by their
+// ids in the store, finds the facets and the vertices in use, and frees the memory of the store that it has
+// passed. Then the vertices are numbered in the order of their ids, and the cells and facets get these
+// numbers.
 class Extractor {
  public:
   Extractor(Mesh& mesh, const Isosurface& isosurface, std::size_t threads, const CellFilter& is_wanted,
@@ -106,14 +109,14 @@ class Extractor {
   }
 
  private:
-  // The marks stand in out_ids_, which a facet reads anyway: looking at the vertices themselves would double
-  // the time.
+  // The marks are in out_ids_, which facets read anyway. Reading the vertices themselves would double the
+  // time.
   static constexpr std::uint32_t kUsed = 0, kOffIsosurface = 1u << 31;
 
   std::uint32_t out_id(VertexId v) const { return out_ids_[v] & ~kOffIsosurface; }
   bool is_off_isosurface(VertexId v) const { return (out_ids_[v] & kOffIsosurface) != 0; }
 
-  // How many of them are in the mesh.
+  // Labels the cells and returns the number of those in the mesh.
   std::size_t label_cells(CellId begin, CellId end) {
     std::size_t count = 0;
     for (CellId c = begin; c < end; ++c) {
@@ -125,7 +128,7 @@ class Extractor {
 
   bool is_wanted(CellId c) const { return labels_[c] != kBackground && (!is_wanted_ || is_wanted_(c)); }
 
-  // What a cell needs besides its own line, early.
+  // Prefetches what a cell needs besides its own cache line.
   static constexpr CellId kLookahead = 32;
   void prefetch_around(CellId c) const {
     if (c >= mesh_.cell_bound() || labels_[c] == kBackground) return;
@@ -148,7 +151,8 @@ class Extractor {
       for (unsigned k = 0; k < 4; ++k) {
         const LabelIndex across =
             cell.mirrors[k] == kNoFacet ? kBackground : labels_[cell_of(cell.mirrors[k])];
-        if (across < label) add_facet(cell, k, {across, label}, facets);  // once, by the larger label
+        if (across < label)
+          add_facet(cell, k, {across, label}, facets);  // once, from the side of the larger label
       }
       out_.cells[at] = cell.vertices;
       if (is_mirrored_) std::swap(out_.cells[at][2], out_.cells[at][3]);
@@ -158,7 +162,7 @@ class Extractor {
 
   void add_facet(const Cell& cell, unsigned k, const std::array<LabelIndex, 2>& labels,
                  std::vector<BoundaryFacet>& facets) {
-    // kFacetVertices turns towards the cell; outwards is the other way round.
+    // kFacetVertices are oriented towards the cell. The output is oriented outwards.
     const auto vertex = [&](std::size_t i) {
       return cell.vertices[static_cast<unsigned>(kFacetVertices[k][2 - i])];
     };
@@ -166,7 +170,7 @@ class Extractor {
     if (is_mirrored_) std::swap(vertices[1], vertices[2]);
     try {
       facets.push_back({vertices, labels});
-    } catch (const std::bad_alloc&) {  // not to leave the thread
+    } catch (const std::bad_alloc&) {  // must not leave the thread
       is_out_of_memory_ = true;
     }
   }
@@ -208,7 +212,7 @@ class Extractor {
                         });
   }
 
-  // Returns how many have a vertex off the isosurface.
+  // Returns the number of facets with a vertex off the isosurface.
   std::uint64_t write_facets() {
     std::vector<std::size_t> begin(facets_.size() + 1);
     for (std::size_t chunk = 0; chunk < facets_.size(); ++chunk)
@@ -234,12 +238,13 @@ class Extractor {
   const CellFilter& is_wanted_;
   const Isosurface& isosurface_;
   const Affine to_world_;
-  const bool is_mirrored_ = determinant(to_world_) < 0;  // swapping two vertices of a cell turns it back
+  const bool is_mirrored_ =
+      determinant(to_world_) < 0;  // a swap of two vertices of each cell restores its orientation
   std::size_t threads_;
   TetMesh& out_;
   const double flip_ = out_.space == Space::kLps ? -1 : 1;
-  HugeArray<LabelIndex> labels_;        // those of the store's cells: they outlive the cells, and lie closer
-  std::vector<std::uint32_t> out_ids_;  // by id in the store: used or not, then the position in the output
+  HugeArray<LabelIndex> labels_;  // of the store's cells; they outlive the cells and are denser in memory
+  std::vector<std::uint32_t> out_ids_;  // by id in the store: unused or used, then the position in the output
   std::vector<std::vector<BoundaryFacet>> facets_;  // by chunk of cells
   std::atomic<bool> is_out_of_memory_ = false;
 };

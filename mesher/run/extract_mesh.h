@@ -1,5 +1,5 @@
-// The store becomes the mesh that leaves the library: cells whose circumcentre lies inside, facets between
-// labels, in the world. `threads`: 0 for all cores; the result is the same for any number.
+// Turns the store into the output mesh: the cells whose circumcenter lies inside, and the facets between
+// labels, in world coordinates. `threads`: 0 for all cores; the result is the same for any number.
 #pragma once
 
 #include <cstdint>
@@ -12,14 +12,16 @@
 
 namespace podm {
 
-/// Cells with a label. Afterwards mesh.label() is known of all cells, the background's of dead ones.
+/// Returns the number of cells with a label. Afterwards mesh.label() is known for all cells; dead cells have
+/// the background's.
 std::uint64_t label_cells(Mesh& mesh, const Isosurface& isosurface, int threads);
 
-/// Uses the store up: it gives its memory back as the mesh grows, so that both together take 4 bytes a
-/// vertex, 2 a cell of the store, 32 a boundary facet and a sixteenth of the mesh more than the store.
-/// `space` is kRas or kLps. `facets_off_isosurface` counts boundary facets with a vertex elsewhere. Vertices
-/// and cells keep the order of their ids. `is_wanted`, if given, tells which of the cells with a label:
-/// others and their facets are left out. A facet between labels is the cell's of the larger one.
+/// Consumes the store, whose memory is freed as the mesh grows. Besides the store the two take only 4 bytes
+/// per vertex, 2 per cell of the store, 32 per boundary facet and a sixteenth of the mesh. `space` is kRas or
+/// kLps. `facets_off_isosurface` becomes the number of boundary facets with a vertex off the isosurface.
+/// Vertices and cells keep the order of their ids. `is_wanted`, if given, selects from the cells with a
+/// label: all other cells and their facets are left out. A facet between two labels belongs to the cell of
+/// the larger label.
 using CellFilter = std::function<bool(CellId)>;
 TetMesh extract_mesh(Mesh& mesh, const Isosurface& isosurface, Space space, int threads,
                      std::uint64_t& facets_off_isosurface, const CellFilter& is_wanted = {});

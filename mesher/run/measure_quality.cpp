@@ -17,7 +17,7 @@ namespace podm {
 namespace {
 
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
-constexpr std::uint64_t kLargeLabelVoxels = 1000;  // larger labels must appear
+constexpr std::uint64_t kLargeLabelVoxels = 1000;  // larger labels must appear in the mesh
 
 Point point_of(const TetMesh& mesh, std::uint32_t v) {
   return {mesh.vertices[v][0], mesh.vertices[v][1], mesh.vertices[v][2]};
@@ -27,8 +27,8 @@ double squared_cotangent(const Vector& u, const Vector& v) {
   return signed_square_ratio(dot(u, v), squared_length(cross(u, v)));
 }
 
-// What the items of a slice add up to, by add(tally, begin, end). Any thread adds up a slice; slices are put
-// together in their order, so that sums are rounded alike on any number of threads.
+// The sum over all items, computed in slices by add(tally, begin, end). Any thread may process a slice. The
+// slices are summed in their order. Rounding is therefore the same for any number of threads.
 template <class Tally, class Add>
 Tally tally_up(std::size_t num_items, std::size_t num_slices, int threads, const Tally& none,
                const Add& add) {
@@ -47,14 +47,14 @@ constexpr std::size_t kMostSlices = 256;
 using Corners = std::array<Point, 4>;
 
 struct CellMeasures {
-  double determinant, squared_length;  // of the sphere
+  double determinant, squared_length;  // of the RelativeSphere
   double squared_radius, shortest2;
   DihedralExtremes dihedral;
 };
 
 inline double least(double a, double b) { return a < b ? a : b; }
 
-// Has neither branch nor loop: a loop over it becomes vector code.
+// Has neither branch nor loop. A loop over it can therefore be vectorised.
 inline CellMeasures measure_cell(const Point& a, const Point& b, const Point& c, const Point& d) {
   const Vector da = a - d, db = b - d, dc = c - d;
   const double aa = squared_length(da), bb = squared_length(db), cc = squared_length(dc);
@@ -65,16 +65,16 @@ inline CellMeasures measure_cell(const Point& a, const Point& b, const Point& c,
           dihedral_extremes(a, b, c, d)};
 }
 
-// Whether the cell is neither flat nor turned over; then its radius is made good if it is not.
+// True if the cell is neither flat nor inverted. In that case an inaccurate radius is computed again.
 bool is_positive(const Corners& p, CellMeasures& m) {
-  // Then it is, and the radius good, by the error bounds in circumsphere.h.
+  // The cell is then positive and its radius accurate, by the error bounds in circumsphere.h.
   if (m.determinant < 0 && is_well_conditioned(m.determinant, m.squared_length)) return true;
   if (orientation(p[0], p[1], p[2], p[3]) <= 0) return false;
   m.squared_radius = circumsphere(p[0], p[1], p[2], p[3], 0).squared_radius;
   return true;
 }
 
-// Some cells side by side.
+// A block of cells, measured side by side.
 class CellBlock {
  public:
   static constexpr std::size_t kSize = 16;
@@ -118,7 +118,7 @@ struct alignas(64) CellTally {
   };
 
   double max_ratio2 = 0, max_radius2 = 0, shortest2 = kInfinity;
-  double of_least = -kInfinity, of_largest = kInfinity;  // dihedral angles, by their squared cotangents
+  double of_least = -kInfinity, of_largest = kInfinity;  // dihedral angles, as squared cotangents
   std::uint64_t bad_orientation = 0, bad_radius_edge = 0, bad_radius = 0;
   std::vector<OfLabel> labels;
 
@@ -155,7 +155,7 @@ struct alignas(64) CellTally {
   }
 };
 
-constexpr std::size_t kLookahead = 32;  // cells whose vertices are on their way to the cache
+constexpr std::size_t kLookahead = 32;  // prefetch distance for vertices, in cells
 
 // Calls use(cell, corners, measures) for the cells of [begin, end).
 template <class Use>
@@ -175,7 +175,7 @@ void for_each_measured(const TetMesh& mesh, std::size_t begin, std::size_t end, 
   }
 }
 
-// The size field where the mesh is.
+// The size field in the space of the mesh.
 class Bounds {
  public:
   Bounds(const SizeField& sizes, const LabelImage& image, Space space)
@@ -184,7 +184,8 @@ class Bounds {
       for (const std::size_t row : {0, 1, 2})
         for (const std::size_t axis : {0, 1}) to_working_[4 * row + axis] *= -1;
   }
-  // Whoever is no larger than the least bound need not know where its circumcentre is.
+  // A cell no larger than the least bound meets every local bound. Its circumcenter is therefore not
+  // computed.
   double squared_radius(const Corners& p, const CellMeasures& m, LabelIndex label) const {
     if (!sizes_.has_grid() || m.squared_radius <= sizes_.smallest_squared_radius())
       return sizes_.squared_radius_of_label(label);
@@ -207,7 +208,7 @@ void add_cells(const TetMesh& mesh, const Bounds& bounds, std::size_t begin, std
 CellTally measure_cells(const TetMesh& mesh, const Bounds& bounds, int threads, MeshingReport& report) {
   CellTally none;
   none.labels.resize(mesh.labels.size());
-  // No more than what lets the sums of all labels take 4 bytes a cell.
+  // With this limit the sums of all labels take at most 4 bytes per cell.
   const std::size_t num_slices =
       std::clamp<std::size_t>(mesh.cells.size() / (4 * mesh.labels.size()), 1, kMostSlices);
   CellTally tally = tally_up(mesh.cells.size(), num_slices, threads, none,

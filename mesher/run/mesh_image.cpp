@@ -1,4 +1,4 @@
-// The public API: the phases of a run, one after the other.
+// The public API: runs the phases one after another.
 #include "podm/mesh_image.h"
 
 #include "algorithms/check_options.h"
@@ -12,7 +12,7 @@ namespace podm {
 
 namespace {
 
-// One call of mesh_image.
+// One call of mesh_image().
 class Run {
  public:
   Run(const LabelImage& image, const MeshingOptions& options, const ProgressCallback& progress,

@@ -27,8 +27,8 @@ double seconds_since(std::chrono::steady_clock::time_point start) {
   return std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
 }
 
-// The bounds on dihedral angles that were asked for, the last first, if all cells keep them. Angles are those
-// of rounded arithmetic: the margin is above its errors.
+// The requested bounds on dihedral angles that all cells keep: those of the optimisation, otherwise those of
+// the perturbation. Angles are computed in rounded arithmetic; the margin exceeds its errors.
 std::optional<std::array<double, 2>> dihedral_bounds_kept(const MeshingReport& report) {
   constexpr double kMarginDeg = 1e-9;
   std::vector<std::array<double, 2>> asked;
@@ -149,7 +149,7 @@ void PhasesOfRun::report_refinement(Refinement& refinement, MeshingReport& repor
   team_.report_to(report, std::move(refinement.pages));
 }
 
-// Phases whose loops run on this machine's threads take virtual time by their counted work.
+// Phases whose loops run on this machine's threads take virtual time according to their counted work.
 void PhasesOfRun::simulate(const Refinement& refinement, MeshingReport& report) const {
   const Team team = team_.team();
   const std::uint64_t voxels = image_.voxels.size(), cells = refinement.mesh->num_cells();
@@ -185,7 +185,7 @@ void PhasesOfRun::optimize(Mesh& mesh, MeshingReport& report) const {
     report.optimization = optimize_mesh(mesh, parameters, team_.team(), stop,
                                         [&](double fraction) { announce("optimize", fraction, 0); });
     report.stop_reason = stop.reason();
-  } catch (const std::bad_alloc&) {  // before anything changed
+  } catch (const std::bad_alloc&) {  // nothing has changed yet
     report.stop_reason = StopReason::kMemoryLimit;
   }
   report.phases_s["optimize"] = seconds_() - start_s;
@@ -194,7 +194,7 @@ void PhasesOfRun::optimize(Mesh& mesh, MeshingReport& report) const {
 void PhasesOfRun::extract(const std::function<void(Space)>& extract, MeshingReport& report) const {
   announce("extract", 0, 0);
   const double start_s = seconds_();
-  malloc_trim(0);  // what workers had is for the mesh now
+  malloc_trim(0);  // makes the workers' memory available to the mesh
   extract(options_.space == Space::kVoxel ? Space::kRas : options_.space);
   report.phases_s["extract"] += seconds_() - start_s;
 }
@@ -206,7 +206,7 @@ void PhasesOfRun::finish(TetMesh& mesh, MeshingReport& report) const {
   report.phases_s["measure"] = seconds_() - start_s;
   mesh.is_optimized = report.optimization.has_value();
   mesh.smoothing_mm = options_.smoothing_mm;
-  if (options_.space != Space::kVoxel) {  // angles are others there
+  if (options_.space != Space::kVoxel) {  // angles differ in voxel space
     mesh.dihedral_bounds_deg = report.promised_dihedral_deg = dihedral_bounds_kept(report);
     return;
   }

@@ -1,5 +1,5 @@
-// The phases of a run but refinement, which is one machine's (mesh_image.cpp) or a rank's
-// (distributed/mesh_image_on_ranks.cpp), and what they share.
+// The phases of a run that the runs on one machine and on ranks share. Refinement is done on one machine
+// (mesh_image.cpp) or by a rank (distributed/mesh_image_on_ranks.cpp).
 #pragma once
 
 #include <chrono>
@@ -17,35 +17,35 @@ namespace podm {
 
 class PhasesOfRun {
  public:
-  /// A clock that phases are timed by, in seconds.
+  /// A clock that times the phases, in seconds.
   using Seconds = std::function<double()>;
   static double seconds_on_the_wall();
 
-  /// So much of the mesh's cells is expected in this process. Image, options and callback must outlive it.
-  /// Throws InputError on a team that the machine cannot have.
+  /// `share_of_cells` is the part of the mesh's cells that is expected in this process. Image, options and
+  /// callback must outlive the object. Throws InputError if the machine cannot run the team.
   PhasesOfRun(const LabelImage& image, const MeshingOptions& options, const ProgressCallback& progress,
               std::stop_token stop, double share_of_cells = 1, Seconds seconds = seconds_on_the_wall);
 
-  /// The first phase; all others need it. The isosurface is that of the image.
+  /// The first phase, which all other phases need. `make` returns the isosurface of the image.
   void transform(MeshingReport& report, const std::function<std::shared_ptr<const Isosurface>()>& make);
   void transform(MeshingReport& report);
   const Isosurface& isosurface() const { return *isosurface_; }
   const TeamOfRun& team() const { return team_; }
-  /// What surfaces are sampled at unless a target number of elements decides, mm.
+  /// The sampling distance of surfaces, mm, unless a target number of elements determines it.
   double delta_mm() const { return expected_.delta_mm; }
   int loop_threads() const { return loop_threads_; }
 
-  /// Calls refine() with what these sizes ask for, in which delta is not 0. The last call is told of.
+  /// Calls refine() with the problem of these sizes, in which delta is not 0. Only the last call is reported.
   using Refine = std::function<void(const Problem&, const Team&, StopControl&)>;
   void refine(const SizeOptions& sizes, const Refine& refine);
   void report_refinement(Refinement& refinement, MeshingReport& report) const;
 
-  /// Betters the refined mesh, if that is asked for and refinement was not ended early.
+  /// Improves the refined mesh, if that is requested and refinement was not ended early.
   void optimize(Mesh& mesh, MeshingReport& report) const;
 
-  /// Calls extract(space), which makes the mesh, in mm.
+  /// Calls extract(space), which must make the mesh in mm.
   void extract(const std::function<void(Space)>& extract, MeshingReport& report) const;
-  /// Measures the mesh, and brings it from mm to the space that was asked for.
+  /// Measures the mesh and converts it from mm to the requested space.
   void finish(TetMesh& mesh, MeshingReport& report) const;
 
  private:
@@ -65,11 +65,11 @@ class PhasesOfRun {
   const double share_of_cells_;
   const Seconds seconds_;
   std::shared_ptr<const Isosurface> isosurface_;
-  SizeOptions sizes_;                           // the last mesh has these
-  std::optional<SizeField> size_field_;         // these
-  std::shared_ptr<const SizeGrid> asked_grid_;  // of the sizes that were asked for
+  SizeOptions sizes_;                           // sizes of the last mesh
+  std::optional<SizeField> size_field_;         // size field of the last mesh
+  std::shared_ptr<const SizeGrid> asked_grid_;  // of the requested sizes
   Box object_{};                                // bounds of the foreground
-  Estimate expected_;                           // of all processes together
+  Estimate expected_;                           // over all processes
   const Clock::time_point start_ = Clock::now();
 };
 

@@ -16,13 +16,13 @@ namespace podm {
 
 namespace {
 
-// A block's corners of a set and those that share an edge with one of them.
+// The corners of a set and those that share an edge of the block with one of them.
 constexpr CornerMask with_neighbours(CornerMask m) {
   return m | (m & 0x55) << 1 | (m & 0xaa) >> 1 | (m & 0x33) << 2 | (m & 0xcc) >> 2 | (m & 0x0f) << 4 |
          (m & 0xf0) >> 4;
 }
 
-// The corners of `all` that edges join to its first.
+// The corners of `all` that edges within `all` join to its first corner.
 constexpr CornerMask first_piece(CornerMask all) {
   CornerMask piece = all & -all;
   for (int step = 0; step < 7; ++step) piece |= with_neighbours(piece) & all;
@@ -36,13 +36,13 @@ constexpr Point place_of(unsigned corner) {
 
 bool keeps_label(const BlockLabels& labels, const CornerStrengths& strengths, unsigned from, unsigned to) {
   const Vector way = place_of(to) - place_of(from);
-  constexpr std::array kEighths{4, 3, 5, 2, 6, 1, 7};  // most ways are lost in the middle
+  constexpr std::array kEighths{4, 3, 5, 2, 6, 1, 7};  // most paths leave the label near the middle
   return std::all_of(kEighths.begin(), kEighths.end(), [&](int n) {
     return winner(labels, place_of(from) + n / 8.0 * way, strengths).label == labels.corner[from];
   });
 }
 
-// Calls visit(corner, corner) for those of one label that only a way across the block joins.
+// Calls visit(corner, corner) for corners of one label that are joined only by a path across the block.
 template <class Visit>
 void for_each_crossing(const BlockLabels& labels, const CornerStrengths& strengths, const Visit& visit) {
   for (CornerMask left = kAllCorners; left != 0;) {
@@ -61,7 +61,7 @@ void for_each_crossing(const BlockLabels& labels, const CornerStrengths& strengt
 
 using Pairs = std::vector<std::pair<Components::Id, Components::Id>>;
 
-// Components that a way across a block joins, some of them more than once.
+// Pairs of components that a path across a block joins. Pairs may occur more than once.
 Pairs joined_pairs(const LabelImage& image, const VoxelStrengths& strengths, const Components& components,
                    int threads) {
   const LabelGrid<NoReads> grid(image, {});

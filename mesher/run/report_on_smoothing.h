@@ -1,4 +1,4 @@
-// What smoothing made of each label: its volume and its components, before and after.
+// Reports the effect of smoothing on each label: its volume and its components, before and after.
 #pragma once
 
 #include "podm/label_image.h"
@@ -7,11 +7,11 @@
 
 namespace podm {
 
-/// By labels as in LabelImage::labels, but the background. `threads`: 0 for all cores; the report is the same
-/// for any number.
+/// Labels are in the order of LabelImage::labels, without the background. `threads`: 0 for all cores; the
+/// report is the same for any number.
 ///
-/// Components by faces stay what they are (voxel_strengths.h), but two that touch along an edge or at a
-/// corner may grow together: they count as one where a straight way between two of their voxels keeps the
+/// Components by faces stay as they are (voxel_strengths.h). Two components that touch along an edge or at a
+/// corner may grow together. They count as one if a straight path between two of their voxels keeps the
 /// label.
 SmoothingReport report_on_smoothing(const LabelImage& image, double width_mm,
                                     const SmoothInterfaces& smoothed, int threads);

@@ -1,5 +1,5 @@
-// The sizes that an image gives to what options leave open: delta, and a radius for each label. The public
-// default_delta_mm() is defined beside them.
+// The sizes that an image implies where options leave them open: delta, and a radius for each label. The
+// public default_delta_mm() is defined in the same source file.
 #pragma once
 
 #include "podm/mesh_image.h"
@@ -8,20 +8,21 @@
 
 namespace podm {
 
-/// The radius that the options give a label, mm; 0: unbounded.
+/// The radius that the options give a label, mm; 0 if unbounded.
 double radius_mm_of(const SizeOptions& sizes, const Label& label);
-/// The same of all labels, by index, the background unbounded; infinity: unbounded.
+/// The radii of all labels, mm, by index; infinity if unbounded. The background is unbounded.
 std::vector<double> radii_of_labels_mm(const LabelImage& image, const SizeOptions& sizes);
 
-/// The least radius of all labels, mm; 0: unbounded.
+/// The least radius of all labels, mm; 0 if all are unbounded.
 double smallest_radius_mm(const SizeOptions& sizes);
 
-/// The sampling distance that the options give, else the default of this image and the least radius, mm.
-/// Surfaces follow small cells wherever these are asked for, so that sizes by place count by the largest that
-/// a place has, if all have one. `census`: of these sizes by place; null: there are none.
+/// The sampling distance, mm: that of the options if set, otherwise the default for this image and the least
+/// radius. Small cells refine surfaces near them anyway. Local sizes therefore count only by the largest
+/// bound of any place, if every place has one. `census` describes these local sizes; null if there are none.
 double delta_mm_for(const LabelImage& image, const SizeOptions& sizes, const SizeCensus* census);
 
-/// What the options ask for, label by label and, of the grid that make_size_grid() makes of them, by place.
+/// The size field that the options request: a radius per label, and local sizes from the grid that
+/// make_size_grid() makes of the options.
 SizeField size_field(const LabelImage& image, const SizeOptions& sizes,
                      std::shared_ptr<const SizeGrid> grid = nullptr);
 

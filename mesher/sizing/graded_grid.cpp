@@ -1,6 +1,6 @@
-// Two passes over the grid, of which each looks at the neighbours that it has passed: a shortest way may take
-// its steps in any order, hence first all that go one way through the arrays, then the others. (Borgefors,
-// "Distance transformations in digital images", 1986.)
+// Two passes over the grid. Each pass looks at the neighbors that it has already passed. A shortest path may
+// take its steps in any order: first all steps that go forward through the arrays, then all others.
+// (Borgefors, "Distance transformations in digital images", 1986.)
 #include "sizing/graded_grid.h"
 
 #include <algorithm>
@@ -11,7 +11,7 @@ namespace podm {
 
 namespace {
 
-// One pass, forwards or back: a row is lowered by those of its neighbours that were passed, then along
+// One pass, forward or backward. A row is lowered by those of its neighbors that were passed, then along
 // itself.
 class Pass {
  public:
@@ -52,7 +52,7 @@ class Pass {
     }
   }
 
-  // Has no branch in the loop, which becomes vector code.
+  // The loops have no branch, so that they can be vectorised.
   void lower_by(const float* other, const std::array<float, 2>& rises, float* own) const {
     const auto [straight, across] = rises;
     const int last = size_[0] - 1;
@@ -64,14 +64,17 @@ class Pass {
   const std::array<int, 3> size_;
   const int sign_;
   std::vector<float>& values_;
-  std::array<std::array<std::array<float, 2>, 2>, 2> rises_{};  // by whether a step goes along z, y and x
+  std::array<std::array<std::array<float, 2>, 2>, 2>
+      rises_{};  // by the step's change along z, y and x (0 or 1)
 };
 
 }  // namespace
 
-// A straight way of lengths a, b, c along the axes, steps along them na >= nb >= nc, takes nc diagonals, nb -
-// nc of the first two axes, and na - nb steps along the first. That is linear in the lengths, and longest
-// along its own gradient.
+// Consider a straight path with na >= nb >= nc steps along the axes of spacings a, b, c. The shortest path
+// over neighbors takes nc space diagonals, nb - nc diagonals of the first two axes, and na - nb steps along
+// the first axis. Its length is linear in the extents of the straight path along the axes. Per length of the
+// straight path it is therefore longest along the gradient of this linear function, where it equals the
+// length of the gradient.
 double graded_stretch(const std::array<double, 3>& spacing) {
   std::array<std::size_t, 3> axes{0, 1, 2};
   double most = 1;

@@ -1,8 +1,9 @@
-// A face is a rectangle, the product of a point along its normal and of two voxels' lengths. So its squared
-// distance is a sum of one term an axis, and the least over all faces of a direction is found axis after
-// axis, each time as the lower envelope of parabolas. (Felzenszwalb, Huttenlocher, "Distance transforms of
-// sampled functions", 2012.) Seen from a voxel's centre the nearest point of a rectangle is at its middle or
-// at an end along each axis: half voxels are the places of the parabolas.
+// A face is a rectangle: the product of a point along its normal and of the lengths of two voxel sides. Its
+// squared distance is therefore a sum of one term per axis. The least squared distance over all faces of a
+// direction is found axis after axis, each time as the lower envelope of parabolas. (Felzenszwalb,
+// Huttenlocher, "Distance transforms of sampled functions", 2012.) Seen from a voxel's center, the nearest
+// point of a rectangle is at its middle or at an end along each axis. The parabolas are therefore placed at
+// half voxels.
 #include "sizing/interface_distance.h"
 
 #include <algorithm>
@@ -18,7 +19,7 @@ namespace {
 
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
 
-// The lower envelope of parabolas at half steps: site s is at s/2 - 1/2 steps, of height `heights[s]`.
+// The lower envelope of parabolas at half steps. Site s is at s/2 - 1/2 steps and has height `heights[s]`.
 class Envelope {
  public:
   void make(const std::vector<double>& heights, double step) {
@@ -28,7 +29,7 @@ class Envelope {
       if (heights[s] < kInfinity) add(step * (0.5 * static_cast<double>(s) - 0.5), heights[s]);
   }
   bool is_empty() const { return parabolas_.empty(); }
-  // At places that do not go back.
+  // The envelope at `place`. Successive places must not decrease.
   double next_at(double place) {
     while (current_ + 1 < parabolas_.size() && parabolas_[current_ + 1].from <= place) ++current_;
     const Parabola& lowest = parabolas_[current_];
@@ -37,7 +38,7 @@ class Envelope {
 
  private:
   struct Parabola {
-    double at, height, from;  // it is lowest from there on, as far as the next
+    double at, height, from;  // the parabola is lowest from `from` to the next parabola's
   };
 
   void add(double at, double height) {
@@ -70,7 +71,7 @@ class Part {
   unsigned char side(const std::array<int, 3>& v) const {
     return side_of_label_[grid_.label({v[0], v[1], v[2]})];
   }
-  // Whether a face of the interface is between the voxel and the one before it along the axis.
+  // True if a face of the interface lies between the voxel and the one before it along the axis.
   bool has_face_before(std::array<int, 3> v, std::size_t axis) const {
     const unsigned char own = side(v);
     --v[axis];
@@ -82,8 +83,8 @@ class Part {
            static_cast<std::size_t>(size_[2]);
   }
 
-  // Squared distances to the faces that are normal to the axis: along the normal, then along the others.
-  // Infinity: they are beyond reach.
+  // Squared distances to the faces that are normal to the axis, computed first along the normal, then along
+  // the other axes. Infinity where no face is within reach.
   std::vector<float> squared_distances(std::size_t normal, std::size_t threads) const {
     std::vector<float> squared(num_voxels());
     for_each_line(normal, threads,
@@ -111,7 +112,7 @@ class Part {
   }
 
  private:
-  struct Line {  // a thread's own
+  struct Line {  // one per thread
     std::vector<double> heights;
     Envelope envelope;
   };
@@ -128,7 +129,7 @@ class Part {
     }
   }
 
-  // Calls use(first voxel, its place, step to the next, line) for every line along the axis.
+  // Calls use(first voxel, its place, step to the next voxel, line) for every line along the axis.
   template <class Use>
   void for_each_line(std::size_t axis, std::size_t threads, const Use& use) const {
     const std::array<std::size_t, 3> steps{
@@ -166,7 +167,7 @@ struct VoxelBounds {
   }
 };
 
-// Of voxels right after a face along an axis.
+// The bounds of the voxels that follow a face along an axis.
 VoxelBounds bounds_of_faces(const LabelImage& image, const std::vector<unsigned char>& side_of_label,
                             std::size_t threads) {
   const Part all(image, side_of_label, {0, 0, 0}, image.size, 0);

@@ -30,7 +30,7 @@ Affine then(const Affine& a, const Affine& b) {
   return c;
 }
 
-// Takes voxels to those counted from `first`, `stride` of them a node.
+// Maps points to node indices. Nodes are counted from voxel `first`, one every `stride` voxels.
 Affine to_nodes(const LabelImage& image, const std::array<int, 3>& first, int stride) {
   Affine a = inverse(voxels_to_working(image));
   for (std::size_t axis = 0; axis < 3; ++axis) {
@@ -48,7 +48,7 @@ std::string text_of(const std::vector<std::uint32_t>& values) {
   return fmt::format("{}", fmt::join(values, ", "));
 }
 
-// Throws where the labels do not touch, or one is on both sides.
+// Throws InputError if the labels do not touch, or one label is on both sides.
 InterfaceDistances distances_to(const LabelImage& image, const SizeNear& near, int threads) {
   std::vector<unsigned char> side_of_label(image.labels.size(), 0);
   for (std::size_t label = 0; label < image.labels.size(); ++label)
@@ -60,8 +60,8 @@ InterfaceDistances distances_to(const LabelImage& image, const SizeNear& near, i
                                        image.labels[label].value));
         side_of_label[label] = static_cast<unsigned char>(side + 1);
       }
-  // So far that the outermost voxels of the part, but for those at the image's border, are beyond the width
-  // from any point around them.
+  // With this reach every point around the outermost voxels of the part is beyond the width, except at the
+  // image's border.
   const double reach_mm = near.width_mm + 2 * diagonal_mm(image);
   auto distances = interface_distances(image, side_of_label, reach_mm, threads);
   if (!distances)
@@ -70,8 +70,8 @@ InterfaceDistances distances_to(const LabelImage& image, const SizeNear& near, i
   return std::move(*distances);
 }
 
-// Bounds at nodes, which are every so many voxels of an image. What a bound at a point means for the node
-// nearest to it is known from the slope.
+// Bounds at nodes, which are every n-th voxel of an image along each axis. A bound at a point becomes a bound
+// at the nearest node, increased by the slope times the distance.
 class Graded {
  public:
   Graded(const LabelImage& image, double slope) : image_(image), slope_(slope) {
@@ -79,7 +79,7 @@ class Graded {
     radii_.assign(num_nodes(), kUnbounded);
   }
 
-  // `voxel` need not be a whole number, nor in the image, beyond which there are no nodes.
+  // `voxel` need not be a whole number, nor lie in the image. There are no nodes beyond the image.
   void bound(const std::array<double, 3>& voxel, double radius_mm) {
     std::array<int, 3> node;
     double squared = 0;
@@ -94,12 +94,12 @@ class Graded {
     known = std::min(known, static_cast<float>(radius_mm + slope_ * std::sqrt(squared)));
   }
 
-  // Nothing where nothing is bounded.
+  // Returns nothing if there is no bound.
   std::optional<ScalarGrid> finish() && {
     std::array<double, 3> spacing = image_.spacing;
     for (double& s : spacing) s *= stride_;
     grade(size(), spacing, slope_, radii_);
-    if (radii_[0] == kUnbounded) return std::nullopt;  // so are all others
+    if (radii_[0] == kUnbounded) return std::nullopt;  // then all other values are unbounded, too
     return ScalarGrid(size(), to_nodes(image_, {0, 0, 0}, stride_),
                       std::make_shared<const std::vector<float>>(std::move(radii_)));
   }
@@ -148,7 +148,8 @@ void bound_by_labels(const LabelImage& image, const SizeOptions& sizes, Graded& 
   });
 }
 
-// By what it says at the image's voxels and at its own, whichever lie closer.
+// Applies the size image at the image's voxels and at the size image's own voxels, as either grid may be
+// finer.
 void bound_by_size_image(const LabelImage& image, const SizeOptions& sizes, const ScalarGrid& grid,
                          Graded& graded) {
   const Affine to_working = voxels_to_working(image);
@@ -175,7 +176,7 @@ void bound_near(const InterfaceDistances& distances, const SizeNear& near, doubl
 
 std::uint64_t bytes_of_size_grid(const LabelImage& image, const SizeOptions& sizes) {
   std::uint64_t volumes = sizes.grade > 0 ? 1 : 0;
-  if (!sizes.near.empty()) volumes += sizes.near.size() + 1;  // distances along one axis, too
+  if (!sizes.near.empty()) volumes += sizes.near.size() + 1;  // and the distances for one direction of faces
   return volumes * image.num_voxels() * sizeof(float);
 }
 

@@ -69,7 +69,7 @@ double ScalarGrid::mean(const Place& place) const {
   return weights > 0 ? sum / weights : kNone;
 }
 
-// On a side, and to both sides of it.
+// The least mean on a cell's side and on both sides of it.
 double ScalarGrid::least_around(const Place& place) const {
   std::vector<Place> places{place};
   for (std::size_t axis = 0; axis < 3; ++axis) {
@@ -138,7 +138,7 @@ ScalarGrid::Range ScalarGrid::range_in(const Box& box) const {
   return range;
 }
 
-// Two boxes with no point in common that are not at an angle have a side of one or the other between them.
+// Two disjoint boxes that are not at an angle are separated by a side of one of them.
 bool ScalarGrid::meets(const Box& box) const {
   const auto in_nodes = node_bounds(box);
   for (std::size_t axis = 0; axis < 3; ++axis)

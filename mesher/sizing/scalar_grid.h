@@ -1,12 +1,13 @@
-// Positive numbers at the nodes of a grid, and between them; a node may have none.
+// Positive numbers at the nodes of a grid, and between them. A node may have no number.
 //
-// Between nodes the number is the mean of those of the eight nodes around that have one, by their trilinear
-// weights. The cells at the border reach half a cell beyond the nodes, and the number there is that of the
-// nearest place between nodes. Elsewhere, and where none of the eight has a number with a weight, there is
-// none.
+// Between nodes the number is the mean over those of the eight surrounding nodes that have one, by their
+// trilinear weights. The cells at the border extend half a cell beyond the nodes. The number there is that of
+// the nearest place between nodes. Elsewhere there is no number, nor where none of the eight nodes has a
+// number and a weight.
 //
-// Where some nodes lack a number the mean may jump between two cells. Within kSlack of a cell's side it is
-// the least of both sides, so that nobody who computes the same point with other rounding finds less.
+// Where some nodes have no number, the mean may jump between two cells. Within kSlack of a cell's side the
+// number is the least of both sides. The same point computed with other rounding therefore gets no smaller
+// number.
 #pragma once
 
 #include <array>
@@ -25,22 +26,23 @@ class ScalarGrid {
   using Values = std::shared_ptr<const std::vector<float>>;
   static constexpr double kNone = std::numeric_limits<double>::infinity();
 
-  /// `values`: x fastest, finite; 0 where a node has none. `to_nodes` maps points to node indices, and is not
-  /// singular.
+  /// `values`, x fastest, are finite; 0 where a node has no number. `to_nodes` maps points to node indices
+  /// and is not singular.
   ScalarGrid(const std::array<int, 3>& size, const Affine& to_nodes, Values values);
 
-  /// The number at p, kNone where there is none.
+  /// The number at p, or kNone.
   double at(const Point& p) const;
-  /// The same at the place between nodes that is nearest to p, along the axes of the grid.
+  /// The number at the place between nodes that is nearest to p along the axes of the grid.
   double at_nearest(const Point& p) const;
 
   struct Range {
     double least = kNone, most = 0;
   };
-  /// Of the nodes that have a number and a weight at some point of the box, or are near to that.
+  /// The range of the numbers of all nodes that have a weight at a point of the box. It may include nodes
+  /// near them.
   Range range_in(const Box& box) const;
-  /// Whether the grid, half a cell around included, and the box have a point in common. True may be said of
-  /// some that pass each other at an angle.
+  /// True if the grid, extended by half a cell, and the box have a point in common. May also be true for
+  /// boxes that pass each other at an angle.
   bool meets(const Box& box) const;
 
   const std::array<int, 3>& size() const { return size_; }
@@ -52,10 +54,10 @@ class ScalarGrid {
   }
 
  private:
-  static constexpr double kSlack = 1e-7;  // of a cell
+  static constexpr double kSlack = 1e-7;  // in cells
 
-  // A cell by its first node, and a place in it, 0 to 1 along each axis; of a point beyond all nodes, the
-  // nearest place.
+  // A cell, given by its first node, and a place in it, 0 to 1 along each axis. For a point beyond all nodes
+  // it is the nearest place.
   struct Place {
     std::array<int, 3> cell;
     std::array<double, 3> fraction;
@@ -71,7 +73,7 @@ class ScalarGrid {
   Affine to_nodes_;
   Values values_;
   std::array<std::size_t, 3> steps_;   // between nodes along the axes
-  std::array<std::size_t, 3> across_;  // the same, 0 along an axis of one node
+  std::array<std::size_t, 3> across_;  // the same, but 0 along an axis of one node
 };
 
 }  // namespace podm

@@ -28,9 +28,9 @@ double radius_of(int number) {
   return number == kNoRadius ? ScalarGrid::kNone : std::exp2(number / kClassesAnOctave);
 }
 
-constexpr int kPointsAtInterface = 8;  // of a voxel, elsewhere one
+constexpr int kPointsAtInterface = 8;  // per voxel; elsewhere one point per voxel
 
-// Calls visit(direction, label beside) for faces between v and voxels of another label.
+// Calls visit(axis, step, label beyond) for each face between v and a voxel of another label.
 template <class Visit>
 void for_each_face(const LabelGrid<NoReads>& grid, const Voxel& v, const Visit& visit) {
   const LabelIndex own = grid.label(v);
@@ -47,7 +47,7 @@ struct Counts {
   double volume = 0, surface = 0, border = 0;
 };
 
-// How many voxels apart samples are along each axis.
+// The distance of samples along each axis, in voxels.
 int stride_of(const LabelImage& image) {
   const auto num_samples = [&](std::size_t stride) {
     return image.num_voxels() / (stride * stride * stride);
@@ -66,8 +66,9 @@ std::optional<SizeCensus> census_of(const LabelImage& image, const SizeOptions& 
 
 double SizeCensus::Places::radius_mm(double factor) const { return std::min(factor * of_image_mm, fixed_mm); }
 
-// Points of a voxel are drawn, so that zones near interfaces that are narrower than a voxel have their share.
-// What is graded belongs to the image where there is one: a prediction need not tell them apart.
+// Points within a voxel are random. Zones near interfaces that are narrower than a voxel therefore get their
+// share. Graded sizes count as sizes of the size image if there is one: a prediction need not distinguish
+// them.
 SizeCensus::SizeCensus(const LabelImage& image, const SizeOptions& sizes, const SizeGrid& grid) {
   const Affine to_working = voxels_to_working(image);
   const LabelGrid<NoReads> voxels(image, {});
@@ -96,7 +97,7 @@ SizeCensus::SizeCensus(const LabelImage& image, const SizeOptions& sizes, const 
           num_points = kPointsAtInterface;
           std::array<double, 3> at = center;
           at[axis] += 0.5 * step;
-          const double area = 1 / image.spacing[axis];  // times the voxel's volume
+          const double area = 1 / image.spacing[axis];  // divided by the voxel's volume
           Counts& of_places = counts_at(label, map(to_working, Point{at[0], at[1], at[2]}));
           of_places.surface += area, surface += area;
           if (beside == kBackground) of_places.border += area, border += area;
@@ -116,7 +117,7 @@ SizeCensus::SizeCensus(const LabelImage& image, const SizeOptions& sizes, const 
                        .surface = surface > 0 ? count.surface / surface : 0,
                        .border = border > 0 ? count.border / border : 0});
   }
-  if (places_.empty()) largest_mm_ = ScalarGrid::kNone;  // an object that is finer than the samples
+  if (places_.empty()) largest_mm_ = ScalarGrid::kNone;  // the object is finer than the samples
 }
 
 }  // namespace podm

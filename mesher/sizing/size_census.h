@@ -1,4 +1,4 @@
-// Which sizes places in the object have, by samples, to predict what a mesh will cost.
+// Samples the local sizes in the object, to predict the cost of a mesh.
 #pragma once
 
 #include <optional>
@@ -12,18 +12,19 @@ namespace podm {
 
 class SizeCensus {
  public:
-  /// `grid`: what make_size_grid() makes of these sizes.
+  /// `grid` is the result of make_size_grid() for these sizes.
   SizeCensus(const LabelImage& image, const SizeOptions& sizes, const SizeGrid& grid);
 
-  /// The largest radius that a place has, mm; infinity if one has none.
+  /// The largest bound of any place, mm; infinity if a place has none.
   double largest_mm() const { return largest_mm_; }
-  /// The same of the size image alone, before its factor, and of places that have one; 0: none has.
+  /// The largest bound of the size image alone, mm, before its factor, over the places that have one; 0 if no
+  /// place has one.
   double largest_of_image_mm() const { return largest_of_image_mm_; }
 
-  /// Places of one label, of about the same sizes.
+  /// The places of one label that have about the same sizes.
   struct Places {
     LabelIndex label;
-    double of_image_mm, fixed_mm;  ///< what the image's factor applies to, and what not; infinity: nothing
+    double of_image_mm, fixed_mm;  ///< bounds with and without the image's factor; infinity if none
     double volume, surface;        ///< shares of the label, and of all interfaces
     double border;                 ///< share of the interfaces with the background
 
@@ -36,7 +37,7 @@ class SizeCensus {
   std::vector<Places> places_;
 };
 
-/// Nothing where there is no grid.
+/// Returns nothing if there is no grid.
 std::optional<SizeCensus> census_of(const LabelImage& image, const SizeOptions& sizes, const SizeGrid* grid);
 
 }  // namespace podm

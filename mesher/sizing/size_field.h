@@ -1,4 +1,4 @@
-// The size bound r_t (rule R5): one circumradius per label, and less where a grid asks for less.
+// The radius bound r_t (rule R5): one circumradius per label, and less where a grid requests less.
 #pragma once
 
 #include <algorithm>
@@ -11,20 +11,21 @@
 
 namespace podm {
 
-/// Cells are kept below a grid's squared bound by this, relative: a circumcentre errs by up to 1e-9 of its
-/// cell's edges where the cell is nearly flat, and the bound by that times its slope.
+/// Cells stay below a grid's squared bound by this relative margin. The circumcenter of a nearly flat cell
+/// has an error of up to 1e-9 of the cell's edges. The error of the bound is that error times the slope of
+/// the bound.
 inline constexpr double kGridMargin = 1e-6;
 
 class SizeField {
  public:
-  /// `radius_mm[label index]`; infinity where only the surface drives. `grid`: null where sizes are those of
-  /// labels.
+  /// `radius_mm[label index]`; infinity where only the surface determines the size. `grid` is null if sizes
+  /// depend on the label only.
   explicit SizeField(std::vector<double> radius_mm, std::shared_ptr<const SizeGrid> grid = nullptr)
       : grid_(std::move(grid)) {
     for (const double r : radius_mm) squared_.push_back(r * r);
     find_smallest();
   }
-  /// All radii times `ratio`.
+  /// All radii multiplied by `ratio`.
   SizeField scaled(double ratio) const {
     SizeField scaled = *this;
     for (double& squared : scaled.squared_) squared *= ratio * ratio;
@@ -32,9 +33,9 @@ class SizeField {
     scaled.find_smallest();
     return scaled;
   }
-  std::size_t num_labels() const { return squared_.size(); }  // the background included
+  std::size_t num_labels() const { return squared_.size(); }  // includes the background
   bool has_grid() const { return grid_ != nullptr; }
-  /// The bound on a cell of the label with its circumcentre at p.
+  /// The bound on a cell of the label with its circumcenter at p.
   double squared_radius(LabelIndex label, const Point& p) const {
     return has_grid() ? std::min(squared_[label], squared_radius_of_grid(p)) : squared_[label];
   }
@@ -44,7 +45,7 @@ class SizeField {
     const double radius = grid_ratio_ * grid_->radius_at(p);
     return radius * radius;
   }
-  /// The least at any point of the object, the background apart.
+  /// The least bound at any point of the object, without the background.
   double smallest_squared_radius() const { return smallest_squared_; }
 
  private:
@@ -61,7 +62,7 @@ class SizeField {
   double smallest_squared_ = 0;
 };
 
-/// The bound on cells of one label, wherever their circumcentres are.
+/// The bound on the cells of one label, for any circumcenter.
 class LabelBound {
  public:
   LabelBound() = default;
@@ -69,16 +70,16 @@ class LabelBound {
   LabelBound(const SizeField& sizes, LabelIndex label)
       : squared_(sizes.squared_radius_of_label(label)), sizes_(sizes.has_grid() ? &sizes : nullptr) {}
 
-  /// What no bound is above.
+  /// No bound is larger.
   double most_squared() const { return squared_; }
-  /// Whether a squared radius that is no more than most_squared() is within the bound at p.
+  /// True if a squared radius that is at most most_squared() is within the bound at p.
   bool allows(double squared_radius, const Point& p) const {
     return sizes_ == nullptr || squared_radius < (1 - kGridMargin) * sizes_->squared_radius_of_grid(p);
   }
 
  private:
   double squared_ = 0;
-  const SizeField* sizes_ = nullptr;  // null: there is no grid
+  const SizeField* sizes_ = nullptr;  // null if there is no grid
 };
 
 }  // namespace podm

@@ -12,9 +12,10 @@ NearInterface::NearInterface(ScalarGrid distances_mm, const std::array<double, 3
       width_mm_(width_mm),
       radius_mm_(radius_mm) {}
 
-// A node that is farther away than its distance from p and the width together shows that p is beyond the
-// width. Beyond the nodes the nearest place between them counts, from which no face of the interface is
-// further: at the image's border they lie around all faces, and elsewhere the outermost are beyond the width.
+// p is beyond the width if a node's distance to the interface exceeds the width plus the node's distance from
+// p. A point beyond the nodes is replaced by the nearest place between them. No face of the interface is
+// farther from that place than from the point: at the image's border the nodes surround all faces, and
+// elsewhere the outermost nodes are beyond the width.
 bool NearInterface::contains(const Point& p) const {
   constexpr double kRounding = 1e-6;  // of distances in single precision
   auto u = map(distances_mm_.to_nodes(), std::array<double, 3>{p.x, p.y, p.z});

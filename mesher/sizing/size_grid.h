@@ -1,5 +1,5 @@
-// Bounds on circumradii by place: of a size image, near interfaces, and what is graded of these and of the
-// labels'.
+// Local bounds on circumradii: of a size image, near interfaces, and graded from these and from the labels'
+// bounds.
 #pragma once
 
 #include <algorithm>
@@ -10,11 +10,12 @@
 
 namespace podm {
 
-/// A bound on all that is within a width of an interface. Where distances between voxels leave open whether a
-/// point is, it is: the bound holds in all of that width, and in no more than a voxel's diagonal beyond.
+/// A bound on everything within a width of an interface. If the distances of voxels do not decide whether a
+/// point is within the width, the point counts as within it. The bound therefore holds in the whole width,
+/// and at most a voxel's diagonal beyond.
 class NearInterface {
  public:
-  /// `distances_mm`: from the nodes to the interface; `spacing_mm`: of the nodes.
+  /// `distances_mm` are from the nodes to the interface. `spacing_mm` is that of the nodes.
   NearInterface(ScalarGrid distances_mm, const std::array<double, 3>& spacing_mm, double width_mm,
                 double radius_mm);
 
@@ -31,15 +32,15 @@ class SizeGrid {
  public:
   struct Image {
     ScalarGrid radius_mm;
-    double factor = 1;  // of all its radii
+    double factor = 1;  // applies to all radii
   };
 
   SizeGrid(std::optional<Image> image, std::vector<NearInterface> near, std::optional<ScalarGrid> graded,
            const Box& object);
 
-  /// The bound at p, mm; infinity where there is none.
+  /// The bound at p, mm; infinity if there is none.
   double radius_at(const Point& p) const { return radius_near(p, radius_far(p)); }
-  /// The same by image and grade alone, and near interfaces alone, if that is less than `radius_mm`.
+  /// The bounds by image and grade alone, and by near interfaces alone if that is less than `radius_mm`.
   double radius_far(const Point& p) const {
     const double radius = image_ ? image_->factor * image_->radius_mm.at(p) : ScalarGrid::kNone;
     return graded_ ? std::min(radius, graded_->at_nearest(p)) : radius;
@@ -49,7 +50,7 @@ class SizeGrid {
       if (near.radius_mm() < radius_mm && near.contains(p)) radius_mm = near.radius_mm();
     return radius_mm;
   }
-  /// No bound in the object is less.
+  /// No bound in the object is smaller.
   double least_radius_mm() const { return least_mm_; }
 
  private:

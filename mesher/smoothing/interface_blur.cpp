@@ -49,7 +49,7 @@ InterfaceBlur::InterfaceBlur(const LabelImage& image, double width_mm)
   }
 }
 
-// The labels of the tile and of its halo, in runs; beyond the image, those at its border.
+// Reads the labels of the tile and of its halo, in runs. Beyond the image the labels are those at its border.
 void InterfaceBlur::read_window(const Voxel& first, Desk& desk) const {
   desk.runs.clear();
   desk.first_run.clear();
@@ -81,8 +81,8 @@ void InterfaceBlur::read_window(const Voxel& first, Desk& desk) const {
   });
 }
 
-// The indicator along x, where taps of the other axes reach. A run adds up the taps from its begin to its
-// end.
+// Blurs the label's indicator along x, in the rows that the taps of the other axes reach. A run adds the sum
+// of the taps from its begin to its end.
 void InterfaceBlur::blur_rows(LabelIndex label, const Gaussian& gaussian, Desk& desk) const {
   const std::size_t num_y = kSide + gaussian[1].count() - 1, num_z = kSide + gaussian[2].count() - 1;
   desk.by_x.resize(num_y * num_z);
@@ -104,7 +104,7 @@ void InterfaceBlur::blur_rows(LabelIndex label, const Gaussian& gaussian, Desk& 
   }
 }
 
-// Adds `factor` times the blurred indicator to the label's weight in the tile, an axis after the other.
+// Adds `factor` times the blurred indicator to the label's weight in the tile, one axis after another.
 void InterfaceBlur::blur(LabelIndex label, const Gaussian& gaussian, double factor, Desk& desk) const {
   blur_rows(label, gaussian, desk);
   const std::size_t num_y = kSide + gaussian[1].count() - 1;
@@ -112,7 +112,7 @@ void InterfaceBlur::blur(LabelIndex label, const Gaussian& gaussian, double fact
   for (std::size_t row = 0; row < desk.by_x.size(); ++row) {
     if (!desk.has_label[row]) continue;
     for (std::size_t z = 0; z < kSide; ++z) {
-      const std::size_t tap = row / num_y - z;  // wraps around where there is none
+      const std::size_t tap = row / num_y - z;  // wraps around where there is no tap
       if (tap < gaussian[2].count())
         add(gaussian[2].weights[tap], desk.by_x[row], desk.by_xz[z * num_y + row % num_y].data());
     }
@@ -124,7 +124,7 @@ void InterfaceBlur::blur(LabelIndex label, const Gaussian& gaussian, double fact
             &desk.weight[place_in_tile(0, static_cast<int>(y), static_cast<int>(z))]);
 }
 
-// The weights of all labels add up to 1, which saves blurring the most frequent.
+// The weights of all labels add up to 1. The most frequent label is therefore not blurred.
 void InterfaceBlur::weigh(LabelIndex label, Desk& desk) const {
   if (label == desk.labels.back().label) {
     for (std::size_t at = 0; at < kTileVoxels; ++at) desk.weight[at] = 1 - desk.sum_of_weights[at];
@@ -158,7 +158,7 @@ void InterfaceBlur::compare(LabelIndex label, Desk& desk) const {
 const std::array<double, kTileVoxels>& InterfaceBlur::distances_mm(const Voxel& first, Desk& desk) const {
   read_window(first, desk);
   desk.sum_of_weights.fill(0);
-  desk.of_others.fill(0);  // that of labels which are not near
+  desk.of_others.fill(0);  // the weight of labels that are not near
   for (const Desk::Presence& near : desk.labels) {
     weigh(near.label, desk);
     compare(near.label, desk);

@@ -1,5 +1,5 @@
-// How far a voxel lies from where its label, blurred, ties with another: the distances of
-// smooth_interfaces.h, for one width, in tiles of 16^3 voxels.
+// Computes the distance of each voxel from where its blurred label ties with another. These are the distances
+// of smooth_interfaces.h, for one width, in tiles of 16^3 voxels.
 #pragma once
 
 #include <array>
@@ -26,18 +26,18 @@ class InterfaceBlur {
 
   double width_mm() const { return width_mm_; }
 
-  /// What one thread works in; goes from tile to tile.
+  /// Scratch memory of one thread, reused from tile to tile.
   class Desk;
-  /// Distances in mm by place, positive where the label keeps its voxel; those beyond the image mean nothing.
-  /// `first` is the tile's lowest voxel.
+  /// Distances in mm by place in the tile, positive where the label keeps its voxel. Distances of voxels
+  /// beyond the image are undefined. `first` is the tile's lowest voxel.
   const std::array<double, kTileVoxels>& distances_mm(const Voxel& first, Desk& desk) const;
 
  private:
-  // Of a Gaussian along one axis: taps for -reach to reach, of sum 1.
+  // A Gaussian along one axis: taps for -reach to reach, with sum 1.
   struct Taps {
     explicit Taps(double width_voxels);
     std::size_t count() const { return weights.size(); }
-    // Of those for -reach to position - reach, the last not among them.
+    // The sum of the taps from -reach up to, but not including, position - reach.
     double sum_before(int position) const;
 
     int reach;
@@ -53,28 +53,28 @@ class InterfaceBlur {
 
   const LabelImage& image_;
   double width_mm_;
-  double mm_per_lead_;                    // of distance, by the lead of a weight
+  double mm_per_lead_;                    // mm of distance per unit of lead in weight
   Gaussian narrow_, wide_;                // of the width and of twice the width
-  std::array<int, 3> halo_{}, window_{};  // voxels around a tile, with it
+  std::array<int, 3> halo_{}, window_{};  // voxels around a tile; size including them
 };
 
 class InterfaceBlur::Desk {
  private:
   friend class InterfaceBlur;
-  struct Run {  // of voxels of one label, in a row of the window
+  struct Run {  // voxels of one label in a row of the window
     LabelIndex label;
     int begin, end;
   };
   struct Presence {
     LabelIndex label;
-    std::size_t voxels;  // of the window
+    std::size_t voxels;  // in the window
   };
   using Row = std::array<double, kTileSide>;  // along x, in the tile
 
   std::vector<Run> runs;
-  std::vector<std::size_t> first_run;  // by row of the window, and one more
-  std::vector<Presence> labels;        // from the rarest on
-  std::vector<Row> by_x, by_xz;        // of a label, blurred along these axes
+  std::vector<std::size_t> first_run;  // by row of the window, and one past the last
+  std::vector<Presence> labels;        // from the rarest to the most frequent
+  std::vector<Row> by_x, by_xz;        // of one label, blurred along these axes
   std::vector<bool> has_label;         // by row of by_x
   std::array<double, kTileVoxels> weight, sum_of_weights, of_own, of_others;  // of_others: the greatest
   std::array<double, kTileVoxels> distances;

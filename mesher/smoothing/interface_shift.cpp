@@ -7,8 +7,8 @@ namespace podm {
 
 namespace {
 
-// Sums of `count` values, `stride` apart, from each of `num_sums` places on; in each of `num_blocks` blocks
-// of (num_sums + count - 1) * stride values.
+// Sums `count` values, `stride` apart, from each of `num_sums` places on. Does so in each of `num_blocks`
+// blocks of (num_sums + count - 1) * stride values.
 void add_up_along(std::size_t stride, std::size_t num_blocks, std::size_t num_sums, std::size_t count,
                   std::vector<double>& values, std::vector<double>& sums) {
   sums.assign(num_blocks * num_sums * stride, 0);
@@ -82,7 +82,7 @@ void InterfaceShift::read_window(const Voxel& first, Desk& desk) const {
   }
 }
 
-// Adds up what is in the box around each voxel of the tile, an axis after the other.
+// Adds up the areas and leads in the box around each voxel of the tile, one axis after another.
 void InterfaceShift::add_up(LabelIndex label, Desk& desk) const {
   const std::array<std::size_t, 3> window{unsigned_of(window_[0]), unsigned_of(window_[1]),
                                           unsigned_of(window_[2])};

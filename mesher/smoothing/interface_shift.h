@@ -1,9 +1,9 @@
-// How far each voxel's label has grown where it lies, on average over the interfaces nearby: what
-// smooth_interfaces.h takes back, so that parts of any thickness keep their volume.
+// Computes how far each voxel's label has grown at the voxel, on average over the interfaces nearby.
+// smooth_interfaces.h subtracts this shift, so that parts of any thickness keep their volume.
 //
-// Between voxels of strengths a and b the interface has moved outward from their face by half of a - b, in
-// the strengths' own unit. Faces count by their areas, in whole 256ths of the largest: so all sums are exact,
-// in whatever order they are taken.
+// Between voxels of weights a and b the interface has moved outward from their face by half of a - b, in
+// units of the weights. Faces count by their areas, in whole 256ths of the largest. All sums are therefore
+// exact, in any order of summation.
 #pragma once
 
 #include <array>
@@ -19,23 +19,23 @@ namespace podm {
 
 class InterfaceShift {
  public:
-  /// Averages over what is within `reach` voxels along each axis. Keeps references to `image` and
+  /// Averages over everything within `reach` voxels along each axis. Keeps references to `image` and
   /// `strengths`.
   InterfaceShift(const LabelImage& image, const VoxelStrengths& strengths, const std::array<int, 3>& reach);
 
-  /// What one thread works in; goes from tile to tile.
+  /// Scratch memory of one thread, reused from tile to tile.
   class Desk;
-  /// By place, in parts of VoxelStrengths::kMost, positive where the label has grown; 0 where no strength is
-  /// told, or no face is within reach. `first` is the tile's lowest voxel.
+  /// Shifts by place in the tile, in units of 1 / VoxelStrengths::kMost, positive where the label has grown.
+  /// A shift is 0 where the weight is unset, or no face is within reach. `first` is the tile's lowest voxel.
   const std::array<double, kTileVoxels>& shifts(const Voxel& first, Desk& desk) const;
 
  private:
-  // A voxel with faces of another label.
+  // A voxel with faces to other labels.
   struct Side {
     Voxel at;  // in the window
     LabelIndex label;
     double area;  // of the faces
-    double lead;  // of the voxel's strength over those beyond, times the faces' areas
+    double lead;  // sum over the faces: area times (the voxel's weight minus the weight beyond)
   };
   using Sums = std::array<std::vector<double>, 2>;  // of areas, of leads
   std::size_t place_in_window(const Voxel& v) const;
@@ -45,17 +45,17 @@ class InterfaceShift {
 
   const LabelImage& image_;
   const VoxelStrengths& strengths_;
-  std::array<int, 3> reach_, window_{};   // voxels around a tile, with it
+  std::array<int, 3> reach_, window_{};   // voxels around a tile; size including them
   std::array<std::size_t, 3> stride_{};   // of the image
-  std::array<double, 3> area_of_face_{};  // across each axis
+  std::array<double, 3> area_of_face_{};  // of the face across each axis
 };
 
 class InterfaceShift::Desk {
  private:
   friend class InterfaceShift;
   std::vector<Side> sides;
-  std::vector<LabelIndex> labels;  // with a strength told in the tile
-  Sums sums;                       // of a label: in the window at first, in the tile at last
+  std::vector<LabelIndex> labels;  // labels with a weight set in the tile
+  Sums sums;                       // of one label: in the window at first, in the tile at the end
   std::vector<double> along;
   std::array<double, kTileVoxels> shifts;
 };

@@ -10,7 +10,7 @@ namespace podm {
 
 namespace {
 
-// So many lie in a block, and no plane passes many of them at once.
+// The points in a block. They are spread such that no plane passes many of them at once.
 constexpr std::size_t kPoints = 64;
 
 std::array<Point, kPoints> points_of_block() {

@@ -16,10 +16,10 @@ namespace podm {
 
 namespace {
 
-// All of a voxel's side.
-constexpr double kLost = 0.25;     // how far beyond its interface a voxel is lost
-constexpr double kLeast = 0.05;    // distance that is taken
-constexpr double kStairs = 0.5;    // distance from stairs, and the width at which they remain
+// All in sides of a voxel, unless noted.
+constexpr double kLost = 0.25;     // distance beyond its interface from which a voxel counts as lost
+constexpr double kLeast = 0.05;    // least distance that is set
+constexpr double kStairs = 0.5;    // distance that makes stairs, and the width below which stairs remain
 constexpr double kLostReach = 2;   // widths
 constexpr double kShiftReach = 2;  // widths
 constexpr int kTimesKept = 2;
@@ -29,10 +29,10 @@ using Place = std::uint16_t;  // in a tile
 
 struct Tile {
   Voxel first, end;                 // of its voxels
-  bool has_sides = false;           // whether strengths are told of any
-  std::vector<Place> left;          // voxels beside another label for which no width has been found yet
-  std::vector<Place> lost;          // those of them that are lost to the present width
-  std::vector<std::uint16_t> kept;  // strengths that keep volumes, of voxels that have one, x fastest
+  bool has_sides = false;           // true if the weight of any voxel is set
+  std::vector<Place> left;          // voxels beside another label that still need a width
+  std::vector<Place> lost;          // those voxels of `left` that the present width loses
+  std::vector<std::uint16_t> kept;  // volume-preserving weights of the voxels with a weight, x fastest
 
   static Place place(const Voxel& from_first) {
     return static_cast<Place>(place_in_tile(from_first.i, from_first.j, from_first.k));
@@ -49,7 +49,7 @@ struct Tile {
   }
 };
 
-// Of a cube of a voxel's volume.
+// The side of a cube with the volume of a voxel.
 double side_of_voxel_mm(const LabelImage& image) {
   return std::cbrt(image.spacing[0] * image.spacing[1] * image.spacing[2]);
 }
@@ -106,7 +106,8 @@ class Smoothing {
   std::array<int, 3> num_tiles_{};
   std::vector<Tile> tiles_;
   std::shared_ptr<VoxelStrengths> strengths_;
-  // By thread and label: voxels beside another label that the whole width keeps, less those lost.
+  // The number of voxels, by thread and label, beside another label that the whole width keeps, minus the
+  // number that it loses.
   std::vector<std::vector<std::int64_t>> lead_of_kept_;
 };
 
@@ -140,7 +141,7 @@ bool Smoothing::is_beside_another(const Voxel& v) const {
   return false;
 }
 
-// With the voxels around it; those outside the grid are background.
+// True if the tile and the voxels around it have one label. Voxels outside the grid are background.
 bool Smoothing::is_uniform(const Tile& tile) const {
   const Voxel low{std::max(tile.first.i - 1, 0), std::max(tile.first.j - 1, 0),
                   std::max(tile.first.k - 1, 0)};
@@ -152,7 +153,7 @@ bool Smoothing::is_uniform(const Tile& tile) const {
   for (int k = low.k; k < end.k; ++k) {
     for (int j = low.j; j < end.j; ++j) {
       const LabelIndex* row = &image_.voxels[image_.index(0, j, k)];
-      unsigned differing = 0;  // added up without a branch, which many voxels at a time can be
+      unsigned differing = 0;  // the loop has no branch, so that it can be vectorised
       for (int i = low.i; i < end.i; ++i) differing |= static_cast<unsigned>(row[i] ^ first);
       if (differing != 0) return false;
     }
@@ -168,7 +169,7 @@ void Smoothing::find_sides(Tile& tile) const {
   tile.has_sides = !tile.left.empty();
 }
 
-// Finds the distances of all that are left; those near a lost voxel stay.
+// Computes the distances of all voxels that are left. Voxels near a lost voxel stay left.
 void Smoothing::blur_by(double width_mm) {
   const InterfaceBlur blur(image_, width_mm);
   std::vector<InterfaceBlur::Desk> desks(threads_);
@@ -237,7 +238,7 @@ void Smoothing::for_each_told(const Tile& tile, const Visit& visit) const {
   });
 }
 
-// All are found before any is changed.
+// Finds all new weights before any weight is changed.
 void Smoothing::keep_volumes() {
   const InterfaceShift shift(image_, *strengths_, voxels_within(kShiftReach * width_mm_));
   std::vector<InterfaceShift::Desk> desks(threads_);

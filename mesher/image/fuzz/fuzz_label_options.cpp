@@ -1,5 +1,5 @@
-// Any text is taken as label ranges, a merge or a label table, or is refused with an InputError that says
-// something; what is taken is well formed.
+// Any text is either accepted as label ranges, a merge or a label table, or refused with an InputError that
+// has a message. Accepted input is well formed.
 #include <string>
 
 #include "fuzz_scratch.h"

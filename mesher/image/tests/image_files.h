@@ -1,4 +1,4 @@
-// The bytes of image files that tests make.
+// Makes the bytes of image files for tests.
 #pragma once
 
 #include <nifti/nifti1.h>
@@ -11,7 +11,7 @@
 
 namespace podm {
 
-/// `window_bits` as zlib has it: 31 for gzip, 15 for a zlib stream.
+/// `window_bits` as in zlib: 31 for gzip, 15 for a zlib stream.
 inline std::string deflated(const std::string& bytes, int window_bits = 31) {
   z_stream stream{};
   deflateInit2(&stream, Z_BEST_COMPRESSION, Z_DEFLATED, window_bits, 9, Z_DEFAULT_STRATEGY);
@@ -60,7 +60,7 @@ inline std::string nifti_file(const nifti_1_header& header, const std::string& v
   return bytes + voxels;
 }
 
-/// 24 voxels: 7 at the origin, 5 at its x neighbour, 0 elsewhere.
+/// 24 voxels: 7 at the origin, 5 at its x neighbor, 0 elsewhere.
 inline std::vector<std::uint8_t> two_voxels() {
   std::vector<std::uint8_t> voxels(24, 0);
   voxels[0] = 7;

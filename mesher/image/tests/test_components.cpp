@@ -1,4 +1,4 @@
-// Components against a flood of voxels from each that none has reached.
+// Compares components with a flood fill, which starts at each voxel that no earlier fill has reached.
 #include "image/components.h"
 
 #include <gtest/gtest.h>
@@ -22,7 +22,7 @@ std::optional<std::size_t> neighbour(const LabelImage& image, std::size_t at, un
 
 constexpr unsigned kNone = ~0u;
 
-// The number of each voxel's component, by their first voxels.
+// The component number of each voxel. Components are numbered by their first voxels.
 std::vector<unsigned> flooded(const LabelImage& image) {
   std::vector<unsigned> number(image.voxels.size(), kNone);
   unsigned count = 0;

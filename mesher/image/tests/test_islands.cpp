@@ -1,4 +1,4 @@
-// What is left after islands are dropped has none, and what is no island stays.
+// After islands are dropped, no island is left, and other components are unchanged.
 #include "image/islands.h"
 
 #include <gtest/gtest.h>
@@ -19,7 +19,7 @@ LabelImage dropped(LabelImage image, double below_mm3) {
   return image;
 }
 
-// Random blobs of voxels, in which islands lie beside and within islands.
+// Random blobs of voxels, with islands beside and within islands.
 LabelImage blobs(unsigned seed) {
   std::mt19937 random(seed);
   LabelImage image = test::make_image({14, 12, 10}, {1, 0.5, 2}, 4, [&](int i, int j, int k) {
@@ -75,7 +75,8 @@ TEST(Islands, WhatIsLargeStaysAndWhatGoesIsTold) {
 }
 
 TEST(Islands, GoToTheLabelThatTheyTouchMost) {
-  // Two voxels of label 3 side by side, 1 below and 2 above; faces across z are the largest.
+  // Two voxels of label 3 side by side, with label 1 below and label 2 above. The faces across z are the
+  // largest.
   const LabelImage image = dropped(test::make_image({6, 6, 6}, {1, 1, 0.25}, 3,
                                                     [](int i, int j, int k) {
                                                       if (k == 3 && j == 2 && (i == 2 || i == 3)) return 3;
@@ -94,7 +95,7 @@ TEST(Islands, AtTheBorderTouchTheBackground) {
   const LabelImage image = dropped(
       test::make_image({5, 5, 5}, {1, 1, 1}, 2, [](int i, int j, int k) { return i + j + k == 0 ? 2 : 1; }),
       2);
-  EXPECT_EQ(image.voxels[0], kBackground);  // three faces each: the background goes first
+  EXPECT_EQ(image.voxels[0], kBackground);  // three faces each: a tie goes to the background
 }
 
 TEST(Islands, OfNonsenseAreRefused) {

@@ -1,4 +1,4 @@
-// Which labels are kept, under which index, and what the texts that say so may be.
+// Tests the selection of labels, their final indices, and the parsing of the options that select labels.
 #include <gtest/gtest.h>
 
 #include "image/tests/image_files.h"
@@ -18,7 +18,7 @@ LabelSelection drop(const Ranges& ranges) { return {0, {}, ranges, {}}; }
 LabelSelection merge(const Merges& merges) { return {0, {}, {}, merges}; }
 LabelSelection background(std::uint32_t value) { return {value, {}, {}, {}}; }
 
-// Voxels of values 0, 1, 2, 3, 9, 9 and then zeros.
+// An image with the values 0, 1, 2, 3, 9, 9, followed by zeros.
 class Selection : public testing::Test {
  protected:
   Selection() {

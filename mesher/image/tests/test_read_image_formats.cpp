@@ -1,4 +1,4 @@
-// One small image in each format: the same voxels, at the right place in the world.
+// Reads one small image in each format: the same voxels, at the right place in the world.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -109,7 +109,7 @@ TEST_F(ReadImage, RoundedRotationBecomesIsometric) {
 TEST_F(ReadImage, BigEndianNifti) {
   nifti_1_header header = nifti_header();
   std::vector<std::int16_t> voxels(24, 0);
-  voxels[0] = 0x0700;  // 7 and 5 with their bytes swapped
+  voxels[0] = 0x0700;  // 7 and 5 with swapped bytes
   voxels[1] = 0x0500;
   const auto swap = [](auto& field) {
     auto* bytes = reinterpret_cast<char*>(&field);
@@ -164,7 +164,8 @@ TEST_F(ReadImage, MetaImage) {
   }
 }
 
-// What programs leave that change a file and not its header; more follows the stream in some.
+// Such files come from programs that change the stream but not the header. In some cases more data follow the
+// stream.
 TEST_F(ReadImage, MetaImageWhoseStreamIsNotAsLongAsItsHeaderSays) {
   const std::string zipped = deflated(kVoxels, 15), size = std::to_string(zipped.size());
   const auto read = [&](const std::string& announced, const std::string& tail) {

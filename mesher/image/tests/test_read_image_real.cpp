@@ -1,4 +1,4 @@
-// Real images, as measured by other readers. PODM_TEST_IMAGES names the folder that holds them.
+// Compares real images with measurements by other readers. PODM_TEST_IMAGES is the folder of the images.
 #include <gtest/gtest.h>
 
 #include <cmath>

@@ -1,4 +1,4 @@
-// Bad input: each fault is refused with a message "FILE: fault" that says what it is.
+// Bad input: each fault is refused with a message "FILE: fault" that names it.
 #include <gtest/gtest.h>
 
 #include <chrono>
@@ -18,7 +18,7 @@ struct BadFile {
   const char* fault;
   const char* name;
   std::function<std::string()> bytes;
-  const char* message;  // a part of it
+  const char* message;  // a part of the message
 };
 
 std::string changed_nifti(const std::function<void(nifti_1_header&)>& change,
@@ -38,7 +38,7 @@ std::string nifti_of(short datatype, std::vector<T> voxels) {
       bytes_of_values(voxels));
 }
 
-// Ones, the last of 24 voxels alone is `value`.
+// 24 voxels: the last is `value`, all others are 1.
 template <class T>
 std::vector<T> with_last(T value) {
   std::vector<T> voxels(24, 1);
@@ -54,7 +54,7 @@ std::string compressed_mha(const std::string& stream) {
          stream;
 }
 
-// Voxels that do not compress, so that a cut stream loses some.
+// Voxels that do not compress. A cut stream therefore loses some of them.
 std::string noise(std::size_t bytes) {
   std::string text(bytes, '\0');
   std::uint32_t state = 1;
@@ -349,7 +349,8 @@ TEST(ReadImageRefused, NrrdUnderALongPath) {
   EXPECT_THROW(read_image(folder.write(inner + "a.nrrd", "NRRD0004\nno field\n\n")), InputError);
 }
 
-// Values that never compare equal would fill a set that looks through all of them for each.
+// Values that never compare equal would all be inserted into a set, and each look-up would search all of
+// them.
 TEST(ReadImageRefused, AnImageOfNothingButNansAtOnce) {
   const ScratchFolder folder;
   const auto nans = std::vector<float>(std::size_t{64} * 64 * 64, std::nanf(""));
@@ -360,7 +361,7 @@ TEST(ReadImageRefused, AnImageOfNothingButNansAtOnce) {
   const std::string path = folder.write("nan.nii", nifti_file(header, bytes_of_values(nans)));
   const auto start = std::chrono::steady_clock::now();
   EXPECT_THROW(read_image(path), InputError);
-  EXPECT_LT(std::chrono::steady_clock::now() - start, std::chrono::seconds(4));  // it took 20
+  EXPECT_LT(std::chrono::steady_clock::now() - start, std::chrono::seconds(4));  // it took 20 s before
 }
 
 TEST(ReadImageRefused, PhantomsThatAreNone) {

@@ -1,5 +1,5 @@
-// Size images: values of any type become radii, what is no bound is 0, and faults are told with file and
-// voxel.
+// Size images: values of any type become radii, values that are not a bound become 0, and faults are reported
+// with file and voxel.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -45,7 +45,7 @@ std::string nifti_of_sizes(
   return nifti_file(header, bytes_of_values(voxels));
 }
 
-// 24 voxels: 1 to 24.
+// 24 voxels with the values 1 to 24.
 template <class T>
 std::vector<T> counted() {
   std::vector<T> voxels(24);

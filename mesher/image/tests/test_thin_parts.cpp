@@ -1,4 +1,4 @@
-// Plates, rods and balls of known thickness, and what goes with them.
+// Tests plates, rods and balls of known thickness, and the kinds of their thin parts.
 #include "image/thin_parts.h"
 
 #include <gtest/gtest.h>
@@ -59,7 +59,7 @@ TEST(ThinParts, ARodBetweenBallsIsABridgeAndAtOneADetail) {
 TEST(ThinParts, AThickBallHasNone) {
   for (const double delta_mm : {0.5, 1.0, 2.0, 3.0}) {
     EXPECT_EQ(num_thin(test::ball(40, 15), delta_mm, ThinKind::kWhole), 0u);
-    EXPECT_LT(num_thin(test::ball(40, 15), delta_mm, ThinKind::kDetail), 300u);  // of some 14000
+    EXPECT_LT(num_thin(test::ball(40, 15), delta_mm, ThinKind::kDetail), 300u);  // of about 14000
   }
 }
 

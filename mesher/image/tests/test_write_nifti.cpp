@@ -19,7 +19,7 @@ using Affine = std::array<double, 12>;
 constexpr Affine kAxisAligned{0.5, 0, 0, -7, 0, 0.75, 0, 11, 0, 0, 2, -3};
 constexpr Affine kSheared{0.5, 0.2, 0, -7, 0, 0.75, 0.5, 11, 0.1, 0, 2, -3};
 
-// Turned about all three axes, spacings as kAxisAligned; `mirror` is 1 or -1.
+// An affine turned about all three axes, with the spacings of kAxisAligned. `mirror` is 1 or -1.
 Affine oblique(double mirror) {
   const double ca = std::cos(0.3), sa = std::sin(0.3), cb = std::cos(-0.5), sb = std::sin(-0.5);
   const double cc = std::cos(1.1), sc = std::sin(1.1);
@@ -38,7 +38,7 @@ Affine oblique(double mirror) {
           -3};
 }
 
-// 5 x 4 x 3 voxels, each label at least once.
+// An image of 5 x 4 x 3 voxels that contains each label at least once.
 LabelImage image_of(const std::vector<std::uint32_t>& values, const Affine& affine = kAxisAligned) {
   LabelImage image;
   image.size = {5, 4, 3};
@@ -81,7 +81,7 @@ nifti_1_header header_in(const std::string& path) {
 
 class WriteNifti : public testing::TestWithParam<std::string> {
  protected:
-  // A file of this name that holds "older".
+  // The path of a file of this name that contains "older".
   std::string path() const { return folder_.write("image" + GetParam(), "older"); }
   ScratchFolder folder_;
 };

@@ -1,4 +1,4 @@
-// The isosurface point nearest to p within a radius, found and polished as rule R1 does it.
+// The isosurface point nearest to p within a radius, found and polished as in rule R1.
 #pragma once
 
 #include <optional>

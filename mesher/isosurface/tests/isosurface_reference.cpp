@@ -13,7 +13,8 @@ namespace podm::test {
 
 namespace {
 
-// Voxels whose centre, relative to the grid's centre and in mm, `label` maps to.
+// An image whose voxels have the label that `label` gives their centers. Centers are relative to the grid's
+// center, in mm.
 LabelImage voxelised(std::array<int, 3> size, std::array<double, 3> spacing,
                      const std::function<LabelIndex(const Point&)>& label) {
   LabelImage image = empty_image(size, spacing);
@@ -142,7 +143,7 @@ std::vector<Point> sample_isosurface(const LabelImage& image, int per_voxel,
                                      const VoxelStrengths* strengths) {
   using Place = std::array<int, 3>;  // in the lattice
   const auto label = [&](const Point& p) { return reference_label(image, p, strengths).label; };
-  // Off the voxel centres, where lines would run along block faces.
+  // The lattice avoids voxel centers, where its lines would lie in block faces.
   const auto coordinate = [&](const Place& n, std::size_t axis) {
     return (-1 + (n[axis] + 0.37) / per_voxel) * image.spacing[axis];
   };
@@ -167,7 +168,7 @@ std::vector<Point> sample_isosurface(const LabelImage& image, int per_voxel,
     points.push_back(low);
   };
   for (std::size_t at = 0; at < lattice.size(); ++at) {
-    std::size_t step = 1;  // to the next along the axis
+    std::size_t step = 1;  // to the next point along the axis
     for (const std::size_t axis : {2, 1, 0}) {
       if (lattice[at][axis] + 1 < count(axis) && labels[at + step] != labels[at])
         add_change(point(lattice[at]), point(lattice[at + step]), labels[at]);
@@ -182,7 +183,7 @@ double distance_to_nearest(const std::vector<Point>& points, const Point& p) {
   double squared = std::numeric_limits<double>::infinity();
   const auto compare = [&](const Point& q) {
     squared = std::min(squared, squared_distance(p, q));
-    return (q.x - p.x) * (q.x - p.x) < squared;  // others may be nearer
+    return (q.x - p.x) * (q.x - p.x) < squared;  // the next points may be nearer
   };
   const auto first =
       std::partition_point(points.begin(), points.end(), [&](const Point& q) { return q.x < p.x; });

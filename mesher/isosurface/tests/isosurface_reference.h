@@ -1,4 +1,4 @@
-// What the oracle is tested against: small images and straightforward definitions.
+// References for tests of the oracle: small images and direct implementations of the definitions.
 #pragma once
 
 #include <array>
@@ -17,45 +17,45 @@ using Random = std::mt19937_64;
 
 double uniform(Random& random, double low, double high);
 
-/// An image of background.
+/// An image of background only.
 LabelImage empty_image(std::array<int, 3> size, std::array<double, 3> spacing);
-/// Every voxel one of `num_labels` labels, background included; `coherence` in [0,1) is the chance that a
-/// voxel copies its predecessor along a random axis.
+/// Each voxel gets one of `num_labels` labels, background included. `coherence` in [0,1) is the probability
+/// that a voxel copies its predecessor along a random axis.
 LabelImage random_image(Random& random, std::array<int, 3> size, std::array<double, 3> spacing,
                         unsigned num_labels, double coherence);
 
-/// As strong as chance will have it, from one voxel to the next.
+/// Independent random weights of all voxels.
 std::shared_ptr<const VoxelStrengths> random_strengths(Random& random, const LabelImage& image);
 
 struct Phantom {
   std::string name;
   LabelImage image;
 };
-/// A sphere, a slab, a torus, two halves of a sphere and a sphere cut by the border, voxelised.
+/// Voxelised shapes: spheres, a slab, a torus, two halves of a sphere and a sphere cut by the border.
 std::vector<Phantom> smooth_phantoms();
 Phantom sphere_of_long_voxels();
 
-/// Uniform in the grid grown by `margin` voxels.
+/// A uniform random point in the grid grown by `margin` voxels.
 Point random_point(Random& random, const LabelImage& image, double margin);
 
 struct ReferenceLabel {
   LabelIndex label;
-  double lead;  // its weight less that of the next
+  double lead;  // its weight minus the next greatest
 };
-/// The definition: weights of the eight voxels around p added up by label. `strengths` are null where all are
-/// 1, here and below.
+/// The label by definition: adds up the weights of the eight voxels around p by label. `strengths` are the
+/// voxel weights, here and below; null if all are 1.
 ReferenceLabel reference_label(const LabelImage& image, const Point& p,
                                const VoxelStrengths* strengths = nullptr);
 
-/// Points of the isosurface: the label changes along lines of a lattice `per_voxel` lines a voxel. From
-/// the least x on.
+/// Points of the isosurface: the label changes along the lines of a lattice with `per_voxel` lines per voxel.
+/// Sorted by x.
 std::vector<Point> sample_isosurface(const LabelImage& image, int per_voxel,
                                      const VoxelStrengths* strengths = nullptr);
 
-/// Of `points` from the least x on.
+/// `points` must be sorted by x.
 double distance_to_nearest(const std::vector<Point>& points, const Point& p);
 
-/// Whether the label changes within `voxels` of p.
+/// True if the label changes within `voxels` of p.
 bool is_on_isosurface(const LabelImage& image, const Point& p, double voxels,
                       const VoxelStrengths* strengths = nullptr);
 

@@ -97,13 +97,13 @@ TEST(FeatureTransform, EqualsBruteForceFarFromTheSurface) {
   expect_equals_brute_force(image);
 }
 
-// Of `length` voxels from `first` and one more: how far their boxes are apart, mm.
+// The gap between the box of `length` voxels from `first` on and the box of one more voxel, mm.
 double gap(int first, int length, int voxel, double spacing) {
   return spacing * std::max({0, first - voxel - 1, voxel - first - length});
 }
 
-// The bound of a far brick holds for the boxes of surface voxels, and is that of bricks' boxes but for less
-// than a thousandth of the grid.
+// The bound of a far brick holds for the boxes of surface voxels. It equals the distance between the boxes of
+// bricks except for less than a thousandth of the grid.
 TEST(FeatureTransform, BoundsTheDistanceFromFarBricks) {
   Random random(3);
   for (const auto& spacing : {std::array{1.0, 1.0, 1.0}, {0.617, 0.617, 1.333}}) {

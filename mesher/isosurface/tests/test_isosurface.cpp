@@ -24,7 +24,8 @@ std::vector<LabelImage> noisy_images() {
       images.push_back(random_image(random, {12, 7, 5}, {0.6, 0.6, 1.3}, num_labels, coherence));
     }
   }
-  // More labels than words have room for; voxels six times as long as wide.
+  // The first image has more labels than the words have room for. The second has voxels six times as long as
+  // wide.
   images.push_back(random_image(random, {60, 30, 25}, {1, 1, 1}, 40'000, 0.5));
   images.push_back(random_image(random, {12, 11, 7}, {0.5, 0.5, 3}, 3, 0.9));
   images.push_back(random_image(random, {1, 6, 7}, {1, 2, 1}, 3, 0.5));
@@ -37,7 +38,7 @@ std::vector<LabelImage> noisy_images() {
   return images;
 }
 
-// An image, and how strong its voxels are.
+// An image and its voxel weights.
 struct Sample {
   LabelImage image;
   std::shared_ptr<const VoxelStrengths> strengths;
@@ -53,7 +54,7 @@ std::vector<Sample> noisy_samples() {
   return samples;
 }
 
-// Phantoms as they are and smoothed.
+// Each phantom with stairs and smoothed.
 std::vector<Sample> smooth_samples() {
   std::vector<Sample> samples;
   for (Phantom& phantom : smooth_phantoms()) {
@@ -82,7 +83,7 @@ TEST(IsosurfaceLabel, EqualsTheDefinition) {
   }
 }
 
-// The same questions in another frame have the same answers, there.
+// Equal queries in another frame give equal answers in that frame.
 TEST(IsosurfaceFrame, CarriesAnswersAlong) {
   Random random(5);
   for (const LabelImage& image : noisy_images()) {
@@ -131,8 +132,8 @@ struct Reads {
   std::uint64_t image = 0, transform = 0;
 };
 
-// What `ask` has the oracle read, whose answers must be those of the one that counts nothing. Two nodes own
-// pieces in turn.
+// The numbers of reads that `ask` causes. Its results must equal those of the oracle that does not count. Two
+// nodes own parts of the memory in turn.
 template <class Ask>
 Reads reads_of(const LabelImage& image, const Isosurface& isosurface, const Ask& ask) {
   const std::vector<NodeIndex> nodes{0, 1};
@@ -174,7 +175,7 @@ TEST(IsosurfaceReads, AreCountedAndChangeNoAnswer) {
   }
 }
 
-// Away from any label change the table of bricks tells all.
+// Away from any label change one read of the table of bricks suffices.
 TEST(IsosurfaceReads, IsOneDeepInside) {
   LabelImage image = empty_image({28, 28, 28}, {1, 1, 1});
   std::fill(image.voxels.begin(), image.voxels.end(), LabelIndex{1});
@@ -189,7 +190,7 @@ TEST(IsosurfaceReads, IsOneDeepInside) {
   expect_one([&](const auto& oracle) { return oracle.distance_lower_bound(deep, 3); });
 }
 
-// Spacing 1: weights at quarters of a voxel are exact, so are ties.
+// With spacing 1, weights at quarters of a voxel are exact, and so are ties.
 TEST(IsosurfaceLabel, TiesGoToTheSmallerLabel) {
   Random random(4);
   for (const unsigned num_labels : {2u, 3u, 9u}) {
@@ -224,7 +225,7 @@ TEST(IsosurfaceDistance, TellsInTheGridWhetherItIsAboveTheRadius) {
   for (const auto& [image, strengths] : smooth_samples()) {
     const Isosurface isosurface(image, 1, strengths);
     const std::vector<Point> surface = sample_isosurface(image, 2, strengths.get());
-    // The bound is that of surface voxels.
+    // The bound is derived from surface voxels.
     const double voxel_diagonal =
         (strengths ? 2 : 1) * std::hypot(image.spacing[0], image.spacing[1], image.spacing[2]);
     Random random(6);
@@ -254,7 +255,7 @@ TEST(ClosestPoint, LiesOnTheIsosurfaceWithinTheRadius) {
   }
 }
 
-// How much farther than the nearest point, in mm, from smallest to largest.
+// The excess over the distance to the nearest point, mm, in ascending order.
 std::vector<double> excess_mm(const Sample& sample) {
   const LabelImage& image = sample.image;
   const Isosurface isosurface(image, 1, sample.strengths);
@@ -271,8 +272,9 @@ std::vector<double> excess_mm(const Sample& sample) {
   return excess;
 }
 
-// How much farther than the nearest point, in voxel sides. Voxelised, "smooth" means bumps of voxel size, and
-// the search may end at the second nearest. Negative: the samples compared with are not dense.
+// The excess over the distance to the nearest point, in voxel sides. Voxelised smooth shapes have bumps of
+// voxel size, and the search may end at the second nearest. The excess may be negative because the samples
+// are not dense.
 constexpr double kMedianExcess = 0.001, k99PercentExcess = 0.25, kGreatestExcess = 1;
 
 TEST(ClosestPoint, IsNearestOnSmoothPhantoms) {
@@ -288,7 +290,7 @@ TEST(ClosestPoint, IsNearestOnSmoothPhantoms) {
   }
 }
 
-// Features are nearest by centres, midpoints on a long side half of it away.
+// Features are nearest by centers. The midpoint on a long side is half of that side away from its feature.
 TEST(ClosestPoint, IsNearByTheLongestSide) {
   constexpr double k99Percent = 0.55, kGreatest = 0.75;
   const Phantom phantom = sphere_of_long_voxels();
@@ -299,7 +301,7 @@ TEST(ClosestPoint, IsNearByTheLongestSide) {
   EXPECT_LE(excess[9999], kGreatest * phantom.image.spacing[2]);
 }
 
-// From there bumps of voxel size hold a local search up.
+// Far outside, bumps of voxel size stop a local search early.
 constexpr double kFarExcess = 4;
 
 TEST(ClosestPoint, IsNearFromFarOutside) {
@@ -349,7 +351,7 @@ TEST(SegmentIntersection, IsTheFirstChangeWhereLabelsDiffer) {
       }
       const double length = distance(a, b), t = distance(a, *z) / length;
       ASSERT_NEAR(distance(a, *z) + distance(*z, b), length, 1e-9 * length);
-      // Just before it the label is still that of a, just after it is another.
+      // Just before the point the label is still that of a. Just after it the label is another.
       const double step = kOnSurfaceVoxels * shortest_voxel_side(image) / length;
       if (t < step || t > 1 - step) continue;
       ASSERT_EQ(isosurface.label_at(a + (t - step) * (b - a)), isosurface.label_at(a));

@@ -1,4 +1,4 @@
-// Searches in the tree of surface voxels against a look at all of them, on random grids of 2 to 80 voxels a
+// Compares searches in the tree of surface voxels with a linear search, on random grids of 2 to 80 voxels per
 // side.
 #include "isosurface/surface_tree.h"
 
@@ -37,7 +37,8 @@ class RandomTree : public testing::TestWithParam<unsigned> {
   }
 
   int random_below(int n) { return std::uniform_int_distribution(0, n - 1)(random_); }
-  // On the lattice, where distances are equal, or off it; in the grid or up to its length outside.
+  // A point on the lattice, where distances are equal, or off it. It lies in the grid or up to its length
+  // outside.
   Point random_point() {
     std::array<double, 3> u;
     for (std::size_t a = 0; a < 3; ++a) u[a] = std::uniform_real_distribution(-1.0, 2.0)(random_) * size_[a];

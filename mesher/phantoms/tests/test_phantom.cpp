@@ -25,7 +25,7 @@ std::string refusal(const std::string& name, int size) {
   return fault_of<InputError>([&] { make_phantom(name, size); });
 }
 
-// Label index at a point of the world, mm.
+// The label index at a point of the world, mm.
 LabelIndex label_at(const LabelImage& image, double x, double y, double z) {
   const auto& a = image.voxel_to_ras;
   return image.voxels[image.index(static_cast<int>(std::lround((x - a[3]) / a[0])),
@@ -33,7 +33,7 @@ LabelIndex label_at(const LabelImage& image, double x, double y, double z) {
                                   static_cast<int>(std::lround((z - a[11]) / a[10])))];
 }
 
-// Pairs of labels of voxels that share a face.
+// The pairs of labels of voxels that share a face.
 std::set<std::pair<std::string, std::string>> neighbours(const LabelImage& image) {
   std::set<std::pair<LabelIndex, LabelIndex>> pairs;
   const auto [nx, ny, nz] = image.size;

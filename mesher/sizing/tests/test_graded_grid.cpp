@@ -1,5 +1,5 @@
-// What is graded grows no faster than the slope, is never above the envelope by straight distances, and below
-// it by no more than it says; all against a search of all pairs.
+// Graded values grow no faster than the slope. They are at most the envelope by straight distances, and below
+// it by at most the documented factor. All are compared with a search of all pairs.
 #include "sizing/graded_grid.h"
 
 #include <gtest/gtest.h>
@@ -31,7 +31,7 @@ std::vector<float> some_values(unsigned seed) {
   return values;
 }
 
-// The least of all values, each with what it grows by on the way here.
+// The least over all values, each increased by the slope times its straight distance.
 double envelope(const std::vector<float>& values, const std::array<double, 3>& spacing, double slope, int i,
                 int j, int k) {
   double least = std::numeric_limits<double>::infinity();

@@ -1,4 +1,4 @@
-// Distances to interfaces are those that a search of all faces finds.
+// Distances to interfaces equal those of a search of all faces.
 #include "sizing/interface_distance.h"
 
 #include <gtest/gtest.h>
@@ -38,7 +38,7 @@ unsigned char side(const LabelImage& image, const std::vector<unsigned char>& si
 }
 
 struct Face {
-  Voxel3 after;  // the voxel after it
+  Voxel3 after;  // the voxel that follows the face
   std::size_t normal;
 };
 

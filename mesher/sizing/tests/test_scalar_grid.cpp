@@ -1,5 +1,5 @@
-// Numbers between nodes: linear functions are kept, nodes without a number are left out, and at a jump it is
-// the least.
+// Numbers between nodes: functions that are linear along each axis are reproduced, nodes without a number are
+// left out, and at a jump the least number is taken.
 #include "sizing/scalar_grid.h"
 
 #include <gtest/gtest.h>

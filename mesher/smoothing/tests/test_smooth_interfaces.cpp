@@ -12,7 +12,7 @@
 namespace podm::test {
 namespace {
 
-// The definition of smooth_interfaces.h, with sums over all voxels.
+// The definition in smooth_interfaces.h, implemented with sums over all voxels.
 class Definition {
  public:
   Definition(const LabelImage& image, double width_mm)
@@ -44,7 +44,7 @@ class Definition {
                                                            : kBackground;
   }
 
-  // Weights of the voxels of an axis in the blur of one of them.
+  // The weights of all voxels along an axis in the blur at one of them.
   std::vector<double> taps(double width_mm, std::size_t a, int at) const {
     const double s = width_mm / image_.spacing[a];
     const int reach = static_cast<int>(std::ceil(3 * s - 1e-5));
@@ -84,7 +84,7 @@ class Definition {
     return false;
   }
 
-  // NaN where nothing is told.
+  // NaN where the weight is unset.
   std::vector<double> distances_mm() const {
     std::vector<double> distances(image_.num_voxels(), std::nan(""));
     std::vector<Voxel> left;
@@ -111,7 +111,7 @@ class Definition {
     return distances;
   }
 
-  // How far the interface of v's label has moved outward, on average over its faces nearby; in parts.
+  // The mean outward shift of the interface of v's label over its faces nearby, in units of the weights.
   double shift(const Voxel& v, const std::vector<std::uint16_t>& strengths) const {
     const double shortest = *std::min_element(image_.spacing.begin(), image_.spacing.end());
     const std::array<int, 3> place{v.i, v.j, v.k};
@@ -164,7 +164,7 @@ std::vector<std::uint16_t> all_strengths(const LabelImage& image, double width_m
   return strengths;
 }
 
-// Rounded sums may round to neighbouring parts.
+// Sums that are rounded differently may give weights that differ by 1.
 TEST(SmoothInterfaces, HaveTheStrengthsOfTheDefinition) {
   Random random(31);
   for (const unsigned num_labels : {2u, 4u}) {
@@ -179,7 +179,7 @@ TEST(SmoothInterfaces, HaveTheStrengthsOfTheDefinition) {
   }
 }
 
-// Whole numbers of voxels, which rounding makes a little more or less.
+// Widths of whole numbers of voxels, which rounding makes slightly larger or smaller.
 TEST(SmoothInterfaces, HaveTheStrengthsOfTheDefinitionWhereWidthsAreWholeVoxels) {
   Random random(35);
   for (const auto& [spacing, width] : {std::pair{0.8, 1.6}, {0.4, 0.8}, {0.9, 2.7}, {0.7, 0.7}, {0.1, 0.3}}) {
@@ -195,8 +195,8 @@ TEST(SmoothInterfaces, DoNotDependOnThreads) {
   EXPECT_EQ(all_strengths(image, 1.3, 1), all_strengths(image, 1.3, 3));
 }
 
-// Centres of voxels and the ways between neighbours of one label keep it: components by faces stay as they
-// are.
+// Voxel centers, and the segments between neighbors of one label, keep their label. Components by faces
+// therefore stay as they are.
 TEST(SmoothInterfaces, KeepVoxelsAndTheWaysBetweenThem) {
   Random random(33);
   for (const double width : {0.7, 2.5}) {
@@ -218,7 +218,7 @@ TEST(SmoothInterfaces, KeepVoxelsAndTheWaysBetweenThem) {
 struct Shape {
   LabelImage image;
   double volume_mm3;
-  std::function<double(const Point&)> depth;  // how far inside
+  std::function<double(const Point&)> depth;  // distance to the outside, positive inside
 };
 
 template <class Depth>
@@ -249,8 +249,8 @@ Vector gradient(const std::function<double(const Point&)>& f, const Point& p) {
   return {along({1, 0, 0}), along({0, 1, 0}), along({0, 0, 1})};
 }
 
-// Root mean square angle, in degrees, between the normals of facets with corners on the isosurface, two
-// voxels apart, and those of the shape.
+// The root mean square angle, in degrees, between the normals of facets and those of the shape. The facets
+// have corners on the isosurface, two voxels apart.
 double normal_error_deg(const Shape& shape, const Isosurface& isosurface) {
   Random random(34);
   double sum = 0;
@@ -322,7 +322,8 @@ bool is_in_part(Part part, double thickness, const Point& p) {
   return false;
 }
 
-// All of label 1, or of background, but for a part of the other, which goes on beyond the grid.
+// An image of one label, 0 or 1, that contains a part of the other one. The part has label `label` and
+// continues beyond the grid.
 LabelImage image_with(Part part, double thickness, LabelIndex label) {
   LabelImage image = empty_image({24, 24, 24}, {1, 1, 1});
   image.labels.resize(2);
@@ -334,7 +335,8 @@ LabelImage image_with(Part part, double thickness, LabelIndex label) {
   return image;
 }
 
-// Of the label or a gap in it, thinner than the blur or not, as the stairs have it.
+// Parts of the label and gaps in it, thinner and thicker than the blur, have the volume that they have with
+// stairs.
 TEST(SmoothInterfaces, KeepThinPartsByVolume) {
   const LabelImage full = image_with(Part::kSlab, 0, 0);
   for (const Part part : {Part::kSlab, Part::kSquareRod, Part::kRoundRod, Part::kTilted}) {
@@ -342,7 +344,8 @@ TEST(SmoothInterfaces, KeepThinPartsByVolume) {
       if (part == Part::kRoundRod && thickness < 2) continue;  // has no voxel, or one
       for (const LabelIndex label : {LabelIndex{0}, LabelIndex{1}}) {
         const LabelImage image = image_with(part, thickness, label);
-        // A gap is what is missing of an object that is round at the edges of the grid.
+        // The volume of a gap is that of the full object, which is rounded at the edges of the grid, minus
+        // that of the object with the gap.
         const auto of_part = [&](const auto& volume) {
           return label == 1 ? volume(image) : volume(full) - volume(image);
         };
@@ -359,7 +362,7 @@ TEST(SmoothInterfaces, KeepThinPartsByVolume) {
   }
 }
 
-// Rods across which voxels are three and a half times as long one way as the other.
+// Rods of voxels that are 3 to 3.6 times as long along one axis across the rod as along the other.
 TEST(SmoothInterfaces, KeepLessOfThinRodsWhereVoxelsAreNoCubes) {
   for (const std::array<double, 3>& spacing : {std::array{1.0, 1.0, 3.0}, std::array{0.7, 0.7, 2.5}})
     for (const auto& [voxels, most_lost] : {std::pair{1, 0.40}, {2, 0.15}, {3, 0.08}, {5, 0.04}}) {
