@@ -14,14 +14,14 @@ namespace {
 
 constexpr const char* kSchema = "podm-crossover/2";
 
-// Cells a second of the repeats.
+// Cells per second of the repeats.
 struct Rates {
   Samples podm, podm_home;
 };
 
 // The trials of one [[trials]] on one image.
 struct Series {
-  const Row* row = nullptr;  // any
+  const Row* row = nullptr;  // any of its rows
   double cells_per_thread = 0;
   std::map<int, Rates> by_threads;
 
@@ -43,7 +43,8 @@ void add(const Row& row, std::map<std::string, Series>& all) {
   if (!is_measured(row) || (algorithm != "podm" && algorithm != "podm-home")) return;
   const int threads = row.asked.value("threads", 1);
   const auto cells = static_cast<double>(row.mesh->cells);
-  // Keys of a matrix follow the name; those that matter here are algorithm and threads.
+  // A trial's name is its stem and the keys of its matrix. Among these keys only algorithm and threads matter
+  // here.
   Series& series = all[stem_of(row.trial) + '\n' + row.input.name];
   series.row = &row;
   series.cells_per_thread = std::max(series.cells_per_thread, cells / threads);

@@ -1,5 +1,5 @@
-// The crossover is the number of threads from which on PODM at home outruns PODM on this machine, by the rows
-// of an experiment. `podm mesh --algorithm auto` reads what is stored of it.
+// The crossover is the number of threads from which on podm-home outruns podm on this machine, by the rows of
+// an experiment. `podm mesh --algorithm auto` reads the stored crossover.
 #pragma once
 
 #include <array>
@@ -15,10 +15,10 @@ namespace podm::bench {
 struct CrossoverMeasurement {
   int threads = 0;
   double podm_cells_per_second = 0, podm_home_cells_per_second = 0;  ///< medians
-  double ratio = 1;                        ///< cells a second of podm-home over podm, in the median of rounds
-  std::array<double, 2> ratio_interval{};  ///< that holds it with ratio_coverage
-  double ratio_coverage = 0;               ///< 0 of one round
-  std::array<std::uint64_t, 2> rows{};     ///< how many of podm and podm-home
+  double ratio = 1;                        ///< median over rounds of cells per second of podm-home over podm
+  std::array<double, 2> ratio_interval{};  ///< holds the median with ratio_coverage
+  double ratio_coverage = 0;               ///< 0 for one round
+  std::array<std::uint64_t, 2> rows{};     ///< numbers of rows of podm and podm-home
   static constexpr auto fields() {
     using C = CrossoverMeasurement;
     return std::tuple{field("threads", &C::threads),
@@ -31,15 +31,15 @@ struct CrossoverMeasurement {
   }
 };
 
-/// What is stored in crossover.json.
+/// The content of crossover.json.
 struct Crossover {
   std::string schema;
-  std::optional<int> threads;  ///< the least number from which on podm-home is ahead; nothing: none is
+  std::optional<int> threads;  ///< least number from which on podm-home is ahead; unset: none
   int measured_up_to = 0;
   MachineRecord machine;
   ProgramRecord podm;
   std::string experiment, trial, input;
-  std::vector<CrossoverMeasurement> measurements;  ///< numbers of threads rise
+  std::vector<CrossoverMeasurement> measurements;  ///< in ascending order of threads
   static constexpr auto fields() {
     using C = Crossover;
     return std::tuple{field("schema", &C::schema),
@@ -54,14 +54,15 @@ struct Crossover {
   }
 };
 
-/// What rows say, by trial, all of one machine and one mesher. PODM at home is ahead where it makes more
-/// cells a second than PODM, in all of the interval of the ratio (with as much coverage as the rounds have),
-/// on every number of threads measured from there on. Only what really ran decides, never virtual time,
-/// described machines or more threads than processors. The trial of the most cells a thread decides. There is
-/// none where no trial has both algorithms at one number of threads.
+/// Computes the crossover from rows by trial, all of one machine and one mesher. At a number of threads
+/// podm-home is ahead if the whole interval of the ratio of cells per second, podm-home over podm, lies above
+/// 1 there and at every larger number of threads measured. The interval has the coverage that the rounds
+/// allow. Only runs on real processors count: never virtual time, described machines, or more threads than
+/// processors. The trial with the most cells per thread decides. Returns nothing if no trial has both
+/// algorithms at one number of threads.
 std::optional<Crossover> crossover_of(const std::vector<std::vector<Row>>& rows_of_trials);
 
-/// Tells the crossover in a sentence without its end.
+/// Describes the crossover in a sentence without its full stop.
 std::string tell_crossover(const Crossover& crossover);
 
 }  // namespace podm::bench

@@ -1,4 +1,4 @@
-// What is stored of who outran whom, and what may not decide it.
+// Tests of the stored crossover, and of rows that must not decide it.
 #include "experiments/crossover.h"
 
 #include <gtest/gtest.h>
@@ -13,7 +13,7 @@
 namespace podm::bench {
 namespace {
 
-// A run of a million cells a thread, at so many million cells a second.
+// A run of a million cells per thread, at `rate` million cells per second.
 Row row(const std::string& algorithm, int threads, double rate, const std::string& trial = "1M") {
   Row made = made_up_row(trial + ",algorithm=" + algorithm, {{"algorithm", algorithm}, {"threads", threads}});
   mesh_of(made).cells = static_cast<std::uint64_t>(threads) * 1'000'000;
@@ -60,7 +60,7 @@ TEST(Crossover, RepeatsThatOverlapAreNoEvidence) {
 
 TEST(Crossover, RoundsAreComparedWithThemselvesAndTellTheirCoverage) {
   std::vector<std::vector<Row>> rounds(2);
-  for (int round = 1; round <= 6; ++round) {  // each half as fast as the one before it
+  for (int round = 1; round <= 6; ++round) {  // each half as fast as the round before
     const double rate = std::pow(0.5, round);
     rounds[0].push_back(row("podm", 1, rate));
     rounds[1].push_back(row("podm-home", 1, 1.1 * rate));
@@ -108,7 +108,7 @@ TEST(Crossover, NamesItsMachineWithoutItsMood) {
   EXPECT_FALSE(to_json(machine).contains("load_average"));
 }
 
-// An experiment whose fake mesher takes 1 s, podm-home half of it.
+// An experiment whose fake mesher takes 1 s, and half of it for podm-home.
 TEST(CrossoverExperiment, StoresItsResultOnceAllHasRun) {
   const TemporaryFolder folder;
   const std::string experiment = folder.write("exp.toml", R"(title = "T"
@@ -126,7 +126,7 @@ algorithm = ["podm", "podm-home"]
   const std::string podm =
       fake_mesher(folder, "case \"$(cat \"$(dirname \"$0\")/arguments\")\" in *podm-home*) echo '" + faster +
                               "';; *) echo '" + kGoodRecord + "';; esac > \"$record\"\n");
-  // A run during which the machine changes its speed stores none.
+  // A run during which the machine changes its speed stores no crossover.
   for (int tries = 0; tries < 10 && !std::filesystem::exists(folder / "results/crossover.json"); ++tries) {
     const int exit_code = run_process({.arguments = {PODM_BENCH, "run", experiment, "--again", "--podm", podm,
                                                      "--results", folder / "results", "--verifier", "none"},
