@@ -17,7 +17,7 @@ class SolverError(Exception):
 @dataclass(frozen=True)
 class Measured:
     """The cost of a solution. The eigenvalues are those of the preconditioned matrix; the Lanczos process, which
-    conjugate gradients carry out, estimates them. `setup_s`: preparation of the preconditioner; `seconds`: iterations."""
+    conjugate gradients carry out, estimates them. `setup_s`: setup of the preconditioner; `seconds`: iterations."""
 
     iterations: int
     smallest_eigenvalue: float

@@ -29,8 +29,8 @@ def domain_of(points, cells):
 
 
 def poisson(domain, boundary_value=lambda x: np.zeros(x.shape[1]), source=1.0):
-    """Returns the system of -div grad u = source inside and u = boundary_value(x), of shape (n,) for x of (3, n), on the
-    boundary."""
+    """Returns the system of -div grad u = source inside and u = boundary_value(x), of shape (n,) for x of (3, n), on
+    the boundary."""
     space = fem.FunctionSpace(domain, ("Lagrange", 1))
     u, v = ufl.TrialFunction(space), ufl.TestFunction(space)
     form = ufl.inner(ufl.grad(u), ufl.grad(v)) * ufl.dx
