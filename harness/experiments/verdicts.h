@@ -14,7 +14,7 @@ struct ExperimentVerdicts {
   const Experiment* experiment = nullptr;
   std::vector<Judgement> judgements;  ///< one per claim, in the order of the claims
   MachineState machine;               ///< during the measurement of the rows that may be judged
-  std::string left_out;               ///< which rows of other machines; "" for none
+  std::string left_out;               ///< describes omitted rows of other machines; "" for none
 };
 
 /// `rows` are all rows of the experiment; this function selects those that may be judged.

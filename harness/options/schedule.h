@@ -8,7 +8,7 @@
 
 namespace podm::bench {
 
-/// One mesh to make.
+/// One run of a trial.
 struct Turn {
   std::size_t trial = 0;  ///< index of the trial
   int repeat = 1;         ///< number of the round, from 1; warm-ups and measured repeats are counted apart
