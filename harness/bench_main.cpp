@@ -1,4 +1,4 @@
-// podm-bench: runs the experiments of experiments/*.toml and records each trial as a JSON line.
+// The main program of podm-bench: reads the command line and runs a command.
 #include <fmt/format.h>
 
 #include <CLI/CLI.hpp>
@@ -19,7 +19,7 @@ std::string beside_this_program(const char* name) {
   return (std::filesystem::read_symlink("/proc/self/exe").parent_path() / name).string();
 }
 
-// Sets `exit_code` when the command is chosen and has ended.
+// Adds the command. Sets `exit_code` when the command was chosen and has ended.
 void add_run(CLI::App& program, int& exit_code) {
   struct State {
     RunCommand command;

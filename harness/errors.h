@@ -1,4 +1,4 @@
-// What podm-bench throws at its user, and its exit codes.
+// The exception for errors of the user, and the exit codes of podm-bench.
 #pragma once
 
 #include <stdexcept>
@@ -7,7 +7,7 @@ namespace podm::bench {
 
 inline constexpr int kExitMissed = 1, kExitInput = 2, kExitInternal = 3;
 
-/// The user's input is at fault; what() names the file, the place and the fault. Exit code 2.
+/// The user's input is at fault. what() names the file, the place and the fault. Exit code 2.
 class InputError : public std::runtime_error {
  public:
   using std::runtime_error::runtime_error;

@@ -15,7 +15,8 @@ using Trials = std::vector<ClaimedTrial>;
 constexpr const char* kBestOfOthers = "best of the others";
 constexpr std::int64_t kMostCores = 1 << 20;
 
-// The index of the text at `key` among the words; the first where the key is absent and may be.
+// Returns the index of the text at `key` among the words. If the key is optional and absent, returns the
+// first index.
 template <std::size_t size>
 std::size_t read_word(TomlSection& section, const char* key, const std::array<const char*, size>& words,
                       bool is_needed = true) {
@@ -32,7 +33,7 @@ std::vector<std::string> read_texts(TomlSection& section, const char* key) {
   return texts;
 }
 
-// The trials that a claim is about, so that a pattern without any is seen.
+// Returns the trials that a claim is about. Throws if a pattern matches no trial.
 Trials trials_of(const TomlSection& section, const std::vector<std::string>& patterns, const Trials& all) {
   if (patterns.empty()) return all;
   Trials chosen;
@@ -53,7 +54,7 @@ Json json_of(const TomlSection& section, const toml::node& node, const std::stri
   return section.number_of(node, key);
 }
 
-// How many threads there are is up to the machine; any other value has to stand in the file.
+// True for numbers of threads and copies, which depend on the machine. Any other value must be in the file.
 bool depends_on_machine(const std::string& key) { return key.ends_with("threads") || key == "copies"; }
 
 void refuse_unknown(const TomlSection& section, const toml::node& node, const std::string& key,
@@ -82,7 +83,7 @@ Condition read_range(TomlSection& options, const std::string& key) {
   return condition;
 }
 
-// The table at `key`; nothing where there is none.
+// Reads the table at `key`; returns nothing if it is absent.
 Filter read_filter(TomlSection& section, const char* key, const Trials& trials) {
   Filter filter;
   if (!section.has(key)) return filter;
@@ -113,9 +114,9 @@ void read_bounds(TomlSection& section, Claim& claim) {
     section.fail(section.place("at_most"), "at_most is less than at_least");
 }
 
-// The series of a ratio or an order, under the names that the kind has for them.
+// Reads the series of a ratio or an order. The kind of the claim names their keys.
 void read_series(TomlSection& section, const Trials& trials, const char* of, const char* over, Claim& claim) {
-  if (!section.has(of)) section.text(of);  // refuses that there is none
+  if (!section.has(of)) section.text(of);  // throws: the key is absent
   claim.of = read_filter(section, of, trials);
   if (section.is_table(over)) {
     claim.over = read_filter(section, over, trials);

@@ -1,4 +1,4 @@
-// Names of claims are their ids for life.
+// Names of claims are permanent ids.
 #pragma once
 
 #include <vector>
@@ -7,8 +7,8 @@
 
 namespace podm::bench {
 
-/// Throws InputError naming both places where two claims of the experiments, made or withdrawn, have one
-/// name.
+/// Throws InputError that names both places if two claims of the experiments, current or withdrawn, have the
+/// same name.
 void check_claim_names(const std::vector<Experiment>& experiments);
 
 }  // namespace podm::bench

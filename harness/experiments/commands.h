@@ -1,5 +1,5 @@
-// The commands of podm-bench that run experiments and judge their claims. Each returns the exit code; all
-// throw InputError.
+// Commands of podm-bench that run experiments and judge their claims. Each returns the exit code; all throw
+// InputError.
 #pragma once
 
 #include <cstdint>
@@ -13,31 +13,31 @@
 
 namespace podm::bench {
 
-inline constexpr const char* kResultsFolder = "results/runs";  ///< unless told otherwise
+inline constexpr const char* kResultsFolder = "results/runs";  ///< the default
 
 struct RunCommand {
   std::vector<std::string> experiment_paths;
-  std::string only;                 ///< a pattern of trial names, as in a shell; empty: all
-  std::optional<Tier> tier;         ///< trials of this tier and the lower ones; nothing: all
-  std::vector<std::string> images;  ///< they stand for all inputs; none: the inputs
+  std::string only;                 ///< a shell pattern of trial names; empty: all
+  std::optional<Tier> tier;         ///< trials of this tier and lower ones; unset: all
+  std::vector<std::string> images;  ///< replace all inputs; none: the inputs
   std::string results_folder = kResultsFolder;
   std::uint64_t order_seed = 1;
   Programs programs;
-  bool again = false;  ///< also what is measured already
-  bool keep = false;   ///< meshes and messages
+  bool again = false;  ///< also run what is measured already
+  bool keep = false;   ///< keep meshes and messages
 };
 
-/// Runs what is not measured yet and prints the table.
+/// Runs the turns that are not measured yet and prints the table.
 int run(const RunCommand& command);
 
-/// Prints what run() would do and what that takes; writes no file.
+/// Prints the turns that run() would run and their cost; writes no file.
 int dry_run(const RunCommand& command);
 
 /// Prints title, tier, trials and time of the experiments in a folder.
 int list(const std::string& folder);
 
-/// Judges the claims of experiments by the rows of a folder of results and prints a table of the verdicts;
-/// writes them as JSON too unless `json_path` is empty. No verdict changes the exit code.
+/// Judges the claims of experiments by the rows of a folder of results and prints a table of the verdicts.
+/// Also writes them as JSON unless `json_path` is empty. Verdicts do not change the exit code.
 int verdicts(const std::vector<std::string>& experiment_paths, const std::string& results_folder,
              const std::string& json_path);
 

@@ -15,7 +15,7 @@ bool is_beyond(const Bounds& bounds, const Interval& interval) {
   return is_below || (bounds.at_most && interval.low > *bounds.at_most);
 }
 
-// The rounds that keep the interval off each bound.
+// Returns the number of rounds that keep the interval off each bound.
 std::optional<int> rounds_needed(const Bounds& bounds, const Estimate& estimate) {
   int most = 0;
   for (const auto& bound : {bounds.at_least, bounds.at_most}) {

@@ -21,7 +21,7 @@ std::string mebibytes(const std::optional<double>& bytes) {
   return bytes ? fmt::format("{:.0f}", *bytes / kBytesPerMib) : kUnknown;
 }
 
-// The turns of one trial: all of them and those still to run.
+// The numbers of turns of one trial: all of them, and those still to run.
 struct TurnCount {
   std::size_t all = 0, to_run = 0;
 };
@@ -35,7 +35,7 @@ std::vector<TurnCount> counts_of(const Plan& plan) {
   return counts;
 }
 
-// The options hold the radius where it is found already.
+// Returns the options, with the radius if it is known already.
 Json options_of(const Trial& trial, Preparer& preparer) {
   const auto preparation = preparer.find(trial);
   return preparation ? resolved_options(trial, *preparation) : trial.options;
@@ -57,8 +57,8 @@ void print_matrix(const Plan& plan, const std::vector<TurnCount>& counts, Prepar
   fmt::print("{}", align(lines, 2));
 }
 
-// Seconds are those of all turns still to run; memory and disk are those of the largest, as one runs at a
-// time.
+// Adds the seconds of all turns still to run. Memory and disk are those of the largest turn, as one turn runs
+// at a time.
 Expectation total_of(const Plan& plan, const std::vector<TurnCount>& counts) {
   Expectation total;
   const auto keep_largest = [](std::optional<double>& largest, const std::optional<double>& value) {
@@ -75,7 +75,7 @@ Expectation total_of(const Plan& plan, const std::vector<TurnCount>& counts) {
   return total;
 }
 
-// A folder that is not there yet has the space of the one that it will be in.
+// A folder that does not exist yet has the free space of its nearest existing parent.
 std::optional<double> free_bytes(std::filesystem::path folder) {
   std::error_code error;
   folder = std::filesystem::absolute(folder, error);

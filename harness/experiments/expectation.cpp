@@ -9,11 +9,12 @@
 namespace podm::bench {
 namespace {
 
-// Meshes of a million cells took 130 to 153 bytes of memory a cell beyond the image (results/reference), and
-// a VTU file.
+// Meshes of a million cells took 130 to 153 bytes of memory per cell beyond the image (results/reference),
+// and a VTU file.
 constexpr double kMemoryBytesPerCell = 160, kDiskBytesPerCell = 50;
 
-// What a turn takes beside its cells, as cells; cells where the file sets the radius.
+// The cost of a turn besides its cells, in cells; and the assumed number of cells if the file sets the
+// radius.
 constexpr double kPreparationInCells = 200'000, kUnknownCells = 1'000'000;
 
 double weight_of(const Trial& trial) {

@@ -1,4 +1,4 @@
-// What a trial will probably take, from what it took before.
+// Predicts the cost of a trial from its earlier runs.
 #pragma once
 
 #include <optional>
@@ -9,22 +9,22 @@
 
 namespace podm::bench {
 
-/// Members are empty where nothing is known.
+/// A member without a prediction is unset.
 struct Expectation {
-  std::optional<double> seconds;                   ///< one turn takes them, verification included
-  std::optional<double> memory_bytes, disk_bytes;  ///< without rows, only what elements aimed at take
+  std::optional<double> seconds;                   ///< per turn, including verification
+  std::optional<double> memory_bytes, disk_bytes;  ///< without rows, set only for a target number of cells
 };
 
 class Expectations {
  public:
   Expectations(const Experiment& experiment, std::vector<Row> rows);
 
-  /// The finished rows of the trial on the same image tell it; without any, the trial has its share of the
-  /// experiment's minutes by the elements aimed at.
+  /// Predicts from the finished rows of the trial on the same image. Without rows the time is the trial's
+  /// share of the experiment's minutes, by its target number of cells.
   Expectation of(const Trial& trial) const;
 
  private:
-  std::optional<double> seconds_per_weight_;  // the experiment's minutes tell it
+  std::optional<double> seconds_per_weight_;  // from the experiment's minutes
   std::vector<Row> rows_;
 };
 

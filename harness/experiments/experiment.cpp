@@ -26,7 +26,7 @@ struct Input {
 };
 using Inputs = std::map<std::string, Input>;
 
-// Relative to the folder of the experiment, so that it runs from anywhere.
+// The path is relative to the folder of the experiment, so that the experiment runs from any folder.
 std::string resolve_image(const std::string& image, const fs::path& folder) {
   return is_phantom(image) ? image : (folder / image).lexically_normal().string();
 }
@@ -50,7 +50,7 @@ Tier read_tier(TomlSection& section, Tier otherwise) {
   }
 }
 
-// What the head of the file and each trial may set; the trial's own wins.
+// Reads settings that the head of the file and each trial may set. The trial's own setting wins.
 void read_conduct(TomlSection& section, Trial& trial) {
   trial.timeout_s = section.positive("timeout_s", trial.timeout_s);
   trial.memory_limit_gib = section.positive("memory_limit_gib", trial.memory_limit_gib);
@@ -67,7 +67,7 @@ std::string read_name(TomlSection& section) {
   return name;
 }
 
-// One empty name where the trial needs no input.
+// Returns one empty name if the trial needs no input.
 std::vector<std::string> read_input_names(TomlSection& section, const Inputs& inputs) {
   if (section.has(kMeasure)) {
     if (section.has("input")) section.fail(section.place("input"), "input is an option of meshers");
@@ -79,17 +79,17 @@ std::vector<std::string> read_input_names(TomlSection& section, const Inputs& in
     if (!inputs.contains(names.back()))
       section.fail(node->source(), fmt::format("there is no [inputs.{}]", names.back()));
   }
-  if (names.empty()) section.text("input");  // refuses that there is none
+  if (names.empty()) section.text("input");  // throws: the key is absent
   return names;
 }
 
-// What the trials of one [[trials]] mesh, and what they call it: "" where the name needs no part for it.
+// An input of the trials of one [[trials]], and its part of their names, which may be empty.
 struct NamedInput {
   std::string suffix;
   Input input;
 };
 
-// Inputs are those of the file, or the images in their place.
+// Returns the inputs of the file, or the images if there are any.
 std::vector<NamedInput> inputs_of_trials(TomlSection& section, const Inputs& inputs,
                                          const std::vector<std::string>& images) {
   std::vector<NamedInput> named;
@@ -105,7 +105,8 @@ std::vector<NamedInput> inputs_of_trials(TomlSection& section, const Inputs& inp
   return named;
 }
 
-// The voxels of a thread stay the same. An image that a person gives in place of a phantom stays as it is.
+// Keeps the number of voxels per thread constant. An image that the user gives in place of a phantom stays as
+// it is.
 void grow(const TomlSection& section, bool is_given, Trial& trial) {
   if (!trial.options.value(kImageGrows, false)) return;
   const auto image = grown(trial.image, trial.options["threads"].get<double>());
@@ -116,7 +117,7 @@ void grow(const TomlSection& section, bool is_given, Trial& trial) {
         fmt::format("{} needs a phantom and its size, phantom:NAME@SIZE, not {}", kImageGrows, trial.image));
 }
 
-// The matrix of one [[trials]].
+// Reads the matrix of one [[trials]].
 std::vector<Trial> read_trials(TomlSection& section, const Inputs& inputs, const Trial& head,
                                const std::string& folder, const std::vector<std::string>& images) {
   Trial common = head;

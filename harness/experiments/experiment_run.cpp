@@ -24,7 +24,7 @@
 namespace podm::bench {
 namespace {
 
-// Stores the machine's topology in the folder of results once; returns what rows tell of it.
+// Stores the machine's topology in the folder of results once. Returns the value for the rows.
 std::string store_topology(const Machine& machine, const std::string& results_folder) {
   if (machine.topology_xml.empty()) return Unavailable{"hwloc finds no topology"}.text();
   const std::string hash = sha256_of(machine.topology_xml);
@@ -33,7 +33,7 @@ std::string store_topology(const Machine& machine, const std::string& results_fo
   return hash;
 }
 
-// Seconds of this program's own between two rows.
+// Measures the seconds that this program itself spends between two rows.
 class HarnessClock {
  public:
   double lap_without(double others_s) {
@@ -61,7 +61,7 @@ std::string one_line(const std::string& label, const TrialResult& result) {
                      result.mesh->cells, meshing_seconds(result.mesh->phases_s), result.process.wall_s);
 }
 
-// The turns of one experiment, one after the other.
+// Runs the turns of one experiment, one after the other.
 class ExperimentRun {
  public:
   ExperimentRun(Session& session, const Experiment& experiment, Plan plan)
@@ -72,8 +72,8 @@ class ExperimentRun {
         file_(path_),
         rows_(plan_.trials.size()) {}
 
-  // Whether every turn has a row of status ok, or may be skipped. What another mesher promises and does not
-  // keep is a result, no failure.
+  // Returns true if every turn has a row of status ok or may be skipped. A promise that a peer does not keep
+  // is a result, not a failure.
   bool run() {
     announce();
     Progress progress(expected_s());
@@ -109,7 +109,7 @@ class ExperimentRun {
     return basis_of(plan_.trials[planned.turn.trial].options, {}) == Basis::kMeasured;
   }
 
-  // A round that an interrupt cuts short is not judged: the run that resumes it probes anew.
+  // A round that an interrupt cuts short is not judged. The run that resumes it probes anew.
   void run_round(const Round& round, Progress& progress, HarnessClock& clock) {
     const bool is_probed = std::any_of(round.begin(), round.end(), [&](const PlannedTurn& planned) {
       return !planned.row && is_measured(planned);
@@ -127,7 +127,7 @@ class ExperimentRun {
     clock.lap_without(0);
   }
 
-  // Marks the round's measured rows, those of an earlier run too, where the machine's speed moved.
+  // Marks the round's measured rows, including rows of an earlier run, if the machine's speed moved.
   void end_round(const Round& round) {
     const Probe after = session_.probes.end();
     std::vector<Row*> rows;
@@ -191,7 +191,7 @@ class ExperimentRun {
     return row;
   }
 
-  // The result is of status kOk when the trial can start.
+  // The result has status kOk if the trial can start.
   TrialResult prepare(const Trial& trial, Progress& progress) {
     const Stopwatch watch;
     TrialResult result;
@@ -226,7 +226,7 @@ class ExperimentRun {
     };
   }
 
-  // The mesh is gone before the row is written: it then costs the disk no time and the row finds room.
+  // Removes the mesh before the row is written. The mesh then takes no disk time, and the row finds space.
   TrialResult run_in_scratch_folder(const Trial& trial, const Turn& turn, const TrialResult& prepared,
                                     Progress& progress) {
     progress.tell("");
@@ -271,8 +271,8 @@ class ExperimentRun {
   Plan plan_;
   std::string path_;
   RecordFile file_;
-  std::vector<std::vector<Row>> rows_;  // a list a trial; those of earlier runs are among them
-  std::optional<Probe> round_probe_;    // at the start of the round that runs
+  std::vector<std::vector<Row>> rows_;  // one list per trial, including rows of earlier runs
+  std::optional<Probe> round_probe_;    // at the start of the current round
 };
 
 }  // namespace

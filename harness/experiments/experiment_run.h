@@ -1,4 +1,4 @@
-// The turns of an experiment that are not measured yet, one after the other, and what is told at its end.
+// Runs the turns of an experiment that are not measured yet, one after the other, and prints its results.
 #pragma once
 
 #include <string>
@@ -14,13 +14,13 @@
 
 namespace podm::bench {
 
-/// What all trials of a command have in common.
+/// The data that all trials of a command share.
 struct Session {
   Session(const RunCommand& given, const std::string& mesher_sha256, const Machine& machine,
           StopQuery is_interrupted);
 
   const RunCommand& command;
-  StopQuery is_interrupted;  ///< whether Ctrl-C or a request to end has come
+  StopQuery is_interrupted;  ///< true if Ctrl-C or a request to end has come
   ProgramRecords programs;
   EnvironmentRecord environment;
   Preparer preparer;
@@ -30,7 +30,8 @@ struct Session {
   RoundProbes probes{probe_machine};
 };
 
-/// Whether every turn of the plan has a row of status ok, or may be skipped.
+/// Returns true if every turn of the plan has a row of status ok or may be skipped. A promise that a peer
+/// does not keep is a result, not a failure.
 bool run_experiment(Session& session, const Experiment& experiment, Plan plan);
 
 }  // namespace podm::bench

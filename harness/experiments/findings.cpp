@@ -12,19 +12,19 @@
 namespace podm::bench {
 namespace {
 
-// A claim is not decided by the groups that there are while one lacks rows.
+// Notes what a group lacks. A claim is not decided by the other groups while one group lacks rows.
 void lack(Findings& findings, const std::string& what, const std::string& label) {
   if (findings.missing.empty()) findings.missing = label.empty() ? what : label + ": " + what;
   findings.has_failed_rows = findings.has_failed_rows || what.starts_with(kRowsFailed);
 }
 
-// Whether rows of one series may differ in the option.
+// True if rows of one series may differ in the option.
 bool may_differ(const Claim& claim, const std::string& key) {
   return std::find(claim.across.begin(), claim.across.end(), key) != claim.across.end() ||
          (claim.value->per != nullptr && key == kTargetElements);
 }
 
-// Holds the number against the bounds.
+// Compares the number with the bounds.
 Finding judge_number(const Bounds& bounds, const Estimate& estimate, const std::string& text,
                      const std::string& label, std::size_t num_rows) {
   return {decide(bounds, estimate),           estimate, bounds.excess(estimate.value),
@@ -44,7 +44,7 @@ void judge_bound_of(const Claim& claim, const RowPointers& rows, const std::stri
                                         label, samples.num_rows));
 }
 
-// What does not vary holds of each row; the rest of the median of its repeats.
+// A measure that does not vary must hold for each row; any other for the median of its repeats.
 void judge_bound(const Claim& claim, const RowPointers& rows, Findings& findings) {
   if (!varies(*claim.value)) {
     for (const Row* row : rows) judge_bound_of(claim, {row}, row->trial, findings);
@@ -55,13 +55,14 @@ void judge_bound(const Claim& claim, const RowPointers& rows, Findings& findings
   for (std::size_t i = 0; i < groups.size(); ++i) judge_bound_of(claim, groups[i].rows, labels[i], findings);
 }
 
-// A trial that did not end while other work kept the machine busy may end on an idle one.
+// A trial that timed out while other work kept the machine busy may end in time on an idle machine.
 std::string doubt_about(const Row& row, const Claim& claim) {
   const bool is_late = row.status == Status::kTimedOut && claim.value->meaning == Meaning::kOutcome;
   return is_late && is_disturbed(row) ? describe_disturbance(busy_elsewhere(row)) : "";
 }
 
-// What rows that cannot tell might still say does not save a claim that the others refute.
+// Rows without an answer do not save a claim that the other rows refute: the claim fails if the share is too
+// small even with all these rows counted as 1.
 void judge_share(const Claim& claim, const RowPointers& rows, Findings& findings) {
   std::size_t num_yes = 0, num_open = 0;
   std::string absence, no, doubt;
@@ -89,7 +90,7 @@ void judge_share(const Claim& claim, const RowPointers& rows, Findings& findings
   findings.found.push_back(std::move(finding));
 }
 
-// The samples of one side of a comparison and what tells them from others of the group.
+// The samples of one side of a comparison, and the label that distinguishes them within the group.
 struct Side {
   Samples samples;
   std::string label;
@@ -120,8 +121,8 @@ Finding compare(const Claim& claim, const Side& of, const Side& over, const std:
                       of.samples.num_rows + over.samples.num_rows);
 }
 
-// Ratios and orders within one group. Series of `of` are told apart by what only `over` fixes, and the other
-// way round: over = {threads = 1} is the base of the series of every number of threads.
+// Compares ratios and orders within one group. The series of `of` are distinguished by the options that only
+// `over` fixes, and vice versa: over = {threads = 1} is the base of the series of every number of threads.
 void compare_series(const Claim& claim, const RowGroup& group, const std::string& label, Findings& findings) {
   RowPointers of_rows, over_rows;
   for (const Row* row : group.rows) {
@@ -166,11 +167,11 @@ void judge_series(const Claim& claim, const RowPointers& rows, Findings& finding
 }
 
 struct Place {
-  double at = 0;  // along the option
+  double at = 0;  // value of the option
   Samples samples;
 };
 
-// The factor of each doubling of the option, from the factor of the step.
+// Converts the factor of a step into the factor per doubling of the option.
 Estimate per_doubling(Estimate step, double doublings) {
   const auto root = [doublings](double& factor) { factor = std::pow(factor, 1 / doublings); };
   root(step.value);
@@ -182,8 +183,8 @@ Estimate per_doubling(Estimate step, double doublings) {
   return step;
 }
 
-// Judges the step from one value of the option to another. Without a factor the measure may rest on a step,
-// but not from the first value to the last.
+// Judges the step from one value of the option to another. Without a factor the measure may stay equal over a
+// step, but not from the first value to the last.
 Finding judge_step(const Claim& claim, const Place& from, const Place& to, bool is_all,
                    const std::string& label) {
   const Estimate step = claim.grows ? ratio_of(to.samples, from.samples) : ratio_of(from.samples, to.samples);

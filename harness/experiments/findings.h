@@ -1,5 +1,5 @@
-// What rows say of a claim, group by group. A group is rows of equal options but for those that the claim
-// compares.
+// The findings of rows about a claim, group by group. A group consists of rows of equal options, except the
+// options that the claim compares.
 #pragma once
 
 #include <string>
@@ -9,24 +9,24 @@
 
 namespace podm::bench {
 
-/// One group of rows against the claim.
+/// The finding of one group of rows.
 struct Finding {
   Decision decision;
-  Estimate estimate;  ///< of the number that the bounds are for
-  double excess = 0;  ///< how far beyond the bound, relative to it; below 0: within
-  std::string text;   ///< the numbers behind it
-  std::string label;  ///< tells the group from others; empty for one alone
+  Estimate estimate;  ///< of the number that the bounds apply to
+  double excess = 0;  ///< distance beyond the bound, relative to it; below 0: within
+  std::string text;   ///< the numbers behind the decision
+  std::string label;  ///< distinguishes the group; empty for a single group
   std::size_t num_rows = 0;
 };
 
-/// What some rows say of a claim.
+/// The findings of all groups.
 struct Findings {
   std::vector<Finding> found;
   std::string missing;  ///< the first thing that a group lacks; empty: nothing
   bool has_failed_rows = false;
 };
 
-/// `rows` are all of the claim's basis and filter, and at least one.
+/// There is at least one row, and all `rows` have the claim's basis and match its filter.
 Findings find(const Claim& claim, const RowPointers& rows);
 
 }  // namespace podm::bench

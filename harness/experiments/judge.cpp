@@ -13,7 +13,7 @@ namespace {
 
 bool does_hold(const Finding& finding) { return finding.decision.outcome == Outcome::kHolds; }
 
-// The verdict of a group; a group that breaks the claim outweighs one that does not resolve it.
+// A group that breaks the claim outweighs a group that does not resolve it.
 int weight_of(const Finding& finding) {
   switch (finding.decision.outcome) {
     case Outcome::kFails:
@@ -50,7 +50,7 @@ Verdict verdict_of(Outcome outcome) {
                                       : Verdict::kNotResolved;
 }
 
-// What one size of an experiment says of a claim.
+// The judgement of a claim at one size of an experiment.
 struct Attempt {
   Judgement judgement;
   std::string size;
@@ -95,7 +95,7 @@ double packages_of(const Row& row) {
   return packages == nullptr ? 1 : std::max(1.0, static_cast<double>(*packages));
 }
 
-// Why the rows' machine cannot decide the claim; empty: it can.
+// Returns the reason why the rows' machine cannot decide the claim; empty: it can.
 std::string lack_of_cores(const Claim& claim, const RowPointers& rows) {
   if (claim.needs_cores == 0) return "";
   const auto cores = cores_of(*rows.front());
@@ -118,7 +118,7 @@ RowPointers within_extent(const Claim& claim, RowPointers rows) {
   return rows;
 }
 
-// Why rows that were planned did not run.
+// Returns the reason why planned rows did not run.
 std::string why_skipped(const RowPointers& skipped) {
   if (skipped.empty()) return "";
   return fmt::format(" ({} skipped: {})", skipped.front()->trial, skipped.front()->reason);
@@ -150,7 +150,7 @@ Attempt judge_size(const Claim& claim, const std::vector<Row>& all_rows, const s
     attempt.judgement.reason = lack;
   } else {
     attempt = conclude(find(claim, rows));
-    // What there is can refute the claim, and no more.
+    // An incomplete set of rows can only refute the claim.
     if (!lacking.empty() && attempt.judgement.verdict != Verdict::kDoesNotHold)
       attempt.judgement = {Verdict::kCannotBeDecided, "no rows: " + lacking, {}, {}, 0, {}, {}, 0};
   }
@@ -161,8 +161,8 @@ Attempt judge_size(const Claim& claim, const std::vector<Row>& all_rows, const s
   return attempt;
 }
 
-// The greatest decides. A size that lacks rows does not, unless rows of it failed; one of few rounds that
-// agree with the claim does where no other size decides.
+// The attempt of the largest weight decides. A size that lacks rows does not decide, unless rows of it
+// failed. A size of few rounds that agree with the claim decides only if no other size does.
 int weight_of(const Attempt& attempt) {
   switch (attempt.judgement.verdict) {
     case Verdict::kDoesNotHold:
@@ -182,7 +182,7 @@ bool is_set_aside(const Attempt& attempt, const Attempt& decisive) {
          decisive.judgement.verdict == Verdict::kHolds;
 }
 
-// What all sizes say together.
+// Combines the judgements at all sizes.
 Judgement conclude(const Claim& claim, const std::vector<Attempt>& attempts) {
   const Attempt& decisive =
       *std::max_element(attempts.begin(), attempts.end(), [](const Attempt& a, const Attempt& b) {

@@ -1,4 +1,4 @@
-// Whether rows bear out a claim.
+// Judges a claim by rows.
 #pragma once
 
 #include <optional>
@@ -16,21 +16,20 @@ std::string to_string(Verdict verdict);
 
 struct Judgement {
   Verdict verdict = Verdict::kCannotBeDecided;
-  std::string reason;  ///< the group that the value is of and why it resolves nothing, or what is missing
-  std::optional<double>
-      value;  ///< that of the group that is nearest to breaking the claim, or breaks it most
-  std::optional<Interval> interval;  ///< of that value; nothing where it is the same in each run
+  std::string reason;           ///< the group of the value and why it is not resolved, or what is missing
+  std::optional<double> value;  ///< of the group that breaks the claim most, or is nearest to breaking it
+  std::optional<Interval> interval;  ///< of that value; unset if the value is the same in each run
   std::size_t num_rounds = 0;        ///< behind the value
-  std::optional<int> rounds_needed;  ///< that would resolve the claim, where they can be estimated
-  std::vector<std::string> sizes;    ///< the patterns of the claim's trials that were judged
-  std::size_t num_rows = 0;          ///< that were judged
+  std::optional<int> rounds_needed;  ///< number that would resolve the claim, if it can be estimated
+  std::vector<std::string> sizes;    ///< the judged patterns of the claim's trials
+  std::size_t num_rows = 0;          ///< number of judged rows
 };
 
-/// `rows` are those of one experiment, as rows_to_judge() leaves them. Each pattern of the claim's trials is
-/// a size of the experiment and is judged alone, if it has rows. The claim does not hold when one group of
-/// equal options of any size breaks it, and holds when every group of the sizes does that have all rows which
-/// it needs; at least one size has. A size whose rounds are too few to decide is set aside if its medians
-/// agree and another size decides.
+/// Judges a claim by the rows of one experiment that rows_to_judge() returns. Each pattern of the claim's
+/// trials is a size of the experiment and is judged alone, if it has rows. The claim does not hold if one
+/// group of equal options breaks it at any size. It holds if at least one size has all the rows that it needs
+/// and every group of these sizes holds. A size with too few rounds to decide is set aside if its medians
+/// agree and the claim holds at another size.
 Judgement judge(const Claim& claim, const std::vector<Row>& rows);
 
 }  // namespace podm::bench

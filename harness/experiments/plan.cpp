@@ -25,7 +25,8 @@ FinishedRows finished_rows(const std::vector<Row>& rows) {
   return finished;
 }
 
-// Trials are told apart by the names of their images, as are phantoms and files of people.
+// Names of images distinguish trials, both of phantoms and of files. Two images must therefore not have the
+// same name.
 void check_images(const std::vector<std::string>& images) {
   std::map<std::string, std::string> by_name;
   for (const std::string& image : images) {

@@ -1,4 +1,4 @@
-// How far a run is and how long it will still take, on stderr.
+// Prints the progress of a run and its remaining time on stderr.
 #pragma once
 
 #include <chrono>
@@ -9,30 +9,30 @@
 
 namespace podm::bench {
 
-/// The seconds still to come: those expected, in proportion to how true expectations were so far.
+/// The remaining time: the expected seconds, scaled by the ratio of measured to expected seconds so far.
 class RemainingTime {
  public:
-  /// Takes the seconds of each turn, in their order.
+  /// Takes the expected seconds of each turn, in their order.
   explicit RemainingTime(std::vector<std::optional<double>> expected_s);
 
   void finish_turn(double seconds);
-  /// Empty while nothing is known. `elapsed_s` are the seconds of the turn that runs so far.
+  /// Returns nothing if no duration is known. `elapsed_s` are the seconds of the current turn so far.
   std::optional<double> seconds(double elapsed_s) const;
 
  private:
-  std::vector<double> weights_;  // seconds, or 1 each where none is known
+  std::vector<double> weights_;  // seconds; 1 each if none is known
   bool are_seconds_ = false;
   std::size_t num_finished_ = 0;
   double finished_s_ = 0, finished_weight_ = 0;
 };
 
-/// A line a turn; on a terminal, one below it that counts the seconds.
+/// Prints one line per turn; on a terminal, also a line below it that counts the seconds.
 class Progress {
  public:
   explicit Progress(std::vector<std::optional<double>> expected_s);
 
   void start_turn(const std::string& label);
-  /// What is done before the turn's own process runs; empty: that is over.
+  /// Shows the step that runs before the turn's own process; empty: the steps are over.
   void tell(const std::string& step);
   void tick();
   void finish_turn(const std::string& line);

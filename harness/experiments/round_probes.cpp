@@ -6,7 +6,7 @@
 namespace podm::bench {
 namespace {
 
-// `probe` has the best value of each kind of both.
+// Sets each value of `probe` to the better one of both.
 void improve(ProbeRecord& probe, const ProbeRecord& other) { probe = best_of(std::array{probe, other}); }
 
 }  // namespace

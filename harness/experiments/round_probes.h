@@ -1,5 +1,5 @@
-// The machine's speed from round to round. Ratios within a round compare what ran side by side in time, so
-// that a drift from one round to the next falls out of them; one within the round does not.
+// Monitors the machine's speed from round to round. Ratios within a round compare runs that are close in
+// time. A drift from one round to the next cancels in them; a drift within the round does not.
 #pragma once
 
 #include <optional>
@@ -9,21 +9,21 @@
 
 namespace podm::bench {
 
-/// Probes the machine between rounds: the probe that ends one round begins the next. Whatever shares a
-/// virtual processor comes and goes within seconds. A probe that is slower than the run's best one by more
-/// than kToleratedMove is therefore repeated, and the best value of each kind counts: only what lasts shows.
+/// Probes the machine between rounds. The probe that ends one round begins the next. Other users of a virtual
+/// processor come and go within seconds. A probe that is slower than the run's best one by more than
+/// kToleratedMove is therefore repeated, and the best value of each kind counts. Only lasting changes show.
 class RoundProbes {
  public:
-  /// A probe repeats at most as often, the run's first one exactly as often.
+  /// Maximum number of measurements of a probe, and the number for the run's first one.
   static constexpr int kMostRepeats = 12, kFirstRepeats = 8;
 
   explicit RoundProbes(ProbeSource source) : source_(std::move(source)) {}
 
-  /// Before the first trial of a round; returns the probe that its rows carry.
+  /// Call before the first trial of a round. Returns the probe that its rows record.
   Probe begin();
   /// Probes again after the last trial of the round that begin() began.
   Probe end();
-  /// A round goes by that needs no probe: the next one begins with its own.
+  /// Passes a round that needs no probe. The next round begins with a probe of its own.
   void pass() { last_.reset(); }
 
  private:
@@ -34,9 +34,9 @@ class RoundProbes {
   std::optional<Probe> last_;        ///< of the end of the round before
 };
 
-/// The speed moved during a round: two of its probes differ (probe.h). They are those of its start and end,
-/// and, where the round was begun by an earlier run, those that its rows of that run carry. What is
-/// unavailable does not count.
+/// True if the speed moved during a round: two of its probes differ (probe.h). The probes are those of the
+/// start and the end of the round, and, if an earlier run began the round, those in its rows of that run.
+/// Unavailable probes do not count.
 bool has_moved(const std::vector<Probe>& probes_of_round);
 
 }  // namespace podm::bench

@@ -26,11 +26,11 @@ std::vector<Row> recorded_rows(const std::string& path) {
 
 int run(const RunCommand& command) {
   const std::vector<Experiment> experiments = read_experiments(command);
-  const std::string mesher_sha256 = sha256_of_file(command.programs.podm);  // refuses before a folder is made
+  const std::string mesher_sha256 = sha256_of_file(command.programs.podm);  // throws before a folder is made
   const ResultsLock lock(command.results_folder);
   const StopQuery is_interrupted = stop_on_signals();
   Session session(command, mesher_sha256, this_machine(), is_interrupted);
-  std::vector<Plan> plans;  // all, so that a bad file is refused before anything runs
+  std::vector<Plan> plans;  // all plans, so that a bad file is refused before anything runs
   for (const Experiment& experiment : experiments)
     plans.push_back(make_plan(command, experiment,
                               recorded_rows(rows_path(command.results_folder, experiment)), session.preparer,

@@ -43,7 +43,7 @@ void for_each_claim(const std::vector<ExperimentVerdicts>& all, Visit&& visit) {
       visit(*verdicts.experiment, verdicts.experiment->claims[i], verdicts.judgements[i]);
 }
 
-// The claims that an experiment makes no longer, those that others took the place of among them.
+// Returns the claims that an experiment no longer makes, including superseded ones.
 std::vector<WithdrawnClaim> former_claims(const Experiment& experiment) {
   std::vector<WithdrawnClaim> former = experiment.withdrawn;
   for (const Claim& claim : experiment.claims)
@@ -115,7 +115,7 @@ ExperimentVerdicts judge(const Experiment& experiment, const std::vector<Row>& r
 
 namespace {
 
-// Sentences on the machine that an experiment's rows were measured on.
+// Returns sentences about the machine of an experiment's rows.
 std::vector<std::string> remarks_of(const ExperimentVerdicts& verdicts) {
   std::vector<std::string> remarks = verdicts.machine.remarks();
   if (!verdicts.left_out.empty()) remarks.push_back(verdicts.left_out);

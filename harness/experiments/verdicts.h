@@ -1,4 +1,4 @@
-// The claims of experiments and what their rows say of them, for people and for programs.
+// The claims of experiments and their verdicts, as text and as JSON.
 #pragma once
 
 #include <string>
@@ -12,18 +12,18 @@ namespace podm::bench {
 
 struct ExperimentVerdicts {
   const Experiment* experiment = nullptr;
-  std::vector<Judgement> judgements;  ///< one a claim, in their order
-  MachineState machine;               ///< while the rows that may be judged were measured
-  std::string left_out;               ///< which rows of other machines; "" for none
+  std::vector<Judgement> judgements;  ///< one per claim, in the order of the claims
+  MachineState machine;               ///< during the measurement of the rows that may be judged
+  std::string left_out;               ///< describes omitted rows of other machines; "" for none
 };
 
-/// `rows` are all there are of the experiment; those that may be judged are chosen here.
+/// `rows` are all rows of the experiment; this function selects those that may be judged.
 ExperimentVerdicts judge(const Experiment& experiment, const std::vector<Row>& rows);
 
-/// A table, then what is known of the claims that do not hold, then their numbers.
+/// A table, then the known reasons of claims that do not hold, then the numbers of verdicts.
 std::string format_verdicts(const std::vector<ExperimentVerdicts>& all);
 
-/// The format is told in results/README.md.
+/// results/README.md describes the format.
 Json verdicts_as_json(const std::vector<ExperimentVerdicts>& all);
 
 }  // namespace podm::bench

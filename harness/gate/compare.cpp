@@ -28,7 +28,7 @@ enum class Wanted { kLess, kMore, kNeither };
 struct Metric {
   const char* name;
   Wanted wanted;
-  bool is_work;  ///< decided by the program alone when it has one thread
+  bool is_work;  ///< with one thread the program alone decides it
   Number (*read)(const Row& row);
 };
 
@@ -40,7 +40,7 @@ Number as_number(const std::optional<T>& number) {
 Number seconds(const Row& row) { return row.mesh ? Number(meshing_seconds(row.mesh->phases_s)) : Number(); }
 Number cells_per_second(const Row& row) { return row.mesh ? row.mesh->cells_per_second : Number(); }
 Number cells(const Row& row) { return row.mesh ? Number(row.mesh->cells) : Number(); }
-// A record alone tells nothing of its process.
+// A mesher's record alone has no data about its process.
 Number peak_bytes(const Row& row) {
   return row.process.peak_rss_bytes > 0 ? Number(row.process.peak_rss_bytes) : Number();
 }
@@ -72,14 +72,14 @@ constexpr std::array kMetrics{
     Metric{"cells created", Wanted::kLess, true, work<&WorkRecord::cells_created>},
 };
 
-// Rows that measure the same.
+// Rows of the same measurement.
 struct Group {
   std::string name;
   Rows a, b;
 };
 
-// What two rows that measure the same share. A row without a mesh does not tell its options: those of another
-// row of its trial are taken.
+// The key that rows of the same measurement share. A row without a mesh has no options; it takes the options
+// of another row of its trial.
 class Keys {
  public:
   explicit Keys(std::initializer_list<const Rows*> files) {
@@ -95,7 +95,8 @@ class Keys {
 
  private:
   static std::string trial(const Row& row) { return Json{row.trial, row.input.name}.dump(); }
-  // A radius that was found stands for a number of cells, which two meshers may reach by different ones.
+  // A target number of cells replaces a radius that was found for it, as two meshers may reach the number
+  // with different radii.
   static std::string settings(const Row& row) {
     Json options = row.mesh->options.value_or(Json::object());
     if (row.resolved) {
@@ -106,13 +107,13 @@ class Keys {
     return Json{to_json(row.mesh->algorithm), options, to_json(row.mesh->seed), to_json(threads.asked)}
         .dump();
   }
-  std::map<std::string, std::string> settings_;  // keys are trials
+  std::map<std::string, std::string> settings_;  // by trial
 };
 
-// The trial, or the image where a mesher's record has none.
+// Returns the trial, or the image if a mesher's record has no trial.
 std::string name_of(const Row& row) { return row.trial.empty() ? row.input.name : row.trial; }
 
-// Groups come in the order of `a`; those without a row of `b` are left out.
+// Groups are in the order of `a`. Groups without a row of `b` are left out.
 std::vector<Group> groups_of(const Rows& a, const Rows& b) {
   const Keys keys{&a, &b};
   std::vector<Group> groups;
@@ -145,10 +146,10 @@ void check_machines(const std::vector<Group>& groups) {
       }
 }
 
-// An answer of a row, empty where it gives none.
+// Returns the answer of a row, empty if it has none.
 using ReadAnswer = std::function<std::string(const Row& row)>;
 
-// The different answers of the rows that give one.
+// Returns the distinct answers of the rows that have one.
 std::set<std::string> answers(const Rows& rows, const ReadAnswer& read) {
   std::set<std::string> found;
   for (const Row& row : rows)
@@ -156,7 +157,7 @@ std::set<std::string> answers(const Rows& rows, const ReadAnswer& read) {
   return found;
 }
 
-// Worse when A answers well each time and B does not.
+// Worse if every answer of A is `good` and B has another answer or none.
 void add_verdict(const Group& group, const std::string& name, const ReadAnswer& read, const std::string& good,
                  Comparison& result) {
   const auto a = answers(group.a, read), b = answers(group.b, read);

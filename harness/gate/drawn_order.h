@@ -10,15 +10,16 @@
 
 namespace podm::bench {
 
-/// Draws an order for each odd round and reverses it for the even round after it: each process is as often
-/// before any other as after it, so neither a steady drift nor a place in the round favours one.
+/// Draws an order for each odd round and reverses it for the even round after it. Each process then runs
+/// before any other process as often as after it, and neither a steady drift nor the position in the round
+/// favours a process.
 class DrawnOrder {
  public:
   DrawnOrder(std::size_t num_processes, std::uint64_t seed) : random_(seed), order_(num_processes) {
     std::iota(order_.begin(), order_.end(), std::size_t{0});
   }
 
-  /// The processes of the next round, by number.
+  /// Returns the processes of the next round, by number.
   const std::vector<std::size_t>& next() {
     if (is_drawn_)
       std::reverse(order_.begin(), order_.end());
@@ -31,7 +32,7 @@ class DrawnOrder {
  private:
   std::mt19937_64 random_;
   std::vector<std::size_t> order_;
-  bool is_drawn_ = false;  // the last order was drawn, so the next one is its reverse
+  bool is_drawn_ = false;  // the last order was drawn; the next one is its reverse
 };
 
 }  // namespace podm::bench

@@ -16,15 +16,15 @@ namespace {
 
 void say(const std::string& line) {
   fmt::print("{}\n", line);
-  std::fflush(stdout);  // the next line may be minutes away
+  std::fflush(stdout);  // the next line may come minutes later
 }
 
-// The verdicts that the mesher had from podm-verify.
+// Returns the verdicts of podm-verify in the mesher's record.
 ByName<Proof> verdicts_of(const MesherRun& run) {
   return run.record ? run.record->verdicts.value_or(ByName<Proof>{}) : ByName<Proof>{};
 }
 
-// Why the mesh is not proved; empty: every claim passes.
+// Returns the reason why the mesh is not proved; empty: every claim passes.
 std::string unproved(const MesherRun& run) {
   const ByName<Proof> verdicts = verdicts_of(run);
   std::string text;
@@ -34,7 +34,7 @@ std::string unproved(const MesherRun& run) {
   return run.process.succeeded() && text.empty() ? "" : text + run.process.describe();
 }
 
-// The mesh is proved already.
+// The mesh must be proved already.
 Budget measure(const GateTrial& trial, const MesherRun& run, const std::string& podm,
                const GateMesher& mesher) {
   return {trial, work_of(*run.record), mesher.count_instructions(podm, trial)};
@@ -80,7 +80,8 @@ std::string text_of(const Ratio& ratio) {
   return fmt::format("{:.3f} [{:.3f}, {:.3f}]", ratio.value, ratio.low, ratio.high);
 }
 
-// The answer in words, with what it does and what it would take where there is none.
+// Returns the answer in words, with its consequence. If there is no answer, predicts the number of rounds for
+// one.
 std::string text_of(const Slowdown& slowdown) {
   const std::string text =
       fmt::format("{}: head/base {} by processor seconds, {} rounds", to_string(slowdown.answer),
@@ -91,7 +92,7 @@ std::string text_of(const Slowdown& slowdown) {
                      slowdown.rounds_for_an_answer());
 }
 
-// Judged by processor seconds: other programs of a shared machine lengthen those of the clock more.
+// Decides by processor seconds, because other programs of a shared machine lengthen wall seconds more.
 bool speed_passes(const GateTrial& trial, const GateOptions& options, const GateMesher& mesher) {
   say(fmt::format("Tier 2, blocks with evidence: processor and wall seconds of {} on one thread, base | head",
                   trial.name));
@@ -116,7 +117,7 @@ bool speed_passes(const GateTrial& trial, const GateOptions& options, const Gate
   return slowdown.answer != Answer::kSlower;
 }
 
-// Numbers of operations; 0 where the record does not tell.
+// Returns the numbers of operations; 0 if the record does not have them.
 std::pair<double, double> commits_and_conflicts(const MeshRecord& record) {
   const OutcomesRecord outcomes = record.outcomes.value_or(OutcomesRecord{});
   return {outcomes.committed.value_or(0), outcomes.lock_conflict.value_or(0)};

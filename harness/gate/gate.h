@@ -1,5 +1,6 @@
-// The performance gate: may a change of the mesher go in? Deterministic work blocks always, seconds block
-// with evidence, scaling advises. ci/README.md tells the rule and how often it errs.
+// The performance gate decides whether a change of the mesher may be merged. A difference in deterministic
+// work always blocks, seconds block with evidence, and scaling is printed as advice. ci/README.md states the
+// rule and its error rates.
 #pragma once
 
 #include <cstdint>
@@ -10,22 +11,22 @@
 
 namespace podm::bench {
 
-inline constexpr const char* kBudgetsPath = "ci/gate_budgets.json";  ///< unless told otherwise
+inline constexpr const char* kBudgetsPath = "ci/gate_budgets.json";  ///< the default
 
 struct GateOptions {
   std::string head;  ///< the changed mesher; a podm-verify lies beside it
-  std::string base;  ///< the mesher before the change; empty: no seconds are compared
+  std::string base;  ///< the mesher before the change; empty: seconds are not compared
   std::string budgets_path = kBudgetsPath;
-  std::vector<int> tiers{1, 2, 3};  ///< those to pass
-  std::uint64_t order_seed = 1;     ///< draws the order within rounds
+  std::vector<int> tiers{1, 2, 3};  ///< the tiers to pass
+  std::uint64_t order_seed = 1;     ///< seed of the order within rounds
 };
 
-/// Prints what was found to standard output; whether the change may go in. Throws InputError, also when the
-/// user stops it.
+/// Prints the findings to standard output. Returns true if the change may be merged. Throws InputError, also
+/// when the user stops the gate.
 bool gate(const GateOptions& options, const StopQuery& stop_requested);
 
-/// Puts what the head does now into the file of budgets. Throws InputError, and writes nothing, when a claim
-/// about a mesh is not met.
+/// Replaces the budgets in the file by the head's current work. Throws InputError, and writes nothing, when a
+/// claim about a mesh is not met.
 void renew_budgets(const GateOptions& options, const StopQuery& stop_requested);
 
 }  // namespace podm::bench

@@ -1,5 +1,5 @@
-// What one thread's mesh of a phantom costs, committed in ci/gate_budgets.json: the same on every run of one
-// build, so any difference is the program's.
+// The cost of a phantom's mesh on one thread, committed in ci/gate_budgets.json. It is the same on every run
+// of one build; any difference is therefore the program's.
 #pragma once
 
 #include <cstdint>
@@ -10,10 +10,10 @@
 
 namespace podm::bench {
 
-/// What one thread's mesh takes and is, in values that it repeats exactly.
+/// Work and result of one thread's mesh, in values that each run repeats exactly.
 struct Work {
   std::optional<std::uint64_t> cells, vertices;
-  std::optional<ByName<std::uint64_t>> insertions;  ///< numbers by rule
+  std::optional<ByName<std::uint64_t>> insertions;  ///< by rule
   std::optional<std::uint64_t> removals, classified_cells, conflict_tests, exact_decisions, cells_created;
   std::optional<std::string> mesh_sha256;
   static constexpr auto fields() {
@@ -37,22 +37,22 @@ struct Budget {
 };
 
 struct Budgets {
-  std::string build;                  ///< compiler and flags that the instructions are of
+  std::string build;                  ///< compiler and flags of the program whose instructions were counted
   double instructions_tolerance = 0;  ///< relative
   std::vector<Budget> budgets;
-  GateTrial timed;  ///< the trial that seconds are taken of
+  GateTrial timed;  ///< the trial whose seconds are measured
 };
 
-/// Throws InputError naming the file and the fault.
+/// Throws InputError that names the file and the fault.
 Budgets read_budgets(const std::string& path);
 void write_budgets(const Budgets& budgets, const std::string& path);
 
-/// The compiler and the flags of this build.
+/// Returns the compiler and the flags of this build.
 std::string this_build();
 
 Work work_of(const MeshRecord& record);
 
-/// Each value that is not as committed, e.g. "conflict_tests: 130, committed 120".
+/// Returns each value that differs from the committed one, e.g. "conflict_tests: 130, committed 120".
 std::vector<std::string> differences(const Work& committed, const Work& measured);
 
 }  // namespace podm::bench

@@ -10,13 +10,13 @@
 namespace podm::bench {
 namespace {
 
-constexpr std::uint64_t kFirstSeed = 1'000'000;  // of the machines that are simulated
+constexpr std::uint64_t kFirstSeed = 1'000'000;  // seeds of the simulated machines start here
 
 std::optional<double> median_if_any(const std::vector<double>& samples) {
   return samples.empty() ? std::nullopt : std::optional(median(samples));
 }
 
-// Sets the counts; the rest of `tries` names what was tried.
+// Sets the counts. The other members of `tries` describe what was tried.
 GateTries counted(GateTries tries, const std::vector<Slowdown>& answers) {
   std::vector<double> rounds, rounds_for_an_answer;
   for (const Slowdown& slowdown : answers) {
@@ -39,7 +39,7 @@ void add_interval(GateTries& tries) {
   tries.slower_share_high = interval.high;
 }
 
-// The base and the head with the planted slowdown.
+// Returns the pairs of the base and the head with the planted slowdown.
 std::vector<Round> pairs_of(const std::vector<GateRound>& rounds, int planted_percent,
                             double GateProcess::*seconds) {
   std::vector<Round> pairs;
@@ -55,7 +55,7 @@ std::vector<Round> pairs_of(const std::vector<GateRound>& rounds, int planted_pe
 
 std::string text_of(const std::optional<double>& value) { return value ? fmt::format("{:.0f}", *value) : ""; }
 
-// The share of slower, in percent, with its interval where it has one.
+// Returns the share of answers "slower" in percent, with its interval if it has one.
 std::string share_of_slower(const GateTries& tries) {
   if (tries.tries == 0) return "";
   std::string text = fmt::format("{:.1f} %", 100.0 * tries.slower / tries.tries);
@@ -64,7 +64,7 @@ std::string share_of_slower(const GateTries& tries) {
   return text;
 }
 
-// What was tried, in words: "simulated, noise 2 %" or "measured, processor seconds, tries apart".
+// Describes what was tried: "simulated, noise 2 %" or "measured, processor seconds, tries apart".
 std::string name_of(const GateTries& tries) {
   std::string name = tries.basis;
   if (tries.noise_percent) name += fmt::format(", noise {} %", *tries.noise_percent);

@@ -16,7 +16,7 @@ namespace {
 namespace fs = std::filesystem;
 
 constexpr double kTimeoutS = 600;
-constexpr std::size_t kWarmBytesOfGate = std::size_t{1} << 28;  // more than a trial of the gate takes
+constexpr std::size_t kWarmBytesOfGate = std::size_t{1} << 28;  // more than a trial of the gate uses
 
 }  // namespace
 

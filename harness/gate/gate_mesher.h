@@ -1,4 +1,4 @@
-// The mesher as the gate runs it: one process, what it took and what it recorded.
+// Runs the mesher for the gate: one process, its time and its record.
 #pragma once
 
 #include <optional>
@@ -24,13 +24,13 @@ struct GateTrial {
 
 struct MesherRun {
   ProcessOutcome process;
-  std::optional<MeshRecord> record;  ///< nothing when the mesher wrote none
+  std::optional<MeshRecord> record;  ///< unset if the mesher wrote none
 
   double cpu_s() const { return process.user_s + process.system_s; }
 };
 
-/// Runs programs in a folder of its own, gone at the end. All throw InputError on a failure to start a
-/// program and when the user asks to stop.
+/// Runs programs in a temporary folder of its own. All functions throw InputError when a program does not
+/// start and when the user asks to stop.
 class GateMesher {
  public:
   explicit GateMesher(StopQuery stop_requested);
@@ -38,18 +38,18 @@ class GateMesher {
   GateMesher(const GateMesher&) = delete;
   GateMesher& operator=(const GateMesher&) = delete;
 
-  /// A mesh; `verify` has it proved after, with the verdicts in the record.
+  /// Makes a mesh. With `verify`, the mesh is proved afterwards and the record has the verdicts.
   MesherRun mesh(const std::string& podm, const GateTrial& trial, int threads, bool verify) const;
 
-  /// A mesh that is not proved, with its record. Throws InputError also when the mesher fails.
+  /// Makes a mesh without a proof, with its record. Throws InputError also when the mesher fails.
   MesherRun mesh_or_throw(const std::string& podm, const GateTrial& trial, int threads) const;
 
-  /// Instructions of one thread's mesh, counted by callgrind.
+  /// Returns the instructions of one thread's mesh, counted by callgrind.
   std::uint64_t count_instructions(const std::string& podm, const GateTrial& trial) const;
 
  private:
   std::vector<std::string> command(const std::string& podm, const GateTrial& trial, int threads) const;
-  // Throws where the program did not start and where the user ended it.
+  // Throws if the program did not start or the user ended it.
   Reply run(const std::vector<std::string>& arguments) const;
 
   std::string folder_;

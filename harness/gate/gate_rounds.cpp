@@ -37,7 +37,7 @@ void run(GateProcess& process, const RecordingOptions& options, const GateMesher
   plant(process);
 }
 
-// Why two rounds cannot be of one series; empty: they can.
+// Returns the reason why two rounds cannot belong to one series; empty: they can.
 std::string difference(const GateRound& round, const GateRound& first) {
   Row of_round, of_first;
   of_round.environment = round.environment;
@@ -47,7 +47,7 @@ std::string difference(const GateRound& round, const GateRound& first) {
   return round.trial == first.trial ? "" : "another trial";
 }
 
-// Why it is no round that this program records; empty: it is one.
+// Returns the fault of a round that this program did not record; empty: it is a valid round.
 std::string fault_of(const GateRound& round) {
   if (round.schema != GateRound::kSchema) return fmt::format("is not of schema {}", GateRound::kSchema);
   if (round.processes.size() != kPlantedPercent.size() + 1) return "has another number of processes";

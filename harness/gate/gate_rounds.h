@@ -1,5 +1,5 @@
-// Rounds of a mesher against itself with planted slowdowns, recorded so that the gate's rule can be tried on
-// what a real machine does. One JSON line per round, in the order in which the rounds ran.
+// Rounds of a mesher against itself with planted slowdowns. They are recorded so that the gate's rule can be
+// tried on the behaviour of a real machine. One JSON line per round, in the order in which the rounds ran.
 #pragma once
 
 #include <array>
@@ -17,9 +17,9 @@ inline constexpr std::array kPlantedPercent{0, 3, 5, 7, 10};
 
 /// One process of a round.
 struct GateProcess {
-  bool is_head = false;  ///< one process of a round is the base
+  bool is_head = false;  ///< one process of each round is the base
   int planted_percent = 0;
-  double cpu_s = 0, wall_s = 0;  ///< what was planted is in both
+  double cpu_s = 0, wall_s = 0;  ///< with the planted seconds
   static constexpr auto fields() {
     using P = GateProcess;
     return std::tuple{field("is_head", &P::is_head), field("planted_percent", &P::planted_percent),
@@ -27,15 +27,15 @@ struct GateProcess {
   }
 };
 
-/// Takes the planted share of the process's processor seconds on this thread, and adds the seconds that this
-/// took to both clocks of the process.
+/// Computes on this thread for the planted share of the process's processor seconds, and adds the seconds
+/// that this took to both clocks of the process.
 void plant(GateProcess& process);
 
 struct GateRound {
   static constexpr int kSchema = 1;
   int schema = kSchema;
-  int round = 1;                 ///< its number in the file
-  std::uint64_t order_seed = 1;  ///< drew the order of the processes
+  int round = 1;                 ///< number in the file
+  std::uint64_t order_seed = 1;  ///< seed of the order of the processes
   GateTrial trial;
   std::vector<GateProcess> processes;  ///< in the order in which they ran
   ProgramRecord podm;
@@ -49,8 +49,8 @@ struct GateRound {
   }
 };
 
-/// The rounds of a file. Throws InputError "file:line: fault" on a line that is no whole round and on one
-/// that is of another machine, mesher or trial than the first.
+/// Returns the rounds of a file. Throws InputError "file:line: fault" for a line that is not a complete
+/// round, and for a round of another machine, mesher or trial than the first.
 std::vector<GateRound> read_gate_rounds(const std::string& path);
 
 struct RecordingOptions {
@@ -60,9 +60,9 @@ struct RecordingOptions {
   std::uint64_t order_seed = 1;
 };
 
-/// Appends rounds to the file, which is made if need be. A round runs the mesher once as the base and once
-/// per planted slowdown. This process itself takes the planted part of a process's processor seconds, right
-/// after the process has ended. Throws InputError, also when the user stops it; the rounds before stay.
+/// Appends rounds to the file, which is created if absent. A round runs the mesher once as the base and once
+/// per planted slowdown. This process itself spends the planted part of a process's processor seconds, right
+/// after the process has ended. Throws InputError, also when the user stops it; earlier rounds are kept.
 void record_gate_rounds(const RecordingOptions& options, const StopQuery& stop_requested);
 
 }  // namespace podm::bench

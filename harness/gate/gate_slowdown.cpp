@@ -24,7 +24,8 @@ double Slowdown::rounds_for_an_answer() const {
   return std::ceil(num_rounds * too_wide * too_wide);
 }
 
-// The machine's speed changes between rounds more than a program may: only seconds of one round are divided.
+// Only seconds of one round are divided by each other: the machine's speed changes more between rounds than a
+// program's speed may.
 Ratio head_over_base(std::span<const Round> rounds) {
   constexpr double kConfidenceOfLook = 1 - (1 - kConfidence) / kLooks.size();
   std::vector<double> logarithms;

@@ -19,10 +19,10 @@ enum class Answer { kNotSlower, kSlower, kNotResolved };
 /// "not slower", "slower", "not resolved".
 const char* to_string(Answer answer);
 
-/// The rule: slower when the interval of head over base lies above kNoticeable, else not slower when it lies
+/// The rule: slower if the interval of head over base lies above kNoticeable; otherwise not slower if it lies
 /// below kSevere. An interval that is narrower than kSevere - kNoticeable always gives an answer. The rule
-/// looks after so many rounds as kLooks lists, and stops at the first look that gives an answer; after the
-/// last one the answer is "not resolved".
+/// looks at the interval after each number of rounds in kLooks and stops at the first look that gives an
+/// answer. After the last look the answer is "not resolved".
 inline constexpr double kNoticeable = 1.01, kSevere = 1.04;
 inline constexpr std::array kLooks{10, 15, 22, 33, 50, 75, 112, 168};
 /// The probability that the intervals of all looks hold the true ratio.
@@ -37,12 +37,12 @@ struct Slowdown {
   double rounds_for_an_answer() const;
 };
 
-/// The centre of the ratios head over base and its interval at one look, whose confidence is raised so that
-/// all looks together have kConfidence (Bonferroni). Asks for at least one round.
+/// Returns the centre of the ratios head over base and its interval at one look. The confidence of a look is
+/// raised so that all looks together have kConfidence (Bonferroni). Requires at least one round.
 Ratio head_over_base(std::span<const Round> rounds);
 
-/// Asks for as many rounds as the answer takes; returns nothing when `next_round` has no more before that.
-/// What `next_round` throws passes through.
+/// Takes rounds until there is an answer. Returns nothing if `next_round` runs out of rounds before.
+/// Exceptions of `next_round` pass through.
 std::optional<Slowdown> measure_slowdown(const std::function<std::optional<Round>()>& next_round);
 
 }  // namespace podm::bench

@@ -1,4 +1,4 @@
-// A model of a shared machine, on which it is simulated how often the gate's answer about seconds errs.
+// A model of a shared machine. Simulations on it measure the error rates of the gate's answer about seconds.
 #pragma once
 
 #include <cstdint>
@@ -9,20 +9,20 @@
 
 namespace podm::bench {
 
-/// Its speed wanders by a factor of 1.6 within an hour and jumps every five minutes or so. Each process has
+/// The speed wanders by a factor of 1.6 within an hour and jumps about every five minutes. Each process has
 /// noise of its own, and one process in ten takes longer by a quarter on average.
 class SimulatedMachine {
  public:
   /// `noise` is the standard deviation of the logarithm of a process's seconds.
   SimulatedMachine(std::uint64_t seed, double noise);
 
-  /// Seconds that a process takes now that takes `seconds` on the average machine.
+  /// Returns the seconds that a process takes now if it takes `seconds` on the average machine.
   double run(double seconds);
-  /// A base of one second, and a head that takes `head_over_base` times as long.
+  /// Returns a base of one second, and a head that takes `head_over_base` times as long.
   Round round(double head_over_base);
 
  private:
-  static constexpr double kWander = 0.12;  // plus or minus two of it: a factor of 1.6
+  static constexpr double kWander = 0.12;  // two standard deviations on each side make a factor of 1.6
 
   double gauss() { return normal_(random_); }
   double uniform() { return std::uniform_real_distribution<double>()(random_); }
@@ -30,7 +30,7 @@ class SimulatedMachine {
   std::mt19937_64 random_;
   std::normal_distribution<double> normal_;
   DrawnOrder order_;
-  double noise_, wander_ = 0, jump_ = 0;  // the latter two of the logarithm of the seconds
+  double noise_, wander_ = 0, jump_ = 0;  // of the logarithm of the seconds
 };
 
 }  // namespace podm::bench

@@ -29,7 +29,7 @@ std::variant<std::vector<double>, Unavailable> load_average() {
   return minutes_1_5_15;
 }
 
-// The limit is that of this process's own group; `unified` and `legacy` are its files in versions 2 and 1.
+// Returns the limit of this process's own group. `unified` and `legacy` are its files in versions 2 and 1.
 std::string limit_in_group(const std::string& controller, const std::string& unified,
                            const std::vector<std::string>& legacy) {
   const ControlGroup group = control_group_of(controller);
@@ -40,7 +40,7 @@ std::string limit_in_group(const std::string& controller, const std::string& uni
   return fmt::format("{}", fmt::join(lines, " "));
 }
 
-// The least of all groups around, in bytes.
+// Returns the smallest limit of all enclosing groups, in bytes.
 std::string memory_limit() {
   if (control_group_of("memory").folders.empty()) return "unavailable: no control group of memory";
   const std::uint64_t bytes = memory_limit_of_control_groups();
@@ -59,7 +59,7 @@ std::variant<Sources, Unavailable> sources() {
   return Sources{commit.text, !changes.text.empty()};
 }
 
-// The rest of the lines read "key: value".
+// Reads the remaining lines, "key: value".
 ByName<std::string> build_of(std::istringstream& lines) {
   ByName<std::string> build;
   for (std::string line; std::getline(lines, line);)
@@ -68,7 +68,7 @@ ByName<std::string> build_of(std::istringstream& lines) {
   return build;
 }
 
-// What it prints is a line of name and version and then lines of its build.
+// The program prints a line with its name and version, then lines about its build.
 ProgramRecord describe_program(const std::string& path) {
   const Reply reply = ask({path, "--version"});
   std::istringstream lines(reply.succeeded() ? reply.text : "unavailable: --version fails");

@@ -1,5 +1,5 @@
-// The machine's state and the build: what a measurement needs told beside it. What cannot be known reads
-// "unavailable: why".
+// The state of the machine and the build, recorded beside each measurement. A value that is not available
+// reads "unavailable: why".
 #pragma once
 
 #include <string>
@@ -10,14 +10,16 @@
 
 namespace podm::bench {
 
-/// The machine, and what else stays during a run: sources, build, libraries, limits. The hash of the topology
-/// is left empty.
+/// Returns the machine and the values that do not change during a run: sources, build, libraries, limits. The
+/// hash of the topology is left empty.
 EnvironmentRecord environment_of_run(const MachineRecord& machine);
 
-/// Sets what may change between trials: load, memory available, governor, huge pages and NUMA balancing.
+/// Sets the values that may change between trials: load, available memory, governor, huge pages and NUMA
+/// balancing.
 void renew(EnvironmentRecord& environment);
 
-/// Hash and --version of mesher and verifier. Throws InputError naming a program that cannot be read.
+/// Returns hash and --version of mesher and verifier. Throws InputError that names a program that cannot be
+/// read.
 ProgramRecords describe_programs(const Programs& programs);
 
 }  // namespace podm::bench

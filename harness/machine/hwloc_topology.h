@@ -1,4 +1,4 @@
-// An hwloc topology that is destroyed with its owner, and the caches in it.
+// An hwloc topology that is destroyed with its owner, and its caches.
 #pragma once
 
 #include <hwloc.h>
@@ -15,7 +15,7 @@ struct DestroyTopology {
 };
 using Topology = std::unique_ptr<std::remove_pointer_t<hwloc_topology_t>, DestroyTopology>;
 
-/// This machine's; null where hwloc finds none.
+/// Returns this machine's topology; null where hwloc finds none.
 inline Topology load_topology() {
   hwloc_topology_t topology = nullptr;
   if (hwloc_topology_init(&topology) != 0) return {};
@@ -28,7 +28,7 @@ struct Cache {
   std::size_t bytes;
 };
 
-/// The data caches above a processor, the nearest first.
+/// Returns the data caches of a processor, nearest first.
 inline std::vector<Cache> caches_of(hwloc_obj_t processor) {
   std::vector<Cache> caches;
   for (hwloc_obj_t object = processor; object != nullptr; object = object->parent)

@@ -22,7 +22,7 @@ std::uint32_t bits(std::uint32_t word, int first, int number) {
 }
 
 std::map<std::string, std::string> values_of(std::istream& lines) {
-  std::map<std::string, std::string> values;  // the first processor's
+  std::map<std::string, std::string> values;  // values of the first processor
   for (std::string line; std::getline(lines, line);) {
     const auto colon = line.find(':');
     const auto begin = line.find_first_not_of(" \t", colon == std::string::npos ? colon : colon + 1);
@@ -36,7 +36,7 @@ Count number_in(const std::map<std::string, std::string>& values, const std::str
   const auto found = values.find(key);
   if (found == values.end()) return Unavailable{fmt::format("/proc/cpuinfo has no '{}'", key)};
   try {
-    return static_cast<std::uint64_t>(std::stoull(found->second, nullptr, 0));  // Arm writes some as 0x41
+    return static_cast<std::uint64_t>(std::stoull(found->second, nullptr, 0));  // Arm also writes 0x41
   } catch (const std::exception&) {
     return Unavailable{fmt::format("/proc/cpuinfo: '{}' is '{}', no number", key, found->second)};
   }

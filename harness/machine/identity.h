@@ -1,4 +1,4 @@
-// What kind of machine this is, beyond the name that its processor gives.
+// The identity of a machine, beyond the name of its processor.
 #pragma once
 
 #include <hwloc.h>
@@ -12,26 +12,26 @@
 
 namespace podm::bench {
 
-/// The maker's numbers of a processor.
+/// Numbers that the vendor gives a processor.
 struct CpuModel {
   std::string vendor;
   Count family = 0UL, model = 0UL, stepping = 0UL;
   bool operator==(const CpuModel&) const = default;
 };
 
-/// The registers eax, ebx, ecx and edx that a leaf of CPUID fills.
+/// The registers eax, ebx, ecx and edx that a CPUID leaf fills.
 using CpuidLeaf = std::array<std::uint32_t, 4>;
 
-/// From leaves 0 and 1 of CPUID: the extended family and model are added by the rule that the makers share.
+/// Decodes leaves 0 and 1 of CPUID. Extended family and model are added by the rule that the vendors share.
 CpuModel decode_cpuid(const CpuidLeaf& leaf_0, const CpuidLeaf& leaf_1);
 
-/// From the lines of /proc/cpuinfo, of x86 or of Arm.
+/// Reads the lines of /proc/cpuinfo, of x86 or of Arm.
 CpuModel cpu_model_in(std::istream& cpuinfo);
 
-/// From CPUID on x86, from /proc/cpuinfo elsewhere.
+/// Uses CPUID on x86 and /proc/cpuinfo elsewhere.
 CpuModel this_cpu_model();
 
-/// `topology` may be null: then the caches are unavailable.
+/// If `topology` is null, the caches are unavailable.
 IdentityRecord identity_of(hwloc_topology_t topology);
 
 }  // namespace podm::bench

@@ -17,8 +17,8 @@
 namespace podm::bench {
 namespace {
 
-// Ticks of one line of /proc/stat: "cpu0 user nice system idle iowait irq softirq steal guest guest_nice".
-// Guests are among user and nice.
+// Returns the ticks of one line of /proc/stat: "cpu0 user nice system idle iowait irq softirq steal guest
+// guest_nice". Guest ticks are already included in user and nice.
 double busy_ticks(std::istringstream& fields) {
   double user = 0, nice = 0, system = 0, idle = 0, iowait = 0, irq = 0, softirq = 0, steal = 0;
   fields >> user >> nice >> system >> idle >> iowait >> irq >> softirq >> steal;
@@ -66,7 +66,7 @@ Measured busy_elsewhere(const ProcessorUse& before, const ProcessorUse& after) {
   if (wall_s < kShortestWatchS)
     return Unavailable{fmt::format("the trial took less than {} s", kShortestWatchS)};
   const double busy_s = *after.busy_s - *before.busy_s;
-  // Some sandboxes list processors that never work.
+  // Some sandboxes list processors that are always idle.
   if (busy_s < 0.5 * own_s) return Unavailable{"/proc/stat does not count the trial's own work"};
   return std::max(0.0, busy_s - own_s) / wall_s;
 }

@@ -16,7 +16,7 @@
 namespace podm::bench {
 namespace {
 
-// hwloc writes one element a line; who owns the machine is nobody's business.
+// Removes the host name, which is private. hwloc writes one element per line.
 std::string without_host_name(const std::string& xml) {
   std::istringstream lines(xml);
   std::string text;
@@ -60,7 +60,7 @@ std::string kernel_name() {
   return fmt::format("{} {} {}", name.sysname, name.release, name.machine);
 }
 
-// The line reads "key: 123 kB".
+// The line has the form "key: 123 kB".
 Count meminfo_bytes(const std::string& key) {
   const std::string kibibytes = value_of("/proc/meminfo", key);
   if (kibibytes.starts_with(Unavailable::kPrefix))

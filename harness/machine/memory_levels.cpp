@@ -19,14 +19,14 @@ namespace podm::bench {
 namespace {
 
 constexpr std::size_t kSmallestSet = std::size_t{4} << 10, kLeastMemorySet = std::size_t{256} << 20;
-constexpr std::size_t kMemoryOverCache = 4;  // a quarter of such a set may hit
+constexpr std::size_t kMemoryOverCache = 4;  // at most a quarter of such a set hits the cache
 constexpr int kRepeats = 7;
-constexpr std::size_t kLoads = 250'000;  // a repeat takes some 30 ms from memory
+constexpr std::size_t kLoads = 250'000;  // a repeat takes about 30 ms from memory
 constexpr std::uint64_t kSeed = 1;
 constexpr double kBenchTimeoutS = 60;
 
-// Measures loads from one working set in the memory of a node. Throws std::runtime_error where the set cannot
-// be bound to the node.
+// Measures loads from one working set in the memory of a node. Throws std::runtime_error if the set cannot be
+// bound to the node.
 LatencyRecord latency(hwloc_topology_t topology, std::size_t bytes, hwloc_obj_t node) {
   const auto bind = [&](void* memory, std::size_t size) {
     constexpr int kFlags = HWLOC_MEMBIND_BYNODESET | HWLOC_MEMBIND_STRICT;
@@ -46,7 +46,8 @@ LatencyRecord latency(hwloc_topology_t topology, std::size_t bytes, hwloc_obj_t 
           chase.huge_page_share()};
 }
 
-// Clock cycles a cache line when likwid-bench streams through the working set with the prefetchers' help.
+// Returns the clock cycles per cache line when likwid-bench streams through the working set with the
+// prefetchers.
 Measured likwid_bench(std::size_t bytes) {
   if (!is_installed("likwid-bench")) return Unavailable{"likwid-bench is not installed"};
   const Reply reply =
@@ -57,7 +58,7 @@ Measured likwid_bench(std::size_t bytes) {
   return std::stod(cycles);
 }
 
-// The measurement at the level, or what is known of it and why there is none.
+// Returns the level with its measurement, or with the reason why there is none.
 MemoryLevel level_of(hwloc_topology_t topology, MemoryLevel level, std::size_t bytes, hwloc_obj_t node) {
   try {
     const LatencyRecord measured = latency(topology, bytes, node);
@@ -86,8 +87,8 @@ std::vector<MemoryLevel> levels(hwloc_topology_t topology, const std::vector<Cac
   std::vector<MemoryLevel> measured;
   std::size_t last_bytes = kSmallestSet;
   for (const Cache& cache : caches) {
-    // The set lies between the cache before this one and its own size, of which other programs may hold a
-    // part.
+    // The size of the set is the geometric mean of the size of the cache before this one and its own size.
+    // Other programs may occupy a part of the cache.
     const auto bytes = static_cast<std::size_t>(
         std::sqrt(static_cast<double>(last_bytes) * static_cast<double>(cache.bytes)));
     last_bytes = cache.bytes;
@@ -107,7 +108,7 @@ std::vector<MemoryLevel> levels(hwloc_topology_t topology, const std::vector<Cac
   return measured;
 }
 
-// There is no limit where the kernel does not tell how much memory is available.
+// Returns no limit if the kernel does not report how much memory is available.
 std::size_t available_bytes() {
   const std::string kibibytes = value_of("/proc/meminfo", "MemAvailable");
   return kibibytes.starts_with("unavailable") ? std::numeric_limits<std::size_t>::max()
@@ -125,7 +126,7 @@ hwloc_obj_t node_of(hwloc_topology_t topology, hwloc_obj_t processor) {
 MemoryLevelsRecord measure_memory_levels() {
   const Topology owner = load_topology();
   hwloc_topology_t topology = owner.get();
-  // The last processor: the first one serves most interrupts.
+  // The last processor is used, because the first one serves most interrupts.
   hwloc_obj_t processor =
       topology == nullptr ? nullptr
                           : hwloc_get_obj_by_type(

@@ -24,7 +24,7 @@ void* map(std::size_t bytes) {
   return memory;
 }
 
-// The compiler has to have the value here.
+// Forces the compiler to compute the value here.
 template <class T>
 void use(T& value) {
   asm volatile("" : "+r"(value));
@@ -32,7 +32,7 @@ void use(T& value) {
 
 }  // namespace
 
-// One huge page more than needed, so that the first line starts one.
+// Maps one huge page more than needed. The first line can then start at a huge page.
 PointerChase::PointerChase(std::size_t bytes, std::uint64_t seed,
                            const std::function<void(void*, std::size_t)>& place)
     : mapped_bytes_(round_up(bytes, kHugePageBytes) + kHugePageBytes),
@@ -47,7 +47,7 @@ PointerChase::PointerChase(std::size_t bytes, std::uint64_t seed,
   }
   Line* lines = reinterpret_cast<Line*>(round_up(reinterpret_cast<std::uintptr_t>(mapping_), kHugePageBytes));
   for (std::size_t i = 0; i < num_lines_; ++i) lines[i].next = &lines[i];
-  // Sattolo's shuffle: one cycle through all, each such cycle as likely.
+  // Sattolo's shuffle gives one cycle through all lines; each such cycle is equally likely.
   std::mt19937_64 random(seed);
   for (std::size_t i = num_lines_ - 1; i > 0; --i)
     std::swap(lines[i].next, lines[std::uniform_int_distribution<std::size_t>(0, i - 1)(random)].next);
@@ -82,8 +82,8 @@ std::size_t PointerChase::cycle_length() {
   return length;
 }
 
-// The kernel tells it in the part of /proc/self/smaps that begins with the mapping, or with what it joined to
-// it.
+// Reads the size from the part of /proc/self/smaps that contains the mapping. The kernel may have merged the
+// mapping with others.
 double PointerChase::huge_page_share() const {
   std::ifstream file("/proc/self/smaps");
   const auto start = reinterpret_cast<std::uintptr_t>(mapping_);

@@ -1,4 +1,4 @@
-// The time of one load that must wait for the load before it.
+// Measures the time of a load that must wait for the load before it.
 #pragma once
 
 #include <cstddef>
@@ -7,29 +7,29 @@
 
 namespace podm::bench {
 
-/// A cycle through all cache lines of a working set, in random order: no prefetcher foresees the next line.
-/// Its memory is asked for in huge pages, so that addresses cost little beside the lines.
+/// A cycle through all cache lines of a working set in random order. No prefetcher can predict the next line.
+/// Its memory is requested in huge pages, so that address translation costs little compared with the lines.
 class PointerChase {
  public:
   static constexpr std::size_t kLineBytes = 64;
 
-  /// `place` sees the memory before its first touch, to bind it to a node; it may throw. `bytes` is rounded
-  /// down to lines, at least two. Throws std::bad_alloc.
+  /// Calls `place` with the memory before its first touch, to bind it to a node; `place` may throw. `bytes`
+  /// is rounded down to whole lines, at least two. Throws std::bad_alloc.
   PointerChase(std::size_t bytes, std::uint64_t seed,
                const std::function<void(void*, std::size_t)>& place = {});
   ~PointerChase();
   PointerChase(const PointerChase&) = delete;
   PointerChase& operator=(const PointerChase&) = delete;
 
-  /// Goes on from where it was.
+  /// Continues from the current line.
   void walk(std::size_t num_loads);
-  /// Processor time of so many loads, each; the clock is read twice.
+  /// Returns the processor time per load over this number of loads. The clock is read twice.
   double seconds_per_load(std::size_t num_loads);
 
   std::size_t num_lines() const { return num_lines_; }
-  /// Loads until the walk is back where it is: the number of lines.
+  /// Returns the number of loads until the walk is back at the current line, which is the number of lines.
   std::size_t cycle_length();
-  /// The share of the memory that the kernel did give in huge pages.
+  /// Returns the share of the memory that the kernel provided in huge pages.
   double huge_page_share() const;
 
  private:
@@ -42,7 +42,8 @@ class PointerChase {
   Line* at_;
 };
 
-/// Clock cycles a second of the processor at work, by a chain of additions that take one cycle each.
+/// Returns the clock cycles per second of the busy processor, measured by a chain of additions of one cycle
+/// each.
 double cycles_per_second();
 
 }  // namespace podm::bench

@@ -14,18 +14,18 @@
 namespace podm::bench {
 namespace {
 
-constexpr int kBursts = 8;  // one lasts some 10 ms
+constexpr int kBursts = 8;  // one burst takes about 10 ms
 constexpr std::size_t kChaseBytes = std::size_t{32} << 20, kChaseLoads = 20'000;
 constexpr std::size_t kTriadLength = std::size_t{1} << 20;  // 24 MiB in three arrays
 constexpr std::uint64_t kChaseSeed = 1;
 
-// Keeps the arrays of its triad between bursts.
+// Keeps the arrays of the triad between bursts.
 class Triad {
  public:
   double gb_per_s() {
     const double start = processor_seconds();
     for (std::size_t i = 0; i < kTriadLength; ++i) a_[i] = b_[i] + 3.0 * c_[i];
-    asm volatile("" : : "r"(a_.data()) : "memory");  // the sums are needed
+    asm volatile("" : : "r"(a_.data()) : "memory");  // forces the compiler to compute the sums
     return 3.0 * sizeof(double) * kTriadLength / 1e9 / (processor_seconds() - start);
   }
 
@@ -34,7 +34,7 @@ class Triad {
                       c_ = std::vector<double>(kTriadLength, 2.0);
 };
 
-// The kinds alternate, so that each is spread over the whole probe.
+// The kinds alternate. Each kind is therefore spread over the whole probe.
 ProbeRecord probe_here() {
   PointerChase chase(kChaseBytes, kChaseSeed);
   Triad triad;
@@ -45,7 +45,7 @@ ProbeRecord probe_here() {
   return best_of(bursts);
 }
 
-// Writes a probe into the pipe and ends.
+// Writes a probe into the pipe and exits.
 [[noreturn]] void be_the_prober(int pipe) {
   try {
     const ProbeRecord probe = probe_here();

@@ -23,10 +23,10 @@ using Json = nlohmann::ordered_json;
 constexpr std::int64_t kMaxThreads = 1024;
 constexpr std::int64_t kMaxElements = std::numeric_limits<std::uint32_t>::max();
 constexpr std::int64_t kMaxSeed = std::numeric_limits<std::int64_t>::max();
-constexpr const char* kPerThread = "target_elements_per_thread";  // becomes target_elements
-constexpr const char* kPerRank = "target_elements_per_rank";      // so does this
+constexpr const char* kPerThread = "target_elements_per_thread";  // is replaced by target_elements
+constexpr const char* kPerRank = "target_elements_per_rank";      // is replaced by target_elements, too
 constexpr const char* kPowersOfTwo = "1..all";
-constexpr const char* kMillimetres = "_mm";  // ends keys of lengths, but no option of podm
+constexpr const char* kMillimetres = "_mm";  // suffix of keys of lengths; options of podm have no suffix
 
 enum class Kind {
   kPositive,
@@ -50,14 +50,14 @@ struct MesherOption {
   std::string not_on_ranks = {};  // why
 };
 
-// These are the harness's own; no mesher is passed them.
+// Options of the harness; they are not passed to a mesher.
 constexpr std::array kOfHarness{kMesher, kSchedule, kReplay,  kFidelity, kImageGrows, kSolve,
                                 kCopies, kCounters, kMeasure, kRanks,    kCarrier};
 
 // What the harness does with one process of podm, and not with ranks.
 constexpr std::array kOfOneProcess{kSchedule, kReplay, kImageGrows, kCopies, kCounters, kSolve};
 
-// Every mesher takes these.
+// Every mesher takes these options.
 constexpr std::array kOfAll{kMesher, "radius_mm", "delta_mm", kTargetElements, kPerThread, "threads", kSolve};
 
 template <class Keys>
@@ -119,7 +119,8 @@ const std::vector<MesherOption>& mesher_options() {
   return all;
 }
 
-// "all" is the number of usable processors, "1..all" the powers of two up to it and itself.
+// Returns the counts that a value stands for: "all" is the number of usable processors; "1..all" is the
+// powers of two below that number, and the number.
 std::vector<Json> thread_counts(const TomlSection& section, const toml::node& node, std::string_view key) {
   if (!node.is_string()) return {section.count_of(node, key, 1, kMaxThreads)};
   const std::int64_t all = usable_processors();
@@ -139,7 +140,7 @@ Json switch_value(const TomlSection& section, const toml::node& node, std::strin
   return section.text_of(node, key);
 }
 
-// Groups are files: a name has no folder in it.
+// Throws unless the name of a group has no folder in it: groups are files of one folder.
 std::string counters_value(const TomlSection& section, const toml::node& node, std::string_view key) {
   const std::string choice = section.text_of(node, key);
   const bool is_group = choice.starts_with(kLikwid) && choice.size() > std::strlen(kLikwid) &&
@@ -217,7 +218,7 @@ void multiply(std::vector<Variant>& variants, const std::string& key, const std:
   variants = std::move(product);
 }
 
-// Different ones: where there are two processors, [1, 2, "all"] is 1, 2.
+// Returns the values of an option, each once: on two processors [1, 2, "all"] gives 1, 2.
 std::vector<Json> read_values(TomlSection& section, const MesherOption& option, const std::string& folder) {
   std::vector<Json> values;
   for (const toml::node* node : section.values(option.key))
@@ -249,7 +250,8 @@ void refuse_options_of_meshers(const TomlSection& section, const Json& options) 
       section.fail(section.place(option.key), fmt::format("{} is an option of meshers", option.key));
 }
 
-// A copy has one processor, and the kernel counts all copies together.
+// Each copy is bound to one processor, and the kernel counts all copies together. Copies therefore exclude
+// several threads, pinning and counters.
 void refuse_crowded_copies(const TomlSection& section, const Json& options) {
   if (!options.contains(kCopies)) return;
   if (options["threads"] != 1) section.fail(section.place(kCopies), "copies need threads = 1");

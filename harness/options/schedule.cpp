@@ -6,12 +6,13 @@
 namespace podm::bench {
 namespace {
 
-// Fisher and Yates; std::shuffle differs between libraries. The bias of the remainder is below 2^-40.
+// Shuffles by Fisher and Yates; std::shuffle differs between libraries. The bias of the remainder is below
+// 2^-40.
 void shuffle(std::vector<Turn>& turns, std::mt19937_64& generator) {
   for (std::size_t i = turns.size(); i > 1; --i) std::swap(turns[i - 1], turns[generator() % i]);
 }
 
-// Rounds are appended until one is empty.
+// Appends rounds until one is empty.
 void append_rounds(const std::vector<Trial>& trials, int Trial::*count, bool is_warmup,
                    std::mt19937_64& generator, std::vector<Turn>& turns) {
   for (int repeat = 1;; ++repeat) {

@@ -8,17 +8,18 @@
 
 namespace podm::bench {
 
-/// One mesh to make.
+/// One run of a trial.
 struct Turn {
-  std::size_t trial = 0;  ///< its index
-  int repeat = 1;         ///< its number, from 1, counted among warm-ups or among measured repeats
+  std::size_t trial = 0;  ///< index of the trial
+  int repeat = 1;         ///< number of the round, from 1; warm-ups and measured repeats are counted apart
   bool is_warmup = false;
 
   bool operator==(const Turn&) const = default;
 };
 
-/// Rounds, those of warm-ups first. A round holds each trial that has so many repeats once, in an order drawn
-/// anew from `seed`: a machine's drift then falls on all trials alike, and none has a favoured predecessor.
+/// Returns the turns in rounds, warm-up rounds first. Round n holds each trial that has at least n repeats
+/// (or warm-ups) once, in an order drawn anew from `seed`. A drift of the machine then affects all trials
+/// alike, and no trial always follows the same other trial.
 std::vector<Turn> schedule(const std::vector<Trial>& trials, std::uint64_t seed);
 
 }  // namespace podm::bench

@@ -14,11 +14,11 @@ namespace {
 
 constexpr std::size_t kMaxReplyBytes = std::size_t{1} << 20, kMaxMessageBytes = 2000;
 
-// A file without a name in memory, which a child can open by its path until it becomes another program.
+// A nameless file in memory. A child can open it by its path until the child executes its program.
 class MemoryFile {
  public:
   MemoryFile() : descriptor_(memfd_create("reply", MFD_CLOEXEC)) {
-    // The child puts other files in place of its first three descriptors.
+    // The child replaces its first three descriptors.
     if (descriptor_ >= 0 && descriptor_ <= STDERR_FILENO) {
       const int low = descriptor_;
       descriptor_ = fcntl(low, F_DUPFD_CLOEXEC, STDERR_FILENO + 1);

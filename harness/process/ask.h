@@ -1,4 +1,4 @@
-// The one way to ask another program a question: run it to its end and take what it prints for an answer.
+// Runs another program to its end and returns its output, for example its version or the size of an image.
 #pragma once
 
 #include <string>
@@ -9,22 +9,22 @@
 namespace podm::bench {
 
 struct Reply {
-  std::string text;      ///< what it printed to stdout, without line ends at its end; at most the last 1 MiB
-  std::string messages;  ///< the last 2000 bytes that it printed to stderr
+  std::string text;      ///< standard output without line ends at its end; at most the last 1 MiB
+  std::string messages;  ///< the last 2000 bytes of standard error
   ProcessOutcome outcome;
 
   bool succeeded() const { return outcome.succeeded(); }
-  /// `messages` in one line.
+  /// Returns `messages` in one line.
   std::string complaint() const;
-  /// How a program that did not succeed ended, and its complaint.
+  /// Describes the end of a program that did not succeed, with its complaint.
   std::string why_not() const;
 };
 
 inline constexpr double kReplyTimeoutS = 30;
 
-/// Runs the program `arguments.front()`, which is looked up in PATH unless it has a slash; kills it after
-/// `timeout_s` seconds and on a stop request. Leaves no file behind. Throws std::system_error when memory for
-/// the answer is not to be had.
+/// Runs the program `arguments.front()`, which is looked up in PATH unless it contains a slash. Kills it
+/// after `timeout_s` seconds and on a stop request. Leaves no file behind. Throws std::system_error when
+/// there is no memory for the answer.
 Reply ask(const std::vector<std::string>& arguments, double timeout_s = kReplyTimeoutS,
           const StopQuery& stop_requested = {});
 

@@ -21,7 +21,7 @@
 #include <new>
 #include <sstream>
 
-extern "C" {  // missing in the header of glibc 2.36
+extern "C" {  // the header of glibc 2.36 has no C linkage
 #include <sys/pidfd.h>
 }
 
@@ -31,9 +31,9 @@ namespace {
 using Clock = std::chrono::steady_clock;
 using End = ProcessOutcome::End;
 
-constexpr int kPollMs = 100;  // how late a stop request or the time limit may be seen; an end is seen at once
-constexpr int kPollMemoryMs = 20;            // at a few GiB/s, a limit is passed by less than 0.1 GiB
-constexpr int kPollWithoutDescriptorMs = 1;  // an end is then seen this late
+constexpr int kPollMs = 100;  // delay at most of a stop request or the time limit; an end is seen at once
+constexpr int kPollMemoryMs = 20;            // a limit is exceeded by less than 0.1 GiB at a few GiB/s
+constexpr int kPollWithoutDescriptorMs = 1;  // an end is then seen this late at most
 
 constexpr double kBytesPerGib = 1024.0 * 1024 * 1024;
 
@@ -45,15 +45,15 @@ double seconds(const timeval& time) {
   return static_cast<double>(time.tv_sec) + 1e-6 * static_cast<double>(time.tv_usec);
 }
 
-// Puts the file in place of `descriptor`, in the child and for good. Returns false with errno.
+// Replaces `descriptor` by the file, in the child and permanently. Returns false with errno.
 bool redirect(int descriptor, const std::string& path, int flags) {
-  close(descriptor);  // it may be the last that is to be had
+  close(descriptor);  // it may be the last descriptor available
   const int file = open(path.empty() ? "/dev/null" : path.c_str(), flags, 0666);
   if (file < 0 || file == descriptor) return file >= 0;
   return dup2(file, descriptor) >= 0 && close(file) == 0;
 }
 
-// The process may run on this processor alone from now on. False with errno.
+// Binds this process to the processor. Returns false with errno.
 bool bind_to(int processor) {
   cpu_set_t processors;
   CPU_ZERO(&processors);
@@ -61,13 +61,13 @@ bool bind_to(int processor) {
   return sched_setaffinity(0, sizeof(processors), &processors) == 0;
 }
 
-// What the child does until it is the program; returns the error when it does not become it. It leads a group
-// of its own: a kill reaches its children too, a Ctrl-C at the terminal does not.
+// Prepares the child and executes the program. Returns the error when that fails. The child leads a process
+// group of its own: a kill then reaches its children too, and Ctrl-C at the terminal does not reach it.
 int become(const ProcessRequest& request, char* const* arguments, pid_t parent) {
   constexpr int kWrite = O_WRONLY | O_CREAT | O_TRUNC;
   setpgid(0, 0);
   prctl(PR_SET_PDEATHSIG, SIGKILL);
-  if (getppid() != parent) _exit(1);  // it died before the line above
+  if (getppid() != parent) _exit(1);  // the parent died before the line above
   if (request.processor && !bind_to(*request.processor)) return errno;
   if (redirect(STDIN_FILENO, "", O_RDONLY) && redirect(STDOUT_FILENO, request.stdout_path, kWrite) &&
       redirect(STDERR_FILENO, request.stderr_path, kWrite))
@@ -75,7 +75,7 @@ int become(const ProcessRequest& request, char* const* arguments, pid_t parent) 
   return errno;
 }
 
-// One number that parent and child see: the error of a child that did not become its program.
+// A number that parent and child share: the error of a child that did not execute its program.
 class SharedError {
  public:
   SharedError()
@@ -91,7 +91,7 @@ class SharedError {
   void* memory_;
 };
 
-// 0 when it cannot be known.
+// Returns 0 when the size is not available.
 std::uint64_t resident_bytes(pid_t pid) {
   std::ifstream file(fmt::format("/proc/{}/statm", pid));
   std::uint64_t pages = 0, resident_pages = 0;
@@ -99,12 +99,12 @@ std::uint64_t resident_bytes(pid_t pid) {
   return resident_pages * static_cast<std::uint64_t>(sysconf(_SC_PAGESIZE));
 }
 
-// A process from its start until it has been waited for.
+// A child process from its start until it has been waited for.
 class Child {
  public:
   explicit Child(const ProcessRequest& request) : request_(request), start_(Clock::now()), pid_(start()) {
     if (pid_ < 0) error_.value() = errno;
-    if (pid_ > 0) descriptor_ = pidfd_open(pid_, 0);  // -1: in a sandbox, or too many files
+    if (pid_ > 0) descriptor_ = pidfd_open(pid_, 0);  // -1 in a sandbox, or with too many files
   }
   ~Child() {
     if (descriptor_ >= 0) close(descriptor_);
@@ -119,7 +119,7 @@ class Child {
            : request_.memory_limit_bytes > 0 ? kPollMemoryMs
                                              : kPollMs;
   }
-  // Waits for it when it has ended, or kills it at a limit or on request.
+  // Waits for the child when it has ended. Kills it at a limit or on request.
   void look(bool is_stop_requested) {
     if (has_ended()) return wait();
     if (is_stop_requested) outcome_.end = End::kInterrupted;
@@ -133,7 +133,7 @@ class Child {
   const ProcessOutcome& outcome() const { return outcome_; }
 
  private:
-  // The child's id, or -1 with errno.
+  // Returns the child's id, or -1 with errno.
   pid_t start() {
     std::vector<std::string> arguments = request_.arguments;
     std::vector<char*> pointers;
@@ -145,11 +145,11 @@ class Child {
       error_.value() = become(request_, pointers.data(), parent);
       _exit(1);
     }
-    if (pid > 0) setpgid(pid, pid);  // whichever of the two comes first
+    if (pid > 0) setpgid(pid, pid);  // parent and child both set it, as either may run first
     return pid;
   }
 
-  // Leaves the child to be waited for.
+  // True if the child has ended or did not start. The child can still be waited for.
   bool has_ended() const {
     siginfo_t info{};
     return pid_ < 0 || (waitid(P_PID, static_cast<id_t>(pid_), &info, WEXITED | WNOHANG | WNOWAIT) == 0 &&
@@ -170,7 +170,7 @@ class Child {
     outcome_.wall_s = seconds_since(start_);
     outcome_.user_s = seconds(usage.ru_utime);
     outcome_.system_s = seconds(usage.ru_stime);
-    // The maximum survives exec: it is at least this program's own, a few MiB.
+    // The maximum survives exec. It is therefore at least this program's own, a few MiB.
     outcome_.peak_rss_bytes = 1024 * static_cast<std::uint64_t>(usage.ru_maxrss);
     outcome_.page_faults = static_cast<std::uint64_t>(usage.ru_minflt + usage.ru_majflt);
     outcome_.context_switches = static_cast<std::uint64_t>(usage.ru_nvcsw + usage.ru_nivcsw);
@@ -185,16 +185,16 @@ class Child {
   pid_t pid_;
   int descriptor_ = -1;
   bool is_running_ = true;
-  ProcessOutcome outcome_;  // its end is kNotStarted until there is one
+  ProcessOutcome outcome_;  // `end` is kNotStarted until the child has ended
 };
 
-// Waits until one of them ends, or it is time to look.
+// Waits until a child ends or the next check is due.
 void wait_for_news(const std::list<Child>& children) {
   std::vector<pollfd> running;
   int poll_ms = kPollMs;
   for (const Child& child : children) {
     if (!child.is_running()) continue;
-    running.push_back({.fd = child.descriptor(), .events = POLLIN, .revents = 0});  // poll() passes over -1
+    running.push_back({.fd = child.descriptor(), .events = POLLIN, .revents = 0});  // poll() ignores -1
     poll_ms = std::min(poll_ms, child.poll_ms());
   }
   poll(running.data(), running.size(), poll_ms);
@@ -204,7 +204,7 @@ void wait_for_news(const std::list<Child>& children) {
 
 std::vector<ProcessOutcome> run_processes(const std::vector<ProcessRequest>& requests,
                                           const StopQuery& stop_requested) {
-  std::list<Child> children;  // they do not move
+  std::list<Child> children;  // a Child cannot be moved
   for (const ProcessRequest& request : requests) children.emplace_back(request);
   const auto is_running = [](const Child& child) { return child.is_running(); };
   while (std::any_of(children.begin(), children.end(), is_running)) {

@@ -1,21 +1,20 @@
-// The programs that trials run.
 #pragma once
 
 #include <string>
 
 namespace podm::bench {
 
-/// The programs that a trial runs.
+/// The programs that trials run.
 struct Programs {
   std::string podm;
   std::string verifier;            ///< empty: meshes are not verified
-  std::string peers = {};          ///< folder of other meshers; empty: there are none
-  std::string bench = {};          ///< this program, to measure the machine
-  std::string likwid_groups = {};  ///< folder of the groups of events for likwid-perfctr
-  std::string solver = {};         ///< of finite elements; empty: there is none
+  std::string peers = {};          ///< folder of the peers; empty: there are none
+  std::string bench = {};          ///< podm-bench, which measures the machine
+  std::string likwid_groups = {};  ///< folder of the event groups of likwid-perfctr
+  std::string solver = {};         ///< finite-element solver; empty: there is none
 };
 
-/// The file of podm-mpi, which is built beside podm where MPI is found.
+/// Returns the path of podm-mpi, which is built beside podm where MPI is found.
 std::string podm_mpi_of(const std::string& podm);
 
 }  // namespace podm::bench

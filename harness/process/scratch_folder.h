@@ -9,8 +9,8 @@
 
 namespace podm::bench {
 
-/// A new folder for the files of one trial, gone with all it holds unless kept. There is one at a time in a
-/// folder of results; what a killed run left in it is removed.
+/// A new folder for the files of one trial. It is removed with its files unless it is kept. A folder of
+/// results has one at a time; files that a killed run left there are removed.
 class ScratchFolder {
  public:
   explicit ScratchFolder(const std::string& results_folder) : path_(results_folder + "/.running") {
@@ -27,7 +27,7 @@ class ScratchFolder {
   ScratchFolder& operator=(const ScratchFolder&) = delete;
   const std::string& path() const { return path_; }
 
-  /// Moves it to `kept_path`, in place of what is there. Throws InputError.
+  /// Moves the folder to `kept_path` and replaces any folder there. Throws InputError.
   void keep(const std::string& kept_path) const {
     std::error_code error;
     std::filesystem::remove_all(kept_path, error);

@@ -5,16 +5,16 @@
 
 namespace podm::bench {
 
-/// 64 hexadecimal digits.
+/// Returns 64 hexadecimal digits.
 std::string sha256_of(const std::string& text);
 
-/// Throws InputError naming the file when it cannot be read.
+/// Throws InputError that names the file when it cannot be read.
 std::string sha256_of_file(const std::string& path);
 
-/// Hashes of files, each read once.
+/// Hashes of files; each file is read once.
 class FileHashes {
  public:
-  /// "absent" where there is no file. Throws InputError when it cannot be read.
+  /// Returns "absent" where there is no file. Throws InputError when it cannot be read.
   const std::string& of(const std::string& path);
 
  private:

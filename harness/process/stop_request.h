@@ -1,15 +1,15 @@
-// How a person ends what podm-bench runs: by Ctrl-C, or by the signal that asks a program to end.
+// A user ends a run of podm-bench by Ctrl-C (SIGINT) or SIGTERM.
 #pragma once
 
 #include <functional>
 
 namespace podm::bench {
 
-/// Asked a few times a second while something runs; true ends it.
+/// Called a few times per second during a run; true ends the run.
 using StopQuery = std::function<bool()>;
 
-/// From now on SIGINT and SIGTERM no longer end this program but are remembered. The query tells whether one
-/// has come.
+/// From now on SIGINT and SIGTERM do not end this program; they are remembered. The query returns true once a
+/// signal has come.
 StopQuery stop_on_signals();
 
 }  // namespace podm::bench

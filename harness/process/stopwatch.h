@@ -6,7 +6,7 @@ namespace podm::bench {
 
 class Stopwatch {
  public:
-  /// Since it was made.
+  /// Returns the seconds since construction.
   double seconds() const {
     return std::chrono::duration<double>(std::chrono::steady_clock::now() - start_).count();
   }

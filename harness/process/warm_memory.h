@@ -1,6 +1,6 @@
-// Memory that a virtual machine's host has yet to provide costs a process many times what other memory costs
-// at its first touch (0.4 GiB/s against 20 GiB/s were seen). A trial measures the mesher, not that: before
-// each, a process touches memory and gives it back.
+// First touch of memory that a virtual machine's host has yet to provide is many times slower than first
+// touch of other memory (0.4 GiB/s and 20 GiB/s were measured). A trial measures the mesher, not the host.
+// Therefore a process touches memory and returns it before each trial.
 #pragma once
 
 #include <sys/mman.h>
@@ -13,11 +13,11 @@ namespace podm::bench {
 
 inline constexpr std::size_t kWarmBytes = std::size_t{1} << 30;
 
-/// Touches the bytes in a process of its own, so that the peak memory of this one, which its children
-/// inherit, stays small.
+/// Touches the bytes in a separate process. The peak memory of this process, which its children inherit,
+/// stays small.
 inline void warm_memory(std::size_t bytes) {
   const pid_t child = fork();
-  if (child < 0) return;  // then the trial pays for itself
+  if (child < 0) return;  // the trial then pays for the first touch
   if (child > 0) {
     waitpid(child, nullptr, 0);
     return;

@@ -5,7 +5,7 @@
 namespace podm::bench {
 namespace {
 
-// The probability of at least so many successes; it grows with `share`, which lies inside of (0, 1).
+// Returns the probability of at least this number of successes. It grows with `share`, which lies in (0, 1).
 double at_least(int num_successes, int num_tries, double share) {
   double sum = 0;
   for (int k = num_successes; k <= num_tries; ++k)
@@ -14,7 +14,7 @@ double at_least(int num_successes, int num_tries, double share) {
   return sum;
 }
 
-// The share at which at least so many successes have the probability.
+// Returns the share at which at least this number of successes has the given probability.
 double share_where(int num_successes, int num_tries, double probability) {
   double low = 0, high = 1;
   for (int step = 0; step < 60; ++step) {

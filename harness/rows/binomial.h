@@ -1,4 +1,4 @@
-// How well a share is known from a number of tries.
+// The accuracy of a share that is estimated from a number of tries.
 #pragma once
 
 namespace podm::bench {
@@ -7,8 +7,9 @@ struct ShareInterval {
   double low = 0, high = 1;
 };
 
-/// The interval of Clopper and Pearson: it holds the probability of a success with at least the confidence
-/// asked for, whatever that probability is. Asks for 0 <= num_successes <= num_tries; [0, 1] without a try.
+/// Returns the interval of Clopper and Pearson. It holds the probability of a success with at least the given
+/// confidence, whatever that probability is. Requires 0 <= num_successes <= num_tries; returns [0, 1] for no
+/// tries.
 ShareInterval clopper_pearson(int num_successes, int num_tries, double confidence = 0.95);
 
 }  // namespace podm::bench

@@ -1,5 +1,5 @@
-// Structs that are JSON objects: which key holds which member is said once, in a struct's fields(), and
-// reading, writing and the test of the schema go by it.
+// Structs that are JSON objects. A struct's fields() defines once which key holds which member. Reading,
+// writing and the test of the schema use this definition.
 //
 //   struct Counter {
 //     double value;
@@ -10,8 +10,8 @@
 //     }
 //   };
 //
-// A struct with a member `Json as_written` reads a part of an object that another program wrote. It carries
-// the whole along: keys that are no fields are written again as they were, where they were.
+// A struct with a member `Json as_written` reads a part of an object that another program wrote. It keeps the
+// whole object: keys that are not fields are written again unchanged and in their places.
 #pragma once
 
 #include <fmt/format.h>
@@ -30,7 +30,7 @@ namespace podm::bench {
 
 using Json = nlohmann::ordered_json;
 
-/// What is at fault in an object and where: "process/wall_s: must be a number".
+/// A fault in an object and its place: "process/wall_s: must be a number".
 class FieldError : public std::runtime_error {
  public:
   using std::runtime_error::runtime_error;
@@ -48,7 +48,7 @@ class ByName : public std::vector<std::pair<std::string, T>> {
       if (known == name) return &value;
     return nullptr;
   }
-  /// The value of this name, made if need be.
+  /// Returns the value of this name, and creates it if absent.
   T& operator[](const std::string& name) {
     for (auto& [known, value] : *this)
       if (known == name) return value;
@@ -56,7 +56,7 @@ class ByName : public std::vector<std::pair<std::string, T>> {
   }
 };
 
-/// "unavailable: why", in the place of what could not be measured.
+/// "unavailable: why", in place of a value that could not be measured.
 struct Unavailable {
   static constexpr const char* kPrefix = "unavailable: ";
   std::string why;
@@ -73,12 +73,12 @@ struct Field {
   bool may_be_absent;
 };
 
-/// A key that is always there; its value is null where a std::optional is empty.
+/// A key that is always present; its value is null if a std::optional is empty.
 template <class Struct, class Member>
 constexpr auto field(const char* key, Member Struct::*member) {
   return Field<Struct, Member>{key, member, false};
 }
-/// A key that is there only when the std::optional is not empty; null is read as if it were not there.
+/// A key that is present only if the std::optional is not empty. A null is read as an absent key.
 template <class Struct, class Member>
 constexpr auto field_if_any(const char* key, std::optional<Member> Struct::*member) {
   return Field<Struct, std::optional<Member>>{key, member, true};
@@ -109,7 +109,7 @@ std::string to_string(E value) {
   return names_of(value)[static_cast<std::size_t>(value)];
 }
 
-/// How values of a type are written and read. read() throws FieldError naming the place.
+/// Writes and reads values of a type. read() throws FieldError that names the place.
 template <class T>
 struct Codec;
 
@@ -129,7 +129,7 @@ inline std::string place_in(const std::string& place, const std::string& key) {
   return place.empty() ? key : fmt::format("{}/{}", place, key);
 }
 
-/// Sets the keys of `fields` in an object; values that are equal already stay as they were written.
+/// Sets the keys of `fields` in an object. Values that are equal already stay as they were written.
 template <class T, class Fields>
 void write_fields(const T& value, const Fields& fields, Json& into);
 /// Sets the members of `fields`.
@@ -263,7 +263,7 @@ struct Codec<ByName<T>> {
   }
 };
 
-/// The first alternative that a value can be read as.
+/// Reads the first alternative that fits the value.
 template <class... Ts>
 struct Codec<std::variant<Ts...>> {
   static Json write(const std::variant<Ts...>& value) {

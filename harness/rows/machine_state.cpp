@@ -35,7 +35,7 @@ std::string identity_in_words(const IdentityRecord& identity) {
                      caches_in_words(identity), in_words(identity.memory_gib), identity.kernel);
 }
 
-// Rows that have it have no identity.
+// The topology distinguishes only rows that have no identity.
 std::string topology_of(const Row& row) {
   return row.environment.identity ? "" : row.environment.topology_sha256;
 }

@@ -12,7 +12,7 @@ namespace {
 
 Value absent(const std::string& why) { return {{}, why}; }
 
-// The number at a place, or why rows have none.
+// Returns the number at a place, or the reason why rows have none.
 template <class T>
 Value number_or_reason(const std::optional<T>& number, const char* place) {
   if (!number) return absent(fmt::format("rows have no {}", place));
@@ -32,7 +32,7 @@ Value quotient(const Value& dividend, const Value& divisor) {
   return {*dividend.number / *divisor.number, ""};
 }
 
-// A member of a part of the mesher's record, both of which may be missing.
+// Returns a member of a part of the mesher's record; both may be absent.
 template <class Part, class T>
 Value of_mesh(const Row& row, std::optional<Part> MeshRecord::*part, std::optional<T> Part::*member,
               const char* place) {
@@ -52,7 +52,7 @@ Value seconds(const Row& row) {
   return row.mesh ? Value{meshing_seconds(row.mesh->phases_s), ""} : absent("rows have no phases_s");
 }
 
-// Refining is all of these; phases that an algorithm does not have cost nothing.
+// Refining consists of these phases. A phase that an algorithm does not have costs nothing.
 Value refining_seconds_of(const ByName<double>& phases_s) {
   if (phases_s.find("refine") == nullptr) return absent("rows have no phases_s/refine");
   double sum = 0;
@@ -64,8 +64,8 @@ Value refining_seconds(const Row& row) {
   return row.mesh ? refining_seconds_of(row.mesh->phases_s) : absent("rows have no phases_s");
 }
 
-// From the input in memory to a mesh in memory: eq. (1) less reading. For a mesher that begins with a
-// finished surface the making of that surface counts.
+// From the input in memory to the mesh in memory: eq. (1) without reading. For a mesher that begins with a
+// finished surface the making of that surface counts, too.
 Value whole_seconds(const Row& row) {
   const Value all = seconds(row);
   if (!all.number) return all;
@@ -97,7 +97,7 @@ Value refining_cells_per_second_and_core(const Row& row) {
   return quotient(refining_cells_per_second(row), threads(row));
 }
 
-// The sum over all processes that ran at the same time; the rate of one that ran alone.
+// Returns the sum over all processes that ran at the same time, or the rate of a single process.
 Value side_by_side_refining_cells_per_second(const Row& row) {
   if (!row.side_by_side) return refining_cells_per_second(row);
   double sum = 0;
@@ -122,7 +122,7 @@ const RanksRecord* ranks_of(const Row& row) {
 }
 Value no_ranks() { return absent("rows have no ranks"); }
 
-// Over all ranks, of the phases that `is_counted` names.
+// Returns the sum over all ranks, for the phases that `is_counted` selects.
 double processor_seconds_of(const RanksRecord& ranks, bool (*is_counted)(const std::string& phase)) {
   double sum = 0;
   for (const RankRecord& rank : ranks.by_rank)
@@ -139,7 +139,7 @@ Value refining_processor_seconds(const Row& row) {
   return ranks == nullptr ? no_ranks() : Value{processor_seconds_of(*ranks, is_refining), ""};
 }
 
-// Of the rank that comes last.
+// Returns the seconds of the rank that finishes last.
 double seconds_of_last(const RanksRecord& ranks, bool (*is_counted)(const std::string& phase)) {
   double most = 0;
   for (const RankRecord& rank : ranks.by_rank) {
@@ -195,7 +195,7 @@ Value virtual_refining_cells_per_second_and_rank(const Row& row) {
   return quotient(quotient(cells(row), virtual_refining_seconds(row)), number_of_ranks(row));
 }
 
-// Part of the virtual seconds of equation 1.
+// Returns the share of phases in the virtual seconds of eq. (1).
 template <std::size_t N>
 Value share_of_virtual_seconds(const Row& row, const std::array<const char*, N>& phases) {
   const Value whole = virtual_seconds(row);
@@ -210,7 +210,7 @@ Value virtual_octree_share(const Row& row) {
   return share_of_virtual_seconds(row, std::array{"allocate", "octree"});
 }
 
-// Seconds of virtual workers by cause, summed over the causes that `is_counted` names.
+// Returns the seconds of all virtual workers, summed over the causes that `is_counted` selects.
 Value virtual_worker_seconds(const Row& row, bool (*is_counted)(const std::string& cause)) {
   const bool is_there = row.mesh && row.mesh->virtual_time && row.mesh->virtual_time->worker_s;
   if (!is_there) return absent("rows have no virtual/worker_s");
@@ -221,7 +221,7 @@ Value virtual_worker_seconds(const Row& row, bool (*is_counted)(const std::strin
 }
 bool is_any_cause(const std::string&) { return true; }
 bool is_waiting_for_work(const std::string& cause) { return cause == "begging"; }
-// Lists, gifts and leaves handed over, and waiting for the queue of leaves.
+// True for handling of lists, gifts and leaves handed over, and for waiting for the queue of leaves.
 bool is_distributing(const std::string& cause) { return cause == "between_attempts" || cause == "locks"; }
 
 Value waiting_share(const Row& row) {
@@ -256,7 +256,7 @@ Value deferred_operations(const Row& row) {
   return of_mesh(row, &MeshRecord::outcomes, &OutcomesRecord::out_of_leaf, "outcomes/out_of_leaf");
 }
 
-// Accesses to the own node, and all; nothing more where they are not available.
+// Accesses to the own node and all accesses, or the reason why they are not available.
 struct Visits {
   double near = 0, all = 0;
   std::string absence;
@@ -293,7 +293,7 @@ Value zero_hop_share_of_all_kinds(const Row& row) {
   return visits.near_share();
 }
 
-// A count of the trial's process, or why there is none.
+// Returns a count of the trial's process, or the reason why there is none.
 Value count(const Row& row, const std::string& name) {
   const auto* const counted = row.process.counters.find(name);
   if (counted == nullptr) return absent("rows have no process/counters/" + name);
@@ -302,8 +302,8 @@ Value count(const Row& row, const std::string& name) {
   return {as_double(counter->value), ""};
 }
 
-// The misses that the source which was asked to count has counted: where likwid may not, the kernel counts in
-// its place. Loads and stores count together where the source tells both.
+// Returns the misses counted by the requested source. If likwid cannot count, the kernel counts instead, and
+// its counts are not used. Loads and stores are added if the source reports both.
 Value last_level_misses(const Row& row) {
   const std::string source = row.asked.value(kCounters, kPerfEvent);
   if (row.process.counters.find(source) != nullptr) return count(row, source);
@@ -323,7 +323,7 @@ Value insertions(const Row& row) {
   return sum_of(*row.mesh->counters->insertions);
 }
 
-// Cycles of a load by the caches in their order, then the own memory, then that of other nodes.
+// Cycles of a load from the caches in their order, from the own memory, and from the memory of other nodes.
 struct Levels {
   std::vector<double> caches, others;
   std::optional<double> own;
@@ -422,7 +422,7 @@ Value iterations(const Row& row) {
   return {static_cast<double>(((*row.solve).*system.*preconditioner).iterations), ""};
 }
 
-// Of the stages that fight slivers.
+// Returns the seconds of the stages that remove slivers.
 Value dihedral_seconds(const Row& row) {
   double sum = 0;
   bool is_any = false;

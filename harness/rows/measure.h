@@ -1,4 +1,4 @@
-// The numbers of a row that claims of experiments speak of, by name. experiments/README.md lists them.
+// The measures of a row that claims of experiments use, by name. experiments/README.md lists them.
 #pragma once
 
 #include <optional>
@@ -9,7 +9,7 @@
 
 namespace podm::bench {
 
-/// A number, or why a row has none.
+/// A number, or the reason why a row has none.
 struct Value {
   std::optional<double> number;
   std::string absence;
@@ -17,15 +17,15 @@ struct Value {
 
 enum class Better { kLess, kMore };
 
-/// What a measure's numbers are of; it decides which rows have one and what may stand together.
+/// The kind of a measure's numbers. It decides which rows have a number and which numbers may be combined.
 enum class Meaning {
-  kClock,         ///< time of the clock: of measured rows alone
-  kVirtualClock,  ///< virtual time: of simulated rows alone
-  kCost,          ///< losses, memory, misses of caches: measured and simulated ones never in one claim
-  kCount,         ///< work that was done, likewise; one thread does the same in each run
-  kFaults,        ///< faults of a mesh, or what it costs a solver, whoever made it, and whatever it misses
-  kAnswer,        ///< 1 or 0, of such a mesh
-  kOutcome,       ///< 1 or 0, of a trial, also one without a mesh
+  kClock,         ///< wall time; only measured rows have it
+  kVirtualClock,  ///< virtual time; only simulated rows have it
+  kCost,          ///< losses, memory, cache misses; one claim never mixes measured and simulated ones
+  kCount,         ///< work done, likewise never mixed; equal in each run of one thread
+  kFaults,        ///< faults of a mesh, or its cost for a solver, for any mesher and any status with a mesh
+  kAnswer,        ///< 1 or 0, for a mesh as with kFaults
+  kOutcome,       ///< 1 or 0, for a trial, also without a mesh
 };
 
 struct Measure {
@@ -34,20 +34,21 @@ struct Measure {
   Better better;
   Meaning meaning;
   Value (*read)(const Row& row);
-  /// Where this is there, the measure is the growth of read() over that of `per` from the smallest to the
-  /// largest target_elements: what is the same for both, reading the image, falls out.
+  /// If set, the measure is the growth of read() over the growth of `per` from the smallest to the largest
+  /// target_elements. Costs that both sizes share, such as reading the image, cancel.
   Value (*per)(const Row& row) = nullptr;
 };
 
 std::span<const Measure> measures();
-/// Returns null where there is no measure of this name.
+/// Returns null if there is no measure of this name.
 const Measure* find_measure(const std::string& name);
-/// Whether a claim of this basis may ask for the measure.
+/// True if a claim of this basis may use the measure.
 bool fits(const Measure& measure, Basis basis);
-/// Whether its numbers vary from repeat to repeat and are told by their median; others hold of each row.
+/// True if the numbers vary between repeats and are summarised by their median; otherwise each row's number
+/// counts.
 bool varies(const Measure& measure);
-/// Whether another run of the row's trial may come to another number: a median of such rows needs an
-/// interval. Virtual time and simulated work are the same in each run, and so is what one thread does.
+/// True if another run of the row's trial may give another number; a median of such rows needs an interval.
+/// Virtual time, simulated work and the work of one thread are the same in each run.
 bool varies_between_runs(const Measure& measure, const Row& row);
 bool is_yes_or_no(const Measure& measure);
 

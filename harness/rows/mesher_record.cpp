@@ -5,7 +5,7 @@
 namespace podm::bench {
 
 double meshing_seconds(const ByName<double>& phases_s) {
-  // Finding a radius, drawing a phantom, measuring the mesh, bettering its angles, writing it.
+  // Finding a radius, drawing a phantom, improving angles (perturb, optimize, exude), measuring, writing.
   constexpr std::array kNotMeshing{"calibrate", "draw", "perturb", "optimize", "exude", "measure", "write"};
   double seconds = 0;
   for (const auto& [phase, phase_s] : phases_s)

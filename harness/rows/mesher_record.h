@@ -1,6 +1,6 @@
-// What programs record of themselves, as far as this program reads it: meshers of a mesh (podm mesh --record,
-// and peers by harness/peers/README.md), and `podm-bench latency` of the machine. What is not read is carried
-// along unchanged.
+// The parts of programs' records that this program reads: a mesher's record of a mesh (podm mesh --record,
+// and peers by harness/peers/README.md), and the record of the machine by `podm-bench latency`. Parts that
+// are not read are kept unchanged.
 #pragma once
 
 #include <array>
@@ -14,9 +14,9 @@
 namespace podm::bench {
 
 inline constexpr int kMesherSchema = 1;
-inline constexpr const char* kComplete = "complete";  ///< the reason for which a run stops that met no limit
+inline constexpr const char* kComplete = "complete";  ///< stop reason of a run that met no limit
 
-/// What podm-verify says of a claim. Only kPass counts as proved.
+/// The verdict of podm-verify on a claim. Only kPass counts as proved.
 enum class Proof { kPass, kFail, kNotRun };
 constexpr std::array<const char*, 3> names_of(Proof) { return {"pass", "fail", "not_run"}; }
 
@@ -58,9 +58,9 @@ struct ThreadsRecord {
 /// Times of virtual workers.
 struct VirtualRecord {
   std::optional<double> refine_s;
-  std::optional<ByName<double>> phases_s;  ///< of equation 1
-  std::optional<ByName<double>> worker_s;  ///< seconds of all workers together while they refine, by cause
-  /// Of the constants and rules of virtual time; older rows have none.
+  std::optional<ByName<double>> phases_s;  ///< of eq. (1)
+  std::optional<ByName<double>> worker_s;  ///< seconds of all workers during refinement, by cause
+  /// Hash of the constants and rules of virtual time; absent in older rows.
   std::optional<std::string> model_sha256;
   Json as_written = Json::object();
   static constexpr auto fields() {
@@ -71,7 +71,7 @@ struct VirtualRecord {
   }
 };
 
-/// Attempts at operations by what came of them.
+/// Attempts at operations by outcome.
 struct OutcomesRecord {
   std::optional<std::uint64_t> committed, lock_conflict, out_of_leaf;
   Json as_written = Json::object();
@@ -94,9 +94,9 @@ struct OverheadRecord {
   }
 };
 
-/// What the mesh took, in numbers that one thread repeats exactly.
+/// The work that made the mesh, in numbers that one thread repeats exactly.
 struct WorkRecord {
-  std::optional<ByName<std::uint64_t>> insertions;  ///< numbers by rule
+  std::optional<ByName<std::uint64_t>> insertions;  ///< by rule
   std::optional<std::uint64_t> removals, classified_cells, conflict_tests, exact_decisions, cells_created;
   Json as_written = Json::object();
   static constexpr auto fields() {
@@ -110,7 +110,7 @@ struct WorkRecord {
   }
 };
 
-/// Seconds of a rank in one phase: of the processor outside of collectives, and in collectives.
+/// Seconds of a rank in one phase: processor seconds outside of collectives, and seconds in collectives.
 struct SpentRecord {
   double computing_s = 0, waiting_s = 0, network_s = 0;
   static constexpr auto fields() {
@@ -136,10 +136,10 @@ struct RoundRecord {
   static constexpr auto fields() { return std::tuple{field("deferred", &RoundRecord::deferred)}; }
 };
 
-/// What podm-mpi tells of its ranks.
+/// The ranks as podm-mpi reports them.
 struct RanksRecord {
   std::uint64_t number = 0;
-  double imbalance = 1;  ///< most cells of a rank over the mean
+  double imbalance = 1;  ///< largest number of cells of a rank over the mean
   std::vector<RoundRecord> rounds;
   std::vector<RankRecord> by_rank;
   Json as_written = Json::object();
@@ -150,7 +150,7 @@ struct RanksRecord {
   }
 };
 
-/// Cells with a dihedral angle out of bounds.
+/// Cells with a dihedral angle out of bounds, by whether a vertex of theirs is free.
 struct PoorCellsRecord {
   std::uint64_t with_free_vertex = 0, without = 0;
   static constexpr auto fields() {
@@ -159,11 +159,11 @@ struct PoorCellsRecord {
   }
 };
 
-/// What vertices that move have done for dihedral angles.
+/// The effect of moving vertices (R7) on dihedral angles.
 struct PerturbedRecord {
   double min_dihedral_deg = 0, max_dihedral_deg = 0;  ///< the bounds
   PoorCellsRecord before, after;
-  ByName<std::uint64_t> unmoved;  ///< those after, by reason
+  ByName<std::uint64_t> unmoved;  ///< cells of `after`, by reason
   static constexpr auto fields() {
     using P = PerturbedRecord;
     return std::tuple{field("min_dihedral_deg", &P::min_dihedral_deg),
@@ -172,12 +172,12 @@ struct PerturbedRecord {
   }
 };
 
-/// What optimising has done for dihedral angles: cells beyond what is aimed at, and beyond the bounds.
+/// The effect of optimisation on dihedral angles: numbers of cells beyond the aim and beyond the bounds.
 struct OptimizationRecord {
   double least_aim_deg = 0, largest_aim_deg = 0;
   std::uint64_t beyond_aim_before = 0, beyond_aim = 0, beyond_bounds_before = 0, beyond_bounds = 0;
-  ByName<std::uint64_t> obstacles;  ///< of the cells that are beyond the bounds
-  ByName<std::uint64_t> successes;  ///< operations that made cells better, by kind
+  ByName<std::uint64_t> obstacles;  ///< of the cells beyond the bounds
+  ByName<std::uint64_t> successes;  ///< operations that improved cells, by kind
   static constexpr auto fields() {
     using O = OptimizationRecord;
     return std::tuple{field("least_aim_deg", &O::least_aim_deg),
@@ -194,15 +194,16 @@ struct OptimizationRecord {
 /// Dihedral angles of all cells, in degrees, as podm-verify counts them.
 struct DihedralRecord {
   double least = 0, largest = 0;
-  std::vector<std::uint64_t> counts;  ///< a degree each, from 0 on; six angles a cell
+  std::vector<std::uint64_t> counts;  ///< one bin per degree, from 0; six angles per cell
   static constexpr auto fields() {
     using D = DihedralRecord;
     return std::tuple{field("least", &D::least), field("largest", &D::largest), field("counts", &D::counts)};
   }
 };
 
-/// Labels of a mesh beside those of its image: how many have as many components, and the Euler number, as the
-/// image has by one of its two connectivities or between them.
+/// Compares the labels of a mesh with those of its image: counts labels whose number of components, and
+/// labels whose Euler number, is that of the image under one of its two connectivities or lies between the
+/// two.
 struct TopologyRecord {
   std::uint64_t labels = 0, components_as_image = 0, euler_as_image = 0;
   static constexpr auto fields() {
@@ -223,11 +224,11 @@ struct JudgingRecord {
 
 /// A mesher's record of a mesh.
 struct MeshRecord {
-  std::optional<int> schema;           ///< kMesherSchema; rows have their own instead
-  std::optional<InputOfMesher> input;  ///< rows have their own instead
-  std::optional<std::string> mesh;     ///< the name of the file that holds a peer's mesh
+  std::optional<int> schema;           ///< kMesherSchema; a row has its own member instead
+  std::optional<InputOfMesher> input;  ///< a row has its own member instead
+  std::optional<std::string> mesh;     ///< file of a peer's mesh
   std::optional<std::string> algorithm;
-  std::optional<Json> options;  ///< what was asked for, by the mesher's own keys
+  std::optional<Json> options;  ///< the requested options, by the mesher's own keys
   std::optional<UsedSizes> used;
   std::optional<JudgingRecord> verify;  ///< rows of before November 2026 have none
   std::optional<std::uint64_t> seed;
@@ -237,8 +238,7 @@ struct MeshRecord {
   ByName<double> phases_s;
   std::uint64_t cells = 0, vertices = 0;
   std::optional<std::uint64_t> boundary_facets;
-  std::optional<std::uint64_t>
-      surface_cells;  ///< those of `cells` that come with the surface of phase `surface`
+  std::optional<std::uint64_t> surface_cells;  ///< part of `cells`, made in phase `surface`
   std::optional<double> cells_per_second;
   double refine_cells_per_second = 0;
   std::optional<OutcomesRecord> outcomes;
@@ -248,13 +248,13 @@ struct MeshRecord {
   std::optional<WorkRecord> counters;
   std::optional<PerturbedRecord> perturbed;
   std::optional<OptimizationRecord> optimization;
-  std::optional<std::array<double, 2>> promised_dihedral_deg;  ///< least and largest angle; nothing: none
-  ByName<std::uint64_t> guarantees;                            ///< how often each is missed
+  std::optional<std::array<double, 2>> promised_dihedral_deg;  ///< least and largest angle; unset: none
+  ByName<std::uint64_t> guarantees;                            ///< misses of each guarantee
   std::optional<std::string> mesh_sha256;
-  std::optional<ByName<Proof>> verdicts;             ///< one a claim; nothing where podm-verify did not run
-  std::optional<DihedralRecord> dihedral_deg;        ///< nothing where podm-verify did not tell
-  std::optional<TopologyRecord> topology;            ///< nothing where podm-verify had no image
-  std::optional<std::vector<std::string>> promises;  ///< claims; nothing: all
+  std::optional<ByName<Proof>> verdicts;             ///< one per claim; unset if podm-verify did not run
+  std::optional<DihedralRecord> dihedral_deg;        ///< unset if podm-verify did not report it
+  std::optional<TopologyRecord> topology;            ///< unset if podm-verify had no image
+  std::optional<std::vector<std::string>> promises;  ///< promised claims; unset: all
   std::string stop_reason;
   Json as_written = Json::object();
   static constexpr auto fields() {
@@ -295,7 +295,7 @@ struct MeshRecord {
   }
 };
 
-/// The time of the paper's eq. (1), in seconds: that of all phases but those that make no part of the mesh,
+/// Returns the time of the paper's eq. (1) in seconds: all phases except those that make no part of the mesh,
 /// results/README.md.
 double meshing_seconds(const ByName<double>& phases_s);
 
@@ -303,8 +303,8 @@ double meshing_seconds(const ByName<double>& phases_s);
 struct LatencyRecord {
   std::uint64_t working_set_bytes = 0;
   int node = 0;
-  double ns = 0, cycles = 0;   ///< what a load takes
-  double huge_page_share = 0;  ///< the part of the working set on huge pages
+  double ns = 0, cycles = 0;   ///< of one load
+  double huge_page_share = 0;  ///< share of the working set on huge pages
   static constexpr auto fields() {
     using L = LatencyRecord;
     return std::tuple{field("working_set_bytes", &L::working_set_bytes), field("node", &L::node),
@@ -320,7 +320,7 @@ struct MemoryLevel {
   std::uint64_t size_bytes = 0;
   std::optional<std::uint64_t> working_set_bytes;
   std::optional<int> node;
-  Measured ns, cycles;  ///< what a load takes
+  Measured ns, cycles;  ///< of one load
   std::optional<double> huge_page_share;
   std::optional<Measured> likwid_bench_cycles_per_line;
   static constexpr auto fields() {
@@ -337,12 +337,12 @@ struct MemoryLevel {
   }
 };
 
-/// What `podm-bench latency` records: Table 3 for this machine.
+/// The record of `podm-bench latency`: Table 3 for this machine.
 struct MemoryLevelsRecord {
-  int processor = 0;    ///< that measured
-  bool pinned = false;  ///< it stayed there
+  int processor = 0;    ///< the processor that measured
+  bool pinned = false;  ///< the thread was bound to it
   std::vector<MemoryLevel> memory_levels;
-  std::vector<LatencyRecord> latency;  ///< one a working set, of all sizes
+  std::vector<LatencyRecord> latency;  ///< one per working set, of all sizes
   static constexpr auto fields() {
     using M = MemoryLevelsRecord;
     return std::tuple{field("processor", &M::processor), field("pinned", &M::pinned),

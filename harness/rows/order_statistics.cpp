@@ -10,11 +10,11 @@
 namespace podm::bench {
 namespace {
 
-constexpr int kMostSamples = 1000;  // more are beyond any use
+constexpr int kMostSamples = 1000;  // a larger number is of no use
 
-// The coverage from the k-th least to the k-th greatest of n samples.
+// Returns the coverage of the interval from the k-th least to the k-th greatest of n samples.
 double coverage_of(std::size_t n, std::size_t k) {
-  double probability = std::pow(0.5, static_cast<double>(n));  // of no sample on one side
+  double probability = std::pow(0.5, static_cast<double>(n));  // that no sample lies on one side
   double missed = 0;
   for (std::size_t i = 0; i < k; ++i) {
     missed += probability;
@@ -23,7 +23,8 @@ double coverage_of(std::size_t n, std::size_t k) {
   return std::max(0.0, 1 - 2 * missed);
 }
 
-// In samples, whose standard deviation times this over the root of their number is that of their median.
+// The median of n normal samples has this times their standard deviation over sqrt(n) as its standard
+// deviation.
 constexpr double kDeviationOfMedian = 1.2533;  // sqrt(pi / 2)
 constexpr double kNormalQuantile = 1.96;       // of 97.5 %
 
@@ -68,7 +69,7 @@ std::optional<int> samples_needed(const std::vector<double>& samples, double bou
   const double margin = std::abs(median(samples) - bound);
   const double roots = kNormalQuantile * kDeviationOfMedian * deviation_of(samples) / margin;
   const double needed = std::ceil(roots * roots);
-  if (!(needed <= kMostSamples)) return {};  // nor where it is no number
+  if (!(needed <= kMostSamples)) return {};  // also if it is not a number
   return std::max(fewest_samples(), static_cast<int>(needed));
 }
 

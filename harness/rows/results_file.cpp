@@ -15,7 +15,7 @@
 namespace podm::bench {
 namespace {
 
-// 0 or the number of the error.
+// Returns 0 or the number of the error.
 int write_all(int descriptor, const std::string& text) {
   for (std::size_t done = 0; done < text.size();) {
     const ssize_t written = ::write(descriptor, text.data() + done, text.size() - done);
@@ -35,7 +35,7 @@ int open_to_append(const std::string& path) {
   return descriptor;
 }
 
-// Throws InputError naming the line.
+// Throws InputError that names the line.
 Row row_of(const Json& json, const std::string& path, std::size_t line) {
   const Json schema = json.value("schema", Json());
   if (schema != kRowSchema)
@@ -51,7 +51,7 @@ Row row_of(const Json& json, const std::string& path, std::size_t line) {
 }  // namespace
 
 ResultsLock::ResultsLock(const std::string& folder) {
-  std::error_code error;  // open() tells when there is no folder
+  std::error_code error;  // open() reports a missing folder
   std::filesystem::create_directories(folder, error);
   const std::string path = folder + "/.lock";
   descriptor_ = ::open(path.c_str(), O_RDWR | O_CREAT | O_CLOEXEC, 0666);
@@ -89,7 +89,7 @@ RowsRead repair_rows(const std::string& path) {
   if (!read.broken.empty()) RecordFile(path + ".broken").append_text(read.broken);
   std::error_code error;
   const auto size = std::filesystem::file_size(path, error);
-  if (!error && size != read.whole.size()) write_file(path, read.whole);  // or the last line lacks its end
+  if (!error && size != read.whole.size()) write_file(path, read.whole);  // also if the last end is missing
   return read;
 }
 
@@ -125,7 +125,7 @@ void RecordFile::replace_newest(const std::vector<Row>& rows) {
     awaited.erase(found);
   }
   write_file(path_, fmt::format("{}", fmt::join(lines, "")));
-  ::close(descriptor_);  // of the file that was
+  ::close(descriptor_);  // the descriptor of the replaced file
   descriptor_ = open_to_append(path_);
 }
 

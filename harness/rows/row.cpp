@@ -8,7 +8,7 @@ namespace {
 constexpr const char* kReplayFailed = "failed: ";
 constexpr const char *kEqual = "equal", *kDiffers = "differs";
 
-// What stays are the keys of the mesher's record, or of a measurement of the machine.
+// Leaves the keys of the mesher's record, or of a measurement of the machine.
 Json without_own_keys(Json row) {
   const auto erase = [&row](const auto& field) { row.erase(field.key); };
   std::apply([&](const auto&... fields) { (erase(fields), ...); }, Row::fields_before());
@@ -16,7 +16,7 @@ Json without_own_keys(Json row) {
   return row;
 }
 
-// Keys that a row has already are its own.
+// Adds the record's keys that the row does not have.
 void add_record(const Json& record, Json& row) {
   for (const auto& [key, value] : record.items())
     if (!row.contains(key)) row[key] = value;

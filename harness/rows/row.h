@@ -1,7 +1,7 @@
-// A row: the JSON line that a trial leaves behind, as results/README.md tells it key by key. fields() of
-// these structs are the one definition from which rows are written and read;
-// results/schema/podm-bench-row.schema.json, which others read them by, is held to it by
-// rows/tests/test_row_schema.cpp.
+// A row is the JSON line that a trial leaves, described key by key in results/README.md. The fields() of
+// these structs are the one definition for writing and reading rows. Other programs read rows by
+// results/schema/podm-bench-row.schema.json; rows/tests/test_row_schema.cpp checks that it agrees with the
+// fields.
 #pragma once
 
 #include <array>
@@ -17,8 +17,8 @@ namespace podm::bench {
 
 inline constexpr int kRowSchema = 4;
 
-/// Where a row's numbers come from. A row is simulated when its workers or its caches are, or its machine is
-/// a described one; a claim may be of any.
+/// The origin of a row's numbers. A row is simulated if its workers or its caches are simulated, or if its
+/// machine is a described one. A claim may use kAny.
 enum class Basis { kMeasured, kSimulated, kAny };
 constexpr std::array<const char*, 3> names_of(Basis) { return {"measured", "simulated", "any"}; }
 
@@ -26,24 +26,24 @@ enum class Status {
   kOk,
   kUnmet,        ///< there is a mesh, but a guarantee or limit is unmet or a claim is not proved
   kFailed,       ///< there is no mesh, or no record of it
-  kTimedOut,     ///< it was ended at its limit
+  kTimedOut,     ///< the process was killed at its time limit
   kInterrupted,  ///< the user ended it, and all trials after it
-  kSkipped,      ///< it cannot run here and need not; no file holds such a row
+  kSkipped,      ///< it cannot run here and need not; no file has such a row
 };
 constexpr std::array<const char*, 6> names_of(Status) {
   return {"ok", "unmet", "failed", "timed_out", "interrupted", "skipped"};
 }
 
 using ImageSize = std::array<int, 3>;                ///< voxels along each axis
-using Number = std::variant<std::uint64_t, double>;  ///< written as it was counted
+using Number = std::variant<std::uint64_t, double>;  ///< in the type in which it was counted
 
 double as_double(const Number& number);
 
 /// A count by perf_event_open(2), valgrind or likwid.
 struct Counter {
   Number value;
-  std::string source;                   ///< who counted
-  std::optional<double> running_share;  ///< the part of the time that was counted, where `value` is scaled up
+  std::string source;                   ///< the program that counted
+  std::optional<double> running_share;  ///< counted share of the time, if `value` is scaled up
   static constexpr auto fields() {
     return std::tuple{field("value", &Counter::value), field("source", &Counter::source),
                       field_if_any("running_share", &Counter::running_share)};
@@ -51,14 +51,14 @@ struct Counter {
 };
 using Counters = ByName<std::variant<Counter, Unavailable>>;
 
-/// The radius that stands for a number of cells: trials/radii.h.
+/// The radius for a target number of cells: trials/radii.h.
 struct ResolvedRadius {
-  std::uint64_t target_elements = 0;  ///< cells asked for
+  std::uint64_t target_elements = 0;  ///< the target
   double radius_mm = 0, delta_mm = 0;
-  std::uint64_t cells = 0;              ///< those of the mesh that is the evidence
-  std::optional<std::uint64_t> meshes;  ///< made to find it; nothing where the mesher does not tell
-  double seconds = 0;                   ///< spent to find it
-  std::string key;                      ///< names its line in radii.jsonl
+  std::uint64_t cells = 0;              ///< cells of the mesh that is the evidence
+  std::optional<std::uint64_t> meshes;  ///< number of meshes made to find it; unset if not reported
+  double seconds = 0;                   ///< time spent to find it
+  std::string key;                      ///< of its line in radii.jsonl
   static constexpr auto fields() {
     using R = ResolvedRadius;
     return std::tuple{field("target_elements", &R::target_elements),
@@ -74,7 +74,7 @@ struct ResolvedRadius {
 
 /// The image of a trial.
 struct InputRecord {
-  std::string name;                                        ///< the experiment's name for it
+  std::string name;                                        ///< name in the experiment
   std::string path;                                        ///< the file that was read
   std::optional<std::string> sha256;                       ///< hash of its bytes
   std::optional<std::vector<std::vector<double>>> affine;  ///< rows of the matrix from voxels to mm
@@ -86,12 +86,12 @@ struct InputRecord {
   }
 };
 
-/// Whether the operations of a mesh's log, one after the other, make the same mesh: "equal", "differs" or
+/// The result of replaying a mesh's operation log sequentially: the mesh is "equal", "differs", or the replay
 /// "failed: why".
 struct Replay {
   enum class End { kEqual, kDiffers, kFailed };
   End end = End::kEqual;
-  std::string why;  ///< it failed
+  std::string why;  ///< the reason of kFailed
 
   std::string text() const;
   bool operator==(const Replay&) const = default;
@@ -102,7 +102,7 @@ struct Codec<Replay> {
   static Replay read(const Json& json, const std::string& place);
 };
 
-/// What conjugate gradients took with one preconditioner: harness/solvers/README.md.
+/// The cost of conjugate gradients with one preconditioner: harness/solvers/README.md.
 struct IterationsRecord {
   std::uint64_t iterations = 0;
   double smallest_eigenvalue = 0, largest_eigenvalue = 0;  ///< of the preconditioned matrix, estimated
@@ -126,9 +126,9 @@ struct SystemRecord {
   }
 };
 
-/// What the mesh means to a solver.
+/// The cost of the mesh for a solver.
 struct SolveRecord {
-  std::string solver;  ///< its version and licence
+  std::string solver;  ///< version and licence
   SystemRecord poisson, elasticity;
   static constexpr auto fields() {
     using S = SolveRecord;
@@ -137,9 +137,9 @@ struct SolveRecord {
   }
 };
 
-/// What a row tells of one of the processes that ran at the same time.
+/// The entry of one of the processes that ran at the same time.
 struct CopyRecord {
-  int processor = 0;  ///< that it ran on
+  int processor = 0;  ///< the processor that it ran on
   std::uint64_t cells = 0;
   ByName<double> phases_s;
   double refine_cells_per_second = 0;
@@ -153,14 +153,14 @@ struct CopyRecord {
   }
 };
 
-/// How the mesher's process ended and what it took.
+/// The end of the mesher's process and its resources.
 struct ProcessRecord {
-  std::optional<int> exit_code, signal;  ///< nothing where it did not end so
-  double timeout_s = 0;                  ///< its limit
+  std::optional<int> exit_code, signal;  ///< unset if the process did not end in this way
+  double timeout_s = 0;                  ///< the limit
   std::optional<double> memory_limit_gib;
   double wall_s = 0, user_s = 0, system_s = 0;
   std::uint64_t peak_rss_bytes = 0;
-  std::optional<double> bytes_per_cell_beyond_image;  ///< nothing without a mesh
+  std::optional<double> bytes_per_cell_beyond_image;  ///< unset without a mesh
   Counters counters;
   static constexpr auto fields() {
     using P = ProcessRecord;
@@ -199,9 +199,9 @@ struct PeerRecord {
 struct ProgramRecords {
   static constexpr const char* kNone = "none";
   ProgramRecord podm;
-  std::variant<ProgramRecord, std::string> podm_verify = kNone;  ///< kNone where meshes are not verified
+  std::variant<ProgramRecord, std::string> podm_verify = kNone;  ///< kNone if meshes are not verified
   std::optional<PeerRecord> peer;
-  std::optional<ProgramRecord> podm_mpi;  ///< the mesher on ranks; nothing where it is not built
+  std::optional<ProgramRecord> podm_mpi;  ///< the mesher on ranks; unset if it is not built
   static constexpr auto fields() {
     using P = ProgramRecords;
     return std::tuple{field("podm", &P::podm), field("podm_verify", &P::podm_verify),
@@ -234,7 +234,7 @@ struct MemoryBytes {
   }
 };
 
-/// The machine with its state and the build of this program. Texts may read "unavailable: why".
+/// The machine with its state, and the build of this program. Texts may read "unavailable: why".
 struct EnvironmentRecord : MachineRecord {
   std::string topology_sha256;  ///< HASH in topology-HASH.xml beside the rows
   std::string kernel, smt;
@@ -245,9 +245,9 @@ struct EnvironmentRecord : MachineRecord {
   std::variant<std::vector<double>, Unavailable> load_average;  ///< over 1, 5 and 15 minutes
   MemoryBytes memory_bytes;
   std::string governor, transparent_huge_pages, numa_balancing;
-  std::optional<Probe> probe;        ///< at the start of the row's round; nothing in simulated and older rows
-  std::optional<Probe> probe_after;  ///< at its end, where the speed moved meanwhile
-  std::optional<Measured> busy_elsewhere;  ///< mean number of processors that other work kept busy meanwhile
+  std::optional<Probe> probe;              ///< at the start of the round; unset in simulated and older rows
+  std::optional<Probe> probe_after;        ///< at the end of the round, if the speed moved
+  std::optional<Measured> busy_elsewhere;  ///< mean number of processors that other work kept busy
   static constexpr auto fields() {
     using E = EnvironmentRecord;
     return std::tuple_cat(
@@ -268,35 +268,35 @@ struct EnvironmentRecord : MachineRecord {
 /// One line of a file of results.
 struct Row {
   int schema = kRowSchema;
-  std::string key;  ///< names the turn: TrialKeys
+  std::string key;  ///< identifies the turn: TrialKeys
   std::string experiment, trial;
-  int repeat = 1;  ///< its number, from 1, counted among warm-ups or among measured repeats
+  int repeat = 1;  ///< number of the round, from 1; warm-ups and measured repeats are counted apart
   bool warmup = false;
-  std::uint64_t order_seed = 0;  ///< draws the schedule
+  std::uint64_t order_seed = 0;  ///< seed of the schedule
   Status status = Status::kFailed;
-  std::string reason;           ///< why the status is not kOk
+  std::string reason;           ///< the reason of a status that is not kOk
   Json asked = Json::object();  ///< the trial's options by the keys of experiments/*.toml
   Basis basis = Basis::kMeasured;
   std::vector<std::string> command;  ///< the arguments of the process
   std::optional<ResolvedRadius> resolved;
   InputRecord input;
 
-  std::optional<MeshRecord> mesh;              ///< what the mesher recorded; nothing without a mesh
-  std::optional<MemoryLevelsRecord> measured;  ///< what a trial that makes no mesh measured of the machine
+  std::optional<MeshRecord> mesh;              ///< the mesher's record; unset without a mesh
+  std::optional<MemoryLevelsRecord> measured;  ///< measurement of a trial that makes no mesh
 
-  std::optional<Replay> replay;                         ///< nothing where none was asked for
-  std::optional<std::vector<CopyRecord>> side_by_side;  ///< nothing where one process ran alone
-  std::optional<SolveRecord> solve;                     ///< nothing where none was asked for or it failed
+  std::optional<Replay> replay;                         ///< unset if it was not requested
+  std::optional<std::vector<CopyRecord>> side_by_side;  ///< unset if a single process ran
+  std::optional<SolveRecord> solve;                     ///< unset if it was not requested or failed
   std::optional<std::uint64_t> mesh_bytes;              ///< size of the mesh file
   ProcessRecord process;
   double preparation_s = 0, verification_s = 0;  ///< before the mesher starts and after it has ended
-  double harness_s = 0;                          ///< spent by this program since the row before
-  std::string stderr_tail;                       ///< last words of a trial that is not kOk
-  std::optional<bool> probe_moved;  ///< true where the machine's speed moved during the row's round
+  double harness_s = 0;                          ///< time that this program spent since the row before
+  std::string stderr_tail;                       ///< end of stderr of a trial that is not kOk
+  std::optional<bool> probe_moved;               ///< true if the machine's speed moved during the row's round
   ProgramRecords programs;
   EnvironmentRecord environment;
 
-  /// The keys before the mesher's own, and those after them.
+  /// The keys before the mesher's own keys, and the keys after them.
   static constexpr auto fields_before() {
     return std::tuple{field("schema", &Row::schema),         field("key", &Row::key),
                       field("experiment", &Row::experiment), field("trial", &Row::trial),
@@ -321,7 +321,7 @@ struct Row {
                       field("environment", &Row::environment)};
   }
 };
-/// Whether a row holds a mesh that met its guarantees or is known not to.
+/// True if a row has a mesh, whether it met its guarantees or not.
 inline bool is_finished(const Row& row) { return row.status == Status::kOk || row.status == Status::kUnmet; }
 
 template <>

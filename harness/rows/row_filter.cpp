@@ -20,13 +20,13 @@ std::string text_of(const Json& value) {
                                    : value.dump();
 }
 
-// Who made the row: this program, podm, podm on ranks or a peer.
+// Returns the program that made the row: this program, podm, podm on ranks or a peer.
 std::string maker_of(const Row& row) {
   if (row.asked.contains(kRanks)) return kRanks;
   return row.asked.contains(kMeasure) ? kMeasure : row.asked.value(kMesher, kPodm);
 }
 
-// What rows of one maker share: the mesher's bytes, where a mesh is made.
+// Returns the hash that rows of one maker share: that of the mesher, if a mesh is made.
 std::string program_of(const Row& row) {
   const auto& [podm, verifier, peer, podm_mpi] = row.programs;
   const std::string maker = maker_of(row);
@@ -36,7 +36,7 @@ std::string program_of(const Row& row) {
                                        : "";
 }
 
-// The described machine as the experiment's file names it; "" for none.
+// Returns the described machine as the experiment's file names it; "" if there is none.
 std::string described_machine_of(const Row& row) { return row.asked.value("topology", ""); }
 
 const Row* newest_measured(const std::vector<Row>& rows) {
@@ -68,8 +68,8 @@ class Newest {
   std::map<std::string, std::string> programs_, models_;
 };
 
-// What a later row replaces. A trial that could not be prepared, or whose options or radius changed since,
-// has another key.
+// Identifies the turn of a row; a later row of the same turn replaces it. Keys of rows cannot do so: a trial
+// that could not be prepared, or whose options or radius changed since, has another key.
 std::tuple<std::string, int, std::string> turn_of(const Row& row) {
   return {row.trial, row.repeat, row.input.name};
 }

@@ -12,7 +12,7 @@
 namespace podm::bench {
 namespace {
 
-// Which statuses have a number that counts.
+// True if a row of this status has a number that counts.
 bool counts(const Row& row, const Measure& measure) {
   if (measure.meaning == Meaning::kOutcome) return true;
   return row.status == Status::kOk || (!varies(measure) && row.status == Status::kUnmet);
@@ -29,7 +29,7 @@ Samples absent(const std::string& why, const RowPointers& rows) {
   return samples;
 }
 
-// read() of each row, or why one has none.
+// Reads read() from each row, or returns the reason why a row has no number.
 Samples read_each(const RowPointers& rows, const Measure& measure, Value (*read)(const Row&)) {
   Samples samples;
   samples.num_rows = rows.size();
@@ -50,7 +50,8 @@ std::map<int, double> by_round(const Samples& samples) {
   return numbers;
 }
 
-// The growth of read() over that of per() from the smallest size to the largest, in each round that has both.
+// Returns the growth of read() over that of per() from the smallest size to the largest, for each round that
+// has both.
 Samples sample_growth(const RowPointers& rows, const Measure& measure) {
   std::map<double, RowPointers> by_size;
   for (const Row* row : rows) by_size[row->asked.value(kTargetElements, 0.0)].push_back(row);
@@ -77,7 +78,7 @@ Samples sample_growth(const RowPointers& rows, const Measure& measure) {
   return growth.numbers.empty() ? absent("no round has both target_elements", rows) : growth;
 }
 
-// The ratios within the rounds that hold both; none where a series has several numbers of one round.
+// Returns the ratios within the rounds that hold both; none if a series has several numbers in one round.
 std::vector<double> paired_ratios(const Samples& above, const Samples& below) {
   const auto numerators = by_round(above), denominators = by_round(below);
   std::vector<double> ratios;
@@ -95,8 +96,7 @@ std::vector<RowGroup> group_rows(const RowPointers& rows,
   std::vector<RowGroup> groups;
   std::map<std::string, std::size_t> places;
   for (const Row* row : rows) {
-    std::map<std::string, Json>
-        agreed;  // sorted by key, so that the order in which a file gives them does not count
+    std::map<std::string, Json> agreed;  // sorted by key; the order in a file does not count
     const Json options = options_of(*row);
     for (const auto& [key, value] : options.items())
       if (!is_free(key)) agreed[key] = value;

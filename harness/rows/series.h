@@ -13,48 +13,49 @@
 
 namespace podm::bench {
 
-/// What the reason begins with where rows of a trial have no number as the trial failed.
+/// The start of the reason why rows have no number because their trial failed.
 inline constexpr const char* kRowsFailed = "rows failed";
 
-/// Rows whose options agree but for some keys, in the order of their first rows.
+/// Rows whose options agree except for some keys, in the order of their first rows.
 struct RowGroup {
-  Json options;  ///< those that they agree in
+  Json options;  ///< the options in which they agree
   RowPointers rows;
 };
-/// The keys that `is_free` says yes to may differ within a group.
+/// The keys for which `is_free` is true may differ within a group.
 std::vector<RowGroup> group_rows(const RowPointers& rows,
                                  const std::function<bool(const std::string& key)>& is_free);
 
-/// What a group is called among others: the options that not all of them share; "" for one alone.
+/// Returns the label of each group among the others: the options that not all of them share; "" for a single
+/// group.
 std::vector<std::string> labels_of(const std::vector<RowGroup>& groups);
 
 /// Repeats of one measurement.
 struct Samples {
   std::vector<double> numbers;
   std::vector<int> rounds;  ///< the round of each number
-  std::string absence;      ///< why there are no numbers; empty: there are
+  std::string absence;      ///< the reason why there are no numbers; empty: there are
   std::size_t num_rows = 0;
-  bool varies = false;  ///< another run may come to another number
-  double busy = 0;      ///< the most processors that other work kept busy during a disturbed row; 0: none was
+  bool varies = false;  ///< another run may give another number
+  double busy = 0;      ///< most processors kept busy by other work in a disturbed row; 0: no such row
 
   double middle() const { return median(numbers); }
 };
 
-/// Rows of rounds during which the machine's speed moved are left out where their numbers vary.
+/// Leaves out rows of rounds during which the machine's speed moved, if their numbers vary.
 Samples sample(const RowPointers& rows, const Measure& measure);
 
-/// What repeats tell of one number.
+/// The estimate of one number from repeats.
 struct Estimate {
   double value = 0;                  ///< the median
-  std::optional<Interval> interval;  ///< nothing where the number is the same in each run
+  std::optional<Interval> interval;  ///< unset if the number is the same in each run
   std::vector<double> samples;       ///< those behind the interval; none for series that share no rounds
-  std::size_t num_rounds = 0;        ///< of the series that has fewer
+  std::size_t num_rounds = 0;        ///< of the series with fewer rounds
   double busy = 0;                   ///< as in Samples
 };
 
 Estimate estimate_of(const Samples& samples);
-/// Where both series ran in the same rounds, the median of the ratios within rounds; else the ratio of the
-/// medians.
+/// Returns the median of the ratios within rounds if both series ran in the same rounds; otherwise the ratio
+/// of the medians.
 Estimate ratio_of(const Samples& above, const Samples& below);
 
 }  // namespace podm::bench

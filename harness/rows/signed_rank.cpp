@@ -12,7 +12,8 @@
 namespace podm::bench {
 namespace {
 
-// Probabilities of the signed-rank statistic 0, 1, ...: each rank is in the sum with probability one half.
+// Returns the probabilities of the signed-rank statistic 0, 1, ...: each rank is in the sum with probability
+// one half.
 std::vector<double> signed_rank_distribution(std::size_t num_samples) {
   std::vector<double> probability(num_samples * (num_samples + 1) / 2 + 1, 0.0);
   probability[0] = 1;
@@ -22,8 +23,8 @@ std::vector<double> signed_rank_distribution(std::size_t num_samples) {
   return probability;
 }
 
-// The number of means of pairs that lie beyond each end of the interval, plus one; 0: no interval has the
-// confidence.
+// Returns the number of means of pairs that lie beyond each end of the interval, plus one; 0: no interval has
+// the confidence.
 std::size_t rank_of_end(std::size_t num_samples, double confidence) {
   static std::mutex mutex;
   static std::map<std::pair<std::size_t, double>, std::size_t> known;
@@ -43,7 +44,7 @@ CentreEstimate signed_rank_estimate(std::span<const double> samples, double conf
   means.reserve(samples.size() * (samples.size() + 1) / 2);
   for (std::size_t i = 0; i < samples.size(); ++i)
     for (std::size_t j = i; j < samples.size(); ++j) means.push_back((samples[i] + samples[j]) / 2);
-  const auto ranked = [&means](std::size_t rank) {  // from 1
+  const auto ranked = [&means](std::size_t rank) {  // rank counts from 1
     const auto place = means.begin() + static_cast<std::ptrdiff_t>(rank - 1);
     std::nth_element(means.begin(), place, means.end());
     return *place;

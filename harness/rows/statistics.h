@@ -1,4 +1,4 @@
-// Medians of repeated measurements and how well they are known.
+// Medians of repeated measurements and their accuracy.
 #pragma once
 
 #include <cstdint>
@@ -7,10 +7,10 @@
 
 namespace podm::bench {
 
-/// The median of at least one sample; that of an even number is the mean of the middle two.
+/// Returns the median of at least one sample; for an even number, the mean of the middle two.
 double median(std::vector<double> samples);
 
-/// An estimate and the interval that holds the truth with the confidence asked for.
+/// An estimate and the interval that holds the true value with the given confidence.
 struct Ratio {
   double value = 1, low = 1, high = 1;
 };
@@ -26,10 +26,11 @@ struct BootstrapOptions {
   std::uint64_t seed = 1;
 };
 
-/// median(numerator) / median(denominator), all samples positive; as many of both when paired. The interval
-/// is the percentile bootstrap's, where a paired resample draws pairs. It holds the value, scales with the
-/// samples and is inverted when they are swapped. It is not BCa: that needs the jackknife, which is
-/// inconsistent for a median (Efron and Tibshirani 1993, section 11.6).
+/// Returns median(numerator) / median(denominator). All samples must be positive; paired series must have
+/// equal lengths. The interval is the percentile bootstrap's; a paired resample draws pairs. The interval
+/// holds the value, scales with the samples and is inverted when numerator and denominator are swapped. BCa
+/// is not used: it needs the jackknife, which is inconsistent for a median (Efron and Tibshirani 1993,
+/// section 11.6).
 Ratio ratio_of_medians(std::span<const double> numerator, std::span<const double> denominator,
                        Sampling sampling, const BootstrapOptions& options = {});
 

@@ -20,7 +20,7 @@ constexpr const char* kRates =
     "extraction,\nthe domain that CGAL prepares, and the surface that TetGen and HXT are given.\n";
 constexpr double kBytesPerMib = 1024.0 * 1024;
 
-// "-" without any value.
+// "-" if there is no value.
 template <class T>
 std::string median_over(const std::vector<const T*>& all,
                         const std::function<std::optional<double>(const T&)>& value_of,
@@ -37,7 +37,8 @@ std::string memory_levels_of(const Rows& rows) {
   return memory_levels(records);
 }
 
-// "met, 9 claims proved"; of a mesher that promises some of the claims, how many of these it kept.
+// "met, 9 claims proved". For a mesher that promises some of the claims, the text has the number of promised
+// claims that it kept.
 std::string proofs_of(const MeshRecord& mesh) {
   const ByName<Proof> verdicts = mesh.verdicts.value_or(ByName<Proof>{});
   const auto num_proved = std::count_if(verdicts.begin(), verdicts.end(),
@@ -52,7 +53,7 @@ std::string proofs_of(const MeshRecord& mesh) {
                      num_kept, mesh.promises->size());
 }
 
-// What became of the repeats: the first fault where there is one.
+// Returns the outcome of the repeats: the first fault if there is one.
 std::string verdict(const Rows& repeats) {
   for (const Row* row : repeats)
     if (row->status != Status::kOk)

@@ -1,4 +1,4 @@
-// podm-bench as a user runs it, with a mesher made up by the test.
+// Runs podm-bench as a user does, with a mesher made up by the test.
 #pragma once
 
 #include <gtest/gtest.h>
@@ -36,7 +36,7 @@ class BenchTest : public testing::Test {
  protected:
   BenchTest() { folder_.write("exp.toml", kExperiment); }
 
-  // Exit code of podm-bench; what it prints is in the files "out" and "err".
+  // Returns the exit code of podm-bench. Its output is in the files "out" and "err".
   int bench(std::vector<std::string> arguments) {
     arguments.insert(arguments.begin(), PODM_BENCH);
     return run_process({.arguments = arguments,
@@ -62,7 +62,7 @@ class BenchTest : public testing::Test {
     for (std::string line; std::getline(file, line);) rows.push_back(nlohmann::json::parse(line));
     return rows;
   }
-  // Names stand in the order in which the trials ran.
+  // Returns names in the order in which the trials ran.
   std::vector<std::string> in_order() {
     std::vector<std::string> trials;
     for (const auto& row : rows()) trials.push_back(row.at("trial"));
@@ -73,7 +73,7 @@ class BenchTest : public testing::Test {
     std::sort(trials.begin(), trials.end());
     return trials;
   }
-  // Whether rows, inputs, lock and topology are all that is left.
+  // True if only rows, inputs, lock and topology are left.
   bool is_tidy() {
     for (const auto& entry : std::filesystem::directory_iterator(folder_ / "results")) {
       const std::string name = entry.path().filename();

@@ -1,4 +1,4 @@
-// Folders and shell scripts that stand for the mesher, made by a test and gone with it.
+// Temporary folders, and shell scripts that stand in for the mesher.
 #pragma once
 
 #include <gtest/gtest.h>
@@ -28,7 +28,7 @@ class TemporaryFolder {
     std::ofstream(*this / name) << text;
     return *this / name;
   }
-  /// Writes a shell script that can be run and returns its path.
+  /// Writes an executable shell script and returns its path.
   std::string script(const std::string& name, const std::string& body) const {
     const std::string path = write(name, "#!/bin/sh\n" + body);
     std::filesystem::permissions(path, std::filesystem::perms::owner_all);
@@ -39,7 +39,7 @@ class TemporaryFolder {
   std::string path_;
 };
 
-/// The claim of an experiment that is about something else; comes last.
+/// A claim for experiments that test something else. It comes last in the file.
 inline const std::string kClaim = R"(
 [[claims]]
 name = "all-pass"
@@ -50,19 +50,20 @@ value = "passed"
 at_least = 1.0
 )";
 
-/// What a healthy mesher records; `cells` a second are refined in 2 s of meshing and 5 s of writing.
+/// The record of a healthy mesher: meshing takes 2 s, refinement makes `cells` cells per second, writing
+/// takes 5 s.
 inline const std::string kGoodRecord =
     R"({"schema":1,"input":{"path":"image.nii","sha256":"00"},"cells":1000,"vertices":300,)"
     R"("refine_cells_per_second":1000.0,"phases_s":{"read":0.5,"refine":1.0,"extract":0.5,"write":5.0},)"
     R"("guarantees":{"radius_edge":0,"facet_angle":0},"stop_reason":"complete"})";
 
-/// What is prepared for a trial on an image that is a file and with a radius.
+/// The preparation of a trial whose image is a file and whose radius is given.
 inline Preparation prepared(const Trial& trial) { return {trial.image, "00", {}}; }
 
-/// A script for `podm`: answers --version, and `info` with 10 x 10 x 10 voxels; `phantom` writes its name and
-/// size and notes them in the file "drawn"; `replay` of a log runs the file "replay"; `mesh` notes its
-/// arguments in "arguments" and runs `mesh_body`, where $record is the file asked for by --record and $output
-/// that of -o.
+/// A script for `podm`. It answers --version, and `info` with 10 x 10 x 10 voxels. `phantom` writes its name
+/// and size and notes them in the file "drawn". `replay` of a log runs the file "replay". `mesh` notes its
+/// arguments in "arguments" and runs `mesh_body`, where $record is the file of --record and $output the file
+/// of -o.
 inline std::string fake_mesher(const TemporaryFolder& folder, const std::string& mesh_body) {
   return folder.script("podm", R"(
 [ "$1" = --version ] && { echo 'podm 9.9'; exit 0; }
@@ -77,7 +78,7 @@ done
 )" + mesh_body);
 }
 
-/// A script for `podm-verify` that runs `body`, where $report is the file asked for by --json.
+/// A script for `podm-verify` that runs `body`, where $report is the file of --json.
 inline std::string fake_verifier(const TemporaryFolder& folder, const std::string& body) {
   return folder.script("podm-verify", R"(
 while [ $# -gt 0 ]; do
@@ -87,7 +88,7 @@ done
 )" + body);
 }
 
-/// What a solver prints of a mesh.
+/// The output of a solver.
 inline const std::string kSolved =
     R"({"solver":"Solver 1.0","poisson":{"unknowns":9,)"
     R"("jacobi":{"iterations":12,"smallest_eigenvalue":0.1,"largest_eigenvalue":2.0,"setup_s":0.0,"seconds":0.5},)"

@@ -1,4 +1,4 @@
-// Rows as podm-bench would have written them, of numbers that a test makes up.
+// Rows in the form that podm-bench writes, with numbers made up by a test.
 #pragma once
 
 #include <string>
@@ -32,7 +32,7 @@ inline Row made_up_row(const std::string& trial, const Json& asked, int repeat =
   return row;
 }
 
-/// The mesher's record in a row, made if need be.
+/// Returns the mesher's record in a row, and creates it if absent.
 inline MeshRecord& mesh_of(Row& row) {
   if (!row.mesh) row.mesh.emplace().stop_reason = kComplete;
   return *row.mesh;
@@ -53,7 +53,7 @@ inline void set_overhead(Row& row, double contention, double rollback, double be
   overhead.begging = begging;
 }
 
-/// A made-up row of a mesh whose refinement took so many seconds.
+/// A made-up row of a mesh whose refinement took `seconds`.
 inline Row refined_in(double seconds, const Json& asked, int repeat = 1, const std::string& trial = "1M") {
   Row row = made_up_row(trial, asked, repeat);
   mesh_of(row).cells = 1000;
@@ -61,7 +61,7 @@ inline Row refined_in(double seconds, const Json& asked, int repeat = 1, const s
   return row;
 }
 
-/// Each row, of the first round, in six rounds: the fewest that resolve what varies between runs.
+/// Returns each row of the first round in six rounds, the fewest that resolve a difference between runs.
 inline std::vector<Row> in_six_rounds(const std::vector<Row>& rows) {
   std::vector<Row> made;
   for (int round = 1; round <= 6; ++round)
@@ -72,8 +72,8 @@ inline std::vector<Row> in_six_rounds(const std::vector<Row>& rows) {
   return made;
 }
 
-/// A claim read from the lines of its table. Its experiment has trials 10M, 1M and 0.1M, measured and virtual
-/// ones of every option that these tests name.
+/// Reads a claim from the lines of its table. Its experiment has trials 10M, 1M and 0.1M, measured and
+/// virtual, with every option that these tests name.
 inline Claim read_claim_of(const std::string& lines) {
   const toml::table table = toml::parse("name = 'c'\nstatement = 's'\n" + lines);
   std::vector<ClaimedTrial> trials;

@@ -1,5 +1,5 @@
-// The JSON Schema that follows from a type's fields, and where a committed schema differs from it in a key, a
-// type or whether a value may be null. What a schema says beside these, ranges and patterns, is not compared.
+// Derives a JSON Schema from a type's fields, and compares a committed schema with it in keys, types and
+// nullability. Ranges and patterns of the committed schema are not compared.
 #pragma once
 
 #include <map>
@@ -11,16 +11,16 @@
 
 namespace podm::bench {
 
-/// What both kinds of schema say of a value.
+/// The part of a value's schema that fields and committed schemas share.
 struct Shape {
   std::set<std::string> types;        ///< as JSON Schema calls them; empty: any
-  std::set<std::string> words;        ///< the texts that it may be; empty: any
+  std::set<std::string> words;        ///< the permitted texts; empty: any
   std::map<std::string, Shape> keys;  ///< of an object whose keys are known
   std::set<std::string> required;
-  bool has_other_keys = false;  ///< it may have keys beside these
-  bool may_be_absent = false;   ///< its key may be, and then null stands for the same
+  bool has_other_keys = false;  ///< other keys are permitted
+  bool may_be_absent = false;   ///< the key may be absent, and null means the same
   std::vector<Shape>
-      members;  ///< of an array, or of an object whose keys are data: one shape, of all of them
+      members;  ///< of an array, or of an object whose keys are data: one shape for all members
 
   void add(const Shape& other) {
     types.insert(other.types.begin(), other.types.end());
@@ -142,7 +142,7 @@ struct ShapeOf<T> {
   }
 };
 
-/// The shape that a committed schema gives. `anyOf` states conditions and adds nothing.
+/// The shape that a committed schema gives. `anyOf` states conditions and adds no types.
 inline Shape shape_in(const Json& schema, const Json& root) {
   const auto name_of_type = [](const Json& value) {
     return value.is_string() ? "string" : value.is_number_integer() ? "integer" : value.type_name();
@@ -171,10 +171,10 @@ inline Shape shape_in(const Json& schema, const Json& root) {
   return shape;
 }
 
-/// Adds to `faults` what differs at `place`, "process/wall_s: ...".
+/// Adds to `faults` each difference at `place`, "process/wall_s: ...".
 inline void compare_shapes(Shape fields, Shape schema, const std::string& place,
                            std::vector<std::string>& faults) {
-  if (fields.types.empty()) return;  // carried along as it is
+  if (fields.types.empty()) return;  // any value is permitted
   for (Shape* shape : {&fields, &schema}) {
     if (shape->types.contains("number")) shape->types.erase("integer");
     if (fields.may_be_absent) shape->types.erase("null");

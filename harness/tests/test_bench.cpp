@@ -1,4 +1,4 @@
-// The program as a user runs it.
+// Tests of the program as a user runs it.
 #include <gtest/gtest.h>
 
 #include <chrono>
@@ -12,7 +12,7 @@
 namespace podm::bench {
 namespace {
 
-// One with which trial "one" runs before trial "two".
+// Returns a seed with which trial "one" runs before trial "two".
 std::string seed_with_one_first() {
   for (std::uint64_t seed = 0;; ++seed)
     for (const Turn& turn : schedule(std::vector<Trial>(3), seed)) {
@@ -86,7 +86,7 @@ case $(cat arguments) in *--radius*) [ ! -e slow ] || { echo $$ > pid; exec slee
                                            "none",     "--order-seed", seed_with_one_first()};
   const auto outcome = run_process(
       {.arguments = arguments, .stdout_path = {}, .stderr_path = folder_ / "err", .timeout_s = 60},
-      [&] { return printed("pid").ends_with('\n'); });  // it is killed by signal 9
+      [&] { return printed("pid").ends_with('\n'); });  // signal 9 kills it
   ASSERT_EQ(outcome.end, ProcessOutcome::End::kInterrupted) << printed("err");
   EXPECT_EQ(trials_recorded(), std::vector<std::string>{"one"});
   EXPECT_FALSE(is_tidy()) << "nobody could clean up";
@@ -232,7 +232,7 @@ echo mesh > $output/m
 }
 
 TEST_F(BenchTest, InterruptEndsTheTrialRecordsItAndStops) {
-  EXPECT_EQ(run_with("kill -INT $PPID; sleep 30"), 1);  // what Ctrl-C sends to podm-bench
+  EXPECT_EQ(run_with("kill -INT $PPID; sleep 30"), 1);  // the signal that Ctrl-C sends to podm-bench
   ASSERT_EQ(rows().size(), 1u);
   EXPECT_EQ(rows()[0].at("status"), "interrupted");
   EXPECT_NE(printed("out").find("interrupted"), std::string::npos);

@@ -1,4 +1,4 @@
-"""Rows of podm-bench against their schema. The programs are those that PODM_BENCH, PODM and PODM_VERIFIER name."""
+"""Tests of podm-bench's rows against their schema, with the programs that PODM_BENCH, PODM and PODM_VERIFIER name."""
 
 import copy
 import json
@@ -38,7 +38,7 @@ warmup = 1
 
 
 def rows_of(experiment, mesh_body=None):
-    """The rows of a run of the experiment with the mesher, or with a shell script in its place."""
+    """Returns the rows of a run of the experiment with the mesher, or with a shell script in its place."""
     with tempfile.TemporaryDirectory() as folder:
         path = pathlib.Path(folder, "exp.toml")
         path.write_text(experiment + CLAIM)

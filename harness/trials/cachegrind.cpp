@@ -12,20 +12,20 @@ namespace podm::bench {
 namespace {
 
 constexpr const char* kOutput = "/cachegrind.out";
-// The caches are those of a core of the paper's machine: 32 KiB, and 2 MiB as its share of the last level.
-// They are always the same, so that runs on different machines compare, and small enough for the small meshes
-// that are simulated.
+// The caches of a core of the paper's machine: 32 KiB, and 2 MiB as its share of the last level. They are
+// always the same, so that runs on different machines compare, and small enough for the small meshes that are
+// simulated.
 constexpr const char *kL1Instructions = "32768,4,64", *kL1Data = "32768,8,64", *kLastLevel = "2097152,16,64";
 constexpr const char* kSource = "valgrind cachegrind (simulated: L1 32 KiB, 8-way; last level 2 MiB, 16-way)";
 
-// Our names stand in the order of cachegrind's.
+// kNames stands in the order of kCachegrindEvents.
 constexpr const char* kCachegrindEvents = "Ir I1mr ILmr Dr D1mr DLmr Dw D1mw DLmw";
 constexpr std::array<const char*, 9> kNames = {
     "instructions", "l1_instruction_misses", "llc_instruction_misses",
     "loads",        "l1_load_misses",        "llc_load_misses",
     "stores",       "l1_store_misses",       "llc_store_misses"};
 
-// The text behind "key: "; empty when no line has the key.
+// Returns the text after "key: "; empty when no line has the key.
 std::string line_of(std::ifstream& file, const std::string& key) {
   for (std::string line; std::getline(file, line);)
     if (line.starts_with(key + ":")) return line.substr(std::min(line.size(), key.size() + 2));

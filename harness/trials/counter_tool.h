@@ -1,5 +1,4 @@
-// The programs that may count for a trial in the kernel's place: likwid-perfctr, and valgrind's simulation of
-// caches.
+// Programs that count for a trial instead of the kernel: likwid-perfctr, and valgrind's cache simulation.
 #pragma once
 
 #include <memory>
@@ -14,19 +13,19 @@ namespace podm::bench {
 class CounterTool {
  public:
   virtual ~CounterTool() = default;
-  /// Why it cannot count here; empty: it can.
+  /// Returns the reason why the tool cannot count here; empty: it can.
   virtual std::string absence() const = 0;
-  /// Whether the process is one that simulates the mesher.
+  /// True if the tool simulates the processor that the mesher runs on.
   virtual bool is_simulation() const = 0;
-  /// What runs the command and writes counts into `folder`.
+  /// Returns the command line that runs `command` and writes counts into `folder`.
   virtual std::vector<std::string> wrap(const std::vector<std::string>& command,
                                         const std::string& folder) const = 0;
-  /// Counts by name; why there are none by the tool's name.
+  /// Returns counts by name. If there are none, returns the reason under the tool's name.
   virtual Counters read(const std::string& folder) const = 0;
 };
 
-/// Runs the command on a simulated processor with two levels of cache, some 50 times as slow: one thread at a
-/// time, its seconds mean nothing.
+/// Runs the command on a simulated processor with two levels of cache, about 50 times as slow. Threads run
+/// one at a time, and the seconds have no meaning.
 class Cachegrind : public CounterTool {
  public:
   std::string absence() const override;
@@ -36,11 +35,11 @@ class Cachegrind : public CounterTool {
   Counters read(const std::string& folder) const override;
 };
 
-/// Counts all that the usable processors do while the command runs, whoever does it.
+/// Counts all work of the usable processors while the command runs, including work of other processes.
 class Likwid : public CounterTool {
  public:
-  /// The events of the file GROUP.txt for this processor, in `groups_folder`/ARCHITECTURE. Asks
-  /// likwid-perfctr whether it may count them; needs a `scratch_folder`.
+  /// Uses the events of the file GROUP.txt for this processor, in `groups_folder`/ARCHITECTURE. Asks
+  /// likwid-perfctr whether it can count them, which needs a `scratch_folder`.
   Likwid(const std::string& group, const std::string& groups_folder, const std::string& scratch_folder);
 
   std::string absence() const override { return absence_; }
@@ -53,10 +52,10 @@ class Likwid : public CounterTool {
   std::string group_, events_, absence_;
 };
 
-/// EVENT:COUNTER,... of the EVENTSET of a file in likwid's format; empty when there is none.
+/// Returns EVENT:COUNTER,... of the EVENTSET of a file in likwid's format; empty when there is none.
 std::string events_of_group(const std::string& path);
 
-/// The tool that the trial's key asks for; null: the kernel counts.
+/// Returns the tool that the trial's key names; null: the kernel counts.
 std::unique_ptr<CounterTool> counter_tool(const std::string& choice, const std::string& groups_folder,
                                           const std::string& scratch_folder);
 

@@ -43,7 +43,7 @@ struct Reading {
   std::uint64_t count, enabled_ns, running_ns;
 };
 
-// Off in this process and its children until they start a program.
+// The counter is off in this process and its children until they execute a program.
 perf_event_attr attributes_of(const Event& event) {
   perf_event_attr attributes{};
   attributes.size = sizeof(attributes);
@@ -61,7 +61,7 @@ std::string in_words(int error) {
   return std::string("perf_event_open: ") + std::strerror(error);
 }
 
-// What wait4(2) tells of the same; nothing of migrations.
+// Returns the value that wait4(2) reports for the event. It does not report migrations.
 std::optional<double> of_getrusage(const Event& event, const ProcessOutcome& outcome) {
   if (event.type != PERF_TYPE_SOFTWARE) return {};
   switch (event.config) {
@@ -108,7 +108,8 @@ PerfCounters::PerfCounters(CounterKinds kinds, const OpenCounter& open) {
   for (const Event& event : std::span(kEvents).first(all ? std::size(kEvents) : kNumSoftwareEvents)) {
     perf_event_attr attributes = attributes_of(event);
     int descriptor = open(attributes);
-    // Who may not count in the kernel may count outside it. The kernel's own events happen inside alone.
+    // A process that may not count in the kernel may be allowed to count in user mode. Software events happen
+    // only in the kernel.
     const bool retry = is_forbidden(-descriptor) && event.type != PERF_TYPE_SOFTWARE;
     attributes.exclude_kernel = attributes.exclude_hv = retry;
     if (retry) descriptor = open(attributes);

@@ -1,4 +1,4 @@
-// Counts of a trial's process by perf_event_open(2), or why there are none.
+// Counts of a trial's process by perf_event_open(2), or the reason why there are none.
 #pragma once
 
 #include <linux/perf_event.h>
@@ -11,19 +11,20 @@
 
 namespace podm::bench {
 
-/// Opens a counter of the calling thread and of the children it starts later: a descriptor, or minus the
-/// error.
+/// Opens a counter of the calling thread and of the children that it starts later. Returns a descriptor, or
+/// the negative error.
 using OpenCounter = std::function<int(perf_event_attr&)>;
-/// The kernel's.
+/// Opens a counter of the kernel.
 int open_counter(perf_event_attr& attributes);
 
 enum class CounterKinds {
-  kSoftware,             ///< kept by the kernel
-  kSoftwareAndHardware,  ///< and by the processor
+  kSoftware,             ///< the kernel's counts
+  kSoftwareAndHardware,  ///< and the processor's counts
 };
 
-/// The first counter on a machine makes the kernel patch its scheduler, some 10 ms, and the last one undoes
-/// that. One of these, which counts nothing, spares each trial the wait.
+/// The first counter on a machine makes the kernel patch its scheduler, which takes about 10 ms, and closing
+/// the last one reverts the patch. An object of this class keeps a counter that counts nothing and spares
+/// each trial the wait.
 class CountersKeptReady {
  public:
   CountersKeptReady();
@@ -35,7 +36,8 @@ class CountersKeptReady {
   int descriptor_;
 };
 
-/// Counts the programs that this thread starts, with their threads and children, while the object lives.
+/// Counts the programs that this thread starts, with their threads and children, during the life of the
+/// object.
 class PerfCounters {
  public:
   explicit PerfCounters(CounterKinds kinds, const OpenCounter& open = open_counter);
@@ -43,15 +45,15 @@ class PerfCounters {
   PerfCounters(const PerfCounters&) = delete;
   PerfCounters& operator=(const PerfCounters&) = delete;
 
-  /// Counts by name of the process that has ended with `outcome`.
+  /// Returns counts by name for the process that has ended with `outcome`.
   Counters read(const ProcessOutcome& outcome) const;
 
  private:
   struct OpenedCounter {
-    int descriptor;  // or minus the error
+    int descriptor;  // or the negative error
     bool is_of_user_mode;
   };
-  std::vector<OpenedCounter> counters_;  // their order is that of the table of events
+  std::vector<OpenedCounter> counters_;  // in the order of the table of events
 };
 
 }  // namespace podm::bench

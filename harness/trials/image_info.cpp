@@ -3,9 +3,9 @@
 namespace podm::bench {
 namespace {
 
-constexpr double kTimeoutS = 120;  // an image of hundreds of MiB is unpacked
+constexpr double kTimeoutS = 120;  // unpacking an image of hundreds of MiB takes long
 
-// What is read of `podm info --json`.
+// The part of `podm info --json` that is read.
 struct InfoRecord {
   ImageSize size;
   static constexpr auto fields() { return std::tuple{field("size", &InfoRecord::size)}; }

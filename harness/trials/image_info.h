@@ -1,4 +1,4 @@
-// What `podm info` tells of an image.
+// The size of an image, from `podm info`.
 #pragma once
 
 #include <optional>
@@ -11,12 +11,12 @@
 namespace podm::bench {
 
 struct ImageInfo {
-  std::vector<std::string> command;  ///< that asked
+  std::vector<std::string> command;  ///< the command that was run
   Reply reply;
-  std::optional<ImageSize> size;  ///< nothing where the mesher cannot read the image
+  std::optional<ImageSize> size;  ///< unset if the mesher cannot read the image
 };
 
-/// Asks the mesher for an image, a file or phantom:NAME[@SIZE].
+/// Asks the mesher about an image, a file or phantom:NAME[@SIZE].
 ImageInfo ask_for_info(const std::string& podm, const std::string& image,
                        const StopQuery& stop_requested = {});
 

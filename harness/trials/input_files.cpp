@@ -43,7 +43,7 @@ bool InputFiles::is_there(const std::string& image) const {
          (fs::exists(path_of(image)) && read_tail(mark_of(image), kMaxMarkBytes) == podm_sha256_ + "\n");
 }
 
-// Voxels along the longest axis.
+// Returns the number of voxels along the longest axis.
 std::string InputFiles::size_of(const std::string& phantom, const StopQuery& stop_requested) const {
   if (const auto at = phantom.find('@'); at != std::string::npos) return phantom.substr(at + 1);
   const ImageInfo info = ask_for_info(podm_, phantom, stop_requested);

@@ -1,4 +1,4 @@
-// Images as files. A phantom is drawn into one once, so that what a trial reads costs what reading costs.
+// Images as files. A phantom is drawn into a file once; each trial then pays for reading, not for drawing.
 #pragma once
 
 #include <stdexcept>
@@ -9,12 +9,12 @@
 
 namespace podm::bench {
 
-inline constexpr const char* kRecordName = "/record.jsonl";  ///< the mesher's, in the folder of a trial
+inline constexpr const char* kRecordName = "/record.jsonl";  ///< the mesher's record of a trial
 
-/// Why a trial cannot start; its row tells it.
+/// The reason why a trial cannot start, which its row records.
 class PreparationError : public std::runtime_error {
  public:
-  /// `what` was to be made by the command, which ended with `outcome` and these last words on stderr.
+  /// The command should have made `what`. It ended with `outcome` and with this end of its stderr.
   PreparationError(const std::string& what, std::vector<std::string> command, const ProcessOutcome& outcome,
                    std::string stderr_tail);
 
@@ -23,18 +23,18 @@ class PreparationError : public std::runtime_error {
   std::string stderr_tail;
 };
 
-/// Phantoms are NAME.nii.gz or NAME@SIZE.nii.gz in a folder. Beside each, NAME.mesher holds the hash of the
-/// mesher that drew it: another draws it anew.
+/// Phantoms are files NAME.nii.gz or NAME@SIZE.nii.gz in a folder. NAME.mesher beside each holds the hash of
+/// the mesher that drew it. Another mesher draws it anew.
 class InputFiles {
  public:
   InputFiles(std::string podm, std::string podm_sha256, std::string folder)
       : podm_(std::move(podm)), podm_sha256_(std::move(podm_sha256)), folder_(std::move(folder)) {}
 
-  /// The image itself where it is a file.
+  /// Returns the file of the phantom, or the image itself if it is a file.
   std::string path_of(const std::string& image) const;
-  /// Whether this mesher has drawn the phantom. A file is taken to be there: reading it tells.
+  /// True if this mesher has drawn the phantom. True for a file, because reading it reports its absence.
   bool is_there(const std::string& image) const;
-  /// Draws a phantom, in the mesher's own size where it names none. Throws PreparationError.
+  /// Draws a phantom, in the mesher's default size if the name has no size. Throws PreparationError.
   void draw(const std::string& phantom, const std::string& scratch_folder,
             const StopQuery& stop_requested) const;
 

@@ -11,9 +11,10 @@ namespace podm::bench {
 namespace {
 
 constexpr int kExitUnmet = 1;
-constexpr int kExitRefused = 77;  // a peer ends with it: peers/README.md
+constexpr int kExitRefused = 77;  // a peer exits with it to decline a trial: peers/README.md
 
-// Guarantees by name with the number of their misses, e.g. "radius_edge 3, facet_angle 1".
+// Returns the missed guarantees with the number of misses, e.g. "radius_edge 3, facet_angle 1", and the stop
+// reason of an incomplete run.
 std::string unmet(const MeshRecord& record) {
   std::string text;
   for (const auto& [name, misses] : record.guarantees)
@@ -23,7 +24,8 @@ std::string unmet(const MeshRecord& record) {
   return text;
 }
 
-// What a program left, or nothing with the fault added to the reason.
+// Returns the record that a program wrote. If it is missing or faulty, returns nothing and adds the fault to
+// the reason.
 template <class Record>
 std::optional<Record> read_record(const std::string& path, const std::function<Json(Json)>& complete,
                                   TrialResult& result) {

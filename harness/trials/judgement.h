@@ -1,4 +1,4 @@
-// What came of a process by how it ended and by the record that it left.
+// Judges a process by its end and by the record that it left.
 #pragma once
 
 #include <string>
@@ -7,7 +7,7 @@
 
 namespace podm::bench {
 
-/// Sets status, reason and record of a mesh that the process of `result` was to make.
+/// Sets status, reason and record of a mesh that the process of `result` was asked to make.
 void judge(const Trial& trial, const std::string& record_path, TrialResult& result);
 
 /// Sets status, reason and record of a measurement of the machine.

@@ -20,7 +20,7 @@ namespace {
 constexpr const char* kProgram = "likwid-perfctr";
 constexpr const char* kOutput = "/likwid.csv";
 
-// "0,1,4": what this process may run on.
+// Returns the processors that this process may run on: "0,1,4".
 std::string usable_processor_list() {
   cpu_set_t allowed;
   CPU_ZERO(&allowed);
@@ -35,15 +35,15 @@ std::vector<std::string> command_of(const std::string& events, const std::string
   return {kProgram, "-f", "-c", usable_processor_list(), "-g", events, "-o", output};
 }
 
-// likwid's short name of this processor, a folder of groups; empty when likwid knows none.
+// Returns likwid's short name of this processor, which is the name of a folder of groups; empty when likwid
+// has none.
 std::string architecture() {
   std::istringstream lines(ask({kProgram, "-i"}).text);
   const std::string name = value_in(lines, "CPU short");
   return name == "nil" ? "" : name;
 }
 
-// What likwid-perfctr says when it refuses to count `events`, or a group of its own, in one line; empty: it
-// counts.
+// Returns likwid-perfctr's refusal to count `events`, or a group of its own, in one line; empty: it counts.
 std::string refusal_of(const std::string& events, const std::string& scratch_folder) {
   std::vector<std::string> command = command_of(events, scratch_folder + "/likwid_probe.csv");
   command.push_back("true");
@@ -53,7 +53,8 @@ std::string refusal_of(const std::string& events, const std::string& scratch_fol
                      reply.messages.empty() ? reply.outcome.describe() : reply.complaint());
 }
 
-// Why there are no counts on a processor of which likwid has no events. It may say more than its name does.
+// Returns the reason why there are no counts on a processor whose events likwid does not know. The program
+// may report more than the missing name.
 std::string refusal_of_processor(const std::string& group, const std::string& scratch_folder) {
   const std::string refusal = refusal_of(group, scratch_folder);
   return refusal.empty() ? fmt::format("{} does not know this processor", kProgram) : refusal;
@@ -109,7 +110,7 @@ std::vector<std::string> Likwid::wrap(const std::vector<std::string>& command,
   return wrapped;
 }
 
-// Lines EVENT,COUNTER,COUNT of each processor,... A count that is no number was not taken.
+// Reads lines EVENT,COUNTER,COUNT of each processor,... A count that is not a number was not taken.
 Counters Likwid::read(const std::string& folder) const {
   std::ifstream file(folder + kOutput);
   const std::string events = "," + events_ + ",";

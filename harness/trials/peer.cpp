@@ -70,7 +70,7 @@ Json complete_record(const Trial& trial, const Preparation& preparation, Json re
   if (!record.is_object()) return record;
   record["schema"] = kMesherSchema;
   record["algorithm"] = trial.options[kMesher];
-  record["guarantees"] = Json::object();  // it promises claims of the verifier instead
+  record["guarantees"] = Json::object();  // peers promise claims of the verifier instead
   record["stop_reason"] = kComplete;
   const double radius_mm = resolved_options(trial, preparation).value("radius_mm", 0.0);
   record["used"]["radius_mm"] = radius_mm;

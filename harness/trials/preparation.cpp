@@ -38,7 +38,7 @@ Preparation Preparer::make(const Trial& trial, const std::string& scratch_folder
     return make_anew(trial, scratch_folder, announce, stop_requested);
   } catch (const PreparationError& error) {
     const auto remembered = failures_.emplace(wanted.dump(), error).first;
-    remembered->second.process = {};  // it does not run again
+    remembered->second.process = {};  // the failed process counts once
     throw;
   }
 }

@@ -1,5 +1,5 @@
-// What has to be there before a trial's clock starts: its image as a file, and a radius where it asks for a
-// number of cells.
+// Makes the inputs of a trial before its clock starts: its image as a file, and a radius if the trial gives a
+// target number of cells.
 #pragma once
 
 #include <functional>
@@ -18,24 +18,24 @@ namespace podm::bench {
 struct Preparation {
   std::string image;                       ///< the file that is read
   std::string sha256;                      ///< hash of its bytes; "absent" where there is no file
-  std::optional<ResolvedRadius> resolved;  ///< where the trial asks for a number of cells
+  std::optional<ResolvedRadius> resolved;  ///< if the trial gives a target number of cells
 };
 
-/// The trial's options with radius and delta in place of the number of cells.
+/// The trial's options, with radius and delta in place of the target number of cells.
 Json resolved_options(const Trial& trial, const Preparation& preparation);
 
-/// Makes what is not there yet, once for all trials.
+/// Makes missing inputs, once for all trials.
 class Preparer {
  public:
-  /// Neither reads nor writes anything but what is in the folder of results.
+  /// Keeps phantoms and radii in the folder of results.
   Preparer(const std::string& podm, const std::string& podm_sha256, const std::string& results_folder);
 
-  /// Returns nothing while something has to be made first.
+  /// Returns nothing if an input must be made first.
   std::optional<Preparation> find(const Trial& trial);
 
-  /// Hears what is being made.
+  /// Receives the name of each input that is being made.
   using Announce = std::function<void(const std::string& what)>;
-  /// Makes what find() misses. Throws PreparationError. `scratch_folder` must exist.
+  /// Makes the inputs that find() misses. Throws PreparationError. `scratch_folder` must exist.
   Preparation make(const Trial& trial, const std::string& scratch_folder, const Announce& announce,
                    const StopQuery& stop_requested);
 
@@ -46,7 +46,7 @@ class Preparer {
   InputFiles inputs_;
   Radii radii_;
   FileHashes hashes_;
-  std::map<std::string, PreparationError> failures_;  // what failed once is not tried for each repeat
+  std::map<std::string, PreparationError> failures_;  // a failed input is not retried in each repeat
 };
 
 }  // namespace podm::bench

@@ -40,9 +40,9 @@ ProcessRequest request_of(const Trial& trial, const std::string& podm, const std
   return request;
 }
 
-// What is read of the record of a run that finds a radius.
+// The part of the calibration that is read, from the record of a run that finds a radius.
 struct Calibration {
-  std::vector<Json> meshes;  // made before the last
+  std::vector<Json> meshes;  // those before the last one
   static constexpr auto fields() { return std::tuple{field("meshes", &Calibration::meshes)}; }
 };
 struct RadiusRecord {
@@ -62,8 +62,8 @@ struct RadiusRecord {
   }
 };
 
-// The record of a run that went to its end; nothing of another. A guarantee that it misses is the trial's to
-// tell.
+// Returns the record of a complete run; nothing for another run. Missed guarantees are not judged here; the
+// trial reports them.
 std::optional<RadiusRecord> read_record(const std::string& path) {
   try {
     std::ifstream file(path);
@@ -75,7 +75,7 @@ std::optional<RadiusRecord> read_record(const std::string& path) {
   }
 }
 
-// All meshes made, the last among them; nothing where the mesher does not tell.
+// Returns the number of all meshes made, including the last; nothing if the mesher does not report them.
 std::optional<std::uint64_t> num_meshes(const Json& calibration) {
   try {
     return from_json<Calibration>(calibration).meshes.size() + 1;
@@ -154,7 +154,7 @@ ResolvedRadius Radii::resolve(const Trial& trial, const std::string& image, cons
   return as_in_rows(lines_.back());
 }
 
-// The file is written whole: a crash leaves no half line in it.
+// Writes the whole file at once. A crash then leaves no partial line.
 void Radii::store(RadiusLine line) {
   lines_.push_back(std::move(line));
   std::string text;

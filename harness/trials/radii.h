@@ -1,5 +1,5 @@
-// The circumradius that gives a number of cells, found once for an input, so that all trials that ask for
-// this number do the same work, on any number of cores and with any algorithm.
+// Finds the circumradius that gives a target number of cells, once per input. All trials with this target
+// then do the same work, on any number of cores and with any algorithm.
 #pragma once
 
 #include <optional>
@@ -28,20 +28,20 @@ struct ImageIdentity {
   }
 };
 
-/// A line of radii.jsonl: a radius and what it was found from, results/README.md.
+/// A line of radii.jsonl: a radius and its evidence, results/README.md.
 struct RadiusLine {
   std::string schema, key;
   ImageIdentity input;
   std::uint64_t target_elements = 0;
   std::optional<double> delta_asked_mm;
   double radius_mm = 0, delta_mm = 0;
-  std::uint64_t cells = 0;              ///< those of the mesh that is the evidence
-  std::optional<std::uint64_t> meshes;  ///< made to find it
-  double seconds = 0;                   ///< spent to find it
-  Json calibration, warnings;           ///< the mesher's own words
+  std::uint64_t cells = 0;              ///< cells of the mesh that is the evidence
+  std::optional<std::uint64_t> meshes;  ///< number of meshes made to find it
+  double seconds = 0;                   ///< time spent to find it
+  Json calibration, warnings;           ///< as the mesher wrote them
   std::vector<std::string> command;
   MesherIdentity mesher;
-  std::string date;  ///< UTC, written as ISO 8601 has it
+  std::string date;  ///< UTC, in the format of ISO 8601
   static constexpr auto fields() {
     using R = RadiusLine;
     return std::tuple{field("schema", &R::schema),
@@ -62,17 +62,17 @@ struct RadiusLine {
   }
 };
 
-/// A file of JSON lines, one a radius with what it was found from: results/README.md.
+/// A file of JSON lines, one per radius, with the evidence of each: results/README.md.
 class Radii {
  public:
-  /// Reads what the file holds; there need be none. A broken line is passed over.
+  /// Reads the file, which may be absent. A broken line is skipped.
   Radii(std::string podm, std::string podm_sha256, std::string path);
 
-  /// Returns nothing while there is no radius for the trial's number of cells, and delta where it gives one,
-  /// on an image of this hash.
+  /// Returns nothing if there is no radius for the trial's target number of cells (and delta, if given) on an
+  /// image of this hash.
   std::optional<ResolvedRadius> find(const Trial& trial, const std::string& image_sha256) const;
 
-  /// Finds it by a mesh on all usable processors and stores it. The trial's limits hold. Throws
+  /// Finds a radius by meshing on all usable processors, and stores it. The trial's limits apply. Throws
   /// PreparationError.
   ResolvedRadius resolve(const Trial& trial, const std::string& image, const std::string& image_sha256,
                          const std::string& scratch_folder, const StopQuery& stop_requested);

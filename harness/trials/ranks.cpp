@@ -25,8 +25,8 @@ std::string absence_of_ranks(const Trial& trial, const std::string& podm) {
   return is_over_mpi(trial.options) && !is_installed("mpirun") ? "mpirun is not installed" : "";
 }
 
-// More ranks than processors are allowed; those that wait leave the processor to others. The variables are
-// Open MPI's, which else refuses to run as root.
+// More ranks than processors are allowed; ranks that wait yield the processor. The variables are Open MPI's,
+// which otherwise refuses to run as root.
 std::vector<std::string> mesher_of(const Trial& trial, const std::string& podm) {
   const std::string ranks = std::to_string(num_ranks(trial));
   if (num_ranks(trial) == 0) return {podm, "mesh"};

@@ -7,7 +7,7 @@
 namespace podm::bench {
 namespace {
 
-constexpr double kImageBytesPerVoxel = 2;  // its label
+constexpr double kImageBytesPerVoxel = 2;  // a label
 
 ProcessRecord process_of(const Trial& trial, const TrialResult& result) {
   using End = ProcessOutcome::End;
@@ -27,7 +27,7 @@ ProcessRecord process_of(const Trial& trial, const TrialResult& result) {
   return record;
 }
 
-// The file as the mesher knows it, a peer as the harness does.
+// Returns the file as the mesher recorded it. For a peer the harness knows the file.
 InputRecord input_of(const Trial& trial, const TrialResult& result) {
   InputRecord input{trial.image, result.preparation.image, result.preparation.sha256, {}, result.image_size};
   if (!result.mesh || !result.mesh->input) return input;

@@ -1,4 +1,4 @@
-// How what came of a trial becomes a row: the mesher's own record, and around it what the harness saw.
+// Makes a row of a trial's result: the mesher's own record, and the harness's observations around it.
 #pragma once
 
 #include <optional>
@@ -10,25 +10,25 @@
 
 namespace podm::bench {
 
-/// What a row tells beside the trial and its result.
+/// The members of a row that do not come from the trial and its result.
 struct RowContext {
-  std::string experiment;         ///< its name
-  std::string key;                ///< names the turn: TrialKeys
-  std::uint64_t order_seed = 0;   ///< draws the schedule
-  double harness_s = 0;           ///< spent by this program since the row before
+  std::string experiment;         ///< name of the experiment
+  std::string key;                ///< identifies the turn: TrialKeys
+  std::uint64_t order_seed = 0;   ///< seed of the schedule
+  double harness_s = 0;           ///< time that this program spent since the row before
   ProgramRecords programs;        ///< describe_programs()
   EnvironmentRecord environment;  ///< before the trial
 };
 
-/// Rows with these options and counters are simulated in virtual time, on a described machine and on
-/// cachegrind's core, else measured.
+/// Rows with these options and counters are simulated if they ran in virtual time, on a described machine or
+/// on cachegrind's core; otherwise they are measured.
 Basis basis_of(const Json& asked, const Counters& counters);
 
-/// Peak resident bytes a cell beyond the labels of the image; nothing without a mesh. Of several processes
-/// the memory is that of the largest, which has its even share of the cells.
+/// Returns the peak resident bytes per cell without the labels of the image; nothing without a mesh. If there
+/// are several processes, the memory is that of the largest process, divided by its even share of the cells.
 std::optional<double> bytes_per_cell_beyond_image(const TrialResult& result, int num_processes = 1);
 
-/// The row of a trial that ran, whatever came of it.
+/// Makes the row of a trial that ran, whatever its outcome.
 Row make_row(const RowContext& context, const Trial& trial, const Turn& turn, const TrialResult& result);
 
 }  // namespace podm::bench

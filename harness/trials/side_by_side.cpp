@@ -10,18 +10,18 @@
 namespace podm::bench {
 namespace {
 
-// What the row tells of a copy.
+// The entry of a copy in the row.
 CopyRecord entry_of(int processor, const MeshRecord& record) {
   return {processor, record.cells, record.phases_s, record.refine_cells_per_second, record.cells_per_second};
 }
 
-// Asked while the first copy is well, so that it has a mesh.
+// Returns the fault of a copy. The first copy must have status ok, so that it has a mesh.
 std::string fault_of(const TrialResult& copy, const TrialResult& first) {
   if (copy.status != Status::kOk) return copy.reason;
   return copy.mesh->mesh_sha256 == first.mesh->mesh_sha256 ? "" : "another mesh";
 }
 
-// The first fault is the trial's.
+// The trial takes the first fault.
 void blame(const TrialResult& copy, int number, TrialResult& result) {
   if (result.status != Status::kOk) return;
   const std::string fault = fault_of(copy, result);

@@ -1,5 +1,5 @@
-// Several processes of one trial at the same time, each on a processor of its own: what the machine gives as
-// many threads at most that share neither mesh nor image.
+// Several processes of one trial at the same time, each on a processor of its own. They share neither mesh
+// nor image; their speed is therefore an upper bound for the same number of threads.
 #pragma once
 
 #include <string>
@@ -8,14 +8,14 @@
 
 namespace podm::bench {
 
-/// Processes that the trial asks for at the same time; 0: one, wherever it likes.
+/// Returns the number of processes that the trial runs at the same time; 0: one process, not bound.
 int num_copies(const Trial& trial);
 
-/// The files of a copy, from 0, are here. The first's are those of the trial.
+/// Returns the folder of a copy, counted from 0. The first copy uses the folder of the trial.
 std::string folder_of_copy(const std::string& scratch_folder, int copy);
 
-/// Runs one request a copy and sets what `result` tells of the first, and of all `side_by_side`. Any that
-/// does not do well, or makes another mesh than the first, is the trial's fault.
+/// Runs one request per copy. Sets the members of `result` from the first copy, and `side_by_side` from all.
+/// A copy that fails, or that makes another mesh than the first, fails the trial.
 void run_side_by_side(const Trial& trial, std::vector<ProcessRequest> requests,
                       const std::string& scratch_folder, const StopQuery& stop_requested,
                       TrialResult& result);

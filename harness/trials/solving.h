@@ -1,4 +1,4 @@
-// A mesh handed to a finite-element solver, a program of its own, after the clock has stopped.
+// Hands a mesh to a finite-element solver, a separate program, after the clock has stopped.
 #pragma once
 
 #include <string>
@@ -11,7 +11,7 @@ namespace podm::bench {
 
 struct Solving {
   std::optional<SolveRecord> record;
-  std::string fault;  ///< why there is no record
+  std::string fault;  ///< the reason why there is no record
   bool is_interrupted = false;
 };
 
@@ -19,7 +19,7 @@ struct Solving {
 Solving solve_on_mesh(const Trial& trial, const std::string& mesh_path, const std::string& program,
                       const StopQuery& stop_requested);
 
-/// Why the program cannot run here; empty: it can.
+/// Returns the reason why the program cannot run here; empty: it can.
 std::string absence_of_solver(const std::string& program);
 
 }  // namespace podm::bench

@@ -43,7 +43,7 @@ std::vector<std::string> mesh_command(const Trial& trial, const Preparation& pre
   return command;
 }
 
-// A peer writes what format it likes and names the file.
+// A peer writes any format and names the file in its record.
 std::string mesh_path(const Trial& trial, const std::optional<MeshRecord>& record,
                       const std::string& folder) {
   return record && record->mesh ? fmt::format("{}/{}", folder, *record->mesh) : folder + mesh_name(trial);
@@ -65,14 +65,16 @@ ProcessRequest request_of(const Trial& trial, const std::vector<std::string>& co
           .memory_limit_bytes = trial.memory_limit_bytes()};
 }
 
-// More than any mesher was seen to take for its mesh and files, by the number of cells that is asked for.
+// Returns more bytes than any mesher was seen to use for its mesh and files, by the target number of cells,
+// but at most kWarmBytes.
 std::size_t bytes_to_warm(const Trial& trial) {
   constexpr std::size_t kOfProgram = std::size_t{1} << 27, kOfCell = 400;
   const auto cells = trial.options.value(kTargetElements, kWarmBytes / kOfCell);
   return std::min(kWarmBytes, kOfProgram + kOfCell * cells);
 }
 
-// Warms no more than half of what is free: memory is to be touched, not to be had. Simulated times need none.
+// Warms the memory of one copy, and of further copies up to half of the free memory: the memory must be
+// touched, but not exhausted. Simulated times do not depend on it.
 void warm_memory_of(const Trial& trial) {
   if (basis_of(trial.options, {}) == Basis::kSimulated) return;
   const auto free_bytes = static_cast<std::size_t>(std::max(0L, sysconf(_SC_AVPHYS_PAGES))) *
@@ -82,7 +84,7 @@ void warm_memory_of(const Trial& trial) {
   warm_memory(std::max(bytes, std::min(copies * bytes, free_bytes / 2)));
 }
 
-// A mesh that does not prove itself is unmet.
+// A mesh that is not proved has status unmet.
 void add_fault(const std::string& fault, bool is_interrupted, TrialResult& result) {
   if (fault.empty()) return;
   result.status = is_interrupted ? Status::kInterrupted : Status::kUnmet;
@@ -94,7 +96,7 @@ void add_fault(const std::string& fault, bool is_interrupted, TrialResult& resul
 struct TrialRunner::Run {
   const Trial& trial;
   const Preparation& preparation;
-  const std::string& folder;  ///< holds its files
+  const std::string& folder;  ///< the files of the trial
   const StopQuery& stop_requested;
 };
 

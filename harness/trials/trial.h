@@ -1,4 +1,4 @@
-// One trial: the mesher run once as a child process, and what came of it.
+// Runs the mesher once, as a child process, and collects its result.
 #pragma once
 
 #include <map>
@@ -18,22 +18,22 @@ namespace podm::bench {
 
 struct TrialResult {
   Status status = Status::kFailed;
-  std::string reason;                ///< why the status is not kOk
+  std::string reason;                ///< the reason of a status that is not kOk
   Preparation preparation;           ///< the image that was read, and the radius
   std::vector<std::string> command;  ///< the arguments of the process
-  std::optional<PeerRecord> peer;    ///< the mesher, where it is not podm
+  std::optional<PeerRecord> peer;    ///< the mesher, if it is not podm
   ProcessOutcome process;
-  Counters counters;                             ///< what was counted while it ran
-  std::optional<Measured> busy_elsewhere;        ///< processors that other work kept busy while it ran
-  std::uint64_t mesh_bytes = 0;                  ///< size of the mesh file
-  double preparation_s = 0, verification_s = 0;  ///< before the mesher starts and after it has ended
-  std::string stderr_tail;                       ///< last words of a trial that is not kOk
-  std::optional<MeshRecord> mesh;                ///< what the mesher recorded; nothing without a mesh
-  std::optional<MemoryLevelsRecord> measured;    ///< what a trial that makes no mesh measured of the machine
-  std::optional<ImageSize> image_size;           ///< nothing when the mesher could not tell
-  std::optional<Replay> replay;                  ///< nothing when it was not asked for
-  std::optional<std::vector<CopyRecord>> side_by_side;  ///< nothing where the trial asks for no copies
-  std::optional<SolveRecord> solve;                     ///< nothing where none was asked for or it failed
+  Counters counters;                                    ///< counts of the process
+  std::optional<Measured> busy_elsewhere;               ///< processors that other work kept busy meanwhile
+  std::uint64_t mesh_bytes = 0;                         ///< size of the mesh file
+  double preparation_s = 0, verification_s = 0;         ///< before the mesher starts and after it has ended
+  std::string stderr_tail;                              ///< end of stderr of a trial that is not kOk
+  std::optional<MeshRecord> mesh;                       ///< the mesher's record; unset without a mesh
+  std::optional<MemoryLevelsRecord> measured;           ///< measurement of a trial that makes no mesh
+  std::optional<ImageSize> image_size;                  ///< unset if the mesher reports no size
+  std::optional<Replay> replay;                         ///< unset if it was not requested
+  std::optional<std::vector<CopyRecord>> side_by_side;  ///< unset if the trial has no copies
+  std::optional<SolveRecord> solve;                     ///< unset if it was not requested or failed
 };
 
 /// Runs trials one after the other.
@@ -42,24 +42,23 @@ class TrialRunner {
   explicit TrialRunner(Programs programs)
       : programs_(std::move(programs)), peers_(programs_.peers, programs_.podm) {}
 
-  /// Why the trial cannot run here and need not; empty: it can.
+  /// Returns the reason to skip a trial that cannot run here; empty: it can run.
   std::string why_skipped(const Trial& trial);
 
   /// Runs the mesher on the trial, then the verifier on its mesh, whose verdicts join the record, and the
-  /// replay and the solver where they are asked for. Files are written into `scratch_folder`, which must
-  /// exist.
+  /// replay and the solver if they are requested. Writes files into `scratch_folder`, which must exist.
   TrialResult run(const Trial& trial, const Preparation& preparation, const std::string& scratch_folder,
                   const StopQuery& stop_requested = {});
 
  private:
-  // What a trial's steps have in common.
+  // The data that the steps of a trial share.
   struct Run;
   const std::optional<ImageSize>& image_size(const std::string& image);
   void make_mesh(const Run& run, TrialResult& result);
   // Measures the machine and makes no mesh.
   void measure(const Run& run, TrialResult& result);
   std::vector<std::string> command_of(const Run& run, const std::string& folder, TrialResult& result);
-  // Returns null where the kernel counts.
+  // Returns null if the kernel counts.
   const CounterTool* counter_tool_of(const Run& run);
   void run_program(const Run& run, TrialResult& result);
   void run_copies(const Run& run, TrialResult& result);
@@ -69,7 +68,7 @@ class TrialRunner {
 
   Programs programs_;
   Peers peers_;
-  std::map<std::string, std::optional<ImageSize>> image_sizes_;        // each image is looked at once
+  std::map<std::string, std::optional<ImageSize>> image_sizes_;        // each image is read once
   std::map<std::string, std::unique_ptr<CounterTool>> counter_tools_;  // each is asked once
   std::optional<std::string> absence_of_solver_;                       // it is asked once
 };

@@ -11,8 +11,9 @@ namespace podm::bench {
 
 namespace {
 
-// What of the machine decides the outcome. Virtual workers are spread over its NUMA nodes where the trial
-// describes no machine. Cachegrind simulates, too, but where it is missing the trial is measured.
+// Returns the part of the machine that decides the outcome. Virtual workers are spread over the NUMA nodes of
+// this machine if the trial describes no machine. Cachegrind simulates, too, but if it is missing, the trial
+// is measured.
 Json machine_that_counts(const Trial& trial, const MachineRecord& machine) {
   const bool is_simulated = basis_of(trial.options, {}) == Basis::kSimulated;
   if (!is_simulated || trial.options.value(kCounters, "") == kCachegrind) return to_json(machine);

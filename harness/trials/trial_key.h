@@ -1,4 +1,5 @@
-// What makes two runs of the mesher the same measurement, so that a run may be resumed.
+// Keys that identify a measurement. Two runs with the same key are the same measurement, and a run can be
+// resumed.
 #pragma once
 
 #include <string>
@@ -9,19 +10,19 @@
 
 namespace podm::bench {
 
-/// Names a turn by all that can change its outcome: the mesher's bytes, the input's bytes, the options with
-/// the radius that was found, the machine and the number of the repeat. Not by paths, limits or the verifier,
-/// and of trials in virtual time not by the machine that plays them.
+/// Names a turn by everything that can change its outcome: the mesher's bytes, the input's bytes, the options
+/// with the radius found, the machine and the number of the repeat. Paths, limits and the verifier do not
+/// count, nor does the machine that runs a trial in virtual time.
 class TrialKeys {
  public:
-  /// `podm` is the mesher's file, which podm-mpi is beside.
+  /// `podm` is the file of the mesher; podm-mpi is beside it.
   TrialKeys(std::string mesher_sha256, MachineRecord machine, Peers peers = {}, std::string podm = {})
       : mesher_sha256_(std::move(mesher_sha256)),
         machine_(std::move(machine)),
         peers_(std::move(peers)),
         podm_(std::move(podm)) {}
 
-  /// 64 hexadecimal digits. Throws InputError when a topology cannot be read or a peer is unknown.
+  /// Returns 64 hexadecimal digits. Throws InputError when a topology cannot be read or a peer is unknown.
   std::string of(const Trial& trial, const Turn& turn, const Preparation& preparation);
 
  private:

@@ -12,12 +12,12 @@
 namespace podm::bench {
 namespace {
 
-constexpr int kExitDiffers = 1;  // podm replay ends with it
+constexpr int kExitDiffers = 1;  // exit code of podm replay
 
-// What is read of podm-verify's report.
+// The parts of podm-verify's report that are read.
 struct HistogramReport {
   std::string name;
-  std::optional<double> minimum, maximum;  // nothing where not finite
+  std::optional<double> minimum, maximum;  // unset if not finite
   std::vector<std::uint64_t> counts;
   static constexpr auto fields() {
     using H = HistogramReport;
@@ -25,7 +25,7 @@ struct HistogramReport {
                       field("counts", &H::counts)};
   }
 };
-struct ImageTopologyReport {  // whole numbers, of either sign
+struct ImageTopologyReport {  // integers of either sign
   double components_6 = 0, components_26 = 0, euler_6 = 0, euler_26 = 0;
   static constexpr auto fields() {
     using T = ImageTopologyReport;
@@ -61,7 +61,7 @@ struct VerifierReport {
   static constexpr auto fields() { return std::tuple{field("claims", &VerifierReport::claims)}; }
 };
 
-// Returns nothing where there is no report or not all of it.
+// Returns nothing if there is no complete report.
 std::optional<VerifierReport> read_report(const std::string& path) {
   try {
     std::ifstream file(path);
@@ -71,7 +71,7 @@ std::optional<VerifierReport> read_report(const std::string& path) {
   }
 }
 
-// Of any claim that looks at the cells' shapes: they count alike.
+// Returns the angles of any claim that examines the cells' shapes. All such claims count alike.
 std::optional<DihedralRecord> dihedral_angles_of(const VerifierReport& report) {
   for (const auto& [claim, told] : report.claims)
     for (const HistogramReport& histogram : told.histograms.value_or(std::vector<HistogramReport>()))
@@ -84,7 +84,7 @@ bool is_between(double value, double one, double other) {
   return std::min(one, other) <= value && value <= std::max(one, other);
 }
 
-// The claim `surface` counts components and Euler numbers of the mesh and, where it has one, of the image.
+// The claim `surface` counts components and Euler numbers of the mesh and, if it has one, of the image.
 std::optional<TopologyRecord> topology_of(const VerifierReport& report) {
   const ClaimReport* const surface = report.claims.find("surface");
   if (surface == nullptr || !surface->details || !surface->details->labels) return {};
@@ -99,7 +99,8 @@ std::optional<TopologyRecord> topology_of(const VerifierReport& report) {
   return topology;
 }
 
-// It takes some ten seconds of processor time for each mesh of a phantom, which kick-tires does not have.
+// The claim takes about ten seconds of processor time per mesh of a phantom, which is too much for
+// kick-tires.
 bool asks_fidelity(const Trial& trial) {
   const bool is_of_podm = trial.options.value(kMesher, kPodm) == kPodm;
   return trial.options.value(kFidelity, is_of_podm && trial.tier != Tier::kKickTires);
@@ -119,7 +120,7 @@ std::string fault_of(const ByName<Proof>& verdicts, const MeshRecord& record) {
 
 }  // namespace
 
-// A proof may take longer than the mesh, and of a large one as long as that may.
+// A proof may take longer than the mesh, and the proof of a large mesh as long as the mesh may take.
 double timeout_of_proof_s(const Trial& trial) { return std::max(600.0, trial.timeout_s); }
 
 Verification verify_mesh(const Trial& trial, const std::string& image, const MeshRecord& record,

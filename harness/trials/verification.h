@@ -1,4 +1,4 @@
-// A mesh handed to podm-verify, a program of its own, after the clock has stopped.
+// Hands a mesh to podm-verify, a separate program, after the clock has stopped.
 #pragma once
 
 #include <string>
@@ -12,31 +12,33 @@ namespace podm::bench {
 inline constexpr const char* kScheduleName = "/schedule.jsonl";  ///< its file in the folder of a trial
 
 struct Verification {
-  ByName<Proof> verdicts;  ///< one a claim; empty when the verifier told nothing
+  ByName<Proof> verdicts;  ///< one per claim; empty if the verifier reports nothing
   std::optional<DihedralRecord> dihedral_deg;
   std::optional<TopologyRecord> topology;
-  std::string fault;  ///< why the mesh is not proved; empty: every claim promised passes
+  std::string fault;  ///< the reason why the mesh is not proved; empty: all promised claims pass
   bool is_interrupted = false;
 };
 
-/// How long a program may take that looks at the trial's mesh.
+/// The time limit of a program that checks the trial's mesh.
 double timeout_of_proof_s(const Trial& trial);
 
-/// Every claim; fidelity where the trial asks for it, or says nothing of it and is podm's, of another tier
-/// than kick-tires; dihedral of optimised cells and where it is promised, delaunay of cells that are not
-/// optimised. `record` is the mesher's, of the mesh at `mesh_path`.
+/// Asks podm-verify for all claims, four of them under conditions: fidelity if the trial sets it, or if the
+/// trial leaves it unset, is of podm and is not in tier kick-tires; dihedral for optimised cells and if it is
+/// promised; delaunay for cells that are not optimised; size if the mesh has a bound. `record` is the
+/// mesher's, of the mesh at `mesh_path`.
 Verification verify_mesh(const Trial& trial, const std::string& image, const MeshRecord& record,
                          const std::string& mesh_path, const std::string& verifier, const std::string& folder,
                          const StopQuery& stop_requested);
 
-inline constexpr const char* kLogName = "/run.log";  ///< the log of a trial's operations, in its folder
+inline constexpr const char* kLogName = "/run.log";  ///< the operation log of a trial, in its folder
 
 struct ReplayAttempt {
   Replay replay;
   bool is_interrupted = false;
 };
 
-/// Whether the operations in the folder's log, one after the other, make the mesh that the run made.
+/// Replays the operations of the folder's log one after the other, and compares the mesh with that of the
+/// run.
 ReplayAttempt replay_mesh(const Trial& trial, const std::string& image, const std::string& podm,
                           const std::string& folder, const StopQuery& stop_requested);
 

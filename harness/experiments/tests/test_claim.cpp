@@ -1,4 +1,4 @@
-// The form of claims, and what is refused.
+// Tests of the form of claims, and of faults that are refused.
 #include "experiments/claim.h"
 
 #include <gtest/gtest.h>
@@ -70,7 +70,7 @@ TEST(Claim, FaultsNameThePlace) {
     std::string lines, place, word;
   };
   const Case cases[] = {
-      {"", "claim.toml:", "basis"},  // what is missing
+      {"", "claim.toml:", "basis"},  // absent keys
       {"basis = 'measured'\n", "claim.toml:", "value"},
       {"basis = 'measured'\nvalue = 'seconds'\n", "claim.toml:", "kind"},
       {bound, "claim.toml:", "at_least or at_most"},
@@ -79,17 +79,17 @@ TEST(Claim, FaultsNameThePlace) {
       {trend + "along = 'threads'\n", "claim.toml:", "direction"},
       {share + "value = 'ended'\n", "claim.toml:", "at_least"},
       {bound + "at_most = 1\ncolour = 2\n",
-       "claim.toml:7:1:", "colour"},  // what no claim, or not this kind, has
+       "claim.toml:7:1:", "colour"},  // keys that no claim, or not this kind, has
       {bound + "at_most = 1\nof = {algorithm = 'podm'}\n", "claim.toml:7:1:", "of"},
       {trend + "along = 'threads'\ndirection = 'falls'\nat_most = 1\n", "claim.toml:8:1:", "at_most"},
-      {"basis = 'guessed'\n" + bound.substr(19), "claim.toml:3:9:", "simulated"},  // words that there are not
+      {"basis = 'guessed'\n" + bound.substr(19), "claim.toml:3:9:", "simulated"},  // unknown words
       {"basis = 'measured'\nvalue = 'beauty'\nkind = 'bound'\nat_most = 1\n",
        "claim.toml:4:9:", "lost_seconds"},
       {"basis = 'measured'\nvalue = 'seconds'\nkind = 'proof'\n", "claim.toml:5:8:", "share"},
       {bound + "at_most = 1\nextent = 'some'\n", "claim.toml:7:10:", "one socket"},
       {trend + "along = 'threads'\ndirection = 'wanders'\n", "claim.toml:7:13:", "grows"},
       {ratio + "of = {algorithm = 'podm'}\nover = 'the best'\n", "claim.toml:8:8:", "best of the others"},
-      {bound + "at_most = 'x'\n", "claim.toml:6:11:", "number"},  // other types
+      {bound + "at_most = 'x'\n", "claim.toml:6:11:", "number"},  // wrong types
       {bound + "at_most = nan\n", "claim.toml:6:11:", "number"},
       {bound + "at_most = 1\nwhere = 'podm'\n", "claim.toml:7:9:", "table"},
       {bound + "at_most = 1\nneeds_cores = 0\n", "claim.toml:7:15:", "needs_cores"},
@@ -105,7 +105,7 @@ TEST(Claim, FaultsNameThePlace) {
       {share + "value = 'ended'\nat_least = 1.5\n", "claim.toml:6:12:", "up to 1"},
       {share + "value = 'ended'\nat_least = 1\nneeds_cores = 2\n", "claim.toml:7:15:", "measured"},
       {share + "value = 'ended'\nat_least = 1\nextent = 'one socket'\n", "claim.toml:7:10:", "simulated"},
-      {bound + "at_most = 1\ntrials = ['2M']\n", "claim.toml:7:10:", "2M"},  // what no trial has
+      {bound + "at_most = 1\ntrials = ['2M']\n", "claim.toml:7:10:", "2M"},  // values that no trial has
       {bound + "at_most = 1\nwhere = {contention = 'locl'}\n", "claim.toml:7:23:", "contention=locl"},
       {bound + "at_most = 1\nwhere = {contention = ['local', 'locl']}\n", "claim.toml:7:33:", "locl"},
       {bound + "at_most = 1\nwhere = {colour = 'red'}\n", "claim.toml:7:19:", "colour"},

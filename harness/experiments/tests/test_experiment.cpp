@@ -29,7 +29,7 @@ class ExperimentTest : public testing::Test {
     const bool has_claims = text.find("[[claims]]") != std::string::npos;
     return read_experiment(folder_.write("some.toml", has_claims ? text : text + kClaim));
   }
-  // What read_experiment() says of the text, without the folder.
+  // Returns the fault that read_experiment() reports for the text, without the folder.
   std::string fault(const std::string& text) {
     try {
       read(text);
@@ -98,7 +98,7 @@ target_elements = 1_000
   EXPECT_EQ(second.image, folder_ / "data/head.nii");  // beside the experiment
   EXPECT_TRUE(second.if_exists);
   EXPECT_EQ(second.options, Json({{"threads", 1}, {"target_elements", 1000}}));
-  EXPECT_EQ(second.timeout_s, 7);  // the experiment's, and so on
+  EXPECT_EQ(second.timeout_s, 7);  // of the experiment, as the following ones
   EXPECT_EQ(second.memory_limit_gib, 2);
   EXPECT_EQ(second.repeats, 3);
   EXPECT_EQ(second.warmups, 1);
@@ -116,8 +116,8 @@ TEST_F(ExperimentTest, FaultsNameFileLineAndColumn) {
     std::string text, place, word;
   };
   const Case cases[] = {
-      {"title = \"T\"\nclaim = = 1\n", "some.toml:2:", ""},                     // no TOML
-      {"colour = 1\n" + kHead + kTrial, "some.toml:1:1:", "colour"},            // unknown keys, anywhere
+      {"title = \"T\"\nclaim = = 1\n", "some.toml:2:", ""},                     // not TOML
+      {"colour = 1\n" + kHead + kTrial, "some.toml:1:1:", "colour"},            // unknown keys, in any place
       {kHead + "spacing = 1\n" + kTrial, "some.toml:5:1:", "spacing"},          //
       {kHead + kTrial + "radios_mm = 1\n", "some.toml:8:1:", "radios_mm"},      //
       {"title = 3\nclaim = 'C'\n", "some.toml:1:9:", "title"},                  // wrong types
@@ -175,7 +175,7 @@ TEST_F(ExperimentTest, FaultsNameFileLineAndColumn) {
       {kHead + kTrial + "ranks = 2\ncarrier = 'mpi'\nmesher = 'cgal'\n", "some.toml:8:9:", "podm alone"},
       {"tier = 'huge'\n" + kHead + kTrial, "some.toml:1:8:", "kick-tires"},
       {kHead + "[[trials]]\nname = 'x'\ninput = ['a', 'b']\n", "some.toml:7:15:", "inputs.b"},
-      {kHead, "some.toml:1:", "trials"},  // what is missing
+      {kHead, "some.toml:1:", "trials"},  // absent keys
       {kHead + "[[trials]]\ninput = 'a'\n", "some.toml:5:", "name"},
       {"claim='C'\n" + kTrial, "some.toml:1:", "title"},
       {"", "some.toml:", "title"},
@@ -321,7 +321,7 @@ TEST_F(ExperimentTest, OtherMeshersTakeRadiusDeltaAndThreadsAlone) {
   EXPECT_NE(what.find("pin is an option of podm alone"), std::string::npos) << what;
 }
 
-// What stands in experiments/ is complete, and each has a part for every reader's patience.
+// The experiments in experiments/ are complete, and each has trials in the tiers kick-tires and default.
 TEST(Experiments, StateClaimsAndTimeAndHaveAKickTiresTier) {
   for (const std::string& path : experiment_files(PODM_EXPERIMENTS)) {
     const Experiment experiment = read_experiment(path);

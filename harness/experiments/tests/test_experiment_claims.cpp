@@ -1,6 +1,6 @@
-// Every claim of every experiment in experiments/, by rows made up from the claim's own form: some bear it
-// out, some break it, some decide nothing. What the kinds mean is in test_judge.cpp, what the measures read
-// in test_measure.cpp.
+// Tests every claim of every experiment in experiments/ with rows made up from the claim's own form: rows
+// that satisfy it, rows that break it, and rows that decide nothing. test_judge.cpp tests the kinds of
+// claims, test_measure.cpp the measures.
 #include <fnmatch.h>
 #include <gtest/gtest.h>
 
@@ -17,7 +17,7 @@ namespace {
 
 using Rows = std::vector<Row>;
 
-constexpr double kMuch = 1e6;  // so that counts, which are whole, keep small differences
+constexpr double kMuch = 1e6;  // keeps small differences of counts, which are integers
 
 std::uint64_t many(double value) { return static_cast<std::uint64_t>(std::llround(kMuch * value)); }
 
@@ -74,7 +74,7 @@ const std::map<std::string, SetValue> kSetters = {
      [](Row& row, double value) {
        mesh_of(row).phases_s = {{"refine", value}};
      }},
-    {"cells",  // in millions, as they are whole numbers: ratios stay
+    {"cells",  // in millions, because they are integers; ratios are kept
      [](Row& row, double value) {
        mesh_of(row).cells = static_cast<std::uint64_t>(std::llround(1e6 * value));
      }},
@@ -228,14 +228,15 @@ const std::map<std::string, SetValue> kSetters = {
     {"passed", [](Row& row, double value) { row.status = value == 1 ? Status::kOk : Status::kUnmet; }},
 };
 
-// Makes the row's measure so much.
+// Sets the row's measure to `value`.
 void set_value(Row& row, const std::string& measure, double value) {
   const auto setter = kSetters.find(measure);
   ASSERT_NE(setter, kSetters.end()) << "this test does not know how to make rows of " << measure;
   setter->second(row, value);
 }
 
-// Rows of the first trials that the claim takes, of several numbers of threads where those are the machine's.
+// Returns rows of the first trials of the claim, with several numbers of threads if they depend on the
+// machine.
 Rows rows_of(const Experiment& experiment, const Claim& claim) {
   Rows rows;
   const std::string pattern = claim.trials.empty() ? "*" : claim.trials.front();
@@ -259,7 +260,7 @@ Rows rows_of(const Experiment& experiment, const Claim& claim) {
   return in_six_rounds(rows);
 }
 
-// The value of a row where the claim's ratio, bound or factor comes to `value`.
+// Returns the value of a row for which the claim's ratio, bound or factor is `value`.
 double value_of(const Claim& claim, const Row& row, double value) {
   const Json options = options_of(row);
   if (claim.kind == ClaimKind::kTrend) {
@@ -337,7 +338,7 @@ void expect_undecided(const Experiment& experiment, const Claim& claim) {
     for (Row& row : other) row.basis = claim.basis == Basis::kMeasured ? Basis::kSimulated : Basis::kMeasured;
     expect_open(claim, other, "of another basis");
   }
-  Rows lonely = fine;  // a series without the one it is compared with
+  Rows lonely = fine;  // a series without its counterpart
   std::erase_if(lonely, [&](const Row& row) { return matches(options_of(row), claim.of); });
   if (!claim.of.empty() && !names(claim.over, "threads")) expect_open(claim, lonely, "without a series");
   Rows small = fine;
@@ -367,7 +368,7 @@ TEST(ExperimentClaims, HaveNamesOfTheirOwn) {
   EXPECT_THROW(check_claim_names(experiments), InputError);
 }
 
-// What is published as failed is claimed, so that a verdict says so.
+// Published failures are claims, so that verdicts show them.
 TEST(ExperimentClaims, StateWhatFailedWithItsReason) {
   const std::pair<const char*, const char*> published[] = {
       {"contention", "local-loses-least"},

@@ -1,4 +1,5 @@
-// Rounds of an experiment whose machine changes its speed, with a mesher and probes that the test makes up.
+// Tests of the rounds of an experiment whose machine changes its speed, with a made-up mesher and made-up
+// probes.
 #include "experiments/experiment_run.h"
 
 #include <gtest/gtest.h>
@@ -17,7 +18,7 @@ namespace {
 
 ProbeRecord at_speed(double speed) { return {100 / speed, 10 * speed, 0.4 / speed}; }
 
-// A source that goes through these speeds; a run's first probe sees the first of them alone.
+// A source of these speeds in turn. A run's first probe sees only the first speed.
 class Speeds {
  public:
   explicit Speeds(std::vector<double> speeds) : speeds_(speeds.begin(), speeds.end()) {
@@ -31,7 +32,7 @@ class Speeds {
       return Probe(at_speed(speed));
     };
   }
-  /// The run's first one counts once.
+  /// Returns the number of probes; the run's first one counts once.
   int num_probes() const { return std::max(0, num_taken_ - RoundProbes::kFirstRepeats + 1); }
 
  private:
@@ -77,7 +78,8 @@ TEST(RoundProbes, WhatIsUnavailableDoesNotMove) {
 
 class ExperimentRunTest : public testing::Test {
  protected:
-  // Two trials of so many rounds on an image, and a claim on the ratio of their times.
+  // Writes an experiment with two trials of `repeats` rounds on an image, and a claim on the ratio of their
+  // times.
   void write_experiment(int repeats, const std::string& more = "") {
     folder_.write("exp.toml", fmt::format(R"(title = "T"
 claim = "C"

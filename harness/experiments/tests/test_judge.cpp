@@ -1,4 +1,4 @@
-// Rows that must turn each kind of claim either way, and rows that decide nothing.
+// Tests of rows that make each kind of claim hold or fail, and of rows that decide nothing.
 #include "experiments/judge.h"
 
 #include <gtest/gtest.h>
@@ -18,14 +18,14 @@ Rows operator+(Rows a, const Rows& b) {
   return a;
 }
 
-// On the rows of one round as if each of six rounds had found the same.
+// Judges the rows of one round as if each of six rounds had the same rows.
 Judgement judged(const Claim& claim, const Rows& rows) { return judge(claim, in_six_rounds(rows)); }
 
 Verdict verdict_of(const Claim& claim, const Rows& rows) { return judged(claim, rows).verdict; }
 
 bool has(const std::string& text, const std::string& words) { return text.find(words) != std::string::npos; }
 
-// The row of a trial that came to no mesh.
+// The row of a trial that made no mesh.
 Row failed(Row row, Status status = Status::kTimedOut) {
   row.status = status;
   row.reason = "killed after 300 s";
@@ -107,8 +107,8 @@ TEST(JudgeRatio, ComparesWithinGroupsOfEqualOptions) {
 TEST(JudgeRatio, IsTheMedianOfRatiosWithinRounds) {
   const Claim claim = read_claim_of(kRatio);
   Rows rows;
-  // Each round on a slower machine; 1.05 within each, while the medians alone would say the same of any
-  // order.
+  // Each round runs on a slower machine. The ratio is 1.05 within each round; the medians alone would give
+  // the same ratio in any order.
   for (int round = 1; round <= 3; ++round) {
     rows.push_back(refined_in(round, {{"algorithm", "podm"}}, round));
     rows.push_back(refined_in(1.05 * round, {{"algorithm", "pdr-podm"}}, round));
@@ -167,7 +167,7 @@ over = {algorithm = "podm", threads = 1}
 across = "target_elements"
 at_least = 0.7
 )");
-  // A thousand cells a thread in so many seconds, on 1, 2 and 4 threads.
+  // A thousand cells per thread in the given seconds, on 1, 2 and 4 threads.
   const auto rows = [](std::vector<double> seconds) {
     Rows made;
     int threads = 1;
@@ -331,7 +331,7 @@ TEST(JudgeTrend, AFailedPlaceDoesNotHideAStepThatRefutes) {
   EXPECT_EQ(verdict_of(claim, rows(1)), kOpen);
 }
 
-// Rows of both algorithms at a size, of which pdr-podm takes so many times as long.
+// Rows of both algorithms at a size; pdr-podm takes `ratio` times as long.
 Rows rows_of_size(const std::string& trial, double ratio) {
   return {refined_in(1, {{"algorithm", "podm"}}, 1, trial + ",algorithm=podm"),
           refined_in(ratio, {{"algorithm", "pdr-podm"}}, 1, trial + ",algorithm=pdr-podm")};
@@ -393,7 +393,7 @@ TEST(JudgeSizes, OneOfTooFewRoundsIsSetAsideWhereItsMedianAgrees) {
   EXPECT_EQ(judge(claim, in_six_rounds(rows_of_size("1M", 2)) + rows_of_size("0.1M", 1)).verdict, kFails);
 }
 
-// pdr-podm takes so many times as long in each round.
+// pdr-podm takes the given ratio of the time in each round.
 Rows rounds_of(const std::vector<double>& ratios) {
   Rows rows;
   for (const double ratio : ratios) {

@@ -1,4 +1,4 @@
-// podm-bench verdicts, and what run prints of claims.
+// Tests of podm-bench verdicts, and of the verdicts that a run prints.
 #include "experiments/verdicts.h"
 
 #include <gtest/gtest.h>
@@ -50,7 +50,7 @@ statement = "It is cheap."
 reason = "It was refuted."
 )";
 
-// Other work kept half of the processors busy while this row was measured.
+// Other work kept half of the processors busy during the measurement of this row.
 Row disturbed(Row row) {
   row.environment.busy_elsewhere = 0.5 * row.environment.usable_processors;
   return row;

@@ -1,4 +1,4 @@
-// What `podm-bench compare` matches, finds and calls worse.
+// Tests of the rows that `podm-bench compare` matches, its findings, and the values that it calls worse.
 #include "gate/compare.h"
 
 #include <gtest/gtest.h>

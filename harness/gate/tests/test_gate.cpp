@@ -1,4 +1,4 @@
-// What the gate's tiers block, and its file of budgets.
+// Tests of the gate's tiers and of its file of budgets.
 #include "gate/gate.h"
 
 #include <gtest/gtest.h>

@@ -1,4 +1,4 @@
-// Recorded rounds, what they are refused for, and the tries of the gate's rule on them.
+// Tests of recorded rounds, of the faults for which they are refused, and of the gate's rule on them.
 #include "gate/gate_evidence.h"
 
 #include <gtest/gtest.h>
@@ -46,7 +46,7 @@ GateRound made_up_round(int number) {
   round.trial = {"t", "phantom:torus", 3};
   round.processes = {{false, 0, 1, 4}};
   for (const int percent : kPlantedPercent)
-    round.processes.push_back({true, percent, 1 + percent / 100.0, 4});  // the clock sees no slowdown
+    round.processes.push_back({true, percent, 1 + percent / 100.0, 4});  // the wall seconds have no slowdown
   round.podm.sha256 = "aa";
   return round;
 }
@@ -81,7 +81,7 @@ class GateRoundsTest : public testing::Test {
     std::ofstream file(path_);
     for (const GateRound& round : rounds) file << to_json(round).dump() << "\n";
   }
-  // Reads the file, which must be refused at the line.
+  // Expects that reading the file fails at the line.
   void expect_refused_at(int line, const std::string& words) {
     try {
       read_gate_rounds(path_);
@@ -156,7 +156,8 @@ std::string text_of_file(const std::filesystem::path& path) {
   return text.str();
 }
 
-// Counts in the folders `gate` of the committed results: those of recorded rounds are counted again.
+// Reads the counts in the folders `gate` of the committed results. Counts of recorded rounds are computed
+// again.
 TEST(CommittedEvidence, IsReadAndWrittenAsItWasAndFollowsFromItsRounds) {
   int num_files = 0;
   for (const auto& entry : std::filesystem::recursive_directory_iterator(PODM_RESULTS "/reference")) {

@@ -1,4 +1,4 @@
-// What the rule about seconds promises: on given rounds, and on the simulated machine.
+// Tests of the rule about seconds, on given rounds and on the simulated machine.
 #include "gate/gate_slowdown.h"
 
 #include <gtest/gtest.h>
@@ -19,7 +19,7 @@ Slowdown slowdown_on(SimulatedMachine machine, double head_over_base) {
   return measure_slowdown([&] { return machine.round(head_over_base); }).value();
 }
 
-// Rounds whose heads take the two ratios in turn, in a noise that has no chance in it.
+// Rounds whose heads alternate between the two ratios, as noise without chance.
 Slowdown slowdown_of(double ratio, double other_ratio) {
   int num_rounds = 0;
   return measure_slowdown([&] {
@@ -56,7 +56,7 @@ TEST(Slowdown, LostInNoiseIsNotResolvedAndPredictsTheRoundsThatAnAnswerTakes) {
     EXPECT_GT(slowdown.rounds_for_an_answer(), 10 * kLooks.back());
     EXPECT_LT(slowdown.rounds_for_an_answer(), 1000 * kLooks.back());
   }
-  EXPECT_LE(num_answered, kTries / 10);  // 5 % of the intervals may miss, and 1.025 is near to both bounds
+  EXPECT_LE(num_answered, kTries / 10);  // 5 % of the intervals may miss, and 1.025 is near both bounds
 }
 
 TEST(Slowdown, IntervalsHoldTheTrueRatioAtAllLooksTogether) {
@@ -124,7 +124,8 @@ TEST(DrawnOrder, DependsOnTheSeedAlone) {
   EXPECT_TRUE(differs);
 }
 
-// The standard deviation of the logarithm of a one-second process's seconds over that of the one before it.
+// Returns the standard deviation of the logarithm of the ratio between the seconds of a one-second process
+// and the seconds of the process before it.
 double spread_of_neighbours(double noise) {
   SimulatedMachine machine(3, noise);
   std::vector<double> ratios;

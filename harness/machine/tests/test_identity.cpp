@@ -1,4 +1,4 @@
-// The maker's numbers of a processor by CPUID and by /proc/cpuinfo, and what identifies this machine.
+// Tests of processor identities from CPUID and /proc/cpuinfo, and of the identity of this machine.
 #include "machine/identity.h"
 
 #include <gtest/gtest.h>

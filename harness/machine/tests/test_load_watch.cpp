@@ -1,4 +1,4 @@
-// What other work takes of the processors, by made-up files of the kernel and on this machine.
+// Tests of the load by other work, with made-up files of the kernel and on this machine.
 #include "machine/load_watch.h"
 
 #include <gtest/gtest.h>
@@ -56,7 +56,7 @@ TEST(LoadWatch, SaysWhyItCannotKnow) {
   EXPECT_EQ(why({0, 0.0, 0}, {2, 0.0, 2}), "/proc/stat does not count the trial's own work");
 }
 
-// This test's own work is not that of others: the load has room for it beside what the machine has to do.
+// The load does not count this test's own work. The bound leaves room for the machine's other work.
 TEST(LoadWatch, OwnWorkIsOnesOwn) {
   const ProcessorUse before = processor_use();
   const auto start = std::chrono::steady_clock::now();

@@ -1,4 +1,4 @@
-// The pointer chase visits what it claims to, and the levels it finds are those of a machine.
+// Tests that the pointer chase visits all lines, and that the levels found are those of a machine.
 #include <gtest/gtest.h>
 
 #include <stdexcept>
@@ -15,7 +15,7 @@ TEST(PointerChase, OneCycleGoesThroughAllLines) {
       PointerChase chase(num_lines * PointerChase::kLineBytes, seed);
       EXPECT_EQ(chase.num_lines(), num_lines);
       EXPECT_EQ(chase.cycle_length(), num_lines) << "seed " << seed;
-      chase.walk(num_lines + 5);  // not a multiple of what a step unrolls
+      chase.walk(num_lines + 5);  // not a multiple of the unrolled steps
       EXPECT_EQ(chase.cycle_length(), num_lines) << "seed " << seed;
     }
   EXPECT_EQ(PointerChase(0, 1).num_lines(), 2u);

@@ -1,4 +1,4 @@
-// Probes of the machine's speed: what bursts and differences count, and that a real one has values.
+// Tests of bursts and differences of probes, and of a real probe.
 #include "machine/probe.h"
 
 #include <gtest/gtest.h>
@@ -18,7 +18,7 @@ TEST(Probe, TheBestBurstCounts) {
   EXPECT_EQ(best_of(std::span(bursts).first(1)), bursts[0]);
 }
 
-// However bad one burst is, the best of several does not show it.
+// However slow one burst is, the best of several bursts does not show it.
 TEST(Probe, OneDisturbedBurstDoesNotShow) {
   const ProbeRecord quiet{5, 12, 0.3};
   for (const double factor : {1.5, 10.0, 1000.0}) {

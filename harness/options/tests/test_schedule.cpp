@@ -1,4 +1,4 @@
-// The order of the turns, what names them, and how long they take.
+// Tests of the order of turns, of the keys of trials and of expected durations.
 #include <gtest/gtest.h>
 
 #include <algorithm>

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// CGAL's 3D mesh generation as a peer of podm. It reads a label image and prints counts, and seconds by
-// phase.
+// CGAL's 3D mesh generation as a peer of podm. It reads a label image and prints counts and the seconds of
+// its phases.
 #include <CGAL/Exact_predicates_inexact_constructions_kernel.h>
 #include <CGAL/Image_3.h>
 #include <CGAL/Labeled_mesh_domain_3.h>
@@ -37,7 +37,7 @@ constexpr const char* kQueue = "unsorted";
 #else
 constexpr const char* kQueue = "sorted";
 #endif
-// What podm guarantees, asked of CGAL.
+// The guarantees of podm, requested from CGAL.
 constexpr double kFacetAngleDeg = 30;
 constexpr double kRadiusEdgeBound = 1.93;
 
@@ -48,9 +48,9 @@ struct Options {
   double facet_distance_mm = 0;  // 0: unbounded
   std::string output_path;       // empty: no file
   std::size_t threads = 0;       // 0: Sequential_tag
-  // Against slivers, afterwards; each has seconds of its own.
+  // Sliver removal after refinement; each stage has seconds of its own.
   bool perturb = false;  // move vertices
-  bool exude = false;    // weight them
+  bool exude = false;    // weight vertices
 };
 
 CGAL::Image_3 read_image(const std::string& path) {
@@ -65,7 +65,7 @@ std::uint64_t peak_resident_bytes() {
   return static_cast<std::uint64_t>(usage.ru_maxrss) * 1024;
 }
 
-// Medit, the references of cells being the image's labels.
+// Writes Medit; the references of cells are the image's labels.
 template <class Complex>
 void write_mesh(const Complex& complex, const std::string& path) {
   if (path.empty()) return;
@@ -109,8 +109,8 @@ void mesh(const Domain& domain, const Options& options, Json& result) {
 }
 
 #if defined(CGAL_MESH_3_USE_LAZY_UNSORTED_REFINEMENT_QUEUE) && CGAL_VERSION_NR >= 1060000000
-// CGAL 6.1.1 does not compile here: elements of this queue have constant members, which its deque cannot
-// move.
+// CGAL 6.1.1 does not compile here: elements of this queue have constant members, and its deque cannot move
+// them.
 void mesh_in_parallel(const Domain&, const Options&, Json&) {
   throw std::runtime_error("CGAL " CGAL_VERSION_STR " has no unsorted queue in parallel: --threads 0");
 }

@@ -1,4 +1,4 @@
-"""Adapters of other meshers: which runs they ask podm for, and which seconds they count. Programs are made up."""
+"""Tests of the peers' adapters with made-up programs: the runs of podm that they request, the seconds they count."""
 import json
 import pathlib
 import subprocess
@@ -9,7 +9,7 @@ import unittest
 
 PEERS = pathlib.Path(__file__).resolve().parents[1]
 PYTHON = f"#!{sys.executable}\n"
-# A podm that logs its arguments and takes 8 s for the surface, 10 s with a radius; reading and writing not counted.
+# A podm that logs its arguments and takes 8 s for the surface and 10 s with a radius, without reading and writing.
 PODM = PYTHON + textwrap.dedent("""\
     import json, pathlib, sys
     if sys.argv[1:] == ["--version"]:

@@ -1,4 +1,4 @@
-// Questions to programs that answer, fail, hang, are not there, or say too much.
+// Tests of programs that answer, fail, hang, are absent, or print too much.
 #include "process/ask.h"
 
 #include <gtest/gtest.h>

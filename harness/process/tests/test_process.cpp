@@ -55,7 +55,7 @@ TEST(Process, MemoryLimitEndsTheChild) {
   request.memory_limit_bytes = 100 << 20;
   const ProcessOutcome outcome = run_process(request);
   EXPECT_EQ(outcome.end, End::kOutOfMemory);
-  // The kernel adds up what it counts on each processor in batches of pages.
+  // Each processor counts pages in batches before the kernel adds them up.
   constexpr std::uint64_t kBatches = 1 << 20;
   EXPECT_GT(outcome.peak_rss_bytes + kBatches, request.memory_limit_bytes);
   request.arguments.back() = "exit 0";
@@ -82,7 +82,7 @@ TEST(Process, TimeLimitKillsTheChildAndItsChildren) {
   EXPECT_EQ(outcome.end, End::kTimedOut);
   EXPECT_GE(outcome.wall_s, 0.3);
   EXPECT_LT(outcome.wall_s, 10);
-  // The grandchild is gone, or a corpse that its new parent has yet to bury.
+  // The grandchild is gone, or it is a zombie that its new parent has not waited for yet.
   const std::string grandchild = read_tail(folder / "grandchild", 20);
   ASSERT_FALSE(grandchild.empty());
   const std::string stat_path = "/proc/" + std::to_string(std::stoi(grandchild)) + "/stat";
@@ -101,7 +101,7 @@ TEST(Process, EndIsSeenWhenNoDescriptorIsLeft) {
   rlimit few = before;
   few.rlim_cur = 64;
   ASSERT_EQ(setrlimit(RLIMIT_NOFILE, &few), 0);
-  std::vector<int> taken;  // the child's are closed when it starts its program
+  std::vector<int> taken;  // the child's copies are closed when it executes its program
   for (int file; (file = open("/dev/null", O_RDONLY | O_CLOEXEC)) >= 0;) taken.push_back(file);
   const int error = errno;
   const ProcessOutcome outcome = run_process(shell("exit 3"));
@@ -129,12 +129,12 @@ TEST(Process, WallAndProcessorTimeAreToldApart) {
 
 TEST(Process, PeakMemoryIsThatOfTheChildAlone) {
   const std::uint64_t mib = 1024 * 1024;
-  // dd holds one block in memory, and touches all of it.
+  // dd holds one block in memory and touches all of it.
   const auto block_of = [](int size_mib) {
     return shell("dd if=/dev/zero of=/dev/null count=1 bs=" + std::to_string(size_mib) + "M");
   };
   EXPECT_GT(run_process(block_of(200)).peak_rss_bytes, 200 * mib);
-  EXPECT_LT(run_process(block_of(1)).peak_rss_bytes, 100 * mib);  // the former child's peak is not ours
+  EXPECT_LT(run_process(block_of(1)).peak_rss_bytes, 100 * mib);  // the first child's peak does not count
 }
 
 TEST(ReadTail, GivesTheEndAndNothingForAMissingFile) {

@@ -1,4 +1,4 @@
-// Intervals of shares: by the definition of Clopper and Pearson, and against closed forms.
+// Tests of intervals of shares by the definition of Clopper and Pearson, and against closed forms.
 #include "rows/binomial.h"
 
 #include <gtest/gtest.h>

@@ -1,4 +1,4 @@
-// Which rows are of the same machine, and which were measured on a busy or unsteady one.
+// Tests of rows of the same machine, and of rows of a busy or unsteady one.
 #include "rows/machine_state.h"
 
 #include <gtest/gtest.h>

@@ -1,4 +1,4 @@
-// The numbers that claims speak of, each read from a row that spells them out.
+// Tests of the numbers that claims use, each read from a row that spells them out.
 #include "rows/measure.h"
 
 #include <gtest/gtest.h>
@@ -51,7 +51,7 @@ Row full_row() {
   return row;
 }
 
-// Of two ranks, of which the first computes for long and the second waits.
+// A row of two ranks; the first computes for long and the second waits.
 Row row_on_ranks() {
   Row row = full_row();
   row.mesh->ranks = from_json<RanksRecord>(Json::parse(R"({
@@ -76,7 +76,7 @@ Row row_on_ranks() {
   return row;
 }
 
-// What is taken from the full row.
+// Functions that remove parts of the full row.
 using Take = void (*)(Row& row);
 void take_mesh(Row& row) { row.mesh.reset(); }
 void take_threads(Row& row) { row.asked.erase("threads"); }
@@ -96,7 +96,7 @@ void take_verdicts(Row& row) { row.mesh->verdicts.reset(); }
 struct Expected {
   const char* name;
   double number;
-  Take take;  ///< what the number needs; null: a row is enough
+  Take take;  ///< removes what the number needs; null: any row has it
 };
 
 constexpr std::pair<const char*, double> kOfRanks[] = {
@@ -129,7 +129,8 @@ constexpr std::pair<const char*, double> kFromSurface[] = {
     {"volume_cells_per_second", 300},
 };
 
-// Of a mesher that begins with a finished surface, the whole counts the surface and the volume part does not.
+// For a mesher that begins with a finished surface, the whole counts the surface and the volume part does
+// not.
 TEST(Measures, FromTheSurfaceAreWhatTheTableSays) {
   Row row = full_row();
   row.mesh->phases_s = {{"read", 1}, {"surface", 6}, {"refine", 4}, {"write", 100}};
@@ -237,7 +238,7 @@ TEST(Measures, PassOnTheRowsOwnReason) {
 
 TEST(Measures, OfLikwidAreItsEventsAndNobodyElses) {
   const Measure& misses = *find_measure("last_level_misses_per_further_insertion");
-  Row row = full_row();  // the kernel's counters are there too
+  Row row = full_row();  // the kernel's counters are present, too
   row.asked["counters"] = "likwid:CACHE";
   EXPECT_EQ(misses.read(row).absence, "likwid:CACHE counts no misses of the last level");
   row.process.counters["likwid:CACHE"] = Unavailable{"not installed"};
@@ -281,7 +282,7 @@ TEST(Measures, OfTopologyNeedEachLabelToBeAsInTheImage) {
   EXPECT_EQ(topology(3, 2), 0);
 }
 
-// Reading the image costs 1000 misses whatever the size; a further insertion 2.
+// Reading the image costs 1000 misses for any size; each further insertion costs 2.
 TEST(Growth, LeavesOutWhatBothSizesPay) {
   std::vector<Row> rows;
   for (const std::uint64_t size : {1000, 5000, 9000}) {

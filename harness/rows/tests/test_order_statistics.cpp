@@ -1,4 +1,4 @@
-// Intervals of order statistics against coverages that can be counted, and against many draws.
+// Tests of intervals of order statistics against coverages that can be counted, and against many draws.
 #include "rows/order_statistics.h"
 
 #include <gtest/gtest.h>
@@ -24,7 +24,8 @@ std::vector<double> noisy(double median, int n, double deviation, std::mt19937_6
   return samples;
 }
 
-// Of 2^n ways in which n samples may lie about the median, so many leave none, or few, on a side.
+// Counts the 2^n ways in which n samples lie about the median. The ways that leave no sample, or too few, on
+// one side are not covered.
 TEST(MedianInterval, HasTheCoverageThatCountingGives) {
   const struct {
     int n;
@@ -54,7 +55,8 @@ TEST(MedianInterval, IsTheNarrowestThatHasTheConfidence) {
       const Interval interval = median_interval(one_to(n), confidence);
       EXPECT_TRUE(interval.coverage >= confidence || interval.low == 1) << n << " " << confidence;
       EXPECT_EQ(interval.low + interval.high, n + 1) << "as many samples are left aside on either side";
-      // One sample less on either side would fall short: the binomial tail up to it.
+      // One sample less on either side would fall short: the coverage then loses the next term of the
+      // binomial tail on both sides.
       const double more =
           interval.coverage - 2 * std::exp(std::lgamma(n + 1) - std::lgamma(interval.low + 1) -
                                            std::lgamma(n - interval.low + 1) - n * std::log(2));
@@ -134,7 +136,7 @@ TEST(SamplesNeeded, AreNotKnownOfOneNorOnTheBound) {
   EXPECT_FALSE(samples_needed({0.9, 1, 1.1}, 1.0001)) << "more than anyone would run";
 }
 
-// An experiment of that size then lies on one side of the bound about as often as an interval of 95 % does.
+// An experiment of that size then lies on one side of the bound about half the time.
 TEST(SamplesNeeded, ResolveTheBoundAboutHalfTheTime) {
   std::mt19937_64 random(3);
   const auto needed = samples_needed(noisy(1, 400, 0.1, random), 1.05);

@@ -1,4 +1,4 @@
-// Rows outlive crashes, and one run at a time writes them.
+// Tests that rows survive crashes, and that one run at a time writes them.
 #include <gtest/gtest.h>
 
 #include "process/process.h"

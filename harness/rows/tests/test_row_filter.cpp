@@ -1,4 +1,4 @@
-// Which rows may be judged at all.
+// Tests of the rows that may be judged.
 #include "rows/row_filter.h"
 
 #include <gtest/gtest.h>
@@ -44,7 +44,7 @@ TEST(RowsToJudge, AreTheNewestOfEachKeyOfOneBuildAndMachine) {
   on_ranks.programs.podm_mpi.emplace().sha256 = "new";
   earlier.programs.podm_mpi.emplace().sha256 = "old";
   EXPECT_EQ(keys({earlier, on_ranks, row("a", "2")}), "ra") << "podm-mpi is a program of its own";
-  Row changed = row("a", "1");  // as after a preparation that failed
+  Row changed = row("a", "1");  // as after a failed preparation
   changed.key = "another";
   EXPECT_EQ(keys({row("a", "1"), changed}), "another");
   EXPECT_EQ(keys({changed, row("a", "1")}), "a");

@@ -1,4 +1,4 @@
-// Rows as structs, the schema that others read them by, and the rows that are committed: all three agree.
+// Tests that the structs of rows, the schema for other programs, and the committed rows agree.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -20,7 +20,8 @@ Json committed_schema() {
   return Json::parse(file);
 }
 
-// Where the schema's part differs from fields, whose keys of `elsewhere` stand in another part.
+// Returns the differences between a part of the schema and the fields; the keys of `elsewhere` are in another
+// part.
 std::vector<std::string> differences(Shape fields, const Json& part, const Json& root,
                                      const std::set<std::string>& elsewhere = {}) {
   std::vector<std::string> faults;
@@ -51,7 +52,7 @@ TEST(RowSchema, IsThatOfTheFields) {
   EXPECT_TRUE(faults.empty()) << fmt::format("{}", fmt::join(faults, "\n"));
 }
 
-// Each change of a place of the schema is seen.
+// Each change of a place of the schema is detected.
 TEST(RowSchema, DifferencesAreSeen) {
   const Json schema = committed_schema();
   const auto changed = [&](const char* place, const Json& value) {
@@ -63,7 +64,7 @@ TEST(RowSchema, DifferencesAreSeen) {
       {"/properties/reason/type", "integer"},      // a type
       {"/properties/mesh_bytes/type", "integer"},  // no longer null
       {"/properties/process/properties/wall_s/type", Json{"number", "null"}},
-      {"/properties/process/properties/nice_s", Json{{"type", "number"}}},  // a key too many
+      {"/properties/process/properties/nice_s", Json{{"type", "number"}}},  // an additional key
       {"/properties/status/enum", Json{"ok", "lost"}},
       {"/properties/environment/properties/cpu", Json{{"type", "object"}}},
       {"/then/properties/cells/type", "string"},
@@ -84,7 +85,7 @@ TEST(RowSchema, DifferencesAreSeen) {
   }
 }
 
-// Rows that were written before are read, and written again as they were, byte by byte.
+// Committed rows are read, and written again unchanged, byte by byte.
 TEST(RowSchema, CommittedRowsAreReadAndWrittenAsTheyWere) {
   std::size_t num_rows = 0;
   for (const auto& entry : fs::recursive_directory_iterator(kResults + "/reference")) {

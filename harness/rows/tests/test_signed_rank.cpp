@@ -1,4 +1,4 @@
-// The Hodges-Lehmann estimate and its interval, by their properties and by counting all cases.
+// Tests of the Hodges-Lehmann estimate and its interval by their properties and by counting all cases.
 #include "rows/signed_rank.h"
 
 #include <gtest/gtest.h>
@@ -23,7 +23,7 @@ bool holds(const CentreEstimate& estimate, double centre) {
   return estimate.low <= centre && centre <= estimate.high;
 }
 
-// Of samples whose signs are drawn, each of the cases is as likely as any other.
+// The signs of the samples are drawn; all cases are equally likely.
 double share_of_signs_that_hold_zero(std::size_t num_samples, double confidence) {
   const std::size_t num_cases = std::size_t{1} << num_samples;
   int num_held = 0;

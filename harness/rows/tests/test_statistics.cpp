@@ -1,4 +1,4 @@
-// Medians and bootstrap intervals by their properties, and against values found by counting.
+// Tests of medians and bootstrap intervals by their properties, and against values found by counting.
 #include "rows/statistics.h"
 
 #include <gtest/gtest.h>
@@ -106,7 +106,7 @@ TEST(RatioOfMedians, PairsCancelWhatTheyShare) {
   EXPECT_GT(apart.high - apart.low, 0.01);
 }
 
-// The bootstrap is approximate for few samples: 95 % asked for, at least 90 % had.
+// The bootstrap is approximate for few samples: at a confidence of 95 %, at least 90 % must hold.
 TEST(RatioOfMedians, IntervalsHoldTheTruthAboutAsOftenAsAskedFor) {
   for (const Sampling sampling : {Sampling::kPaired, Sampling::kIndependent}) {
     std::mt19937_64 random(5);

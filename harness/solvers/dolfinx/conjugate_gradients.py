@@ -1,12 +1,12 @@
-"""PETSc's conjugate gradients, and what they tell of the matrix."""
+"""Solves systems by PETSc's conjugate gradients and estimates the eigenvalues of the matrix."""
 import time
 from dataclasses import dataclass
 
 from petsc4py import PETSc
 
-RELATIVE_TOLERANCE = 1e-8  # of the residual, over that of the solution 0
+RELATIVE_TOLERANCE = 1e-8  # of the residual, relative to that of the solution 0
 MAX_ITERATIONS = 50_000
-# Names of ours, and PETSc's: the diagonal, and smoothed aggregation.
+# The names in records, and PETSc's names: the diagonal, and smoothed aggregation.
 PRECONDITIONERS = {"jacobi": PETSc.PC.Type.JACOBI, "amg": PETSc.PC.Type.GAMG}
 
 
@@ -16,8 +16,8 @@ class SolverError(Exception):
 
 @dataclass(frozen=True)
 class Measured:
-    """Eigenvalues are those of the preconditioned matrix, as Lanczos' process, which conjugate gradients carry out,
-    estimates them. `setup_s`: to prepare the preconditioner; `seconds`: to iterate."""
+    """The cost of a solution. The eigenvalues are those of the preconditioned matrix; the Lanczos process, which
+    conjugate gradients carry out, estimates them. `setup_s`: setup of the preconditioner; `seconds`: iterations."""
 
     iterations: int
     smallest_eigenvalue: float
@@ -27,7 +27,7 @@ class Measured:
 
 
 def solve(system, preconditioner):
-    """The solution, a vector of PETSc, and what it took. Raises SolverError."""
+    """Returns the solution, a vector of PETSc, and its cost. Raises SolverError."""
     krylov = PETSc.KSP().create(system.matrix.comm)
     krylov.setOperators(system.matrix)
     krylov.setType(PETSc.KSP.Type.CG)
@@ -35,7 +35,7 @@ def solve(system, preconditioner):
     krylov.setNormType(PETSc.KSP.NormType.UNPRECONDITIONED)
     krylov.setTolerances(rtol=RELATIVE_TOLERANCE, atol=0, max_it=MAX_ITERATIONS)
     krylov.setComputeSingularValues(True)
-    krylov.setFromOptions()  # GAMG has all of its defaults only then
+    krylov.setFromOptions()  # sets the remaining defaults of GAMG
     solution = system.right_side.duplicate()
     start = time.perf_counter()
     krylov.setUp()

@@ -1,4 +1,4 @@
-"""The tetrahedra of a mesh file, of podm or of another mesher."""
+"""Reads the tetrahedra of a mesh file, of podm or of a peer."""
 import contextlib
 import io
 import os
@@ -10,19 +10,19 @@ import vtk
 from vtkmodules.util.numpy_support import vtk_to_numpy
 
 TETRAHEDRON = "tetra"
-# What meshio calls the formats; it reads no .vtu file with raw appended data, which podm writes.
+# The names of the formats in meshio. It cannot read a .vtu file with raw appended data, which podm writes.
 FORMATS = {".msh": "gmsh", ".mesh": "medit", ".ele": "tetgen"}
 VTU = ".vtu"
 
 
 class MeshError(Exception):
-    """A file that holds no mesh to solve on. Its text tells the fault, not the file."""
+    """A file has no mesh to solve on. The text names the fault, not the file."""
 
 
 def read_mesh(path):
-    """Points, float64 of shape (n, 3) in mm, and cells, int64 of shape (m, 4), indices of points.
+    """Returns points, float64 of shape (n, 3) in mm, and cells, int64 of shape (m, 4), indices of points.
 
-    Points that no cell has are left out. Raises MeshError."""
+    Points without a cell are left out. Raises MeshError."""
     if not os.path.isfile(path):
         raise MeshError("no such file")
     extension = pathlib.Path(path).suffix
@@ -39,7 +39,7 @@ def _read_vtu(path):
     faults = []
     observer = lambda *_: faults.append(path)
     reader.AddObserver("ErrorEvent", observer)
-    parser_said = vtk.vtkStringOutputWindow()  # its parser reports there alone
+    parser_said = vtk.vtkStringOutputWindow()  # the only output of its parser
     vtk.vtkOutputWindow.SetInstance(parser_said)
     reader.SetFileName(path)
     reader.Update()
@@ -53,11 +53,11 @@ def _read_vtu(path):
 
 
 def _read_by_meshio(path, file_format):
-    said = io.StringIO()  # meshio prints
+    said = io.StringIO()  # meshio prints messages
     try:
         with contextlib.redirect_stdout(said), contextlib.redirect_stderr(said):
             mesh = meshio.read(path, file_format)
-    except (Exception, SystemExit) as error:  # pylint: disable=broad-except  # whatever a broken file makes it raise
+    except (Exception, SystemExit) as error:  # pylint: disable=broad-except  # a broken file may raise any of them
         why = " ".join([*said.getvalue().split(), str(error)])
         raise MeshError(f"meshio cannot read it as {file_format}: {type(error).__name__}: {why}") from None
     blocks = [block.data for block in mesh.cells if block.type == TETRAHEDRON]

@@ -1,4 +1,4 @@
-"""What solving on a mesh took, as the contract of ../README.md asks for it."""
+"""Reports the cost of solving on a mesh in the form of the contract in ../README.md."""
 import dataclasses
 
 import dolfinx
@@ -16,7 +16,7 @@ def version():
 
 
 def report_on(points, cells):
-    """A dictionary. Raises SolverError where a mesh has no vertex inside, or a system is not solved."""
+    """Returns a dictionary. Raises SolverError if a mesh has no inner vertex, or if a system is not solved."""
     domain = domain_of(points, cells)
     return {"solver": version(), **{name: _measured(name, make(domain)) for name, make in SYSTEMS.items()}}
 

@@ -1,4 +1,4 @@
-"""Linear systems of P1 finite elements on tetrahedra, with values given on the whole outer boundary."""
+"""Linear systems of P1 finite elements on tetrahedra, with given values on the whole outer boundary."""
 from dataclasses import dataclass
 
 import numpy as np
@@ -13,8 +13,8 @@ YOUNGS_MODULUS, POISSONS_RATIO = 1.0, 0.3
 
 @dataclass(frozen=True)
 class System:
-    """`matrix` has the rows and columns of known values replaced by those of the identity, so that it is symmetric and
-    positive definite. `unknowns`: those that are not given."""
+    """A linear system. In `matrix` the rows and columns of known values are those of the identity; the matrix is
+    therefore symmetric and positive definite. `unknowns`: the number of values that are not given."""
 
     space: fem.FunctionSpace
     matrix: PETSc.Mat
@@ -23,13 +23,14 @@ class System:
 
 
 def domain_of(points, cells):
-    """A mesh of DOLFINx; it numbers cells and points anew."""
+    """Returns a mesh of DOLFINx, which numbers cells and points anew."""
     element = ufl.VectorElement("Lagrange", ufl.tetrahedron, 1)
     return dolfinx_mesh.create_mesh(MPI.COMM_SELF, cells, points, ufl.Mesh(element))
 
 
 def poisson(domain, boundary_value=lambda x: np.zeros(x.shape[1]), source=1.0):
-    """-div grad u = source inside and u = boundary_value(x), of shape (n,) for x of (3, n), on the boundary."""
+    """Returns the system of -div grad u = source inside and u = boundary_value(x), of shape (n,) for x of (3, n), on
+    the boundary."""
     space = fem.FunctionSpace(domain, ("Lagrange", 1))
     u, v = ufl.TrialFunction(space), ufl.TestFunction(space)
     form = ufl.inner(ufl.grad(u), ufl.grad(v)) * ufl.dx
@@ -38,8 +39,8 @@ def poisson(domain, boundary_value=lambda x: np.zeros(x.shape[1]), source=1.0):
 
 
 def elasticity(domain, boundary_value=np.zeros_like, force=(0.0, 0.0, -1.0)):
-    """An isotropic body under a force by volume, with displacements boundary_value(x), of the shape of x, (3, n), given
-    on its boundary. Its near null space, what multigrid needs to know, are the rigid motions."""
+    """Returns the system of an isotropic body under a force per volume. Displacements boundary_value(x), of the shape
+    of x, (3, n), are given on its boundary. Multigrid needs the near null space, which are the rigid motions."""
     space = fem.VectorFunctionSpace(domain, ("Lagrange", 1))
     u, v = ufl.TrialFunction(space), ufl.TestFunction(space)
     mu = YOUNGS_MODULUS / (2 * (1 + POISSONS_RATIO))
@@ -73,7 +74,7 @@ def _system(space, form, load, boundary_value):
 
 
 def _rigid_motions(space, like):
-    """Three translations and three rotations, orthonormal."""
+    """Returns three translations and three rotations, orthonormal."""
     x, y, z = space.tabulate_dof_coordinates().T
     zero, one = np.zeros_like(x), np.ones_like(x)
     motions = [(one, zero, zero), (zero, one, zero), (zero, zero, one), (-y, x, zero), (z, zero, -x), (zero, -z, y)]

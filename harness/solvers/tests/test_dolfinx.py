@@ -1,4 +1,4 @@
-"""The solver of ../dolfinx: linear fields are reproduced, eigenvalues are those of the matrix, bad meshes refused."""
+"""Tests of ../dolfinx: linear fields are reproduced, eigenvalues are those of the matrix, bad meshes are refused."""
 import importlib.util
 import json
 import pathlib
@@ -19,7 +19,7 @@ if HAS_DOLFINX:
 
 
 def cube(side=6, shear=0.3):
-    """Points and cells of a sheared cube of side^3 small ones of six tetrahedra each, inner points moved at random."""
+    """Returns points and cells of a sheared cube of side^3 cubes of six tetrahedra, inner points moved at random."""
     steps = np.stack(np.meshgrid(*[np.arange(side + 1)] * 3, indexing="ij"), axis=-1).reshape(-1, 3)
     at = lambda corner: corner @ np.array([(side + 1)**2, side + 1, 1])
     corners = steps[(steps < side).all(axis=1)]
@@ -52,7 +52,7 @@ class Systems(unittest.TestCase):
         return solution.getArray().reshape(-1, system.space.dofmap.index_map_bs)
 
     def test_linear_fields_are_reproduced(self):
-        """The patch test: P1 elements hold them, and no force is needed inside."""
+        """The patch test: P1 elements contain linear fields, and these need no force inside."""
         domain = systems.domain_of(*cube())
         slope = np.array([[0.5, -1, 2], [3, 0.25, -0.5], [1, 1, -2]])
         made = [(systems.poisson(domain, lambda x: 1 + slope[0] @ x, source=0), slope[:1]),
@@ -64,7 +64,7 @@ class Systems(unittest.TestCase):
                 self.assertLess(abs(found - expected).max(), 1e-6 * abs(expected).max())
 
     def test_a_source_lifts_a_membrane_as_a_series_says(self):
-        """In a unit cube with u = 0 around it, -div grad u = 1 has 0.0562 in the middle."""
+        """In a unit cube with u = 0 on its boundary, the solution of -div grad u = 1 is 0.0562 in the middle."""
         points, cells = cube(16, shear=0)
         system = systems.poisson(systems.domain_of(points / 16, cells))
         self.assertAlmostEqual(self.values_of(system, "jacobi").max() / 0.0562, 1, delta=0.03)
@@ -79,7 +79,7 @@ class Systems(unittest.TestCase):
         self.assertAlmostEqual(measured.smallest_eigenvalue / eigenvalues[0], 1, delta=0.02)
 
     def test_multigrid_knows_rigid_motions(self):
-        """They are no strain: the matrix maps them to 0 wherever no neighbour's value is known."""
+        """Rigid motions have no strain: the matrix maps them to 0 at each point without a neighbour of known value."""
         system = systems.elasticity(systems.domain_of(*cube(6, shear=0)))
         is_far_inside = np.abs(system.space.tabulate_dof_coordinates() - 3).max(axis=1) < 1.5
         self.assertEqual(is_far_inside.sum(), 27)

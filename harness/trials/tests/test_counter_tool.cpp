@@ -1,4 +1,5 @@
-// Trials counted by valgrind and likwid-perfctr: real where installed, played by scripts, absent, or failing.
+// Tests of trials counted by valgrind and likwid-perfctr: real if installed, played by scripts, absent, or
+// failing.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -16,7 +17,7 @@ namespace {
 
 const std::string kSourcesOfGroups = PODM_LIKWID_GROUPS;
 
-// Runs what follows `--` or the options of valgrind, as both tools do.
+// Heads of scripts that play the tools. They read the tool's own options and leave the command to the rest.
 const std::string kValgrindHead = R"(
 while [ "${1#--}" != "$1" ]; do
   case $1 in --cachegrind-out-file=*) out=${1#*=};; esac
@@ -38,7 +39,7 @@ class CounterToolTest : public testing::Test {
   }
   void TearDown() override { setenv("PATH", path_.c_str(), 1); }
 
-  // The shell's programs and those of the test; neither valgrind nor likwid.
+  // Provides the shell's programs and those of the test, but neither valgrind nor likwid.
   void hide_tools() {
     std::filesystem::create_directory(folder_ / "bin");
     for (const char* program : {"dirname", "true"})
@@ -154,7 +155,7 @@ TEST_F(CounterToolTest, LikwidThatMayNotCountSaysWhyAndTheTrialRuns) {
   EXPECT_NE(no_group.get<std::string>().find("some/ABSENT.txt"), std::string::npos) << no_group;
 }
 
-// likwid 5.2 does this on a processor that is newer than itself.
+// likwid 5.2 does this on a processor that is newer than likwid.
 TEST_F(CounterToolTest, LikwidThatDoesNotKnowTheProcessorSaysSoInItsOwnWords) {
   hide_tools();
   const std::string head = "[ \"$1\" = -i ] && { printf 'CPU name:\\tNew\\nCPU short:\\tnil\\n'; exit 0; }\n";
@@ -171,7 +172,7 @@ TEST_F(CounterToolTest, LikwidThatDoesNotKnowTheProcessorSaysSoInItsOwnWords) {
       << "how it ended, at least";
 }
 
-// Each counts for any group: likwid's real program, where it is installed.
+// Runs likwid's real program, if it is installed, for each group.
 TEST_F(CounterToolTest, TheRealLikwidCountsOrSaysWhyNot) {
   for (const char* group : {"CACHE", "NUMA"}) {
     const Likwid likwid(group, kSourcesOfGroups, folder_.path());
@@ -183,7 +184,7 @@ TEST_F(CounterToolTest, TheRealLikwidCountsOrSaysWhyNot) {
   }
 }
 
-// The counters of a file's EVENTSET, and the text of its METRICS.
+// The counters of a file's EVENTSET, and the formulas of its METRICS.
 struct Group {
   std::set<std::string> counters;
   std::vector<std::string> formulas;  // the last word of each line
@@ -222,7 +223,7 @@ TEST(LikwidGroups, EveryArchitectureHasCachesAndNodes) {
   EXPECT_EQ(events_of_group("/no/such/file"), "");
 }
 
-// likwid refuses a formula of a counter that the group does not set.
+// likwid refuses a formula with a counter that the group does not set.
 TEST(LikwidGroups, FormulasUseTheGroupsOwnCounters) {
   const std::regex kCounter("[A-Z]+[0-9]+(C[0-9]+)?");
   for (const auto& entry : std::filesystem::recursive_directory_iterator(kSourcesOfGroups)) {

@@ -1,4 +1,4 @@
-// Counters of the child process, whether the kernel grants them, refuses them or counts some of the time.
+// Tests of counters of the child process that the kernel grants, refuses or runs for a part of the time.
 #include <fcntl.h>
 #include <gtest/gtest.h>
 #include <sys/mman.h>
@@ -17,7 +17,7 @@ ProcessOutcome run_shell(const std::string& command) {
       {.arguments = {"/bin/sh", "-c", command}, .stdout_path = {}, .stderr_path = {}, .timeout_s = 20});
 }
 
-// Fresh memory, a page at a time.
+// Touches fresh memory page by page.
 void fault_pages(std::size_t number) {
   const auto page_bytes = static_cast<std::size_t>(sysconf(_SC_PAGESIZE));
   void* memory =

@@ -1,4 +1,4 @@
-// A mesher other than podm in a trial: its contract is harness/peers/README.md.
+// Tests of trials of a peer: its contract is harness/peers/README.md.
 #include <gtest/gtest.h>
 
 #include <filesystem>
@@ -11,7 +11,7 @@ namespace {
 
 class PeerTest : public testing::Test {
  protected:
-  // Runs the peer whose `run` answers --version with `version` and then does `body`.
+  // Runs a peer whose `run` answers --version with `version` and then executes `body`.
   TrialResult run(const std::string& version, const std::string& body, const std::string& verdicts = "{}") {
     std::filesystem::create_directories(folder_ / "other");
     folder_.script("other/run", "[ \"$1\" = --version ] && { " + version + R"(; }

@@ -1,4 +1,5 @@
-// What is made once before trials run: phantoms as files, and the radius of a number of cells.
+// Tests of inputs that are made once before trials run: phantoms as files, and the radius of a target number
+// of cells.
 #include <gtest/gtest.h>
 
 #include <sstream>
@@ -30,7 +31,7 @@ echo '{"stop_reason":"complete","cells":990,"program":"podm 9.9","used":{"radius
 
 class PreparationTest : public testing::Test {
  protected:
-  // Another mesher for each hash, as for a command of its own.
+  // Returns a new preparer, as in a separate run; each hash stands for another mesher.
   Preparer preparer(const std::string& mesher_sha256 = "m", const std::string& mesh_body = kFindsRadius) {
     return {fake_mesher(folder_, mesh_body), mesher_sha256, folder_ / "results"};
   }

@@ -1,4 +1,4 @@
-// Trials that ask for a number of cells, as a user runs them.
+// Tests of trials with a target number of cells, as a user runs them.
 #include "tests/bench_test.h"
 
 namespace podm::bench {
@@ -11,7 +11,7 @@ class TargetTest : public BenchTest {
     text.replace(text.find("radius_mm = 2"), 13, "target_elements = 1000\nthreads = [1, 2]");
     folder_.write("exp.toml", text);
   }
-  // The radius found is that in the file "radius".
+  // The radius found is read from the file "radius".
   const std::string finds_radius_ = R"script(cd "$(dirname "$0")"
 case $(cat arguments) in *--target*)
   echo x >> found

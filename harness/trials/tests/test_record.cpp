@@ -1,4 +1,4 @@
-// Rows, the file they go to, the environment beside them, and the table.
+// Tests of rows, their file, the environment beside them, and the table.
 #include <gtest/gtest.h>
 
 #include <sstream>
@@ -42,7 +42,7 @@ struct RowTest : testing::Test {
   TrialResult good, failed;
 };
 
-// 2000 bytes are the image's labels, 1000 cells there are.
+// The image's labels take 2000 bytes; there are 1000 cells.
 TEST_F(RowTest, OverMpiTheMemoryIsOfARankAndItsShareOfTheCells) {
   context.programs.podm_mpi.emplace().sha256 = "of podm-mpi";
   EXPECT_DOUBLE_EQ(*made_of(good).process.bytes_per_cell_beyond_image, 104);

@@ -1,4 +1,4 @@
-// Several processes of one trial at the same time.
+// Tests of several processes of one trial at the same time.
 #include <gtest/gtest.h>
 
 #include "machine/machine.h"
@@ -15,7 +15,7 @@ class SideBySideTest : public testing::Test {
   void SetUp() override {
     if (usable_processors() < 2) GTEST_SKIP() << "one processor";
   }
-  // $copy is empty in the first copy, else the number of the copy.
+  // $copy is empty in the first copy, otherwise the number of the copy.
   TrialResult run(const std::string& mesh_body) {
     Trial trial;
     trial.name = "some";
@@ -34,7 +34,7 @@ class SideBySideTest : public testing::Test {
   TemporaryFolder folder_;
 };
 
-// Each waits for the other's file: one after the other they would never end.
+// Each copy waits for the other's file. Copies that run one after the other would never end.
 TEST_F(SideBySideTest, CopiesRunAtTheSameTimeAndTheRowsOwnIsTheFirsts) {
   const TrialResult result = run(R"(
 mine=$(dirname "$0")/is$copy other=$(dirname "$0")/is$([ "$copy" ] || echo 2)

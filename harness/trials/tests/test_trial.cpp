@@ -1,4 +1,4 @@
-// What becomes of a trial whose mesher does well, fails, hangs, lies or is not there.
+// Tests of trials whose mesher succeeds, fails, hangs, writes false records or is absent.
 #include <gtest/gtest.h>
 
 #include <fmt/format.h>
@@ -137,7 +137,7 @@ TEST_F(TrialTest, SizesByPlaceAreTheVerifiersToo) {
 
 class SolvingTest : public TrialTest {
  protected:
-  // Runs a trial whose mesh a solver, a script, is handed.
+  // Runs a trial that hands its mesh to a solver, which is a script.
   TrialResult run_with_solver(const std::string& body) {
     Trial trial = some_trial();
     trial.options["solve"] = true;
@@ -278,7 +278,7 @@ TEST_F(TrialTest, EachImageIsLookedAtOnce) {
 }
 
 TEST_F(TrialTest, MissedGuaranteeIsUnmetAndNamed) {
-  for (const char* exit_code : {"exit 1", "exit 0"}) {  // the record counts, whatever the exit code says
+  for (const char* exit_code : {"exit 1", "exit 0"}) {  // the record counts, whatever the exit code
     const TrialResult result = run(good_record_but(R"("facet_angle":0)", R"("facet_angle":7)") + exit_code);
     EXPECT_EQ(result.status, Status::kUnmet);
     EXPECT_EQ(result.reason, "facet_angle 7");
@@ -332,8 +332,8 @@ TEST_F(TrialTest, MissingOrUnusableRecordFails) {
       write_record("not JSON"),                              //
       write_record(""),                                      //
       write_record("[1,2]"),                                 //
-      write_record(kGoodRecord.substr(0, 40)),               // cut short
-      good_record_but(R"("schema":1)", R"("schema":999)"),   // of another time
+      write_record(kGoodRecord.substr(0, 40)),               // truncated
+      good_record_but(R"("schema":1)", R"("schema":999)"),   // of another schema
       good_record_but(R"("cells":1000)", R"("cells":"x")"),  //
       good_record_but(R"("vertices":300,)", ""),             //
       good_record_but(R"("read":0.5)", R"("read":"soon")"),  //
