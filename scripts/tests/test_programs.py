@@ -32,8 +32,7 @@ class Programs(unittest.TestCase):
         done = call("make_figures", "--records", records, "-o", self.folder / "out")
         self.assertEqual(done.returncode, 0, done.stderr)
         made = {path.name for path in (self.folder / "out").iterdir()}
-        # The rows of peers are of rounds in which the machine's speed moved: they make no table.
-        names = ("table1", "table2", "table3", "simulated", "cache", "guarantees", "guarantees_of_others")
+        names = ("table1", "table2", "table3", "simulated", "cache", "guarantees", "guarantees_of_others", "peers")
         tables = {f"{name}.{kind}" for name in names for kind in ("csv", "md")}
         figures = {f"{name}.{kind}" for name in ("fig1", "fig4a", "fig4b") for kind in ("pdf", "png")}
         self.assertLessEqual({"rows.csv", "verdicts.json", "verdicts.md"} | tables | figures, made)
