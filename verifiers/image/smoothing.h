@@ -4,7 +4,7 @@
 //
 // Let W be the width, h the cube root of a voxel's volume, and U the voxels with another label among their 26
 // neighbours, where background lies beyond the grid. A voxel of U has the depth
-//  d_s = s sqrt(2 pi) / 3 * lead_s
+//   d_s = s sqrt(2 pi) / 3 * lead_s
 // below the smoothed interface, mm. Here lead_s is the lead of its own label once labels are blurred by s
 // (label_blur.h). At first s is W. A voxel with d_s < -h/4 is lost: a structure thinner than s lies there.
 // Voxels within ceil(2 s / spacing) of a lost voxel, along each axis, are tried again with half the width.
