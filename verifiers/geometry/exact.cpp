@@ -65,8 +65,7 @@ int proven_in_sphere(const Vector<double>& a, const Vector<double>& b, const Vec
                            (ab.absolute * d2 + bd.absolute * a2 + da.absolute * b2) * c_lift +
                            (bc.absolute * a2 + ac.absolute * b2 + ab.absolute * c2) * d_lift;
   if (!(std::fabs(det) > kSphereBound * permanent)) return 0;
-  const double factors =
-      1 + a_lift + b_lift + c_lift + d_lift;  // its square exceeds the product of three differences
+  const double factors = 1 + a_lift + b_lift + c_lift + d_lift;  // factors^2 exceeds three differences
   if (!(permanent > kLeastPermanent * factors * factors)) return 0;
   return det > 0 ? 1 : -1;
 }

@@ -142,8 +142,7 @@ std::uint32_t LabelFunction::exact_label_at(const std::array<mpq_class, 3>& u) c
   }
   const auto labels = corners(block);
   const auto strengths = this->strengths(block);
-  std::map<std::uint32_t, mpq_class>
-      weights;  // in 65535ths; ascending labels: the first of the greatest wins
+  std::map<std::uint32_t, mpq_class> weights;  // in 65535ths; by label: the first of the greatest wins
   for (std::size_t c = 0; c < 8; ++c)
     weights[labels[c]] += strengths[c] * factors[0][c & 1] * factors[1][c >> 1 & 1] * factors[2][c >> 2];
   auto best = weights.begin();

@@ -164,8 +164,7 @@ class VtuParser {
     std::vector<VtuArray>* list = list_of(array.name);
     const auto* type = std::find_if(std::begin(kTypes), std::end(kTypes),
                                     [&](const TypeName& t) { return t.name == attribute("type"); });
-    if (list == nullptr || attribute("type") == "String" || attribute("type") == "Bit")
-      return;  // holds no labels
+    if (list == nullptr || attribute("type") == "String" || attribute("type") == "Bit") return;  // no labels
     array.line = line();
     if (type == std::end(kTypes))
       refuse(fmt::format("DataArray '{}' of type '{}': no number type", array.name, attribute("type")));

@@ -11,10 +11,9 @@
 namespace podm::verify {
 
 struct VtuGrid {
-  Mesh mesh;  ///< with ids of the file's own points
-  std::vector<VertexId>
-      point_ids;          ///< one per point, from the array asked for; kNone for a value that is no id
-  std::string ids_place;  ///< "line 12, DataArray 'vertex'"
+  Mesh mesh;                        ///< with ids of the file's own points
+  std::vector<VertexId> point_ids;  ///< one per point, from the array asked for; kNone for other values
+  std::string ids_place;            ///< "line 12, DataArray 'vertex'"
 };
 
 /// `id_array` names the point array that `point_ids` come from; null: none. Throws InputError.
