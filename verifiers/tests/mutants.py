@@ -565,7 +565,7 @@ def radius_over_its_place(shop):
                          b"TransformMatrix = 1 0 0 0 1 0 0 0 1\nOffset = -1 -1 -1\nElementSpacing = 2 2 2\n"
                          b"DimSize = 2 2 2\nElementType = MET_DOUBLE\nElementDataFile = LOCAL\n" + voxels.tobytes())
         return ["--size-image", str(path)]
-    middle = 2 * math.sqrt(3) - 1  # makes the mean sqrt(3), where the regular cell has its centre
+    middle = 2 * math.sqrt(3) - 1  # makes the mean sqrt(3), the bound at the center of the regular cell
     return Mutant(Case(tetrahedron(REGULAR), by_place("over.mha", middle - 0.001)),
                   Case(tetrahedron(REGULAR), by_place("under.mha", middle + 0.001)))
 
