@@ -1,10 +1,11 @@
-// How this program was built, told by cmake/PodmBuildInfo.cmake.
+// The build of this program, recorded by cmake/PodmBuildInfo.cmake.
 #pragma once
 
 namespace podm::verify {
 
-/// Lines "key: value" of compiler, flags, commit, dirty and libraries, the last not ended. Commit and dirty,
-/// which is true where sources differ from their commit, are "unknown" outside a checkout.
+/// Returns lines "key: value" with compiler, flags, commit, dirty and libraries; the last line has no line
+/// end. `dirty` is true if the sources differ from their commit. Commit and dirty are "unknown" outside a
+/// checkout.
 const char* build_info();
 
 }  // namespace podm::verify

@@ -1,4 +1,5 @@
-// What a claim's check answers. One check_*.cpp a claim, one ClaimResult each; the reports are made of them.
+// The result of a claim's check. Each claim has one check_*.cpp and one ClaimResult, from which reports are
+// made.
 #pragma once
 
 #include <cstdint>
@@ -13,23 +14,23 @@ namespace podm::verify {
 enum class Verdict { kPass, kFail, kNotRun };
 
 std::string to_string(Verdict verdict);  ///< "pass", "fail", "not_run"
-/// The verdict on a claim that was checked: one violation refutes it.
+/// Returns the verdict on a claim that was checked: one violation refutes it.
 inline Verdict verdict_on(std::uint64_t num_violations) {
   return num_violations == 0 ? Verdict::kPass : Verdict::kFail;
 }
 
-/// One place where a claim does not hold, or comes closest to not holding.
+/// A place where a claim does not hold, or comes closest to not holding.
 struct Witness {
-  std::string statement{};           ///< which of the claim's statements it breaks: "no duplicate cells"
+  std::string statement{};           ///< the statement of the claim that it breaks: "no duplicate cells"
   std::vector<CellId> cells{};       ///< 0-based
   std::vector<VertexId> vertices{};  ///< 0-based
-  std::vector<Point> points{};       ///< where to look
+  std::vector<Point> points{};       ///< points to look at
   double value = 0;                  ///< the measured quantity; larger `severity` is worse
   double severity = 0;
   LabelValue label = 0;
 };
 
-/// Counts of values in equal bins over [low, high); what lies outside goes to the first or last bin.
+/// Counts of values in equal bins over [low, high). Values outside go to the first or last bin.
 struct Histogram {
   std::string name;  ///< "radius_edge_ratio"
   std::string unit;  ///< "", "degrees", "mm"
@@ -43,12 +44,13 @@ inline constexpr std::size_t kMaxWitnesses = 10;
 struct ClaimResult {
   std::string claim;  ///< "radius_edge"
   Verdict verdict = Verdict::kNotRun;
-  std::string reason;  ///< why not run; else one line for people: "0 of 2943112 cells at or over 1.93"
+  std::string reason;  ///< reason if not run; otherwise one line for the terminal: "0 of 2943112 cells at or
+                       ///< over 1.93"
   std::string method;  ///< "interval filter, then exact rationals"
   std::uint64_t num_checked = 0;     ///< facts decided: cells, facets, pairs
-  std::uint64_t num_exact = 0;       ///< of these, the ones the filter left to exact arithmetic
+  std::uint64_t num_exact = 0;       ///< facts that the filter left to exact arithmetic
   std::uint64_t num_violations = 0;  ///< of the claim; 0 exactly when the verdict is pass
-  std::uint64_t num_warnings = 0;    ///< things stated but not claimed, such as orphan vertices
+  std::uint64_t num_warnings = 0;    ///< facts reported but not claimed, such as orphan vertices
   std::vector<Witness> worst;        ///< at most kMaxWitnesses, worst first; on a pass the closest calls
   std::vector<CellId> bad_cells;     ///< every cell in a violation, ascending, each once: for --extract-bad
   std::vector<Histogram> histograms;

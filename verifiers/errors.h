@@ -1,4 +1,4 @@
-// The error every part of the verifier throws when the input or an option is at fault.
+// The error that every part of the verifier throws when the input or an option is at fault.
 #pragma once
 
 #include <stdexcept>

@@ -31,7 +31,8 @@ struct Command {
   bool quiet = false;
 };
 
-// Bounds are made into rationals, which have no NaN and no infinity.
+// Accepts positive, finite numbers only. Bounds are converted to rationals, which have no NaN and no
+// infinity.
 CLI::Validator positive() {
   return {[](std::string& text) {
             double value = 0;
@@ -73,7 +74,7 @@ void declare_inputs(CLI::App& app, Command& command) {
       ->option_text("FILE");
 }
 
-// Those of `podm mesh`, for a mesh of a part of the image's labels.
+// Declares the options of `podm mesh` that select a part of the image's labels.
 void declare_selection(CLI::App& app, Command& command) {
   app.option_defaults()->group("What was meshed of the image, as podm mesh was told");
   CLI::Option* image = app.get_option("--image");
@@ -217,7 +218,7 @@ void declare_options(CLI::App& app, Command& command) {
       "internal.");
 }
 
-// A report is never written over what it reports on.
+// Throws if a report would overwrite one of its inputs.
 void refuse_to_overwrite_inputs(const Options& options) {
   namespace fs = std::filesystem;
   std::error_code error;
@@ -305,7 +306,7 @@ int complain(const std::string& fault, int exit_code) {
 
 int main(int argc, char** argv) {
   using namespace podm::verify;
-  // A file-size limit and a closed pipe then fail the write, which is reported and cleaned up after.
+  // A file-size limit or a closed pipe then fails the write, which is reported and cleaned up.
   std::signal(SIGXFSZ, SIG_IGN);
   std::signal(SIGPIPE, SIG_IGN);
   try {

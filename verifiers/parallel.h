@@ -1,4 +1,4 @@
-// Loops over ranges on several threads; results do not depend on the number of threads.
+// Loops over ranges on several threads. Results do not depend on the number of threads.
 #pragma once
 
 #include <algorithm>
@@ -10,14 +10,14 @@
 
 namespace podm::verify {
 
-/// What Options::threads asks for; 0 means all cores.
+/// Returns the number of threads for Options::threads; 0 means all cores.
 inline int num_threads(int asked) {
   return asked > 0 ? asked : std::max(1, static_cast<int>(std::thread::hardware_concurrency()));
 }
 
-/// Calls body(begin, end, thread) for disjoint ranges that cover [0, count), one range a thread and in order:
-/// ranges of thread t come before those of t+1, so that partial results joined by thread are the serial ones.
-/// The first exception thrown by a body is thrown again here.
+/// Calls body(begin, end, thread) for disjoint ranges that cover [0, count), one range per thread. Ranges of
+/// thread t come before those of t+1, so partial results joined by thread are the serial ones. The first
+/// exception thrown by a body is thrown again here.
 template <class Body>
 void parallel_ranges(std::size_t count, int threads, Body body) {
   const auto num_threads =

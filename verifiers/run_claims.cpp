@@ -32,7 +32,7 @@ bool is_given(Needs needs, const Options& options, const Mesh& mesh) {
   return false;
 }
 
-// What all claims but structure rest on.
+// True if all vertex ids and coordinates are sound, which every claim except structure relies on.
 bool has_sound_references(const Mesh& mesh) {
   const auto is_finite = [](const Point& p) {
     return std::isfinite(p[0]) && std::isfinite(p[1]) && std::isfinite(p[2]);
@@ -56,7 +56,8 @@ const T* pointer(const std::optional<T>& value) {
   return value ? &*value : nullptr;
 }
 
-// Levenshtein's distance: insertions, deletions and replacements from one to the other.
+// Returns Levenshtein's distance: the least number of insertions, deletions and replacements that turn a into
+// b.
 std::size_t edit_distance(const std::string& a, const std::string& b) {
   std::vector<std::size_t> row(b.size() + 1);
   std::iota(row.begin(), row.end(), 0);

@@ -1,4 +1,4 @@
-// Which claims there are, which of them a run is asked for, and the run itself.
+// The list of claims, the claims that a run checks, and the run itself.
 #pragma once
 
 #include <functional>
@@ -15,13 +15,13 @@
 
 namespace podm::verify {
 
-/// What a claim needs beside the mesh.
+/// The input that a claim needs in addition to the mesh.
 enum class Needs { kNothing, kImage, kBound, kDihedralBound };
 
-/// Throws InputError where a claim is asked for that there is not.
+/// Throws InputError if an unknown claim is asked for.
 void check_claims(const Options& options);
-/// The claims asked for by name, or without names all whose inputs were given and that the mesh's file does
-/// not say are not claimed.
+/// Returns the claims asked for by name. Without names, returns all claims whose inputs were given, except
+/// those that the mesh file states not to make.
 std::vector<std::string> chosen_claims(const Options& options, const Mesh& mesh);
 
 struct Inputs {
@@ -36,14 +36,14 @@ struct Claim {
   Needs needs;
   ClaimResult (*check)(const Inputs&, const Adjacency&, const Options&);
 };
-/// All claims, in the order in which they run.
+/// Returns all claims, in the order in which they run.
 const std::vector<Claim>& all_claims();
 
 /// Reads the files that `options` name. Throws InputError.
 Inputs read_inputs(const Options& options);
 
-/// One result a name; a claim that cannot be decided is not_run with the reason. `announce` is
-/// told of each claim that begins.
+/// Returns one result per name. A claim that cannot be decided is not_run, with the reason. Calls `announce`
+/// with each claim that begins.
 std::vector<ClaimResult> run_claims(const Inputs& inputs, const Options& options,
                                     const std::vector<std::string>& names,
                                     const std::function<void(const std::string&)>& announce);

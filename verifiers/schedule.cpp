@@ -58,7 +58,7 @@ Count count(const Json& json, const char* key, const Lines& lines) {
   return json[key].get<Count>();
 }
 
-// A double is compared without wrapping, however large it is.
+// Compares the number as a double, which does not wrap, however large it is.
 bool is_grid_number(const Json& json) {
   return json.is_number_integer() && std::fabs(json.get<double>()) <= kMostGrid;
 }

@@ -1,11 +1,11 @@
 // The leaf grid and the schedule of a run that refined an octree's leaves one by one (PDR, PDR.PODM).
 //
-// The file is JSON lines. First the grid:
+// The file is JSON lines. The first line is the grid:
 //   {"schema": "podm-schedule/1", "algorithm": "pdr-podm", "mesh_to_grid": [12 numbers, row-major 3x4],
 //    "leaves": [[i, j, k, side], ...]}
-// A leaf is the cube [i, i+side) x [j, j+side) x [k, k+side) of grid coordinates, integers with side a power
-// of two; mesh_to_grid takes the coordinates of the mesh file there. Then a line for every time a leaf was
-// active:
+// A leaf is the cube [i, i+side) x [j, j+side) x [k, k+side) of grid coordinates. Its numbers are integers,
+// and side is a power of two. mesh_to_grid maps the coordinates of the mesh file to grid coordinates. One
+// line follows for every time that a leaf was active:
 //   {"leaf": 17, "node": 0, "begin_s": 0.125, "end_s": 0.25, "operations": 8123, "deferred": 2,
 //    "touched_leaves": [16, 17, 18]}
 // touched_leaves are the leaves that held a vertex which one of the operations locked.

@@ -1,14 +1,14 @@
 // Claim boundary_angles.
-//   Statement   every planar angle of every boundary facet, between a cell and the outside or between cells
-//               of different labels, exceeds the bound (30 degrees unless told otherwise).
-//   Rests on    a facet's smallest angle t is between its two longest edges m and n, is at most 60 degrees,
-//               and 2 A = m n sin t with A the area. So t > bound exactly when
-//               4 A^2 > max(m^2 n^2) sin^2(bound), the bound taken as the decimal number typed, or 90 degrees
-//               where it is more. sin^2 is exact or above the true one by less than 1e-70 (squared_sine); a
-//               facet in that gap would count as a violation. Interval arithmetic decides the clear facets,
+//   Statement   Every planar angle of every boundary facet, between a cell and the outside or between cells
+//               of different labels, exceeds the bound (by default 30 degrees).
+//   Rests on    A facet's smallest angle t is between its two longest edges m and n and is at most 60
+//               degrees. With A the area, 2 A = m n sin t. So t > bound exactly if
+//               4 A^2 > max(m^2 n^2) sin^2(bound). The bound is the decimal number as typed, or 90 degrees if
+//               it is more. sin^2 is exact or above the true value by less than 1e-70 (squared_sine); a facet
+//               in that gap would count as a violation. Interval arithmetic decides the clear facets,
 //               rationals the rest.
-//   Cost        linear in the boundary facets.
-//   Not proved  anything about angles inside; facets that only the file lists are not looked at.
+//   Cost        Linear in the boundary facets.
+//   Not proved  Anything about angles inside a label. Facets that only the file lists are not checked.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -21,7 +21,7 @@ namespace podm::verify {
 
 namespace {
 
-// The sign of the facet's smallest angle - bound.
+// Returns the sign of the facet's smallest angle minus the bound.
 int side_of_bound(const TrianglePoints& p, const Constant& sine2, std::uint64_t& num_exact) {
   return sign_of(
       [&]<class T>(T) {

@@ -1,20 +1,20 @@
 // Claim conformity.
-//   Statements  what was made apart shares its facets: no two facets with one cell each lie at the same
-//               place, and no two vertices of such facets do. Given a schedule also: no two vertices of
-//               cells at a leaf boundary lie at the same place, so that a facet which crosses or touches one
-//               is shared by two cells or is on the mesh's boundary; leaves do not overlap; no two leaves
-//               that are active at the same time are within two rings of each other; and no operation touched
-//               a vertex outside its leaf and the first ring.
-//   Rests on    equality of coordinates, and integers on the leaf grid. Ring 1 of a leaf is the leaves whose
-//               closed cubes touch it, ring 2 those that touch ring 1. An activation lasts from its beginning
-//               up to, not including, its end; one without length is the instant between.
-//               What lies at a leaf boundary is decided in doubles with a margin above their rounding, so
-//               that some more is looked at, never less. The schedule is the mesher's own word on what it did
-//               when.
-//   Cost        n log n in facets with one cell and in vertices at leaf boundaries; in the schedule, an
+//   Statements  Parts that were made apart share their facets: no two facets with one cell each lie at the
+//               same place, and no two vertices of such facets do. With a schedule, three statements are
+//               added. No two vertices of cells at a leaf boundary lie at the same place; a facet that
+//               crosses or touches a leaf boundary is therefore shared by two cells or is on the mesh's
+//               boundary. Leaves do not overlap, and no two leaves that are active at the same time are
+//               within two rings of each other. No operation touched a vertex outside its leaf and the first
+//               ring.
+//   Rests on    Equality of coordinates, and integers on the leaf grid. Ring 1 of a leaf is the leaves whose
+//               closed cubes touch it; ring 2 is the leaves that touch ring 1. An activation lasts from its
+//               beginning up to, not including, its end; an activation without length is the instant between.
+//               Vertices at a leaf boundary are found in doubles with a margin above their rounding, so a few
+//               more are checked, never fewer. The schedule is the mesher's own account of its run.
+//   Cost        n log n in facets with one cell and in vertices at leaf boundaries. In the schedule, an
 //               activation costs the leaves of its first ring.
-//   Not proved  that facets which lie together only in part are matched: the structure claim finds those as
-//               hanging vertices and overlaps, the surface claim a gap.
+//   Not proved  That facets which lie together only in part match: the structure claim finds them as hanging
+//               vertices and overlaps, the surface claim as a gap.
 #include <fmt/format.h>
 
 #include <cmath>
@@ -35,7 +35,7 @@ std::vector<FacetId> facets_with_one_cell(const Adjacency& adjacency) {
   return facets;
 }
 
-// Facets are the same if they are at the same place, whatever their vertices' ids.
+// Compares facets by place, whatever their vertices' ids are.
 Tally check_facets(const Mesh& mesh, const std::vector<FacetId>& open_facets) {
   struct Placed {
     std::array<Point, 3> points;
@@ -62,7 +62,7 @@ Tally check_facets(const Mesh& mesh, const std::vector<FacetId>& open_facets) {
   return tally;
 }
 
-// `vertices` may name one more than once.
+// `vertices` may contain a vertex more than once.
 Tally check_vertices(const Mesh& mesh, std::vector<VertexId> vertices, const char* statement) {
   std::sort(vertices.begin(), vertices.end(), [&](VertexId a, VertexId b) {
     return std::tie(mesh.vertices[a], a) < std::tie(mesh.vertices[b], b);
@@ -79,7 +79,8 @@ Tally check_vertices(const Mesh& mesh, std::vector<VertexId> vertices, const cha
   return tally;
 }
 
-// Where each vertex lies between the planes of the leaves' faces, which reach beyond the leaves themselves.
+// The position of each vertex relative to the planes of the leaves' faces. The planes reach beyond the
+// leaves.
 class LeafBoundaries {
  public:
   LeafBoundaries(const Mesh& mesh, const Schedule& schedule) : slots_(mesh.vertices.size()) {
@@ -99,19 +100,20 @@ class LeafBoundaries {
   bool has(VertexId v) const {
     return std::any_of(slots_[v].begin(), slots_[v].end(), [](std::uint32_t s) { return s % 2 == 1; });
   }
-  // Whether the facet touches or crosses a plane.
+  // True if the facet touches or crosses a plane.
   bool has(const std::array<VertexId, 3>& facet) const {
     return has(facet[0]) || slots_[facet[0]] != slots_[facet[1]] || slots_[facet[0]] != slots_[facet[2]];
   }
 
  private:
-  // Twice the number of planes below, one more on a plane. Four products and sums of doubles err by less than
-  // 2^-50 of the terms' magnitudes; the millionth of a unit allows for coordinates rounded when written.
+  // Returns twice the number of planes below, plus one on a plane. Four products and sums of doubles err by
+  // less than 2^-50 of the terms' magnitudes. The millionth of a unit allows for coordinates rounded when
+  // written.
   static std::uint32_t slot(const std::vector<double>& planes, const double* row, const Point& p) {
     const std::array<double, 4> terms{row[0] * p[0], row[1] * p[1], row[2] * p[2], row[3]};
     const double x = terms[0] + terms[1] + terms[2] + terms[3];
     const double size = std::fabs(terms[0]) + std::fabs(terms[1]) + std::fabs(terms[2]) + std::fabs(terms[3]);
-    if (!std::isfinite(size)) return 1;  // no telling: as if on a plane
+    if (!std::isfinite(size)) return 1;  // open: counts as on a plane
     const double margin = 1e-6 + 0x1p-50 * size;
     const auto plane = std::lower_bound(planes.begin(), planes.end(), x - margin);
     const auto below = static_cast<std::uint32_t>(plane - planes.begin());

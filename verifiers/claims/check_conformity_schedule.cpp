@@ -12,7 +12,7 @@ namespace podm::verify {
 
 namespace {
 
-// Corners of leaves are integers below 2^42, which doubles hold.
+// Corners of leaves are integers below 2^42, which doubles hold exactly.
 std::vector<Bounds> cubes_of(const Schedule& schedule) {
   std::vector<Bounds> cubes;
   for (const Leaf& leaf : schedule.leaves) {
@@ -38,7 +38,7 @@ class LeafGrid {
   std::size_t size() const { return cubes_.size(); }
   bool touch(std::uint32_t a, std::uint32_t b) const { return meet(cubes_[a], cubes_[b]); }
 
-  // Another leaf that overlaps this one; kNone: none.
+  // Returns another leaf that overlaps this one, or kNone.
   std::uint32_t overlapping(std::uint32_t leaf) const {
     std::uint32_t found = kNone;
     tree_.for_each_near(
@@ -48,7 +48,7 @@ class LeafGrid {
         });
     return found;
   }
-  // The leaf itself and ring 1.
+  // Returns the leaf itself and ring 1.
   const std::vector<std::uint32_t>& around(std::uint32_t leaf) {
     const auto [place, is_new] = around_.try_emplace(leaf);
     if (is_new) {
@@ -77,7 +77,7 @@ Tally check_leaves(const LeafGrid& grid) {
   return tally;
 }
 
-// A sweep over time. At equal times what ends comes before what begins, and instants come last.
+// Sweeps over time. At equal times ends come before beginnings, and instants come last.
 class Sweep {
  public:
   Sweep(const Schedule& schedule, LeafGrid& grid)
@@ -110,7 +110,7 @@ class Sweep {
  private:
   enum class Event { kEnd, kBegin, kInstant };
   struct Active {
-    std::uint32_t count = 0, last = kNone;  // of the activations of a leaf now, the one that ends last
+    std::uint32_t count = 0, last = kNone;  // activations of the leaf at this time; the one that ends last
   };
 
   std::vector<std::tuple<double, Event, std::uint32_t>> sorted_events() const {
@@ -128,7 +128,7 @@ class Sweep {
     return events;
   }
 
-  // Every pair of leaves is judged when the later one begins.
+  // Judges every pair of leaves when the later one begins.
   void check_beginning(std::uint32_t id) {
     tally_.num_checked += num_active_;
     for (const std::uint32_t near : grid_.around(activations_[id].leaf)) {
@@ -153,8 +153,8 @@ class Sweep {
   const std::vector<Activation>& activations_;
   LeafGrid& grid_;
   std::vector<Active> active_;
-  // Each leaf has the active leaves that touch it, at most one unless two are too near. Thus a beginning
-  // looks at its first ring alone, however many small leaves touch a large one there.
+  // Lists per leaf the active leaves that touch it: at most one, unless two are too near. A beginning
+  // therefore checks its first ring alone, however many small leaves touch a large leaf there.
   std::vector<std::vector<std::uint32_t>> active_around_;
   std::vector<std::uint32_t> seen_by_;  // by leaf: the last activation whose two rings held it
   std::uint64_t num_active_ = 0;
@@ -182,8 +182,8 @@ void check_schedule(const Schedule& schedule, const std::function<void(const cha
   const Tally leaves = check_leaves(grid);
   add("overlapping_leaves", leaves);
   add("leaves_touched_outside", check_touched_leaves(schedule, grid));
-  // Leaves are disjoint cubes, each of which touches a bounded number that are no smaller, so that all first
-  // rings together are linear in the leaves.
+  // Leaves are disjoint cubes, and each touches a bounded number of leaves that are no smaller. All first
+  // rings together are therefore linear in the leaves.
   if (leaves.num_violations == 0) add("active_leaves_too_near", Sweep(schedule, grid).check());
 }
 

@@ -1,4 +1,4 @@
-// The statements of the claim conformity about a schedule alone: leaves, rings and what was touched.
+// The statements of the claim conformity about a schedule alone: leaves, rings and touched leaves.
 #pragma once
 
 #include <functional>

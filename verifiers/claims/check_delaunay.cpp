@@ -1,15 +1,15 @@
 // Claim delaunay.
-//   Statement   local: across every interior facet, the far vertex of the one cell is not strictly inside the
+//   Statements  Local: across every interior facet, the far vertex of one cell is not strictly inside the
 //               circumsphere of the other. Global: no vertex that a cell uses is strictly inside any cell's
-//               circumsphere. Vertices exactly on a sphere are ties, counted and allowed: they leave the
-//               choice open.
-//   Rests on    exact side-of-sphere decisions in the coordinates of the file. A flat cell has no
-//               circumsphere and is a violation. Local does not imply global here, for a mesh of the inside
-//               alone is not convex.
-//   Cost        about n log n: the global test asks a tree of all vertices for those in a ball slightly
+//               circumsphere. Vertices exactly on a sphere are ties, which are counted and allowed: they
+//               leave the choice open.
+//   Rests on    Exact side-of-sphere decisions in the coordinates of the file. A flat cell has no
+//               circumsphere and is a violation. The local statement does not imply the global one here, as a
+//               mesh of the inside alone is not convex.
+//   Cost        About n log n. The global test asks a tree of all vertices for those in a ball slightly
 //               larger than the circumball. These are few, unless very many vertices lie near one sphere.
-//   Not proved  that the mesh is the triangulation of all its vertices: it may lack cells (a part of it is
-//               Delaunay too).
+//   Not proved  That the mesh is the triangulation of all its vertices: it may lack cells (a part of the
+//               triangulation is Delaunay too).
 #include <fmt/format.h>
 
 #include <cmath>
@@ -38,10 +38,11 @@ Vector<T> center_from_last(const CellPoints& p) {
   return center;
 }
 
-// Whether the rounded centre is off by less than kSlack radii. With L the longest edge from the last vertex,
-// R >= L / 2, and e = 2^-53: det has an error below 16 e L^3, a component of the numerator one below
-// 64 e L^4, and the centre is their quotient over 2 det, so that L^3 <= 1e7 |det| leaves an error below
-// (32 e L^4 / |det| + 16 e L^3 R / |det|) < 1e-6 R. The range keeps all of it from over- and underflow.
+// True if the rounded center is off by less than kSlack radii. Let L be the longest edge from the last
+// vertex, R >= L / 2, and e = 2^-53. The error of det is below 16 e L^3. The error of a component of the
+// numerator is below 64 e L^4. The center is their quotient over 2 det. If L^3 <= 1e7 |det|, its error is
+// therefore below (32 e L^4 / |det| + 16 e L^3 R / |det|) < 1e-6 R. The range of L keeps all terms from over-
+// and underflow.
 bool is_in_good_shape(const CellPoints& p) {
   const auto a = difference<double>(p[0], p[3]), b = difference<double>(p[1], p[3]),
              c = difference<double>(p[2], p[3]);
@@ -50,8 +51,9 @@ bool is_in_good_shape(const CellPoints& p) {
 }
 constexpr double kSlack = 1e-5;
 
-// A ball that holds the circumball: the rounded one, or the exact one rounded, made larger by more than the
-// errors of its centre, its radius and of distances from the centre. Infinite where doubles do not suffice.
+// Returns a ball that contains the circumball. It is the rounded circumball, or the exact one rounded,
+// enlarged by more than the errors of its center, its radius and of distances from the center. It is infinite
+// if doubles do not suffice.
 Ball ball_around(const CellPoints& p) {
   Vector<double> from_last{};
   if (is_in_good_shape(p)) {
@@ -123,7 +125,7 @@ class Spheres {
     witness.points.push_back(x);
     t.violation(std::move(witness));
   }
-  // How deep in the ball, as a part of its radius; rounded.
+  // Returns how deep x is in the ball, relative to its radius; rounded.
   static double depth_of(const CellPoints& p, const Point& x) {
     const auto from_last = center_from_last<double>(p);
     Vector<double> d = difference<double>(x, p[3]);

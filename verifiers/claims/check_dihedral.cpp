@@ -1,17 +1,16 @@
 // Claim dihedral.
-//   Statements  every dihedral angle of every cell is at least the least bound (--min-dihedral), and at most
-//   the largest
-//               (--max-dihedral), as far as they are given; else those that the file promises.
-//   Rests on    the angle t of the facets with the inward normals n and m having cos t = -n.m / |n||m|. So t
-//   is below
-//               a bound b of 0 to 90 degrees exactly when n.m < 0 and (n.m)^2 > cos^2(b) |n|^2 |m|^2, and
-//               above one of 90 to 180 degrees when n.m > 0 and the same holds; bounds are the decimal
-//               numbers typed. cos^2 is exact or below the true one by less than 1e-70 (squared_sine); an
-//               angle in that gap would count as a violation. Interval arithmetic decides the clear angles,
-//               rationals the rest. A flat cell, which has none but 0 and 180 degrees, is a violation of
-//               either bound.
-//   Cost        linear, about 1 us a cell, half of it for the histogram.
-//   Not proved  anything about angles between facets of different cells, such as an interface's.
+//   Statements  Every dihedral angle of every cell is at least the least bound (--min-dihedral), and at most
+//               the largest (--max-dihedral), as far as they are given. If neither is given, the bounds that
+//               the file promises apply.
+//   Rests on    The angle t between facets with the inward normals n and m has cos t = -n.m / |n||m|. So t is
+//               below a bound b of 0 to 90 degrees exactly if n.m < 0 and (n.m)^2 > cos^2(b) |n|^2 |m|^2. It
+//               is above a bound of 90 to 180 degrees if n.m > 0 and the same inequality holds. Bounds are
+//               the decimal numbers as typed. cos^2 is exact or below the true value by less than 1e-70
+//               (squared_sine); an angle in that gap would count as a violation. Interval arithmetic decides
+//               the clear angles, rationals the rest. A flat cell, whose angles are all 0 or 180 degrees, is
+//               a violation of either bound.
+//   Cost        Linear, about 1 us per cell, half of it for the histogram.
+//   Not proved  Anything about angles between facets of different cells, such as those of an interface.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -24,7 +23,7 @@ namespace podm::verify {
 
 namespace {
 
-// The facets opposite the vertices of a positive cell, so that their normals point inwards.
+// The facets opposite the vertices of a positive cell, ordered so that their normals point inwards.
 constexpr std::array<std::array<std::size_t, 3>, 4> kFacets{{{1, 3, 2}, {0, 2, 3}, {0, 3, 1}, {0, 1, 2}}};
 
 constexpr const char *kLeastAngle = "dihedral angles are at least the bound",
@@ -40,8 +39,7 @@ AngleBounds angle_bounds_of(const Mesh& mesh, const Options& options) {
   return {(*mesh.promised_dihedral_deg)[0], (*mesh.promised_dihedral_deg)[1]};
 }
 
-// Whether the angle of two facets is on the far side of a bound: `side` is 1 for the largest, -1 for the
-// least.
+// True if the angle of two facets is beyond a bound: `side` is 1 for the largest, -1 for the least.
 bool is_angle_beyond(const CellPoints& p, std::size_t i, std::size_t j, int side, const Constant& cosine2,
                      std::uint64_t& num_exact) {
   const auto normal = [&]<class T>(T, std::size_t k) {
@@ -68,7 +66,7 @@ class CellCheck {
         largest_(Rational(1) -
                  squared_sine(Rational(180) - typed_decimal(bounds.largest_deg.value_or(180)))) {}
 
-  /// The statement that the cell breaks, or none.
+  /// Returns the statement that the cell breaks, or null.
   const char* broken_by(const CellPoints& p, std::uint64_t& num_exact) const {
     if (orientation(p[0], p[1], p[2], p[3], num_exact) == 0) return has_least_ ? kLeastAngle : kLargestAngle;
     for (std::size_t i = 0; i < 4; ++i) {
@@ -113,7 +111,7 @@ ClaimResult check_dihedral(const Mesh& mesh, const Options& options) {
     const double least = *std::min_element(angles.begin(), angles.end()),
                  largest = *std::max_element(angles.begin(), angles.end());
     const char* const broken = check.broken_by(p, t.num_exact);
-    // How far from a bound, or beyond it.
+    // distance from a bound; positive beyond it
     const double under = bounds.least_deg ? *bounds.least_deg - least : -180,
                  over = bounds.largest_deg ? largest - *bounds.largest_deg : -180;
     const double severity = std::max(under, over);

@@ -1,35 +1,38 @@
 // Claim fidelity.
-//   Statements  with b the bound: 95 % of the mesh's label interface, by area, lies within b voxels of the
-//               image's; all of it lies within sqrt(3) b, the diagonal of a voxel; 95 % of the image's
-//               interface, by area, lies within b voxels of the mesh's. The mesh's interface are the facets
-//               between cells of different labels and those with one cell alone; the image's is where its
-//               label function changes (image/label_function.h), not the staircase of its voxels. Of a
-//               smoothed image (image/smoothing.h) it is the smoothed one.
-//               b is 1 (Options::fidelity_bound_voxels), for the image does not tell where between the
-//               centres of two voxels a label ends. A mesh of the PODM family that was made with the
-//               sampling distance delta (Options::delta_mm) promises less where that is coarser: what is
-//               within 2 delta counts as within sqrt(3) b, and what is within 2 delta / sqrt(3) as within b.
-//               The second statement is proved for such a mesh: the Voronoi edge of an interface facet
-//               crosses the isosurface in the circumball of a cell of the facet, rule R2 left no such ball a
-//               radius of 2 delta, R3 has the facet's vertices on the isosurface, and no point of a triangle
-//               is further from all of its vertices than its circumradius.
-//   Rests on    samples of both. The mesh's are points less than half a voxel apart, vertices and edges among
-//               them: between samples a facet is at most 0.3 voxels further off than they are. The image's
-//               are the points between the centres of two voxels of different labels that share a face where
-//               the label changes, half of the way if it is not smoothed; they are exact points of it but
-//               for rounding, each weighted by its face's area. Distances are lengths in mm in the world, so
-//               that anisotropic spacing and shear count as they should; "in voxels" the same displacements
-//               are measured in voxel indices. The distance to a facet is exact but for rounding; that to the
-//               image's interface is the distance of a point found on it, never too small
+//   Statements  Let b be the bound. First, 95 % of the mesh's label interface, by area, lies within b voxels
+//               of the image's. Second, all of it lies within sqrt(3) b, the diagonal of a voxel. Third, 95 %
+//               of the image's interface, by area, lies within b voxels of the mesh's. The mesh's interface
+//               consists of the facets between cells of different labels and the facets with one cell. The
+//               image's interface is where its label function changes (image/label_function.h), not the
+//               staircase of its voxels. For a smoothed image (image/smoothing.h) it is the smoothed
+//               interface.
+//               b is 1 (Options::fidelity_bound_voxels), as the image leaves open where a label ends between
+//               the centers of two voxels. A mesh of the PODM family that was made with the sampling distance
+//               delta (Options::delta_mm) promises less if delta is coarser: a distance within 2 delta counts
+//               as within sqrt(3) b, and one within 2 delta / sqrt(3) as within b. The second statement is
+//               proved for such a mesh. The Voronoi edge of an interface facet crosses the isosurface in the
+//               circumball of a cell of the facet. Rule R2 left no such ball a radius of 2 delta. R3 has the
+//               facet's vertices on the isosurface. No point of a triangle is further from all of its
+//               vertices than its circumradius.
+//   Rests on    Samples of both interfaces. The samples of the mesh are points less than half a voxel apart,
+//               vertices and points of edges among them: between samples a facet is at most 0.3 voxels
+//               further away than the samples are. The samples of the image lie between the centers of two
+//               voxels of different labels that share a face, at the point where the label changes, which is
+//               halfway if the image is not smoothed. They are exact points of the interface up to rounding,
+//               each weighted by the area of its face. Distances are lengths in mm in the world, so
+//               anisotropic spacing and shear are taken into account. The same displacements are measured in
+//               voxel indices for distances "in voxels". The distance to a facet is exact up to rounding. The
+//               distance to the image's interface is the distance to a point found on it, never too small
 //               (check_fidelity_isosurface.h).
-//   Cost        (samples + facets) log n; about 5 us a sample, 60 bytes a facet and 50 a voxel face. Of a
-//               smoothed image twice the time for the samples of the mesh, and twice the bytes for faces.
-//   Not proved  that each structure of the image is there: what is thinner than the sampling of the mesh may
-//               be lost. Nor topology, which the claim surface reports. Mean, 95 % and maximum are reported
-//               both ways, for all together and per label (between the boundary of the label's cells and that
-//               of its voxels), and for the mesh's interface vertices alone, which the claim surface_vertices
-//               judges. The distances of the mesh's interface from that of a smoothed image before it was
-//               smoothed are reported, not judged.
+//   Cost        (samples + facets) log n; about 5 us per sample, 60 bytes per facet and 50 per voxel face. A
+//               smoothed image takes twice the time for the samples of the mesh, and twice the bytes for
+//               faces.
+//   Not proved  That each structure of the image is there: structures thinner than the sampling of the mesh
+//               may be lost. Nor topology, which the claim surface reports. Mean, 95 % and maximum are
+//               reported both ways, for all together and per label (between the boundary of the label's cells
+//               and that of its voxels), and for the mesh's interface vertices alone, which the claim
+//               surface_vertices judges. The distances from the mesh's interface to the interface of the
+//               image before it was smoothed are reported, not judged.
 #include <fmt/format.h>
 
 #include <map>
@@ -46,7 +49,7 @@ namespace podm::verify {
 
 namespace {
 
-// Near enough is what is within so many voxels, or within so many mm.
+// A distance is accepted if it is within this number of voxels, or within this number of mm.
 struct Bound {
   double voxels, mm;
 
@@ -102,7 +105,7 @@ class Comparison {
     });
   }
 
-  // From the mesh's interface to that of the image before it was smoothed.
+  // Returns the distances from the mesh's interface to that of the image before it was smoothed.
   Distances mesh_to_voxels() const {
     const LabelFunction of_voxels = LabelFunction::of_voxels(image_);
     const Midpoints midpoints(image_, frame_, of_voxels);
@@ -189,7 +192,7 @@ class Comparison {
     way.worst.add(witness);
   }
 
-  // The nearest point of any interface is nearest for the label too if the label ends there.
+  // The nearest point of any interface is also nearest for the label if the label ends there.
   void measure_label(const Point& p, LabelValue label, const IsosurfaceDistance::Answer& of_any, double mm,
                      double voxels, double weight, OneWay& way) const {
     if (label <= 0 || label > std::numeric_limits<std::uint32_t>::max()) return;

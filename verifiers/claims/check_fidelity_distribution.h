@@ -8,7 +8,7 @@
 
 namespace podm::verify {
 
-/// Bins grow by 1 % above a hundredth: a percentile is its bin's upper end, at most about 1 % (and 0.0001)
+/// Bins grow by 1 % above a hundredth. A percentile is its bin's upper end, at most about 1 % (and 0.0001)
 /// too large.
 class Distribution {
  public:

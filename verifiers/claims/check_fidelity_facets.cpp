@@ -48,8 +48,8 @@ double InterfaceFacets::area(std::uint32_t i) const {
   return 0.5 * std::sqrt(dot(n, n));
 }
 
-// The region of a vertex, of an edge or the inside decides: Ericson, "Real-Time Collision Detection"
-// (2005), 5.1.5.
+// The point lies in the region of a vertex, of an edge or of the inside: Ericson, "Real-Time Collision
+// Detection" (2005), 5.1.5.
 Point InterfaceFacets::closest(std::uint32_t i, const Point& p) const {
   const auto [a, b, c] = triangle(i);
   const Point ab = minus(b, a), ac = minus(c, a), ap = minus(p, a);

@@ -1,4 +1,4 @@
-// The facets between different labels of a mesh, as triangles of the world, and points spread over them.
+// The facets between different labels of a mesh, as triangles of the world, and sample points on them.
 #pragma once
 
 #include <map>
@@ -24,16 +24,16 @@ class InterfaceFacets {
   std::array<Point, 3> triangle(std::uint32_t i) const;
   Point closest(std::uint32_t i, const Point& p) const;
   void bounds(std::uint32_t i, Point& low, Point& high) const;
-  /// mm^2.
+  /// Returns mm^2.
   double area(std::uint32_t i) const;
 
-  /// Calls visit(point, share) for points spread evenly, their neighbours less than half a voxel apart,
-  /// vertices and points of the edges among them; the shares of a facet sum to 1.
+  /// Calls visit(point, share) for points spread evenly, neighbours less than half a voxel apart, vertices
+  /// and points of the edges among them. The shares of a facet sum to 1.
   template <class Visit>
   void sample(std::uint32_t i, Visit visit) const;
 
  private:
-  /// The number of parts that edges are cut into.
+  /// Returns the number of parts that edges are cut into.
   int num_parts(const std::array<Point, 3>& triangle) const;
 
   const ImageFrame& frame_;
@@ -45,7 +45,7 @@ template <class Visit>
 void InterfaceFacets::sample(std::uint32_t i, Visit visit) const {
   const std::array<Point, 3> t = triangle(i);
   const int n = num_parts(t);
-  // Each small triangle gives a third of its area to each corner: 6 of them meet inside, 3 at an edge.
+  // Each small triangle gives a third of its area to each corner: 6 triangles meet inside, 3 at an edge.
   const double third = 1.0 / (3.0 * n * n);
   for (int a = 0; a <= n; ++a)
     for (int b = 0; a + b <= n; ++b) {

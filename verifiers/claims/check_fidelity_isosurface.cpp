@@ -11,7 +11,7 @@ constexpr double kVoxelError = 1e-5;  // of bisection
 constexpr double kSameWeight = 1e-4;  // labels whose weights are this close meet at a point
 constexpr double kLittleWeight = 0.02, kLittleBeyond = 1.01;
 constexpr int kMaxProjections = 3;
-// A step along an axis is tried unless it is this much longer than the distance found.
+// A step along an axis is tried unless it is longer than the distance found by this factor.
 constexpr double kStepSquared = 4 * 4;
 
 Point along(const Point& a, const Point& b, double t) {
@@ -26,7 +26,7 @@ std::vector<std::uint32_t> first_ids(std::size_t count) {
 
 }  // namespace
 
-// Voxels outside the grid are background: a pair may have one of them.
+// Voxels outside the grid are background; one voxel of a pair may be outside.
 Midpoints::Midpoints(const Image& image, const ImageFrame& frame, const LabelFunction& label_function) {
   const std::array<std::size_t, 3> stride{
       1, static_cast<std::size_t>(image.size[0]),
@@ -55,7 +55,7 @@ Midpoints::Midpoints(const Image& image, const ImageFrame& frame, const LabelFun
         }
 }
 
-// What counts as the same on both sides: a label, or being of `label` or not.
+// The property that counts as the same on both sides: the label itself, or whether it is `label`.
 struct IsosurfaceDistance::Region {
   bool is_of_label = false;
   std::uint32_t label = 0;
@@ -109,7 +109,7 @@ IsosurfaceDistance::Answer IsosurfaceDistance::search(const Point& p, const Poin
   Point target;
   if (project(p, p, region, target)) try_segment(p, target, region, best);
   try_segment(p, along(p, known, kLittleBeyond), region, best);  // on `known` itself there is a tie
-  // The isosurface of flat voxels may pass near without a midpoint near: look along each axis.
+  // The isosurface of flat voxels may pass near without a midpoint near: search along each axis.
   for (const Point& step : steps_) {
     const Point neighbor{p[0] + step[0], p[1] + step[1], p[2] + step[2]};
     if (squared_distance(p, neighbor) < kStepSquared * best.squared) try_segment(p, neighbor, region, best);
@@ -120,8 +120,8 @@ IsosurfaceDistance::Answer IsosurfaceDistance::search(const Point& p, const Poin
   return best;
 }
 
-// Finds a change between p and `end`, or the part of it that is of use; false unless it is nearer than the
-// best by more than a thousandth.
+// Finds a change between p and `end`, or within the useful part of that segment. Returns false unless it is
+// nearer than the best point by more than a thousandth.
 bool IsosurfaceDistance::try_segment(const Point& p, const Point& end, const Region& region,
                                      Answer& best) const {
   const double useful = kLittleBeyond * std::sqrt(best.squared / squared_distance(p, end));
@@ -144,8 +144,8 @@ bool IsosurfaceDistance::try_segment(const Point& p, const Point& end, const Reg
   return is_much_nearer;
 }
 
-// The zero nearest to p of the linear weight difference at `at`, of the two labels that matter most there;
-// and as far again beyond.
+// Takes the two labels that matter most at `at` and the linear difference of their weights. Sets `target`
+// beyond the zero of the difference that is nearest to p, as far again as the zero is.
 bool IsosurfaceDistance::project(const Point& p, const Point& at, const Region& region, Point& target) const {
   const Point u = frame_.world_to_voxels(at);
   const LabelWeights weights = label_function_.weights_at(u);

@@ -1,12 +1,12 @@
 // Distance from a point to the image's isosurface (image/label_function.h), in the world's mm.
 //
-// Between the centres of two voxels of different labels that share a face, only these two labels have weight:
-// the label changes midway, or of a smoothed image where their strengths say. These midpoints are the known
-// points of the isosurface: one lies in each block that it passes through. From the nearest one a search goes
-// on to nearer points: wherever a segment's ends have different labels, a point of the isosurface lies
-// between, and bisection finds it. The search tries the segment to the midpoint, a voxel's length along each
-// axis, and the normals of the surface found. Every answer is a point of the isosurface to 1e-5 of a voxel,
-// so that the distance is never taken too small; it may be taken too large, by little.
+// Between the centers of two voxels of different labels that share a face, only these two labels have weight.
+// The label changes midway, or in a smoothed image where their strengths place it. These midpoints are the
+// known points of the isosurface: one lies in each block that the isosurface passes through. From the nearest
+// midpoint a search goes on to nearer points. If the ends of a segment have different labels, a point of the
+// isosurface lies between them, and bisection finds it. The search tries the segment to the midpoint, a
+// voxel's length along each axis, and the normals of the surface found. Every answer is a point of the
+// isosurface to 1e-5 of a voxel. The distance is therefore never too small; it may be slightly too large.
 #pragma once
 
 #include <map>
@@ -18,11 +18,11 @@
 
 namespace podm::verify {
 
-/// Where the label changes between two voxels that share a face.
+/// The point where the label changes between two voxels that share a face.
 struct Midpoint {
   Point world{};
   std::array<std::uint32_t, 2> labels{};  ///< of the two voxels
-  std::uint8_t axis = 0;                  ///< along which they lie
+  std::uint8_t axis = 0;                  ///< axis along which the voxels lie
 };
 
 class Midpoints {
@@ -38,20 +38,20 @@ class Midpoints {
 
 class IsosurfaceDistance {
  public:
-  /// Keeps references to frame and midpoints, which are those of `label_function`.
+  /// Keeps references to frame and midpoints. The midpoints must be those of `label_function`.
   IsosurfaceDistance(const Image& image, const ImageFrame& frame, const Midpoints& midpoints,
                      const LabelFunction& label_function);
 
   struct Answer {
     Point point{};
     double squared = std::numeric_limits<double>::infinity();
-    LabelWeights labels;  ///< there
+    LabelWeights labels;  ///< at the point
     bool bounds(std::uint32_t label) const;
   };
-  /// The distance to where any label changes. `hint` is kNone before the first call, then as this function
-  /// left it.
+  /// Returns the distance to where any label changes. `hint` is kNone before the first call, then as the
+  /// previous call left it.
   Answer nearest(const Point& p, std::uint32_t& hint) const;
-  /// The distance to where `label` begins or ends; none (infinite) if the image lacks it.
+  /// Returns the distance to where `label` begins or ends; infinite if the image lacks the label.
   Answer nearest_of_label(const Point& p, std::uint32_t label) const;
 
  private:
@@ -63,7 +63,7 @@ class IsosurfaceDistance {
   const ImageFrame& frame_;
   const Midpoints& midpoints_;
   LabelFunction label_function_;
-  std::array<Point, 6> steps_{};  // a voxel along each axis, to and fro
+  std::array<Point, 6> steps_{};  // a voxel along each axis, in both directions
   NearestTree<Midpoints> tree_;
   std::map<std::uint32_t, NearestTree<Midpoints>> tree_of_label_;
 };

@@ -1,4 +1,4 @@
-// Nearest of many shapes: a tree of boxes, split at the median of the longest side.
+// Finds the nearest of many shapes by a tree of boxes, split at the median of the longest side.
 #pragma once
 
 #include <algorithm>
@@ -13,7 +13,7 @@ namespace podm::verify {
 
 struct Nearest {
   std::uint32_t shape = kNone;
-  Point point{};  ///< of the shape
+  Point point{};  ///< nearest point of the shape
   double squared = std::numeric_limits<double>::infinity();
 };
 
@@ -22,7 +22,7 @@ inline double squared_distance(const Point& a, const Point& b) {
   return x * x + y * y + z * z;
 }
 
-/// Shapes has `Point closest(shape, p)` and `void bounds(shape, low, high)`.
+/// Shapes must have `Point closest(shape, p)` and `void bounds(shape, low, high)`.
 template <class Shapes>
 class NearestTree {
  public:
@@ -35,7 +35,7 @@ class NearestTree {
 
   bool empty() const { return ids_.empty(); }
 
-  /// Replaces `best` where a shape is nearer to p; a good first guess saves time.
+  /// Replaces `best` if a shape is nearer to p. A good first guess saves time.
   void improve(const Point& p, Nearest& best) const {
     if (!ids_.empty()) visit(0, p, best);
   }
@@ -49,7 +49,7 @@ class NearestTree {
   static constexpr std::uint32_t kLeafSize = 8;
   struct Node {
     Point low, high;
-    std::uint32_t begin, end, right;  // right child; the left one follows. 0: a leaf
+    std::uint32_t begin, end, right;  // right child (the left child is the next node); 0: a leaf
   };
 
   std::uint32_t build(std::uint32_t begin, std::uint32_t end) {

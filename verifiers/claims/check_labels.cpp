@@ -1,28 +1,28 @@
 // Claim labels.
-//   Statements  each cell's label is the image's label at its circumcentre: of the eight voxels around that
-//               point the label with the greatest trilinear weight, ties to the smaller, background (0)
-//               outside the grid; of an image that is smoothed, weights count the voxels' strengths
-//               (image/smoothing.h). Of a mesh that does not claim to be Delaunay, whose flat cells have
-//               their circumcentres far away: it is the image's at the cell's centroid, or there is a voxel
-//               of that label within reach, a voxel's diagonal more than 2 delta (--delta) or another
-//               diagonal, whichever is longer; interfaces of mesh and image are no nearer each other than
-//               that. Each label of the mesh is one of the image's. Each label that has more than 1000 voxels
-//               in the image has a cell.
-//   Rests on    weights that are continuous and change by at most 1 a voxel along each axis, so that two
-//               weights' order at a point holds for all points nearer than half their difference
-//               (label_function.h). The circumcentre is known up to a bound (check_labels_circumcenter.h).
-//               Where weights are as close as that, rational arithmetic decides the label at the circumcentre
-//               of the written coordinates. A cell with another label than that one is none the less right if
-//               its label wins within the bound: a mesher computes a circumcentre in rounded arithmetic, and
-//               maybe in other coordinates than the file's. Such cells are counted ("within_rounding") and
-//               not judged. The bound allows for slopes of 1 a voxel; where strengths of S make them as
-//               small, it forgives up to 1/S times the rounding. Strengths are taken to be right: what makes
-//               them is smoothing.cpp, tested against its definition.
-//   Cost        linear in the cells, and a pass over the voxels; 24 bytes a vertex, 8 a voxel of the mesh's
-//               box.
-//   Not proved  that the label is the image's elsewhere in the cell. Volume and overlap (Dice, by voxel
-//               centres within the grid) of each label are reported for that, not judged. The first statement
-//               is the promise of meshers of the PODM family; a mesh from elsewhere need not keep it.
+//   Statements  First, each cell's label is the image's label at its circumcenter: the label with the
+//               greatest trilinear weight among the eight voxels around that point, the smaller label if
+//               there is a tie, background (0) outside the grid. In a smoothed image, weights take the
+//               voxels' strengths into account (image/smoothing.h). The flat cells of a mesh that does not
+//               claim to be Delaunay have their circumcenters far away. For such a mesh, the label is the
+//               image's at the cell's centroid, or a voxel of that label is within reach. The reach is a
+//               voxel's diagonal plus the longer of 2 delta (--delta) and another diagonal; interfaces of
+//               mesh and image are no nearer each other than that. Second, each label of the mesh is one of
+//               the image's. Third, each label that has more than 1000 voxels in the image has a cell.
+//   Rests on    Weights are continuous and change by at most 1 per voxel along each axis. The order of two
+//               weights at a point therefore holds for all points nearer than half their difference
+//               (label_function.h). The circumcenter is known up to a bound (check_labels_circumcenter.h). If
+//               weights are as close as that, rational arithmetic decides the label at the circumcenter of
+//               the written coordinates. A cell with another label than that one is still right if its label
+//               wins within the bound: a mesher computes a circumcenter in rounded arithmetic, possibly in
+//               other coordinates than the file's. Such cells are counted ("within_rounding") and not judged.
+//               The bound allows for slopes of 1 per voxel; where strengths of S make them as small, it
+//               forgives up to 1/S times the rounding. Strengths are taken to be right: smoothing.cpp
+//               computes them and is tested against its definition.
+//   Cost        Linear in the cells, and a pass over the voxels; 24 bytes per vertex, 8 per voxel of the
+//               mesh's box.
+//   Not proved  That the label is the image's elsewhere in the cell. Volume and overlap (Dice, by voxel
+//               centers within the grid) of each label are reported for that, not judged. The first statement
+//               is the promise of meshers of the PODM family; a mesh of another mesher need not keep it.
 #include <fmt/format.h>
 
 #include "claims/check_labels_circumcenter.h"
@@ -88,8 +88,8 @@ class CellLabels {
   const std::vector<Point>& points() const { return locator_.points(); }
 
  private:
-  // A label that wins is that of one of the eight voxels around, so what rounding leaves open is within
-  // reach.
+  // A label that wins is that of one of the eight voxels around the point. A case that rounding leaves open
+  // is therefore within reach.
   void check_centroid(CellId cell, Tally& tally) const {
     const LocatedPoint center = locator_.centroid(cell);
     const LabelWeights weights = label_function_.weights_at(center.voxels);
@@ -104,7 +104,7 @@ class CellLabels {
     }
   }
 
-  // The stated label's weight exceeds every other's by so much.
+  // Returns by how much the stated label's weight exceeds every other weight.
   static double lead_of(LabelValue stated, const LabelWeights& weights, std::size_t best) {
     double own = 0, other = 0;
     for (std::size_t i = 0; i < weights.count; ++i) {
@@ -118,7 +118,7 @@ class CellLabels {
   void decide_exactly(CellId cell, const LocatedPoint& center, Tally& tally) const {
     ++tally.exact;
     const std::optional<std::uint32_t> label = exact_label_(cell);
-    if (!label) {  // no circumcentre
+    if (!label) {  // no circumcenter
       tally.wrong.push_back(cell);
       keep(tally.violations, cell, center, -1, 1);
     } else if (static_cast<LabelValue>(*label) != mesh_.cell_labels[cell]) {
@@ -151,7 +151,7 @@ class CellLabels {
   LabelReach reach_;
 };
 
-// Statements 2 and 3; the table of volumes and overlaps.
+// Judges statements 2 and 3, and reports the table of volumes and overlaps.
 void judge_labels(const Mesh& mesh, const std::map<LabelValue, LabelOverlap>& overlaps, double voxel_mm3,
                   ClaimResult& result) {
   auto table = nlohmann::json::array(), absent = nlohmann::json::array(), unknown = nlohmann::json::array();

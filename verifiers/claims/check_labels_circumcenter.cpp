@@ -30,10 +30,10 @@ template <class Number>
 struct Solution {
   std::array<Vector<Number>, 3> edges, normals;
   Number determinant;
-  Vector<Number> center;  // from v0
+  Vector<Number> center;  // relative to v0
 };
 
-// Cramer's rule, as the header's comment has it.
+// Cramer's rule, as in the header's comment.
 template <class Number>
 Solution<Number> solve(const std::array<Vector<Number>, 4>& v) {
   Solution<Number> s;

@@ -11,7 +11,7 @@ namespace podm::verify {
 
 namespace {
 
-// A box of the grid; empty when first > last on some axis.
+// A box of the grid; empty if first > last on some axis.
 struct Box {
   std::array<int, 3> first{}, last{};
 
@@ -24,10 +24,10 @@ int clamped(double x, int low, int high) {
   return static_cast<int>(std::clamp(x, static_cast<double>(low), static_cast<double>(high)));
 }
 
-// A voxel centre this near to a cell, in voxels, counts as inside: rounding shall not lose those on facets.
+// A voxel center this near to a cell, in voxels, counts as inside: rounding must not lose centers on facets.
 constexpr double kRounding = 1e-9;
 
-// Voxels whose index lies within [low, high], of those of `within`.
+// Returns the voxels of `within` whose indices lie in [low, high].
 Box voxels_between(const Point& low, const Point& high, const Box& within) {
   Box box;
   for (std::size_t axis = 0; axis < 3; ++axis) {
@@ -37,7 +37,7 @@ Box voxels_between(const Point& low, const Point& high, const Box& within) {
   return box;
 }
 
-// The part of a line along x that lies in a tetrahedron: where all four planes agree.
+// Finds the part of a line along x that lies in a tetrahedron: on the inner side of all four planes.
 class Tetrahedron {
  public:
   explicit Tetrahedron(const std::array<Point, 4>& v) {
@@ -92,7 +92,7 @@ class Raster {
 
   std::size_t num_slices() const { return box_.length(2); }
 
-  // All cells that reach into these slices, in their order.
+  // Draws all cells that reach into these slices, in their order.
   void draw(std::size_t first_slice, std::size_t end_slice) {
     Box slab = box_;
     slab.last[2] = box_.first[2] + static_cast<int>(end_slice) - 1;

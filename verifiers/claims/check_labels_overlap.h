@@ -1,4 +1,4 @@
-// Volume of each label, and how much of it the mesh and the image have in common.
+// The volume of each label, and its overlap between mesh and image.
 #pragma once
 
 #include <map>
@@ -11,7 +11,7 @@ namespace podm::verify {
 
 struct LabelOverlap {
   std::uint64_t image_voxels = 0;
-  std::uint64_t mesh_voxels = 0;  ///< voxels of the grid whose centre lies in a cell of the label
+  std::uint64_t mesh_voxels = 0;  ///< voxels of the grid whose center lies in a cell of the label
   std::uint64_t both = 0;
   double mesh_mm3 = 0;  ///< sum of the cells' volumes, in extended precision
 
@@ -20,8 +20,8 @@ struct LabelOverlap {
   }
 };
 
-/// `points`: the vertices in the image frame (voxel indices times spacing). A centre that lies on a facet
-/// belongs to the later cell of those that have it, whatever the number of threads. Without the background.
+/// `points` are the vertices in the image frame (voxel indices times spacing). A center on a facet belongs to
+/// the later cell of those that have the facet, whatever the number of threads. The background is left out.
 std::map<LabelValue, LabelOverlap> find_overlaps(const Mesh& mesh, const Image& image,
                                                  const std::vector<Point>& points, double voxel_volume_mm3,
                                                  int threads);

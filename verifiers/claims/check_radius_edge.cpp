@@ -1,10 +1,11 @@
 // Claim radius_edge.
-//   Statement   every cell has circumradius / shortest edge < bound (1.93 unless told otherwise).
-//   Rests on    nothing but the coordinates. With the bound b the decimal number as typed, the claim for a
-//               cell is R^2 < b^2 l^2, both sides rational in the coordinates: interval arithmetic decides
-//               the clear cells, rationals the rest. A flat cell has no circumsphere and is a violation.
-//   Cost        linear, about 0.7 us a cell, most of it for the histograms.
-//   Not proved  anything about dihedral angles: slivers satisfy the bound. Their histogram is reported.
+//   Statement   Every cell has circumradius / shortest edge < bound (by default 1.93).
+//   Rests on    The coordinates alone. Let the bound b be the decimal number as typed. The claim for a cell
+//               is R^2 < b^2 l^2, both sides rational in the coordinates. Interval arithmetic decides the
+//               clear cells, rationals the rest. A flat cell has no circumsphere and is a violation.
+//   Cost        Linear, about 0.7 us per cell, most of it for the histograms.
+//   Not proved  Anything about dihedral angles: slivers satisfy the bound. The histogram of dihedral angles
+//               is reported.
 #include <fmt/format.h>
 
 #include "claims/claims.h"
@@ -15,7 +16,7 @@ namespace podm::verify {
 
 namespace {
 
-// The sign of R^2 - bound^2 l^2; a flat cell is above any bound.
+// Returns the sign of R^2 - bound^2 l^2; a flat cell is above any bound.
 int side_of_bound(const CellPoints& p, const Constant& squared_bound, std::uint64_t& num_exact) {
   return sign_of(
       [&]<class T>(T) {

@@ -1,33 +1,38 @@
 // Claim size.
-//   Statement   every cell's circumradius R is at most its label's bound r_t (--radius, --radius-of), and at
-//               most what a size image (--size-image, times --size-factor) has at the circumcentre p:
-//               size_field.h says what that is between voxels.
-//               With --size-near A,B=MM:WIDTH, R is at most MM where p is within WIDTH of the interface: of
-//               the faces between voxels of A and of B, background outside the image.
-//               With --grade G, R is at most f + G |p - q| + slack for every bound f at a place q: its
-//               label's at the centre of each voxel; what the size image has there; MM wherever it holds near
-//               an interface; and f + 3 G d at the voxel whose centre is nearest to one of the size image's
-//               own, f, at a distance d. Lengths are mm along the axes of the image.
-//   Slack       what a mesher may lose that keeps grown bounds at nodes, one a voxel, or one every s voxels
-//               along an axis where one every s - 1 were more than 2^26, and interpolates between them. With
-//               D a voxel's diagonal and [s/2] rounded down, the node n nearest to a voxel q is within [s/2]
-//               D and has f + G |q - n|. Nodes grow no faster than G, and the mean over those around p of
-//               their distances from n is at most |p - n| + s D / 2: by Jensen's inequality, as the mean of a
-//               squared distance from p is at most a quarter of the squared step along each axis. So it
-//               grants f + G (2 [s/2] D + |p - q| + s D / 2), and the slack is (2 [s/2] + s/2) G D: half a
-//               diagonal where s is 1. A place near an interface has its voxel within D / 2 of it, whose
-//               bound is as much more, and the way is that much longer: the slack is G D more. One of the
-//               size image's own may go to any node that is nearest, by a way of no more than d + [s/2] D
-//               there and back. A place beyond all nodes counts as the nearest between them, which is no
-//               further from any. Single precision adds (m + 8) 2^-24 of f + G |p - q|, and of G WIDTH, where
-//               m is the most voxels along an axis, and so the most steps of a way.
-//   Rests on    the bounds as doubles, the image's radii as floats: R^2 <= r_t^2, in which voxels p lies, and
-//               whether it is within WIDTH, are decided in intervals, then in rationals. What grows is
-//               compared in doubles, whose rounding is far below the slack. A flat cell has no circumsphere
-//               and is a violation.
-//   Cost        linear, about 0.2 us a cell, 2 us with sizes by place, and 0.1 us a voxel with a grade; about
-//               80 bytes a face of an interface while they are found, and 5 a voxel with a grade.
-//   Not proved  that the cells are no smaller than needed.
+//   Statement   Every cell's circumradius R is at most its label's bound r_t (--radius, --radius-of), and at
+//               most the bound of the size image (--size-image, times --size-factor) at the circumcenter p.
+//               size_field.h defines this bound between voxels.
+//               With --size-near A,B=MM:WIDTH, R is at most MM if p is within WIDTH of the interface. The
+//               interface is the faces between voxels of A and voxels of B, with background outside the
+//               image.
+//               With --grade G, R is at most f + G |p - q| + slack for every bound f at a place q. At the
+//               center of each voxel f is the bound of its label; at every place it is the bound of the size
+//               image there, and MM wherever MM holds near an interface. Moreover, f + 3 G d is a bound at
+//               the voxel whose center is nearest to a voxel center of the size image with the bound f, at a
+//               distance d. Lengths are mm along the axes of the image.
+//   Slack       The slack is the loss that a mesher may have if it keeps grown bounds at nodes and
+//               interpolates between them. It has one node per voxel, or one every s voxels along an axis if
+//               one every s - 1 voxels gave more than 2^26 nodes. Let D be a voxel's diagonal and [s/2] be
+//               s / 2 rounded down. The node n nearest to a voxel q is within [s/2] D and has the bound
+//               f + G |q - n|. Bounds at nodes grow no faster than G. The mean distance from n of the nodes
+//               around p is at most |p - n| + s D / 2: by Jensen's inequality, as the mean of a squared
+//               distance from p is at most a quarter of the squared step along each axis. The mesher
+//               therefore grants f + G (2 [s/2] D + |p - q| + s D / 2), and the slack is (2 [s/2] + s/2) G D:
+//               half a diagonal times G if s is 1. A place near an interface has its voxel within D / 2 of
+//               it. The bound of that voxel is larger by G D / 2, and the distance is longer by D / 2: the
+//               slack is G D more. A bound of the size image's own voxels may go to any node that is nearest,
+//               by a way of at most d + [s/2] D there and back. A place beyond all nodes counts as the
+//               nearest place between them, which is no further from any node. Single precision adds
+//               (m + 8) 2^-24 of f + G |p - q|, and of G WIDTH. Here m is the largest number of voxels along
+//               an axis, and therefore the largest number of steps of a way.
+//   Rests on    The bounds as doubles and the image's radii as floats. Intervals, then rationals, decide
+//               R^2 <= r_t^2, in which voxels p lies, and if p is within WIDTH. Grown bounds are compared in
+//               doubles, whose rounding is far below the slack. A flat cell has no circumsphere and is a
+//               violation.
+//   Cost        Linear, about 0.2 us per cell, 2 us with local bounds, and 0.1 us per voxel with a grade;
+//               about 80 bytes per face of an interface while the faces are found, and 5 per voxel with a
+//               grade.
+//   Not proved  That the cells are no smaller than needed.
 #include <fmt/format.h>
 
 #include <cmath>
@@ -71,7 +76,7 @@ class SizeBounds {
     if (options.grade) graded_.emplace(*image, sizes, near_, options);
     if (image != nullptr) to_voxels_.emplace(image->voxel_to_ras, mesh.space);
   }
-  // `near_` is referred to.
+  // `graded_` keeps a reference to `near_`.
   SizeBounds(const SizeBounds&) = delete;
   SizeBounds& operator=(const SizeBounds&) = delete;
 
@@ -79,7 +84,7 @@ class SizeBounds {
   const std::optional<GradedSizes>& graded() const { return graded_; }
   bool has_any(CellId c) const { return is_by_place() || of_label(c); }
 
-  // Nothing where no bound asks for it, and of a flat cell.
+  // Returns nothing if no bound needs the circumsphere, or if the cell is flat.
   std::optional<Circumsphere> sphere(const CellPoints& p) const {
     return needs_sphere() ? circumsphere(p, *to_voxels_) : std::nullopt;
   }
@@ -94,7 +99,7 @@ class SizeBounds {
     return needs_sphere() && is_over_by_sphere(p, sphere, num_exact);
   }
 
-  // The circumradius over the least bound, rounded; 0 where it is not above `known`.
+  // Returns the circumradius over the least bound, rounded; 0 if it is not above `known`.
   double severity(CellId c, const CellPoints& p, const std::optional<Circumsphere>& sphere, double radius,
                   double known) const {
     constexpr double kRounding = 1e-12;
@@ -119,7 +124,7 @@ class SizeBounds {
     return graded_ && graded_->is_exceeded_at(sphere->voxel, sphere->radius);
   }
 
-  // The least of a cell's bounds, rounded, where it is below `limit`; else `limit`.
+  // Returns the least of a cell's bounds, rounded, if it is below `limit`; otherwise `limit`.
   double least(CellId c, const CellPoints& p, const std::optional<Circumsphere>& sphere, double limit) const {
     double least = std::min(limit, of_label(c).value_or(kUnbounded));
     if (field_) least = std::min(least, field_->bound_at_center(p));
@@ -170,7 +175,8 @@ std::optional<std::string> why_not_run(const Mesh& mesh, const Image* image, con
   return std::nullopt;
 }
 
-// A size image that bounds no cell shows nothing; where sizes grow, it may bound some from afar.
+// Refuses a size image that bounds no cell, as it would prove nothing. With a grade it may bound cells from
+// afar.
 void refuse_what_bounds_no_cell(const Mesh& mesh, const SizeImage& sizes, const Options& options) {
   const SizeField field(sizes, options.size_factor, mesh.space);
   for (std::size_t c = 0; c < mesh.cells.size(); ++c)

@@ -1,14 +1,14 @@
 // Claim structure.
-//   Statements  there are cells; their vertex ids are in range and coordinates finite; every cell is
-//               positively oriented; no two cells have the same vertices; no two vertices of cells the same
-//               coordinates; every facet belongs to at most two cells, on opposite sides of it; no two cells
-//               overlap; no vertex hangs on a facet or edge. Warning: vertices that no cell uses, wherever
-//               they are.
-//   Rests on    exact orientation signs; what the overlap test rests on is said in check_structure_overlap.h.
-//               A mesh whose cells are all negative is told apart: it is sound but left-handed, and the other
+//   Statements  There are cells. Their vertex ids are in range and their coordinates are finite. Every cell
+//               is positively oriented. No two cells have the same vertices. No two vertices of cells have
+//               the same coordinates. Every facet belongs to at most two cells, on opposite sides of it. No
+//               two cells overlap. No vertex hangs on a facet or edge. Vertices that no cell uses are a
+//               warning, wherever they are.
+//   Rests on    Exact orientation signs; check_structure_overlap.h proves the overlap test. A mesh whose
+//               cells are all negative is reported separately: it is sound but left-handed, and the other
 //               statements are judged for its mirror image.
-//   Cost        about n log n.
-//   Not proved  that the surface is a manifold (claim surface) or the shape right (claims labels, fidelity).
+//   Cost        About n log n.
+//   Not proved  That the surface is a manifold (claim surface) or the shape right (claims labels, fidelity).
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -95,8 +95,8 @@ void report_duplicates(const Mesh& mesh, FacetId f, FacetId g, Tally& t) {
   t.violation(std::move(witness));
 }
 
-// Two cells at a facet: different ones, and on opposite sides. Cells of equal orientation are, when they see
-// the facet's vertices turn in opposite senses.
+// Checks that the two cells at a facet are different and on opposite sides. Cells of equal orientation are on
+// opposite sides if they see the facet's vertices turn in opposite senses.
 void check_pair(const Mesh& mesh, const Orientations& orientations, FacetId f, FacetId mirror, Tally& t) {
   const auto a = vertices_of(mesh, f), b = vertices_of(mesh, mirror);
   const auto at = static_cast<std::size_t>(std::find(b.begin(), b.end(), a[0]) - b.begin());

@@ -53,7 +53,8 @@ class BoundaryFacets {
   BoxTree tree_;
 };
 
-// Gives what orientation() gives, at once where x is one of the others, as with neighbours it mostly is.
+// Returns orientation(p, x). It returns at once if x is a corner of the triangle, as it mostly is for
+// neighbours.
 int side_of_plane(const TrianglePoints& p, const Point& x, std::uint64_t& num_exact) {
   return x == p[0] || x == p[1] || x == p[2] ? 0 : orientation(p[0], p[1], p[2], x, num_exact);
 }
@@ -77,9 +78,9 @@ bool is_separated_by_a_facet_of(const CellPoints& cell, const TrianglePoints& fa
   return false;
 }
 
-// Whether the plane along the edge ab of a facet and parallel to the cell's edge leaves the facet, whose
-// third vertex is `third`, and the cell on different sides, touching allowed; the facet's plane does not
-// count.
+// True if the plane through the edge ab of a facet, parallel to the cell's edge, leaves the facet, whose
+// third vertex is `third`, and the cell on different sides; touching is allowed. The facet's own plane does
+// not count.
 bool is_separated_along(const Point& a, const Point& b, const Point& third, const CellPoints& cell,
                         const std::array<int, 2>& edge, std::uint64_t& num_exact) {
   const auto first = static_cast<std::size_t>(edge[0]), second = static_cast<std::size_t>(edge[1]);
@@ -108,7 +109,7 @@ bool is_separated_along_edges(const CellPoints& cell, const TrianglePoints& face
   return false;
 }
 
-// Whether the inside of the cell meets every neighbourhood of some inner point of the facet, on its positive
+// True if the inside of the cell meets every neighbourhood of some inner point of the facet, on its positive
 // side.
 bool is_just_inside(const CellPoints& cell, const TrianglePoints& facet, std::uint64_t& num_exact) {
   bool reaches_inside = false, has_gap = true;
@@ -121,7 +122,7 @@ bool is_just_inside(const CellPoints& cell, const TrianglePoints& facet, std::ui
          !is_separated_along_edges(cell, facet, num_exact);
 }
 
-// Whether x, in the plane of the triangle, lies in it or on its edges.
+// True if x, in the plane of the triangle, lies in it or on its edges.
 bool is_in_triangle(const TrianglePoints& p, const Point& x, std::uint64_t& num_exact) {
   for (std::size_t i = 0; i < 3; ++i) {
     const auto turn = [&]<class T>(T) {
@@ -160,7 +161,7 @@ Tally check_hanging_vertices(const Mesh& mesh, const Adjacency& adjacency, int t
     if (!is_used[i]) return;
     const Point& x = mesh.vertices[i];
     facets.for_each_near({x, x}, [&](std::size_t facet, const TrianglePoints& p) {
-      if (std::find(p.begin(), p.end(), x) != p.end()) return;  // its own; coincident ones are told apart
+      if (std::find(p.begin(), p.end(), x) != p.end()) return;  // coincident ones are another test's
       ++t.num_checked;
       if (orientation(p[0], p[1], p[2], x, t.num_exact) != 0 || !is_in_triangle(p, x, t.num_exact)) return;
       const auto v = facets.vertices(facet);

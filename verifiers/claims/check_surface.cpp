@@ -1,20 +1,21 @@
 // Claim surface.
-//   Statements  each edge of the boundary of a label's cells, and of all cells together, is passed as often
-//               in one direction as in the other by the boundary's facets, turned outwards from their cells:
-//               it is a closed and oriented surface. Where the file lists facets with the labels on their two
+//   Statements  First, the boundary of a label's cells, and of all cells together, is a closed and oriented
+//               surface. Its facets, turned outwards from their cells, pass each edge as often in one
+//               direction as in the other. Second, if the file lists facets with the labels on their two
 //               sides, these are the facets between different labels, each once, with the labels of the cells
-//               there and all turned alike. A label's boundary are the facets between one of its cells and a
+//               there and all turned alike. A label's boundary is the facets between one of its cells and a
 //               cell of another label, or none. Cells of label 0 count as outside. A mesh without labels
 //               counts as one label.
-//   Rests on    vertex ids alone: it is all combinatorial, without coordinates, hence without rounding.
-//   Cost        linear in the cells, about 40 bytes a cell.
-//   Not proved  that the surface does not pass through itself (structure's "no overlap" does), nor, since no
-//               mesher of multi-label images promises it, that it is a manifold of the right topology.
-//               Reported are non-manifold edges (passed four times or more) and vertices (more than one fan
-//               of facets), those where three or more labels meet (the background counted) apart; components
-//               (of cells, across facets) and the Euler number (of the label's closed cell complex) beside
-//               the image's for 6-connected labels (26 for the rest) and for 26-connected ones (6 for the
-//               rest). Listed facets without labels are compared too, and what differs is a warning.
+//   Rests on    Vertex ids alone. The check is combinatorial and uses no coordinates; there is no rounding.
+//   Cost        Linear in the cells, about 40 bytes per cell.
+//   Not proved  That the surface does not pass through itself (structure's "no overlap" proves it). Nor that
+//               it is a manifold of the right topology, since no mesher of multi-label images promises it.
+//               The claim reports non-manifold edges (passed four times or more) and vertices (more than one
+//               fan of facets), separately where three or more labels meet (the background counted). It
+//               reports components (of cells, across facets) and the Euler number (of the label's closed cell
+//               complex) beside the image's for 6-connected labels (26 for the rest) and for 26-connected
+//               ones (6 for the rest). Listed facets without labels are compared too, and differences are
+//               warnings.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -109,7 +110,7 @@ class Report {
   std::set<CellId> bad_cells_;
 };
 
-// Statement 2. Without labels the list may be of anything: all that differs is a warning.
+// Judges statement 2. A list without labels may be of any facets: differences are then warnings.
 std::uint64_t judge_listed(const Mesh& mesh, const ListedFacets& listed, Report& report,
                            ClaimResult& result) {
   if (listed.listed == 0) return 0;

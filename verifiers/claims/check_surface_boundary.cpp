@@ -12,9 +12,9 @@ namespace {
 
 constexpr std::size_t kMaxFindings = 100;  // of each kind that is not a violation, per thread
 
-// Around a vertex v each side that has it is an arc from the next vertex to the one before v.
+// Around a vertex v, each side with v is an arc from the vertex after v to the vertex before v.
 struct Arc {
-  LabelPlace set;  // whose boundary
+  LabelPlace set;  // the label whose boundary it is on
   VertexId from, to;
   std::uint32_t side;
 };
@@ -74,7 +74,7 @@ class VertexInspector {
     return arc;
   }
 
-  // All edges from v of one set; the place after them.
+  // Inspects all edges from v in the boundary of one set. Returns the position after them.
   std::size_t inspect_set(VertexId v, std::size_t first) {
     const LabelPlace set = ends_[first].set;
     bool has_only_manifold_edges = true;

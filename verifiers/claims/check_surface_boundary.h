@@ -1,4 +1,4 @@
-// The boundary of each label's cells: its facet sides, and what is found around each vertex and edge of it.
+// The boundary of each label's cells: its facet sides, and the findings around each vertex and edge of it.
 #pragma once
 
 #include <array>
@@ -10,19 +10,19 @@
 
 namespace podm::verify {
 
-/// Labels by their place among those of the mesh, ascending; 0 is the background: label 0 and outside.
+/// Labels by their position among those of the mesh, ascending; 0 is the background: label 0 and outside.
 using LabelPlace = std::uint32_t;
 
 struct CellLabelPlaces {
   std::vector<LabelValue> labels;  ///< labels[0] = 0
   std::vector<LabelPlace> of_cell;
 
-  /// A mesh without labels counts as one of a single label, 1.
+  /// A mesh without labels counts as a mesh of a single label, 1.
   explicit CellLabelPlaces(const Mesh& mesh);
 };
 
-/// A facet seen from a cell whose other side has another label. `vertices` turn counter-clockwise seen from
-/// outside the cell, if it is positive.
+/// A facet seen from a cell, with another label on its other side. `vertices` turn counter-clockwise seen
+/// from outside the cell, if the cell is positive.
 struct Side {
   std::array<VertexId, 3> vertices{};
   LabelPlace label = 0, across = 0;
@@ -43,13 +43,13 @@ class SidesOfVertex {
   std::vector<std::uint32_t> begin_, sides_;
 };
 
-/// Counts of the boundary of one label's cells, or of all cells.
+/// Counts over the boundary of one label's cells, or of all cells.
 struct BoundaryCounts {
   std::uint64_t facets = 0;
   std::uint64_t unbalanced_edges = 0;  ///< not passed as often in one direction as in the other
-  // Passed four times or more; on triple lines three or more labels meet, the background counted.
+  // Edges passed four times or more. On triple lines three or more labels meet, the background counted.
   std::uint64_t non_manifold_edges = 0, non_manifold_edges_on_triple_lines = 0;
-  // Such a vertex is on no such edge, but its sides make more than one fan.
+  // Vertices on no such edge, whose sides make more than one fan.
   std::uint64_t non_manifold_vertices = 0, non_manifold_vertices_on_triple_lines = 0;
 
   void add(const BoundaryCounts& other);
@@ -59,13 +59,13 @@ enum class FindingKind { kUnbalancedEdge, kNonManifoldEdge, kNonManifoldVertex }
 
 struct Finding {
   FindingKind kind = FindingKind::kUnbalancedEdge;
-  LabelPlace label = 0;  ///< kAllLabels: of the boundary of all cells together
+  LabelPlace label = 0;  ///< kAllLabels: the boundary of all cells together
   bool is_on_triple_line = false;
-  std::vector<VertexId> vertices;  ///< one, or two of an edge
-  std::vector<CellId> cells;       ///< whose sides meet there
+  std::vector<VertexId> vertices;  ///< one vertex, or the two of an edge
+  std::vector<CellId> cells;       ///< cells whose sides meet there
 };
 
-inline constexpr LabelPlace kAllLabels = 0;  ///< the background has no boundary of its own to speak of
+inline constexpr LabelPlace kAllLabels = 0;  ///< the background has no boundary of its own
 
 struct BoundaryFindings {
   std::vector<BoundaryCounts> of_label;  ///< by LabelPlace; kAllLabels: all together

@@ -6,7 +6,7 @@ namespace podm::verify {
 
 namespace {
 
-// Whether b is a rotated.
+// True if b is a rotated.
 bool turn_alike(const std::array<VertexId, 3>& a, const std::array<VertexId, 3>& b) {
   const std::size_t shift = a[0] == b[0] ? 0 : a[0] == b[1] ? 1 : 2;
   return a[1] == b[(shift + 1) % 3];
@@ -28,14 +28,14 @@ class Lister {
   }
 
  private:
-  // A facet between two labels has two sides; the one of the greater label stands for it.
+  // A facet between two labels has two sides; the side of the greater label represents the facet.
   bool is_first_of_facet(std::size_t s) const { return sides_[s].across < sides_[s].label; }
 
   void inspect(std::uint32_t f) {
     auto sorted = mesh_.facets[f];
     std::sort(sorted.begin(), sorted.end());
     if (sorted[2] >= mesh_.vertices.size()) return result_.stray.push_back(f);
-    const Side *inner = nullptr, *outer = nullptr;  // of the second label's cell, of the first's
+    const Side *inner = nullptr, *outer = nullptr;  // side of the second label's cell; side of the first's
     bool is_new = false;
     for (const auto* s = sides_of_.begin(sorted[0]); s != sides_of_.end(sorted[0]); ++s) {
       const Side& side = sides_[*s];

@@ -1,4 +1,4 @@
-// The triangles that a mesh file lists, against the facets between cells of different labels.
+// Compares the triangles that a mesh file lists with the facets between cells of different labels.
 #pragma once
 
 #include <cstdint>
@@ -13,7 +13,7 @@ struct ListedFacets {
   std::uint64_t missing = 0;               ///< facets between different labels that the file does not list
   std::vector<std::uint32_t> stray;        ///< listed, but not between different labels, or listed before
   std::vector<std::uint32_t> mislabelled;  ///< listed with other labels than the cells have
-  std::vector<std::uint32_t> turned;       ///< normal not from the second label to the first, unlike most
+  std::vector<std::uint32_t> turned;       ///< unlike most, the normal is not from second label to first
 };
 
 ListedFacets inspect_listed_facets(const Mesh& mesh, const CellLabelPlaces& places,

@@ -9,7 +9,7 @@ namespace podm::verify {
 
 namespace {
 
-// Cells of each vertex, without the background's.
+// The cells of each vertex, without cells of the background.
 struct CellsOfVertex {
   std::vector<std::uint32_t> begin, cells;
 
@@ -25,7 +25,7 @@ struct CellsOfVertex {
   }
 };
 
-// Adds the vertex, and the edges to vertices of greater id, once to each label that has them.
+// Adds the vertex, and the edges to vertices of greater id, once for each label that has them.
 class LinkCounter {
  public:
   LinkCounter(const Mesh& mesh, const CellLabelPlaces& places, const CellsOfVertex& cells_of,
@@ -133,7 +133,7 @@ std::vector<MeshTopology> find_mesh_topology(const Mesh& mesh, const Adjacency& 
     t.euler = static_cast<std::int64_t>((4 * t.cells + boundary.of_label[label].facets) / 2 - t.cells);
     for (const auto& part : parts) t.euler += part[label];
   }
-  // A facet in m cells of a label has been counted as m sides, hence m facets.
+  // A facet in m cells of a label has been counted as m sides, and therefore as m facets.
   for (const auto& group : adjacency.crowded) {
     std::vector<LabelPlace> labels;
     for (const FacetId f : group)

@@ -11,11 +11,11 @@ namespace podm::verify {
 struct MeshTopology {
   std::uint64_t cells = 0;
   std::uint64_t components = 0;  ///< cells connected across facets
-  std::int64_t euler = 0;        ///< V - E + F - C of the cells and all that bounds them
+  std::int64_t euler = 0;        ///< V - E + F - C of the cells and all their facets, edges and vertices
 };
 
-/// The topology of each label, by its LabelPlace, and at kAllLabels that of all cells but the background's
-/// together. Takes about 28 bytes a cell while it runs.
+/// Returns the topology of each label, by its LabelPlace, and at kAllLabels that of all cells together,
+/// except the background's. Takes about 28 bytes per cell while it runs.
 std::vector<MeshTopology> find_mesh_topology(const Mesh& mesh, const Adjacency& adjacency,
                                              const CellLabelPlaces& places, const BoundaryFindings& boundary,
                                              int threads);

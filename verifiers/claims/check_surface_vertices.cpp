@@ -1,31 +1,30 @@
 // Claim surface_vertices.
-//   Statements  each vertex of a facet between cells of different labels, or of a facet with one cell alone,
+//   Statements  First, each vertex of a facet between cells of different labels, or of a facet with one cell,
 //               lies where the label function (image/label_function.h) changes: within b voxels of it there
-//               are two points of different labels. Of a smoothed image (image/smoothing.h) the function is
-//               the smoothed one. Where delta is given (--delta), each label of the vertex's facets,
-//               background beyond the outermost ones, has a voxel within reach of the vertex: a voxel's
-//               diagonal more than 2 delta or another diagonal, whichever is longer.
+//               are two points of different labels. For a smoothed image (image/smoothing.h) the function is
+//               the smoothed one. Second, if delta is given (--delta), each label of the vertex's facets,
+//               background beyond the outermost ones, has a voxel within reach of the vertex. The reach is a
+//               voxel's diagonal plus the longer of 2 delta and another diagonal.
 //               b is 10^-5 (Options::vertex_bound_voxels), a distance in voxel indices. A mesh of the PODM
 //               family has its vertices on the isosurface to 10^-6, by the search that finds them; the rest
-//               is for the rounding of coordinates on their way to the file. The reach follows from the
-//               mesher's rules: the circumcentre of a facet's cell has the cell's label, R2 left no cell of
-//               the surface a circumradius of 2 delta, and one of the eight voxels around a point has the
-//               label of that point.
-//   Rests on    two witnesses for each vertex: the vertex itself, rounded to a point p of double voxel
-//               indices, and a point of another label than p's, which a search finds (label_search.h). That
-//               both are within b of the vertex of the file, and that their labels differ, is decided by
-//               filters and then by rational arithmetic. The search may miss a point, so that the claim may
-//               fail of a mesh for which it holds; it never passes where it does not hold. Strengths of a
-//               smoothed image are taken to be right: what makes them is smoothing.cpp, tested against its
-//               definition. Distances of the second statement are rounded.
-//   Cost        linear in the vertices of the surface; 2 to 20 us for each, the more the more labels meet
-//               near it, and 40 bytes a facet side.
-//   Not proved  that a vertex lies between the labels of its own facets: where three labels meet, a facet
+//               allows for the rounding of coordinates on their way to the file. The reach follows from the
+//               mesher's rules. The circumcenter of a facet's cell has the cell's label. R2 left no cell of
+//               the surface a circumradius of 2 delta. One of the eight voxels around a point has the label
+//               of that point.
+//   Rests on    Two witnesses for each vertex: the vertex itself, rounded to a point p of double voxel
+//               indices, and a point of another label than p's, which a search finds (label_search.h).
+//               Filters and then rational arithmetic decide that both are within b of the vertex of the file,
+//               and that their labels differ. The search may miss a point, so the claim may fail for a mesh
+//               for which it holds; it never passes if it does not hold. Strengths of a smoothed image are
+//               taken to be right: smoothing.cpp computes them and is tested against its definition.
+//               Distances of the second statement are rounded.
+//   Cost        Linear in the vertices of the surface; 2 to 20 us for each, more if more labels meet near it,
+//               and 40 bytes per facet side.
+//   Not proved  That a vertex lies between the labels of its own facets. Where three labels meet, a facet
 //               that passes from one label to a second may have a vertex where the first ends at a third.
 //               Such vertices are counted ("vertices_off_own_labels"), not judged. Nor that a facet is near
-//               the isosurface between its vertices, which is what the claim fidelity samples. The first
-//               statement is the promise of meshers of the PODM family; a mesh from elsewhere need not keep
-//               it.
+//               the isosurface between its vertices, which the claim fidelity samples. The first statement is
+//               the promise of meshers of the PODM family; a mesh of another mesher need not keep it.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -45,7 +44,7 @@ namespace {
 
 // Less than 1 by more than the rounding of a vertex's voxel indices.
 constexpr double kSomewhatLess = 1 - 1e-3;
-constexpr std::array<double, 2> kFurtherVoxels{0.01, 1};  // how far a vertex in violation is looked around
+constexpr std::array<double, 2> kFurtherVoxels{0.01, 1};  // search radii around a vertex in violation
 
 double diagonal_mm(const Image& image) {
   return std::hypot(image.spacing[0], image.spacing[1], image.spacing[2]);
@@ -100,7 +99,7 @@ class SurfaceVertices {
     return [label](std::uint32_t found) { return static_cast<LabelValue>(found) == label; };
   }
 
-  // The labels of the facets that have the vertex, each once; none off the surface.
+  // Returns the labels of the facets that have the vertex, each once; none for a vertex off the surface.
   std::vector<LabelValue> labels_around(VertexId v) const {
     std::vector<LabelValue> labels;
     for (const std::uint32_t* side = sides_of_.begin(v); side != sides_of_.end(v); ++side)
@@ -156,7 +155,7 @@ class SurfaceVertices {
     return witness;
   }
 
-  // Whether the vertex, as the file has it, is so near to p.
+  // True if the vertex, as the file has it, is within the bound of p.
   bool is_within_bound(VertexId v, const Point& p, std::uint64_t& num_exact) const {
     const Point& vertex = mesh_.vertices[v];
     const auto slack = [&](auto zero) {

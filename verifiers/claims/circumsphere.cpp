@@ -14,7 +14,7 @@ bool is_finite(const Circumsphere& sphere) {
   return std::isfinite(sphere.radius + sphere.voxel[0] + sphere.voxel[1] + sphere.voxel[2]);
 }
 
-// Nothing: intervals are too wide.
+// Returns nothing if intervals are too wide.
 std::optional<Circumsphere> from_intervals(const CellPoints& p, const VoxelMap& to_voxels) {
   const CGAL::Protect_FPU_rounding<true> rounding_upwards;
   const auto center = circumcenter<Interval>(p);

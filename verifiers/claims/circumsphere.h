@@ -9,11 +9,11 @@
 namespace podm::verify {
 
 struct Circumsphere {
-  Point voxel;    ///< the circumcentre: each coordinate errs by less than 1e-9, or by an ulp
-  double radius;  ///< of the mesh's coordinates; errs by less than 1e-9 of itself
+  Point voxel;    ///< the circumcenter: each coordinate errs by less than 1e-9, or by an ulp
+  double radius;  ///< in the mesh's coordinates; errs by less than 1e-9 of itself
 };
 
-/// Nothing: the cell is flat, or its circumsphere beyond all doubles.
+/// Returns nothing if the cell is flat, or if its circumsphere is beyond all doubles.
 std::optional<Circumsphere> circumsphere(const CellPoints& p, const VoxelMap& to_voxels);
 
 }  // namespace podm::verify

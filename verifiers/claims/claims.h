@@ -1,4 +1,4 @@
-// Every claim that podm-verify knows: one check_*.cpp each, whose opening comment states it.
+// The claims that podm-verify checks: one check_*.cpp each, whose opening comment states the claim.
 #pragma once
 
 #include "claim.h"
@@ -10,16 +10,17 @@
 
 namespace podm::verify {
 
-// All but structure may rely on ids in range and finite coordinates: they are not run on a mesh without.
+// All checks except structure may rely on ids in range and finite coordinates: they are not run on other
+// meshes.
 ClaimResult check_structure(const Mesh& mesh, const Adjacency& adjacency, const Options& options);
 ClaimResult check_delaunay(const Mesh& mesh, const Adjacency& adjacency, const Options& options);
 ClaimResult check_radius_edge(const Mesh& mesh, const Options& options);
 ClaimResult check_boundary_angles(const Mesh& mesh, const Adjacency& adjacency, const Options& options);
-/// `image` null: the claim is not run where bounds near interfaces or a grade are asked for. `sizes` null: no
-/// bounds are by place.
+/// `image` null: the claim is not run if bounds near interfaces or a grade are asked for. `sizes` null: there
+/// is no size image.
 ClaimResult check_size(const Mesh& mesh, const Image* image, const SizeImage* sizes, const Options& options);
 ClaimResult check_dihedral(const Mesh& mesh, const Options& options);
-/// `schedule` null: only what can be said without one, that label interfaces match.
+/// `schedule` null: checks only the statements that need none, that is, that label interfaces match.
 ClaimResult check_conformity(const Mesh& mesh, const Adjacency& adjacency, const Schedule* schedule,
                              const Options& options);
 ClaimResult check_labels(const Mesh& mesh, const Image& image, const Options& options);

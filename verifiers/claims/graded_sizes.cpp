@@ -36,7 +36,7 @@ Point mapped(const Point& p, const std::array<double, 12>& m) {
   return q;
 }
 
-// Bounds at the centres of an image's voxels.
+// Bounds at the centers of an image's voxels.
 class VoxelBounds {
  public:
   VoxelBounds(const Image& image, const Options& options)
@@ -80,8 +80,8 @@ class VoxelBounds {
   void lower(std::size_t i, double radius_mm) {
     radius_mm_[i] = std::min(radius_mm_[i], static_cast<float>(radius_mm));
   }
-  // What a bound of the size image at a place in the image means for the voxel nearest to it. At a tie, or at
-  // the border, another program may take another, or none.
+  // Applies a bound of the size image, at a place in the image, to the nearest voxel. At a tie, or at the
+  // border, another program may take another voxel, or none.
   void bound_at_nearest(const Point& p, double radius) {
     const Point voxel = frame_.world_to_voxels(p);
     std::size_t number = 0;

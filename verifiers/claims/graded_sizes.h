@@ -1,4 +1,4 @@
-// Bounds on circumradii that grow with the distance from where others hold, as --grade says.
+// Bounds on circumradii that grow with the distance from where other bounds hold, as --grade demands.
 #pragma once
 
 #include <array>
@@ -12,26 +12,28 @@
 
 namespace podm::verify {
 
-/// The least s for which nodes at every s-th voxel of a grid are no more than 2^26.
+/// Returns the least s for which nodes at every s-th voxel of a grid are at most 2^26.
 int stride_of_nodes(const std::array<int, 3>& size);
 
-/// What check_size.cpp states of a grade, computed in doubles; options.grade must be set.
+/// The bound that check_size.cpp states for a grade, computed in doubles. options.grade must be set.
 class GradedSizes {
  public:
-  /// Keeps a reference to `near`. `sizes` null: none are by place.
+  /// Keeps a reference to `near`. `sizes` null: there is no size image.
   GradedSizes(const Image& image, const SizeImage* sizes, const std::vector<InterfaceFaces>& near,
               const Options& options);
 
-  /// The bound at a place, in voxels, slack included, where it is below `limit_mm`; else `limit_mm`.
+  /// Returns the bound at a place, in voxels, slack included, if it is below `limit_mm`; otherwise
+  /// `limit_mm`.
   double bound_at(const Point& voxel, double limit_mm) const;
-  /// Whether it is below `radius_mm`.
+  /// True if the bound at the place is below `radius_mm`.
   bool is_exceeded_at(const Point& voxel, double radius_mm) const;
-  /// By how much a cell may be over what grows from voxels, and from interfaces; rounding apart.
+  /// These return by how much a cell may exceed bounds that grow from voxels, or from interfaces, without
+  /// rounding.
   double slack_of_voxels_mm() const { return slack_of_voxels_mm_; }
   double slack_of_interfaces_mm() const { return slack_of_interfaces_mm_; }
 
  private:
-  // The bound of voxels alone, as by bound_at(); one below `enough_mm` may be another than the least.
+  // Returns the bound of voxels alone, as bound_at() does. A result below `enough_mm` need not be the least.
   double bound_of_voxels(const Point& voxel, double limit_mm, double enough_mm) const;
   double bound_of_interface(const InterfaceFaces& faces, const Point& voxel, double limit_mm) const;
 

@@ -16,7 +16,7 @@ namespace {
   refuse(image.path, fmt::format("--size-near {}: {}", near.text, fault));
 }
 
-// Which side of an interface each voxel is on: 1, 2, or 0 for neither.
+// The side of an interface that each voxel is on: 1, 2, or 0 for neither.
 class Sides {
  public:
   Sides(const Image& image, const SizeNear& near) : size_(image.size) {
@@ -112,7 +112,7 @@ std::vector<Bounds> InterfaceFaces::boxes() const {
   return boxes;
 }
 
-// Returns by how much the squared width exceeds the squared distance from a face to the circumcentre.
+// Returns by how much the squared width exceeds the squared distance from a face to the circumcenter.
 template <class T>
 T InterfaceFaces::excess(const VoxelFace& face, const CellPoints& p, const VoxelMap& to_voxels) const {
   const auto center = circumcenter<T>(p);
@@ -129,7 +129,8 @@ T InterfaceFaces::excess(const VoxelFace& face, const CellPoints& p, const Voxel
   return T(near_.width_mm) * T(near_.width_mm) - sum;
 }
 
-// What is decided in doubles is further from the width than the circumcentre and all else is rounded.
+// Doubles decide only cases that are further from the width than the rounding of the circumcenter and of all
+// else.
 bool InterfaceFaces::contains(const CellPoints& p, const Circumsphere& sphere, const VoxelMap& to_voxels,
                               std::uint64_t& num_exact) const {
   const Point center = in_mm(sphere.voxel);

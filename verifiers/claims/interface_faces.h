@@ -1,4 +1,4 @@
-// The interface of some labels and others in an image, and how far cells are from it.
+// The interface between two groups of labels in an image, and the distance of cells from it.
 #pragma once
 
 #include <array>
@@ -12,27 +12,28 @@
 
 namespace podm::verify {
 
-/// A rectangle between a voxel and the one before it along an axis.
+/// A rectangle between a voxel and the voxel before it along an axis.
 struct VoxelFace {
   std::array<std::int32_t, 3> voxel;
   std::uint32_t axis;
 };
 
-/// The faces between voxels of labels of one side and face neighbours with labels of the other; outside the
-/// grid all is background. Distances are taken in mm along the image's own axes. About 30 bytes a face, and
-/// 50 more while it is made.
+/// The faces between voxels with labels of one side and face neighbours with labels of the other. Outside the
+/// grid all is background. Distances are in mm along the image's own axes. Takes about 30 bytes per face, and
+/// 50 more during construction.
 class InterfaceFaces {
  public:
-  /// Throws InputError: a label that the image does not have or that is on both sides; sides that do not
-  /// touch.
+  /// Throws InputError if the image does not have a label, if a label is on both sides, or if the sides do
+  /// not touch.
   InterfaceFaces(const Image& image, const SizeNear& near);
 
   const SizeNear& near() const { return near_; }
   std::size_t size() const { return faces_.size(); }
-  /// Whether the cell's circumcentre is within the width, exactly. `sphere` is the cell's.
+  /// True if the cell's circumcenter is within the width, decided exactly. `sphere` is the cell's
+  /// circumsphere.
   bool contains(const CellPoints& p, const Circumsphere& sphere, const VoxelMap& to_voxels,
                 std::uint64_t& num_exact) const;
-  /// The distance of the nearest face, rounded, where it is below `limit_mm`; else `limit_mm`.
+  /// Returns the distance of the nearest face, rounded, if it is below `limit_mm`; otherwise `limit_mm`.
   double distance_mm(const Point& voxel, double limit_mm) const;
 
  private:

@@ -7,9 +7,9 @@ namespace podm::verify {
 
 namespace {
 
-constexpr int kProbes = 4;                // on each segment, each a quarter as far as the one before
-constexpr double kNearEnough = 1 / 64.0;  // of the reach: no further direction is tried
-constexpr double kBisected = 1 / 64.0;    // of what is found
+constexpr int kProbes = 4;                // per segment, each a quarter as far as the one before
+constexpr double kNearEnough = 1 / 64.0;  // relative to the reach: no further direction is tried
+constexpr double kBisected = 1 / 64.0;    // relative to the distance found
 
 Point at(const Point& u, const Point& direction, double t) {
   return {u[0] + t * direction[0], u[1] + t * direction[1], u[2] + t * direction[2]};
@@ -17,7 +17,7 @@ Point at(const Point& u, const Point& direction, double t) {
 
 double length(const Point& d) { return std::sqrt(d[0] * d[0] + d[1] * d[1] + d[2] * d[2]); }
 
-// To the faces, edges and corners of a cube.
+// The directions to the faces, edges and corners of a cube.
 std::array<Point, 26> unit_directions() {
   std::array<Point, 26> directions{};
   std::size_t i = 0;
@@ -47,15 +47,15 @@ LabelSearch::Rivals LabelSearch::rivals(const Point& u, const Wanted& wanted) co
   return rivals;
 }
 
-// A weight changes by at most 1 a voxel along each axis: by sqrt(3) a voxel. Where one label is alone it has
-// weight 1, which of a smoothed image is no such weight.
+// A weight changes by at most 1 per voxel along each axis, and therefore by at most sqrt(3) per voxel. A
+// label that is alone has weight 1; in a smoothed image this is no such weight.
 bool LabelSearch::is_out_of_reach(const Rivals& rivals, double reach) {
   const double slopes = 2 * std::sqrt(3.0);
   return !rivals.is_alone && rivals.other_weight - rivals.wanted_weight >
                                  1.001 * slopes * reach + 4 * LabelFunction::kWeightError;
 }
 
-// The label at u is not wanted.
+// The label at u must not be wanted.
 std::optional<LabelSearch::Found> LabelSearch::along(const Point& u, const Point& direction,
                                                      const Wanted& wanted, double reach,
                                                      std::uint64_t& num_exact) const {

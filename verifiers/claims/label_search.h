@@ -1,10 +1,9 @@
-// Points of an image's labels near a point: a search that finds them, by the label function's exact
-// decisions.
+// Searches for points of an image's labels near a point, by the label function's exact decisions.
 //
-// A point that is found is a proof; that none is found proves nothing, unless weights are too far apart for
-// their slopes, which ends the search at once. Else it probes the segments from the
-// point along the gradient of the weights that matter there, and along the axes and diagonals of voxels, and
-// bisects the one that meets the label to where it does first.
+// A point that is found is a proof. If none is found, nothing is proved, unless weights are too far apart for
+// their slopes, which ends the search at once. Otherwise the search probes the segments from the point along
+// the gradient of the weights that matter there, and along the axes and diagonals of voxels. On a segment
+// that meets the label it bisects to the first point of the label.
 #pragma once
 
 #include <cstdint>
@@ -27,7 +26,8 @@ class LabelSearch {
     double distance = 0;  ///< rounded
   };
   using Wanted = std::function<bool(std::uint32_t)>;
-  /// A point within `reach` of u whose label is wanted, decided exactly; u itself if its label is.
+  /// Returns a point within `reach` of u whose label is wanted, decided exactly; u itself if its label is
+  /// wanted.
   std::optional<Found> find(const Point& u, const Wanted& wanted, double reach,
                             std::uint64_t& num_exact) const;
   std::uint32_t label_at(const Point& u, std::uint64_t& num_exact) const {
@@ -37,7 +37,7 @@ class LabelSearch {
  private:
   std::optional<Found> along(const Point& u, const Point& direction, const Wanted& wanted, double reach,
                              std::uint64_t& num_exact) const;
-  // The greatest weight at u that is wanted, and the greatest other one; 0 where there is none.
+  // The greatest weight at u of a wanted label, and the greatest of another label; 0 if there is none.
   struct Rivals {
     std::optional<std::uint32_t> wanted, other;
     double wanted_weight = 0, other_weight = 0;

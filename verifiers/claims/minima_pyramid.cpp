@@ -39,7 +39,7 @@ MinimaPyramid::Level MinimaPyramid::halved(const Level& level) {
   return half;
 }
 
-// Returns the block's minimum, grown by the way from there to the place.
+// Returns the block's minimum, grown over the distance from the block to the place.
 double MinimaPyramid::grown(std::size_t level, const Block& block, const Point& place) const {
   double squared = 0;
   for (std::size_t axis = 0; axis < 3; ++axis) {
@@ -53,7 +53,7 @@ double MinimaPyramid::grown(std::size_t level, const Block& block, const Point& 
   return static_cast<double>(minimum(levels_[level], block)) + slope_ * std::sqrt(squared);
 }
 
-// The half of the block that the place is nearer to comes first.
+// The half of the block that is nearer to the place comes first.
 void MinimaPyramid::lower(std::size_t level, const Block& block, const Point& place, double enough,
                           double& least) const {
   if (least < enough) return;

@@ -9,17 +9,17 @@
 
 namespace podm::verify {
 
-/// Minima over blocks of 2, 4, 8 .. nodes along each axis. A search leaves out blocks whose minimum, grown by
-/// the distance of the whole block, is no less than what it has found. About 4.6 bytes a node.
+/// Minima over blocks of 2, 4, 8 .. nodes along each axis. A search skips a block if its minimum, grown over
+/// the distance of the whole block, is not less than the least number found. Takes about 4.6 bytes per node.
 class MinimaPyramid {
  public:
-  /// `values`: x fastest; infinity where a node has none. `spacing`: between nodes; `slope`: growth a unit of
-  /// length, positive.
+  /// `values`: x fastest; infinity where a node has none. `spacing`: between nodes. `slope`: growth per unit
+  /// of length, positive.
   MinimaPyramid(const std::array<int, 3>& size, const std::array<double, 3>& spacing, double slope,
                 std::vector<float> values);
 
-  /// The least at a place, in nodes, where it is below `limit`; else `limit`. A number below `enough` may be
-  /// another than the least.
+  /// Returns the least number at a place, in nodes, if it is below `limit`; otherwise `limit`. A result below
+  /// `enough` need not be the least.
   double least_at(const Point& place, double limit, double enough = 0) const;
 
  private:

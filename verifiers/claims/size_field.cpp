@@ -11,7 +11,8 @@ namespace {
 
 constexpr double kUnbounded = std::numeric_limits<double>::infinity();
 
-// Where a coordinate lies among `size` voxel centres: the first of two, and how far it is to the second.
+// Position of a coordinate among `size` voxel centers: the first of two, and the fraction of the way to the
+// second.
 template <class T>
 struct Place {
   int first;
@@ -19,7 +20,7 @@ struct Place {
   bool is_outside = false;
 };
 
-// Nothing where it lies in one place or another.
+// Returns nothing if the interval leaves the place open.
 template <class T>
 std::optional<Place<T>> place_of(const T& u, int size) {
   const double last = size - 1;
@@ -32,7 +33,7 @@ std::optional<Place<T>> place_of(const T& u, int size) {
   return Place<T>{static_cast<int>(first), u - T(first)};
 }
 
-// A rational is compared as it is; the double nearest to it may be another voxel's.
+// A rational is compared as it is; the double nearest to it may belong to another voxel.
 template <>
 std::optional<Place<Rational>> place_of(const Rational& u, int size) {
   const Rational half(1, 2), last(size - 1);
@@ -66,7 +67,7 @@ std::optional<SizeField::Mean<T>> SizeField::mean_at(const Vector<T>& voxel) con
     bool is_in_grid = true;
     for (std::size_t axis = 3; axis-- > 0;) {
       const int step = static_cast<int>(corner >> axis & 1), at = places[axis].first + step;
-      is_in_grid = is_in_grid && at < image_.size[axis];  // else the weight is 0
+      is_in_grid = is_in_grid && at < image_.size[axis];  // otherwise the weight is 0
       weight = weight * (step == 1 ? places[axis].fraction : T(1) - places[axis].fraction);
       number = number * static_cast<std::size_t>(image_.size[axis]) + static_cast<std::size_t>(at);
     }
@@ -77,7 +78,7 @@ std::optional<SizeField::Mean<T>> SizeField::mean_at(const Vector<T>& voxel) con
   return mean;
 }
 
-// Of R^2 over the squared bound, times positive numbers; -1 where there is no bound.
+// Returns by how much R^2 exceeds the squared bound, times positive numbers; -1 if there is no bound.
 template <class T>
 T SizeField::excess(const CellPoints& p) const {
   const auto center = circumcenter<T>(p);

@@ -1,4 +1,4 @@
-// The bound that a size image gives at a cell's circumcentre, over any field that exact.h computes in.
+// The bound of a size image at a cell's circumcenter, over any field that exact.h computes in.
 #pragma once
 
 #include <optional>
@@ -9,26 +9,28 @@
 
 namespace podm::verify {
 
-/// Between the centres of voxels the bound is the mean of those of the eight around that have one, by their
-/// trilinear weights, times the factor. Voxels at the border reach half a voxel beyond their centres, where a
-/// point counts as the nearest between centres. Elsewhere, and where no weight is left, there is no bound.
+/// Between the centers of voxels the bound is the mean over those of the eight voxels around that have a
+/// bound, by their trilinear weights, times the factor. Voxels at the border reach half a voxel beyond their
+/// centers; a point there counts as the nearest point between centers. Elsewhere, and where no weight is
+/// left, there is no bound.
 class SizeField {
  public:
-  /// Keeps a reference to the image. `space`: of the mesh, not voxel indices.
+  /// Keeps a reference to the image. `space` is the mesh's; it must not be voxel indices.
   SizeField(const SizeImage& image, double factor, Space space);
 
-  /// Whether the cell's circumradius is over the bound, exactly. A flat cell has neither, and is not.
+  /// True if the cell's circumradius is over the bound, decided exactly; false for a flat cell, which has no
+  /// circumradius.
   bool is_over(const CellPoints& p, std::uint64_t& num_exact) const;
-  /// Rounded; infinite where there is none.
+  /// Returns the rounded bound; infinite if there is none.
   double bound_at_center(const CellPoints& p) const;
   double bound_at(const Point& voxel) const;
 
  private:
   template <class T>
   struct Mean {
-    T sum, weights;  // of radii, and of those that count
+    T sum, weights;  // sums of weighted radii, and of the weights of voxels with a bound
   };
-  // Nothing: T, which is of intervals then, does not tell between which voxels the point is.
+  // Returns nothing if T is of intervals that leave open between which voxels the point is.
   template <class T>
   std::optional<Mean<T>> mean_at(const Vector<T>& voxel) const;
   template <class T>

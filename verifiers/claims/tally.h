@@ -1,4 +1,4 @@
-// What the threads of a check count, each for its own range; added up in the order of ranges.
+// Counts of the threads of a check, each over its own range, added up in the order of ranges.
 #pragma once
 
 #include <algorithm>
@@ -14,7 +14,7 @@
 
 namespace podm::verify {
 
-/// A histogram being filled.
+/// A histogram that is being filled.
 class Bins {
  public:
   Bins(std::string name, std::string unit, double low, double high, std::size_t num_bins) {
@@ -45,12 +45,12 @@ class Bins {
   Histogram histogram_;
 };
 
-/// Of angles, a bin a degree.
+/// Returns bins for angles, one per degree.
 inline Bins bins_of_degrees(std::string name) { return {std::move(name), "degrees", 0, 180, 180}; }
 
 struct Tally {
   std::uint64_t num_checked = 0, num_exact = 0, num_violations = 0, num_ties = 0;
-  WorstWitnesses worst, closest;  // of violations; of all, where the check adds them: reported on a pass
+  WorstWitnesses worst, closest;  // of violations; of all if the check adds them, reported on a pass
   std::vector<CellId> bad_cells;
   std::vector<Bins> bins;
 
@@ -71,7 +71,8 @@ struct Tally {
   }
 };
 
-/// Calls body(i, tally) for every i in [0, count), on several threads; each begins with a copy of `empty`.
+/// Calls body(i, tally) for every i in [0, count), on several threads. Each thread begins with a copy of
+/// `empty`.
 template <class Body>
 Tally tally_over(std::size_t count, int threads, const Tally& empty, const Body& body) {
   std::vector<Tally> parts(static_cast<std::size_t>(std::max(threads, 1)), empty);
@@ -95,7 +96,7 @@ inline Witness cell_witness(const Mesh& mesh, CellId c, std::string statement, d
   return witness;
 }
 
-/// A claim's result but for method, reason and details.
+/// Returns a claim's result without method, reason and details.
 inline ClaimResult result_of(const std::string& claim, const Tally& tally) {
   ClaimResult result;
   result.claim = claim;

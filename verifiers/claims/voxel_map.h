@@ -1,5 +1,4 @@
-// The map from the coordinates of a mesh to an image's voxel indices, over any field that exact.h computes
-// in.
+// The map from mesh coordinates to an image's voxel indices, over any field that exact.h computes in.
 #pragma once
 
 #include <array>

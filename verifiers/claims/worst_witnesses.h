@@ -1,4 +1,4 @@
-// The worst few of many witnesses; among equals the first cells.
+// Keeps the worst few of many witnesses; among equals the first cells.
 #pragma once
 
 #include <algorithm>
@@ -12,9 +12,10 @@ namespace podm::verify {
 
 class WorstWitnesses {
  public:
-  /// False when a witness of this severity would not be kept, if they come in the order of cells.
+  /// False if a witness of this severity would not be kept, provided that witnesses come in the order of
+  /// cells.
   bool wants(double severity) const { return severity > least_kept() || kept_.size() < kMaxWitnesses; }
-  /// Returns a severity: none below it is kept. 0 where all are.
+  /// Returns the severity below which no witness is kept; 0 if all are kept.
   double least_kept() const { return kept_.size() < kMaxWitnesses ? 0 : kept_.back().severity; }
   void add(Witness witness) {
     kept_.insert(std::upper_bound(kept_.begin(), kept_.end(), witness, is_before), std::move(witness));

@@ -1,5 +1,5 @@
-// Schedules of runs: a file either is one that keeps what Schedule promises, or is refused with an InputError
-// that begins with its path.
+// Fuzz target for schedules of runs: a file is a schedule that keeps the guarantees of Schedule, or it is
+// refused with an InputError that begins with its path.
 #include <bit>
 #include <cmath>
 

@@ -17,7 +17,7 @@ std::array<VertexId, 3> sorted_vertices(const Mesh& mesh, FacetId f) {
   return v;
 }
 
-// The facets by their smallest vertex: those of vertex v are facets[start[v]] to facets[start[v + 1]].
+// The facets grouped by smallest vertex: those of vertex v are facets[start[v]] to facets[start[v + 1]].
 struct FacetsByVertex {
   std::vector<std::size_t> start;
   std::vector<FacetId> facets;

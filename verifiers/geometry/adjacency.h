@@ -1,4 +1,4 @@
-// Which cells share which facets: the one piece of connectivity that all claims build on.
+// The facets that cells share: the one piece of connectivity that all claims build on.
 #pragma once
 
 #include <array>
@@ -9,8 +9,8 @@
 
 namespace podm::verify {
 
-/// Facet i of a cell (v0,v1,v2,v3) is opposite v_i; in this order its vertices turn counter-clockwise seen
-/// from v_i when the cell is positive, that is when dot(cross(v1-v0, v2-v0), v3-v0) > 0.
+/// Facet i of a cell (v0,v1,v2,v3) is opposite v_i. In this order its vertices turn counter-clockwise seen
+/// from v_i if the cell is positive, that is if dot(cross(v1-v0, v2-v0), v3-v0) > 0.
 inline constexpr std::array<std::array<int, 3>, 4> kFacetVertices{
     {{1, 3, 2}, {0, 2, 3}, {0, 3, 1}, {0, 1, 2}}};
 
@@ -22,21 +22,21 @@ inline std::array<VertexId, 3> vertices_of(const Mesh& mesh, FacetId f) {
   return {cell[static_cast<std::size_t>(local[0])], cell[static_cast<std::size_t>(local[1])],
           cell[static_cast<std::size_t>(local[2])]};
 }
-/// The vertex of the cell that the facet is opposite of.
+/// Returns the vertex of the cell opposite the facet.
 inline VertexId far_vertex(const Mesh& mesh, FacetId f) { return mesh.cells[f / 4][f % 4]; }
 
 /// Mirrors of all facets of a mesh whose ids are in range (structure's first statement).
 struct Adjacency {
   /// The same facet seen from the one other cell that has it; kNone on the boundary of the mesh.
   std::vector<FacetId> mirror;
-  /// Facets that three or more cells have, one entry a cell facet, grouped; their mirror is kNone too.
+  /// Facets that three or more cells have, one entry per cell facet, grouped. Their mirror is kNone too.
   std::vector<std::vector<FacetId>> crowded;
 };
 
-/// Time O(n), about 16 bytes a cell kept and 17 more while it runs. `threads` >= 1.
+/// Takes O(n) time. About 16 bytes per cell are kept, and 17 more are used during the call. `threads` >= 1.
 Adjacency find_adjacency(const Mesh& mesh, int threads);
 
-/// 1 for every vertex that a cell has, 0 for the others.
+/// Returns 1 for every vertex that a cell has, 0 for the others.
 std::vector<std::uint8_t> used_vertices(const Mesh& mesh);
 
 }  // namespace podm::verify

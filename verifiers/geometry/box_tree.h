@@ -1,4 +1,4 @@
-// A tree over axis-aligned boxes, split at medians: which of them may meet something.
+// A tree over axis-aligned boxes, split at medians, that finds the boxes that may meet a region.
 #pragma once
 
 #include <array>
@@ -29,17 +29,17 @@ inline bool meet(const Bounds& a, const Bounds& b) {
   return true;
 }
 
-/// About 14 bytes a box, however the boxes are spread; they must be finite.
+/// Takes about 14 bytes per box, however the boxes are spread. The boxes must be finite.
 class BoxTree {
  public:
   explicit BoxTree(const std::vector<Bounds>& boxes);
 
-  /// Calls visit(i) once for every box i of the leaves whose box `meets`, a function that must be true for
-  /// every box that holds a box for which it is true.
+  /// Calls visit(i) once for every box i of the leaves whose box `meets`. The function `meets` must be true
+  /// for every box that contains a box for which it is true.
   template <class Meets, class Visit>
   void for_each_near(const Meets& meets, const Visit& visit) const {
     if (nodes_.empty()) return;
-    std::array<std::uint32_t, 64> stack;  // one entry a level, and levels halve
+    std::array<std::uint32_t, 64> stack;  // one entry per level; boxes halve per level
     std::size_t size = 0;
     stack[size++] = 0;
     while (size > 0) {
@@ -55,9 +55,9 @@ class BoxTree {
     }
   }
 
-  /// Calls visit(i) once for every box i of the leaves whose box's `distance` is at most `limit`, which a
-  /// visit may lower; `distance` is no more of a box than of one that it holds. Of two branches the nearer
-  /// one is first.
+  /// Calls visit(i) once for every box i of the leaves whose box's `distance` is at most `limit`. A visit may
+  /// lower `limit`. `distance` must not be greater for a box than for a box that it contains. The nearer of
+  /// two branches is visited first.
   template <class Distance, class Visit>
   void for_each_within(const double& limit, const Distance& distance, const Visit& visit) const {
     if (nodes_.empty()) return;
@@ -66,7 +66,7 @@ class BoxTree {
       double distance;
     };
     const auto branch = [&](std::uint32_t index) { return Branch{index, distance(nodes_[index].box)}; };
-    std::array<Branch, 64> stack;  // one entry a level, and levels halve
+    std::array<Branch, 64> stack;  // one entry per level; boxes halve per level
     std::size_t size = 0;
     stack[size++] = branch(0);
     while (size > 0) {
@@ -88,7 +88,7 @@ class BoxTree {
   static constexpr std::uint32_t kLeafSize = 16;
   struct Node {
     Bounds box;
-    std::uint32_t begin, end, right;  // right child; the left one follows. 0: a leaf
+    std::uint32_t begin, end, right;  // right child (the left child is the next node); 0: a leaf
   };
   std::uint32_t build(const std::vector<Bounds>& boxes, std::uint32_t begin, std::uint32_t end);
 

@@ -1,4 +1,4 @@
-// A cell's circumcentre over any field that exact.h computes in.
+// A cell's circumcenter over any field that exact.h computes in.
 #pragma once
 
 #include <optional>
@@ -7,14 +7,14 @@
 
 namespace podm::verify {
 
-/// Bounds on a number of any of the types.
+/// These bound a number of any of the types.
 inline double low(double x) { return x; }
 inline double high(double x) { return x; }
 inline double low(const Interval& x) { return x.inf(); }
 inline double high(const Interval& x) { return x.sup(); }
 
-/// The circumcentre is p[3] + sum / (2 determinant), with the terms of squared_circumradius(). Nothing: the
-/// cell is flat, or T, which is of intervals then, does not tell.
+/// Returns the circumcenter p[3] + sum / (2 determinant), with the terms of squared_circumradius(). Returns
+/// nothing if the cell is flat, or if T is of intervals that leave this open.
 template <class T>
 std::optional<Vector<T>> circumcenter(const CellPoints& p) {
   const Vector<T> a = difference<T>(p[0], p[3]), b = difference<T>(p[1], p[3]), c = difference<T>(p[2], p[3]);

@@ -16,18 +16,18 @@ using Kernel = CGAL::Exact_predicates_inexact_constructions_kernel;
 
 Kernel::Point_3 to_cgal(const Point& p) { return {p[0], p[1], p[2]}; }
 
-// Bounds of the rounding errors of the two determinants, as computed below, in parts of the same sum with
-// absolute values (the permanent): J. R. Shewchuk, "Adaptive precision floating-point arithmetic and fast
-// robust geometric predicates", 1997, table 3 and section 4.4 prove (7 + 56 e) e and (16 + 224 e) e for
-// e = 2^-53 without underflow. The spare e here, one part in 1e16 of the permanent, covers underflow:
-// a product of two is off by 2^-1074 at most and then multiplied by at most one coordinate difference in the
-// first, three in the second. Overflow makes the permanent infinite or the sum not a number, which decides
-// nothing.
+// Bounds of the rounding errors of the two determinants as computed below, relative to the same sum with
+// absolute values (the permanent). J. R. Shewchuk, "Adaptive precision floating-point arithmetic and fast
+// robust geometric predicates", 1997, table 3 and section 4.4 prove (7 + 56 e) e and (16 + 224 e) e for e =
+// 2^-53 without underflow. The spare e here, one part in 1e16 of the permanent, covers underflow: a product
+// of two numbers is off by 2^-1074 at most, and is then multiplied by at most one coordinate difference in
+// the first determinant and three in the second. Overflow makes the permanent infinite or the sum not a
+// number, which decides nothing.
 constexpr double kEpsilon = 0x1p-53;
 constexpr double kOrientationBound = 8 * kEpsilon, kSphereBound = 17 * kEpsilon;
-constexpr double kLeastPermanent = 1e-290;  // times the factors after an underflow
+constexpr double kLeastPermanent = 1e-290;  // times the factors that follow an underflow
 
-// 0: open.
+// Returns the proven sign, or 0 if it is open.
 int proven_orientation(const Vector<double>& u, const Vector<double>& v, const Vector<double>& w) {
   const double uv = u[0] * v[1], vu = v[0] * u[1], vw = v[0] * w[1], wv = w[0] * v[1], wu = w[0] * u[1],
                uw = u[0] * w[1];
@@ -40,8 +40,8 @@ int proven_orientation(const Vector<double>& u, const Vector<double>& v, const V
   return det > 0 ? 1 : -1;
 }
 
-// The sign of the determinant of the rows (x - e, |x - e|^2) for x = a, b, c, d, whose differences from e are
-// given; 0: open.
+// Returns the sign of the determinant of the rows (x - e, |x - e|^2) for x = a, b, c, d, whose differences
+// from e are given; 0 if the sign is open.
 int proven_in_sphere(const Vector<double>& a, const Vector<double>& b, const Vector<double>& c,
                      const Vector<double>& d) {
   struct Minor {
@@ -65,12 +65,12 @@ int proven_in_sphere(const Vector<double>& a, const Vector<double>& b, const Vec
                            (ab.absolute * d2 + bd.absolute * a2 + da.absolute * b2) * c_lift +
                            (bc.absolute * a2 + ac.absolute * b2 + ab.absolute * c2) * d_lift;
   if (!(std::fabs(det) > kSphereBound * permanent)) return 0;
-  const double factors = 1 + a_lift + b_lift + c_lift + d_lift;  // its square exceeds three differences
+  const double factors = 1 + a_lift + b_lift + c_lift + d_lift;  // factors^2 exceeds three differences
   if (!(permanent > kLeastPermanent * factors * factors)) return 0;
   return det > 0 ? 1 : -1;
 }
 
-// An MPFR number whose every result is rounded up.
+// An MPFR number whose results are all rounded up.
 class RoundedUp {
  public:
   RoundedUp() { mpfr_init2(number_, 256); }
@@ -108,7 +108,7 @@ int side_of_sphere(const Point& a, const Point& b, const Point& c, const Point& 
 }
 
 Rational typed_decimal(double x) {
-  const std::string text = fmt::format("{}", x);  // the shortest that reads back to x
+  const std::string text = fmt::format("{}", x);  // the shortest text that reads back as x
   const std::size_t e = text.find('e');
   std::string digits = text.substr(0, e);
   long exponent = e == std::string::npos ? 0 : std::stol(text.substr(e + 1));

@@ -1,5 +1,5 @@
-// Exact decisions about points with double coordinates: a filter first, exact arithmetic for what it leaves
-// open. Every function counts in `num_exact` what was left.
+// Exact decisions about points with double coordinates. A filter decides first, exact arithmetic the cases
+// that the filter leaves open. Every function counts these cases in `num_exact`.
 #pragma once
 
 #include <CGAL/Gmpq.h>
@@ -17,10 +17,10 @@ namespace podm::verify {
 using Rational = CGAL::Gmpq;
 using Interval = CGAL::Interval_nt<false>;  // inside Protect_FPU_rounding
 
-/// The sign of dot(cross(b-a, c-a), d-a).
+/// Returns the sign of dot(cross(b-a, c-a), d-a).
 int orientation(const Point& a, const Point& b, const Point& c, const Point& d, std::uint64_t& num_exact);
-/// 1 when p is strictly inside the circumsphere of the cell abcd of either orientation, 0 on it, -1 outside.
-/// The cell must not be flat.
+/// Returns 1 if p is strictly inside the circumsphere of the cell abcd, 0 on it, -1 outside, for either
+/// orientation of the cell. The cell must not be flat.
 int side_of_sphere(const Point& a, const Point& b, const Point& c, const Point& d, const Point& p,
                    std::uint64_t& num_exact);
 
@@ -39,7 +39,7 @@ template <class T>
 Vector<T> cross(const Vector<T>& a, const Vector<T>& b) {
   return {a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]};
 }
-/// The smaller and the larger of two numbers; of intervals, what encloses it.
+/// Return the smaller and the larger of two numbers; for intervals, an interval that encloses it.
 template <class T>
 T smaller(const T& a, const T& b) {
   if constexpr (std::is_same_v<T, Interval>) {
@@ -53,7 +53,7 @@ T larger(const T& a, const T& b) {
   return -smaller<T>(-a, -b);
 }
 
-/// A rational constant of a polynomial, for either type that sign_of() computes in.
+/// A rational constant of a polynomial, for both types that sign_of() computes in.
 class Constant {
  public:
   explicit Constant(Rational value) : exact_(std::move(value)), enclosure_(CGAL::to_interval(exact_)) {}
@@ -71,8 +71,8 @@ class Constant {
   Interval enclosure_;
 };
 
-/// The sign of `polynomial(T{})`, a function that computes in the type of its argument: in intervals, which
-/// prove its sign or not, and then in rationals.
+/// Returns the sign of `polynomial(T{})`, a function that computes in the type of its argument. Intervals
+/// prove the sign or leave it open; rationals decide open signs.
 template <class Polynomial>
 int sign_of(const Polynomial& polynomial, std::uint64_t& num_exact) {
   {
@@ -86,11 +86,11 @@ int sign_of(const Polynomial& polynomial, std::uint64_t& num_exact) {
   return static_cast<int>(CGAL::sign(polynomial(Rational())));
 }
 
-/// The decimal number that a person typed to get this double, as a rational: 1.93 is 193/100.
+/// Returns the decimal number that a user typed to get this double, as a rational: 1.93 is 193/100.
 Rational typed_decimal(double x);
 
-/// sin^2 of an angle of 0 to 90 degrees: exact at 0, 30, 45, 60 and 90, the only rational ones (Niven), and
-/// elsewhere a rational above it by less than 1e-70.
+/// Returns sin^2 of an angle of 0 to 90 degrees. It is exact at 0, 30, 45, 60 and 90, the only angles where
+/// it is rational (Niven). Elsewhere it is a rational above sin^2 by less than 1e-70.
 Rational squared_sine(const Rational& degrees);
 
 }  // namespace podm::verify

@@ -28,13 +28,14 @@ T squared_length(const Point& a, const Point& b) {
   return dot(d, d);
 }
 
-/// numerator / denominator; the denominator is not negative, and 0 for what is flat.
+/// numerator / denominator. The denominator is not negative; it is 0 for a flat cell or triangle.
 template <class T>
 struct Fraction {
   T numerator, denominator;
 };
 
-/// R^2 of a cell: with e_i the edges from its last vertex, |sum |e_i|^2 e_j x e_k|^2 / (2 e1.(e2 x e3))^2.
+/// Returns R^2 of a cell: with e_i the edges from its last vertex,
+/// |sum |e_i|^2 e_j x e_k|^2 / (2 e1.(e2 x e3))^2.
 template <class T>
 Fraction<T> squared_circumradius(const CellPoints& p) {
   const Vector<T> a = difference<T>(p[0], p[3]), b = difference<T>(p[1], p[3]), c = difference<T>(p[2], p[3]);
@@ -54,7 +55,7 @@ T squared_shortest_edge(const CellPoints& p) {
   return least;
 }
 
-/// 4 area^2 of a triangle.
+/// Returns 4 area^2 of a triangle.
 template <class T>
 T squared_double_area(const TrianglePoints& p) {
   const Vector<T> normal = cross(difference<T>(p[1], p[0]), difference<T>(p[2], p[0]));

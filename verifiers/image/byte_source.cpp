@@ -12,7 +12,7 @@ namespace podm::verify {
 
 namespace {
 
-constexpr std::uint64_t kBestRatio = 1032;  // of deflate
+constexpr std::uint64_t kBestRatio = 1032;  // deflate's best ratio
 constexpr int kZlibOrGzip = 32 + MAX_WBITS;
 
 }  // namespace
@@ -89,7 +89,7 @@ std::size_t ByteSource::read_some(void* bytes, std::size_t size) {
   return static_cast<std::size_t>(file_.gcount());
 }
 
-// A gzip file may have several members: after the end of one another begins where bytes are left.
+// A gzip file may have several members: if bytes are left after the end of one, another begins there.
 std::size_t ByteSource::inflate_some(void* bytes, std::size_t size) {
   stream_->next_out = static_cast<Bytef*>(bytes);
   const auto room = static_cast<uInt>(std::min<std::size_t>(size, std::numeric_limits<uInt>::max()));

@@ -1,4 +1,5 @@
-// The bytes of a file from some place on, inflated where they are compressed, never fewer than asked for.
+// Reads the bytes of a file from an offset on, inflated if they are compressed. A read gives all bytes asked
+// for or throws.
 #pragma once
 
 #include <zlib.h>
@@ -14,13 +15,14 @@ namespace podm::verify {
 
 enum class Compression {
   kNone,
-  kStream,    ///< one zlib or gzip stream, whatever follows it
-  kIfGzipped  ///< gzip where the first bytes say so
+  kStream,    ///< one zlib or gzip stream; bytes after it are ignored
+  kIfGzipped  ///< gzip if the first bytes are gzip's
 };
 
 class ByteSource {
  public:
-  /// All members throw InputError "path: fault"; `path` is the image's, `file` where the bytes lie.
+  /// All members throw InputError "path: fault". `path` is the image's file; `file` is the file that holds
+  /// the bytes.
   ByteSource(const std::string& path, const std::string& file, std::uint64_t offset, Compression compression);
 
   /// Reads exactly `size` bytes.
@@ -28,9 +30,10 @@ class ByteSource {
   void skip(std::uint64_t size);
   /// Throws unless every byte has been read and the stream's checksum holds.
   void expect_end();
-  /// Throws if the file cannot hold `size` bytes even at deflate's best ratio: ask before allocating them.
+  /// Throws if the file cannot hold `size` bytes even at deflate's best ratio. Call it before allocating
+  /// them.
   void expect_room_for(std::uint64_t size) const;
-  /// The stream's compressed bytes, once expect_end() has returned; 0: it is not compressed.
+  /// Returns the compressed bytes of the stream, once expect_end() has returned; 0 if it is not compressed.
   std::uint64_t compressed_bytes() const { return stream_ ? stream_->total_in : 0; }
 
  private:
@@ -47,12 +50,13 @@ class ByteSource {
   std::ifstream file_;
   std::uint64_t most_bytes_ = 0;
   std::unique_ptr<z_stream, End> stream_;  // null: not compressed
-  bool has_members_ = false;               // gzip's: streams may follow one another
+  bool has_members_ = false;               // gzip: streams may follow one another
   std::vector<unsigned char> compressed_;
-  bool is_finished_ = false;  // the stream has met its end
+  bool is_finished_ = false;  // the stream has ended
 };
 
-/// Bytes of the regular file `file`, part of the image `path`. Throws InputError: missing, not a file, empty.
+/// Returns the size of the regular file `file`, part of the image `path`. Throws InputError if it is missing,
+/// not regular or empty.
 std::uint64_t file_bytes(const std::string& path, const std::string& file);
 
 }  // namespace podm::verify

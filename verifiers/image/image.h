@@ -11,25 +11,25 @@
 
 namespace podm::verify {
 
-/// That interfaces of the image are smoothed: smoothing.h.
+/// Smoothed interfaces of the image (smoothing.h).
 struct Smoothing {
   double width_mm = 0;
-  std::vector<std::uint16_t> strengths;  ///< of the voxels, in 65535ths
+  std::vector<std::uint16_t> strengths;  ///< one per voxel, in 65535ths
 };
 inline constexpr std::uint16_t kFullStrength = 65535;
 
-/// Voxels x fastest. Outside the grid every voxel is background (0).
+/// Voxels are stored x fastest. Outside the grid every voxel is background (0).
 struct Image {
   std::string path;
   std::array<int, 3> size{};
   std::array<double, 3> spacing{};         ///< mm: column norms of voxel_to_ras
   std::array<double, 12> voxel_to_ras{};   ///< row-major 3x4, voxel indices to world mm
   std::vector<std::uint32_t> voxels;       ///< label values
-  std::vector<std::string> warnings = {};  ///< what is odd about the file
+  std::vector<std::string> warnings = {};  ///< oddities of the file
   std::optional<Smoothing> smoothing = {};
 };
 
-/// NIfTI, NRRD, MetaImage, INRIMAGE, ".gz" of NIfTI and INR. Throws InputError.
+/// Reads NIfTI, NRRD, MetaImage, INRIMAGE, and ".gz" of NIfTI and INR. Throws InputError.
 Image read_image(const std::string& path);
 
 }  // namespace podm::verify

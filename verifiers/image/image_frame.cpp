@@ -14,7 +14,7 @@ ExactMatrix exact(const std::array<double, 12>& a) {
   return m;
 }
 
-// Cofactors give it; the image's reader has refused a singular matrix.
+// Inverts by cofactors. The matrix is not singular: the image's reader refuses a singular one.
 ExactMatrix inverse(const ExactMatrix& a) {
   const auto cofactor = [&](std::size_t i, std::size_t j) -> mpq_class {
     const std::size_t i1 = (i + 1) % 3, i2 = (i + 2) % 3, j1 = (j + 1) % 3, j2 = (j + 2) % 3;

@@ -1,4 +1,4 @@
-// Where the coordinates of a mesh file lie in an image.
+// Maps the coordinates of a mesh file to an image.
 #pragma once
 
 #include <gmpxx.h>
@@ -10,29 +10,30 @@
 
 namespace podm::verify {
 
-/// Row-major 3x4 from the coordinates of a mesh in `space` to voxel indices, exactly. A mesh that states no
-/// space is taken to be RAS.
+/// Returns the exact map from the coordinates of a mesh in `space` to voxel indices, row-major 3x4. A mesh
+/// that states no space is taken to be RAS.
 std::array<mpq_class, 12> exact_mesh_to_voxels(const std::array<double, 12>& voxel_to_ras, Space space);
 
 class ImageFrame {
  public:
   ImageFrame(const Image& image, Space space);
 
-  /// Computes in extended precision: the matrix is rounded once, so each result errs by less than 2^-60 of
-  /// the sum of its terms' magnitudes, and by half an ulp.
+  /// Computes in extended precision. The matrix is rounded once, so each result errs by less than 2^-60 of
+  /// the sum of its terms' magnitudes, plus half an ulp.
   Point to_voxels(const Point& p) const { return apply(mesh_to_voxels_, p); }
-  /// RAS, mm.
+  /// Returns RAS coordinates in mm.
   Point to_world(const Point& p) const { return apply(mesh_to_world_, p); }
   Point voxels_to_world(const Point& u) const { return apply(voxels_to_world_, u); }
   Point voxels_to_mesh(const Point& u) const;
   Point world_to_voxels(const Point& p) const { return apply(world_to_voxels_, p); }
-  /// Maps a vector: the offset does not count.
+  /// Maps a vector, that is, without the offset.
   Point world_to_voxels_vector(const Point& d) const;
-  /// Takes a gradient by voxel coordinates to the gradient by mm.
+  /// Converts a gradient by voxel coordinates to the gradient by mm.
   Point gradient_in_world(const Point& g) const;
 
   double voxel_volume_mm3() const;
-  /// The largest movement of each voxel coordinate when the world coordinates move by at most the given ones.
+  /// Returns the largest movement of each voxel coordinate when the world coordinates move by at most the
+  /// given amounts.
   Point voxel_movement(const Point& world_movement) const;
 
   using Matrix = std::array<long double, 12>;
@@ -49,7 +50,7 @@ class ImageFrame {
   Matrix mesh_to_voxels_, mesh_to_world_, voxels_to_world_, world_to_voxels_;
 };
 
-/// "RAS", "LPS", "voxel"; "RAS (assumed, the file does not say)".
+/// Returns "RAS", "LPS", "voxel" or "RAS (assumed, the file does not say)".
 std::string describe(Space space);
 
 }  // namespace podm::verify

@@ -24,7 +24,7 @@ struct Runs {
   std::vector<std::size_t> row_begin;  // row j + k * size[1]; one more at the end
 };
 
-// Every label counts as 1 if `is_merged`.
+// If `is_merged`, every label counts as 1.
 Runs find_runs(const Image& image, bool is_merged) {
   Runs result;
   const std::size_t rows = static_cast<std::size_t>(image.size[1]) * static_cast<std::size_t>(image.size[2]);
@@ -58,7 +58,7 @@ class Sets {
   std::vector<std::size_t> parent_;
 };
 
-// Runs of two rows touch when they overlap, or with reach 1 when they meet at an edge or corner.
+// Unites the runs of two rows that overlap, or, with reach 1, that meet at an edge or corner.
 void unite_rows(const Runs& runs, std::size_t row, std::size_t other, int reach, Sets& sets) {
   std::size_t start = runs.row_begin[other];
   for (std::size_t i = runs.row_begin[row]; i < runs.row_begin[row + 1]; ++i) {
@@ -95,9 +95,9 @@ struct Share {
   int euler_6 = 0, euler_26 = 0;
 };
 
-// Each element of a complex belongs to one corner: the points, edges, squares and cubes that the last of the
-// eight voxels is the last part of. Bit x + 2y + 4z of the mask tells whether that voxel has the label. A
-// full mask, as an empty one, adds nothing.
+// Each element of a complex (point, edge, square or cube) belongs to one corner: the corner whose last voxel,
+// of the eight around it, is the element's last voxel. Bit x + 2y + 4z of the mask is set if that voxel has
+// the label. A full mask adds nothing, nor does an empty one.
 constexpr Share share_of(unsigned mask) {
   const auto all = [mask](unsigned bits) { return (mask & bits) == bits ? 1 : 0; };
   const auto any = [mask](unsigned bits) { return (mask & bits) != 0 ? 1 : 0; };
@@ -134,7 +134,7 @@ struct EulerSums {
   }
 };
 
-// Corners (i,j,k) of slice k for which the last of the eight voxels is (i,j,k).
+// Adds the corners of slice k. The last of the eight voxels around corner (i,j,k) is voxel (i,j,k).
 void add_slice(const Image& image, int k, const std::vector<std::uint32_t>& empty_row, EulerSums& sums) {
   const auto row = [&](int j, int slice) {
     if (j < 0 || slice < 0 || j >= image.size[1] || slice >= image.size[2]) return empty_row.data();

@@ -2,8 +2,8 @@
 //
 // A digital object and its complement need different connectivities (Kong and Rosenfeld, "Digital topology:
 // introduction and survey", 1989): 6 for the label with 26 for the rest, or 26 with 6.
-//   6:  voxels are points; faces they share, squares of four and cubes of eight fill in: V - E + F - C of
-//       that complex.
+//   6:  voxels are points, shared faces are edges, and squares of four and cubes of eight are filled:
+//       V - E + F - C of that complex.
 //   26: voxels are closed cubes: V - E + F - C of their union.
 #pragma once
 

@@ -13,7 +13,7 @@ namespace podm::verify {
 
 namespace {
 
-constexpr double kRounding = 1e-6;  // of volumes and areas
+constexpr double kRounding = 1e-6;  // relative, of volumes and areas
 
 double voxel_mm3(const Image& image) {
   const auto& a = image.voxel_to_ras;
@@ -21,7 +21,7 @@ double voxel_mm3(const Image& image) {
                   a[2] * (a[4] * a[9] - a[5] * a[8]));
 }
 
-// Floods sets of voxels of one label from each voxel that no flood has reached, and keeps the small ones.
+// Finds islands: floods from each voxel that no flood has reached yet, and keeps the small sets.
 class Islands {
  public:
   Islands(const Image& image, std::uint32_t background, double below_mm3)
@@ -39,7 +39,7 @@ class Islands {
 
   const std::vector<std::vector<std::size_t>>& all() const { return islands_; }
 
-  /// By label the area of faces, mm^2, that the island has in common with what is no island.
+  /// Returns by label the area of faces, mm^2, that the island shares with voxels outside all islands.
   std::map<std::uint32_t, double> shared_mm2(const std::vector<std::size_t>& island) const {
     std::map<std::uint32_t, std::array<std::size_t, 3>> faces;
     for (const std::size_t at : island)
@@ -92,7 +92,8 @@ class Islands {
   std::vector<std::vector<std::size_t>> islands_;
 };
 
-// Labels are in order in the map; the background goes before them.
+// Returns the label of the largest area. Among equal areas the background comes first, then the least label,
+// as the map is sorted.
 std::uint32_t largest(const std::map<std::uint32_t, double>& areas, std::uint32_t background) {
   double most = 0;
   for (const auto& [label, area] : areas) most = std::max(most, area);

@@ -1,15 +1,15 @@
-// Islands of an image that were not meshed, found and given away by the verifier's own code.
+// Islands of an image that were not meshed, found and relabelled by the verifier's own code.
 #pragma once
 
 #include "image/image.h"
 
 namespace podm::verify {
 
-/// An island is a set of voxels of one label, not `background`, that are joined by faces, one after the
-/// other, and fill less than `below_mm3`. Those that touch something else than islands, outside of the grid
-/// counting as background, become what they share the largest area of faces with of it; of equal areas the
-/// background goes first, then the least label. That is repeated until no island is left. Throws InputError
-/// if then all is background.
+/// Relabels islands. An island is a face-connected set of voxels of one label, not `background`, that fills
+/// less than `below_mm3`. An island that touches voxels outside all islands takes the label with which it
+/// shares the largest area of faces with them; outside the grid counts as background. Among equal areas the
+/// background comes first, then the least label. This repeats until no island is left. Throws InputError if
+/// all voxels are then background.
 void drop_islands(Image& image, std::uint32_t background, double below_mm3);
 
 }  // namespace podm::verify

@@ -7,7 +7,7 @@ namespace podm::verify {
 
 namespace {
 
-// Where each label lies.
+// Returns the extent of each label.
 std::map<std::uint32_t, VoxelBox> extents_of(const std::vector<std::uint32_t>& labels, const VoxelBox& box) {
   std::map<std::uint32_t, VoxelBox> extents;
   const std::uint32_t* label = labels.data();
@@ -26,13 +26,13 @@ std::map<std::uint32_t, VoxelBox> extents_of(const std::vector<std::uint32_t>& l
   return extents;
 }
 
-// One axis of a volume: there are `inner` numbers to an index, and `outer` such volumes.
+// One axis of a volume: `inner` numbers per index, and `outer` such volumes.
 struct Axis {
   int from_first, from_size, to_first, to_size;
   std::size_t inner, outer;
 };
 
-// Adds factor times the blurred numbers to `to`; beyond `from` they are 0.
+// Adds factor times the blurred numbers to `to`. Beyond `from` the numbers are 0.
 void add_blurred_along(const Axis& axis, const std::vector<double>& taps, double factor,
                        const std::vector<double>& from, std::vector<double>& to) {
   const int reach = static_cast<int>(taps.size() / 2);
@@ -90,7 +90,7 @@ const std::vector<double>& LabelBlur::leads(const VoxelBox& box) {
   return own_;
 }
 
-// Only where the label lies and the taps reach from the target is there anything to blur.
+// Only voxels of the label within reach of the taps from the target contribute.
 void LabelBlur::add_blurred(std::uint32_t label, const VoxelBox& extent, const Taps& taps, double factor) {
   const VoxelBox source = extent.common(target_.grown(taps.reach));
   if (source.empty()) return;
@@ -105,7 +105,7 @@ void LabelBlur::add_blurred(std::uint32_t label, const VoxelBox& extent, const T
                     taps.along[2], factor, planes_, weights_);
 }
 
-// Fills rows_: of the source along y and z, of the target along x.
+// Fills rows_, which has the extent of the source along y and z and of the target along x.
 void LabelBlur::blur_rows(std::uint32_t label, const VoxelBox& source, const Taps& taps) {
   const auto length = static_cast<std::size_t>(target_.size[0]);
   const std::vector<double>& along = taps.along[0];

@@ -8,7 +8,7 @@ namespace podm::verify {
 
 namespace {
 
-// The weight at f of corner x + 2y + 4z.
+// Returns the trilinear weight at f of corner x + 2y + 4z.
 double corner_weight(std::size_t corner, const Point& f) {
   return ((corner & 1) != 0 ? f[0] : 1 - f[0]) * ((corner & 2) != 0 ? f[1] : 1 - f[1]) *
          ((corner & 4) != 0 ? f[2] : 1 - f[2]);
@@ -50,7 +50,7 @@ LabelFunction::LabelFunction(const Image& image, const Smoothing* smoothing)
       row_(static_cast<std::size_t>(image.size[0])),
       slice_(row_ * static_cast<std::size_t>(image.size[1])) {}
 
-// Beyond a voxel from the grid all eight voxels are background.
+// At a voxel or more from the grid all eight voxels are background.
 bool LabelFunction::is_near(const Point& u) const {
   return u[0] > -1 && u[0] < image_.size[0] && u[1] > -1 && u[1] < image_.size[1] && u[2] > -1 &&
          u[2] < image_.size[2];
@@ -101,7 +101,7 @@ std::array<std::uint16_t, 8> LabelFunction::strengths(const std::array<int, 3>& 
   return strengths;
 }
 
-// Beyond the grid that of the nearest voxel inside.
+// Beyond the grid returns the strength of the nearest voxel inside.
 std::uint16_t LabelFunction::strength(const std::array<int, 3>& voxel) const {
   if (smoothing_ == nullptr) return kFullStrength;
   const auto inside = [&](std::size_t axis) {
@@ -142,7 +142,7 @@ std::uint32_t LabelFunction::exact_label_at(const std::array<mpq_class, 3>& u) c
   }
   const auto labels = corners(block);
   const auto strengths = this->strengths(block);
-  std::map<std::uint32_t, mpq_class> weights;  // in 65535ths; ascending: the first of the greatest wins
+  std::map<std::uint32_t, mpq_class> weights;  // in 65535ths; by label: the first of the greatest wins
   for (std::size_t c = 0; c < 8; ++c)
     weights[labels[c]] += strengths[c] * factors[0][c & 1] * factors[1][c >> 1 & 1] * factors[2][c >> 2];
   auto best = weights.begin();
@@ -201,7 +201,7 @@ Point LabelFunction::gradient_of_difference(const Point& u, std::uint32_t a, std
     for (std::size_t axis = 0; axis < 3; ++axis) {
       Point unit = p.f;
       const bool is_high = (c >> axis & 1) != 0;
-      unit[axis] = is_high ? 1 : 0;  // this axis's factor becomes 1
+      unit[axis] = is_high ? 1 : 0;  // the factor of this axis becomes 1
       gradient[axis] += (is_high ? slope : -slope) * corner_weight(c, unit);
     }
   }

@@ -7,7 +7,7 @@
 
 namespace podm::verify {
 
-// The summed-area table of the faces of one label: what is in any box is found at its eight corners.
+// The summed-area table of the faces of one label: eight corners give the sum over any box.
 class LabelGrowth::Table {
  public:
   explicit Table(const LabelGrowth& growth) : growth_(growth) {}
@@ -23,7 +23,7 @@ class LabelGrowth::Table {
     for (std::size_t axis = 0; axis < 3; ++axis) add_up(axis);
   }
 
-  // The box lies in the one around.
+  // Returns the sum over a box inside the box given to fill().
   Faces in(const VoxelBox& box) const {
     Faces sum;
     for (int corner = 0; corner < 8; ++corner) {
@@ -85,7 +85,7 @@ bool LabelGrowth::is_at_interface(const Voxel& v) const {
   return !is_uniform(VoxelBox{v, {1, 1, 1}}.grown({1, 1, 1}));
 }
 
-// The tile's voxels with another label among their neighbours, by their own.
+// Returns the tile's voxels with another label among their neighbours, grouped by their own label.
 std::map<std::uint32_t, std::vector<LabelGrowth::Voxel>> LabelGrowth::at_interfaces(
     const VoxelBox& tile) const {
   std::map<std::uint32_t, std::vector<Voxel>> found;

@@ -1,4 +1,4 @@
-// The last step of smoothing.h: by how much a label has grown near a voxel, and strengths without that.
+// The last step of smoothing.h: takes back the growth of labels.
 #pragma once
 
 #include <cstdint>
@@ -15,16 +15,16 @@ class LabelGrowth {
   /// Keeps references to the image and to the strengths of its voxels.
   LabelGrowth(const Image& image, const std::vector<std::uint16_t>& strengths, double width_mm, int threads);
 
-  /// The strengths, no less than `least` where a voxel has another label among its 26 neighbours. All sums
-  /// are of integers, so that no order of theirs matters. Takes 16 bytes a voxel within reach of a tile, a
-  /// thread.
+  /// Returns the strengths after this step, at least `least` where a voxel has another label among its 26
+  /// neighbours. All sums are of integers, so their order does not matter. Each thread takes 16 bytes per
+  /// voxel within reach of a tile.
   std::vector<std::uint16_t> taken_back(std::uint16_t least) const;
 
  private:
   class Table;
   using Voxel = std::array<int, 3>;
   struct Faces {
-    std::int64_t area = 0, lead = 0;  // of all; each lead times the face's area
+    std::int64_t area = 0, lead = 0;  // sums over faces; each lead is multiplied by the face's area
   };
   std::uint32_t label(const Voxel& v) const;
   bool is_uniform(const VoxelBox& box) const;

@@ -30,7 +30,7 @@ bool holds(const LabelSelection::Ranges& ranges, std::uint32_t value) {
                      [value](const auto& range) { return range.first <= value && value <= range.second; });
 }
 
-/// A background of another value and 0 change places.
+/// Swaps 0 and a background of another value.
 template <class Value>
 Value with_background_moved(Value value, Value background) {
   return value == background ? 0 : value == 0 ? background : value;
@@ -45,7 +45,7 @@ void expect_foreground(const Image& image, const std::set<std::uint32_t>& presen
 
 void check_selection(const Image& image, const std::set<std::uint32_t>& present,
                      const LabelSelection& selection) {
-  // A range may hold values without voxels; one named by itself without any is an error in writing.
+  // A range may include values without voxels. A single value without voxels is taken for a typing error.
   for (const auto& [first, last] : selection.keep)
     if (first == last) expect_foreground(image, present, selection, first, "--labels");
   for (const auto& [first, last] : selection.drop)

@@ -9,7 +9,8 @@ namespace podm::verify {
 
 namespace {
 
-// Throws unless there are three axes (further ones of length 1), none empty, all of it addressable.
+// Returns the number of voxels. Throws unless there are three axes (further axes of length 1), none is empty,
+// and all voxels are addressable.
 std::size_t checked_num_voxels(const std::string& path, const std::vector<std::int64_t>& size) {
   constexpr std::size_t kMostVoxels = std::numeric_limits<std::size_t>::max() / 16;
   std::string sizes;

@@ -1,4 +1,4 @@
-// An image as its file stores it, what every format's reader gives, and the checks they share.
+// An image as its file stores it, which the reader of each format returns, and the checks that readers share.
 #pragma once
 
 #include <algorithm>
@@ -18,28 +18,28 @@ enum class VoxelType { kUint8, kInt8, kUint16, kInt16, kUint32, kInt32, kUint64,
 std::size_t bytes_of(VoxelType type);
 
 struct RawImage {
-  std::vector<std::int64_t> size;  ///< voxels per axis, as many axes as the file has
+  std::vector<std::int64_t> size;  ///< voxels per axis, for all axes of the file
   VoxelType type = VoxelType::kUint8;
-  bool is_swapped = false;                 ///< voxels are in the byte order that is not this machine's
+  bool is_swapped = false;                 ///< voxels are not in this machine's byte order
   double slope = 1, intercept = 0;         ///< a value is slope * voxel + intercept
   std::array<double, 12> voxel_to_ras{};   ///< row-major 3x4, mm
   std::vector<unsigned char> bytes;        ///< voxels, x fastest
-  std::vector<std::string> warnings = {};  ///< of Image
+  std::vector<std::string> warnings = {};  ///< as in Image
 };
 
 /// Throws InputError "path: fault".
 [[noreturn]] void refuse(const std::string& path, const std::string& fault);
 
-/// Fills raw.bytes with all that is left of the source. Throws InputError unless size and type are those of a
-/// 3-D image (further axes of length 1) and the source holds exactly its bytes; memory is asked for only
-/// when the file can hold that much.
+/// Fills raw.bytes with all bytes left in the source. Throws InputError unless size and type are those of a
+/// 3-D image (further axes of length 1) and the source holds exactly its bytes. Memory is allocated only if
+/// the file can hold that much.
 void read_voxels(const std::string& path, RawImage& raw, ByteSource& source);
 
-/// The voxel spacing, mm. An affine that is orthogonal but for the rounding of a header is made exactly so,
-/// in place. Throws InputError where it is singular or not finite.
+/// Returns the voxel spacing, mm. An affine that is orthogonal up to the rounding of a header is made exactly
+/// orthogonal, in place. Throws InputError if the affine is singular or not finite.
 std::array<double, 3> settle_affine(const std::string& path, std::array<double, 12>& voxel_to_ras);
 
-/// Calls use(number, value) for every voxel, with the value in the type that the file has it in.
+/// Calls use(number, value) for every voxel, with the value in the type of the file.
 template <class Use>
 void for_each_voxel(RawImage& raw, const Use& use) {
   const auto each = [&]<class Voxel>(Voxel) {
@@ -75,7 +75,7 @@ void for_each_voxel(RawImage& raw, const Use& use) {
   }
 }
 
-RawImage read_raw(const std::string& path);    ///< by the format that the name tells
+RawImage read_raw(const std::string& path);    ///< chooses the reader by the file's name
 RawImage read_inr(const std::string& path);    ///< INRIMAGE-4
 RawImage read_nifti(const std::string& path);  ///< NIfTI-1 in one file, any affine
 RawImage read_nrrd(const std::string& path);   ///< attached or detached, raw or gzip

@@ -1,5 +1,5 @@
-// A path becomes label values: the format's reader is picked, voxels become label values, the affine is
-// checked.
+// Reads label values from a path: picks the reader of the format, converts voxels to labels, checks the
+// affine.
 #include <algorithm>
 #include <cmath>
 
@@ -28,8 +28,8 @@ double determinant(const Matrix& m) {
          m[0][2] * (m[1][0] * m[2][1] - m[1][1] * m[2][0]);
 }
 
-// One step of Newton's iteration for the orthonormal matrix nearest to m: the mean of m and its inverse
-// transposed. A distance e becomes one within e^2.
+// Returns one step of Newton's iteration for the orthonormal matrix nearest to m: the mean of m and its
+// inverse transposed. A distance e becomes one within e^2.
 Matrix step_to_orthonormal(const Matrix& m) {
   const double d = determinant(m);
   Matrix mean{};
@@ -53,9 +53,9 @@ double distance_to_orthonormal(const Matrix& m) {
 
 }  // namespace
 
-// Headers state directions in single precision or six digits. A direction that is orthonormal but for that
-// is meant to be so, and taken as the nearest that is: nothing else says where voxels are to 1e-7 of the
-// image's width. Further from orthonormal it is shear, and kept.
+// Headers state directions in single precision or with six digits. A direction that is orthonormal up to this
+// rounding is meant to be orthonormal, and the nearest orthonormal one replaces it: nothing else gives the
+// places of voxels to 1e-7 of the image's width. A direction further from orthonormal is shear and is kept.
 std::array<double, 3> settle_affine(const std::string& path, std::array<double, 12>& a) {
   constexpr double kHeaderRounding = 1e-5, kSmallestDeterminant = 1e-6;
   std::array<double, 3> spacing{};

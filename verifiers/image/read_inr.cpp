@@ -37,7 +37,7 @@ class Header {
     const auto field = fields_.find(key);
     return field == fields_.end() ? "" : field->second;
   }
-  // "8 bits" counts as 8.
+  // Reads "8 bits" as 8.
   template <class Number>
   Number number(const std::string& key, Number otherwise) const {
     if (!fields_.contains(key)) return otherwise;

@@ -1,5 +1,5 @@
-// NRRD and MetaImage: ITK reads the headers. The voxels are read here, since ITK fills what is missing with
-// zeros or leaves it uninitialized.
+// NRRD and MetaImage. ITK reads the headers. The voxels are read here, since ITK fills missing voxels with
+// zeros or leaves them uninitialized.
 #include <itkMetaImageIO.h>
 #include <itkNrrdImageIO.h>
 
@@ -24,7 +24,7 @@ std::string trimmed(const std::string& text) {
   return begin == std::string::npos ? "" : text.substr(begin, end + 1 - begin);
 }
 
-// Lines "key SEPARATOR value" up to and with the line of key `last`, written so.
+// The lines "key SEPARATOR value" up to and including the line whose key is spelled `last`.
 class TextHeader {
  public:
   TextHeader(const std::string& path, char separator, const std::string& last) {
@@ -54,7 +54,7 @@ class TextHeader {
   std::uint64_t bytes_ = 0;
 };
 
-// The path of a file that the header of `path` names.
+// Returns the path of a file that the header of `path` names.
 std::string beside(const std::string& path, const std::string& name) {
   const std::string file = (std::filesystem::path(path).parent_path() / name).string();
   std::error_code error;
@@ -63,20 +63,20 @@ std::string beside(const std::string& path, const std::string& name) {
   return file;
 }
 
-// What ITK does not tell, or not of every file.
+// Facts about the voxels that ITK does not report, or not for every file.
 struct Voxels {
   ByteSource source;
   bool is_big_endian;
-  std::string announced_bytes = {};  // of a compressed stream, by the header; empty: it does not tell
+  std::string announced_bytes = {};  // compressed size by the header; empty: not given
 };
 
-// ITK takes a value for true by its first letter.
+// ITK decides by the first letter that a value is true.
 bool is_true(const std::string& flag) {
   return !flag.empty() && std::string("tT1").find(flag[0]) != std::string::npos;
 }
 
-// What ITK reads without harm: it quotes the path and a line that it does not understand in messages of a
-// thousand bytes. Comments and 'name:=value' it understands.
+// Throws unless ITK can read the lines safely. ITK quotes the path and a line that it does not understand in
+// messages of a thousand bytes. It understands comments and 'name:=value'.
 void expect_nrrd_lines(const std::string& path, const std::vector<std::string>& lines) {
   constexpr std::size_t kMostQuoted = 500;
   if (path.size() > kMostQuoted) refuse(path, "a NRRD file needs a path of at most 500 bytes");
@@ -108,8 +108,8 @@ Voxels nrrd_voxels(const std::string& path) {
   return {{path, beside(path, file), 0, compression}, is_big_endian};
 }
 
-// What ITK reads without harm: it has 255 bytes for a name or a comment, and goes on to the next '=', on
-// whatever line, when a name has none.
+// Throws unless ITK can read the lines safely. ITK has 255 bytes for a name or a comment. If a name has no
+// '=', it goes on to the next '=', on whatever line.
 void expect_meta_lines(const std::string& path, const std::vector<std::string>& lines) {
   for (std::size_t i = 0; i < lines.size(); ++i) {
     const bool is_field = lines[i].find('=') < lines[i].find(':');
@@ -129,14 +129,14 @@ Voxels meta_voxels(const std::string& path) {
     refuse(path, "'HeaderSize' is not supported");
   if (!header["binarydata"].empty() && !is_true(header["binarydata"]))
     refuse(path, "voxels written as text are not supported");
-  for (const char* key : {"dimsize", "elementtype"})  // ITK prints what it misses
+  for (const char* key : {"dimsize", "elementtype"})  // ITK only prints which key is missing
     if (header[key].empty()) refuse(path, std::string("the MetaImage header has no '") + key + "'");
   const bool is_compressed = is_true(header["compresseddata"]);
   const Compression compression = is_compressed ? Compression::kStream : Compression::kNone;
   const bool is_big_endian =
       is_true(header["binarydatabyteordermsb"]) || is_true(header["elementbyteordermsb"]);
   const std::string announced = is_compressed ? header["compresseddatasize"] : "";
-  if (file == "LOCAL" || file == "Local" || file == "local")  // the spellings that ITK knows
+  if (file == "LOCAL" || file == "Local" || file == "local")  // the spellings that ITK accepts
     return {{path, path, header.bytes(), compression}, is_big_endian, announced};
   return {{path, beside(path, file), 0, compression}, is_big_endian, announced};
 }
@@ -172,7 +172,7 @@ std::array<double, 12> voxel_to_ras(const std::string& path, const itk::ImageIOB
 }
 
 std::string one_line(std::string text) {
-  const std::size_t place = text.rfind("): ");  // ends what ITK says of its own source
+  const std::size_t place = text.rfind("): ");  // end of ITK's note on its own source
   if (place != std::string::npos) text = text.substr(place + 3);
   for (char& c : text) c = c == '\n' ? ' ' : c;
   return trimmed(text);

@@ -1,6 +1,6 @@
-// NIfTI-1, read field by field as its header file nifti1.h lays it out: 348 bytes, then voxels. No library is
-// used: the mesher's would pass its mistakes on, and ITK's reader refuses shear or takes the qform instead in
-// silence, aborts on an affine that is not finite, and fills missing voxels with zeros.
+// NIfTI-1, read field by field in the layout of its header file nifti1.h: 348 bytes, then voxels. No library
+// is used. The mesher's library would pass on its mistakes. ITK's reader refuses shear or silently takes the
+// qform instead, aborts on an affine that is not finite, and fills missing voxels with zeros.
 #include <algorithm>
 #include <array>
 #include <bit>
@@ -17,7 +17,7 @@ namespace {
 
 constexpr std::int32_t kHeaderBytes = 348, kNifti2HeaderBytes = 540;
 
-// Where fields begin. What is not named here says nothing about voxels or their place.
+// Offsets of fields. Fields that are not listed do not affect voxels or their places.
 enum Field : std::size_t {
   kSizeOfHeader = 0,
   kDim = 40,
@@ -48,7 +48,7 @@ class NiftiHeader {
   }
   bool is_swapped() const { return is_swapped_; }
 
-  // The n-th number of a field.
+  // Returns the n-th number of a field.
   template <class Number>
   Number at(Field field, std::size_t n = 0) const {
     std::array<unsigned char, sizeof(Number)> bytes;
@@ -94,8 +94,8 @@ double unit_mm(const NiftiHeader& header) {
 
 using Affine = std::array<double, 12>;
 
-// Method 2 of nifti1.h: a rotation by the unit quaternion (a, b, c, d), a >= 0, with the third axis turned
-// over where pixdim[0] is negative. A sum b^2 + c^2 + d^2 of 1 but for rounding is half a turn.
+// Method 2 of nifti1.h: a rotation by the unit quaternion (a, b, c, d), a >= 0. The third axis is reversed if
+// pixdim[0] is negative. If b^2 + c^2 + d^2 is 1 up to rounding, the rotation is half a turn.
 Affine qform(const NiftiHeader& header) {
   constexpr double kHalfTurn = 1e-7;
   double b = header.at<float>(kQuaternB, 0), c = header.at<float>(kQuaternB, 1),
@@ -120,8 +120,8 @@ Affine qform(const NiftiHeader& header) {
       const bool is_turned_over = axis == 2 && header.at<float>(kPixdim) < 0;
       const double voxel =
           static_cast<double>(header.at<float>(kPixdim, axis + 1)) * (is_turned_over ? -1 : 1);
-      // All of a header is in single precision, and so is what others write as sform when they have read
-      // this.
+      // A header is in single precision, and so is the sform that other programs write after reading this
+      // qform.
       affine[4 * row + axis] = static_cast<float>(rotation[3 * row + axis] * voxel);
     }
     affine[4 * row + 3] = header.at<float>(kQoffsetX, row);
@@ -129,7 +129,7 @@ Affine qform(const NiftiHeader& header) {
   return affine;
 }
 
-// The sform if there is one, else the qform, else the voxel sizes alone.
+// Returns the sform if there is one, otherwise the qform, otherwise the voxel sizes alone.
 Affine voxel_to_world(const std::string& path, const NiftiHeader& header) {
   Affine affine{};
   if (header.at<std::int16_t>(kSformCode) > 0) {
@@ -144,9 +144,10 @@ Affine voxel_to_world(const std::string& path, const NiftiHeader& header) {
   return header.at<std::int16_t>(kQformCode) > 0 ? qform(header) : affine;
 }
 
-// Bytes between the header and the voxels. An offset below the least that a file may have counts as that.
+// Returns the bytes between the header and the voxels. An offset below the smallest allowed one counts as
+// that.
 std::uint64_t gap_after(const std::string& path, const NiftiHeader& header) {
-  constexpr float kSmallest = 352, kLargest = 1 << 24;  // the latter exact in a float
+  constexpr float kSmallest = 352, kLargest = 1 << 24;  // kLargest is exact in a float
   const float offset = header.at<float>(kVoxOffset);
   if (!(offset <= kLargest)) refuse(path, "the NIfTI header is damaged (vox_offset)");
   return static_cast<std::uint64_t>(std::max(offset, kSmallest)) - kHeaderBytes;
@@ -163,7 +164,7 @@ RawImage read_nifti(const std::string& path) {
   raw.size.assign(size.begin(), size.end());
   raw.type = voxel_type(path, header);
   const float slope = header.at<float>(kSclSlope), inter = header.at<float>(kSclInter);
-  if (slope != 0) {  // 0: voxels are as they are
+  if (slope != 0) {  // 0: voxels are not scaled
     raw.slope = slope;
     raw.intercept = inter;
   }

@@ -7,7 +7,7 @@
 
 namespace podm::verify {
 
-/// Voxels x fastest.
+/// Voxels are stored x fastest.
 struct SizeImage {
   std::string path;
   std::array<int, 3> size{};
@@ -16,8 +16,8 @@ struct SizeImage {
   std::vector<std::string> warnings = {};
 };
 
-/// The formats of read_image(), any number a voxel, scaled as the header says; what is not above 0, or
-/// infinite in single precision, is no bound. Throws InputError: also where a voxel is not a number.
+/// Reads the formats of read_image(), with any numbers as voxels, scaled by the header. A value that is not
+/// above 0, or infinite in single precision, is no bound. Throws InputError, also if a voxel is not a number.
 SizeImage read_size_image(const std::string& path);
 
 }  // namespace podm::verify

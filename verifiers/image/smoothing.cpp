@@ -29,7 +29,8 @@ void check_width(const Image& image, double width_mm) {
                width_mm, kMostSpacings * shortest, side));
 }
 
-// Marks of the box, given those of the box grown by `reach`: where there is one within reach along each axis.
+// Replaces the marks of the box grown by `reach` by marks of the box. A voxel is marked if a mark lies within
+// reach along each axis.
 void spread(const VoxelBox& box, const std::array<int, 3>& reach, std::vector<std::uint8_t>& marks) {
   std::array<int, 3> size = box.grown(reach).size;
   std::size_t inner = 1;
@@ -91,7 +92,7 @@ class Smoother {
       }
   }
 
-  // U of the header: rows with a voxel of background at either end.
+  // Finds U of the header. Rows get a voxel of background at either end.
   void open_interfaces() {
     const auto length = static_cast<std::size_t>(image_.size[0]);
     const auto rows = static_cast<std::size_t>(image_.size[1]) * static_cast<std::size_t>(image_.size[2]);
@@ -156,7 +157,7 @@ class Smoother {
     shrink_tiles();
   }
 
-  // To the boxes of their open voxels; tiles without any are left out.
+  // Shrinks tiles to the boxes of their open voxels and drops tiles without any.
   void shrink_tiles() {
     for_tiles([&](std::size_t begin, std::size_t end) {
       for (std::size_t t = begin; t < end; ++t) tiles_[t] = box_of_open(tiles_[t]);
@@ -191,16 +192,16 @@ class Smoother {
         for_open(tiles_[t],
                  [&](std::size_t at, std::size_t) { strengths_[at] = strength_of(voxel_mm_ / 2); });
     });
-    is_open_ = std::vector<std::uint8_t>();  // gives the memory back
+    is_open_ = std::vector<std::uint8_t>();  // frees the memory
     is_lost_ = std::vector<std::uint8_t>();
   }
 
   const Image& image_;
   int threads_;
   VoxelBox grid_;
-  double voxel_mm_, unit_mm_;  // h; of a strength of 1 in 65535
+  double voxel_mm_, unit_mm_;  // h; the depth of a strength of 1/65535
   std::vector<VoxelBox> tiles_;
-  std::vector<std::uint8_t> is_open_, is_lost_;  // U_k and X_k: not decided yet; lost with this width
+  std::vector<std::uint8_t> is_open_, is_lost_;  // not decided yet; lost with this width
   std::vector<std::uint16_t> strengths_;
 };
 

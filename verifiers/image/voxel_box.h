@@ -1,4 +1,4 @@
-// A box of voxels, and a copy of what a grid holds in and around it.
+// A box of voxels, and a copy of a grid's values in and around it.
 #pragma once
 
 #include <algorithm>
@@ -9,10 +9,10 @@
 
 namespace podm::verify {
 
-/// By so much lengths that are meant to be alike may differ, as spacings are rounded in headers.
+/// Lengths that are meant to be equal may differ by this much, as headers round spacings.
 inline constexpr double kLengthRounding = 1e-5;
 
-/// The least whole number of voxels that is not less, but for that.
+/// Returns the least whole number of voxels that is not less, up to this rounding.
 inline int voxels_to_cover(double voxels) { return static_cast<int>(std::ceil(voxels - kLengthRounding)); }
 
 struct VoxelBox {
@@ -40,7 +40,7 @@ struct VoxelBox {
     }
     return box;
   }
-  /// Place of voxel (i,j,k) among those of the box, x fastest.
+  /// Returns the position of voxel (i,j,k) in the box, x fastest.
   std::size_t at(int i, int j, int k) const {
     return (static_cast<std::size_t>(k - first[2]) * static_cast<std::size_t>(size[1]) +
             static_cast<std::size_t>(j - first[1])) *
@@ -49,7 +49,8 @@ struct VoxelBox {
   }
 };
 
-/// The grid in boxes of 32 voxels a side, so that what is computed of one fits a processor's cache.
+/// Returns the grid in boxes of 32 voxels per side. The data computed for one box then fit a processor's
+/// cache.
 inline std::vector<VoxelBox> tiles_of(const std::array<int, 3>& size) {
   constexpr int kSide = 32;
   std::vector<VoxelBox> tiles;
@@ -61,7 +62,8 @@ inline std::vector<VoxelBox> tiles_of(const std::array<int, 3>& size) {
   return tiles;
 }
 
-/// Copies values of a grid of that size, x fastest, in the box; beyond the grid it goes on as at its border.
+/// Copies the values of a grid of size `size`, x fastest, in the box. Beyond the grid they continue as at its
+/// border.
 template <class Value>
 void copy_box(const std::vector<Value>& grid, const std::array<int, 3>& size, const VoxelBox& box,
               std::vector<Value>& copy) {

@@ -1,4 +1,4 @@
-// Bytes that grow without being copied or cleared: large blocks move by page tables alone.
+// A byte buffer that grows without copying or clearing its bytes: large blocks move by page tables alone.
 #pragma once
 
 #include <algorithm>
@@ -12,7 +12,8 @@ namespace podm::verify {
 
 class ByteBuffer {
  public:
-  /// Room for `count` more bytes at the end, not set; valid until the next call. Throws std::bad_alloc.
+  /// Returns room for `count` more bytes at the end, not set, valid until the next call. Throws
+  /// std::bad_alloc.
   char* extend(std::size_t count) {
     if (count > capacity_ - size_) grow(count);
     size_ += count;

@@ -8,7 +8,7 @@
 namespace podm::verify {
 namespace {
 
-constexpr std::size_t kMostQuoted = 40;  // characters of a wrong word in a message
+constexpr std::size_t kMostQuoted = 40;  // characters quoted of a wrong word in a message
 
 std::string quoted(std::string_view word) {
   std::string text;

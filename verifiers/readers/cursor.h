@@ -1,4 +1,4 @@
-// A place in a mesh file that moves on over words, numbers, lines and raw bytes.
+// A position in a mesh file that advances over words, numbers, lines and raw bytes.
 #pragma once
 
 #include <charconv>
@@ -18,12 +18,12 @@ namespace podm::verify {
 class Cursor {
  public:
   explicit Cursor(const MeshFile& file) : Cursor(file, 0, file.bytes().size()) {}
-  /// Goes over the bytes [begin, end) of the file.
+  /// Reads the bytes [begin, end) of the file.
   Cursor(const MeshFile& file, std::size_t begin, std::size_t end);
 
-  /// Makes '#' begin a comment that runs to the end of its line, from here on.
+  /// From here on '#' begins a comment that runs to the end of its line.
   void skip_comments(std::function<void(std::string_view)> on_comment);
-  /// Makes messages give bytes instead of lines, from here on.
+  /// From here on messages name bytes instead of lines.
   void name_bytes() { names_bytes_ = true; }
 
   bool is_at_end() const { return next_ == end_; }
@@ -31,13 +31,13 @@ class Cursor {
   std::size_t bytes_left() const { return static_cast<std::size_t>(end_ - next_); }
   void move_to(std::size_t position);  ///< refuses a position outside the file
 
-  bool is_at_last_word();        ///< whether only blanks (and comments) are left; skips them
-  bool is_at_end_of_line();      ///< whether only blanks are left on the line; skips them but not its end
+  bool is_at_last_word();    ///< true if only blanks (and comments) are left; skips them
+  bool is_at_end_of_line();  ///< true if only blanks are left on the line; skips them but not the line's end
   std::string_view peek_word();  ///< empty at the end
   std::string_view word(const char* what);
-  std::string_view rest_of_line();  ///< without the line's end, which is passed
+  std::string_view rest_of_line();  ///< without the line's end, which is skipped
 
-  /// The next word as a number. Integers must fit the type; reals may be NaN or infinite.
+  /// Reads the next word as a number. Integers must fit the type; reals may be NaN or infinite.
   template <class Number>
   Number number(const char* what) {
     const std::string_view text = start_of_number(what);
@@ -52,7 +52,8 @@ class Cursor {
     next_ = after;
     return value;
   }
-  /// How many things of at least `least_bytes` each follow: refuses what the rest of the file cannot hold.
+  /// Reads a count of items of at least `least_bytes` each. Refuses a count that the rest of the file cannot
+  /// hold.
   std::size_t count(const char* what, std::size_t least_bytes);
 
   std::string_view raw(std::uint64_t size, const char* what);
@@ -62,7 +63,7 @@ class Cursor {
   }
 
   void expect_room(std::uint64_t count, std::size_t least_bytes, const char* what) const;
-  /// Throws InputError with the place of the last word or bytes.
+  /// Throws InputError with the position of the last word or bytes.
   [[noreturn]] void refuse(const std::string& fault) const;
   [[noreturn]] void refuse_word(const char* fault, std::string_view word) const;  ///< "'abc' is no keyword"
 
@@ -71,7 +72,7 @@ class Cursor {
   bool is_word_end(const char* place) const { return place == end_ || is_blank(*place) || *place == '#'; }
   void skip_blanks();
   std::string_view start_of_number(const char* what);
-  /// A real too large or too small for its type: infinity, or the nearest that there is.
+  /// Converts a real that is out of range: to infinity if it is too large, to the nearest value if too small.
   template <class Number>
   static Number rounded(const std::string& text) {
     if constexpr (std::is_same_v<Number, float>)
@@ -82,7 +83,7 @@ class Cursor {
   [[noreturn]] void refuse_number(const char* what, const char* fault);
 
   const MeshFile& file_;
-  const char *next_, *end_, *last_;  // last_: where the item began that was read last
+  const char *next_, *end_, *last_;  // last_: where the item read last began
   bool names_bytes_ = false, has_comments_ = false;
   std::function<void(std::string_view)> on_comment_;
 };

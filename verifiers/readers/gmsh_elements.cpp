@@ -13,7 +13,8 @@ namespace {
 
 constexpr std::int64_t kTriangle = 2, kTetrahedron = 4, kQuadraticTriangle = 9, kQuadraticTetrahedron = 11;
 
-// Position: the type; types 1 to 38. Higher orders that Gmsh writes by other numbers are rare.
+// The number of nodes by type, for types 1 to 38. Gmsh writes higher orders with other numbers; they are
+// rare.
 constexpr std::array<std::uint8_t, 39> kNodes{0,  2,  3, 4,  4,  8,  6,  5,  3,  6,  9,  10, 27,
                                               18, 14, 1, 8,  20, 15, 13, 9,  10, 12, 15, 15, 21,
                                               4,  5,  6, 20, 35, 56, 22, 28, 0,  0,  16, 25, 36};

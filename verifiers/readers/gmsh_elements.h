@@ -1,4 +1,4 @@
-// Nodes and elements of a Gmsh file on their way into a mesh.
+// Adds the nodes and elements of a Gmsh file to a mesh.
 #pragma once
 
 #include <cstddef>
@@ -18,10 +18,11 @@ namespace podm::verify {
 inline constexpr const char* kPhysicalLabels = "gmsh:physical";
 inline constexpr const char* kEntityLabels = "gmsh:geometrical";
 
-/// Nodes of a Gmsh element type (reference manual, "Node ordering"); 0 for types that are not known.
+/// Returns the number of nodes of a Gmsh element type (reference manual, "Node ordering"); 0 for unknown
+/// types.
 std::size_t gmsh_nodes_of(std::int64_t type);
 
-/// Where an element belongs: its first physical group (0: none) and its elementary entity.
+/// The first physical group (0: none) and the elementary entity of an element.
 struct GmshGroup {
   std::int64_t physical = 0, entity = 0;
 };
@@ -33,7 +34,7 @@ class GmshElements {
 
   void make_room(std::int64_t type, std::size_t count);
   void add(std::int64_t type, std::span<const std::uint64_t> nodes, const GmshGroup& group);
-  /// Labels of the cells: physical groups if any cell has one, else entities.
+  /// Sets the labels of the cells: physical groups if any cell has one, otherwise entities.
   void finish();
 
   const std::vector<std::int64_t>& facet_entities() const { return facet_entities_; }
@@ -43,7 +44,7 @@ class GmshElements {
   const ItemNumbers& tags_;
   Mesh& mesh_;
   bool has_physical_ = false;
-  std::vector<LabelValue> physical_, entities_;  // of the cells
+  std::vector<LabelValue> physical_, entities_;  // per cell
   std::vector<std::int64_t> facet_entities_;
 };
 

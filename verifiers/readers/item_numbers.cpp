@@ -21,7 +21,7 @@ void ItemNumbers::finish(const MeshFile& file, const std::string& place, const c
 VertexId ItemNumbers::find(std::uint64_t number) const {
   if (numbers_.empty()) return kNone;
   if (!table_.empty()) {
-    const std::uint64_t place = number - numbers_.front().first;  // wraps round for smaller numbers
+    const std::uint64_t place = number - numbers_.front().first;  // wraps around for smaller numbers
     return place < table_.size() ? table_[place] : kNone;
   }
   const auto found = std::lower_bound(numbers_.begin(), numbers_.end(), std::pair{number, VertexId{0}});

@@ -1,4 +1,4 @@
-// The bytes of one mesh file, and the errors about them.
+// The bytes of one mesh file, and errors about them.
 #pragma once
 
 #include <cstddef>
@@ -11,8 +11,8 @@ namespace podm::verify {
 
 class MeshFile {
  public:
-  /// Maps the file; a ".gz" is inflated into memory instead, step by step, so that it takes what there is and
-  /// not what it announces. Throws InputError: missing, not a regular file, empty, damaged.
+  /// Maps the file. A ".gz" is inflated into memory instead, step by step, so memory grows with the data and
+  /// not with the announced size. Throws InputError if the file is missing, not regular, empty or damaged.
   explicit MeshFile(const std::string& path);
   ~MeshFile();
   MeshFile(const MeshFile&) = delete;
@@ -20,7 +20,7 @@ class MeshFile {
 
   const std::string& path() const { return path_; }
   bool is_gzipped() const { return is_gzipped_; }
-  /// All of it, inflated; places in messages are positions in this.
+  /// All bytes, inflated; places in messages are positions in them.
   std::string_view bytes() const { return bytes_; }
 
   /// Throws InputError "path: place: fault".

@@ -10,8 +10,8 @@
 namespace podm::verify {
 namespace {
 
-// Lower case, the most usual first. From: this project, medit, Gmsh, meshio, VTK, VMTK, FEniCS, dolfinx,
-// Abaqus and TetGen converters.
+// Names of label arrays in lower case, the most usual first. They come from this project, medit, Gmsh,
+// meshio, VTK, VMTK, FEniCS, dolfinx, Abaqus and TetGen converters.
 constexpr std::array kLabelArrays{"label",         "labels",          "cell_labels",      "medit:ref",
                                   "gmsh:physical", "cellentityids",   "cell_scalars",     "region",
                                   "regions",       "region_id",       "regionid",         "regions_id",
@@ -23,7 +23,7 @@ constexpr std::array kLabelArrays{"label",         "labels",          "cell_labe
                                   "tag",           "marker",          "markers",          "ref",
                                   "reference",     "elementblockids", "gmsh:geometrical", "scalars"};
 
-// Exactly so many numbers, a blank between them; none where there are others.
+// Parses exactly N numbers with one blank between them. Returns none for any other text.
 template <std::size_t N>
 std::optional<std::array<double, N>> numbers_of(std::string_view text) {
   std::array<double, N> numbers{};

@@ -34,7 +34,7 @@ NetcdfDocument::NetcdfDocument(const MeshFile& file) : file_(file), cursor_(file
     cursor_.refuse("not a netCDF file: it does not begin with CDF and 1, 2 or 5");
   read_size("the number of records");
   read_dimensions();
-  read_attributes();  // of the whole
+  read_attributes();  // attributes of the file
   read_variables();
 }
 
@@ -99,7 +99,7 @@ void NetcdfDocument::read_variables() {
     variable.type = cursor_.raw_number<std::int32_t>(kIsSwapped, "the type of a variable");
     if (!number_type(variable.type))
       cursor_.refuse(fmt::format("variable '{}' has type {}", name, variable.type));
-    read_size("the size of a variable");  // follows from the rest
+    read_size("the size of a variable");  // redundant: it follows from type and dimensions
     variable.begin = version_ == 1 ? cursor_.raw_number<std::uint32_t>(kIsSwapped, "the place of a variable")
                                    : cursor_.raw_number<std::uint64_t>(kIsSwapped, "the place of a variable");
     variables_[name] = std::move(variable);

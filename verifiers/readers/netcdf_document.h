@@ -1,5 +1,5 @@
-// What a netCDF file declares: dimensions, and arrays of these with attributes. Classic files are read, of
-// 32-bit and 64-bit offsets and of 64-bit data; netCDF-4, which is HDF5, is refused with a hint.
+// The declarations of a netCDF file: dimensions, and arrays over them with attributes. It reads classic files
+// with 32-bit offsets, 64-bit offsets or 64-bit data. It refuses netCDF-4, which is HDF5, with a hint.
 // Format: NetCDF User's Guide, "The NetCDF Classic Format Specification".
 #pragma once
 
@@ -16,8 +16,8 @@ namespace podm::verify {
 
 struct NetcdfVariable {
   std::int32_t type = 0;
-  std::vector<std::uint64_t> sizes;               ///< of its dimensions; 0: the one without a limit
-  std::map<std::string, std::string> attributes;  ///< those that are text
+  std::vector<std::uint64_t> sizes;               ///< sizes of its dimensions; 0: the unlimited one
+  std::map<std::string, std::string> attributes;  ///< text attributes only
   std::uint64_t begin = 0;                        ///< byte in the file
 };
 
@@ -27,18 +27,18 @@ class NetcdfDocument {
   explicit NetcdfDocument(const MeshFile& file);
 
   int version() const { return version_; }
-  /// The size of a dimension; 0 where there is none of that name.
+  /// Returns the size of a dimension; 0 if no dimension has that name.
   std::uint64_t size_of(const std::string& dimension) const;
-  /// Null where there is none.
+  /// Returns null if no variable has that name.
   const NetcdfVariable* find(const std::string& name) const;
 
-  /// Throws InputError unless the variable is there with so many numbers, which the file holds.
+  /// Throws InputError unless the variable exists and has `count` numbers, all within the file.
   NumberArray numbers(const std::string& name, std::uint64_t count) const;
-  /// The rows of an array of characters, each up to its first zero; none where there is no such array.
+  /// Returns the rows of an array of characters, each up to its first zero; none if the array does not exist.
   std::vector<std::string> texts(const std::string& name) const;
 
  private:
-  std::uint64_t read_size(const char* what);  // as wide as the version has it
+  std::uint64_t read_size(const char* what);  // as wide as in this version
   std::string read_name();
   std::size_t read_list_head(std::int32_t tag, const char* what);
   std::map<std::string, std::string> read_attributes();

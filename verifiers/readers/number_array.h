@@ -1,4 +1,4 @@
-// An array of numbers in the type and byte order that a file stores them in.
+// An array of numbers in the type and byte order of its file.
 #pragma once
 
 #include <array>
@@ -30,7 +30,7 @@ enum class NumberType : std::uint8_t {
   kFloat64
 };
 
-/// Calls visit(Number{}) with a value of the C++ type.
+/// Calls visit(Number{}), where Number is the C++ type.
 template <class Visit>
 decltype(auto) with_number_type(NumberType type, Visit visit) {
   switch (type) {
@@ -62,7 +62,7 @@ inline std::size_t size_of(NumberType type) {
   return with_number_type(type, [](auto number) { return sizeof(number); });
 }
 
-/// The number whose bytes start at `bytes`, turned round where the file's byte order is not this machine's.
+/// Returns the number whose bytes start at `bytes`, swapped if the file's byte order is not this machine's.
 template <class Number>
 Number load_number(const char* bytes, bool is_swapped) {
   std::array<char, sizeof(Number)> copy;
@@ -72,7 +72,7 @@ Number load_number(const char* bytes, bool is_swapped) {
   return std::bit_cast<Number>(copy);
 }
 
-/// The integer that `number` is; none for a fraction, NaN, infinity or one beyond 64 bits.
+/// Returns the integer that equals `number`; none for a fraction, NaN, infinity or a value beyond 64 bits.
 template <class Number>
 std::optional<std::int64_t> exact_integer(Number number) {
   if constexpr (std::is_floating_point_v<Number>) {
@@ -90,7 +90,7 @@ std::optional<std::int64_t> exact_integer(Number number) {
 class NumberArray {
  public:
   NumberArray() = default;
-  /// The bytes must outlive it.
+  /// The bytes must outlive the array.
   NumberArray(std::string_view bytes, NumberType type, bool is_swapped)
       : bytes_(bytes), type_(type), is_swapped_(is_swapped) {}
   NumberArray(ByteBuffer bytes, NumberType type, bool is_swapped)
@@ -116,14 +116,14 @@ class NumberArray {
   bool is_swapped_ = false;
 };
 
-/// An array with the name and the components a tuple that the file gives it.
+/// An array with its name and its number of components per tuple in the file.
 struct NamedArray {
   std::string name;
   std::size_t num_components = 1;
   NumberArray values;
 };
 
-/// The id as Mesh keeps it: kNone for what cannot be a vertex of any mesh.
+/// Returns the id as Mesh stores it: kNone for a number that cannot be a vertex of any mesh.
 inline VertexId vertex_id(std::optional<std::int64_t> id) {
   return id && *id >= 0 && *id < std::int64_t{kNone} ? static_cast<VertexId>(*id) : kNone;
 }

@@ -1,4 +1,4 @@
-// Format: VTK file formats, "XML file formats", the parallel ones.
+// Format: VTK file formats, "XML file formats", parallel formats.
 #include "readers/pvtu_index.h"
 
 #include <expat.h>
@@ -50,7 +50,7 @@ class PvtuParser {
   }
 
  private:
-  // No exception may pass through expat: it is kept and the parser stopped.
+  // No exception may pass through expat: it is stored and the parser is stopped.
   template <class Handle>
   void guarded(Handle handle) {
     if (failure_) return;

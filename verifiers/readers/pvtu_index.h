@@ -1,4 +1,4 @@
-// What the XML of a PVTU file tells: where the pieces of a mesh are.
+// The content of a PVTU file's XML: the paths of the pieces of a mesh.
 #pragma once
 
 #include <cstddef>
@@ -11,13 +11,14 @@ namespace podm::verify {
 
 struct PieceSource {
   std::string path;
-  std::size_t line = 0;  ///< of the index, which names it there
+  std::size_t line = 0;  ///< line of the index that names the piece
 
   std::string place() const;  ///< "line 12, Piece"
 };
 
-/// The pieces of an unstructured grid in the index's order, their paths as seen from here. Throws InputError,
-/// with the line: no such index, no pieces, ghost cells, a piece that is named twice.
+/// Returns the pieces of an unstructured grid in the index's order; their paths include the index's folder.
+/// Throws InputError with the line if it is no such index, has no pieces, has ghost cells, or names a piece
+/// twice.
 std::vector<PieceSource> parse_pvtu(const MeshFile& file);
 
 }  // namespace podm::verify

@@ -1,6 +1,6 @@
-// Abaqus input (.inp): *NODE, *ELEMENT with ELSET=, and the *SURFACE of element sides that our mesher writes.
-// The sets of cells are their labels: numbered from 1 in the file's order, unless our mesher's comments tell
-// their values. Sets that only list elements, and parts, instances and included files are not read.
+// Abaqus input (.inp): *NODE, *ELEMENT with ELSET=, and the *SURFACE of element sides that podm writes. The
+// sets of cells are their labels. Labels are numbered from 1 in the file's order, unless podm's comments give
+// their values. Sets that only list elements, parts, instances and included files are not read.
 // Format: Abaqus Keywords Guide.
 #include <fmt/format.h>
 
@@ -24,7 +24,7 @@ std::string_view trimmed(std::string_view text) {
   return text.substr(first, text.find_last_not_of(" \t\r") - first + 1);
 }
 
-// Abaqus heeds no case.
+// Abaqus ignores case.
 std::string upper(std::string_view word) {
   std::string text(word);
   for (char& c : text)
@@ -32,7 +32,7 @@ std::string upper(std::string_view word) {
   return text;
 }
 
-// The part of a line before its next comma, taken off with that.
+// Removes the part of a line before its next comma, and the comma, and returns the part.
 std::string_view take_field(std::string_view& line) {
   const std::size_t comma = line.find(',');
   const std::string_view field = trimmed(line.substr(0, comma));
@@ -46,7 +46,7 @@ struct ElementType {
   const char* name;
   Shape shape;
   std::size_t num_nodes;
-  const char* other;  // what it counts as beside its shape
+  const char* other;  // name it is counted under, in addition to its shape
 };
 constexpr ElementType kTypes[] = {{"C3D4", Shape::kTetrahedron, 4, nullptr},
                                   {"C3D10", Shape::kTetrahedron, 10, kQuadraticTetrahedra},
@@ -65,7 +65,7 @@ constexpr ElementType kTypes[] = {{"C3D4", Shape::kTetrahedron, 4, nullptr},
                                   {"B31", Shape::kOther, 2, "lines"}};
 constexpr std::size_t kMostNodes = 20;
 
-// Letters behind a type tell how it is integrated: C3D10M, S3R.
+// Letters at the end of a type name the integration: C3D10M, S3R.
 const ElementType* find_type(std::string_view name) {
   while (!name.empty() && name.back() >= 'A' && name.back() <= 'Z') name.remove_suffix(1);
   const auto* found = std::find_if(std::begin(kTypes), std::end(kTypes),
@@ -91,11 +91,11 @@ class AbaqusReader {
 
   struct Side {
     std::uint64_t element;
-    std::uint32_t number;  // from 0
+    std::uint32_t number;  // counted from 0
     std::array<LabelValue, 2> labels;
   };
 
-  // The next line that is neither empty nor a comment.
+  // Goes to the next line that is neither empty nor a comment.
   bool next_line() {
     while (!cursor_.is_at_end()) {
       line_ = trimmed(cursor_.rest_of_line());
@@ -166,7 +166,7 @@ class AbaqusReader {
     if (set_number_ == set_names_.size()) set_names_.push_back(set_);
   }
 
-  // Surfaces of others say nothing of labels.
+  // Only surfaces that podm's comments pair with labels are read.
   void begin_surface() {
     if (pair_of_surface_.empty()) return;
     const auto pair = pair_of_surface_.find(upper(need_parameter("NAME")));
@@ -200,7 +200,7 @@ class AbaqusReader {
     mesh_.vertices.push_back(point);
   }
 
-  // The nodes may go on over lines.
+  // The nodes may continue on further lines.
   void read_element() {
     const auto number = take<std::uint64_t>("the number of an element");
     std::array<std::uint64_t, kMostNodes> nodes;
@@ -241,7 +241,7 @@ class AbaqusReader {
     cell_numbers_.finish(file_, "*ELEMENT", "element number");
     for (const auto& nodes : cells_) mesh_.cells.push_back(vertices_of(nodes));
     for (const auto& nodes : triangles_) mesh_.facets.push_back(vertices_of(nodes));
-    if (!triangles_.empty()) return;  // they and sides would be two lists of facets
+    if (!triangles_.empty()) return;  // triangles and sides would be two lists of facets
     constexpr std::array<std::array<int, 3>, 4> kOutward{{{0, 2, 1}, {0, 1, 3}, {1, 2, 3}, {2, 0, 3}}};
     for (const Side& side : sides_) {
       const VertexId cell = cell_numbers_.find(side.element);
@@ -254,7 +254,7 @@ class AbaqusReader {
     }
   }
 
-  // Cells without a set keep the file from having labels.
+  // If any cell has no set, the file has no labels.
   void label_cells() {
     const auto nameless = set_numbers_.find("");
     if (mesh_.cells.empty()) return;
@@ -279,22 +279,22 @@ class AbaqusReader {
   const MeshFile& file_;
   Cursor cursor_;
   Mesh mesh_;
-  std::string_view line_;  // what is left of it
+  std::string_view line_;  // rest of the line
   Section section_ = Section::kOther;
-  std::map<std::string, std::string> parameters_;  // of the keyword at hand
+  std::map<std::string, std::string> parameters_;  // of the current keyword
   const ElementType* type_ = nullptr;
   std::string set_;
   std::size_t set_number_ = 0;
   std::array<LabelValue, 2> labels_of_side_{};
   bool has_nodes_ = false;
   ItemNumbers node_numbers_, cell_numbers_;
-  std::vector<std::array<std::uint64_t, 4>> cells_;  // by numbers of nodes
+  std::vector<std::array<std::uint64_t, 4>> cells_;  // by node numbers
   std::vector<std::array<std::uint64_t, 3>> triangles_;
   std::vector<std::size_t> set_of_cell_;
   std::vector<Side> sides_;
   std::map<std::string, std::size_t> set_numbers_;  // by name in capitals
   std::vector<std::string> set_names_;
-  std::map<std::string, LabelValue> label_of_set_;  // as our mesher's comments say
+  std::map<std::string, LabelValue> label_of_set_;  // from podm's comments
   std::map<std::string, std::array<LabelValue, 2>> pair_of_surface_;
 };
 

@@ -1,6 +1,6 @@
-// Exodus II (.e, .exo, .ex2, .g): blocks of tetrahedra and triangles with names, and the side sets that our
-// mesher writes. A cell's label is the number of its block, unless our mesher's information records tell
-// another. Format: "EXODUS: A Finite Element Data Model".
+// Exodus II (.e, .exo, .ex2, .g): blocks of tetrahedra and triangles with names, and the side sets that podm
+// writes. A cell's label is the number of its block, unless podm's information records give another.
+// Format: "EXODUS: A Finite Element Data Model".
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -56,7 +56,7 @@ class ExodusReader {
     }
   }
 
-  // By axis, or all x before all y in older files.
+  // Coordinates are stored by axis, or in older files all x before all y.
   void read_points() {
     const std::uint64_t count = document_.size_of("num_nodes");
     check_counts(file_, "num_nodes", count, 0);
@@ -143,7 +143,7 @@ class ExodusReader {
     mesh_.facets.push_back({vertex(nodes, i), vertex(nodes, i + 1), vertex(nodes, i + 2)});
   }
 
-  // Those of others say nothing of labels.
+  // Without label pairs in podm's records the side sets carry no labels and are skipped.
   void read_side_sets() {
     if (pair_of_set_.empty()) return;
     const std::uint64_t num_sets = document_.size_of("num_side_sets");
@@ -176,9 +176,9 @@ class ExodusReader {
     }
   }
 
-  // kNone for an element that is no tetrahedron.
+  // Returns kNone for an element that is no tetrahedron.
   std::size_t cell_of(std::int64_t element) const {
-    const auto number = static_cast<std::uint64_t>(element) - 1;  // 0 wraps round
+    const auto number = static_cast<std::uint64_t>(element) - 1;  // 0 wraps around
     auto block =
         std::upper_bound(blocks_.begin(), blocks_.end(), number,
                          [](std::uint64_t value, const Block& b) { return value < b.first_element; });
@@ -192,7 +192,7 @@ class ExodusReader {
   NetcdfDocument document_;
   Mesh mesh_;
   std::vector<Block> blocks_;
-  std::map<std::int64_t, LabelValue> label_of_block_;  // as our mesher's records say
+  std::map<std::int64_t, LabelValue> label_of_block_;  // from podm's information records
   std::map<std::int64_t, std::array<LabelValue, 2>> pair_of_set_;
 };
 

@@ -1,8 +1,8 @@
 // Gmsh meshes (.msh) of the formats 2.x and 4.1, text and binary of either byte order.
 // Format: Gmsh reference manual, "MSH file format".
 //
-// Our mesher's comments tell the space and which label each physical group of volumes is. Which labels are on
-// the two sides of a facet comments tell in 2.2, and in 4.1 the signs of the surfaces that bound a volume.
+// podm's comments give the space and the label of each physical group of volumes. The labels on the two sides
+// of a facet come from comments in 2.2, and in 4.1 from the signs of the surfaces that bound a volume.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -17,9 +17,9 @@
 namespace podm::verify {
 namespace {
 
-constexpr std::size_t kMostNodes = 64;  // of an element
+constexpr std::size_t kMostNodes = 64;  // per element
 
-// A volume on one side of a surface: 0 where the normals of its triangles point, 1 behind them.
+// A volume on one side of a surface: side 0 is where the normals of its triangles point, side 1 behind them.
 struct Side {
   std::int64_t surface;
   int number;
@@ -140,7 +140,7 @@ class GmshReader {
     }
   }
 
-  // Numbers of a section whose content is binary in binary files.
+  // These read numbers of a section that is binary in binary files.
   std::int32_t integer(const char* what) {
     return is_binary_ ? cursor_.raw_number<std::int32_t>(is_swapped_, what) : integer_word(what);
   }
@@ -153,14 +153,14 @@ class GmshReader {
     return is_binary_ ? cursor_.raw_number<double>(is_swapped_, what) : cursor_.number<double>(what);
   }
   std::int32_t integer_word(const char* what) { return cursor_.number<std::int32_t>(what); }
-  /// A size that the rest of the file can hold at `least_bytes` each.
+  /// Reads a size that the rest of the file can hold at `least_bytes` each.
   std::size_t count(const char* what, std::size_t least_bytes) {
     const std::uint64_t value = size(what);
     cursor_.expect_room(value, least_bytes, what);
     return value;
   }
 
-  // Entities tell the physical groups, those of partitioned meshes too, and the surfaces that bound a volume.
+  // Entities give the physical groups, also in partitioned meshes, and the surfaces that bound a volume.
   void read_entities(bool is_partitioned) {
     if (is_binary_) cursor_.rest_of_line();
     if (is_partitioned) {
@@ -184,7 +184,7 @@ class GmshReader {
       for (std::size_t n = count("the number of partitions", 2); n > 0; --n) integer("a partition");
     }
     for (int i = dimension == 0 ? 3 : 6; i > 0; --i) real("the box of an entity");
-    std::int64_t group = 0;  // the first one
+    std::int64_t group = 0;  // the first group
     for (std::size_t i = 0, n = count("the number of physical groups", 2); i < n; ++i) {
       const std::int64_t next = integer("a physical group");
       if (i == 0) group = next < 0 ? -next : next;
@@ -228,7 +228,7 @@ class GmshReader {
     }
   }
 
-  // Tags of format 2 are ints; a negative one is turned into one that no node has.
+  // Tags of format 2 are ints. A negative tag becomes a number that no node has.
   std::uint64_t tag_v2() { return static_cast<std::uint64_t>(std::int64_t{integer("a node tag")}); }
 
   void reserve_vertices(std::size_t count) {
@@ -270,8 +270,8 @@ class GmshReader {
     for (std::size_t num_read = 0; num_read < num_elements;) num_read += read_elements_block_v2();
   }
 
-  // In binary files a head holds for several elements, in text each line has its own. Returns how many were
-  // read.
+  // Reads the elements under one head and returns their number. In binary files a head holds for several
+  // elements; in text each line has its own.
   std::size_t read_elements_block_v2() {
     if (!is_binary_) integer("an element tag");
     const std::int32_t type = integer("an element type");
@@ -320,8 +320,8 @@ class GmshReader {
     for (const auto& [group, name] : group_names_) mesh_.label_names[label_of(group)] = name;
   }
 
-  // In our mesher's files the normal of a facet points from the second label to the first. What is outside of
-  // all volumes has the background's label, 0, or one that no volume has.
+  // In podm's files the normal of a facet points from the second label to the first. The outside of all
+  // volumes has the background's label 0, or -1 if a volume has label 0.
   void label_facets() {
     if (!pair_of_surface_.empty()) return label_facets_by_pairs();
     if (label_of_group_.empty()) return;
@@ -357,9 +357,9 @@ class GmshReader {
   int size_bytes_ = 8;
   ItemNumbers tags_;
   GmshElements elements_;
-  std::array<std::uint64_t, kMostNodes> nodes_{};      // of the element at hand
-  std::map<std::int64_t, LabelValue> label_of_group_;  // of volumes, as our mesher's comments say
-  std::map<std::int64_t, std::array<LabelValue, 2>> pair_of_surface_;  // as they say, too
+  std::array<std::uint64_t, kMostNodes> nodes_{};                      // of the current element
+  std::map<std::int64_t, LabelValue> label_of_group_;                  // of volumes, from podm's comments
+  std::map<std::int64_t, std::array<LabelValue, 2>> pair_of_surface_;  // from podm's comments
   std::map<std::int64_t, std::string> group_names_;                    // of volumes
   std::map<std::pair<int, std::int64_t>, std::int64_t> groups_;        // by dimension and entity
   std::vector<Side> sides_;

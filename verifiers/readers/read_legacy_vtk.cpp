@@ -1,7 +1,7 @@
 // Legacy VTK files (.vtk) with an unstructured grid: ASCII and BINARY (big endian), cells as lists (versions
 // before 5) or as OFFSETS and CONNECTIVITY. Format: VTK file formats, "Simple legacy formats".
 //
-// Our mesher's files have field data of the whole set, as its VTU files do, with VTK's percent code in names.
+// podm's files have field data of the data set, as its VTU files do, with VTK's percent code in names.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -48,7 +48,7 @@ std::optional<NumberType> number_type(const std::string& upper_name) {
   return std::nullopt;
 }
 
-// VTK writes what may not be in the name of an array as '%' and two hexadecimal digits.
+// VTK encodes characters that an array name may not contain as '%' and two hexadecimal digits.
 std::string percent_decoded(const std::string& name) {
   std::string text;
   for (std::size_t i = 0; i < name.size(); ++i) {
@@ -64,7 +64,7 @@ std::string percent_decoded(const std::string& name) {
 
 class LegacyVtkReader {
  public:
-  /// `id_array` as for read_vtu_grid().
+  /// `id_array` has the same meaning as in read_vtu_grid().
   LegacyVtkReader(const MeshFile& file, const char* id_array)
       : file_(file), id_array_(id_array), cursor_(file) {}
 
@@ -183,7 +183,7 @@ class LegacyVtkReader {
     const std::size_t num_arrays = read_count("the number of arrays");
     for (std::size_t i = 0; i < num_arrays; ++i) {
       std::string name(cursor_.word("the name of an array"));
-      if (upper(name) == "METADATA") {  // of the array before
+      if (upper(name) == "METADATA") {  // belongs to the array before
         read_geometry("METADATA");
         name = cursor_.word("the name of an array");
       }
@@ -201,7 +201,7 @@ class LegacyVtkReader {
     if (!is_cell_data_ && id_array_ != nullptr && name == id_array_) keep_ids(values);
   }
 
-  // As our mesher's VTU files have them.
+  // Reads the same words as in podm's VTU files.
   void read_word(const std::string& name, const NumberArray& values) {
     if (const auto word = after_prefix(name, "space:")) {
       if (const auto space = space_of(*word)) grid_.mesh.space = *space;
@@ -219,7 +219,8 @@ class LegacyVtkReader {
     for (std::size_t i = 0; i < ids.size(); ++i) grid_.point_ids.push_back(vertex_id(ids.integer(i)));
   }
 
-  // The counts themselves may be anything: reading as many numbers checks them.
+  // Any count is accepted that the rest of the file could hold at one byte each; reading the numbers checks
+  // the rest.
   std::size_t read_count(const char* what) { return cursor_.count(what, 1); }
 
   void expect_word(const char* keyword) {
@@ -263,7 +264,7 @@ class LegacyVtkReader {
                       : read_numbers(NumberType::kUInt8, count, num_components);
   }
 
-  // A string is a line in ASCII; in BINARY its length comes first, in 1, 2, 4 or 8 bytes as two bits tell.
+  // In ASCII a string is a line. In BINARY its length comes first, in 1, 2, 4 or 8 bytes, as two bits state.
   NumberArray skip_strings(std::size_t count, std::size_t num_components) {
     const std::size_t num_values = product(count, num_components);
     cursor_.rest_of_line();
@@ -310,10 +311,10 @@ class LegacyVtkReader {
   VtuGrid grid_;
   std::string version_;
   bool is_binary_ = false, has_offsets_ = false;
-  bool is_field_data_ = true;  // of the whole set: before those of cells and points
+  bool is_field_data_ = true;  // of the data set: before data of cells and points
   bool is_cell_data_ = false, has_points_ = false, has_cells_ = false;
   std::size_t num_cells_ = 0;
-  std::size_t num_tuples_ = 0;  // of the CELL_DATA or POINT_DATA at hand
+  std::size_t num_tuples_ = 0;  // of the current CELL_DATA or POINT_DATA
   VtkPiece piece_;
 };
 

@@ -1,9 +1,9 @@
 // Medit meshes: .mesh (text) and .meshb (the Gamma Mesh Format, versions 1 to 4, either byte order).
 //
-// Version: 1 reals of 4 bytes, else 8; from 3 on positions of 8 bytes, else 4; 4 integers and counts of 8,
-// else 4. A section is a keyword, in .meshb the position of the next one, a count, and that many lines. Ids
-// are 1-based. Our mesher's comments tell the space, the labels' names and which pair of labels a triangle's
-// reference means.
+// Reals have 4 bytes in version 1, otherwise 8. Positions have 8 bytes from version 3 on, otherwise 4.
+// Integers and counts have 8 bytes in version 4, otherwise 4. A section is a keyword, in .meshb the position
+// of the next keyword, a count, and that number of lines. Ids are 1-based. podm's comments give the space,
+// the labels' names and the pair of labels for each reference of a triangle.
 #include <fmt/format.h>
 
 #include <array>
@@ -21,8 +21,8 @@ namespace {
 struct Section {
   const char* keyword;
   std::int32_t code;       // in .meshb
-  std::size_t num_ids;     // of a line, before its reference
-  const char* other_cell;  // what it counts as, if that is no plain tetrahedron or triangle
+  std::size_t num_ids;     // per line, before its reference
+  const char* other_cell;  // name it is counted under; null for plain tetrahedra and triangles
 };
 constexpr Section kVertices{"Vertices", 4, 0, nullptr};
 constexpr Section kCells[] = {
@@ -38,7 +38,8 @@ constexpr Section kOtherCells[] = {
 };
 constexpr std::int32_t kDimensionCode = 3, kEndCode = 54;
 
-// Where numbers come from. `count` is of lines with `num_numbers` numbers each.
+// TextNumbers and BinaryNumbers read numbers. count() reads a number of lines with `num_numbers` numbers
+// each.
 class TextNumbers {
  public:
   explicit TextNumbers(Cursor& cursor) : cursor_(cursor) {}
@@ -164,7 +165,7 @@ class MeditBuilder {
 
 bool is_letter(char c) { return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z'); }
 
-// Whether a word, which is no keyword of ours, belongs to the section before.
+// True if a word that is no known keyword belongs to the section before it.
 bool is_content(std::string_view word) {
   return !word.empty() &&
          (!is_letter(word[0]) || word == "nan" || word == "NaN" || word == "inf" || word == "Inf");

@@ -20,7 +20,7 @@ namespace fs = std::filesystem;
 
 constexpr std::string_view kGzip = ".gz";
 
-// A mesh file's path in its parts: "x" ".vtu" ".gz".
+// The parts of a mesh file's path: "x" ".vtu" ".gz".
 struct MeshPath {
   std::string stem, extension, gzip;
 
@@ -35,7 +35,8 @@ struct MeshPath {
       if (c >= 'A' && c <= 'Z') c = static_cast<char>(c - 'A' + 'a');
   }
 
-  // The file of this stem and another ending: gzipped if this one is or, failing that, if only so it exists.
+  // Returns the file with this stem and another ending, none if it does not exist. If it exists both plain
+  // and gzipped, the one that is gzipped like this file is returned.
   std::optional<std::string> beside(const std::string& ending) const {
     const std::string plain = stem + ending, gzipped = plain + std::string(kGzip);
     for (const std::string& path : gzip.empty() ? std::array{plain, gzipped} : std::array{gzipped, plain}) {
@@ -46,7 +47,7 @@ struct MeshPath {
   }
 };
 
-// The file beside it counts only for a mesh that lists no triangles itself.
+// Reads the facets beside the mesh only if the mesh itself lists no triangles.
 Mesh read_with_facets(const MeshPath& path, const MeshFile& file, Mesh (*read)(const MeshFile&),
                       void (*read_facets)(const MeshFile&, Mesh&)) {
   Mesh mesh = read(file);

@@ -1,8 +1,9 @@
-// A mesh in pieces: VTU files of cells, a vertex in each piece that uses it, and an index that names them.
+// A mesh in pieces: VTU files of cells, where each piece holds the vertices that it uses, and an index that
+// names the files.
 //
-// The pieces are read one after the other into the arrays of the whole. GlobalNodeIds tell which points are
-// one vertex; that such points are the same to the bit is checked, and so is that no number is left out.
-// Whether the pieces fit together is not the reader's to judge: that they conform is a claim of the whole.
+// The pieces are read one after the other into the arrays of the whole mesh. GlobalNodeIds identify the
+// points that are one vertex. The reader checks that such points are the same to the bit, and that no number
+// is left out. It does not check that the pieces fit together: conformity is a claim about the whole mesh.
 #include <fmt/format.h>
 
 #include "errors.h"
@@ -15,7 +16,7 @@
 namespace podm::verify {
 namespace {
 
-// Calls read(file) for each piece; an error tells the index, too.
+// Calls read(file) for each piece. An error names the index, too.
 template <class Read>
 void for_each_piece(const MeshFile& index, const std::vector<PieceSource>& pieces, Read read) {
   for (const PieceSource& piece : pieces) {
@@ -29,7 +30,7 @@ void for_each_piece(const MeshFile& index, const std::vector<PieceSource>& piece
 
 std::string text_of(const Point& point) { return fmt::format("({}, {}, {})", point[0], point[1], point[2]); }
 
-// Two pieces of one mesh name the same labels and the same space.
+// Throws unless two pieces of one mesh name the same labels and the same space.
 void check_labels_and_space(const MeshFile& file, const Mesh& piece, const Mesh& first) {
   if (piece.space != first.space) file.refuse("FieldData", "the space is not that of the first piece");
   if (piece.smoothing_mm != first.smoothing_mm)
@@ -50,7 +51,7 @@ void check_labels_and_space(const MeshFile& file, const Mesh& piece, const Mesh&
 
 class PieceMerger {
  public:
-  // `num_points`, of all pieces, are at least as many as there are vertices.
+  // `num_points`, summed over all pieces, is at least the number of vertices.
   PieceMerger(const MeshFile& index, const std::vector<PieceSource>& pieces, std::uint64_t num_points)
       : index_(index), pieces_(pieces), vertices_(num_points), piece_of_(num_points, kNone) {}
 
@@ -111,7 +112,7 @@ class PieceMerger {
   const MeshFile& index_;
   const std::vector<PieceSource>& pieces_;
   Mesh whole_;
-  std::vector<Point> vertices_;          // by number; as many as there are points in all pieces
+  std::vector<Point> vertices_;          // by number; its size is the number of points in all pieces
   std::vector<std::uint32_t> piece_of_;  // by number: the last piece that has it; kNone: none yet
   std::size_t num_vertices_ = 0;
   std::uint32_t num_added_ = 0;

@@ -1,5 +1,5 @@
-// TetGen's .node, .ele and .face: a line of counts, then a line an item, ids from 0 or from 1 as in .node.
-// Our mesher's comments tell the space, the labels' names and which pair of labels a face's marker means.
+// TetGen's .node, .ele and .face: a line of counts, then one line per item, with ids from 0 or from 1 as in
+// .node. podm's comments give the space, the labels' names and the pair of labels for each marker of a face.
 #include <fmt/format.h>
 
 #include <array>
@@ -42,7 +42,7 @@ class TetgenReader {
     }
   }
 
-  // A number of the head line that may be left out.
+  // Reads a number of the head line that may be left out.
   static std::size_t optional_count(Cursor& cursor, const char* what, std::size_t otherwise) {
     return cursor.is_at_end_of_line() ? otherwise : cursor.count(what, 1);
   }
@@ -55,7 +55,7 @@ class TetgenReader {
     Cursor cursor = open(file);
     const std::size_t count = cursor.count("the number of nodes", 8);
     if (optional_count(cursor, "the dimension", 3) != 3) cursor.refuse("the dimension is not 3");
-    cursor.rest_of_line();  // attributes and markers do not matter
+    cursor.rest_of_line();  // attributes and markers are ignored
     check_counts(file, "line 1", count, 0);
     make_room(mesh_.vertices, count);
     for (std::size_t i = 0; i < count; ++i) {
@@ -101,7 +101,7 @@ class TetgenReader {
       }
       cursor.rest_of_line();
     }
-    cursor.is_at_last_word();  // takes in the comments at the end
+    cursor.is_at_last_word();  // reads the comments at the end
     if (!has_labels) mesh_.cell_labels.clear();
     if (has_labels && count > 0) mesh_.cell_label_array = "attribute of .ele";
     if (num_nodes == 10 && count > 0) mesh_.other_cells[kQuadraticTetrahedra] = count;
@@ -121,7 +121,7 @@ class TetgenReader {
       if (has_markers) markers.push_back(cursor.number<std::int64_t>("the marker of a face"));
       cursor.rest_of_line();
     }
-    cursor.is_at_last_word();  // takes in the comments at the end
+    cursor.is_at_last_word();  // reads the comments at the end
     if (!pair_of_marker_.empty()) label_facets(file, markers);
   }
 

@@ -49,8 +49,8 @@ VtkPiece load_piece(const MeshFile& file, VtuDocument& document, const VtuPiece&
   return loaded;
 }
 
-// Our mesher's words: arrays "space:RAS", "promise:unclaimed delaunay" and "label:liver", the latter with the
-// label's value.
+// Reads the arrays that podm writes: "space:RAS", "promise:unclaimed delaunay" and "label:liver", whose value
+// is the label's.
 void read_field_data(const MeshFile& file, VtuDocument& document, Mesh& mesh) {
   for (const VtuArray& array : document.field_data) {
     if (const auto word = after_prefix(array.name, "space:")) {
@@ -88,7 +88,7 @@ void assemble(const MeshFile& file, VtuDocument& document, Mesh& mesh) {
     assembler.append(load_piece(file, document, piece), document.pieces.size() == 1);
 }
 
-// Of every piece in the file's order, as the assembler appends their points.
+// Reads the ids of every piece in the file's order, the order in which the assembler appends points.
 void read_point_ids(const MeshFile& file, VtuDocument& document, const char* name, VtuGrid& grid) {
   for (const VtuPiece& piece : document.pieces) {
     if (piece.num_points == 0) continue;

@@ -13,7 +13,7 @@ namespace {
 
 constexpr std::int64_t kTriangle = 5, kTetrahedron = 10, kQuadraticTriangle = 22, kQuadraticTetrahedron = 24;
 
-// VTK's cell types (vtkCellType.h) by what people call them.
+// VTK's cell types (vtkCellType.h) by their common names.
 std::string name_of_type(std::int64_t type) {
   switch (type) {
     case 0:
@@ -55,7 +55,7 @@ const NamedArray* find_array(const VtkPiece& piece, const std::string& name) {
   return found == piece.cell_data.end() ? nullptr : &*found;
 }
 
-// Labels are an array with a name of the list and one integer a cell.
+// Labels are an array with a name of the list and one integer per cell.
 bool holds_labels(const NamedArray& array, std::size_t num_cells) {
   if (!label_array_rank(array.name) || array.num_components != 1 || array.values.size() != num_cells)
     return false;
@@ -150,7 +150,7 @@ std::array<VertexId, N> VtkAssembler::corners(const VtkPiece& piece, std::size_t
   return corners;
 }
 
-// The first piece with tetrahedra chooses the array, the others must have it too.
+// The first piece with tetrahedra chooses the array; the other pieces must have it too.
 void VtkAssembler::append_cell_labels(const VtkPiece& piece) {
   const bool is_first = mesh_.cells.size() == cells_.size();
   const NamedArray* labels = is_first ? most_usual_labels(piece) : find_array(piece, mesh_.cell_label_array);

@@ -1,4 +1,4 @@
-// Unstructured grids as VTK's formats, XML and legacy, lay them out: cells as types and lists of point ids.
+// Unstructured grids in the layout of VTK's formats, XML and legacy: cells as types and lists of point ids.
 #pragma once
 
 #include <array>
@@ -16,15 +16,15 @@ namespace podm::verify {
 enum class CellLayout {
   kEnds,         ///< VTU: offsets hold the end of each cell in connectivity
   kStarts,       ///< legacy 5.1: one more offset, the first is 0
-  kInterleaved,  ///< legacy before: connectivity holds each cell's number of points, then its points
+  kInterleaved,  ///< older legacy: connectivity holds each cell's number of points, then its points
 };
 
 struct VtkPiece {
   std::string place;   ///< for messages: "line 4, Piece"
-  NumberArray points;  ///< 3 a point
+  NumberArray points;  ///< 3 per point
   NumberArray types, offsets, connectivity;
   CellLayout layout = CellLayout::kEnds;
-  std::vector<NamedArray> cell_data;  ///< those of a name in the list of label arrays, label_a and label_b
+  std::vector<NamedArray> cell_data;  ///< arrays with a name in the list of label arrays, label_a and label_b
 };
 
 /// Appends pieces of one file to a mesh.
@@ -32,13 +32,13 @@ class VtkAssembler {
  public:
   VtkAssembler(const MeshFile& file, Mesh& mesh) : file_(file), mesh_(mesh) {}
 
-  /// Ids beyond the piece's points are kept when `is_only`; else they would name points of other pieces.
+  /// Keeps ids beyond the piece's points if `is_only`; otherwise they would name points of other pieces.
   void append(const VtkPiece& piece, bool is_only);
 
  private:
   void append_points(const VtkPiece& piece);
   void append_cells(const VtkPiece& piece);
-  /// Where the ids of cell `cell` are in connectivity, given that those of the one before end at `end`.
+  /// The range of the ids of cell `cell` in connectivity, given that those of the cell before end at `end`.
   struct Range {
     std::size_t begin, end;
   };
@@ -52,8 +52,8 @@ class VtkAssembler {
 
   const MeshFile& file_;
   Mesh& mesh_;
-  VertexId base_ = 0;                        // of the piece's points in the mesh
-  std::uint64_t id_limit_ = 0;               // ids of the piece from here on name no vertex
+  VertexId base_ = 0;                        // first id of the piece's points in the mesh
+  std::uint64_t id_limit_ = 0;               // ids of the piece from this one on name no vertex
   std::vector<std::size_t> cells_, facets_;  // positions of the piece's tetrahedra and triangles; empty: all
 };
 

@@ -1,5 +1,6 @@
-// The numbers of a VTU array. In binary data a header comes first: the number of bytes, or, for compressed
-// data, the number of blocks, the size of a block and of the last if it is another, and the compressed sizes.
+// Decodes the numbers of a VTU array. Binary data begin with a header. Without compression it is the number
+// of bytes. With compression it is the number of blocks, the size of a block, the size of the last block if
+// that differs, and the compressed sizes.
 #include <fmt/format.h>
 #include <zlib.h>
 
@@ -12,7 +13,7 @@
 namespace podm::verify {
 namespace {
 
-constexpr std::uint64_t kBestRatio = 1032;  // the best that deflate reaches
+constexpr std::uint64_t kBestRatio = 1032;  // deflate's best ratio
 
 class ArrayLoader {
  public:
@@ -31,7 +32,7 @@ class ArrayLoader {
   }
 
  private:
-  // Numbers get the type that the file declares, so that 0.1 as Float32 is the same in text and in binary.
+  // Numbers get the type that the file declares, so 0.1 as Float32 is the same in text and in binary.
   NumberArray load_ascii() const {
     Cursor cursor(file_, array_.begin, array_.end);
     ByteBuffer bytes;

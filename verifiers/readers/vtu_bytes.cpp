@@ -8,7 +8,7 @@
 namespace podm::verify {
 namespace {
 
-constexpr std::uint8_t kBad = 255, kPad = 254, kBlank = 253;  // else the six bits of a character
+constexpr std::uint8_t kBad = 255, kPad = 254, kBlank = 253;  // other values: the six bits of a character
 
 constexpr std::array<std::uint8_t, 256> make_table() {
   std::array<std::uint8_t, 256> table{};

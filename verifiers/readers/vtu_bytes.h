@@ -1,4 +1,4 @@
-// Bytes that stand in a file as they are or in base64, taken piece by piece.
+// Reads bytes of a file, raw or in base64, piece by piece.
 #pragma once
 
 #include <cstddef>
@@ -12,15 +12,14 @@ namespace podm::verify {
 
 class VtuBytes {
  public:
-  /// Takes from the bytes [begin, end) of the file. VTK pads base64 where a header or a block ends and goes
-  /// on behind it: padding ends a group of four characters, not the data.
+  /// Reads the bytes [begin, end) of the file. VTK pads base64 at the end of a header or a block and
+  /// continues after it. Padding therefore ends a group of four characters, not the data.
   VtuBytes(const MeshFile& file, std::size_t begin, std::size_t end, bool is_base64)
       : file_(file), next_(begin), end_(end), is_base64_(is_base64) {}
 
-  /// Appends the next `size` bytes to `bytes`, or, where they stand in the file as they are, only points
-  /// there.
+  /// Returns the next `size` bytes. Appends them to `bytes` if they are in base64; raw bytes are not copied.
   std::string_view take(std::uint64_t size, ByteBuffer& bytes);
-  /// An upper bound of the bytes that are left.
+  /// Returns an upper bound of the number of bytes left.
   std::uint64_t most_left() const;
   std::size_t position() const { return next_; }
 
@@ -32,7 +31,7 @@ class VtuBytes {
   const MeshFile& file_;
   std::size_t next_, end_;
   bool is_base64_;
-  char group_[3] = {};  // decoded bytes of the last group of which group_begin_.. are not taken
+  char group_[3] = {};  // decoded bytes of the last group; those from group_begin_ on are not taken yet
   int group_begin_ = 0, group_end_ = 0;
 };
 

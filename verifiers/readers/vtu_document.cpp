@@ -1,5 +1,5 @@
-// The XML goes through expat in chunks; the text of arrays is not copied but located, and appended data,
-// which need not be XML, is where the parser stops. Format: VTK file formats, "XML file formats".
+// expat parses the XML in chunks. The parser records where the text of an array is and does not copy it. It
+// stops at appended data, which need not be XML. Format: VTK file formats, "XML file formats".
 #include "readers/vtu_document.h"
 
 #include <expat.h>
@@ -78,7 +78,7 @@ class VtuParser {
   }
 
  private:
-  // No exception may pass through expat: it is kept and the parser stopped.
+  // No exception may pass through expat: it is stored and the parser is stopped.
   template <class Handle>
   void guarded(Handle handle) {
     if (failure_) return;
@@ -140,7 +140,7 @@ class VtuParser {
     document_.is_zlib = !compressor.empty();
   }
 
-  // The list that an array of the current section belongs to; null where no array of that name is needed.
+  // Returns the list for an array of the current section; null if no array of that name is needed.
   std::vector<VtuArray>* list_of(const std::string& name) {
     if (elements_.size() < 2) return nullptr;
     const std::string& section = elements_[elements_.size() - 2];
@@ -184,8 +184,8 @@ class VtuParser {
     array_depth_ = elements_.size();
   }
 
-  // Text of the array between two tags: what stands in child elements (VTK's InformationKey) is not the
-  // array's.
+  // Records the text of the array between two tags. Text in child elements (VTK's InformationKey) is not part
+  // of the array.
   void end_text() {
     const bool is_own = elements_.size() == array_depth_ && array_->format != VtuArray::Format::kAppended;
     if (!is_own || position() <= text_begin_) return;
@@ -207,7 +207,7 @@ class VtuParser {
     XML_StopParser(parser_.get(), XML_FALSE);
   }
 
-  // Behind appended data there is no parser: a file that was cut off shows by its last tag.
+  // No parser reads beyond appended data; the last tag shows if a file was cut off.
   void check_end() const {
     const std::string_view bytes = file_.bytes();
     constexpr std::string_view kLastTag = "</VTKFile>";
@@ -235,9 +235,9 @@ class VtuParser {
   std::unique_ptr<XML_ParserStruct, FreeParser> parser_;
   std::exception_ptr failure_;
   VtuDocument document_;
-  std::vector<std::string> elements_;  // open ones, outermost first
-  const char** attributes_ = nullptr;  // of the element that starts
-  VtuArray* array_ = nullptr;          // open one that is kept
+  std::vector<std::string> elements_;  // open elements, outermost first
+  const char** attributes_ = nullptr;  // of the starting element
+  VtuArray* array_ = nullptr;          // open array that is kept
   std::size_t array_depth_ = 0;
   std::size_t text_begin_ = 0;
 };

@@ -1,4 +1,4 @@
-// What the XML of a VTU file declares: pieces, arrays, and where the numbers of each array are.
+// The declarations in a VTU file's XML: pieces, arrays, and where the numbers of each array are.
 #pragma once
 
 #include <cstddef>
@@ -12,7 +12,7 @@
 
 namespace podm::verify {
 
-/// The point array that numbers a piece's points in the whole mesh, as VTK's filters call it.
+/// VTK's name for the point array that numbers a piece's points in the whole mesh.
 inline constexpr const char* kGlobalIds = "GlobalNodeIds";
 
 struct VtuArray {
@@ -20,8 +20,8 @@ struct VtuArray {
   NumberType type = NumberType::kUInt8;
   std::size_t num_components = 1;
   enum class Format { kAscii, kInlineBase64, kAppended } format = Format::kAscii;
-  std::uint64_t begin = 0;  ///< of its text in the file; appended: offset in the appended data
-  std::uint64_t end = 0;    ///< of its text
+  std::uint64_t begin = 0;  ///< begin of its text in the file; appended: offset in the appended data
+  std::uint64_t end = 0;    ///< end of its text
   std::size_t line = 0;
 
   std::string place() const;  ///< "line 12, DataArray 'label'"
@@ -37,17 +37,18 @@ struct VtuDocument {
   bool is_big_endian = false, has_wide_headers = false, is_zlib = false;
   std::vector<VtuArray> field_data;
   std::vector<VtuPiece> pieces;
-  std::optional<std::size_t> appended_begin;  ///< of the appended data in the file
+  std::optional<std::size_t> appended_begin;  ///< begin of the appended data in the file
   bool is_appended_base64 = false;
   std::uint64_t appended_bytes_loaded = 0;
 };
 
-/// Keeps the arrays that a mesh is made of and leaves out all others. No document type (so no entities), no
-/// deep nesting, no tag of more than a megabyte is accepted. Throws InputError with the line.
+/// Keeps the arrays that a mesh consists of and skips all others. Refuses document types (and so entities),
+/// deep nesting, and tags of more than a megabyte. Throws InputError with the line.
 VtuDocument parse_vtu(const MeshFile& file);
 
-/// The numbers of one array, decoded. Throws InputError unless there are `count` of them (any number: none).
-/// Appended arrays may not overlap: together they are no longer than the data, so a small file stays small.
+/// Returns the decoded numbers of one array. Throws InputError unless there are `count` of them (none: any
+/// number). Appended arrays may not overlap: together they are no longer than the data, so a small file stays
+/// small.
 NumberArray load_vtu_array(const MeshFile& file, VtuDocument& document, const VtuArray& array,
                            std::optional<std::uint64_t> count);
 

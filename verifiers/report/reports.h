@@ -1,4 +1,4 @@
-// What a run of the verifier tells: lines for people, JSON for programs, the offending cells for a viewer.
+// The reports of a run: lines for the terminal, JSON for programs, the cells in violation for a viewer.
 #pragma once
 
 #include <cstdint>
@@ -9,23 +9,23 @@
 
 namespace podm::verify {
 
-/// A line a claim, with the worst witness of those that fail, and a summary. `seconds` is the time of the run
-/// from its beginning, reading included.
+/// Returns one line per claim, with the worst witness of each claim that fails, and a summary. `seconds` is
+/// the time of the run from its beginning, reading included.
 std::string terminal_report(const Inputs& inputs, const Options& options,
                             const std::vector<ClaimResult>& results, double seconds);
 
-/// JSON of schema podm-verify/1 (results/schema/podm-verify.schema.json). Numbers that are not finite are
-/// null, and bytes of names that are not UTF-8 are replaced.
+/// Returns JSON of schema podm-verify/1 (results/schema/podm-verify.schema.json). Numbers that are not finite
+/// become null, and bytes of names that are not UTF-8 are replaced.
 std::string json_report(const Inputs& inputs, const Options& options, const std::vector<ClaimResult>& results,
                         double seconds);
 
-/// Writes the cells that violate some claim as VTU, appended raw, with the cell arrays `cell` (position in
-/// the mesh file), `label` and one of 0 and 1 for each claim that fails. The file appears whole or not at
-/// all. Throws InputError.
+/// Writes the cells that violate some claim as VTU, appended raw. Its cell arrays are `cell` (position in the
+/// mesh file), `label`, and one of 0 and 1 for each claim that fails. The file appears whole or not at all.
+/// Throws InputError.
 void write_bad_cells(const std::string& path, const Mesh& mesh, const std::vector<ClaimResult>& results);
 
 /// Writes `text` to a file, whole or not at all, or to standard output for "-". A device or a pipe is written
-/// to. Throws InputError.
+/// directly. Throws InputError.
 void write_text(const std::string& path, const std::string& text);
 
 }  // namespace podm::verify

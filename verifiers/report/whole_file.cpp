@@ -22,7 +22,8 @@ namespace {
 
 namespace fs = std::filesystem;
 
-// What a signal removes before it ends the program. A handler may use no more than this.
+// The path that a signal handler removes before it ends the program. A handler may only access lock-free
+// atomics.
 std::atomic<const char*> unfinished = nullptr;
 static_assert(std::atomic<const char*>::is_always_lock_free);
 
@@ -34,10 +35,10 @@ extern "C" void remove_unfinished(int number) {
   ::sigemptyset(&only);
   ::sigaddset(&only, number);
   ::pthread_sigmask(SIG_UNBLOCK, &only, nullptr);
-  ::_exit(128 + number);  // the first process of a container outlives its own signals
+  ::_exit(128 + number);  // the first process of a container survives its own signals
 }
 
-// Signals that end the program remove a path first, as long as one lives.
+// While an object lives, signals that end the program first remove its path.
 class RemovedBySignals {
  public:
   explicit RemovedBySignals(const char* path) {
@@ -98,15 +99,15 @@ bool is_regular_file_at(int descriptor, const std::string& path) {
          named.st_ino == opened.st_ino && named.st_dev == opened.st_dev;
 }
 
-// Whether the calling process may do with the unfinished file what it likes. `otherwise` is the answer of
-// file systems without locks.
+// True if the calling process may write or remove the unfinished file. `otherwise` is the answer on file
+// systems without locks.
 bool locks(int descriptor, const std::string& path, bool otherwise) {
   const bool is_locked = ::flock(descriptor, LOCK_EX | LOCK_NB) == 0;
   if (!is_locked && errno == EWOULDBLOCK) return false;
   return (is_locked || otherwise) && is_regular_file_at(descriptor, path);
 }
 
-// The process that "NAME.tmpPROCESS-NUMBER" names, where `prefix` is "NAME.tmp"; 0 where it is another name.
+// Returns the process in a name "NAME.tmpPROCESS-NUMBER", where `prefix` is "NAME.tmp"; 0 for any other name.
 int process_of(const std::string& name, const std::string& prefix) {
   if (!name.starts_with(prefix)) return 0;
   const std::size_t dash = name.find('-', prefix.size());
@@ -146,12 +147,12 @@ void write_all(int descriptor, std::string_view text, const std::string& path) {
   }
 }
 
-// Waits until what was written is on the disk. EINVAL says that the file system has nothing to wait for.
+// Waits until the written bytes are on the disk. EINVAL means that the file system has nothing to wait for.
 void sync(int descriptor, const std::string& path) {
   if (::fsync(descriptor) != 0 && errno != EINVAL) refuse_to_write(path, errno);
 }
 
-// False: another process took the new file for abandoned.
+// Returns false if `temporary` exists, or if another process took the new file for abandoned.
 bool try_to_write(const std::string& path, const std::string& temporary, std::string_view text) {
   const RemovedBySignals removed(temporary.c_str());
   const Descriptor file(::open(temporary.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC, 0666));
@@ -175,9 +176,9 @@ void write_whole_file(const std::string& path, std::string_view text) {
   remove_abandoned(path);
   for (int number = 0; !try_to_write(path, fmt::format("{}.tmp{}-{}", path, ::getpid(), number), text);)
     ++number;
-  // The new name might not outlive a power cut without this.
+  // Without this the new name might not survive a power cut.
   const Descriptor folder(::open(folder_of(path).c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC));
-  if (folder >= 0) sync(folder, path);  // one may write there, not read, where there is none
+  if (folder >= 0) sync(folder, path);  // negative if the folder may be written but not read
 }
 
 void refuse_to_write(const std::string& path, int error_number) {

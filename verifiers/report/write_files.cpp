@@ -12,7 +12,7 @@ namespace podm::verify {
 
 namespace {
 
-// One array of a VTU file: what its head declares, and its bytes in the tail.
+// One array of a VTU file: its declaration in the head and its bytes in the tail.
 struct VtuArray {
   std::string declaration;
   std::string bytes;

@@ -1,6 +1,6 @@
-"""Tests the tester: every mutant is rejected by the claim it attacks, every harmless neighbour accepted.
+"""Tests the verifier: the claim that a mutant attacks must reject it, and must accept its harmless neighbour.
 
-Usage: kill_matrix.py PODM PODM_VERIFY. Prints the matrix; exits 1 when it has a hole: a mutant ALIVE, a mutant that
+Usage: kill_matrix.py PODM PODM_VERIFY. Prints the matrix. Exits with 1 if it has a hole: a mutant ALIVE, a mutant that
 offends against a claim it must pass (IMPURE), or a neighbour REJECTED.
 """
 
@@ -15,7 +15,7 @@ from tolerance_mutants import OPERATORS
 
 
 def run(verifier, case, claim, folder):
-    """Exit code and verdict of the claim (None without a report), and its warnings."""
+    """Returns the exit code and verdict of the claim (None without a report), and its warnings."""
     mesh, report = folder / f"case{getattr(case.mesh, 'extension', '.mesh')}", folder / "report.json"
     report.unlink(missing_ok=True)
     if isinstance(case.mesh, str):

@@ -1,4 +1,4 @@
-"""A tetrahedral mesh as Medit text: read, changed and written by the tests, without the project's own code."""
+"""A tetrahedral mesh as Medit text. The tests read, change and write it without the project's own code."""
 
 import copy
 
@@ -54,7 +54,7 @@ def signed_volumes(mesh):
 
 
 def kuhn_cubes(nx, ny, nz):
-    """Unit cubes, six positive cells each, all vertices of a cube cospherical."""
+    """Returns unit cubes of six positive cells each; all vertices of a cube are cospherical."""
     def vertex(i, j, k):
         return i + (nx + 1) * (j + (ny + 1) * k)
     points = [(i, j, k) for k in range(nz + 1) for j in range(ny + 1) for i in range(nx + 1)]

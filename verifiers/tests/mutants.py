@@ -1,4 +1,4 @@
-"""Mutation operators: each makes a mesh that one claim must reject, and a harmless neighbour it must accept.
+"""Mutation operators: each makes a mesh that one claim must reject, and a harmless neighbour that it must accept.
 
 An operator is a function of a Workshop that returns a Mutant. Its docstring is its line in the kill matrix.
 """
@@ -19,7 +19,7 @@ OPERATORS = []
 
 
 def operator(claim, exit_code=1):
-    """Registers an operator that `claim` has to reject; None: the file itself is refused, with exit code 2."""
+    """Registers an operator that `claim` must reject. None: the file itself is refused, with exit code 2."""
     def register(function):
         OPERATORS.append((function, claim, exit_code))
         return function
@@ -28,22 +28,22 @@ def operator(claim, exit_code=1):
 
 @dataclasses.dataclass
 class Case:
-    """What podm-verify is run on."""
+    """The input of a run of podm-verify."""
     mesh: object  # a MeditMesh, a MeshInPieces, or text
     options: list = dataclasses.field(default_factory=list)
     digits: int = 17
-    warnings: int = 0  # that the claim must report
+    warnings: int = 0  # number that the claim must report
 
 
 @dataclasses.dataclass
 class Mutant:
     mutant: Case
     neighbour: Case
-    still_passes: tuple = ()  # other claims, which the mutant must not offend against
+    still_passes: tuple = ()  # other claims, which must accept the mutant
 
 
 class Workshop:
-    """The base mesh (three touching spheres, made by podm), its image, and a folder."""
+    """The base mesh (three touching spheres, meshed by podm), its image, and a folder."""
 
     def __init__(self, podm, folder):
         self.folder = folder
@@ -60,7 +60,7 @@ class Workshop:
         return read_medit(path)
 
     def facet_pairs(self, mesh):
-        """(cell, far vertex, cell, far vertex, facet) for every facet with two cells."""
+        """Yields (cell, far vertex, cell, far vertex, facet) for every facet with two cells."""
         seen = {}
         for c, cell in enumerate(mesh.cells[:, :4]):
             for k in range(4):
@@ -71,7 +71,7 @@ class Workshop:
                     seen[facet] = (c, cell[k])
 
     def edge_rings(self, mesh, length):
-        """(cells, vertex, vertex, link in order) for every edge inside a label that so many cells go around."""
+        """Yields (cells, vertex, vertex, link in order) for every edge inside a label with `length` cells around it."""
         around = {}
         for c, cell in enumerate(mesh.cells[:, :4]):
             for edge in itertools.combinations(sorted(cell), 2):
@@ -96,7 +96,7 @@ class Workshop:
                     yield c, cell[k], facet
 
     def schedule(self, activations):
-        """A row of eight unit leaves over the base mesh's bounding box, with these (leaf, begin, end, touched)."""
+        """Writes 8 x 6 x 6 unit leaves at the base mesh's low corner, and activations (leaf, begin, end, touched)."""
         low, high = self.base.vertices.min(axis=0), self.base.vertices.max(axis=0)
         scale = 8 / (high[0] - low[0])
         head = {"schema": "podm-schedule/1", "algorithm": "pdr-podm",
@@ -159,7 +159,7 @@ def swapped_vertices(shop):
 
 @operator("structure")
 def left_handed(shop):
-    """every cell turned over; harmless: every cell permuted evenly"""
+    """every cell reversed; harmless: every cell permuted evenly"""
     mesh, even = shop.base.copy(), shop.base.copy()
     mesh.cells[:, [0, 1]] = mesh.cells[:, [1, 0]]
     even.cells[:, [0, 1, 2]] = even.cells[:, [1, 2, 0]]
@@ -184,7 +184,7 @@ def duplicate_cell(shop):
 
 @operator("structure")
 def facet_of_three_cells(_):
-    """a third cell on a facet; harmless: on a free facet"""
+    """a third cell on a facet; harmless: a cell on a free facet"""
     mesh = MeditMesh([(0, 0, 0), (1, 0, 0), (0, 1, 0), (0, 0, 1), (0, 0, -1), (1, 1, 2)],
                      [[0, 1, 2, 3, 1], [0, 2, 1, 4, 1]])
     third, free = mesh.copy(), mesh.copy()
@@ -214,7 +214,7 @@ def cracked(base):
 
 @operator("structure")
 def doubled_point(shop):
-    """a cell with a point of its own where the others have theirs; harmless: the same point, used by no cell"""
+    """a cell with its own point at the place of another vertex; harmless: the same point, used by no cell"""
     unused = shop.base.copy()
     unused.vertices = np.vstack([unused.vertices, unused.vertices[shop.base.cells[23, 1]]])
     used = unused.copy()
@@ -253,7 +253,7 @@ def active_neighbours(shop):
 
 @operator("conformity")
 def touched_outside(shop):
-    """an operation that touched a leaf of the second ring; harmless: of the first"""
+    """an operation that touched a leaf of the second ring; harmless: a leaf of the first ring"""
     return Mutant(Case(shop.base, shop.schedule([(0, 0, 1, [0, 72])])),
                   Case(shop.base, shop.schedule([(0, 0, 1, [0, 36])])))
 
@@ -276,7 +276,7 @@ def interpenetrating_components(_):
 
 @operator("structure")
 def overlap_at_a_shared_vertex(_):
-    """two cells that share a vertex and overlap beside it; harmless: one on the other side of it"""
+    """two cells that share a vertex and overlap beside it; harmless: on opposite sides of it"""
     points = [(0, 0, 0), (2, 0, 0), (0, 2, 0), (0, 0, 2), (3, 1, 1), (1, 3, 1), (1, 1, 3)]
     overlapping = MeditMesh(points, [[0, 1, 2, 3, 1], [0, 4, 5, 6, 1]])
     opposite = MeditMesh([*points[:4], (-3, -1, -1), (-1, -1, -3), (-1, -3, -1)], overlapping.cells)
@@ -285,7 +285,7 @@ def overlap_at_a_shared_vertex(_):
 
 @operator("structure")
 def hanging_vertex(_):
-    """a vertex in the middle of another cell's free facet; harmless: a little off it"""
+    """a vertex in the middle of another cell's free facet; harmless: slightly off it"""
     lower = tetrahedron([(0, 0, 0), (3, 0, 0), (0, 3, 0), (1, 1, -3)])
     upper = np.array([(1, 1, 0), (2, 1, 2), (1, 2, 2), (0.5, 0.5, 2)])
     return Mutant(Case(joined(lower, tetrahedron(upper))), Case(joined(lower, tetrahedron(upper + (0, 0, 1e-15)))))
@@ -301,12 +301,13 @@ def hanging_on_an_edge(_):
 
 
 def refilled(mesh, gone, made):
-    """`mesh` with the cells `made` in place of `gone`; None unless they fill the same space, as a flip's do."""
+    """Returns `mesh` with the cells `made` in place of `gone`; None unless both fill the same space."""
     label = mesh.cells[gone[0], 4]
     cells = np.array([[*cell, label] for cell in made])
     volumes = signed_volumes(MeditMesh(mesh.vertices, cells))
     before = signed_volumes(MeditMesh(mesh.vertices, mesh.cells[gone])).sum()
-    # Made cells have the boundary of those gone, so signed volumes add up: the absolute do where none is inverted.
+    # The made cells have the boundary of the removed ones, so signed volumes add up. Absolute volumes do only if none
+    # is inverted.
     if abs(volumes).min() < 1e-6 * before or abs(abs(volumes).sum() - before) > 1e-9 * before:
         return None
     inverted = volumes < 0
@@ -315,27 +316,27 @@ def refilled(mesh, gone, made):
 
 
 def flips_2_3(shop, mesh):
-    """The mesh after each 2-3 flip: a facet inside a label gone, the edge across it made."""
+    """Yields the mesh after each 2-3 flip: a facet inside a label is removed, the edge across it is made."""
     for c, v, d, w, (a, b, e) in shop.facet_pairs(mesh):
         if mesh.cells[c, 4] == mesh.cells[d, 4]:
             yield refilled(mesh, [c, d], [(a, b, v, w), (b, e, v, w), (e, a, v, w)])
 
 
 def flips_3_2(shop, mesh):
-    """The inverse: an edge of three cells gone, the facet across it made."""
+    """Yields the inverse: an edge of three cells is removed, the facet across it is made."""
     for gone, a, b, ring in shop.edge_rings(mesh, 3):
         yield refilled(mesh, gone, [(*ring, a), (*ring, b)])
 
 
 def flips_4_4(shop, mesh):
-    """An edge of four cells gone, an edge between two of its four link vertices made."""
+    """Yields the mesh after each 4-4 flip: an edge of four cells is replaced by an edge of two link vertices."""
     for gone, a, b, ring in shop.edge_rings(mesh, 4):
         for p, x, q, y in (ring, np.roll(ring, 1)):
             yield refilled(mesh, gone, [(p, q, a, x), (p, q, x, b), (p, q, b, y), (p, q, y, a)])
 
 
 def flip_mutant(shop, flips, tie):
-    """The base mesh after its first such flip; `tie`, whose vertices are cospherical, stays Delaunay after it."""
+    """Mutates the base mesh by its first such flip; `tie`, whose vertices are cospherical, stays Delaunay after it."""
     mutant, neighbour = (next(flipped for flipped in flips(shop, mesh) if flipped is not None)
                          for mesh in (shop.base, tie))
     return Mutant(Case(mutant), Case(neighbour), still_passes=("structure", "surface"))
@@ -377,7 +378,7 @@ def one_ulp(_):
 
 @operator("delaunay")
 def moved_by_epsilon(shop):
-    """every vertex moved by a tenth of an edge; harmless: by 1e-9 of it"""
+    """every vertex moved at random by about 0.3 mm; harmless: by about 1e-9 mm"""
     far, near = shop.base.copy(), shop.base.copy()
     steps = shop.random.normal(size=shop.base.vertices.shape)
     far.vertices += 0.3 * steps
@@ -401,7 +402,7 @@ def rounded_digits(shop):
 
 @operator("delaunay")
 def rounded_to_six_digits(_):
-    """a far vertex just off a ball, which 6 digits move into it; harmless: 9 digits"""
+    """a far vertex just outside a ball, which 6 digits move into it; harmless: 9 digits"""
     z = 10.000006
     points = [(1, 0, z), (-0.6, 0.8, z), (-0.6, -0.8, z), (0, 0, z + 1), (0, 0, z - 1 - 5e-7)]
     mesh = MeditMesh(points, [[0, 1, 2, 3, 1], [0, 2, 1, 4, 1]])
@@ -427,7 +428,7 @@ def flat_cell_without_a_ball(_):
 
 
 def over_triangle(a, b, c):
-    """A cell over a triangle whose other facets have no angle below 31 degrees."""
+    """Returns a cell over a triangle; its other facets have no angle below 31 degrees."""
     a, b, c = (np.array(p, dtype=float) for p in (a, b, c))
     normal = np.cross(b - a, c - a)
     for seed in range(2000):
@@ -465,7 +466,7 @@ def angle_of_30(_):
 
 
 def wedge(degrees):
-    """Two facets meet at this angle; the cell's other angles are moderate."""
+    """Returns a cell with two facets that meet at this angle; its other angles are moderate."""
     t = math.radians(degrees)
     return tetrahedron([(-0.5, 0, 0), (0.5, 0, 0), (0, 1, 0), (0, math.cos(t), math.sin(t))])
 
@@ -498,7 +499,7 @@ def broken_promise(_):
 
 @operator(None, exit_code=2)
 def unknown_promise(_):
-    """a promise that nobody knows; harmless: one that is known"""
+    """a promise that no program knows; harmless: a known one"""
     def promising(words):
         mesh = tetrahedron(REGULAR)
         mesh.comments = [f"# promise {words}\n"]
@@ -507,7 +508,7 @@ def unknown_promise(_):
 
 
 def hinge(shift):
-    """A flat cell with two facets on the interface of two labels, which a peel gives to the other label."""
+    """Returns a flat cell, with neighbours, with two facets on an interface; a peel gives it to the other label."""
     points = [(-1, 0, 0), (1, 0, 0), (0, -shift, 0.02), (0, shift, 0.02), (0, 0, -1.5), (0, 0, 1.5)]
     u, w, r, s, below, above = range(6)
     cells = [[u, w, r, s, 1], [u, w, s, below, 2], [w, u, r, below, 2], [r, s, u, above, 1], [s, r, w, above, 1]]
@@ -529,7 +530,7 @@ def peel_to_29_9_degrees(_):
 
 @operator("surface")
 def peel_with_stale_facets(shop):
-    """a cell given to the label across an interface, the facets listed as before; harmless: with none listed"""
+    """a cell given to the label across an interface, with the old list of facets; harmless: without a list"""
     mesh = shop.base.copy()
     c, d = next((c, d) for c, _, d, _, _ in shop.facet_pairs(mesh) if mesh.cells[c, 4] != mesh.cells[d, 4])
     mesh.cells[c, 4] = mesh.cells[d, 4]
@@ -555,7 +556,7 @@ def radius_over_its_label(_):
 
 @operator("size")
 def radius_over_its_place(shop):
-    """a cell over the size image's mean at its circumcentre by a thousandth; harmless: under it"""
+    """a cell over the size image's mean at its circumcenter by a thousandth; harmless: under it"""
     def by_place(name, last):
         voxels = np.ones((2, 2, 2))
         voxels[1] = last
@@ -564,13 +565,13 @@ def radius_over_its_place(shop):
                          b"TransformMatrix = 1 0 0 0 1 0 0 0 1\nOffset = -1 -1 -1\nElementSpacing = 2 2 2\n"
                          b"DimSize = 2 2 2\nElementType = MET_DOUBLE\nElementDataFile = LOCAL\n" + voxels.tobytes())
         return ["--size-image", str(path)]
-    middle = 2 * math.sqrt(3) - 1  # makes the mean sqrt(3), where the regular cell has its centre
+    middle = 2 * math.sqrt(3) - 1  # makes the mean sqrt(3), the bound at the center of the regular cell
     return Mutant(Case(tetrahedron(REGULAR), by_place("over.mha", middle - 0.001)),
                   Case(tetrahedron(REGULAR), by_place("under.mha", middle + 0.001)))
 
 
 def voxel_halves(shop):
-    """Unit voxels of label 1 around the regular cell's circumcentre, and of 2 from 1.5 mm beside it on."""
+    """Returns an image of unit voxels: label 1 at the regular cell's circumcenter, label 2 from 1.5 mm beside it on."""
     voxels = np.ones((4, 4, 8))
     voxels[:, :, 4:] = 2
     path = shop.folder / "halves.inr"
@@ -580,7 +581,7 @@ def voxel_halves(shop):
 
 @operator("size")
 def radius_over_the_bound_near(shop):
-    """a cell over its bound at the very width from an interface; harmless: an ulp less wide"""
+    """a cell over its bound at exactly the width from an interface; harmless: a width less by an ulp"""
     def near(width):
         return Case(tetrahedron(REGULAR), [*voxel_halves(shop), "--size-near", f"1,2=1.7:{width!r}"])
     return Mutant(near(1.5), near(float(np.nextafter(1.5, 0))))
@@ -588,7 +589,7 @@ def radius_over_the_bound_near(shop):
 
 @operator("size")
 def radius_over_its_grade(shop):
-    """a cell over what grows from 2 mm beside, and over the slack, by a thousandth; harmless: under it"""
+    """a cell over a bound that grows from 2 mm away, and over the slack, by a thousandth; harmless: under it"""
     def growing(radius):
         return Case(tetrahedron(REGULAR), [*voxel_halves(shop), "--radius-of", f"2={radius!r}", "--grade", "0.25"])
     bound = math.sqrt(3) - 0.25 * (2 + math.sqrt(3) / 2)
@@ -597,7 +598,7 @@ def radius_over_its_grade(shop):
 
 @operator(None, exit_code=2)
 def near_a_label_that_is_not_there(shop):
-    """a bound near a label that the image does not have; harmless: near one that it has"""
+    """a bound near a label that the image does not have; harmless: near a label that it has"""
     def near(label):
         return Case(tetrahedron(REGULAR), [*voxel_halves(shop), "--size-near", f"1,{label}=9"])
     return Mutant(near(3), near(2))
@@ -605,7 +606,7 @@ def near_a_label_that_is_not_there(shop):
 
 @operator("labels")
 def swapped_labels(shop):
-    """two labels swapped; harmless: as they were"""
+    """two labels swapped; harmless: not swapped"""
     mesh = shop.base.copy()
     mesh.cells[:, 4] = np.select([mesh.cells[:, 4] == 1, mesh.cells[:, 4] == 2], [2, 1], mesh.cells[:, 4])
     return Mutant(Case(mesh, shop.with_image), Case(shop.base, shop.with_image))
@@ -613,7 +614,7 @@ def swapped_labels(shop):
 
 @operator("labels")
 def one_wrong_label(shop):
-    """one cell with another's label; harmless: as it was"""
+    """one cell with another label; harmless: with its own"""
     mesh = shop.base.copy()
     mesh.cells[50, 4] = 3 if mesh.cells[50, 4] != 3 else 1
     return Mutant(Case(mesh, shop.with_image), Case(shop.base, shop.with_image))
@@ -621,7 +622,7 @@ def one_wrong_label(shop):
 
 @operator("labels")
 def half_voxel_shift(shop):
-    """everything shifted by half a voxel; harmless: by 1e-9 mm"""
+    """all vertices shifted by half a voxel; harmless: by 1e-9 mm"""
     far, near = shop.base.copy(), shop.base.copy()
     far.vertices += 0.5 * 180 / 41
     near.vertices += 1e-9
@@ -630,7 +631,7 @@ def half_voxel_shift(shop):
 
 @operator("labels")
 def called_smoothed(shop):
-    """a mesh of the image's voxels that is said to be of the smoothed image; harmless: not said"""
+    """a mesh of the image's voxels whose file states smoothing; harmless: it states none"""
     mesh = shop.base.copy()
     mesh.comments = [*mesh.comments, "# promise smoothed 6.5\n"]
     return Mutant(Case(mesh, shop.with_image), Case(shop.base, shop.with_image))
@@ -638,7 +639,7 @@ def called_smoothed(shop):
 
 @operator(None, exit_code=2)
 def smoothed_by_nothing(_):
-    """a file that says its image was smoothed by 0 mm; harmless: by 1.5"""
+    """a file that states smoothing by 0 mm; harmless: by 1.5"""
     def smoothed(width):
         mesh = tetrahedron(REGULAR)
         mesh.comments = [f"# promise smoothed {width}\n"]
@@ -648,7 +649,7 @@ def smoothed_by_nothing(_):
 
 @operator("labels")
 def mirrored_axis(shop):
-    """x mirrored, cells turned back; harmless: coordinates in LPS and said so"""
+    """x mirrored, cells reversed to stay positive; harmless: coordinates in LPS, with --space LPS"""
     mirrored, lps = shop.base.copy(), shop.base.copy()
     mirrored.vertices[:, 0] *= -1
     mirrored.cells[:, [0, 1]] = mirrored.cells[:, [1, 0]]
@@ -658,7 +659,7 @@ def mirrored_axis(shop):
 
 @operator("labels")
 def dropped_component(shop):
-    """all cells of a label dropped; harmless: none"""
+    """all cells of a label dropped; harmless: none dropped"""
     mesh = shop.base.copy()
     mesh.cells = mesh.cells[mesh.cells[:, 4] != 1]
     mesh.facets = mesh.facets[:0]
@@ -667,7 +668,7 @@ def dropped_component(shop):
 
 @operator("surface")
 def dropped_cell(shop):
-    """a cell inside dropped, its hole not among the listed facets; harmless: the facets not listed either"""
+    """an inner cell dropped, its hole not among the listed facets; harmless: no facets listed, no cell dropped"""
     mesh = shop.base.copy()
     boundary = {c for c, *_ in shop.boundary_facets(mesh)}
     inner = next(c for c in range(len(mesh.cells)) if c not in boundary)
@@ -705,14 +706,14 @@ def shrunk(shop):
 
 @operator("fidelity")
 def sampled_coarsely(shop):
-    """a mesh whose surfaces are sampled every six voxels; harmless: the same, and said so"""
+    """a mesh whose surfaces are sampled every six voxels; harmless: the same with --delta"""
     coarse = shop.meshed("--radius", "90", "--delta", "25")
     return Mutant(Case(coarse, shop.with_image), Case(coarse, [*shop.with_image, "--delta", "25"]))
 
 
 @operator(None, exit_code=2)
 def truncated_file(shop):
-    """the file cut off in its cells; harmless: whole"""
+    """the file cut off in its cells; harmless: the whole file"""
     path = shop.folder / "whole.mesh"
     shop.base.write(path)
     text = path.read_text()
@@ -737,7 +738,7 @@ def cell_in_two_pieces(shop):
 
 @operator("surface")
 def cell_missing_between_pieces(shop):
-    """a cell at the border of two pieces in neither; harmless: in one, its cells in another order"""
+    """a cell at the border of two pieces in neither; harmless: in one, whose cells are reordered"""
     mesh, moved = MeshInPieces(shop.base, 3), MeshInPieces(shop.base, 3)
     first, shared = mesh.pieces[0], set(mesh.pieces[1].ids)
     border = [c for c, cell in enumerate(first.cells) if sum(first.ids[v] in shared for v in cell[:4]) == 3]
@@ -748,7 +749,7 @@ def cell_missing_between_pieces(shop):
 
 @operator("conformity")
 def border_cut_otherwise(shop):
-    """two points for one vertex on either side of a border; harmless: one point, whose number is the greatest"""
+    """two points for one vertex on either side of a border; harmless: one point, with the greatest number"""
     mesh, renumbered = MeshInPieces(shop.base, 2), MeshInPieces(shop.base, 2)
     shared, greatest = mesh.shared_id(), max(piece.ids.max() for piece in mesh.pieces)
     second = mesh.pieces[1]
@@ -761,7 +762,7 @@ def border_cut_otherwise(shop):
 
 @operator(None, exit_code=2)
 def vertex_moved_in_one_piece(shop):
-    """a shared vertex of one piece an ulp away; harmless: in both pieces"""
+    """a shared vertex moved by an ulp in one piece; harmless: in both pieces"""
     mesh, both = MeshInPieces(shop.base, 2), MeshInPieces(shop.base, 2)
     shared = mesh.shared_id()
     for piece in [mesh.pieces[1], *both.pieces]:

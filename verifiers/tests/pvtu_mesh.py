@@ -1,4 +1,4 @@
-"""A mesh in pieces, as PVTU indexes and ascii VTU files: made of a MeditMesh, changed and written by the tests."""
+"""A mesh in pieces, as PVTU indexes and ascii VTU files. It is made of a MeditMesh; the tests change and write it."""
 
 import copy
 
@@ -20,9 +20,9 @@ class Piece:
         self.field = {"space:RAS": 1}
 
     def vtu(self, rows, corners, vtk_type, labels, ids="GlobalNodeIds"):
-        """Text of the grid of all points and these rows, with the columns behind the corners as named cell arrays."""
+        """Returns VTU text of all points and the cells in `rows`; columns after the corners are named cell arrays."""
         def array(name, kind, values, components=1):
-            # What numpy calls a number is more than its digits.
+            # repr() of a numpy number is more than its digits.
             text = " ".join(repr(value) for value in np.asarray(values).ravel().tolist())
             return (f'<DataArray type="{kind}" Name="{name}" NumberOfComponents="{components}" format="ascii">\n'
                     f"{text}\n</DataArray>\n")
@@ -40,11 +40,11 @@ class Piece:
 
 
 class MeshInPieces:
-    """`pieces`, which write() writes as x_0.vtu and so on beside the index x.pvtu, the facets likewise."""
+    """A mesh in pieces. write() writes `pieces` as x_0.vtu etc. beside the index x.pvtu, and the facets likewise."""
     extension = ".pvtu"
 
     def __init__(self, mesh, num_pieces):
-        """Cells by the x of their first vertex; a facet goes with a cell that it is a side of."""
+        """Distributes cells by the x of their first vertex; a facet goes with a cell that it is a side of."""
         pairs = label_pairs(mesh)
         order = np.argsort(mesh.vertices[mesh.cells[:, 0], 0], kind="stable")
         piece_of_cell = np.empty(len(order), dtype=np.int64)
@@ -61,7 +61,7 @@ class MeshInPieces:
         return copy.deepcopy(self)
 
     def shared_id(self):
-        """A vertex that is in the first two pieces."""
+        """Returns a vertex that is in the first two pieces."""
         return np.intersect1d(self.pieces[0].ids, self.pieces[1].ids)[0]
 
     def write(self, path, _digits=17):
@@ -77,6 +77,6 @@ class MeshInPieces:
 
 
 def label_pairs(mesh):
-    """The labels on the two sides of a facet, by its reference, as podm's comments tell them."""
+    """Returns the labels on the two sides of a facet by its reference, from podm's comments."""
     rows = [line.split() for line in mesh.comments if line.startswith("# pair ")]
     return {int(row[2]): (int(row[3]), int(row[4])) for row in rows}

@@ -1,4 +1,4 @@
-"""Meshes of other meshers, with what is known about each. A mesher that is not installed skips its class as a whole."""
+"""Meshes of other meshers, with the verdicts known for each. A mesher that is not installed skips its class."""
 
 import json
 import os
@@ -31,7 +31,7 @@ Mesh.MeshSizeMax = 0.15;
 
 
 def half_balls():
-    """Voxels of a ball, its halves labelled 1 and 2."""
+    """Returns voxels of a ball whose halves are labelled 1 and 2."""
     z, y, x = np.indices((32, 32, 32)) - 15.5
     return np.where(x * x + y * y + z * z < 12 ** 2, np.where(x > 0, 2, 1), 0)
 
@@ -100,7 +100,7 @@ class CgalTest(ForeignMeshes):
     PROGRAM = os.environ["PODM_CGAL_MESH3"]
 
     def verdicts_of_half_balls(self, *options):
-        """CGAL's mesh of two half balls is certified within the bounds that it was given.
+        """Checks CGAL's mesh of two half balls with the bounds that it was given.
 
         Its vertices are on the image's surface to a thousandth of the image's radius, which is 28 voxels."""
         write_inr(self.folder / "balls.inr", half_balls())

@@ -1,4 +1,4 @@
-"""podm-verify on a mesh in pieces: what holds of one file holds of its pieces, and what does not fit is refused."""
+"""podm-verify on a mesh in pieces: the verdicts are those of one file, and pieces that do not fit are refused."""
 
 import json
 import os
@@ -16,14 +16,14 @@ VERIFIER = os.environ["PODM_VERIFIER"]
 
 
 def cubes_of_two_labels():
-    """With the facets of both, as podm tells them."""
+    """Returns cubes of two labels with the facets of both, in podm's format."""
     mesh = kuhn_cubes(4, 3, 2)
     mesh.cells[len(mesh.cells) // 2:, 4] = 2
     sides = {}
     for cell in mesh.cells:
         for k in range(4):
             facet = np.delete(cell[:4], k)
-            turned = facet if k in (1, 3) else facet[[0, 2, 1]]  # so that its normal points out of the cell
+            turned = facet if k in (1, 3) else facet[[0, 2, 1]]  # makes its normal point out of the cell
             sides.setdefault(tuple(sorted(facet)), []).append((cell[4], turned))
     references = {(0, 1): 1, (0, 2): 2, (1, 2): 3}
     for around in sides.values():
@@ -54,7 +54,7 @@ class PiecesTest(unittest.TestCase):
         return json.loads(report.read_text())
 
     def assert_refused(self, *words):
-        """With the index first, and all of the words."""
+        """Expects a refusal that begins with the index and contains all words."""
         process = self.verify(self.index)
         self.assertEqual(process.returncode, 2, process.stdout + process.stderr)
         self.assertIn(f"podm-verify: {self.index.with_suffix('')}", process.stderr)

@@ -32,7 +32,8 @@ def read_cell_arrays(path):
 
 
 def meshed_voxels(voxels, becomes):
-    """Six cells a voxel, all with its centre as circumcentre; of each label, or what it becomes, None being no cell."""
+    """Returns six cells per voxel, centered on it. Their label is the voxel's or what it becomes; None makes no cell.
+    """
     mesh = kuhn_cubes(*reversed(voxels.shape))
     labels = [becomes.get(label, label) for label in voxels.ravel()]
     mesh.cells = np.array([[*cell[:4], labels[c // 6]] for c, cell in enumerate(mesh.cells)
@@ -128,7 +129,7 @@ class ProgramTest(unittest.TestCase):
         self.assertEqual(*reports)
 
     def read_overlaps(self):
-        """Dice's coefficient of every label, of the mesh with the image."""
+        """Returns Dice's coefficients of all labels between mesh and image."""
         return {row["dice"] for row in self.read_report()["claims"]["labels"]["details"]["labels"]}
 
     def test_a_mesh_of_some_labels_is_compared_with_those_of_the_image(self):
@@ -186,7 +187,7 @@ class ProgramTest(unittest.TestCase):
         voxels[:, :, 6:9], voxels[:, :, 9:] = 2, 3
         image = self.folder / "image.inr"
         write_inr(image, voxels, offset=0.5)
-        meshed_voxels(voxels, {}).write(self.mesh)  # circumradii sqrt(3) / 2, at 6 mm labels 1 and 2 meet
+        meshed_voxels(voxels, {}).write(self.mesh)  # circumradii sqrt(3) / 2; labels 1 and 2 meet at 6 mm
         size = ["--claims", "size", "--json", self.report, "--image", image]
         for options, num_over in ((["--size-near", "1,2=0.8:1"], 2 * 96),
                                   (["--size-near", "1,2=0.8"], 2 * 96),

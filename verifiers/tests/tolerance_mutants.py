@@ -1,7 +1,7 @@
-"""Mutation operators at 1.5 times a claim's tolerance, each beside a harmless neighbour at 0.67 to 0.9 of it.
+"""Mutation operators at 1.5 times the tolerance of a claim, each with a harmless neighbour at 0.67 to 0.9 of it.
 
-They follow those of mutants.py in one list, OPERATORS. Lengths are voxels unless they say mm: all images here have
-unit voxels, and voxel (0, 0, 0) has its centre at the origin.
+They follow the operators of mutants.py in one list, OPERATORS. Lengths are voxels unless they say mm: all images here
+have unit voxels, and the center of voxel (0, 0, 0) is at the origin.
 """
 
 import math
@@ -22,7 +22,7 @@ UNCLAIMED = ["# promise unclaimed delaunay\n"]
 
 
 def image_of(shop, name, voxels):
-    """Options that name an image of voxels[z, y, x]."""
+    """Returns the options that name an image of voxels[z, y, x]."""
     path = shop.folder / f"{name}.inr"
     write_inr(path, voxels)
     return ["--image", str(path)]
@@ -38,7 +38,7 @@ BALL_CENTER, BALL_RADIUS = 11.5, 8.3
 
 
 def ball(shop, *options):
-    """A mesh of a ball, and the options that name its image."""
+    """Returns a mesh of a ball, and the options that name its image."""
     z, y, x = np.mgrid[:24, :24, :24] - BALL_CENTER
     image = image_of(shop, "ball", x ** 2 + y ** 2 + z ** 2 < BALL_RADIUS ** 2)
     return meshed(shop, image, "--radius", "2", *options), image
@@ -49,7 +49,7 @@ def surface_ids(mesh):
 
 
 def pole_moved(mesh, by):
-    """The mesh with the surface's vertex nearest to the x axis moved outward along it, which is the normal there."""
+    """Returns the mesh with the surface vertex nearest to the x axis moved outward along it, its normal there."""
     moved, ids = mesh.copy(), surface_ids(mesh)
     from_axis = np.hypot(*(mesh.vertices[ids, 1:] - BALL_CENTER).T) + 99 * (mesh.vertices[ids, 0] < BALL_CENTER)
     moved.vertices[ids[from_axis.argmin()], 0] += by
@@ -57,7 +57,8 @@ def pole_moved(mesh, by):
 
 
 def surface_moved(mesh, by, share=1.0):
-    """The mesh with that share of the surface's vertices, those of greatest z, moved away from the ball's centre."""
+    """Returns the mesh with this share of the surface's vertices, the highest in z, moved away from the ball's center.
+    """
     moved, ids = mesh.copy(), surface_ids(mesh)
     ids = ids[mesh.vertices[ids, 2] >= np.quantile(mesh.vertices[ids, 2], 1 - share)]
     outward = mesh.vertices[ids] - BALL_CENTER
@@ -66,7 +67,7 @@ def surface_moved(mesh, by, share=1.0):
 
 
 def mutant_of(case, bound, still_passes=()):
-    """case(length) beyond the bound, and within it."""
+    """Makes a mutant of case(length) beyond the bound, and a neighbour within it."""
     return Mutant(case(BEYOND * bound), case(WITHIN * bound), still_passes=still_passes)
 
 
@@ -79,21 +80,21 @@ def vertex_off_the_surface(shop):
 
 @operator("surface_vertices")
 def vertex_off_the_smoothed_surface(shop):
-    """the same of a smoothed image's surface; harmless: by 0.8e-5"""
+    """a vertex off a smoothed image's surface by 1.5e-5 voxels; harmless: by 0.8e-5"""
     mesh, image = ball(shop, "--smooth", "1.5")
     return mutant_of(lambda by: Case(pole_moved(mesh, by), image), VERTEX_BOUND, ("structure", "labels", "fidelity"))
 
 
 @operator("surface_vertices")
 def vertices_on_the_stairs(shop):
-    """the vertices of the voxels' own surface, said to be of the smoothed one; harmless: a smoothed mesh"""
+    """the vertices of the voxels' own surface for the smoothed one; harmless: a smoothed mesh"""
     stairs, image = ball(shop)
     smoothed, _ = ball(shop, "--smooth", "1.5")
     return Mutant(Case(stairs, [*image, "--smooth", "1.5"]), Case(smoothed, image), still_passes=("structure",))
 
 
 def halves(shop):
-    """Label 1, and from x = 12 on label 2."""
+    """Returns an image of label 1, and of label 2 from x = 12 on."""
     voxels = np.ones((4, 4, 16))
     voxels[:, :, 12:] = 2
     return image_of(shop, "halves", voxels)
@@ -113,7 +114,7 @@ def facet_of_a_far_label(shop):
 
 
 def far_centroid(shop, options, reach):
-    """A cell of label 2, judged by its centroid, so many reaches from the voxels of that label."""
+    """Places a cell of label 2, judged by its centroid, at multiples of `reach` from the voxels of that label."""
     image = halves(shop)
 
     def at(distance):
@@ -131,13 +132,13 @@ def centroid_far_from_its_label(shop):
 
 @operator("labels")
 def centroid_further_than_two_delta(shop):
-    """the same of 2 delta and a diagonal, delta being 2.5; harmless: 0.8 times"""
+    """an optimised mesh's cell 1.5 times its reach from its label's voxels, delta being 2.5; harmless: 0.8 times"""
     return far_centroid(shop, ["--delta", "2.5"], 2 * 2.5 + DIAGONAL)
 
 
 @operator("labels")
 def label_that_the_image_lacks(shop):
-    """a cell with a label that no voxel has; harmless: that one voxel has"""
+    """a cell with a label that no voxel has; harmless: with a label that one voxel has"""
     voxels = np.ones((6, 6, 6))
     lacking = image_of(shop, "lacking", voxels)
     voxels[3, 3, 3] = 2
@@ -173,7 +174,7 @@ def radius_over_a_multiple_of_its_place(shop):
 
 @operator("fidelity")
 def one_vertex_far_off(shop):
-    """a vertex 1.5 times a voxel's diagonal from the image's surface; harmless: 0.8 times"""
+    """a vertex off the image's surface by 1.5 diagonals of a voxel; harmless: by 0.8 diagonals"""
     mesh, image = ball(shop)
     return mutant_of(lambda by: Case(pole_moved(mesh, by), image), DIAGONAL)
 
@@ -187,14 +188,14 @@ def one_vertex_further_than_two_delta(shop):
 
 @operator("fidelity")
 def surface_far_off(shop):
-    """the whole surface 1.5 voxels too far out, as no vertex may be by a diagonal; harmless: 0.8 voxels"""
+    """the whole surface 1.5 voxels too far out, less than a diagonal; harmless: 0.8 voxels"""
     mesh, image = ball(shop)
     return mutant_of(lambda by: Case(surface_moved(mesh, by), image), 1)
 
 
 @operator("fidelity")
 def smoothed_surface_far_off(shop):
-    """the same of a smoothed image's surface; harmless: 0.8 voxels"""
+    """the whole of a smoothed surface 1.5 voxels too far out; harmless: 0.8 voxels"""
     mesh, image = ball(shop, "--smooth", "1.5")
     return mutant_of(lambda by: Case(surface_moved(mesh, by), image), 1)
 
@@ -212,7 +213,7 @@ def share_of_the_image_not_meshed(shop):
     def without_a_rod(length):
         voxels = np.zeros((16, 16, 22))
         voxels[3:13, 3:13, 3:13] = 1  # 600 faces
-        voxels[4:6, 4:6, 16:16 + length] = 2  # 8 faces a voxel of length, and 8
+        voxels[4:6, 4:6, 16:16 + length] = 2  # 8 faces per voxel of length, and 8
         image = image_of(shop, f"rod{length}", voxels)
         mesh = meshed(shop, image, "--radius", "2", "--labels", "1")
         return Case(mesh, image)

@@ -1,4 +1,4 @@
-// What a claim tells of one label.
+// Access to a claim's details about one label.
 #pragma once
 
 #include <nlohmann/json.hpp>
@@ -8,7 +8,7 @@
 
 namespace podm::verify {
 
-/// The label's row of the table `labels`; throws std::out_of_range if it has none.
+/// Returns the label's row of the table `labels`; throws std::out_of_range if it has none.
 inline const nlohmann::json& row_of(const ClaimResult& result, LabelValue label) {
   for (const auto& row : result.details.at("labels"))
     if (row.at("label") == label) return row;

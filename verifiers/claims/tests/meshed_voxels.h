@@ -1,4 +1,4 @@
-// Images and meshes made for the tests of the claims that compare them.
+// Images and meshes for the tests of claims that compare a mesh with an image.
 #pragma once
 
 #include <algorithm>
@@ -37,7 +37,7 @@ inline const std::array<double, 12> kMirrored{-0.5, 0, 0, 20, 0, 0.8, 0, 30, 0, 
 inline const std::array<double, 12> kSheared{0.5, 0.3, 0, -20, 0, 0.8, 0, 30, 0, 0.4, 2.5, 7};
 inline const std::array<std::array<double, 12>, 4> kAffines{kUnitAffine, kAnisotropic, kMirrored, kSheared};
 
-/// A solid ball of label 1 with a ball of label 2 beside, in 13 x 11 x 9 voxels.
+/// Returns the label in a solid ball of label 1 with a ball of label 2 beside it, in 13 x 11 x 9 voxels.
 inline std::uint32_t two_balls(int i, int j, int k) {
   const auto within = [&](double x, double y, double z, double r) {
     return (i - x) * (i - x) + (j - y) * (j - y) + (k - z) * (k - z) <= r * r;
@@ -45,14 +45,14 @@ inline std::uint32_t two_balls(int i, int j, int k) {
   return within(4, 5, 4, 3.2) ? 1 : within(8.5, 5, 4, 2.4) ? 2 : 0;
 }
 
-/// Two boxes that share a face, labels 3 and 7.
+/// Returns the label in two boxes that share a face, labels 3 and 7.
 inline std::uint32_t two_boxes(int i, int j, int k) {
   if (j < 2 || j > 6 || k < 2 || k > 5 || i < 2 || i > 9) return 0;
   return i < 6 ? 3 : 7;
 }
 
-/// Each voxel that is not background as six tetrahedra around its diagonal (Kuhn), alike in all voxels, so
-/// that they fit. All six have their circumcentre at the voxel's centre.
+/// Returns a mesh in which each voxel that is not background is six tetrahedra around its diagonal (Kuhn),
+/// alike in all voxels, so that they fit. The circumcenters of all six are at the voxel's center.
 inline Mesh kuhn_mesh(const Image& image, Space space = Space::kRas) {
   constexpr std::array<std::array<std::size_t, 3>, 6> kOrders{
       {{0, 1, 2}, {0, 2, 1}, {1, 0, 2}, {1, 2, 0}, {2, 0, 1}, {2, 1, 0}}};
@@ -95,7 +95,7 @@ inline Mesh kuhn_mesh(const Image& image, Space space = Space::kRas) {
   return mesh;
 }
 
-/// A mesh that has the image's label function at all circumcentres: of voxels a third as long.
+/// Returns a mesh of voxels a third as long that has the image's label function at all circumcenters.
 inline Mesh fine_mesh(const Image& image) {
   const LabelFunction function(image);
   const auto coarse = [](int i) { return (i - 1) / 3.0; };
@@ -120,7 +120,7 @@ inline Mesh moved(Mesh mesh, const Image& image, const Point& by) {
   return mesh;
 }
 
-/// An adjacency of the tests' own, which a map of facets gives.
+/// Finds the adjacency by a map of facets, independently of find_adjacency().
 inline Adjacency mapped_adjacency(const Mesh& mesh) {
   std::map<std::array<VertexId, 3>, std::vector<FacetId>> cells_of;
   for (std::size_t c = 0; c < mesh.cells.size(); ++c)
@@ -142,8 +142,8 @@ inline Adjacency mapped_adjacency(const Mesh& mesh) {
   return adjacency;
 }
 
-/// Lists the facets between different labels as the project's own files do: smaller label first, the normal
-/// from the second label's cell to the first.
+/// Lists the facets between different labels as podm's files do: smaller label first, the normal from the
+/// second label's cell to the first.
 inline void list_facets(Mesh& mesh) {
   const Adjacency adjacency = mapped_adjacency(mesh);
   for (std::size_t c = 0; c < mesh.cells.size(); ++c)

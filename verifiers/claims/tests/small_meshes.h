@@ -19,18 +19,19 @@ inline Mesh mesh_of(std::vector<Point> vertices, std::vector<std::array<VertexId
   return mesh;
 }
 
-/// Kuhn's six tetrahedra in each of size^3 unit cubes; half of the cubes have label 2.
+/// Returns Kuhn's six tetrahedra in each of size^3 unit cubes; half of the cubes have label 2.
 inline Mesh kuhn_cubes(int size) {
   return kuhn_mesh(
       make_image({size, size, size}, kUnitAffine, [&](int i, int, int) { return 2 * i < size ? 1 : 2; }));
 }
 
-/// The origin and a point on each axis: circumradius sqrt(a^2 + b^2 + c^2) / 2, shortest edge min(a, b, c).
+/// Returns a cell of the origin and a point on each axis. Its circumradius is sqrt(a^2 + b^2 + c^2) / 2, its
+/// shortest edge min(a, b, c).
 inline Mesh corner(double a, double b, double c) {
   return mesh_of({{0, 0, 0}, {a, 0, 0}, {0, b, 0}, {0, 0, c}}, {{0, 1, 2, 3}});
 }
 
-/// Two cells on the facet 0 1 2, the far vertices (0, 0, 1) and `below`.
+/// Returns two cells on the facet 0 1 2, with the far vertices (0, 0, 1) and `below`.
 inline Mesh two_cells(const Point& below = {0, 0, -1}) {
   return mesh_of({{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {0, 0, 1}, below}, {{0, 1, 2, 3}, {0, 2, 1, 4}});
 }
@@ -54,7 +55,7 @@ inline Mesh turned_over(Mesh mesh) {
   return mesh;
 }
 
-/// Points of small integer coordinates, so that degenerate positions are frequent.
+/// Returns points of small integer coordinates, so that degenerate positions are frequent.
 inline std::vector<Point> lattice_points(std::size_t count, int size, std::mt19937& random) {
   std::uniform_int_distribution<int> coordinate(0, size);
   std::vector<Point> points(count);
@@ -68,7 +69,7 @@ inline int rational_orientation(const Point& a, const Point& b, const Point& c, 
       dot(cross(difference<Rational>(b, a), difference<Rational>(c, a)), difference<Rational>(d, a))));
 }
 
-/// Answers what side_of_sphere() answers, from the centre and the radius in rationals.
+/// Returns the result of side_of_sphere(), computed from the center and the radius in rationals.
 inline int rational_side_of_sphere(const std::array<Point, 4>& cell, const Point& p) {
   const auto a = difference<Rational>(cell[0], cell[3]), b = difference<Rational>(cell[1], cell[3]),
              c = difference<Rational>(cell[2], cell[3]), x = difference<Rational>(p, cell[3]);
@@ -81,7 +82,7 @@ inline int rational_side_of_sphere(const std::array<Point, 4>& cell, const Point
   return static_cast<int>(CGAL::compare(dot(center, center), dot(to_x, to_x)));
 }
 
-/// The Delaunay tetrahedra of points of which no five are on an empty sphere, by trying all.
+/// Returns the Delaunay tetrahedra of points, found by trying all. No five points may be on an empty sphere.
 inline Mesh delaunay_by_force(const std::vector<Point>& points) {
   Mesh mesh = mesh_of(points, {});
   const auto n = static_cast<VertexId>(points.size());

@@ -27,7 +27,7 @@ TEST(BoundaryAngles, TellsEqualityApart) {
 }
 
 TEST(BoundaryAngles, DecidesThirtyDegreesExactly) {
-  // Angles of 30, 60 and 90 degrees; more z opens the first.
+  // The facet has angles of 30, 60 and 90 degrees; a larger z opens the first.
   const Point u{2, 2, 0}, v{1, 2, 1};
   ASSERT_EQ(4 * dot(u, v) * dot(u, v), 3 * dot(u, u) * dot(v, v));
   const auto with_z = [&](double z) {
@@ -39,7 +39,7 @@ TEST(BoundaryAngles, DecidesThirtyDegreesExactly) {
   EXPECT_EQ(with_z(std::nextafter(1, 0)).num_violations, with_z(1).num_violations);
 }
 
-// A facet with angles of `degrees`, the rest of the cell well shaped.
+// A facet has an angle of `degrees`; the rest of the cell is well shaped.
 TEST(BoundaryAngles, HoldsEveryBound) {
   for (const double degrees : {3.0, 20.0, 29.999, 30.001, 37.5, 59.0}) {
     const double t = degrees * std::numbers::pi / 180;

@@ -17,7 +17,7 @@ std::uint64_t count_of(const ClaimResult& result, const char* name) { return res
 
 Mesh boxes() { return kuhn_mesh(make_image({12, 9, 8}, kUnitAffine, two_boxes)); }
 
-// Cells of `label` get vertices of their own.
+// Gives the cells of `label` vertices of their own.
 Mesh torn_off(Mesh mesh, LabelValue label) {
   std::map<VertexId, VertexId> copies;
   for (std::size_t c = 0; c < mesh.cells.size(); ++c) {
@@ -65,7 +65,7 @@ TEST(Conformity, AnUlpApartIsNotTheSamePlace) {
   EXPECT_EQ(check(mesh).verdict, Verdict::kPass);
 }
 
-// n^3 leaves of side 1, grid coordinates those of the mesh.
+// Returns n^3 leaves of side 1 in the grid coordinates of the mesh.
 Schedule unit_leaves(std::int64_t n) {
   Schedule schedule;
   schedule.mesh_to_grid = kUnitAffine;
@@ -149,7 +149,7 @@ TEST(Conformity, ActivationsEndBeforeOthersBeginAtTheSameTime) {
   EXPECT_EQ(check_active(row, {active(0, 0, 2), active(1, 2, 2)}).verdict, Verdict::kPass) << "at the end";
 }
 
-// An octree's leaves: a cube of 32 split at random.
+// Splits a cube of 32 at random into an octree's leaves.
 void split(const Leaf& cube, std::mt19937& random, std::vector<Leaf>& leaves) {
   if (cube.side == 1 || (cube.side < 32 && random() % 3 == 0)) {
     leaves.push_back(cube);
@@ -163,7 +163,7 @@ void split(const Leaf& cube, std::mt19937& random, std::vector<Leaf>& leaves) {
           random, leaves);
 }
 
-// The definitions of rings and of being active together, word for word.
+// Counts by the definitions of rings and of being active together, word for word.
 std::uint64_t pairs_too_near(const Schedule& schedule) {
   const auto touch = [&](const Leaf& p, const Leaf& q) {
     for (std::size_t a = 0; a < 3; ++a)
@@ -203,7 +203,7 @@ TEST(Conformity, RandomSchedulesAreJudgedByTheDefinition) {
 TEST(Conformity, OperationsKeepToTheFirstRing) {
   Schedule schedule = unit_leaves(4);
   Activation a = active(0, 0, 1);
-  a.touched_leaves = {0, 1, 4, 16, 21};  // itself, a face, a face, a face, the far corner of ring 1
+  a.touched_leaves = {0, 1, 4, 16, 21};  // itself, three leaves that share a face, the far corner of ring 1
   EXPECT_EQ(check_active(schedule, {a}).verdict, Verdict::kPass);
   a.touched_leaves.push_back(2);
   const ClaimResult result = check_active(schedule, {a});
@@ -219,7 +219,7 @@ TEST(Conformity, LeavesDoNotOverlap) {
   EXPECT_EQ(count_of(result, "overlapping_leaves"), 9U) << "the large one and the eight within";
 }
 
-TEST(Conformity, LargeSchedulesTakeNoQuadraticTime) {  // by the time limit of the tests
+TEST(Conformity, LargeSchedulesTakeNoQuadraticTime) {  // checked by the time limit of the tests
   Schedule schedule = unit_leaves(47);                 // 103823 leaves
   std::vector<Activation> activations;
   for (std::uint32_t i = 0; i < 100000; ++i) activations.push_back(active(i, i, i + 1));
@@ -241,7 +241,7 @@ TEST(Conformity, ManySmallLeavesAroundALargeOneTakeNoQuadraticTime) {
   std::vector<Activation> activations;
   for (std::uint32_t i = 0; i < schedule.leaves.size(); ++i) activations.push_back(active(i, i, i + 1));
   EXPECT_EQ(check_active(schedule, activations).verdict, Verdict::kPass);
-  activations[0].end_s = 2.5;  // the large leaf while the first two small ones are active
+  activations[0].end_s = 2.5;  // the large leaf is active while the first two small ones are
   EXPECT_EQ(count_of(check_active(schedule, activations), "active_leaves_too_near"), 2U);
 }
 

@@ -55,7 +55,7 @@ TEST(Delaunay, CountsTiesApart) {
   EXPECT_EQ(tied.verdict, Verdict::kPass);
   EXPECT_GT(tied.details["cospherical_facets"], 0);
 
-  // Two cells on a sphere around the origin but for the lower tip.
+  // Two cells on a sphere around the origin, except for the lower tip.
   const auto with_tip = [](double z) {
     const Mesh mesh = mesh_of({{1, 0, 0}, {-1, 0, 0}, {0, 1, 0}, {0, 0, 1}, {0, 0, z}}, {});
     Mesh two = mesh;
@@ -90,7 +90,7 @@ TEST(Delaunay, RejectsFlatCells) {
       names(delaunay_of(mesh_of(corner(1, 1, 1).vertices, {{0, 0, 0, 0}})), "every cell has a circumsphere"));
 }
 
-// A nearly flat cell has a ball of immense radius, whose rounded centre means nothing.
+// A nearly flat cell has a huge ball, whose rounded center means nothing.
 TEST(Delaunay, DecidesSliversAndExtremeScales) {
   for (const double scale : {1e-100, 1e-30, 1.0, 1e30, 1e90}) {
     const double thin = scale * 0x1p-50;

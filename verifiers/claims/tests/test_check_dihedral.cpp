@@ -16,7 +16,7 @@ ClaimResult dihedral_of(const Mesh& mesh, std::optional<double> least, std::opti
   return check_dihedral(mesh, options);
 }
 
-// Two facets meet at this angle; the cell's other angles are moderate.
+// Returns a cell with two facets that meet at this angle; its other angles are moderate.
 Mesh wedge(double degrees) {
   const double t = degrees * std::numbers::pi / 180;
   return mesh_of({{-0.5, 0, 0}, {0.5, 0, 0}, {0, 1, 0}, {0, std::cos(t), std::sin(t)}}, {{0, 1, 2, 3}});
@@ -38,7 +38,7 @@ TEST(Dihedral, GoesByWhatTheFilePromisesUnlessToldOtherwise) {
 }
 
 TEST(Dihedral, AllowsEqualityAndNotAnUlpBeyond) {
-  const Mesh right = corner(1, 1, 1);  // right angles at the origin, so least and largest are told apart
+  const Mesh right = corner(1, 1, 1);  // right angles at the origin: least and largest angle differ
   EXPECT_EQ(dihedral_of(right, std::nullopt, 90).verdict, Verdict::kPass);
   Mesh obtuse = right;
   obtuse.vertices[2] = {-0x1p-52, 1, 0};

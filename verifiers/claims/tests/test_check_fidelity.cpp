@@ -23,7 +23,7 @@ double number(const ClaimResult& result, const char* way, const char* what) {
   return result.details.at(way).at(what).get<double>();
 }
 
-// Voxels' faces are the isosurface but near edges, where it cuts the corners of a box.
+// The isosurface is the voxels' faces, except near edges, where it cuts the corners of a box.
 TEST(Fidelity, TheBoxesOwnFacesAreNear) {
   for (const auto& affine : kAffines)
     for (const Space space : {Space::kRas, Space::kLps, Space::kVoxel}) {
@@ -31,7 +31,7 @@ TEST(Fidelity, TheBoxesOwnFacesAreNear) {
       const ClaimResult result = fidelity_of(kuhn_mesh(image, space), image);
       EXPECT_EQ(result.verdict, Verdict::kPass) << result.reason;
       EXPECT_NEAR(number(result, "image_to_mesh", "max_mm"), 0, 1e-9);
-      // The weight at a corner of a box is a product: it is 1/2 where each factor is the cube root of 1/2.
+      // The weight at a corner of a box is a product. It is 1/2 where each factor is the cube root of 1/2.
       const double corner = std::sqrt(3.0) * (std::cbrt(0.5) - 0.5);
       if (affine == kUnitAffine) {
         EXPECT_NEAR(number(result, "mesh_to_image", "max_voxels"), corner, 1e-3);
@@ -50,7 +50,7 @@ TEST(Fidelity, AShiftIsMeasuredInMillimetresAndVoxels) {
       by[axis] = 2.5;
       const ClaimResult result = fidelity_of(moved(mesh, image, by), image);
       EXPECT_EQ(result.verdict, Verdict::kFail);
-      // What is shifted along its normal by 2.5 voxels is at least as far from the faces that it leaves,
+      // A point shifted along its normal by 2.5 voxels is at least as far from the faces that it leaves,
       // unless another face is nearer in mm.
       EXPECT_LE(number(result, "image_to_mesh", "max_mm"), 2.5 * spacing[axis] + 1e-9);
       EXPECT_GE(number(result, "image_to_mesh", "max_mm"), 0.99 * std::min(2.5 * spacing[axis], 0.5 * 1.5));
@@ -110,7 +110,7 @@ TEST(Fidelity, LabelsAreComparedWithTheirOwnBoundary) {
   });
   const ClaimResult result = fidelity_of(kuhn_mesh(other), image);
   for (const auto& row : result.details["labels"]) {
-    // Label 3 lost what lies beyond the wall, 7 came nearer to the end of the box, a voxel away.
+    // Label 3 lost its part beyond the wall; label 7 came nearer to the end of the box, one voxel away.
     EXPECT_NEAR(row["mesh_to_image"]["max_mm"].get<double>(), row["label"] == 3 ? 3 : 1, 0.3);
     EXPECT_NEAR(row["image_to_mesh"]["max_mm"].get<double>(), row["label"] == 3 ? 1.5 : 3, 1e-9);
   }
@@ -151,9 +151,9 @@ TEST(Fidelity, OfASmoothedImageIsToItsSmoothInterface) {
     const ClaimResult by_round = fidelity_of(mesh, round), by_stairs = fidelity_of(mesh, stairs);
     EXPECT_EQ(by_round.verdict, Verdict::kPass) << by_round.reason;
     EXPECT_LT(number(by_round, "mesh_to_image", "mean_mm"), number(by_stairs, "mesh_to_image", "mean_mm"));
-    // No further than a diagonal of the voxels that the mesh is made of.
+    // At most a diagonal of the voxels that the mesh is made of.
     EXPECT_LT(number(by_round, "mesh_to_image", "max_voxels"), std::sqrt(3.0) / 3);
-    // What is reported of the image before it was smoothed is what it gives by itself.
+    // The report about the image before smoothing equals the report for that image alone.
     EXPECT_EQ(by_round.details.at("mesh_to_voxels"), by_stairs.details.at("mesh_to_image"));
     EXPECT_FALSE(by_stairs.details.contains("mesh_to_voxels"));
   }
@@ -169,7 +169,7 @@ TEST(Fidelity, ThreadsDoNotMatter) {
       EXPECT_DOUBLE_EQ(number(one, way, what), number(three, way, what));
 }
 
-// Brute force is the nearest of the places where the label changes on the lines of a fine grid.
+// The brute force takes the nearest of the places where the label changes on the lines of a fine grid.
 TEST(IsosurfaceDistance, IsNeverBelowTheTrueOneAndMostlyNear) {
   constexpr int kFine = 20;
   for (const auto& [affine, width_mm] :

@@ -59,7 +59,7 @@ TEST(Labels, AShiftOfMoreThanHalfAVoxelFailsAndOfLessPasses) {
     EXPECT_EQ(labels_of(moved(mesh, image, {0.499, 0, 0}), image).verdict, Verdict::kPass);
     const ClaimResult shifted = labels_of(moved(mesh, image, {0.501, 0, 0}), image);
     EXPECT_EQ(shifted.verdict, Verdict::kFail);
-    // One layer of voxels each leaves a box at its far end.
+    // One layer of voxels leaves each box at its far end.
     EXPECT_EQ(shifted.num_violations, 2U * 5 * 4 * 6);
     EXPECT_EQ(shifted.bad_cells.size(), shifted.num_violations);
     EXPECT_TRUE(std::is_sorted(shifted.bad_cells.begin(), shifted.bad_cells.end()));
@@ -67,7 +67,7 @@ TEST(Labels, AShiftOfMoreThanHalfAVoxelFailsAndOfLessPasses) {
 }
 
 TEST(Labels, HalfAVoxelIsATieThatIsDecidedExactly) {
-  // Label 7 begins where 3 ends: on the tie the smaller wins, so the cells that now lie between are 3's.
+  // Label 7 begins where 3 ends. The smaller label wins the tie, so the cells that now lie between are 3's.
   const Image image = make_image({13, 11, 9}, kUnitAffine, two_boxes);
   const Mesh mesh = moved(kuhn_mesh(image), image, {-0.5, 0, 0});
   const ClaimResult result = labels_of(mesh, image);
@@ -180,8 +180,8 @@ TEST(Labels, AMeshOfASmoothedImageIsJudgedByThatAlone) {
 }
 
 TEST(Labels, ASmoothedTieIsDecidedExactly) {
-  // The image is its own mirror image, so that both sides are as strong: the tie is midway, and the
-  // smaller's.
+  // The image equals its mirror image, so both sides are equally strong. The tie is midway, and the smaller
+  // label wins.
   const Image image =
       smoothed(make_image({12, 7, 7}, kUnitAffine, [](int i, int, int) { return i < 6 ? 3U : 7U; }), 1);
   const ClaimResult result = labels_of(moved(kuhn_mesh(image), image, {-0.5, 0, 0}), image);
@@ -195,7 +195,7 @@ TEST(Labels, TheExactLabelChangesWhereStrengthsSay) {
   image.smoothing = Smoothing{1, std::vector<std::uint16_t>(image.voxels.size())};
   for (std::size_t v = 0; v < image.voxels.size(); ++v)
     image.smoothing->strengths[v] = image.voxels[v] == 3 ? 20000 : 50001;
-  // The label changes 20000/70001 of the way from 1 to 2; a cell about a point that is 2^-40 off it.
+  // The label changes 20000/70001 of the way from 1 to 2. The cell is around a point that is 2^-40 off.
   const double unit = 0x1p-40, change = std::floor((1 + 20000.0 / 70001) / unit) * unit;
   for (const double center : {change, change + unit}) {
     Mesh mesh;

@@ -24,8 +24,8 @@ TEST(RadiusEdge, IsStrictAtTheBound) {
 }
 
 TEST(RadiusEdge, TakesTheBoundAsTyped) {
-  // Four points of the sphere of radius 13, the first two at distance 10, the others farther: ratio 13/10.
-  // The double next to 1.3 is above it.
+  // Four points of the sphere of radius 13, the first two at distance 10, the others further apart: ratio
+  // 13/10. The double next to 1.3 is above it.
   const Mesh mesh = mesh_of({{-12, -5, 0}, {-12, 5, 0}, {-5, 0, 12}, {-4, -12, -3}}, {{0, 1, 2, 3}});
   EXPECT_EQ(radius_edge_of(mesh, 1.3).verdict, Verdict::kFail);
   EXPECT_EQ(radius_edge_of(mesh, std::nextafter(1.3, 2)).verdict, Verdict::kPass);

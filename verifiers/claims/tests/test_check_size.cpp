@@ -31,7 +31,7 @@ TEST(Size, AllowsEqualityAndNotAnUlpMore) {
 }
 
 TEST(Size, HoldsEachLabelToItsOwnBound) {
-  Mesh mesh = joined(corner(1, 2, 2), corner(2, 4, 4));  // 3/2 and 3
+  Mesh mesh = joined(corner(1, 2, 2), corner(2, 4, 4));  // circumradii 3/2 and 3
   mesh.cell_labels = {1, 2};
   EXPECT_EQ(size_of(mesh, std::nullopt, {{1, 1.5}, {2, 3}}).verdict, Verdict::kPass);
   EXPECT_EQ(size_of(mesh, std::nullopt, {{1, 3}, {2, 1.5}}).bad_cells, std::vector<CellId>{1});
@@ -42,7 +42,7 @@ TEST(Size, HoldsEachLabelToItsOwnBound) {
   EXPECT_EQ(one_label.num_checked, 1) << "label 2 has no bound";
 }
 
-// Of a corner of edges 2, 2, 2: circumcentre (1, 1, 1), circumradius sqrt(3).
+// A corner of edges 2, 2, 2 has the circumcenter (1, 1, 1) and the circumradius sqrt(3).
 constexpr double kRadius = 1.7320508075688772;  // rounded: its square is below 3
 
 SizeImage sizes_of(std::array<int, 3> size, std::vector<float> radius_mm) {
@@ -61,7 +61,7 @@ ClaimResult size_by(const SizeImage& sizes, const Mesh& mesh = corner(2, 2, 2), 
 }
 
 TEST(Size, IsBoundedByThePlaceOfTheCircumcenter) {
-  // Voxels 2 mm apart, the first at the origin: the circumcentre is in the middle of eight.
+  // Voxels are 2 mm apart, the first at the origin: the circumcenter is in the middle of eight voxels.
   EXPECT_EQ(size_by(sizes_of({2, 2, 2}, std::vector<float>(8, 1.8F))).verdict, Verdict::kPass);
   EXPECT_EQ(size_by(sizes_of({2, 2, 2}, std::vector<float>(8, 1.7F))).verdict, Verdict::kFail);
   EXPECT_EQ(size_by(sizes_of({2, 2, 2}, {1, 1, 1, 1, 2.5F, 2.5F, 2.5F, 2.5F})).verdict, Verdict::kPass)
@@ -82,13 +82,13 @@ TEST(Size, ReachesHalfAVoxelBeyondTheCenters) {
   EXPECT_THROW(size_by(one, shifted(corner(2, 2, 2), {1e-9, 0, 0})), InputError) << "and now beyond";
   EXPECT_EQ(size_by(one, shifted(corner(2, 2, 2), {-2, -2, -2})).verdict, Verdict::kFail);
   EXPECT_THROW(size_by(one, shifted(corner(2, 2, 2), {-2, -2, -2.0000001})), InputError);
-  // One of two cells has a bound.
+  // Only one of two cells has a bound.
   EXPECT_EQ(size_by(one, joined(corner(2, 2, 2), shifted(corner(2, 2, 2), {9, 0, 0}))).bad_cells,
             std::vector<CellId>{0});
 }
 
 TEST(Size, DecidesTiesExactly) {
-  const Mesh mesh = corner(1, 2, 2);  // circumradius 3/2, circumcentre (1/2, 1, 1)
+  const Mesh mesh = corner(1, 2, 2);  // circumradius 3/2, circumcenter (1/2, 1, 1)
   EXPECT_EQ(size_by(sizes_of({2, 2, 2}, std::vector<float>(8, 1.5F)), mesh).verdict, Verdict::kPass);
   EXPECT_EQ(size_by(sizes_of({2, 2, 2}, std::vector<float>(8, std::nextafter(1.5F, 1.0F))), mesh).verdict,
             Verdict::kFail);

@@ -1,4 +1,4 @@
-// Bounds near interfaces of an image and bounds that grow, against what check_size.cpp states of them.
+// Compares bounds near interfaces of an image, and bounds that grow, with the statements of check_size.cpp.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -29,7 +29,7 @@ Image random_image(const std::array<double, 12>& affine, std::mt19937& random) {
   return image;
 }
 
-// Cells that share nothing, with vertices around the image's voxels; `lattice`: at half voxels.
+// Returns cells that share nothing, with vertices around the image's voxels; with `lattice` at half voxels.
 Mesh random_cells(const Image& image, bool lattice, std::mt19937& random) {
   std::uniform_real_distribution<double> coordinate(-1, 8), size(0.5, 3);
   const ImageFrame frame(image, Space::kRas);
@@ -60,7 +60,7 @@ bool holds(const std::vector<std::uint32_t>& labels, std::uint32_t label) {
   return std::find(labels.begin(), labels.end(), label) != labels.end();
 }
 
-// Calls use(voxel) for all voxels, and those around the image where `margin` is 1.
+// Calls use(voxel) for all voxels, and for voxels up to `margin` around the image.
 template <class Use>
 void for_each_voxel(const std::array<int, 3>& size, int margin, const Use& use) {
   for (int k = -margin; k < size[2] + margin; ++k)
@@ -68,7 +68,7 @@ void for_each_voxel(const std::array<int, 3>& size, int margin, const Use& use) 
       for (int i = -margin; i < size[0] + margin; ++i) use(std::array<int, 3>{i, j, k});
 }
 
-// The squared distance of the nearest face between voxels of either side, in any of the types.
+// Returns the squared distance of the nearest face between voxels of either side, in any of the types.
 template <class T>
 T squared_distance(const Image& image, const SizeNear& near, const Vector<T>& voxel) {
   std::optional<T> least;
@@ -123,7 +123,7 @@ TEST(SizeInImage, IsBoundedNearAnInterfaceAsAllOfItsFacesSay) {
       }
 }
 
-// Label 1 up to x = 3.5, then 2, in voxels of 1 mm.
+// Returns label 1 up to x = 3.5, then label 2, in voxels of 1 mm.
 Image halves() {
   return make_image({8, 4, 4}, kUnitAffine, [](int i, int, int) { return i < 4 ? 1U : 2U; });
 }
@@ -151,7 +151,7 @@ TEST(SizeInImage, MeasuresTheNearestFace) {
 
 TEST(SizeInImage, HoldsAtTheVeryWidthAndNotAnUlpBeyond) {
   const Image image = halves();
-  const Mesh mesh = corner(2, 2, 2);  // circumcentre (1, 1, 1), 2.5 from the interface, circumradius sqrt(3)
+  const Mesh mesh = corner(2, 2, 2);  // circumcenter (1, 1, 1), 2.5 from the interface, circumradius sqrt(3)
   Options options = options_near({"1,2=1.7:2.5"});
   EXPECT_EQ(verdict_of(mesh, image, options), Verdict::kFail);
   options.size_near[0].width_mm = std::nextafter(2.5, 0);
@@ -175,7 +175,7 @@ TEST(SizeInImage, FollowsTheSpaceOfTheMesh) {
   EXPECT_EQ(verdict_of(voxels, image, options), Verdict::kNotRun);
 }
 
-// The mean of the eight voxels around that have a size, by trilinear weights; 0: there is none.
+// Returns the mean of the eight voxels around that have a size, by trilinear weights; 0 if none has.
 double size_at(const SizeImage& sizes, const Point& voxel) {
   double sum = 0, weights = 0;
   for (std::size_t axis = 0; axis < 3; ++axis)
@@ -193,7 +193,8 @@ double size_at(const SizeImage& sizes, const Point& voxel) {
   return weights > 0 ? sum / weights : 0;
 }
 
-// What check_size.cpp states of a grade, word for word, but for the rounding of single precision.
+// Computes the bound that check_size.cpp states for a grade, word for word, without the rounding of single
+// precision.
 double grown_by_definition(const Point& voxel, const Image& image, const SizeImage& sizes,
                            const Options& options) {
   const double diagonal = std::hypot(image.spacing[0], image.spacing[1], image.spacing[2]);
@@ -284,7 +285,7 @@ TEST(SizeInImage, GrowsFromVoxelsSizesAndInterfacesAsStated) {
 TEST(SizeInImage, ACellIsOverItsGradeJustBeyondTheSlack) {
   const Image image =
       make_image({9, 3, 3}, kUnitAffine, [](int i, int j, int k) { return i + j + k == 0 ? 2U : 1U; });
-  const Mesh mesh = shifted(corner(2, 2, 2), {4, -1, -1});  // circumcentre (5, 0, 0), circumradius sqrt(3)
+  const Mesh mesh = shifted(corner(2, 2, 2), {4, -1, -1});  // circumcenter (5, 0, 0), circumradius sqrt(3)
   Options options = options_near({}, 0.25);
   const double slack = 0.25 * std::sqrt(3) / 2, bound = std::sqrt(3) - 0.25 * 5 - slack;
   for (const auto& [radius, verdict] :

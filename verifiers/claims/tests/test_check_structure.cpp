@@ -78,7 +78,7 @@ TEST(Structure, JudgesALeftHandedMeshAsItsMirrorImage) {
 
 TEST(Structure, CountsACellListedTwiceOnce) {
   Mesh mesh = kuhn_cubes(2);
-  for (const CellId c : {0U, 20U}) {  // at the boundary, and wherever
+  for (const CellId c : {0U, 20U}) {  // at the boundary, and elsewhere
     Mesh twice = mesh;
     const auto& v = twice.cells[c];
     twice.cells.push_back({v[1], v[2], v[0], v[3]});
@@ -118,7 +118,7 @@ TEST(Structure, RejectsCoincidentVertices) {
 TEST(Structure, WarnsOfUnusedVertices) {
   Mesh mesh = kuhn_cubes(1);
   mesh.vertices.push_back({99, 99, 99});
-  mesh.vertices.push_back({-0.5, 0, 0});  // on a facet, where a used one would hang
+  mesh.vertices.push_back({-0.5, 0, 0});  // on a facet, where a used vertex would hang
   mesh.vertices.push_back(mesh.vertices[3]);
   mesh.vertices.push_back({99, 99, 99});
   const ClaimResult result = structure_of(mesh);
@@ -127,7 +127,7 @@ TEST(Structure, WarnsOfUnusedVertices) {
 }
 
 TEST(Structure, RejectsHangingVertices) {
-  const auto with_tip_at = [](const Point& tip) {  // of a cell below the facet z = 0 of a corner
+  const auto with_tip_at = [](const Point& tip) {  // tip of a cell below the facet z = 0 of a corner
     const Mesh below = mesh_of({{0, 0, 0}, {1, 0, -1}, {0, 1, -1}, {-1, -1, -1}}, {{0, 2, 1, 3}});
     return structure_of(joined(corner(4, 4, 4), shifted(below, tip)));
   };
@@ -135,10 +135,10 @@ TEST(Structure, RejectsHangingVertices) {
   EXPECT_EQ(violations(with_tip_at({2, 2, 0}), "hanging_vertices"), 2);  // on an edge, so on two facets
   EXPECT_EQ(with_tip_at({1, 1, -1e-300}).verdict, Verdict::kPass);       // a little below
   EXPECT_EQ(with_tip_at({3, 2, 0}).verdict, Verdict::kPass);             // in the plane, beside the facet
-  EXPECT_GT(violations(with_tip_at({1, 1, 0x1p-52}), "overlap"), 0);     // through it
+  EXPECT_GT(violations(with_tip_at({1, 1, 0x1p-52}), "overlap"), 0);     // through the facet
 }
 
-// Whether the insides of two cells meet: no axis among the normals of facets and the products of edges keeps
+// True if the insides of two cells meet: no axis among the normals of facets and the products of edges keeps
 // them apart. Coordinates are small integers, so doubles are exact.
 bool do_insides_meet(const std::array<Point, 4>& a, const std::array<Point, 4>& b) {
   const auto is_kept_apart = [&](const Vector<double>& axis) {

@@ -94,7 +94,7 @@ TEST(Surface, WhereAThirdLabelMeetsTheyAreCountedApart) {
   });
   const ClaimResult result = surface_of(kuhn_mesh(image));
   EXPECT_EQ(result.verdict, Verdict::kPass);
-  EXPECT_EQ(row_of(result, 1)["non_manifold_edges"], 1);  // inside, where 1 and 2 alone meet
+  EXPECT_EQ(row_of(result, 1)["non_manifold_edges"], 1);  // inside, where only 1 and 2 meet
   const Image with_third = make_image({4, 4, 4}, kUnitAffine, [](int i, int j, int k) {
     if (k != 1 || i < 1 || i > 2 || j < 1 || j > 2) return 0U;
     return i == j ? 1U : i == 1 ? 2U : 3U;
@@ -149,7 +149,7 @@ TEST(Surface, ListedFacetsAreTheCellsOnes) {
   Mesh rotated = mesh;
   std::rotate(rotated.facets[5].begin(), rotated.facets[5].begin() + 1, rotated.facets[5].end());
   EXPECT_EQ(surface_of(rotated).verdict, Verdict::kPass);
-  Mesh other_way = rotated;  // labels and normal turned together say the same
+  Mesh other_way = rotated;  // labels and normal turned together mean the same
   std::swap(other_way.facets[5][0], other_way.facets[5][1]);
   std::swap(other_way.facet_labels[5][0], other_way.facet_labels[5][1]);
   EXPECT_EQ(surface_of(other_way).verdict, Verdict::kPass);
@@ -163,7 +163,7 @@ TEST(Surface, ListedFacetsAreTheCellsOnes) {
   EXPECT_EQ(surface_of(twice).num_violations, 1U);
   Mesh stray = mesh;
   stray.facets[5] = {0, 1, 70000};
-  EXPECT_EQ(surface_of(stray).num_violations, 2U);  // and one missing
+  EXPECT_EQ(surface_of(stray).num_violations, 2U);  // the stray one and the missing one
 }
 
 TEST(Surface, ListedFacetsWithoutLabelsOnlyWarn) {

@@ -23,7 +23,8 @@ ClaimResult surface_vertices_of(const Mesh& mesh, const Image& image, double del
   return check_surface_vertices(mesh, mapped_adjacency(mesh), image, options);
 }
 
-// A point where the label changes between a and b, whose labels differ, to 1e-13 of a voxel's length or so.
+// Returns a point between a and b, whose labels differ, where the label changes, to about 1e-13 of a voxel's
+// length.
 Point change_between(const LabelFunction& function, Point a, Point b) {
   const std::uint32_t label = function.label_at(a);
   for (int i = 0; i < 48; ++i) {
@@ -33,7 +34,8 @@ Point change_between(const LabelFunction& function, Point a, Point b) {
   return b;
 }
 
-// Cells of their own, whose vertices are points of the isosurface in every part of the image.
+// Returns cells that share no vertices; their vertices are points of the isosurface in every part of the
+// image.
 Mesh cells_on_isosurface(const Image& image, Space space, LabelValue label) {
   const LabelFunction function(image);
   const ImageFrame frame(image, space);
@@ -58,12 +60,14 @@ Mesh cells_on_isosurface(const Image& image, Space space, LabelValue label) {
   return mesh;
 }
 
-// A box of label 1 that is all of the grid: its faces are planes half a voxel beyond it.
+// Returns a box of label 1 that fills the grid: its faces are planes half a voxel beyond the outermost
+// centers.
 Image full_box(const std::array<double, 12>& affine) {
   return make_image(kSize, affine, [](int, int, int) { return 1; });
 }
 
-// A cell with a vertex on each of four faces of that box, the first moved off its face by so many voxels.
+// Returns a cell with a vertex on each of four faces of that box, the first moved off its face by `off`
+// voxels.
 Mesh cell_in_box(const Image& image, Space space, double off) {
   const ImageFrame frame(image, space);
   Mesh mesh;
@@ -179,7 +183,7 @@ TEST(SurfaceVertices, AMeshWithoutLabelsIsNotDecided) {
   EXPECT_EQ(surface_vertices_of(mesh, image).verdict, Verdict::kNotRun);
 }
 
-// Weights of both labels tie to second order in the middle of four voxels that alternate.
+// In the middle of four alternating voxels the weights of both labels tie to second order.
 TEST(LabelSearch, FindsALabelWhereGradientsVanish) {
   const Image image = make_image({4, 4, 4}, kUnitAffine, [](int i, int j, int) { return 1 + (i + j) % 2; });
   const LabelSearch search(image);
@@ -192,7 +196,7 @@ TEST(LabelSearch, FindsALabelWhereGradientsVanish) {
   ASSERT_TRUE(found);
   EXPECT_EQ(found->label, 2U);
   EXPECT_LE(found->distance, kBound);
-  // So near to the saddle rounded weights tie: only rationals tell the labels apart.
+  // This near the saddle rounded weights tie: only rationals distinguish the labels.
   const Point& at = found->at;
   EXPECT_EQ(LabelFunction(image).exact_label_at({mpq_class(at[0]), mpq_class(at[1]), mpq_class(at[2])}), 2U);
 }
@@ -211,7 +215,7 @@ TEST(LabelReach, BeyondTheGridIsBackground) {
   const Image image = full_box(kAnisotropic);
   const double diagonal = std::hypot(0.5, 0.8, 2.5);
   for (const double past : {0.99, 1.01}) {
-    const LabelReach reach(image, 0);  // a diagonal
+    const LabelReach reach(image, 0);  // its reach is a diagonal
     EXPECT_EQ(reach.has(0, {past * diagonal / 0.5 - 1, 5, 4}), past < 1);
     EXPECT_EQ(reach.has(0, {6, 11 - past * diagonal / 0.8, 4}), past < 1);
   }

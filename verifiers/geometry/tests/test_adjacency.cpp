@@ -36,7 +36,7 @@ TEST(Adjacency, FacetsTurnTheSameWaySeenFromTheirCells) {
   }
 }
 
-// Boxes of very different sizes and places, some the same.
+// Returns boxes of very different sizes and places, some of them equal.
 std::vector<Bounds> graded_boxes(std::size_t count, std::mt19937& random) {
   std::vector<Bounds> boxes;
   std::uniform_real_distribution<double> unit(0, 1);

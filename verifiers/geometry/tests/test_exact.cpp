@@ -8,7 +8,7 @@
 namespace podm::verify {
 namespace {
 
-// Lattice points moved by a few ulps, at a scale: signs that rounding gets wrong.
+// Returns lattice points at a scale, moved by a few ulps: rounding gets their signs wrong.
 std::vector<Point> near_degenerate_points(std::size_t count, double scale, std::mt19937& random) {
   auto points = lattice_points(count, 3, random);
   for (Point& p : points)

@@ -1,5 +1,5 @@
-// Any bytes under any format's name either are an image, of labels or of sizes, or are refused with an
-// InputError that names the file.
+// Fuzz target for images: any bytes under the name of any format are an image of labels or of sizes, or they
+// are refused with an InputError that names the file.
 #include <array>
 #include <limits>
 
@@ -42,8 +42,8 @@ void expect_image_or_refusal(const std::string& path, const Read& read) {
 }  // namespace
 }  // namespace podm::verify
 
-// The first byte chooses the name, the others are the file. It is alone in a folder of its own: headers name
-// files beside them.
+// The first byte chooses the name, the others are the file. Each name has a folder of its own, as headers
+// name files beside them.
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
   using namespace podm;
   constexpr std::array<const char*, 8> kNames{"a.nii", "a.nii.gz", "a.nrrd", "a.mha",

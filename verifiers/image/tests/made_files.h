@@ -1,4 +1,4 @@
-// Image files made for a test, in a folder that goes with it.
+// Image files made for a test, in a folder that is removed with them.
 #pragma once
 
 #include <nifti/nifti1.h>
@@ -36,7 +36,7 @@ class Folder {
   std::filesystem::path path_;
 };
 
-/// `window_bits` as zlib has it: 31 for gzip, 15 for a zlib stream.
+/// `window_bits` as in zlib: 31 for gzip, 15 for a zlib stream.
 inline std::string deflated(const std::string& bytes, int window_bits = 31) {
   z_stream stream{};
   deflateInit2(&stream, Z_BEST_COMPRESSION, Z_DEFLATED, window_bits, 9, Z_DEFAULT_STRATEGY);
@@ -56,7 +56,7 @@ std::string bytes_of_values(const std::vector<T>& values) {
   return {reinterpret_cast<const char*>(values.data()), values.size() * sizeof(T)};
 }
 
-/// 2 x 3 x 4 voxels, 1, 2, 3 mm, an sform without rotation.
+/// Returns a file of 2 x 3 x 4 voxels of 1, 2, 3 mm, with an sform without rotation.
 template <class Change>
 std::string nifti_file(const std::string& voxels, Change change) {
   nifti_1_header header{};
@@ -82,7 +82,7 @@ inline std::string nifti_file(const std::string& voxels) {
   return nifti_file(voxels, [](nifti_1_header&) {});
 }
 
-/// 24 values: 7 at the origin, 5 at its x neighbour, 0 elsewhere.
+/// Returns 24 values: 7 at the origin, 5 at its x neighbour, 0 elsewhere.
 template <class T>
 std::vector<T> two_voxels() {
   std::vector<T> voxels(24, T{0});

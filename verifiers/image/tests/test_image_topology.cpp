@@ -76,8 +76,8 @@ TEST(ImageTopology, LabelsApartAndTogether) {
   EXPECT_EQ(topology.of_label.size(), 2U);
 }
 
-// The object, 6-connected, and the rest of the box, 26-connected, have one surface between them; the box has
-// another, a sphere. A solid's Euler number is half its surface's: chi(rest) = chi(object) + 1.
+// The 6-connected object and the 26-connected rest of the box share one surface. The box has another one, a
+// sphere. The Euler number of a solid is half that of its surface. Therefore chi(rest) = chi(object) + 1.
 TEST(ImageTopology, ObjectAndComplementHaveOneBoundary) {
   std::mt19937 random(7);
   for (int trial = 0; trial < 20; ++trial) {

@@ -1,4 +1,4 @@
-// Islands go to what they touch most.
+// An island takes the label that it touches most.
 #include "image/islands.h"
 
 #include <gtest/gtest.h>

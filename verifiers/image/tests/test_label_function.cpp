@@ -31,7 +31,7 @@ Image with_random_strengths(Image image) {
   return image;
 }
 
-// Of the nearest voxel of the grid.
+// Returns the strength of the nearest voxel of the grid.
 double strength(const Image& image, std::array<int, 3> v) {
   if (!image.smoothing) return 1;
   for (std::size_t axis = 0; axis < 3; ++axis) v[axis] = std::clamp(v[axis], 0, image.size[axis] - 1);
@@ -60,7 +60,7 @@ void expect_hat_functions(const Image& image) {
           if (weight > 0) weights[voxel(image, i, j, k)] += weight * strength(image, {i, j, k});
         }
     const LabelWeights found = function.weights_at(u);
-    if (weights.size() == 1) weights.begin()->second = 1;  // nothing to weigh
+    if (weights.size() == 1) weights.begin()->second = 1;  // one label alone has weight 1
     for (const auto& [label, weight] : weights) {
       EXPECT_NEAR(found.weight_of(label), weight, 1e-12);
       EXPECT_LE(weight, weights[function.label_at(u)] + 1e-12);
@@ -105,7 +105,7 @@ TEST(LabelFunction, TiesGoToTheSmallerLabelAndOutsideIsBackground) {
   EXPECT_EQ(function.label_at({1e300, -1e300, 1}), 0U);
 }
 
-// In multiples of 1/8 weights are exact in doubles, ties among them.
+// At multiples of 1/8 the weights are exact in doubles, and some of them tie.
 void expect_exact_labels(const Image& image) {
   std::mt19937 random(9);
   const LabelFunction function(image);
@@ -142,7 +142,7 @@ TEST(LabelFunction, DecidesWhatRoundingLeavesOpen) {
   EXPECT_EQ(num_exact, 3U);
   EXPECT_EQ(function.decided_label_at({1.499, 1.3, 1.7}, num_exact), 9U);
   EXPECT_EQ(num_exact, 3U);
-  // A third of the way is no double: the strengths 1 and 2 tie there.
+  // Strengths of 1 to 2 tie a third of the way, which is no double.
   image.smoothing.emplace();
   for (std::size_t i = 0; i < image.voxels.size(); ++i)
     image.smoothing->strengths.push_back(i % 4 < 2 ? 1000 : 2000);

@@ -1,5 +1,5 @@
-// Every format gives the same small image, its affine honoured; real ones as other readers measured them
-// (PODM_TEST_IMAGES names their folder).
+// Every format gives the same small image with its affine. Real images agree with the results of other
+// readers (PODM_TEST_IMAGES names their folder).
 #include <gtest/gtest.h>
 #include <nifti/nifti1_io.h>
 
@@ -58,7 +58,7 @@ TEST(ReadVerifierImage, NiftiQformHalfATurnAboutZ) {
   expect_small_image(folder.write("a.nii", file), {-1, 0, 0, 4, 0, -2, 0, 0, 0, 0, 3, 0});
 }
 
-// The byte order does not matter; libnifti does not read here, but knows what a quaternion means.
+// The byte order does not matter. libnifti does not read the file here; it only interprets the quaternion.
 TEST(ReadVerifierImage, NiftiQformIsTheRotationThatLibniftiMakesOfIt) {
   const Folder folder;
   std::mt19937 random(5);
@@ -149,7 +149,7 @@ TEST(ReadVerifierImage, MetaImage) {
   expect_small_image(folder.write("c.mhd", kMetaHeader + "ElementDataFile = c.raw\n"), kFromLps);
 }
 
-// What programs leave that change a file and not its header; more follows the stream in some.
+// Some programs change a file but not its header. In some files more bytes follow the stream.
 TEST(ReadVerifierImage, MetaImageWhoseStreamIsNotAsLongAsItsHeaderSays) {
   const Folder folder;
   const std::string zipped = deflated(kVoxels, 15), size = std::to_string(zipped.size());

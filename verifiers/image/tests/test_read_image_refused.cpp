@@ -15,7 +15,7 @@ struct BadFile {
   const char* fault;
   const char* name;
   std::function<std::string()> bytes;
-  const char* message;  // part of it
+  const char* message;  // a part of the message
 };
 
 template <class Change>

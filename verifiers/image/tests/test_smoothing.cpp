@@ -1,4 +1,4 @@
-// Strengths against their definition, word for word, and what smoothing is to keep.
+// Compares strengths with their definition, word for word, and checks properties of smoothed images.
 #include "image/smoothing.h"
 
 #include <gtest/gtest.h>
@@ -36,7 +36,7 @@ std::size_t place(const Image& image, const Voxel& v) {
   return static_cast<std::size_t>((v[2] * image.size[1] + v[1]) * image.size[0] + v[0]);
 }
 
-// Blobs: each voxel has the label of the nearest of some random points, and a few have any.
+// Makes blobs: each voxel has the label of the nearest of some random points. A few voxels have any label.
 Image random_image(unsigned seed, const Voxel& size, const std::array<double, 3>& spacing,
                    unsigned num_labels) {
   std::mt19937 random(seed);
@@ -112,7 +112,8 @@ class ByDefinition {
     return found;
   }
 
-  // Areas of the faces of v's label within twice the width, and leads across them times these areas.
+  // Returns the areas of the faces of v's label within twice the width, and the leads across them times these
+  // areas.
   std::pair<long, long> faces_near(const Voxel& v, double width, const std::map<Voxel, long>& n) const {
     const double shortest = *std::min_element(image_.spacing.begin(), image_.spacing.end());
     Voxel reach;
@@ -212,7 +213,7 @@ TEST(Smoothing, IsByDefinitionWhereVoxelsAreNoCubes) {
   }
 }
 
-// Whole numbers of voxels, which rounding makes a little more or less.
+// The widths are whole numbers of voxels, which rounding makes slightly larger or smaller.
 TEST(Smoothing, IsByDefinitionWhereWidthsAreWholeVoxels) {
   for (const auto& [spacing, width] : {std::pair{0.8, 1.6}, {0.4, 0.8}, {0.9, 2.7}, {0.7, 0.7}, {0.1, 0.3}})
     expect_by_definition(random_image(24, {9, 8, 6}, {spacing, spacing, spacing}, 3), width);
@@ -246,7 +247,7 @@ TEST(Smoothing, CentresOfVoxelsKeepTheirLabels) {
   }
 }
 
-// Share of a box that has the label, at the centres of small cubes.
+// Returns the share of a box that has the label, at the centers of small cubes.
 double share_of(const LabelFunction& function, std::uint32_t label, const Point& low, const Point& high,
                 int parts) {
   std::size_t count = 0, all = 0;
@@ -267,7 +268,7 @@ TEST(Smoothing, APlaneStaysWhereItIs) {
   EXPECT_NEAR(function.change_after({9, 4, 4}, 0), 0.5, 1e-4);
 }
 
-// What a smoothed ball is for: its interface is the sphere, not the stairs of voxels.
+// The interface of a smoothed ball is the sphere, not the stairs of voxels.
 TEST(Smoothing, ABallIsRound) {
   constexpr double kRadius = 10, kCenter = 13.2;
   const auto from_center = [](double i, double j, double k) {
@@ -303,7 +304,7 @@ TEST(Smoothing, ABallIsRound) {
   EXPECT_NEAR(volume, true_volume, 0.005 * true_volume);
 }
 
-// A sheet is as thick as its voxels, a rod has their section, whatever the width.
+// A sheet stays as thick as its voxels and a rod keeps their section, whatever the width.
 TEST(Smoothing, ThinPartsKeepTheirVolume) {
   for (const double width : {0.8, 1.5, 3.0})
     for (const int thickness : {1, 2, 3, 4}) {
@@ -318,7 +319,7 @@ TEST(Smoothing, ThinPartsKeepTheirVolume) {
         return 100 * share_of(LabelFunction(image), 1, low, high, 70);
       };
       EXPECT_NEAR(volume(sheet), 10 * thickness, 0.4) << "width " << width;
-      // The edges of a rod are round with the stairs of voxels, too.
+      // The label function rounds the edges of a rod that is not smoothed, too.
       EXPECT_NEAR(volume(rod) / volume(stairs_of_rod), 1, thickness > 1 ? 0.05 : 0.12) << "width " << width;
     }
 }

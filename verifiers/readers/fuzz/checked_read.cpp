@@ -8,7 +8,7 @@ namespace podm::verify {
 using fuzz::check;
 
 void read_checked(const std::string& path, std::size_t num_bytes) {
-  constexpr std::size_t kBestRatio = 1032;  // of deflate
+  constexpr std::size_t kBestRatio = 1032;  // deflate's best ratio
   try {
     const Mesh mesh = read_mesh(path);
     check(mesh.cell_labels.empty() || mesh.cell_labels.size() == mesh.cells.size());

@@ -1,4 +1,4 @@
-// Exodus II, as classic netCDF.
+// Fuzz target for Exodus II in classic netCDF.
 #include "readers/fuzz/checked_read.h"
 
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {

@@ -1,4 +1,4 @@
-// Gmsh files.
+// Fuzz target for Gmsh files.
 #include "readers/fuzz/checked_read.h"
 
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {

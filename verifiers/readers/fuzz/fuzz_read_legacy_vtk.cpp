@@ -1,4 +1,4 @@
-// Legacy VTK files.
+// Fuzz target for legacy VTK files.
 #include "readers/fuzz/checked_read.h"
 
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {

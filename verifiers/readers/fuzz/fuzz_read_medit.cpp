@@ -1,4 +1,4 @@
-// Medit files: text where the bytes begin so, else binary.
+// Fuzz target for Medit files: text if the bytes begin as text does, otherwise binary.
 #include "readers/fuzz/checked_read.h"
 
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {

@@ -1,4 +1,5 @@
-// PVTU indexes of cells and of facets, with three VTU files that they may name, each apart by a '|'.
+// Fuzz target for PVTU indexes of cells and of facets, with three VTU files that they may name. A '|'
+// separates the files.
 #include "readers/fuzz/checked_read.h"
 
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {

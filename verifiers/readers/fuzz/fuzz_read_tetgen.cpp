@@ -1,4 +1,4 @@
-// TetGen files: .node, .ele and .face, apart by a '|'.
+// Fuzz target for TetGen's .node, .ele and .face. A '|' separates the files.
 #include "readers/fuzz/checked_read.h"
 
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {

@@ -1,4 +1,4 @@
-// VTU files, gzipped where the bytes begin so.
+// Fuzz target for VTU files, gzipped if the bytes begin as gzip does.
 #include "readers/fuzz/checked_read.h"
 
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {

@@ -135,7 +135,7 @@ std::string gmsh_v2_bytes(const Mesh& mesh, bool is_big_endian) {
   return bytes.text + "\n$EndElements\n";
 }
 
-// Each cell has a block and a volume of its own, so that the cells keep their order.
+// Each cell has a block and a volume of its own, so the cells keep their order.
 std::string gmsh_v4_text(const Mesh& mesh, std::uint64_t first_tag, std::uint64_t tag_step) {
   std::string text = "$MeshFormat\n4.1 0 8\n$EndMeshFormat\n$Entities\n";
   text += fmt::format("0 0 1 {}\n1 0 0 0 1 1 1 0 0\n", mesh.cells.size());

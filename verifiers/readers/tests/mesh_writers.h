@@ -1,4 +1,4 @@
-// Writers of every variant of every format, as short as they can be.
+// Writers of every variant of every format, as short as possible.
 #pragma once
 
 #include <bit>
@@ -11,7 +11,7 @@
 
 namespace podm::verify {
 
-/// Bytes of numbers in either byte order.
+/// Writes numbers as bytes in either byte order.
 class Bytes {
  public:
   explicit Bytes(bool is_big_endian)
@@ -23,7 +23,7 @@ class Bytes {
     std::memcpy(bytes, &number, sizeof(Number));
     for (std::size_t i = 0; i < sizeof(Number); ++i) text += bytes[is_swapped_ ? sizeof(Number) - 1 - i : i];
   }
-  /// Puts the number as the VTU type of this name.
+  /// Writes the number in the VTU type of this name.
   void put_as(const std::string& type, double number);
 
   std::string text;
@@ -46,7 +46,7 @@ std::string medit_text(const Mesh& mesh);
 std::string medit_bytes(const Mesh& mesh, int version, bool is_big_endian);
 std::string gmsh_v2_text(const Mesh& mesh);
 std::string gmsh_v2_bytes(const Mesh& mesh, bool is_big_endian);
-/// Node tag of vertex i: first_tag + i * tag_step.
+/// The node tag of vertex i is first_tag + i * tag_step.
 std::string gmsh_v4_text(const Mesh& mesh, std::uint64_t first_tag = 1, std::uint64_t tag_step = 1);
 std::string gmsh_v4_bytes(const Mesh& mesh, int size_bytes, bool is_big_endian);
 std::string tetgen_nodes(const Mesh& mesh, int base);

@@ -1,4 +1,4 @@
-// A small mesh to write and read back, and how two meshes are compared.
+// A small mesh to write and read back, and comparisons of two meshes.
 #pragma once
 
 #include <gtest/gtest.h>
@@ -11,7 +11,7 @@
 
 namespace podm::verify {
 
-/// A folder of its own for each test, removed with all in it.
+/// A temporary folder per test, removed with its content.
 class TestFolder {
  public:
   TestFolder() {
@@ -28,20 +28,21 @@ class TestFolder {
   std::string path_;
 };
 
-/// Three tetrahedra of two labels and two triangles; all coordinates are floats, so that any type holds them.
+/// Returns three tetrahedra of two labels and two triangles. All coordinates are floats, so any type holds
+/// them.
 Mesh make_small_mesh();
 
 void write_bytes(const std::string& path, const std::string& bytes);
 std::string read_bytes(const std::string& path);
 std::string gzipped(const std::string& bytes);
 
-/// Reads `path`; the message of the InputError it throws, or "" (and a test failure) if it throws none.
+/// Reads `path`. Returns the message of the InputError that it throws, or "" (and a test failure) if none.
 std::string refusal_of(const std::string& path);
-/// Writes `bytes` as `name` and expects that reading is refused with the path first and every word after it.
+/// Writes `bytes` as `name` and expects a refusal whose message has the path first and every word after it.
 void expect_refused(const TestFolder& folder, const std::string& name, const std::string& bytes,
                     const std::vector<std::string>& words);
 
-/// Vertices bit by bit, cells and labels.
+/// Compares vertices bit by bit, cells and labels.
 void expect_same_cells(const Mesh& mesh, const Mesh& expected);
 void expect_same_facets(const Mesh& mesh, const Mesh& expected);
 

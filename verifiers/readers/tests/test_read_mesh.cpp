@@ -1,4 +1,4 @@
-// Every variant of every format gives the mesh that was written.
+// Reading every variant of every format gives the mesh that was written.
 #include <fmt/format.h>
 #include <gtest/gtest.h>
 
@@ -17,7 +17,7 @@ class ReadMesh : public testing::Test {
     write_bytes(folder_ / name, bytes);
     return read_mesh(folder_ / name);
   }
-  // Cells, labels and facets, plain and gzipped.
+  // Compares cells, labels and facets, read plain and gzipped.
   void expect_read(const std::string& name, const std::string& bytes, const std::string& label_array) const {
     SCOPED_TRACE(name);
     for (const bool is_gzipped : {false, true}) {
@@ -60,7 +60,7 @@ TEST_F(ReadMesh, VtuGzipped) {
   expect_same_cells(read("a.vtu.gz", gzipped(vtu_text(written_, {}))), written_);
 }
 
-// Ids count from the points of their piece, which are appended to those of the pieces before.
+// Ids count from the points of their piece, which are appended to the points of earlier pieces.
 TEST_F(ReadMesh, VtuPiecesAreAppended) {
   const std::size_t num_vertices = written_.vertices.size();
   Mesh expected = written_;
@@ -127,7 +127,7 @@ TEST_F(ReadMesh, TetgenFromEitherFileAndEitherBase) {
 
 TEST_F(ReadMesh, ExtensionsInCapitals) { expect_same_cells(read("A.VTU", vtu_text(written_, {})), written_); }
 
-// Whether coordinates and ids make sense is for the structure claim to say: readers pass them on.
+// Readers pass on coordinates and ids that make no sense; the structure claim judges them.
 TEST_F(ReadMesh, CoordinatesThatAreNotFinite) {
   const Mesh mesh = read("a.mesh",
                          "MeshVersionFormatted 2 Dimension 3 Vertices 2 nan inf -inf 0 1e999 -1e-999 +2.5 0\n"
@@ -152,7 +152,7 @@ TEST_F(ReadMesh, IdsThatNameNoVertex) {
     options.id_type = type;
     EXPECT_EQ(read("a.vtu", vtu_text(wrong, options)).cells, wrong.cells);
   }
-  VtuOptions pieces;  // there 600 might be a vertex of another piece
+  VtuOptions pieces;  // with pieces, 600 might be a vertex of another piece
   pieces.num_pieces = 2;
   EXPECT_EQ(read("a.vtu", vtu_text(wrong, pieces)).cells[1][2], kNone);
   EXPECT_EQ(read("a.msh", gmsh_v4_text(wrong)).cells[1][2], kNone);  // a tag, not an id
@@ -190,8 +190,7 @@ std::string inserted(std::string text, const std::string& before, const std::str
   return text.insert(text.find(before), words);
 }
 
-// Our mesher's words in every format that has a place for them; netCDF's is tried by the tests of the
-// program.
+// Every format that has a place for podm's promises is read. The tests of the program cover netCDF.
 TEST_F(ReadMesh, TheWidthOfSmoothingThatItsMakerTells) {
   const auto files_that_say = [&](const std::string& words) {
     const std::string comment = "# promise " + words + "\n",
@@ -230,7 +229,7 @@ TEST_F(ReadMesh, VtuArraysOfTextAreNoLabels) {
   expect_same_cells(read("a.vtu", vtu), written_);
 }
 
-// An array of fractions is no label array whatever its name.
+// An array of fractions is no label array, whatever its name.
 TEST_F(ReadMesh, LabelsAreIntegers) {
   std::string vtk = legacy_vtk_text(written_, false, false);
   vtk.replace(vtk.find("label int"), 9, "material float");

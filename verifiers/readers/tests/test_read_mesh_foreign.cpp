@@ -1,4 +1,4 @@
-// Files that VTK's own writers and the mesher's program have written.
+// Reads files written by VTK's own writers and by podm.
 #include <fmt/format.h>
 #include <gtest/gtest.h>
 
@@ -41,7 +41,8 @@ TEST(ReadVtkFiles, EveryWayVtkWritesAGrid) {
   EXPECT_EQ(num_files, 52);
 }
 
-// A mesh with its vertices sorted by place and then its cells and facets by vertices: formats may order all.
+// Returns the mesh with vertices sorted by coordinates, then cells and facets sorted by vertices: formats may
+// reorder all of them.
 Mesh sorted(const Mesh& mesh) {
   std::vector<VertexId> order(mesh.vertices.size()), position(mesh.vertices.size());
   std::iota(order.begin(), order.end(), 0);
@@ -108,7 +109,7 @@ TEST_P(ReadOurMesh, IsTheSameInEveryFormat) {
   }
 }
 
-// Each facet is a side of a cell of each of its labels, or of one where the other is outside.
+// Each facet is a side of a cell of each of its labels, or of one cell if the other label is outside.
 TEST_P(ReadOurMesh, FacetsAreSidesOfCellsOfTheirLabels) {
   const Mesh mesh = mesh_as("a.vtu");
   std::map<std::array<VertexId, 3>, std::vector<LabelValue>> labels_at;
@@ -147,7 +148,7 @@ TEST_P(ReadOurMesh, AFacetsFileOfAnotherMeshIsRefused) {
   EXPECT_NE(message.find("do not belong together"), std::string::npos) << message;
 }
 
-// An information record of an Exodus file has 80 bytes, of which "space RAS" leaves most empty.
+// An information record of an Exodus file has 80 bytes; "space RAS" leaves most of them empty.
 TEST(ReadOurExodus, TellsTheWidthOfSmoothing) {
   const TestFolder folder;
   const std::string path = folder / "a.exo";

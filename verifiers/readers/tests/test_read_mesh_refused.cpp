@@ -17,7 +17,7 @@ class RefuseMesh : public testing::Test {
   void refuse(const std::string& name, const std::string& bytes, const Words& words) const {
     expect_refused(folder_, name, bytes, words);
   }
-  // `bytes` with the first `old` replaced by `now`.
+  // Refuses `bytes` with the first `old` replaced by `now`.
   void refuse_edited(const std::string& name, std::string bytes, const std::string& old,
                      const std::string& now, const Words& words) const {
     SCOPED_TRACE(old + " -> " + now);
@@ -25,7 +25,8 @@ class RefuseMesh : public testing::Test {
     ASSERT_NE(place, std::string::npos);
     refuse(name, bytes.replace(place, old.size(), now), words);
   }
-  // No prefix of the file but the whole (and it without its last blanks) is a mesh; none crashes the reader.
+  // Only the whole file, with or without its last blanks, is a mesh. No shorter prefix is one, and none
+  // crashes the reader.
   void refuse_every_prefix(const std::string& name, std::string bytes) const {
     SCOPED_TRACE(name);
     while (bytes.ends_with('\n')) bytes.pop_back();
@@ -55,7 +56,7 @@ TEST_F(RefuseMesh, ContentOfAnotherFormat) {
 TEST_F(RefuseMesh, GzipThatIsCutOrDamaged) {
   std::string bytes = gzipped(medit_text(mesh_));
   refuse("a.mesh.gz", bytes.substr(0, bytes.size() - 9), {"byte", "unexpected end of file"});
-  bytes[bytes.size() - 6] ^= 1;  // of the checksum
+  bytes[bytes.size() - 6] ^= 1;  // in the checksum
   refuse("a.mesh.gz", bytes, {"incorrect data check"});
 }
 
@@ -72,7 +73,7 @@ TEST_F(RefuseMesh, FilesCutOffAnywhere) {
   refuse_every_prefix("a.mesh", medit_text(mesh_));
   for (int version = 1; version <= 4; ++version) {
     std::string bytes = medit_bytes(mesh_, version, false);
-    bytes.resize(bytes.size() - (version >= 3 ? 8 : 4));  // the position behind End says nothing
+    bytes.resize(bytes.size() - (version >= 3 ? 8 : 4));  // the position after End carries no information
     refuse_every_prefix("a.meshb", bytes);
   }
   refuse_every_prefix("a.msh", gmsh_v2_text(mesh_));
@@ -81,7 +82,7 @@ TEST_F(RefuseMesh, FilesCutOffAnywhere) {
   refuse_every_prefix("a.msh", gmsh_v4_bytes(mesh_, 8, false));
 }
 
-// A legacy VTK file may end behind its cells: there it has lost nothing that it announced.
+// A legacy VTK file may end after its cells: nothing announced is missing then.
 TEST_F(RefuseMesh, LegacyVtkCutOff) {
   for (const bool is_binary : {false, true}) {
     for (const bool has_offsets : {false, true}) {
@@ -177,7 +178,7 @@ TEST_F(RefuseMesh, VtuCompressedBlocks) {
   refuse("a.vtu", text, {"line 6", "block 0", "damaged"});
 }
 
-// A small file must not become a large mesh by naming the same bytes again and again.
+// A small file must not become a large mesh by naming the same bytes repeatedly.
 TEST_F(RefuseMesh, VtuArraysThatShareTheirData) {
   VtuOptions options;
   options.encoding = VtuOptions::kAppendedRaw;
@@ -235,7 +236,7 @@ TEST_F(RefuseMesh, MeditBinary) {
   };
   refuse("a.meshb", with_int(0, 2), {"byte 0", "first number"});
   refuse("a.meshb", with_int(4, 9), {"byte 4", "version 9"});
-  refuse("a.meshb", with_int(12, 4), {"byte 12", "before it"});  // an endless loop else
+  refuse("a.meshb", with_int(12, 4), {"byte 12", "before it"});  // otherwise an endless loop
   refuse("a.meshb", with_int(16, 2), {"byte 16", "dimension"});
   refuse("a.meshb", with_int(24, 1 << 30), {"lies outside the file"});
   refuse("a.meshb", with_int(28, 1 << 30), {"byte 28", "more than"});

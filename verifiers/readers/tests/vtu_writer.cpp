@@ -44,7 +44,7 @@ class VtuWriter {
     const std::size_t num_cells = mesh_.cells.size();
     if (options_.num_pieces == 1) {
       write_piece(0, mesh_.vertices.size(), 0, num_cells);
-    } else {  // the first points are those of no cell of the first piece
+    } else {  // each piece lists all points
       write_piece(0, mesh_.vertices.size(), 0, num_cells - 1);
       write_piece(0, mesh_.vertices.size(), num_cells - 1, num_cells);
     }

@@ -1,5 +1,5 @@
 #!/usr/bin/python3
-"""Writes one unstructured grid with VTK in every way that VTK knows. Prints the file names, one a line.
+"""Writes one unstructured grid in every variant that VTK supports. Prints one file name per line.
 
 usage: write_vtk_variants.py FOLDER
 """
@@ -11,7 +11,7 @@ import vtk
 
 
 def make_grid():
-    """Two tetrahedra, one of them quadratic, a triangle and a pyramid, with arrays of many kinds."""
+    """Returns two tetrahedra, one of them quadratic, a triangle and a pyramid, with arrays of many kinds."""
     points = vtk.vtkPoints()
     points.SetDataTypeToDouble()
     for i in range(12):
@@ -31,7 +31,7 @@ def make_grid():
     vectors.SetNumberOfComponents(3)
     vectors.SetNumberOfTuples(12)
     vectors.Fill(0.5)
-    vectors.GetRange(-1)  # leaves information that VTK writes along
+    vectors.GetRange(-1)  # creates information that VTK writes with the array
     bits = vtk.vtkBitArray()
     bits.SetName("bits")
     names = vtk.vtkStringArray()

@@ -1,4 +1,4 @@
-// What is left of a report that did not come to its end.
+// Files that are left after an attempt to write a report fails or is interrupted.
 #include "report/whole_file.h"
 
 #include <fcntl.h>
@@ -23,13 +23,13 @@
 namespace podm::verify {
 namespace {
 
-// Called when a file or folder is brought to the disk; an error number ends the attempt.
+// Called when a file or folder is synced to the disk; an error number makes the sync fail.
 std::function<int(const struct stat&)> on_sync;
 
 }  // namespace
 }  // namespace podm::verify
 
-// Takes the place of the system's in this program.
+// Replaces the system's fsync in this program.
 extern "C" int fsync(int descriptor) {
   struct stat status;
   if (podm::verify::on_sync && ::fstat(descriptor, &status) == 0) {
@@ -82,7 +82,7 @@ TEST_F(WholeFile, TakesThePlaceOfAnOlderOne) {
   EXPECT_EQ(files(), (Files{{"report", "newer"}}));
 }
 
-// The status of a process that gets the signal with all bytes written, and none brought to the disk.
+// Returns the status of a process that gets the signal with all bytes written and none synced to the disk.
 template <class Action>
 int status_after(int number, const Action& write) {
   const pid_t child = fork();
