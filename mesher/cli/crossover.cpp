@@ -30,7 +30,7 @@ bool is_threads(const Json& value) {
   return value.is_number_unsigned() && value >= 1U && value <= static_cast<unsigned>(kMaxThreads);
 }
 
-// Why it is not what podm-bench stores; empty: it is.
+// Returns the reason why the file is not one of podm-bench; empty if it is one.
 std::string fault_of(const Json& file) {
   if (!file.is_object()) return "is no JSON object";
   if (file.value("schema", Json()) != kSchema) return fmt::format("is not of schema {}", kSchema);
@@ -42,7 +42,7 @@ std::string fault_of(const Json& file) {
   return {};
 }
 
-// Where PODM at home was not seen ahead, it is PODM on as many threads as were measured.
+// If kPodmHome was never faster, the result is kPodm up to the largest number of threads measured.
 Crossover read_crossover(const std::string& path) {
   std::ifstream stream(path);
   if (!stream) throw InputError(fmt::format("{}: cannot be read as a crossover of podm-bench", path));

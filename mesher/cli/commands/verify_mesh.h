@@ -1,4 +1,5 @@
-// podm mesh --verify: the written mesh handed to podm-verify, a program that shares no code with the mesher.
+// podm mesh --verify: verification of the written mesh by podm-verify, a program that shares no code with the
+// mesher.
 #pragma once
 
 #include <functional>
@@ -11,20 +12,21 @@
 
 namespace podm::cli {
 
-/// Throws InputError where there is no podm-verify that can be run, or none that can judge what is asked for.
+/// Throws InputError if podm-verify cannot be run, or if it cannot verify the requested mesh.
 void check_verifier(const MeshCommand& command);
 
-/// The options of podm-verify by which it checks what the run promises of its mesh. Image and labels are
-/// those of the image's file; if it has none `write_image` is called, which writes it, with its labels
-/// selected, to a file whose name it returns.
+/// Returns the options of podm-verify that check the promises of the run. Image and labels are those of the
+/// image's file. If there is no file, calls `write_image`, which writes the image, with its labels selected,
+/// and returns the file's name.
 std::vector<std::string> claims_to_verify(const MeshRun& run,
                                           const std::function<std::string()>& write_image);
 
-/// Runs the podm-verify beside this program on the mesh that `run` wrote: all claims but fidelity, which is
-/// promised only for cells about as small as voxels. The image goes with it as it is in its file, with the
-/// options that selected its labels; a phantom as a file beside the mesh, written for the purpose. The report
-/// for people goes to standard error unless the run is quiet. Returns that of podm-verify --json, null where
-/// a signal has ended it or came before; throws InputError where the verifier is not there or tells nothing.
+/// Runs the podm-verify beside this program on the mesh that `run` wrote. It checks all claims; fidelity only
+/// on request, because fidelity is promised only for cells about as small as voxels. The verifier gets the
+/// image file with the options that selected its labels. A phantom is first written to a file beside the
+/// mesh. The readable report goes to standard error unless the run is quiet. Returns the report of
+/// podm-verify --json, or null if a signal ended the verifier or came before it. Throws InputError if the
+/// verifier is missing or reports nothing.
 nlohmann::ordered_json verify_mesh(const MeshRun& run, const SignalThread& signals);
 
 }  // namespace podm::cli

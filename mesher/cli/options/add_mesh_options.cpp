@@ -1,4 +1,4 @@
-// The options of podm mesh, and those that podm convert has of them.
+// The options of podm mesh, and those that podm convert shares with it.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -105,7 +105,8 @@ void add_limit_options(CLI::App& app, MeshCommand& command, Program which) {
                       which != Program::kPodmMpi ? "" : "\nover the ranks of the machine"),
           [&command](const std::string& text, const std::string& name) {
             const double bytes = parse_positive(text, name, "number of GiB") * kBytesPerGib;
-            constexpr double kMost = 1e18;  // far above any machine, and within an integer
+            // Far above any machine, and within the range of an integer.
+            constexpr double kMost = 1e18;
             command.max_memory_bytes = static_cast<std::uint64_t>(std::clamp(bytes, 1.0, kMost));
           });
 }
@@ -157,7 +158,7 @@ void add_rank_options(CLI::App& app, MeshCommand& command) {
        ranks);
 }
 
-// On ranks it decides the mesh, too.
+// On ranks the seed determines the mesh, too.
 void add_seed_option(CLI::App& app, MeshingOptions& meshing, Program which) {
   if (which == Program::kPodmMpi) meshing.team.seed = meshing.cut_seed;
   add_one(app, "--seed", "N",

@@ -13,7 +13,8 @@
 namespace podm::cli {
 namespace {
 
-// The whole of `text` as a T, or false. Unlike strtod it knows no locale, no blanks and no leading '+'.
+// Parses the whole of `text` as a T; returns false on failure. Unlike strtod it ignores the locale, and it
+// refuses blanks and a leading '+'.
 template <class T>
 bool read_all(const std::string& text, T& value) {
   const char* end = text.data() + text.size();
@@ -67,7 +68,7 @@ std::vector<double> parse_numbers(const std::string& text, const std::string& op
   for (std::size_t begin = 0; begin <= text.size();) {
     const std::size_t end = std::min(text.find(',', begin), text.size());
     if (!read_all(text.substr(begin, end - begin), numbers.emplace_back()) || !std::isfinite(numbers.back()))
-      numbers.resize(count + 1);  // of no use, as too many are
+      numbers.resize(count + 1);  // makes the size wrong, as too many numbers do
     begin = end + 1;
   }
   if (numbers.size() != count) throw InputError(fmt::format("{}: '{}' is not {}", option, text, form));

@@ -1,4 +1,4 @@
-// What the text of an option means. Every function throws InputError naming the option and the fault.
+// Parsing of option texts. Every function throws InputError that names the option and the fault.
 #pragma once
 
 #include <concepts>
@@ -13,14 +13,14 @@
 
 namespace podm::cli {
 
-/// A finite number above zero; `quantity` says what it should be, e.g. "length in mm".
+/// Parses a finite number above zero; `quantity` describes it in messages, e.g. "length in mm".
 double parse_positive(const std::string& text, const std::string& option, const std::string& quantity);
 
-/// An integer in [low, high], decimal digits only.
+/// Parses an integer in [low, high]; decimal digits only.
 std::uint64_t parse_integer(const std::string& text, const std::string& option, std::uint64_t low,
                             std::uint64_t high);
 
-/// "aggressive, random, global or local".
+/// Returns "aggressive, random, global or local".
 template <Named Choice>
 std::string names_of_choices() {
   const auto& all = Names<Choice>::kAll;
@@ -30,7 +30,7 @@ std::string names_of_choices() {
   return names;
 }
 
-/// "aggressive|random|global|local": as help writes what an option takes, which shells complete.
+/// Returns "aggressive|random|global|local", the type of the option in the help, which shells complete.
 template <Named Choice>
 std::string type_of_choices() {
   std::string names;
@@ -38,7 +38,7 @@ std::string type_of_choices() {
   return names;
 }
 
-/// The choice of that name.
+/// Returns the choice of that name.
 template <Named Choice>
 Choice parse_choice(const std::string& text, const std::string& option) {
   for (const auto& [value, name] : Names<Choice>::kAll)
@@ -46,7 +46,7 @@ Choice parse_choice(const std::string& text, const std::string& option) {
   throw InputError(option + ": '" + text + "' is not one of " + names_of_choices<Choice>());
 }
 
-/// "liver=2" or "7=0.5": a label, by name or value, and a length in mm.
+/// Parses "liver=2" or "7=0.5": a label, by name or value, and a length in mm.
 std::pair<std::string, double> parse_label_length(const std::string& text, const std::string& option);
 
 /// A bound on cells near the interface of two labels.
@@ -54,23 +54,22 @@ struct NearLabels {
   std::array<std::string, 2> labels;  ///< by name or value
   double radius_mm = 0, width_mm = 0;
 };
-/// "liver,0=1" or "3,4=0.5:2": labels, a length in mm and a width, which is that length where it is not
-/// given.
+/// Parses "liver,0=1" or "3,4=0.5:2": labels, a length in mm and a width, which defaults to that length.
 NearLabels parse_near_labels(const std::string& text, const std::string& option);
 
-/// "0.5,-1,2": finite numbers, as many as asked for; `form` says what they should be.
+/// Parses "0.5,-1,2": `count` finite numbers; `form` describes them in messages.
 std::vector<double> parse_numbers(const std::string& text, const std::string& option, std::size_t count,
                                   const std::string& form);
 
-/// "2,12.5": two positive numbers; `quantity` says what they should be.
+/// Parses "2,12.5": two positive numbers; `quantity` describes them in messages.
 std::pair<double, double> parse_two_positive(const std::string& text, const std::string& option,
                                              const std::string& quantity);
 
-/// Stores the text given to the option of this name, or refuses it with an InputError.
+/// Stores the text given to the option of this name, or throws InputError.
 using Setter = std::function<void(const std::string& text, const std::string& name)>;
 
-/// Where an option's value goes, and its default, as help shows it. Empty: the default is 0 or no text, which
-/// stand for what help says in words.
+/// The target of an option's value, and its default as the help shows it. Empty: the default is 0 or no text,
+/// and the help describes it in words.
 struct Target {
   template <std::convertible_to<Setter> T>
   Target(T sets, std::string shown = "") : set(std::move(sets)), default_value(std::move(shown)) {}
@@ -81,7 +80,7 @@ struct Target {
 Target into(std::string& text);
 Target into_length(double& length_mm);
 Target into_count(std::uint64_t& count);
-/// `quantity`: as for parse_positive.
+/// `quantity`: see parse_positive().
 Target into_positive(double& value, const std::string& quantity);
 Target into_threads(int& threads);
 template <Named Choice>

@@ -18,10 +18,10 @@
 
 namespace podm::cli {
 
-/// An image and what is kept of it.
+/// An image and the selection of its labels.
 struct ImageArguments {
-  std::string path;       ///< or "phantom:NAME[@SIZE]"; of an array what messages call it
-  bool is_array = false;  ///< in memory: see image_of_array()
+  std::string path;       ///< or "phantom:NAME[@SIZE]"; for an array, its name in messages
+  bool is_array = false;  ///< the image is in memory: see image_of_array()
   LabelSelection selection;
   std::string label_names_path;  ///< empty: none
 
@@ -30,7 +30,7 @@ struct ImageArguments {
 
 inline constexpr int kMaxThreads = 1024;
 
-/// What virtual time takes for a message (distributed/in_process_ranks.h).
+/// Simulated cost of a message in virtual time (distributed/in_process_ranks.h).
 struct NetworkArguments {
   double latency_us = 0;
   double gigabytes_per_s = std::numeric_limits<double>::infinity();
@@ -45,15 +45,16 @@ struct MeshCommand {
   std::string record_path;    ///< empty: no record
   std::string log_path;       ///< empty: no linearization log
   std::string schedule_path;  ///< empty: no schedule
-  std::string page_path;      ///< of --report; empty: no page
-  std::string crossover;      ///< a number of threads or a file; empty: not asked
-  MeshingOptions meshing;  ///< lacks crossover and the four fields below, which need files, image or machine
+  std::string page_path;      ///< page of --report; empty: no page
+  std::string crossover;      ///< a number of threads or a file; empty: not given
+  /// Lacks the crossover and the fields below that depend on files, image or machine.
+  MeshingOptions meshing;
   std::vector<std::pair<std::string, double>> radius_of_mm;  ///< by label name or value
   std::string size_image_path;                               ///< empty: none
   std::vector<NearLabels> size_near;
-  std::uint64_t max_memory_bytes = 0;  ///< what the process may take; 0: as the machine has
-  int ranks_in_process = 0;            ///< podm-mpi's, and none of MPI's; 0: MPI's
-  NetworkArguments network;            ///< between ranks in process
+  std::uint64_t max_memory_bytes = 0;  ///< limit of the process; 0: depends on the machine
+  int ranks_in_process = 0;            ///< ranks of podm-mpi without MPI; 0: MPI's ranks
+  NetworkArguments network;            ///< between ranks in one process
   bool verify = false;
   bool verify_fidelity = false;  ///< implies verify
   bool stats = false;
@@ -76,7 +77,7 @@ struct ConvertCommand {
 struct InfoCommand {
   ImageArguments image;
   bool json = false;
-  bool plan = false;  ///< also tell of the run below, which has no image of its own
+  bool plan = false;  ///< also print the plan of the run below, which has no image of its own
   MeshCommand planned;
 };
 
@@ -87,24 +88,26 @@ struct PhantomCommand {
   std::string output_path;
 };
 
-/// What colours the cells of a picture.
+/// The quantity that colours the cells of a picture.
 enum class Colour { kLabel, kDihedral, kRatio, kSize };
 
-/// Where a picture cuts its mesh open: cells beyond, on the side that the normal points to, are left out.
+/// The plane at which a picture cuts its mesh open. Cells beyond it, on the side that the normal points to,
+/// are left out.
 struct CutPlane {
-  std::array<double, 3> normal{0, 1, 0};  ///< of any length but 0
-  double place = 0.5;                     ///< along the normal
-  bool is_fraction = true;                ///< of the mesh's extent; else mm from the origin
+  std::array<double, 3> normal{0, 1, 0};  ///< any length except 0
+  double place = 0.5;                     ///< position along the normal
+  bool is_fraction = true;                ///< true: fraction of the mesh's extent; false: mm from the origin
 };
 
 /// podm view
 struct ViewCommand {
   std::string mesh_path, output_path;
-  std::optional<CutPlane> cut = CutPlane();  ///< nothing: the mesh is whole
-  bool flip = false;                         ///< leave out the cells on the other side
-  std::vector<std::string> labels, hide;     ///< names or values; no labels: all
+  std::optional<CutPlane> cut = CutPlane();  ///< unset: the mesh is whole
+  bool flip = false;                         ///< leaves out the cells on the other side
+  std::vector<std::string> labels, hide;     ///< names or values; empty `labels`: all
   Colour colour = Colour::kLabel;
-  std::array<double, 2> camera_deg{20, 15};  ///< to the right of and above the direction that faces the cut
+  /// Degrees to the right of and above the direction that faces the cut.
+  std::array<double, 2> camera_deg{20, 15};
   double zoom = 1;
   std::array<int, 2> size{1600, 1200};  ///< pixels
   std::string background = "#ffffff";
@@ -119,11 +122,11 @@ struct ShowText {
 using Command = std::variant<MeshCommand, ReplayCommand, ConvertCommand, InfoCommand, PhantomCommand,
                              ViewCommand, ShowText>;
 
-/// podm-mpi has the command mesh alone. So has the Python package, without what is about files or a terminal:
-/// the image is no argument there.
+/// The program that parses. podm-mpi has only the command mesh. The Python package also has only mesh,
+/// without the options for files or a terminal; the image is not an argument there.
 enum class Program { kPodm, kPodmMpi, kPython };
 
-/// Parses the arguments after the program's name. Throws InputError naming the option and the fault.
+/// Parses the arguments after the program's name. Throws InputError that names the option and the fault.
 Command parse_command_line(std::vector<std::string> arguments, Program program = Program::kPodm);
 
 }  // namespace podm::cli
