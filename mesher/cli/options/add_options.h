@@ -40,9 +40,9 @@ void need(CLI::Option* option, CLI::Option* other);
 /// Allows all options of a group only together with `other`.
 void need_in_group(CLI::App& app, const std::string& title, CLI::Option* other);
 
-/// Adds the argument IMAGE.
+/// Adds the argument IMAGE and the options that select its labels.
 void add_image_options(CLI::App& app, ImageArguments& image);
-/// Adds the options that select labels of the image.
+/// Adds only the options that select labels.
 void add_label_options(CLI::App& app, ImageArguments& image);
 /// Adds the options for the format of a mesh file that its extension leaves open.
 void add_mesh_file_options(CLI::App& app, MeshFileOptions& options);
