@@ -4,11 +4,11 @@
 //
 //   /points                  float64 (n, 3)
 //   /cells, /facets          int32 (m, 4), (k, 3), vertices from 0; int64 if they do not fit
-//   /cell_labels             int32 (m): the label's value; for all labels the row in /labels, if one is too
-//   big /labels/value, name      uint32, UTF-8: row by row, the background first /facet_tags int32 (k): 1 +
-//   the row in /pairs of the labels on the facet's two sides /facet_labels            uint32 (k, 2): their
-//   values; the normal points out of the second, to the first /pairs/labels, name      uint32 (p, 2), UTF-8
-//   "liver|kidney"
+//   /cell_labels             int32 (m): the label's value; the row in /labels for all, if one does not fit
+//   /labels/value, name      uint32, UTF-8: row by row, the background first
+//   /facet_tags              int32 (k): 1 + the row in /pairs of the labels on the facet's two sides
+//   /facet_labels            uint32 (k, 2): their values; the normal points out of the second, to the first
+//   /pairs/labels, name      uint32 (p, 2), UTF-8 "liver|kidney"
 //
 // The grid "mesh" holds the cells and their labels, "facets" the facets and their tags. DOLFINx reads them
 // with XDMFFile.read_mesh(name="mesh"), read_meshtags(mesh, name="mesh") and read_meshtags(mesh,
