@@ -7,7 +7,7 @@ namespace podm::python {
 namespace {
 
 std::string keyword_of(std::string option) {
-  if (option == "labels") return "keep";  // that keyword is the image
+  if (option == "labels") return "keep";  // the keyword "labels" is the image
   if (option == "label-names") return "names";
   std::replace(option.begin(), option.end(), '-', '_');
   return option;

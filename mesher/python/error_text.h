@@ -1,12 +1,12 @@
-// The program's messages in the words of the Python package.
+// Conversion of the program's messages to the terms of the Python package.
 #pragma once
 
 #include <string>
 
 namespace podm::python {
 
-/// Options are called by the keyword that stands for them: "--radius-of" is radius_of. Where to find the
-/// program's help is left out.
+/// Replaces options by their keywords: "--radius-of" becomes radius_of. Removes references to the program's
+/// help.
 std::string in_python_terms(const std::string& message);
 
 }  // namespace podm::python

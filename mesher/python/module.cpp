@@ -1,4 +1,5 @@
-// The extension module podm._podm: arrays and text in, arrays and text out. What users see is in podm/*.py.
+// The extension module podm._podm, which takes and returns arrays and texts. The interface for users is in
+// podm/*.py.
 #include <pybind11/functional.h>
 #include <pybind11/numpy.h>
 #include <pybind11/pybind11.h>
@@ -31,7 +32,7 @@ namespace py = pybind11;
 
 using Names = std::map<std::uint32_t, std::string>;
 
-// Bytes that are not UTF-8, which file and label names may hold, are replaced, as in the record.
+// Replaces bytes that are not UTF-8, which file and label names may contain, as the record does.
 py::str text(const std::string& bytes) {
   PyObject* const decoded =
       PyUnicode_DecodeUTF8(bytes.data(), static_cast<Py_ssize_t>(bytes.size()), "replace");
@@ -52,7 +53,7 @@ cli::Command parse(std::vector<std::string> arguments) {
 
 std::string options_help() { return std::get<cli::ShowText>(parse({"--help"})).text; }
 
-// podm/images.py lets only such arrays through.
+// podm/images.py passes only arrays of these types.
 VoxelType voxel_type(const py::dtype& dtype) {
   const bool is_signed = dtype.kind() == 'i';
   if (dtype.kind() == 'f') return dtype.itemsize() == 4 ? VoxelType::kFloat : VoxelType::kDouble;
@@ -78,7 +79,7 @@ VoxelArray voxel_array(const py::array& array) {
   return voxels;
 }
 
-// The mesh, None where there is none, and the exception that ended the run early, None where nothing did.
+// Returns the mesh (or None) and the exception that ended the run early (or None).
 py::tuple mesh(const Input& input, std::vector<std::string> arguments, const py::object& progress) {
   cli::MeshCommand command = std::get<cli::MeshCommand>(parse(std::move(arguments)));
   std::shared_ptr<MeshInMemory> made;
@@ -100,7 +101,7 @@ py::tuple mesh_array(const py::array& array, const std::array<double, 12>& voxel
               std::move(arguments), progress);
 }
 
-// JSON: what podm info --plan has of a run with these options of podm mesh.
+// Returns the JSON of podm info --plan for a run of podm mesh with these options.
 std::string plan(const Input& input, std::vector<std::string> arguments) {
   cli::MeshCommand command = std::get<cli::MeshCommand>(parse(std::move(arguments)));
   const py::gil_scoped_release others_run;
@@ -129,7 +130,7 @@ py::array read_only(py::array array) {
   return array;
 }
 
-// A view that keeps `owner`, whose memory it is, alive.
+// Returns a view that keeps `owner`, whose memory it shows, alive.
 template <class Number, std::size_t kColumns>
 py::array rows(const std::vector<std::array<Number, kColumns>>& values, const py::object& owner) {
   static_assert(sizeof values[0] == kColumns * sizeof(Number));
@@ -142,7 +143,7 @@ py::array column(const std::vector<Number>& values, const py::object& owner) {
   return read_only(py::array_t<Number>(values.size(), values.data(), owner));
 }
 
-// An array that has taken over the memory.
+// Returns an array that owns the memory.
 py::array array_of(std::vector<double> values) {
   auto* const kept = new std::vector<double>(std::move(values));
   const py::capsule owner(kept, [](void* memory) { delete static_cast<std::vector<double>*>(memory); });
@@ -164,7 +165,7 @@ py::dict qualities(const MeshInMemory& made) {
   return arrays;
 }
 
-// Bytes, as file names are.
+// Returns bytes, because file names are bytes.
 std::vector<py::bytes> claims(MeshInMemory& made, bool with_fidelity,
                               const std::function<std::string()>& write_image) {
   std::vector<py::bytes> arguments;
@@ -173,7 +174,7 @@ std::vector<py::bytes> claims(MeshInMemory& made, bool with_fidelity,
   return arguments;
 }
 
-// The value and the name of every label, the background first.
+// Returns the value and the name of every label, the background first.
 std::vector<std::pair<std::uint32_t, py::str>> labels_of(const MeshInMemory& made) {
   std::vector<std::pair<std::uint32_t, py::str>> labels;
   for (const Label& label : made.mesh().labels)
@@ -181,7 +182,7 @@ std::vector<std::pair<std::uint32_t, py::str>> labels_of(const MeshInMemory& mad
   return labels;
 }
 
-// Returns what write_mesh() does.
+// Returns the losses that write_mesh() returns.
 std::vector<py::str> save(const MeshInMemory& made, const std::string& path,
                           const std::optional<std::string>& gmsh_version) {
   std::vector<std::string> losses;
@@ -246,9 +247,9 @@ void define_mesh(py::module_& module) {
       .def("save_surfaces", &save_surfaces, py::arg("path"), release);
 }
 
-// As exceptions of the package, in its terms.
+// Translates exceptions into those of the package, with messages in its terms.
 void translate(std::exception_ptr thrown) {
-  // Never released: the interpreter is gone when statics are.
+  // Never released, because the interpreter ends before statics are destroyed.
   static const py::handle package_errors = py::module_::import("podm.errors").release();
   const auto raise = [](const char* name, const std::string& message) {
     PyErr_SetObject(package_errors.attr(name).ptr(), text(in_python_terms(message)).ptr());

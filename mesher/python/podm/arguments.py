@@ -1,4 +1,4 @@
-"""Keywords become the options of the program: it knows their defaults, and what it refuses."""
+"""Conversion of keywords to options of the program, which has the defaults and refuses bad values."""
 
 from __future__ import annotations
 
@@ -19,7 +19,7 @@ _PATHS = {"names", "size_image", "topology", "crossover"}
 
 
 def command_line(keywords: Mapping[str, Any]) -> list[bytes]:
-    """The options that stand for keywords; those that are None are left to the program."""
+    """Returns the options for the keywords. Keywords that are None are left to the program."""
     return [argument for keyword, value in keywords.items() if value is not None
             for argument in _arguments(keyword, value)]
 
@@ -34,12 +34,12 @@ def _arguments(keyword: str, value: Any) -> list[bytes]:
 
 
 def number_or_text(keyword: str, value: Any) -> bytes:
-    """As an option has it."""
+    """Returns the value as an option takes it."""
     return text_bytes(keyword, *_one_text(keyword, value))
 
 
 def _text(value: Any) -> str:
-    """The shortest text that reads back to the same; 1e6 counts like 1000000."""
+    """Returns the shortest text that reads back to the same value; 1e6 counts like 1000000."""
     if isinstance(value, numbers.Integral) or isinstance(value, float) and value.is_integer():
         return str(int(value))
     if isinstance(value, numbers.Real):

@@ -1,4 +1,4 @@
-"""podm.mesh and podm.plan: an image in, a mesh out, or what it will be."""
+"""podm.mesh makes a mesh from an image; podm.plan predicts it."""
 
 from __future__ import annotations
 
@@ -43,35 +43,35 @@ def mesh(labels: npt.ArrayLike | StrPath, *, affine: npt.ArrayLike | None = None
          progress: Callable[[_podm.Progress], object] | None = None) -> Mesh:
     """Meshes a label image into tetrahedra.
 
-    Everything but the image is optional; what is None is left to the mesher. Options have the names, meanings and
-    defaults of `podm mesh`, below.
+    Only the image is required; the mesher chooses values that are None. Options have the names, meanings and defaults
+    of `podm mesh`, below.
 
     labels
-        The image: an array of shape (ni, nj, nk) of any integer type, in any memory order, of values 0 to 2^32 - 1
-        (it is read, not copied: the mesher makes its own of 2 bytes a voxel); or an image of nibabel; or the name of a
-        NIfTI, NRRD, MetaImage or INR file, or phantom:NAME[@SIZE].
+        The image. It is an array of shape (ni, nj, nk) of any integer type, in any memory order, with values 0 to
+        2^32 - 1; or an image of nibabel; or the name of a NIfTI, NRRD, MetaImage or INR file, or phantom:NAME[@SIZE].
+        An array is read, not copied; the mesher makes its own array of 2 bytes per voxel.
     affine
-        The 4x4 matrix, as nibabel's, from voxel indices (i, j, k) to RAS coordinates in mm. Any that is invertible
-        serves. One that shears changes angles: the bounds on shape then hold in the image's own axes.
+        The 4x4 matrix, as in nibabel, from voxel indices (i, j, k) to RAS coordinates in mm. Any invertible matrix is
+        allowed. A matrix that shears changes angles: the bounds on shape then hold in the image's own axes.
     spacing
-        Instead of an affine, and of an array alone: the three distances of voxels, mm; voxel (0, 0, 0) lies at the
-        origin. Without either they are 1 mm.
+        The three distances between voxels, mm, in place of an affine; for arrays only. Voxel (0, 0, 0) is at the
+        origin. Without affine and spacing the distances are 1 mm.
     names
-        Names of labels, as {1: "liver"}; or a file of them, an ITK-SNAP table or lines "value name".
+        Names of labels, as {1: "liver"}; or a file of names, an ITK-SNAP table or lines "value name".
     size_image
-        The name of a file; of an array, write it first, e.g. with nibabel.
+        The name of a file. Write an array to a file first, e.g. with nibabel.
     size_near
         A dict from pairs of labels to mm, or to mm and a width, as {("liver", 0): 1, ("liver", "vein"): (0.5, 3)}.
     progress
-        Is called with a podm.Progress some times a second, by the thread that called mesh(). What it raises ends the
-        run and is raised by mesh().
+        A function that the thread of the caller calls with a podm.Progress several times per second. If it raises an
+        exception, the run ends and mesh() raises this exception.
 
     Other Python threads run meanwhile, and may mesh, too.
 
-    Raises podm.Error, a ValueError, for a fault of image or options; MemoryError; and podm.Interrupted, a
-    KeyboardInterrupt, if Ctrl-C ends the run early: its `mesh` is the mesh so far, which is valid. A limit
-    (max_elements, max_seconds) is no exception: the mesh so far is returned, and its `is_complete` is False. What a
-    mesh misses, and what is odd about an image, is told by warnings.warn().
+    Raises podm.Error, a ValueError, for a wrong image or option; MemoryError; and podm.Interrupted, a
+    KeyboardInterrupt, if Ctrl-C ends the run early: its `mesh` is the current mesh, which is valid. A limit
+    (max_elements, max_seconds) raises no exception: the current mesh is returned, and its `is_complete` is False.
+    warnings.warn() reports the guarantees that a mesh misses, and unusual properties of an image.
     """
     options = {keyword: value for keyword, value in locals().items()
                if keyword not in ("labels", "affine", "spacing", "progress")}
@@ -89,14 +89,15 @@ def plan(labels: npt.ArrayLike | StrPath, *, affine: npt.ArrayLike | None = None
          grade: float | None = None, delta: float | None = None, target_elements: int | None = None,
          smooth: float | None = None, min_dihedral: float | None = None, optimize: bool = False,
          algorithm: str | None = None, threads: int | None = None) -> dict[str, Any]:
-    """Tells what mesh() of the same image and options will cost and lose, without meshing it.
+    """Predicts the cost of mesh() for the same image and options, and the parts that it loses, without meshing.
 
-    Returns what `podm info --plan --json` has under "plan": "cells", "memory_bytes" (the peak of this process),
-    "seconds" on this machine, "labels" (of each its cells, and the volumes of its components, mm^3, the largest first)
-    and "thin_parts" (what delta is too coarse for: label, kind, thickness_mm, volume_mm3, place_mm in RAS). "kind" is
-    "whole" for all of a component, "bridge" for what joins parts that stay, "detail" for fins, tips and edges.
+    Returns the "plan" of `podm info --plan --json`: "cells", "memory_bytes" (the peak of this process), "seconds" on
+    this machine, "labels" (the cells of each label, and the volumes of its components, mm^3, the largest first) and
+    "thin_parts" (the parts for which delta is too coarse: label, kind, thickness_mm, volume_mm3, place_mm in RAS).
+    "kind" is "whole" for a whole component, "bridge" for a connection between parts that stay, "detail" for fins, tips
+    and edges.
 
-    Raises podm.Error, as mesh() does. What is odd about the image is told by warnings.warn().
+    Raises podm.Error, as mesh() does. warnings.warn() reports unusual properties of the image.
     """
     options = {keyword: value for keyword, value in locals().items() if keyword not in ("labels", "affine", "spacing")}
     told: dict[str, Any] = json.loads(_of_image(_podm.plan_file, _podm.plan_array, labels, affine, spacing, options))
@@ -107,7 +108,7 @@ def plan(labels: npt.ArrayLike | StrPath, *, affine: npt.ArrayLike | None = None
 
 def _of_image(of_file: Callable[..., Any], of_array: Callable[..., Any], labels: Any, affine: Any, spacing: Any,
               options: dict[str, Any], *more: Any) -> Any:
-    """What one of two functions of the extension returns, the one that takes such an image."""
+    """Calls the function of the extension that takes this kind of image, and returns its result."""
     names = options.pop("names") if isinstance(options["names"], Mapping) else {}
     name_of, arguments = _name_of(names), command_line(options)
     if is_file(labels):
@@ -137,13 +138,13 @@ def _result(made: _podm.MeshInMemory | None, exception: BaseException | None) ->
 
 
 def _options_text() -> str:
-    """The options by their keywords, in the format of the program's help."""
+    """Returns the options by their keywords, in the format of the program's help."""
     help_text = _podm.options_help()
     lines = []
     for line in help_text[help_text.index("Labels:"):].rstrip().splitlines():
-        option = re.match(r"  --\S+( \S+)?", line)  # and its type
+        option = re.match(r"  --\S+( \S+)?", line)  # the option and its type
         width = len(option[0]) if option else 0
-        keyword = _podm.in_python_terms(line[:width]).ljust(width)  # descriptions stay below each other
+        keyword = _podm.in_python_terms(line[:width]).ljust(width)  # keeps descriptions aligned
         lines.append(("    " + keyword + _podm.in_python_terms(line[width:])).rstrip())
     return "\n".join(lines)
 
