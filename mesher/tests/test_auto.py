@@ -1,4 +1,4 @@
-"""podm mesh --algorithm auto: which algorithm it is, and who says so."""
+"""podm mesh --algorithm auto: the algorithm that it chooses, and the source of the decision."""
 
 import json
 import os
@@ -22,7 +22,7 @@ class Auto(PodmTestCase):
         self.stored.write_text(content if isinstance(content, str) else json.dumps(content))
 
     def mesh(self, *arguments, stored=""):
-        """The record of a run in whose environment `stored` is the file."""
+        """Returns the record of a run whose environment names the file `stored`."""
         runs = self.folder / "runs.jsonl"
         process = run_podm("mesh", IMAGE, "--radius", 20, "--oversubscribe", "-o", self.out, "--record", runs,
                            *arguments, env=os.environ | {"PODM_CROSSOVER": str(stored)})
