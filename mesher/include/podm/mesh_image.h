@@ -25,7 +25,7 @@ struct Estimate {
 };
 
 struct Progress {
-  std::string phase;        ///< "transform", "refine", "optimize", "extract", "measure"
+  std::string phase;        ///< "transform", "smooth", "refine", "perturb", "optimize", "extract", "measure"
   double fraction = 0;      ///< estimated fraction of the phase, in [0,1]
   std::uint64_t cells = 0;  ///< current number
   double seconds = 0;       ///< since the start of the run

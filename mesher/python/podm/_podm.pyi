@@ -11,7 +11,7 @@ class Progress:
     """Progress of a run of the mesher."""
     @property
     def phase(self) -> str:
-        """"transform", "refine", "perturb", "optimize", "extract" or "measure"."""
+        """"transform", "smooth", "refine", "perturb", "optimize", "extract" or "measure"."""
     @property
     def fraction(self) -> float:
         """Estimated fraction of the phase, from 0 to 1."""

@@ -81,7 +81,8 @@ class Mesh:
 
     @property
     def stop_reason(self) -> str:
-        """"complete", or why the run ended early: "time limit", "element limit", "memory limit", "cancelled"."""
+        """"complete", or the reason why the run ended early: "time limit", "element limit", "memory limit",
+        "cancelled", "limit of 2^30 cells in the store"."""
         return self._made.stop_reason
 
     @property
