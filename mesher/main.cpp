@@ -1,5 +1,5 @@
-// The podm program: command line in, exit code out. 0 success, 1 a guarantee or limit is unmet, 2 bad usage
-// or input, 3 internal error. A signal before there is a mesh ends it as that signal does.
+// The podm program. Exit codes: 0 success, 1 a guarantee or limit is unmet, 2 bad usage or input, 3 internal
+// error. A signal before there is a mesh ends the program by that signal.
 #include <fmt/format.h>
 
 #include <csignal>
@@ -22,7 +22,7 @@ int complain(const std::string& fault, int exit_code) {
 }  // namespace
 
 int main(int argc, char** argv) {
-  // A file-size limit and a closed pipe then fail the write, which is reported and cleaned up after.
+  // A file-size limit and a closed pipe then fail the write, which is reported and cleaned up.
   std::signal(SIGXFSZ, SIG_IGN);
   std::signal(SIGPIPE, SIG_IGN);
   try {

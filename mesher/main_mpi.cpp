@@ -1,6 +1,6 @@
-// The podm-mpi program: what podm mesh does, on ranks. 0 success, 1 a guarantee or limit is unmet, 2 bad
-// usage or input, 3 internal error, as podm. What all ranks know of is told by rank 0, and all leave; else
-// the rank that fails says so and ends the others.
+// The podm-mpi program: podm mesh on ranks. Exit codes as podm: 0 success, 1 a guarantee or limit is unmet, 2
+// bad usage or input, 3 internal error. Rank 0 reports faults that all ranks know, and all ranks end.
+// Otherwise the rank that fails reports its fault and ends the other ranks.
 #include <fmt/format.h>
 
 #include <csignal>
@@ -18,7 +18,7 @@ namespace {
 
 constexpr int kBadInput = 2, kInternal = 3;
 
-// The exit code for a failure that names its rank.
+// Reports a failure that names its rank. Returns the exit code.
 int complain(const std::exception_ptr& failure) try {
   std::rethrow_exception(failure);
 } catch (const podm::InputError& error) {

@@ -1,4 +1,4 @@
-// Insertion and removal in a box refined to a uniform size, the kernel without image and rules.
+// Insertion and removal in a box refined to a uniform size: the kernel without image and rules.
 #include <benchmark/benchmark.h>
 
 #include <algorithm>
@@ -10,7 +10,7 @@
 namespace podm {
 namespace {
 
-// Inserts circumcentres, moved off the hull, of cells with a circumradius above `radius`, last in first out.
+// Inserts circumcenters, moved off the hull, of cells with a circumradius above `radius`, last in first out.
 class UniformRefinement {
  public:
   explicit UniformRefinement(double radius) : squared_radius_(radius * radius), min_distance_(radius / 2) {
@@ -69,7 +69,7 @@ void BM_insertion(benchmark::State& state) {
 }
 BENCHMARK(BM_insertion)->Unit(benchmark::kMillisecond);
 
-// Puts a vertex into every sixteenth cell instead of one of the cell's own, as R1 and R3 do with R6.
+// Inserts a vertex into every sixteenth cell and removes one of the cell's own, as R1 and R3 do with R6.
 void BM_insertion_with_removal(benchmark::State& state) {
   std::int64_t removals = 0;
   for (auto _ : state) {

@@ -1,4 +1,4 @@
-// Oracle queries on a torus with a skin, at points like those a mesher asks about, and the feature transform.
+// Oracle queries on a torus with a skin, at points that are typical for a mesher, and the feature transform.
 #include <benchmark/benchmark.h>
 
 #include <cmath>
@@ -11,7 +11,7 @@
 namespace podm {
 namespace {
 
-// Label 2, in a skin of label 1, three voxels thick.
+// Returns a torus of label 2 in a skin of label 1 that is three voxels thick.
 LabelImage torus(std::array<int, 3> size) {
   LabelImage image;
   image.size = size;
@@ -33,7 +33,7 @@ LabelImage torus(std::array<int, 3> size) {
 struct Queries {
   LabelImage image = torus({200, 200, 60});
   Isosurface isosurface{image, 0};
-  std::vector<Point> near, far;  // below a voxel, and beyond three, from the isosurface
+  std::vector<Point> near, far;  // less than a voxel, and more than three voxels, from the isosurface
 
   Queries() {
     std::mt19937_64 random(1);
@@ -45,7 +45,7 @@ struct Queries {
     };
     while (near.size() < kPoints) {
       const Point a = {uniform(0, 120), uniform(0, 120), uniform(0, 72)};
-      for (int n = 0; n < 50; ++n) {  // neighbours are asked about together
+      for (int n = 0; n < 50; ++n) {  // queries for neighbours follow each other
         const Point b = around(a, 5);
         if (isosurface.distance_lower_bound(b, 2) > 2) far.push_back(b);
         if (const auto z = isosurface.segment_intersection(b, around(b, 5))) near.push_back(around(*z, 0.4));

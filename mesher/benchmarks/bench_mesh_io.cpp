@@ -8,7 +8,7 @@
 namespace podm {
 namespace {
 
-// The order is random, the worst that canonicalize can meet: a refined mesh has some locality.
+// Random order is the worst case of canonicalize(): a refined mesh has some locality.
 const TetMesh& shuffled_mesh() {
   static const TetMesh mesh = shuffled(make_test_mesh(80), 1);
   return mesh;
@@ -45,7 +45,7 @@ void BM_MeshSha256(benchmark::State& state) {
 }
 BENCHMARK(BM_MeshSha256)->Unit(benchmark::kMillisecond);
 
-// Includes the wait until the file is on the disk: the real time less the processor's.
+// The real time includes the wait until the file is on the disk; the processor time does not.
 void BM_WriteMesh(benchmark::State& state, const char* name, const MeshFileOptions& options = {}) {
   const ScratchFolder folder;
   const TetMesh& mesh = canonical_mesh();  // made before the clock starts

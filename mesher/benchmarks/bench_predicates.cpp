@@ -1,4 +1,4 @@
-// Circumspheres and the decisions around them, cached, filtered and exact.
+// Circumspheres and the decisions that use them: cached, filtered and exact.
 #include <benchmark/benchmark.h>
 
 #include <random>

@@ -1,5 +1,5 @@
-// The whole refinement on the abdomen phantom: final cells per second, all phases but reading and writing;
-// and what vertex locks cost a worker that meets nobody.
+// The whole refinement of the abdomen phantom: final cells per second over all phases except reading and
+// writing; and the cost of vertex locks for a worker without lock conflicts.
 #include <benchmark/benchmark.h>
 
 #include <algorithm>
@@ -45,8 +45,8 @@ double refine_s(Construction& construction, const Construction::Workers<Locks>& 
   return processor_seconds() - start_s;
 }
 
-// The same worker with and without locks, one run of each an iteration, in turns the first. Compared are the
-// fastest of each, which a busy machine moves least. For instructions: run one iteration under
+// Runs the same worker with and without locks once per iteration, in alternating order. Compares the fastest
+// run of each, which load on the machine affects least. To compare instructions, run one iteration under
 // `valgrind --tool=callgrind` and compare the two refine(), inclusive.
 void BM_cost_of_locks(benchmark::State& state) {
   const LabelImage image = make_phantom("abdomen", 128);
@@ -71,7 +71,7 @@ void BM_cost_of_locks(benchmark::State& state) {
     cells = construction.mesh().num_cells();
     return seconds;
   };
-  std::array<double, 2> fastest_s{kInfinity, kInfinity};  // without locks, with them
+  std::array<double, 2> fastest_s{kInfinity, kInfinity};  // without locks, with locks
   bool with_locks_first = false;
   for (auto _ : state) {
     for (const bool with_locks : {with_locks_first, !with_locks_first})

@@ -22,7 +22,7 @@ Blocks::Blocks(const CubeGrid& grid, std::uint64_t seed, int num_blocks)
   divide({grid.all(), 0, num_blocks}, [&](const Part& part) { return drawn_cut(part, random); });
 }
 
-// Each cut makes one block more.
+// Each cut adds one block.
 Blocks::Blocks(const CubeGrid& grid, const std::vector<Cut>& cuts)
     : grid_(grid), block_of_(grid.num_cubes()) {
   auto next = cuts.begin();
@@ -46,8 +46,8 @@ void Blocks::divide(const Part& part, const CutOf& cut_of) {
   divide(upper, cut_of);
 }
 
-// Cuts are planes between cubes, across the axis along which what weighs anything is longest: at the one that
-// comes nearest to the share of the blocks on either side.
+// Returns a cut along a plane between cubes, across the axis along which the cubes with weight extend
+// farthest. The plane is the one that comes nearest to the share of the blocks on either side.
 Blocks::Cut Blocks::cut_by_weight(const Part& part, const std::vector<std::uint64_t>& weights) const {
   CubeRange heavy{part.cubes.high, part.cubes.low};
   grid_.for_each(part.cubes, [&](CubeId cube, const CubePlace& at) {

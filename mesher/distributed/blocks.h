@@ -1,4 +1,4 @@
-// Blocks of cubes with equal shares of the predicted work, one a rank.
+// Blocks of cubes with equal shares of the predicted work, one per rank.
 #pragma once
 
 #include <random>
@@ -8,23 +8,24 @@
 
 namespace podm {
 
-/// Each cube's share of the work, by weighted bisection along the longest axis. Some blocks have no cube
-/// where ranks are many and cubes few.
+/// Assigns each cube to a block, by weighted bisection along the longest axis. Some blocks have no cube if
+/// there are many ranks and few cubes.
 class Blocks {
  public:
-  /// `weights`: one a cube.
+  /// `weights`: one per cube.
   Blocks(const CubeGrid& grid, const std::vector<std::uint64_t>& weights, int num_blocks);
-  /// Cuts are drawn, whatever the work: some blocks are one cube thin, some hold nearly all. Each has a cube
-  /// if there are enough.
+  /// Draws the cuts at random, independent of the work: some blocks are one cube thin, some hold nearly all
+  /// cubes. Each block has a cube if there are enough cubes.
   Blocks(const CubeGrid& grid, std::uint64_t seed, int num_blocks);
-  /// Where a part is cut in two, and how many of its blocks lie below.
+  /// The plane that cuts a part in two, and the number of the part's blocks below the plane.
   struct Cut {
     std::size_t axis;
     int cubes_below, blocks_below;
   };
-  /// In the order of cutting: first the whole, then the part below, all of it, and then the part above.
+  /// Returns the cuts in order: first the cut of the whole, then all cuts of the part below, then those of
+  /// the part above.
   const std::vector<Cut>& cuts() const { return cuts_; }
-  /// The blocks that were cut so.
+  /// Rebuilds the blocks from their cuts.
   Blocks(const CubeGrid& grid, const std::vector<Cut>& cuts);
 
   int of(CubeId cube) const { return block_of_[cube]; }

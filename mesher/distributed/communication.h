@@ -1,6 +1,6 @@
-// What ranks say to each other: few words, so that there may be two who carry them (in_process_ranks.h,
-// mpi_communication.h). Every function is collective, all ranks call the same ones in the same order, but for
-// those about the clock.
+// The communication between ranks. The interface is small because it has two implementations
+// (in_process_ranks.h, mpi_communication.h). Every function except those of the clock is collective: all
+// ranks call the same functions in the same order.
 #pragma once
 
 #include <cstddef>
@@ -16,19 +16,19 @@ namespace podm {
 
 using Bytes = std::vector<std::byte>;
 
-/// Another rank failed: this one ends, too, and is not at fault. what() names that rank and its fault.
-/// Carriers that end all processes of a run at once never throw it.
+/// Another rank failed, so this rank ends although it has no fault. what() names the failed rank and its
+/// fault. An implementation that ends all processes of a run at once never throws it.
 class RankFailed : public std::runtime_error {
  public:
   using std::runtime_error::runtime_error;
 };
 
-/// What a rank has spent until now, in seconds, and sent to others. Virtual seconds of all ranks add up to
-/// the same until the last collective.
+/// The seconds that a rank has spent until now, and what it has sent to other ranks. Up to the last
+/// collective, the virtual seconds add up to the same sum on all ranks.
 struct RankReport {
-  double computing_s = 0;  ///< of the processor, outside of collectives
-  double waiting_s = 0;    ///< for ranks that took longer
-  double network_s = 0;    ///< who has no virtual clock counts it as waiting
+  double computing_s = 0;  ///< processor time outside collectives
+  double waiting_s = 0;    ///< waiting time for ranks that took longer
+  double network_s = 0;    ///< network time; a rank without a virtual clock counts it as waiting
   std::uint64_t messages_sent = 0, bytes_sent = 0;
 
   double total_s() const { return computing_s + waiting_s + network_s; }
@@ -40,23 +40,24 @@ class Communication {
   virtual int rank() const = 0;
   virtual int size() const = 0;
 
-  /// Sends a message to each rank, and returns what each rank sent to this one, both by rank. Empty ones cost
-  /// nothing but their size. Throws InternalError unless there is one message a rank.
+  /// Sends a message to each rank, and returns the message of each rank to this rank, both by rank. An empty
+  /// message costs only its size. Throws InternalError unless there is one message per rank.
   virtual std::vector<Bytes> all_to_all(std::vector<Bytes> messages) = 0;
-  /// What every rank tells, by rank.
+  /// Returns the messages of all ranks, by rank.
   virtual std::vector<Bytes> all_gather(Bytes message) = 0;
-  /// Each value becomes its sum, or its maximum, over all ranks, which tell equally many.
+  /// Replaces each value by its sum, or its maximum, over all ranks. All ranks pass the same number of
+  /// values.
   virtual void sum(std::span<std::uint64_t> values) = 0;
   virtual void maximum(std::span<std::uint64_t> values) = 0;
   /// Returns when all ranks have called it.
   virtual void barrier() = 0;
 
-  /// This rank's clock, in seconds from some moment on: on the wall, or virtual.
+  /// Returns this rank's clock, in seconds since an arbitrary moment: wall time or virtual time.
   virtual double seconds() const = 0;
   virtual bool is_virtual() const { return false; }
   virtual RankReport report() const = 0;
-  /// A virtual clock goes on by so much for what the rank had other threads do; it sees the rank's own thread
-  /// alone.
+  /// Advances a virtual clock by the time that other threads of the rank took; the clock only measures the
+  /// rank's own thread.
   virtual void charge(double /*seconds*/) {}
 
  protected:

@@ -14,7 +14,7 @@ namespace podm {
 
 namespace {
 
-// These cells and those beside them, each once.
+// Returns the given cells and their neighbours, each once.
 std::vector<CellId> around(const Mesh& mesh, const std::vector<CellId>& some,
                            const std::vector<CellId>& more) {
   std::vector<std::uint8_t> is_listed(mesh.cell_bound());
@@ -33,8 +33,8 @@ std::vector<CellId> around(const Mesh& mesh, const std::vector<CellId>& some,
   return cells;
 }
 
-// Of these cells, or of all, those with a vertex in the zone, and neighbours of such, that may not be cells
-// of the whole.
+// Returns those of the given cells (unset: of all cells) that have a vertex in the zone but may not be cells
+// of the whole mesh. Neighbours of cells with a vertex in the zone are included.
 std::vector<CellId> unknown_among(const std::optional<std::vector<CellId>>& cells, const Mesh& mesh,
                                   const Zone& zone) {
   std::vector<std::uint8_t> is_in_zone(mesh.vertex_bound());
@@ -50,7 +50,8 @@ std::vector<CellId> unknown_among(const std::optional<std::vector<CellId>>& cell
     const int num_in_zone = is_in_zone[v[0]] + is_in_zone[v[1]] + is_in_zone[v[2]] + is_in_zone[v[3]];
     if (num_in_zone == 0) continue;
     if (!zone.knows(cell)) unknown.push_back(c);
-    if (num_in_zone == 4) continue;  // so have its neighbours vertices there
+    // Its neighbours have vertices in the zone, too, and are checked as cells of their own.
+    if (num_in_zone == 4) continue;
     for (const FacetId mirror : cell.mirrors)
       if (mirror != kNoFacet && !zone.knows_beside(cell, mesh.cell(cell_of(mirror))))
         unknown.push_back(cell_of(mirror));
@@ -58,11 +59,11 @@ std::vector<CellId> unknown_among(const std::optional<std::vector<CellId>>& cell
   return unknown;
 }
 
-// Inserts the largest of the balls with their centres in a cube: the others hardly reach farther, and a cell
-// that still lacks something is unknown again.
+// Inserts, for each cube, the largest of the balls centered in it. The other balls hardly reach farther, and
+// a cell that still lacks a vertex is unknown in the next iteration.
 void insert_largest(const std::vector<CellId>& cells, const Mesh& mesh, CubeSet& wanted) {
   std::map<CubeId, CellId> largest;
-  const auto is_larger = [&](CellId a, CellId b) {  // one without a certified sphere than all
+  const auto is_larger = [&](CellId a, CellId b) {  // a cell without a certified sphere is larger than all
     const float of_a = mesh.cell(a).squared_radius, of_b = mesh.cell(b).squared_radius;
     return !std::isnan(of_b) && !(of_a <= of_b);
   };
@@ -75,13 +76,14 @@ void insert_largest(const std::vector<CellId>& cells, const Mesh& mesh, CubeSet&
 
 }  // namespace
 
-// Each turn but the first looks only at what changed and at what was unknown. Some rank asks for a largest
-// ball that it lacks in every turn but the last, hence for a new cube: so turns end.
+// Each iteration except the first looks only at the cells that changed and at those that were unknown. In
+// every iteration except the last, some rank requests a largest ball that it lacks, and therefore a new cube.
+// The number of cubes is finite, so the iterations end.
 Update complete(const Mesh& mesh, VertexExchange& exchange, const CubeSet& own, int rings,
                 Communication& ranks) {
   CubeSet wanted = own.grown(rings);
   Update sum = exchange.update(wanted);
-  std::optional<std::vector<CellId>> candidates;  // all cells
+  std::optional<std::vector<CellId>> candidates;  // unset: all cells
   for (;;) {
     const Zone zone(own, exchange.known(), rings);
     const std::vector<CellId> unknown = unknown_among(candidates, mesh, zone);

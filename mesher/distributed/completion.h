@@ -1,4 +1,4 @@
-// What a rank learns when rounds have ended: its piece is to be one of the whole mesh.
+// The last update of a rank after the rounds. It makes the rank's piece a piece of the whole mesh.
 #pragma once
 
 #include "distributed/communication.h"
@@ -6,8 +6,8 @@
 
 namespace podm {
 
-/// Learns what others have changed until every cell with a vertex in `own` is one of the whole, and so are
-/// its neighbours; first what lies within so many `rings` of cubes. Collective.
+/// Learns the changes of other ranks until every cell with a vertex in `own` is a cell of the whole mesh, and
+/// so are its neighbours. The first update covers `rings` rings of cubes around `own`. Collective.
 Update complete(const Mesh& mesh, VertexExchange& exchange, const CubeSet& own, int rings,
                 Communication& ranks);
 

@@ -9,9 +9,11 @@ namespace podm {
 
 namespace {
 
-// A cube not in the set is 0 steps from one, and each is one step farther than the nearest of its neighbours.
-// Two passes, row by row and back, ask those that were passed already. (Rosenfeld and Pfaltz, J. ACM 13
-// (1966) 471-494.) Rows lie in a frame of cubes that are `farthest`, as is what lies farther.
+// Computes the distance of each cube, in steps, to the nearest cube that is not in the set. A cube outside
+// the set has distance 0; each cube of the set is one step farther than the nearest of its neighbours. Two
+// passes, row by row forwards and backwards, read the neighbours that were visited already. (Rosenfeld and
+// Pfaltz, J. ACM 13 (1966) 471-494.) A frame of cubes at distance `farthest` surrounds the rows. Larger
+// distances are cut to `farthest`.
 class StepsOut {
  public:
   StepsOut(const CubeGrid& grid, const std::vector<std::uint8_t>& has, std::uint8_t farthest)
@@ -23,7 +25,7 @@ class StepsOut {
         steps_((length_ + 2) * rows_ * (static_cast<std::size_t>(grid.size()[2]) + 2), farthest),
         nearest_(length_ + 2) {}
 
-  /// By cube: one step less than so many, for those of the set.
+  /// Returns, by cube, the number of steps less one for cubes of the set, and 0 for all others.
   std::vector<std::uint8_t> depths() {
     const auto [x, y_end, z_end] = grid_.size();
     for (int z = 0; z < z_end; ++z)
@@ -85,7 +87,7 @@ CubeGrid::CubeGrid(const Box& box, double side_mm)
 }
 
 MortonCode CubeGrid::place_on_curve(const Point& p) const {
-  constexpr double kPlacesASide = 16;  // of a cube
+  constexpr double kPlacesASide = 16;  // places per side of a cube
   constexpr double kLast = (1u << kMortonBits) - 1;
   const Vector g = kPlacesASide * per_mm_ * (p - origin_);
   const auto along = [=](double x) { return static_cast<std::uint32_t>(std::clamp(x, 0.0, kLast)); };
@@ -115,7 +117,7 @@ std::vector<CubeId> CubeSet::cubes() const {
   return cubes;
 }
 
-// Along one axis after another: a cube then has each within a box around it.
+// Grows along one axis after another. Each cube thereby grows into a box around it.
 CubeSet CubeSet::grown(int rings) const {
   CubeSet result = *this;
   for (std::size_t axis = 0; axis < 3; ++axis) {

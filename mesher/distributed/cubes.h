@@ -1,6 +1,6 @@
-// Space in cubes of one side, the grains in which ranks share it: a cube has one writer at a time, who knows
-// all vertices in it. What lies outside the grid belongs to the nearest cube, so cubes at its faces are
-// endless.
+// A grid of equal cubes that divides space among ranks. A cube has one writer at a time, and the writer knows
+// all vertices in the cube. Points outside the grid belong to the nearest cube, so the cubes at the faces of
+// the grid are unbounded.
 #pragma once
 
 #include <array>
@@ -17,7 +17,7 @@ namespace podm {
 using CubeId = std::uint32_t;
 using CubePlace = std::array<int, 3>;
 
-/// Cubes from `low` to before `high`.
+/// Cubes from `low` up to but not including `high`.
 struct CubeRange {
   CubePlace low, high;
   int length(std::size_t axis) const { return high[axis] - low[axis]; }
@@ -25,13 +25,14 @@ struct CubeRange {
 
 class CubeGrid {
  public:
-  /// Cubes of that side, mm, as many as cover the box. Throws InputError where they are more than ids.
+  /// Covers the box with the fewest cubes of the given side, mm. Throws InputError if the cubes outnumber the
+  /// ids.
   CubeGrid(const Box& box, double side_mm);
 
   CubeId num_cubes() const { return num_cubes_; }
   const CubePlace& size() const { return size_; }
   CubeRange all() const { return {{0, 0, 0}, size_}; }
-  /// A cube and all that have a face, an edge or a corner in common with it.
+  /// Returns the range of a cube and all cubes that share a face, an edge or a corner with it.
   CubeRange with_neighbors(const CubePlace& at) const;
   double side_mm() const { return side_mm_; }
   CubePlace place_of(const Point& p) const {
@@ -42,9 +43,10 @@ class CubeGrid {
   }
   CubePlace place_of(CubeId cube) const;
   CubeId cube_at(const Point& p) const { return id(place_of(p)); }
-  /// Along a curve on which points that follow each other are near each other, finer than cubes.
+  /// Returns the position along a space-filling curve that is finer than the cubes. Consecutive points on the
+  /// curve are near each other.
   MortonCode place_on_curve(const Point& p) const;
-  /// From a point to the cube, mm^2, but for rounding.
+  /// Returns the squared distance from a point to the cube, mm^2, up to rounding.
   double squared_distance(const CubePlace& at, const Point& p) const {
     const Vector offset = p - origin_;
     return squared_length({to_cube(at, 0, offset.x), to_cube(at, 1, offset.y), to_cube(at, 2, offset.z)});
@@ -52,13 +54,14 @@ class CubeGrid {
   /// Calls visit(cube, its place).
   template <class Visit>
   void for_each(const CubeRange& range, const Visit& visit) const;
-  /// What the cubes of a range that lie below each plane across the axis weigh, of length + 1 planes.
+  /// Returns, for each of the length + 1 planes across the axis, the weight of the range's cubes below the
+  /// plane.
   template <class Weight>
   std::vector<std::uint64_t> weights_below(const CubeRange& range, std::size_t axis,
                                            const std::vector<Weight>& weight_of_cube) const;
 
  private:
-  // Grid coordinates are clamped as doubles: points may be anywhere.
+  // Clamps grid coordinates as doubles, because points may be anywhere.
   int along(std::size_t axis, double offset_mm) const {
     const double g = offset_mm * per_mm_;
     return g <= 0 ? 0 : g >= size_[axis] ? size_[axis] - 1 : static_cast<int>(g);
@@ -95,7 +98,7 @@ std::vector<std::uint64_t> CubeGrid::weights_below(const CubeRange& range, std::
   return below;
 }
 
-/// Some cubes of a grid, which must outlive the set.
+/// A set of cubes of a grid, which must outlive the set.
 class CubeSet {
  public:
   explicit CubeSet(const CubeGrid& grid) : grid_(&grid), has_(grid.num_cubes()) {}
@@ -106,15 +109,17 @@ class CubeSet {
   void insert_all() { has_.assign(has_.size(), 1); }
   bool is_full() const;
   std::vector<CubeId> cubes() const;
-  /// With all cubes within so many of one of these, along each axis.
+  /// Returns the set with all cubes added that are within `rings` cubes of one of its cubes along each axis.
   CubeSet grown(int rings) const;
-  /// By cube: so many rings of cubes around it are in the set, up to `most` < 255; 0 for those outside, too.
+  /// Returns, by cube, the number of rings of cubes around it that are in the set, up to `most` < 255; 0 for
+  /// cubes outside the set.
   std::vector<std::uint8_t> depths(std::uint8_t most) const;
-  /// Those that have a face, an edge or a corner in common, directly or by others of the set, get the same
-  /// number, from 0 on in the order of their first cubes. Others have kNone.
+  /// Returns a component number per cube. Cubes of the set that share a face, an edge or a corner, directly
+  /// or through other cubes of the set, get the same number. Numbers start at 0, in the order of first cubes.
+  /// Cubes outside the set have kNone.
   static constexpr std::uint32_t kNone = 0xffffffffu;
   std::vector<std::uint32_t> components() const;
-  /// Whether all cubes that a ball meets are in the set, one by one.
+  /// Returns true if the set holds all cubes that a ball meets. Tests the cubes one by one.
   bool covers(const Point& center, double radius_mm) const {
     bool is_covered = true;
     for_each_near(center, radius_mm, [&](CubeId cube) { return is_covered = has(cube); });
@@ -126,7 +131,7 @@ class CubeSet {
   }
 
  private:
-  // Until visit(cube) is false.
+  // Calls visit(cube) until it returns false.
   template <class Visit>
   void for_each_near(const Point& center, double radius_mm, const Visit& visit) const;
 
@@ -134,11 +139,11 @@ class CubeSet {
   std::vector<std::uint8_t> has_;
 };
 
-/// How many cubes of a set any box has, at the price of eight numbers. (Crow, SIGGRAPH 1984.)
+/// Prefix sums that count the cubes of a set in any box with eight reads. (Crow, SIGGRAPH 1984.)
 class CubeCounts {
  public:
   explicit CubeCounts(const CubeSet& set);
-  /// Whether the set has all cubes from `low` to `high`.
+  /// Returns true if the set holds all cubes from `low` to `high`.
   bool covers(const CubePlace& low, const CubePlace& high) const;
 
  private:
@@ -149,7 +154,7 @@ class CubeCounts {
   std::uint32_t below(int x, int y, int z) const { return const_cast<CubeCounts*>(this)->below(x, y, z); }
 
   std::array<std::size_t, 2> sizes_;
-  std::vector<std::uint32_t> below_;  // cubes of the set whose coordinates are all less
+  std::vector<std::uint32_t> below_;  // number of cubes of the set whose coordinates are all less
 };
 
 template <class Visit>

@@ -27,15 +27,17 @@ std::string_view name_of(Collective collective) {
   return kNames[static_cast<std::size_t>(collective)];
 }
 
-// What a rank brings to a collective, and takes from it.
+// The input of a rank to a collective, and its output.
 struct Part {
   Collective collective;
-  std::vector<Bytes> messages =
-      {};  // all_to_all: to each rank, then from each; all_gather: its own, then all
+  // All_to_all: one message to each rank, then one from each rank; all_gather: its own message, then all
+  // messages.
+  std::vector<Bytes> messages = {};
   std::span<std::uint64_t> values = {};
 };
 
-// What all ranks have to call, as the first to come does. After a failure its Part may be gone.
+// The collective that all ranks must call: the one that the first rank called. After a failure its Part may
+// be gone.
 struct Agreed {
   int first = 0;
   Collective collective = Collective::kBarrier;
@@ -54,8 +56,8 @@ struct Traffic {
 struct RankState {
   std::condition_variable resumed;
   bool may_run = false;
-  Part* part = nullptr;  // of the collective that it waits in
-  double since_s = 0;    // processor seconds of its thread that its clock has seen
+  Part* part = nullptr;  // input to the collective in which it waits
+  double since_s = 0;    // processor seconds of its thread that its clock already includes
   double clock_s = 0;
   RankReport report;
 
@@ -70,8 +72,8 @@ struct RankState {
   }
 };
 
-// Where ranks meet: the one that comes last carries out the collective for all, while the others wait. A rank
-// that computes has its clock and report to itself; all else is under one mutex.
+// The meeting place of all ranks. The last rank to arrive carries out the collective for all ranks while the
+// others wait. A rank that computes owns its clock and report; one mutex protects everything else.
 class MeetingPlace {
  public:
   explicit MeetingPlace(const InProcessOptions& options);
@@ -81,13 +83,13 @@ class MeetingPlace {
   const std::optional<RankFailure>& failure() const { return failure_; }
   std::vector<RankReport> reports() const;
 
-  /// Returns when the rank may compute; so does take_part(). Throws RankFailed after another failed.
+  /// Returns when the rank may compute, like take_part(). Throws RankFailed after another rank failed.
   void begin(int rank);
-  /// Throws InternalError where the ranks do not agree on what they do.
+  /// Throws InternalError if the ranks call different collectives.
   void take_part(int rank, Part& part);
-  /// The rank has returned. Throws as take_part().
+  /// Notes that the rank has returned. Throws as take_part() does.
   void end(int rank);
-  /// The rank ends by the exception that is being handled.
+  /// Ends the rank with the exception that is being handled.
   void end_by_exception(int rank);
 
  private:
@@ -112,12 +114,12 @@ class MeetingPlace {
   std::mutex mutex_;
   std::mt19937_64 random_;
   std::vector<RankState> ranks_;
-  std::vector<std::size_t> order_;  // of the ranks' turns
+  std::vector<std::size_t> order_;  // order in which the ranks compute
   std::size_t turn_ = 0;
-  double num_steps_;  // of a tree over all ranks
+  double num_steps_;  // depth of a tree over all ranks
   std::size_t num_waiting_ = 0;
-  Agreed agreed_;             // by those that wait, if any
-  std::optional<int> ended_;  // a rank that returned
+  Agreed agreed_;             // call of the ranks that wait, if any
+  std::optional<int> ended_;  // a rank that has returned, if any
   std::optional<RankFailure> failure_;
 };
 
@@ -190,7 +192,8 @@ void MeetingPlace::throw_if_failed() const {
     throw RankFailed(fmt::format("rank {} of {} failed: {}", failure_->rank, size(), failure_->cause));
 }
 
-// By the exception that is being handled. Only the first failure counts: others may follow from it.
+// Records the exception that is being handled. Only the first failure counts, because later failures may
+// follow from it.
 void MeetingPlace::fail(int rank) {
   if (failure_) return;
   failure_ = current_rank_failure(rank, size());
@@ -202,7 +205,7 @@ void MeetingPlace::resume(RankState& rank) {
   rank.resumed.notify_one();
 }
 
-// All may compute, at once or one after the other.
+// Lets all ranks compute, at once or one after the other.
 void MeetingPlace::let_run() {
   if (options_.one_at_a_time) {
     std::shuffle(order_.begin(), order_.end(), random_);
@@ -213,7 +216,7 @@ void MeetingPlace::let_run() {
   }
 }
 
-// The rank whose turn it was computes no more until all have met.
+// Passes the turn on. The rank whose turn it was does not compute until all ranks have met.
 void MeetingPlace::pass_turn() {
   if (options_.one_at_a_time && ++turn_ < order_.size()) resume(ranks_[order_[turn_]]);
 }
@@ -231,7 +234,7 @@ void MeetingPlace::check_agreement(const Part& part) {
                       part.values.size()));
 }
 
-// All ranks wait in the same collective, which is now carried out.
+// Carries out the collective in which all ranks wait.
 void MeetingPlace::meet(Collective collective) {
   double network_s = 0;
   switch (collective) {
@@ -391,7 +394,7 @@ std::vector<RankReport> run_ranks(const InProcessOptions& options,
     std::vector<std::jthread> threads;
     for (int rank = 0; rank < options.num_ranks; ++rank) try {
         threads.emplace_back([&place, &body, rank] { run_rank(place, rank, body); });
-      } catch (...) {  // no thread was to be had: those that run already end now
+      } catch (...) {  // no thread was available: the ranks that already run end now
         place.end_by_exception(rank);
         break;
       }

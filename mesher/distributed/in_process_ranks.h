@@ -1,20 +1,20 @@
-// Ranks as threads of one process: the test bed of what is distributed, and a model of machines of many
+// Ranks as threads of one process: the test bed of the distributed code, and a model of machines with many
 // nodes.
 //
-// Each rank has a virtual clock, which goes on by the processor time of its thread between collectives and by
-// what the rank charges. In a collective every clock becomes the latest of all, and then goes on by what the
-// network would take, with a latency L and B bytes a second, P ranks and s = ceil(log2 P) steps (binomial
-// trees and recursive doubling):
+// Each rank has a virtual clock. Between collectives it advances by the processor time of the rank's thread
+// and by the time that the rank charges. In a collective every clock is set to the latest clock of all ranks.
+// It then advances by the simulated time on the network, with latency L, B bytes per second, P ranks and s =
+// ceil(log2 P) steps (binomial trees and recursive doubling):
 //
 //   barrier        s L
 //   sum, maximum   s (L + bytes / B)
-//   all_gather     2 s L + (8 P + bytes that all tell) / B          lengths first
-//   all_to_all     s (L + 4 P / B)                                  lengths first, then as the busiest rank:
-//                  + the greatest L messages + bytes / B            of what a rank sends, or receives if that
-//                  is more
+//   all_gather     2 s L + (8 P + bytes of all messages) / B       lengths first
+//   all_to_all     s (L + 4 P / B)                                 lengths first, then the busiest rank:
+//                  + the greatest L messages + bytes / B           the larger of what a rank sends and
+//                                                                  what it receives
 //
-// Empty messages and those to oneself are free. A collective lasts as long for all, so the model knows no
-// overlap.
+// Empty messages and messages of a rank to itself are free. A collective takes the same time on all ranks, so
+// the model has no overlap.
 #pragma once
 
 #include <cstdint>
@@ -28,22 +28,23 @@ namespace podm {
 
 struct InProcessOptions {
   int num_ranks = 1;
-  /// One rank computes at a time, from one collective to the next, so that many ranks on few processors do
-  /// not slow each other down. Else the system decides.
+  /// True: one rank computes at a time, from one collective to the next, so that many ranks on few processors
+  /// do not slow each other down. False: the system schedules the ranks.
   bool one_at_a_time = false;
-  std::uint64_t seed =
-      0;  ///< draws the order in which ranks compute, anew after every collective, if one at a time
+  /// Draws the order in which ranks compute, anew after every collective, if one rank computes at a time.
+  std::uint64_t seed = 0;
   double latency_s = 0;
   double bytes_per_s = std::numeric_limits<double>::infinity();
 };
 
-/// Calls `body` for each rank on a thread of its own, and returns what each took, by rank, when all have
-/// returned.
+/// Calls `body` for each rank on a thread of its own. When all ranks have returned, returns their reports, by
+/// rank.
 ///
-/// When a rank throws, the others' collectives throw RankFailed, now or when they next call one. Then it
-/// throws what the first rank that failed threw, as the same of InputError, InternalError and std::bad_alloc,
-/// else as std::runtime_error; what() begins with "rank 3 of 8: ". Ranks that call different collectives, and
-/// a rank that returns where others still call, are InternalError. Throws InputError without a rank.
+/// When a rank throws, the current or next collective of every other rank throws RankFailed. The function
+/// then throws the exception of the first rank that failed, with the same type if it is InputError,
+/// InternalError or std::bad_alloc, otherwise as std::runtime_error; what() begins with "rank 3 of 8: ".
+/// InternalError is thrown if ranks call different collectives, or if a rank returns while other ranks still
+/// call collectives. Throws InputError if there is no rank.
 std::vector<RankReport> run_ranks(const InProcessOptions& options,
                                   const std::function<void(Communication&)>& body);
 

@@ -1,13 +1,14 @@
-// PDR.PODM in a rank's zone: the computing nodes of its team refine leaf by leaf. (Feng, Tsolakis,
-// Chernikov, Chrisochoides, IMR 2015.) What no leaf can refine is left to PODM anywhere in the zone, and what
-// that cannot, to later rounds.
+// PDR.PODM in a rank's zone: the computing nodes of the rank's team refine leaf by leaf. (Feng, Tsolakis,
+// Chernikov, Chrisochoides, IMR 2015.) PODM then refines anywhere in the zone what no leaf can refine. Cells
+// that PODM cannot refine wait for later rounds.
 //
-//   Nothing is locked between nodes of a rank, nor between ranks. An operation replaces only cells whose four
-//   vertices are in the region of its leaf, as LeafLocks sees to, and in the zone, as ZoneLocks inside does;
-//   and of those that it looks at the two that readers lock are in both. The proof for leaves
-//   (octree/leaf_region.h) and that for zones (distributed/zone.h) rest on that alone: an operation that
-//   either of them refuses ends with nothing written, and the other has nothing to ask of it. So each holds
-//   as if the other were not, the first between the nodes of a rank, the second between ranks.
+//   Neither nodes of a rank nor ranks lock against each other. An operation replaces only cells whose four
+//   vertices are in the region of its leaf (LeafLocks ensures this) and in the zone (the inner ZoneLocks
+//   ensures this). The two vertices that readers lock of a cell that it reads are in both. The proof for
+//   leaves (octree/leaf_region.h) and the proof for zones (distributed/zone.h) use only these facts: an
+//   operation that one of the two refuses ends with nothing written and requires nothing of the other.
+//   Each proof therefore holds independently, the first between the nodes of a rank, the second between
+//   ranks.
 #pragma once
 
 #include "algorithms/construction.h"
@@ -21,8 +22,8 @@ namespace podm {
 
 class LeavesOfZone {
  public:
-  /// Collective. Keeps memory for leaves of the size that was asked for, if any. Throws RefusedByAll where
-  /// they take more than their share of a rank's. `algorithm` is kPdr or kPdrPodm.
+  /// Collective. Reserves memory for leaves of the requested size, if any. Throws RefusedByAll if they take
+  /// more than their share of a rank's memory. `algorithm` is kPdr or kPdrPodm.
   LeavesOfZone(Construction& construction, const TwoLevels& levels, const LeafOptions& options,
                Algorithm algorithm, Communication& ranks);
 
@@ -30,8 +31,8 @@ class LeavesOfZone {
     Construction::Entries left;
     std::uint64_t insertions = 0;
   };
-  /// Refines these cells, all of which live, in phases "octree" and "refine". The octree is that of the whole
-  /// object, with leaves enough for the nodes of all ranks.
+  /// Refines these cells, all of which must be alive, in phases "octree" and "refine". The octree is that of
+  /// the whole object, with enough leaves for the nodes of all ranks.
   Refined operator()(const Zone& zone, const Construction::Entries& cells);
 
  private:
@@ -42,7 +43,7 @@ class LeavesOfZone {
   const TwoLevels& levels_;
   const LeafOptions options_;
   const Algorithm algorithm_;
-  std::uint64_t num_nodes_;  // of all ranks
+  std::uint64_t num_nodes_;  // on all ranks
 };
 
 }  // namespace podm

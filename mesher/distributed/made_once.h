@@ -1,4 +1,4 @@
-// What each rank needs and all make alike, so that ranks of one process may share it.
+// A value that each rank needs and all ranks make alike. Ranks of one process may share it.
 #pragma once
 
 #include <functional>
@@ -9,11 +9,13 @@
 
 namespace podm {
 
-/// The first rank that asks for it makes it; the clocks of those that come later go on as if they had.
+/// The first rank that requests the value makes it. The clocks of ranks that come later advance as if they
+/// had made it.
 template <class T>
 class MadeOnce {
  public:
-  /// Not collective. What make() throws goes to the rank that called it, and the next one tries.
+  /// Returns the value. Not collective. An exception of make() goes to the rank that called it, and the next
+  /// rank tries again.
   std::shared_ptr<const T> get(const std::function<std::shared_ptr<const T>()>& make, Communication& rank) {
     const std::scoped_lock lock(mutex_);
     if (made_ != nullptr) {

@@ -62,7 +62,7 @@ std::string hash_of(const LabelImage& image) {
   return hash.hexadecimal();
 }
 
-// What decides the mesh: it has to be the same on all ranks.
+// Returns the facts that determine the mesh; they must be the same on all ranks.
 std::vector<Fact> facts_of(const LabelImage& image, const MeshingOptions& options) {
   const SizeOptions& sizes = options.sizes;
   std::string radii;

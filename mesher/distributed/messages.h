@@ -1,5 +1,5 @@
-// Values to and from the bytes of a message. Ranks run the same program on machines of one kind, so that
-// values travel as they lie in memory.
+// Conversion of values to and from the bytes of a message. All ranks run the same program on machines of one
+// kind, so values are sent in their memory layout.
 #pragma once
 
 #include <fmt/format.h>
@@ -13,7 +13,7 @@
 
 namespace podm {
 
-/// Adds the number of the values, and the values.
+/// Appends the number of the values, and the values.
 template <class T>
 void append(Bytes& message, std::span<const T> values) {
   static_assert(std::is_trivially_copyable_v<T>);
@@ -29,12 +29,13 @@ void append(Bytes& message, const std::vector<T>& values) {
   append(message, std::span<const T>(values));
 }
 
-/// Reads the vectors of a message in the order in which they were added. The message must outlive it.
+/// Reads the vectors of a message in the order in which they were appended. The message must outlive the
+/// reader.
 class MessageReader {
  public:
   explicit MessageReader(std::span<const std::byte> message) : rest_(message) {}
 
-  /// Throws InternalError where the message ends before the values do.
+  /// Throws InternalError if the message ends before the values do.
   template <class T>
   std::vector<T> read() {
     static_assert(std::is_trivially_copyable_v<T>);
@@ -45,7 +46,7 @@ class MessageReader {
     take(values.data(), count, sizeof(T));
     return values;
   }
-  /// Throws InternalError unless all has been read.
+  /// Throws InternalError unless the whole message has been read.
   void expect_end() const {
     if (!rest_.empty()) throw InternalError(fmt::format("{} bytes of a message are left over", rest_.size()));
   }
@@ -57,7 +58,7 @@ class MessageReader {
   }
   void take(void* values, std::uint64_t count, std::size_t value_bytes) {
     if (count > rest_.size() / value_bytes) throw_short(count, value_bytes);
-    if (count == 0) return;  // an empty vector may have no memory at all
+    if (count == 0) return;  // an empty vector may have no memory
     std::memcpy(values, rest_.data(), count * value_bytes);
     rest_ = rest_.subspan(count * value_bytes);
   }

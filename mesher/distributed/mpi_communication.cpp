@@ -1,6 +1,6 @@
 #include "distributed/mpi_communication.h"
 
-#define OMPI_SKIP_MPICXX 1  // MPI's C++ bindings, which are no more
+#define OMPI_SKIP_MPICXX 1  // skips MPI's C++ bindings, which were removed
 #include <fmt/format.h>
 #include <mpi.h>
 
@@ -21,14 +21,15 @@ void check(int code, const char* call) {
   throw std::runtime_error(fmt::format("{} failed: {}", call, text.data()));
 }
 
-// Of all threads of this process.
+// Returns the processor time of all threads of this process.
 double process_seconds() {
   std::timespec time{};
   clock_gettime(CLOCK_PROCESS_CPUTIME_ID, &time);
   return static_cast<double>(time.tv_sec) + 1e-9 * static_cast<double>(time.tv_nsec);
 }
 
-// What goes by in collectives: on the wall, and of the processor, which MPI keeps busy while it waits.
+// Time spent in collectives: wall time, and processor time, because MPI keeps the processor busy while it
+// waits.
 struct InCollectives {
   double wall_s = 0, processor_s = 0;
 };
@@ -96,9 +97,9 @@ class MpiCommunication final : public Communication {
   int rank_ = 0, size_ = 1;
 };
 
-// The messages are sent one by one, straight out of and into their own memory: MPI_Alltoallv would have all
-// of them copied into one array and back, of less than 2^31 bytes. Each rank begins with its neighbours, not
-// all with rank 0.
+// Sends the messages one by one, directly from and to their own memory. MPI_Alltoallv would require copies of
+// all messages in one array, of less than 2^31 bytes. Each rank begins with its neighbours, so that not all
+// ranks begin with rank 0.
 std::vector<Bytes> MpiCommunication::all_to_all(std::vector<Bytes> messages) {
   check_one_a_rank(messages);
   const CollectiveClock clock(in_collectives_);
@@ -143,7 +144,8 @@ void MpiCommunication::start_sending(const Bytes& message, int to, std::vector<M
   }
 }
 
-// Pieces of all messages at a time, so that they fit one call together: one time when messages are short.
+// Sends the messages in pieces, one piece of every message per call, so that the pieces fit one call
+// together. Short messages need one call.
 std::vector<Bytes> MpiCommunication::all_gather(Bytes message) {
   const CollectiveClock clock(in_collectives_);
   for (int other = 1; other < size_; ++other) note_sent(message);

@@ -13,7 +13,7 @@ namespace podm {
 
 namespace {
 
-// A vertex in the whole mesh, and the rank whose piece counts it.
+// The number of a vertex in the whole mesh, and the rank whose piece counts it.
 struct Number {
   std::uint64_t id;
   std::int64_t owner;
@@ -41,7 +41,7 @@ class PieceOfMesh {
     piece.rank = ranks_.rank();
     piece.num_pieces = ranks_.size();
     number_vertices(piece);
-    // Extraction takes the most memory, and what is not freed before adds to it.
+    // Frees memory first, because extraction takes the most.
     own_numbers_ = std::vector<std::uint64_t>();
     is_used_ = is_own_vertex_ = std::vector<std::uint8_t>();
     const auto is_chosen = [this](CellId c) { return is_own_cell_[c] != 0; };
@@ -54,7 +54,7 @@ class PieceOfMesh {
  private:
   int rank_of(const Point& p) const { return refined_.rank_of_cube[refined_.grid.cube_at(p)]; }
 
-  // Those of the ranks before this one, and of all.
+  // Returns the sum of the counts of the ranks before this one, and the sum of all counts.
   std::pair<std::uint64_t, std::uint64_t> sums_of(std::uint64_t count) const {
     std::vector<std::uint64_t> counts(static_cast<std::size_t>(ranks_.size()));
     counts[static_cast<std::size_t>(ranks_.rank())] = count;
@@ -64,9 +64,9 @@ class PieceOfMesh {
             std::accumulate(counts.begin(), counts.end(), std::uint64_t{0})};
   }
 
-  // Cells that others look at, too, have to have the same centres and labels there. This rank looks at cells
-  // with a vertex in its part of space and at their neighbours. Of those that another looks at, too, each has
-  // vertices of both parts or a neighbour that has: for a cell and its neighbour share three.
+  // Makes the centers and labels of shared cells equal on all ranks. This rank reads cells with a vertex in
+  // its part of space, and their neighbours. If another rank reads such a cell, too, then the cell has
+  // vertices of both parts, or a neighbour of it has: a cell and its neighbour share three vertices.
   void agree_on_centers() {
     std::vector<CellId> shared;
     for (CellId c = 0; c < mesh_.cell_bound(); ++c) {
@@ -90,7 +90,7 @@ class PieceOfMesh {
     return num_own > 0 && num_own < 4;
   }
 
-  // A cell is its rank's who has its least vertex.
+  // Returns true if this rank owns the cell. A cell belongs to the rank that owns its least vertex.
   bool is_own(CellId c) const {
     const int num_own = num_own_vertices(c);
     if (num_own == 0 || num_own == 4) return num_own == 4;
@@ -111,8 +111,8 @@ class PieceOfMesh {
     }
   }
 
-  // Numbers the vertices in use here, in the order of their ids. The rank in whose part of space a vertex
-  // lies numbers it if it or another uses it; others ask by coordinates.
+  // Numbers the vertices used here, in the order of their ids. The rank whose part of space holds a vertex
+  // numbers it if this or another rank uses it. The other ranks request the number by coordinates.
   void number_vertices(MeshPiece& piece) {
     const auto self = static_cast<std::size_t>(ranks_.rank());
     std::vector<std::vector<Point>> wanted(static_cast<std::size_t>(ranks_.size()));
@@ -137,8 +137,8 @@ class PieceOfMesh {
     piece.total_vertices = total_vertices_;
   }
 
-  // Numbers the vertices of this part of space, and returns those that others ask for. Who uses one here owns
-  // it, else the first to ask.
+  // Numbers the vertices of this part of space, and returns the numbers that other ranks request. This rank
+  // owns a vertex if it uses it; otherwise the first rank that requests it owns it.
   ByPoint<Number> number_own(const std::vector<Bytes>& asked) {
     ByPoint<Number> told;
     for (std::size_t rank = 0; rank < asked.size(); ++rank)
@@ -194,7 +194,7 @@ class PieceOfMesh {
   int threads_;
   Communication& ranks_;
   std::vector<std::uint8_t> is_own_vertex_, is_own_cell_, is_used_;  // by id in the store
-  std::vector<std::uint64_t> own_numbers_;                           // likewise
+  std::vector<std::uint64_t> own_numbers_;                           // by id in the store
   std::uint64_t total_vertices_ = 0;
 };
 

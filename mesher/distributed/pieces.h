@@ -1,4 +1,4 @@
-// Each rank's piece of the mesh, taken from its store without gathering anything.
+// Extraction of each rank's piece of the mesh from its store, without a gather.
 #pragma once
 
 #include "distributed/rounds.h"
@@ -7,9 +7,10 @@
 
 namespace podm {
 
-/// A vertex belongs to the rank of its cube, a cell to that of its lexicographically least vertex, and a
-/// facet to that of the cell that extract_mesh() gives it to. Uses the store up. Collective. `space` is kRas
-/// or kLps. `facets_off_isosurface` counts this piece's.
+/// Returns this rank's piece. A vertex belongs to the rank of its cube, a cell to the rank of its
+/// lexicographically least vertex, and a facet to the rank of the cell that extract_mesh() gives it to.
+/// Consumes the store. Collective. `space` is kRas or kLps. `facets_off_isosurface` receives the count of
+/// this piece.
 MeshPiece extract_piece(DistributedRefinement& refined, const Isosurface& isosurface, Space space,
                         int threads, Communication& ranks, std::uint64_t& facets_off_isosurface);
 

@@ -11,7 +11,7 @@
 namespace podm {
 namespace {
 
-// It allocates nothing itself.
+// An out-of-memory error that allocates no memory itself.
 class RankOutOfMemory : public std::bad_alloc {
  public:
   RankOutOfMemory(int rank, int size) {

@@ -1,4 +1,4 @@
-// What becomes of an exception that a rank throws.
+// Conversion of an exception that a rank throws.
 #pragma once
 
 #include <exception>
@@ -8,12 +8,13 @@ namespace podm {
 
 struct RankFailure {
   int rank;
-  std::string cause;             ///< as the rank told it
-  std::exception_ptr exception;  ///< the same of InputError, InternalError and std::bad_alloc, else a
-                                 ///< std::runtime_error; what() begins with "rank 3 of 8: "
+  std::string cause;  ///< the text of the rank's exception
+  /// The same type if it is InputError, InternalError or std::bad_alloc, otherwise a std::runtime_error;
+  /// what() begins with "rank 3 of 8: ".
+  std::exception_ptr exception;
 };
 
-/// The failure that is the exception being handled.
+/// Returns the failure for the exception that is being handled.
 RankFailure current_rank_failure(int rank, int size);
 
 }  // namespace podm

@@ -42,7 +42,7 @@ Counters read_counters(MessageReader& reader) {
   return counters;
 }
 
-// A worker's place; no processor is -1.
+// A worker's place; -1 for no processor.
 struct ToldPlace {
   int node, socket, processor, bound_to;
 };
@@ -63,7 +63,7 @@ WorkerReport read_worker(MessageReader& reader) {
           .counters = read_counters(reader)};
 }
 
-// By name or value.
+// Returns the values in the order of their keys, which are names or label values.
 template <class Key, class Value>
 std::vector<Value> values_of(const std::map<Key, Value>& map) {
   std::vector<Value> values;
@@ -71,7 +71,8 @@ std::vector<Value> values_of(const std::map<Key, Value>& map) {
   return values;
 }
 
-// What a rank tells. Labels are the image's, phases those of the run: all ranks have the same.
+// Returns the message of a rank. All ranks have the same labels (those of the image) and the same phases
+// (those of the run).
 Bytes told_of(const MeshingReport& own, const PartOfRank& part) {
   Bytes message;
   append_one(message, std::array{part.cells, part.boundary_facets, part.store_cells});
@@ -89,7 +90,8 @@ Bytes told_of(const MeshingReport& own, const PartOfRank& part) {
   return message;
 }
 
-// The extremes of no cells are such that any others replace them, but for the shortest edge, which is 0.
+// Merges extremes. The extremes of an empty mesh are such that any other value replaces them, except the
+// shortest edge, which is 0.
 void merge(const Quality& more, Quality& quality) {
   const auto most = [&](double Quality::*member) {
     quality.*member = std::max(quality.*member, more.*member);
@@ -126,7 +128,7 @@ void clear(std::map<Key, Value>& sums) {
   for (auto& [key, sum] : sums) sum = {};
 }
 
-// The report of the whole begins as one of no rank.
+// Returns an empty report, to which the reports of all ranks are added.
 MeshingReport none_like(MeshingReport own) {
   own.stop_reason = StopReason::kComplete;
   own.guarantees = {};
@@ -139,7 +141,7 @@ MeshingReport none_like(MeshingReport own) {
   return own;
 }
 
-// `like` is a part with the phases that all ranks have.
+// Adds the message of a rank. `like` is a part with the phases that all ranks have.
 PartOfRank add_told(const Bytes& told, const PartOfRank& like, MeshingReport& report, bool is_first) {
   MessageReader reader(told);
   const auto numbers = read_one<std::array<std::uint64_t, 3>>(reader);

@@ -1,4 +1,4 @@
-// What all ranks tell of a run becomes what the run tells of itself.
+// Combines the reports of all ranks into the report of the run.
 #pragma once
 
 #include <utility>
@@ -8,8 +8,8 @@
 
 namespace podm {
 
-/// The report of the whole, as MeshingOnRanks has it but for missing labels, and the parts by rank, from each
-/// rank's own. Collective.
+/// Returns the report of the whole run, as in MeshingOnRanks but without missing labels, and the parts by
+/// rank. Each rank passes its own report and part. Collective.
 std::pair<MeshingReport, std::vector<PartOfRank>> report_of_ranks(MeshingReport own, PartOfRank part,
                                                                   Communication& ranks);
 

@@ -18,11 +18,12 @@ namespace podm {
 
 namespace {
 
-// What is known reaches so many cubes beyond zones.
+// Number of rings of cubes around a zone that are known.
 constexpr int kKnownRings = 1;
-// And around a deferred cell so many circumradii: more of its neighbours known cost more than they save.
+// A deferred cell also requests vertices within this many of its circumradii. A larger factor costs more than
+// it saves.
 constexpr double kKnownOverRadius = 1;
-// Cubes are so many bounds of a circumradius long.
+// Side of a cube over the circumradius bound.
 constexpr double kCubeOverRadius = 2;
 
 struct CubeCount {
@@ -30,7 +31,7 @@ struct CubeCount {
   std::uint32_t cells;
 };
 
-// A cell as other ranks know it.
+// A name of a cell that is the same on all ranks.
 struct CellName {
   std::array<Point, 4> vertices;
 };
@@ -47,7 +48,7 @@ struct Ball {
   double radius_mm;
 };
 
-// Cells that wait in a cube.
+// The deferred cells in one cube.
 struct Waiting {
   std::uint32_t cells;
   Ball largest;
@@ -72,8 +73,8 @@ double area_of_facet(const Mesh& mesh, const Cell& cell, unsigned k) {
   return std::sqrt(squared_length(cross(point(1) - point(0), point(2) - point(0)))) / 2;
 }
 
-// What the coarse mesh says of the cells to come, by cube, in millionths: whole numbers, whose sums are
-// exact.
+// Returns the number of cells that the coarse mesh predicts per cube, in millionths. The numbers are
+// integers, so their sums are exact.
 std::vector<std::uint64_t> predicted_cells(const Mesh& mesh, const Problem& problem, const CubeGrid& grid) {
   constexpr double kParts = 1e6;
   std::vector<LabelIndex> labels(mesh.cell_bound());
@@ -96,7 +97,7 @@ std::vector<std::uint64_t> predicted_cells(const Mesh& mesh, const Problem& prob
   return cells;
 }
 
-// As long as most cells need, unless blocks would then be coarse.
+// Returns the cube side that suits most cells, unless blocks would then be too coarse.
 double cube_side_mm(const Radii& radii, const Box& object, int num_ranks) {
   constexpr double kCubesABlock = 512;
   const Vector extent = object.high - object.low;
@@ -105,9 +106,9 @@ double cube_side_mm(const Radii& radii, const Box& object, int num_ranks) {
                   std::min(kCubeOverRadius * radii.most, std::cbrt(share_mm3 / kCubesABlock)));
 }
 
-// Blocks have room for this around what is refined in them: balls that have a point in common and are no
-// larger than one lie within two of its radii, so what leaves the zone there would hardly get to its end. The
-// zones of later rounds are too narrow.
+// Balls that have a point in common and are no larger than a given ball lie within two of its radii. With
+// this room around the refined cells, new poor cells that leave the zone would hardly reach the end of it.
+// Only blocks have this room, because the zones of later rounds are too narrow.
 constexpr double kRoomInBlocks = 2;
 
 class Rounds {
@@ -130,7 +131,7 @@ class Rounds {
 
   DistributedRefinement operator()() {
     for (const char* phase : {"initial", "refine"})
-      construction_.timed(phase, [] {});  // every rank has these
+      construction_.timed(phase, [] {});  // every rank has these phases
     for (const char* phase : {"octree", "closing"})
       if (leaves_) construction_.timed(phase, [] {});
     if (ranks_.rank() == 0)
@@ -161,7 +162,8 @@ class Rounds {
     return num_over[0] > 0;
   }
 
-  // The first rank cuts, for the same cells have centres that differ in the last bit on other ranks.
+  // Divides space by the cuts of the first rank. On other ranks the centers of the same cells may differ in
+  // the last bit.
   void divide_space() {
     Bytes message;
     if (ranks_.rank() == 0) append(message, cut().cuts());
@@ -174,7 +176,8 @@ class Rounds {
     return Blocks(grid_, predicted_cells(construction_.mesh(), problem_, grid_), ranks_.size());
   }
 
-  // The first cells are of the box, whose centre many of them have: labels there hang on the last bit.
+  // Returns the whole mesh, which is on the first rank. Many of the first cells, those of the box, have the
+  // center of the box as their center. Their labels depend on its last bit, so the cells are made canonical.
   DistributedRefinement all_of_first_rank() {
     for (const auto& entry : construction_.all_cells()) construction_.mesh().make_canonical(entry.cell);
     return {.refinement = construction_.finish(),
@@ -184,7 +187,7 @@ class Rounds {
             .last_update = {}};
   }
 
-  // A cell is its rank's whose block has its least vertex.
+  // Returns true if this rank owns the cell. A cell belongs to the rank whose block has its least vertex.
   bool is_own(const Cell& cell) const {
     const Mesh& mesh = construction_.mesh();
     Point least = mesh.point(cell.vertices[0]);
@@ -193,11 +196,11 @@ class Rounds {
     return blocks_->of(grid_.cube_at(least)) == ranks_.rank();
   }
 
-  // Until nothing waits, or the run is over.
+  // Refines until no cell waits, or the run is over.
   void refine_in_rounds() {
     zone_of_ = blocks_->ranks();
     load_.assign(static_cast<std::size_t>(ranks_.size()), 0);
-    std::vector<CellName> here;  // what waits, and is to be refined here
+    std::vector<CellName> here;  // deferred cells to be refined here
     do {
       const auto round = static_cast<int>(rounds_.size());
       RoundReport report;
@@ -226,11 +229,11 @@ class Rounds {
     } while (rounds_.back().deferred > 0 && !is_over_);
   }
 
-  // Ranks that have something to do share what is left of the limit of cells.
+  // Divides the rest of the cell limit among the ranks that have work.
   void share_limit(bool has_work) {
     const std::int64_t more = stop_.num_cells() - cells_told_;
     std::array<std::uint64_t, 2> sums{static_cast<std::uint64_t>(more), has_work ? 1u : 0u};
-    ranks_.sum(sums);  // modulo 2^64, so less than none adds up as well
+    ranks_.sum(sums);  // modulo 2^64, so negative numbers add up as well
     cells_told_ += more;
     cells_of_all_ += static_cast<std::int64_t>(sums[0]);
     stop_.share_limit(cells_of_all_, std::max(1, static_cast<int>(sums[1])));
@@ -249,7 +252,7 @@ class Rounds {
     return entries;
   }
 
-  // What has to be known of a zone in which these cells wait.
+  // Returns the cubes whose vertices must be known in a zone with these deferred cells.
   CubeSet wanted(const CubeSet& own, const std::vector<CellName>& names) const {
     CubeSet wanted = own.grown(kKnownRings);
     for (const auto& [cube, waiting] : by_cube(names))
@@ -257,7 +260,8 @@ class Rounds {
     return wanted;
   }
 
-  // Those with their centres in a cube. The largest ball asks for all: the others are hardly anywhere else.
+  // Groups cells by the cube of their center. The largest ball of a cube stands for all, because the other
+  // balls hardly reach other places.
   std::map<CubeId, Waiting> by_cube(const std::vector<CellName>& names) const {
     std::map<CubeId, Waiting> by_cube;
     for (const CellName& name : names) {
@@ -269,7 +273,7 @@ class Rounds {
     return by_cube;
   }
 
-  // An order in which walks to these cells are short.
+  // Returns an order in which walks to these cells are short.
   std::vector<std::size_t> along_curve(const std::vector<CellName>& names) const {
     std::vector<std::pair<MortonCode, std::size_t>> places;
     for (std::size_t i = 0; i < names.size(); ++i)
@@ -280,8 +284,8 @@ class Rounds {
     return order;
   }
 
-  // The cells of these names in the zone. Those that are not in the mesh have died, if all is known that
-  // could be in their balls; else they are `left` for another round.
+  // Returns the cells with these names in the zone. A cell that is not in the mesh has died if all vertices
+  // are known that could be in its ball. Otherwise the cell is `left` for another round.
   Construction::Entries find(const std::vector<CellName>& names, const Zone& zone,
                              std::vector<CellName>& left) {
     const Mesh& mesh = construction_.mesh();
@@ -297,8 +301,9 @@ class Rounds {
     return entries;
   }
 
-  // Nobody changes anything yet: so cells may be looked at that lie across zones, which nobody could later.
-  // Most of the large cells far from the object are of this kind. Others are looked at in time.
+  // No rank changes its mesh yet. The function can therefore read cells that lie across zones, which no
+  // worker can read later. Most of the large cells far from the object are such cells. The workers examine
+  // all other cells later.
   void drop_sound(Construction::Entries& entries, const Zone& zone) {
     Mesh& mesh = construction_.mesh();
     const Rules rules(mesh, problem_.isosurface, levels_.final);
@@ -315,7 +320,7 @@ class Rounds {
     });
   }
 
-  // What is left is for PODM.
+  // Returns the cells that are left for PODM.
   Construction::Entries refine_leaves(const Zone& zone, const Construction::Entries& entries,
                                       RoundReport& report) {
     LeavesOfZone::Refined refined = (*leaves_)(zone, entries);
@@ -328,7 +333,7 @@ class Rounds {
     return refine_with<NoLocks>(zone, entries, report);
   }
 
-  // Returns those that need what lies outside.
+  // Returns the cells that need vertices outside the zone.
   template <class Inner>
   std::vector<CellId> refine_with(const Zone& zone, const Construction::Entries& entries,
                                   RoundReport& report) {
@@ -353,7 +358,8 @@ class Rounds {
     return deferred;
   }
 
-  // All ranks learn where cells wait, divide space around them, and get those of their zones.
+  // Informs all ranks where cells wait, divides space around these cells, and returns the cells of this
+  // rank's zone.
   std::vector<CellName> plan_next(int round, const std::vector<CellName>& left, RoundReport& report) {
     std::array<std::uint64_t, 1> num_left{left.size()};
     ranks_.sum(num_left);
@@ -371,7 +377,8 @@ class Rounds {
     return exchanged(names);
   }
 
-  // The cubes for which cells of all ranks ask; num_waiting_ are the cells with their centres there.
+  // Returns the cubes that the deferred cells of all ranks request. Sets num_waiting_ to the number of cells
+  // with their centers in each cube.
   CubeSet share_waiting(const std::vector<CellName>& left) {
     CubeSet around(grid_), waiting(grid_);
     Bytes message;
@@ -416,16 +423,16 @@ class Rounds {
   Construction construction_;
   const CubeGrid grid_;
   VertexExchange exchange_;
-  std::optional<LeavesOfZone> leaves_;  // none: PODM alone
+  std::optional<LeavesOfZone> leaves_;  // unset: PODM alone
   std::optional<Blocks> blocks_;
-  double reach_over_radius_ = 1;            // how far from its centre a cube's largest asks for a zone
-  std::vector<int> zone_of_;                // by cube: the rank of the zone that it is in, or kNobody
-  std::vector<std::uint32_t> num_waiting_;  // by cube: cells, on all ranks, before the round
-  std::vector<std::uint64_t> load_;         // by rank: cells that waited for it
+  double reach_over_radius_ = 1;  // the largest ball of a cube requests a zone within this many radii
+  std::vector<int> zone_of_;      // by cube: the rank of the cube's zone, or kNobody
+  std::vector<std::uint32_t> num_waiting_;  // by cube: deferred cells on all ranks before the round
+  std::vector<std::uint64_t> load_;         // by rank: deferred cells assigned to it
   std::vector<RoundReport> rounds_;
-  std::int64_t cells_of_all_ = 0;  // of the whole, before the round
-  std::int64_t cells_told_ = 0;    // of those that this rank has added, what others know
-  bool is_over_ = false;           // on all ranks
+  std::int64_t cells_of_all_ = 0;  // cells of the whole mesh before the round
+  std::int64_t cells_told_ = 0;    // number of this rank's added cells that the other ranks know
+  bool is_over_ = false;           // the same on all ranks
 };
 
 }  // namespace

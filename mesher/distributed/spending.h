@@ -1,4 +1,4 @@
-// What a rank spends its seconds on, phase by phase.
+// The seconds that a rank spends in each phase.
 #pragma once
 
 #include <map>
@@ -25,14 +25,14 @@ class Spending {
  public:
   explicit Spending(const Communication& ranks) : ranks_(ranks), last_(ranks.report()) {}
 
-  /// What the rank spent since the last call, or since this was made, is of this phase.
+  /// Assigns the time since the last call, or since construction, to this phase.
   void end(const std::string& phase) {
     const RankReport now = ranks_.report();
     by_phase_[phase] += {now.computing_s - last_.computing_s, now.waiting_s - last_.waiting_s,
                          now.network_s - last_.network_s};
     last_ = now;
   }
-  /// What the rank spent since then is of these phases, which another one told.
+  /// Adds the given times per phase, reported from outside, in place of the time since the last call.
   void end(const SpentByPhase& phases) {
     for (const auto& [phase, spent] : phases) by_phase_[phase] += spent;
     last_ = ranks_.report();

@@ -13,7 +13,7 @@ namespace podm {
 
 namespace {
 
-constexpr double kTouching = 0;  // mm: vertices come from a triangulation, so no two of them coincide
+constexpr double kTouching = 0;  // mm; the vertices come from a triangulation, so no two of them coincide
 
 std::uint64_t hash_of(const Point& p) {
   std::uint64_t hash = 0;
@@ -83,7 +83,7 @@ Update VertexExchange::update(const CubeSet& wanted, std::vector<CellId>* made) 
   return update;
 }
 
-// To each rank all vertices in the cubes that it asked for: the cubes, and these.
+// Returns, for each rank, the cubes that it requested and all vertices in them.
 std::vector<Bytes> VertexExchange::tell(const std::vector<Bytes>& asked) const {
   struct Answer {
     std::size_t rank;
@@ -120,7 +120,7 @@ std::vector<Bytes> VertexExchange::tell(const std::vector<Bytes>& asked) const {
   return messages;
 }
 
-// Both sides in order of their coordinates.
+// Compares both sets of vertices in the order of their coordinates.
 std::vector<VertexExchange::Change> VertexExchange::differences(const std::vector<Bytes>& told,
                                                                 Update& update) const {
   CubeSet cubes(grid_);
@@ -150,9 +150,9 @@ std::vector<VertexExchange::Change> VertexExchange::differences(const std::vecto
   return changes;
 }
 
-// In rounds of random points, each twice as many as the last, and along a curve within each: neighbours in
-// the order are near each other, and cavities no larger than those of points in random order. (Amenta, Choi,
-// Rote, SoCG 2003.)
+// Inserts in rounds of random points, each with twice as many points as the previous one, and along a curve
+// within each round. Neighbours in the order are near each other, and cavities are no larger than those of
+// points in random order. (Amenta, Choi, Rote, SoCG 2003.)
 void VertexExchange::apply(std::vector<Change>& changes, std::vector<CellId>* made) {
   struct Place {
     int rounds_after;
@@ -221,7 +221,8 @@ std::optional<VertexExchange::Found> VertexExchange::find_vertex(const Point& p)
   return std::nullopt;
 }
 
-// The centroid is in it, but for rounding in flat cells. Those are among the cells around the first vertex.
+// The centroid is in the cell, except for rounding in flat cells. Flat cells are found among the cells around
+// the first vertex.
 std::optional<CellId> VertexExchange::find_cell(const std::array<Point, 4>& vertices) {
   const auto is_it = [&](CellId c) {
     const Cell& cell = mesh_.cell(c);

@@ -1,6 +1,7 @@
-// Ranks tell each other vertices, not cells: a Delaunay triangulation whose ties are broken by coordinates is
-// a function of its vertices. Vertices of a cube are told by the rank that wrote it last, all of them; who
-// asks takes away and inserts what differs from its own. So nobody has to keep what it once told to whom.
+// Exchange of vertices between ranks. Cells need not be sent: a Delaunay triangulation whose ties are broken
+// by coordinates is a function of its vertices. The rank that last wrote a cube sends all vertices of the
+// cube. The requesting rank removes and inserts the vertices that differ from its own. No rank therefore has
+// to remember what it sent earlier to which rank.
 #pragma once
 
 #include <optional>
@@ -12,10 +13,10 @@
 
 namespace podm {
 
-/// What one update took.
+/// The cost of one update.
 struct Update {
-  std::uint64_t cubes = 0;          // that came
-  std::uint64_t vertices_told = 0;  // that came in them
+  std::uint64_t cubes = 0;          // cubes received
+  std::uint64_t vertices_told = 0;  // vertices received in them
   std::uint64_t inserted = 0, removed = 0;
 
   Update& operator+=(const Update& b) {
@@ -29,21 +30,21 @@ struct Update {
 
 class VertexExchange {
  public:
-  /// All ranks have the same mesh. The log, if there is one, is told what this rank learns.
+  /// All ranks must have the same mesh. If there is a log, it receives the vertices that this rank learns.
   VertexExchange(Communication& ranks, Mesh& mesh, Pool& pool, const CubeGrid& grid, OperationLogWriter* log);
 
-  /// From now on that rank has the cube's vertices as they are; all ranks have, until the first writer
-  /// changes them.
+  /// Notes that from now on this rank has the current vertices of the cube. Before the first writer changes
+  /// them, all ranks have the current vertices.
   void note_writer(CubeId cube, int rank);
-  /// Cubes of which this rank has all vertices as they are.
+  /// Returns the cubes whose current vertices this rank has.
   CubeSet known() const;
-  /// All ranks get the first one's mesh: collective. Nobody has noted a writer yet.
+  /// Copies the first rank's mesh to all ranks. Collective. No writer may have been noted before.
   void copy_first();
-  /// Brings the vertices in these cubes up to date: collective, each rank names its own cubes. The cells that
-  /// this makes are added to `made`, some more than once, those that die again among them.
+  /// Updates the vertices in these cubes. Collective; each rank passes its own cubes. Adds the cells that the
+  /// update makes to `made`, some more than once, including cells that die again.
   Update update(const CubeSet& wanted, std::vector<CellId>* made = nullptr);
 
-  /// The cell of the store that has these vertices, if there is one.
+  /// Returns the cell of the store that has these vertices, if there is one.
   std::optional<CellId> find_cell(const std::array<Point, 4>& vertices);
 
  private:
@@ -73,12 +74,12 @@ class VertexExchange {
   Mesh& mesh_;
   const CubeGrid& grid_;
   Operation<NoLocks> operation_;
-  CellId near_ = 0;  // where the next walk begins
+  CellId near_ = 0;  // start of the next walk
   OperationLogWriter* log_;
   OperationBatch unlogged_;
   struct State {
     int writer = 0;
-    bool is_up_to_date = true;  // this rank's copy
+    bool is_up_to_date = true;  // true if this rank's copy is current
   };
   std::vector<State> cubes_;
 };

@@ -10,7 +10,7 @@
 namespace podm {
 namespace {
 
-// Those of all ranks, so that a pair has the same number on each.
+// Returns the label pairs of all ranks, so that a pair has the same number on each rank.
 LabelPairs gathered(const LabelPairs& own, Communication& ranks) {
   std::vector<LabelPair> pairs;
   for (std::size_t i = 0; i < own.size(); ++i) pairs.push_back(own[i]);
@@ -24,7 +24,7 @@ LabelPairs gathered(const LabelPairs& own, Communication& ranks) {
   return LabelPairs(pairs);
 }
 
-// What the first rank tells.
+// Returns the text of the first rank.
 std::string told_by_first(const std::string& text, Communication& ranks) {
   Bytes message;
   append(message, std::span<const char>(text));
@@ -38,7 +38,7 @@ std::string told_by_first(const std::string& text, Communication& ranks) {
 void check_pieces_path(const std::string& path) {
   if (!path.ends_with(".pvtu") && !path.ends_with(".xdmf"))
     throw InputError(fmt::format("cannot write {}: ranks write .pvtu or .xdmf", path));
-  const AtomicFile trial(path);  // what writing will do first; it leaves nothing behind
+  const AtomicFile trial(path);  // the first step of writing; leaves nothing behind
 }
 
 void write_pieces(const MeshPiece& piece, const std::string& path, Communication& ranks) {

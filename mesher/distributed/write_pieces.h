@@ -1,4 +1,4 @@
-// A mesh that no rank holds whole is written by all of them, each its piece: nothing is gathered.
+// Joint writing of a mesh that no rank holds as a whole. Each rank writes its piece; nothing is gathered.
 #pragma once
 
 #include <string>
@@ -8,21 +8,22 @@
 
 namespace podm {
 
-/// Throws InputError unless it is .pvtu or .xdmf, which ranks write together, and this rank can write there.
+/// Throws InputError unless the path is .pvtu or .xdmf, the formats that ranks write together, and this rank
+/// can write there.
 void check_pieces_path(const std::string& path);
 
-/// Writes the format that the path asks for. Collective. Throws RefusedByAll (distributed/together.h) naming
-/// the file if any rank cannot write; nothing is left then, and an earlier mesh is there unless its pieces
-/// were being replaced.
+/// Writes the format of the path's extension. Collective. Throws RefusedByAll (distributed/together.h) that
+/// names the file if any rank cannot write. Nothing new is left in that case, and an earlier mesh remains
+/// unless its pieces were being replaced.
 void write_pieces(const MeshPiece& piece, const std::string& path, Communication& ranks);
 
-/// Writes x.pvtu and its pieces (io/write_pvtu.h). No piece gets its name before all are on the disks, and
-/// none while an index of an earlier mesh names it; the new index comes last. So an index names all pieces of
-/// one mesh whenever there is one. Collective, and throws as write_pieces() does.
+/// Writes x.pvtu and its pieces (io/write_pvtu.h). No piece gets its name before all pieces are on the disks,
+/// nor while an index of an earlier mesh names it. The new index comes last. An index that exists therefore
+/// always names all pieces of one mesh. Collective, and throws as write_pieces() does.
 void write_pvtu(const MeshPiece& piece, const std::string& path, Communication& ranks);
 
-/// Writes x.xdmf and x.h5 (io/write_xdmf.h): the ranks add their rows one after the other to a file without a
-/// name, which gets it when all is there. Collective, and throws as write_pieces() does.
+/// Writes x.xdmf and x.h5 (io/write_xdmf.h). The ranks append their rows one after the other to a temporary
+/// file, which gets its name when it is complete. Collective, and throws as write_pieces() does.
 void write_xdmf(const MeshPiece& piece, const std::string& path, Communication& ranks);
 
 }  // namespace podm

@@ -15,8 +15,8 @@ double sure_radius_mm(const Cell& cell) {
 
 }  // namespace
 
-// A ball of radius r through a vertex of the zone lies within 2r of it. Stored radii are off by more than
-// centres.
+// A ball of radius r through a vertex of the zone lies within 2r of the vertex. Stored radii have larger
+// errors than centers.
 Zone::Zone(CubeSet own, CubeSet known, int rings, double room_over_radius)
     : own_(std::move(own)),
       known_(std::move(known)),
@@ -40,7 +40,7 @@ bool Zone::is_ball_known(const Cell& cell) const {
   return is_ball_known(cell.center, sure_radius_mm(cell));
 }
 
-// What has no certified sphere may have any.
+// A cell without a certified sphere may have a ball of any size.
 void Zone::insert_ball(const Cell& cell, CubeSet& cubes) {
   if (!std::isnan(cell.squared_radius)) {
     cubes.insert(cell.center, sure_radius_mm(cell) * (1 + kMargin));
@@ -49,7 +49,7 @@ void Zone::insert_ball(const Cell& cell, CubeSet& cubes) {
   }
 }
 
-// Mostly the box around the ball is known, too.
+// Tests the box around the ball first; in most cases it is known, too.
 bool Zone::is_ball_known(const Point& center, double radius_mm) const {
   const double r = radius_mm * (1 + kMargin);
   const CubeGrid& grid = known_.grid();

@@ -10,13 +10,13 @@ namespace podm {
 
 namespace {
 
-// After so many rounds what still waits needs more room than cuts leave.
+// After this round, cells that still wait need more room than cuts leave.
 constexpr int kLastWithCuts = 8;
-// Where fewer cells wait a cut is not worth the round that it may cost.
+// With fewer deferred cells a cut is not worth the round that it may cost.
 constexpr std::uint64_t kCellsAZone = 5000;
-// More than one, for ranks to have equally much of.
+// More than one zone per rank, so that the load can be balanced.
 constexpr std::uint64_t kZonesARank = 2;
-// What so many cubes on either side of a cut hold may have to wait again.
+// Cells within this many cubes on either side of a cut may have to wait again.
 constexpr int kCubesBesideCut = 3;
 
 constexpr std::size_t kNoZone = ~std::size_t{0};
@@ -33,14 +33,14 @@ struct PlaneCut {
   double cost = std::numeric_limits<double>::infinity();
 };
 
-// Parts of about equally many waiting cells, cut where few lie.
+// Divides space into parts with about equal numbers of deferred cells. The cuts are where few cells lie.
 class CutZones {
  public:
   CutZones(const CubeSet& waiting, const std::vector<std::uint32_t>& num_cells, std::size_t num_zones)
       : waiting_(waiting), num_cells_(num_cells), zone_of_(waiting.grid().num_cubes(), kNoZone) {
     divide({waiting.grid().all(), num_zones});
   }
-  /// By cube: the number of its zone, or kNoZone.
+  /// Returns the number of each cube's zone, or kNoZone.
   const std::vector<std::size_t>& operator()() const { return zone_of_; }
 
  private:
@@ -70,8 +70,8 @@ class CutZones {
     return best;
   }
 
-  // Costs what lies beside it over what lies on either side. (Shi and Malik, IEEE TPAMI 2000.) Both sides get
-  // at least half of what is theirs by their zones.
+  // The cost of a cut is the number of cells beside it over the product of the numbers on either side. (Shi
+  // and Malik, IEEE TPAMI 2000.) Each side gets at least half of its share by number of zones.
   PlaneCut best_cut_across(std::size_t axis, const Part& part) const {
     const std::vector<std::uint64_t> cells_below =
         waiting_.grid().weights_below(part.cubes, axis, num_cells_);
@@ -111,7 +111,7 @@ struct ZoneSize {
   std::size_t cubes = 0, cells = 0;
 };
 
-// Blocks that have their part of a zone; if none has, all in it.
+// Returns the blocks with a sufficient share of a zone; if there is none, all blocks in the zone.
 std::vector<int> candidates(const ZoneSize& zone) {
   constexpr double kLeastShare = 0.2;
   std::vector<int> blocks;
@@ -122,9 +122,9 @@ std::vector<int> candidates(const ZoneSize& zone) {
   return blocks;
 }
 
-// Zones move to ranks that would then have less than theirs has now, as long as there are such: each move
-// lessens the sum of squares of what ranks have. `load` is what they had before, in cells, and becomes what
-// they have.
+// Assigns zones to ranks. A zone moves to another rank as long as that rank then has less than the zone's
+// rank has now. Each move reduces the sum of squares of the loads. `load` holds the loads before, in cells,
+// and receives the new loads.
 std::vector<int> ranks_of(const std::vector<ZoneSize>& zones, std::vector<std::uint64_t>& load) {
   const auto of = [&](int rank) -> std::uint64_t& { return load[static_cast<std::size_t>(rank)]; };
   std::vector<int> rank_of;

@@ -1,5 +1,6 @@
-// The canonical order of a mesh, in time nearly linear in its cells, on all threads: vertices by buckets of
-// x, cells and facets by buckets of their first vertex, each bucket sorted in a cache.
+// Computes the canonical order of a mesh, in time nearly linear in its cells, on all threads. Vertices are
+// grouped into buckets of x, cells and facets into buckets of their first vertex. Each bucket is sorted in a
+// cache.
 #include <algorithm>
 #include <bit>
 #include <cmath>
@@ -15,7 +16,7 @@ namespace {
 
 using VertexId = std::uint32_t;
 
-// -0 becomes 0: equal coordinates have equal bytes. Returns the bounds of x.
+// Replaces -0 by 0, so that equal coordinates have equal bytes. Returns the bounds of x.
 std::array<double, 2> normalize(std::vector<std::array<double, 3>>& vertices) {
   double low = std::numeric_limits<double>::infinity(), high = -low;
   for (auto& vertex : vertices) {
@@ -30,16 +31,16 @@ std::array<double, 2> normalize(std::vector<std::array<double, 3>>& vertices) {
   return {low, high};
 }
 
-// Sorts the vertices by (x, y, z) and returns the new position of each.
+// Sorts the vertices by (x, y, z) and returns the new position of each vertex.
 std::vector<VertexId> sort_vertices(std::vector<std::array<double, 3>>& vertices, std::size_t threads) {
   struct Key {
-    double x;  // beside the id, so that nearly every comparison stays in the bucket
+    double x;  // stored beside the id, so that nearly every comparison stays in the bucket
     VertexId id;
   };
   constexpr std::size_t kVerticesABucket = 32, kMostBuckets = 1 << 14;
   const auto [low, high] = normalize(vertices);
   const std::size_t num_buckets = std::min(kMostBuckets, vertices.size() / kVerticesABucket + 1);
-  // Rounding keeps the order: of two numbers the larger is not in the lower bucket.
+  // Rounding keeps the order: the larger of two numbers is never in a lower bucket.
   const double width = 0.5 * high - 0.5 * low;
   const double scale = width > 0 ? std::min(1e300, static_cast<double>(num_buckets - 1) / width) : 0;
   const auto bucket_of = [&, low = low](double x) {
@@ -71,8 +72,8 @@ std::vector<VertexId> sort_vertices(std::vector<std::array<double, 3>>& vertices
   return position;
 }
 
-// The larger of two goes to the back; returns whether they changed places. Without a branch: which is larger
-// nobody can foresee.
+// Puts the smaller vertex first and returns whether the two were swapped. Has no branch, because the branch
+// would be unpredictable.
 std::uint32_t put_in_order(VertexId& a, VertexId& b) {
   const std::uint32_t is_swapped = a > b;
   const VertexId change = (a ^ b) & (0u - is_swapped);
@@ -81,8 +82,8 @@ std::uint32_t put_in_order(VertexId& a, VertexId& b) {
   return is_swapped;
 }
 
-// The even permutations of four vertices fall into two classes; the representative is ascending, or
-// ascending with its last two swapped.
+// The permutations of four vertices fall into two classes under even permutations. The representative is
+// ascending, or ascending with its last two vertices swapped.
 void permute_evenly(std::array<VertexId, 4>& cell) {
   auto [a, b, c, d] = cell;
   std::uint32_t swaps = put_in_order(a, b);
@@ -98,8 +99,8 @@ void permute_evenly(std::array<VertexId, 3>& facet) {
   std::rotate(facet.begin(), std::min_element(facet.begin(), facet.end()), facet.end());
 }
 
-// What orders simplices of one first vertex: the others, then the label. As one number, since comparing it
-// takes no branch.
+// A number that orders simplices with the same first vertex: by the other vertices, then by label. Comparing
+// single numbers takes no branch.
 using Key = unsigned __int128;
 
 LabelIndex label_bits(LabelIndex label) { return label; }
@@ -111,7 +112,7 @@ void set_label(std::array<LabelIndex, 2>& pair, std::uint32_t bits) {
   pair = {static_cast<LabelIndex>(bits >> 16), static_cast<LabelIndex>(bits)};
 }
 
-// Few keys: each finds its place by counting the smaller ones, which no branch has to foresee.
+// Sorts a few keys. Each key finds its place by counting the smaller keys, without unpredictable branches.
 void sort_few(std::span<const Key> keys, Key* sorted) {
   for (std::size_t i = 0; i < keys.size(); ++i) {
     std::size_t place = 0;
@@ -121,7 +122,7 @@ void sort_few(std::span<const Key> keys, Key* sorted) {
   }
 }
 
-// Sorts simplices and their labels. Buckets are those of the leading bits of the first vertex.
+// Sorts simplices and their labels. The buckets are given by the leading bits of the first vertex.
 template <std::size_t N, class SimplexLabel>
 class SimplexSorter {
  public:
@@ -136,7 +137,7 @@ class SimplexSorter {
   void sort() {
     Buckets<Record> buckets(
         simplices_.size(), (position_.size() >> bucket_bits_) + 1, threads_,
-        [&](std::size_t i, std::size_t end) {  // another thread renumbers those from `end` on
+        [&](std::size_t i, std::size_t end) {  // another thread renumbers the simplices from `end` on
           for (const VertexId v : simplices_[std::min(i + kLookahead, end - 1)])
             __builtin_prefetch(&position_[v]);
           return renumber(simplices_[i]) >> bucket_bits_;
@@ -156,19 +157,20 @@ class SimplexSorter {
 
  private:
   static constexpr int kLeadingBits = 10;
-  static constexpr std::size_t kLookahead = 16;  // simplices whose vertices' positions are on their way
-  static constexpr std::size_t kFew = 40;        // simplices of one first vertex
+  // Number of simplices whose vertices' positions are prefetched.
+  static constexpr std::size_t kLookahead = 16;
+  static constexpr std::size_t kFew = 40;  // limit of sort_few(): simplices with the same first vertex
   struct Record {
     std::array<VertexId, N> simplex;
     std::uint32_t label;
   };
   struct Workspace {
-    std::vector<std::size_t> run_end;  // one a vertex of the bucket
+    std::vector<std::size_t> run_end;  // one per vertex of the bucket
     std::vector<Key> keys;
     std::array<Key, kFew> few;
   };
 
-  // Gives it its new vertices, the first of which is returned.
+  // Renumbers and permutes the vertices of the simplex. Returns the first one.
   VertexId renumber(std::array<VertexId, N>& simplex) const {
     for (VertexId& vertex : simplex) vertex = position_[vertex];
     permute_evenly(simplex);
@@ -181,13 +183,13 @@ class SimplexSorter {
     return key << 32 | record.label;
   }
 
-  // Counts the simplices by first vertex, then sorts those that share one.
+  // Counts the simplices by first vertex, then sorts those with the same first vertex.
   void sort_bucket(std::span<const Record> records, VertexId first_vertex, std::size_t begin,
                    Workspace& work) {
     std::fill(work.run_end.begin(), work.run_end.end(), 0);
     for (const Record& record : records) ++work.run_end[record.simplex[0] - first_vertex + 1];
     std::partial_sum(work.run_end.begin(), work.run_end.end(), work.run_end.begin());
-    for (const Record& record : records)  // moves each run's begin to its end
+    for (const Record& record : records)  // moves the begin of each run to its end
       work.keys[work.run_end[record.simplex[0] - first_vertex]++] = key_of(record);
     std::size_t at = 0;
     for (std::size_t v = 0; at < records.size(); ++v) {
@@ -219,7 +221,7 @@ class SimplexSorter {
   std::vector<SimplexLabel>& labels_;
   const std::vector<VertexId>& position_;
   std::size_t threads_;
-  int bucket_bits_;  // of the first vertex that tell simplices of one bucket apart
+  int bucket_bits_;  // low bits of the first vertex, which distinguish simplices of one bucket
 };
 
 }  // namespace

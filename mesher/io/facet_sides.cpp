@@ -16,7 +16,7 @@ Triangle sorted(Triangle triangle) {
   return triangle;
 }
 
-// Finds the facet of three vertices among those with the same lowest vertex.
+// Finds the facet with three given vertices among the facets with the same lowest vertex.
 class FacetFinder {
  public:
   explicit FacetFinder(const TetMesh& mesh)
@@ -29,7 +29,7 @@ class FacetFinder {
       for (const std::uint32_t vertex : facet) has_facet_[vertex] = 1;
   }
 
-  // Most cells have no such vertex, or one.
+  // Returns false for most triangles: most cells have at most one vertex that is on a facet.
   bool may_be_facet(const Triangle& t) const {
     return has_facet_[t[0]] & has_facet_[t[1]] & has_facet_[t[2]];
   }

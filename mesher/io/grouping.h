@@ -1,4 +1,4 @@
-// Positions brought together by a small integer key, by counting.
+// Groups positions by a small integer key, by counting.
 #pragma once
 
 #include <cstddef>
@@ -9,7 +9,7 @@
 
 namespace podm {
 
-/// Positions 0..n-1 by key; ascending within a group.
+/// Positions 0..n-1 grouped by key; ascending within a group.
 class Grouping {
  public:
   /// `key(i)` is the group of position i, less than `num_groups`.

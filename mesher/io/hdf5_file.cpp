@@ -11,7 +11,8 @@
 namespace podm {
 namespace {
 
-// The system's words where it refused, else those of the innermost function of the library that failed.
+// Returns the system's message if the system refused, otherwise the message of the innermost failed function
+// of the library.
 std::string last_fault() {
   std::string fault = "the HDF5 library fails";
   const auto take = [](unsigned, const H5E_error2_t* error, void* text) -> herr_t {
@@ -26,19 +27,19 @@ std::string last_fault() {
   return fault.substr(0, fault.find('\''));
 }
 
-// To be called before any other call clears what the library remembers of the fault.
+// Must be called before any other call clears the library's error stack.
 hid_t check_result(hid_t result, const std::string& path) {
   if (result < 0) throw InputError(fmt::format("cannot write {}: {}", path, last_fault()));
   return result;
 }
 
 Hdf5Handle open_file(const std::string& path, const std::string& shown_path, Hdf5File::Mode mode) {
-  // When the program ends, the library would try again to write what a full disk did not take, and crash.
+  // Disables the library's cleanup at exit. After a full disk the cleanup would retry the write and crash.
   static const herr_t unwanted_cleanup = H5dont_atexit();
   static_cast<void>(unwanted_cleanup);
-  H5Eset_auto2(H5E_DEFAULT, nullptr, nullptr);  // it would print
+  H5Eset_auto2(H5E_DEFAULT, nullptr, nullptr);  // stops the library from printing errors
   const Hdf5Handle access(H5Pcreate(H5P_FILE_ACCESS), H5Pclose);
-  H5Pset_file_locking(access, 0, 1);  // we hold a lock on it (files/temporary_name.cpp)
+  H5Pset_file_locking(access, 0, 1);  // another lock already protects the file (files/temporary_name.cpp)
   const hid_t file = mode == Hdf5File::Mode::kMakeNew
                          ? H5Fcreate(path.c_str(), H5F_ACC_TRUNC, H5P_DEFAULT, access)
                          : H5Fopen(path.c_str(), H5F_ACC_RDWR, access);
@@ -59,9 +60,9 @@ void Hdf5File::make_dataset(const std::string& name, hid_t type, std::uint64_t n
   const std::array<hsize_t, 2> sizes{num_rows, num_columns};
   const Hdf5Handle space(check(H5Screate_simple(num_columns == 0 ? 1 : 2, sizes.data(), nullptr)), H5Sclose);
   const Hdf5Handle creation(check(H5Pcreate(H5P_DATASET_CREATE)), H5Pclose);
-  H5Pset_alloc_time(creation, H5D_ALLOC_TIME_EARLY);  // so that writers find it there
+  H5Pset_alloc_time(creation, H5D_ALLOC_TIME_EARLY);  // other writers must find the dataset allocated
   H5Pset_fill_time(creation, H5D_FILL_TIME_NEVER);
-  H5Pset_obj_track_times(creation, 0);  // the same mesh gives the same bytes
+  H5Pset_obj_track_times(creation, 0);  // the same mesh must give the same bytes
   const Hdf5Handle dataset(
       check(H5Dcreate2(file_, name.c_str(), type, space, H5P_DEFAULT, creation, H5P_DEFAULT)), H5Dclose);
 }

@@ -1,4 +1,4 @@
-// HDF5 files of datasets whose sizes are known when the file is made, and of which each writer has some rows.
+// HDF5 files of datasets whose sizes are known at creation. Each writer holds some of the rows.
 #pragma once
 
 #include <hdf5.h>
@@ -11,7 +11,7 @@
 
 namespace podm {
 
-/// A handle of the HDF5 library, closed when it goes.
+/// A handle of the HDF5 library, closed by the destructor.
 class Hdf5Handle {
  public:
   Hdf5Handle(hid_t id, herr_t (*close)(hid_t)) : id_(id), close_(close) {}
@@ -20,7 +20,7 @@ class Hdf5Handle {
   ~Hdf5Handle() {
     if (id_ >= 0) close_(id_);
   }
-  operator hid_t() const { return id_; }  // the library's functions take it
+  operator hid_t() const { return id_; }  // for the library's functions
   hid_t release() { return std::exchange(id_, H5I_INVALID_HID); }
 
  private:
@@ -28,24 +28,24 @@ class Hdf5Handle {
   herr_t (*close_)(hid_t);
 };
 
-/// Every member throws InputError "cannot write PATH: " and the reason.
+/// An HDF5 file. Every member throws InputError "cannot write PATH: " and the reason.
 class Hdf5File {
  public:
   enum class Mode { kMakeNew, kAddTo };
-  /// `path` must exist: its content goes, or is added to. `shown_path` stands in messages.
+  /// `path` must exist; its content is replaced or extended. Messages contain `shown_path`.
   Hdf5File(const std::string& path, const std::string& shown_path, Mode mode);
 
-  /// Rows of `num_columns` (0: one number, not a row of one) whose values are not yet known, but their place
-  /// is.
+  /// Allocates a dataset with rows of `num_columns` numbers (0: one number per row, in one dimension). The
+  /// values are written later.
   void make_dataset(const std::string& name, hid_t type, std::uint64_t num_rows, std::uint64_t num_columns);
   void write_strings(const std::string& name, const std::vector<std::string>& texts);
   void make_group(const std::string& name);
 
-  /// Writes rows [first_row, first_row + num_rows) of a dataset, `value_at(row, column)` for rows from 0.
+  /// Writes rows [first_row, first_row + num_rows) of a dataset. `value_at(row, column)` counts rows from 0.
   template <class Value, class ValueAt>
   void write_rows(const std::string& name, std::uint64_t first_row, std::uint64_t num_rows, ValueAt value_at);
 
-  /// All is in the system's hands: nothing may be written afterwards.
+  /// Flushes everything to the system. No write may follow.
   void close();
 
  private:

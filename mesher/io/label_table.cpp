@@ -10,7 +10,7 @@
 namespace podm {
 namespace {
 
-// Whether `text` is UTF-8 of characters that XML allows beyond ASCII.
+// Returns true if `text` is UTF-8; characters beyond ASCII must be allowed in XML.
 bool is_utf8(std::string_view text) {
   for (std::size_t i = 0; i < text.size();) {
     const auto lead = static_cast<unsigned char>(text[i++]);
@@ -22,7 +22,8 @@ bool is_utf8(std::string_view text) {
       if (i == text.size() || (text[i] & 0xc0) != 0x80) return false;
       character = character << 6 | (text[i] & 0x3f);
     }
-    constexpr std::array<std::uint32_t, 4> kSmallest{0, 0x80, 0x800, 0x10000};  // shorter forms exist below
+    // A shorter form exists for smaller values.
+    constexpr std::array<std::uint32_t, 4> kSmallest{0, 0x80, 0x800, 0x10000};
     if (character < kSmallest[num_following] || character > 0x10ffff) return false;
     if ((character >= 0xd800 && character < 0xe000) || (character & 0xfffe) == 0xfffe) return false;
   }

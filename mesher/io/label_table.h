@@ -1,4 +1,4 @@
-// What mesh files say about labels: a printable name for each, and the pairs of labels that facets separate.
+// The labels in mesh files: a printable name for each, and the pairs of labels that facets separate.
 #pragma once
 
 #include <array>
@@ -11,20 +11,21 @@ namespace podm {
 
 using LabelPair = std::array<LabelIndex, 2>;  ///< as in TetMesh::facet_labels
 
-/// Names in UTF-8 without quotes, bars or control characters, no two alike: that of the label, or "label 3"
-/// by its value where it has none, and "outside" for the background.
+/// Distinct names in UTF-8 without quotes, bars or control characters. A label without a name is called
+/// "label 3" after its value; the background is called "outside".
 class LabelNames {
  public:
   explicit LabelNames(const std::vector<Label>& labels);
   const std::string& operator[](LabelIndex label) const { return names_[label]; }
-  /// The label before what lies on its other side: "kidney|outside", "liver|kidney".
+  /// Returns the name of the label, then that of the label on its other side: "kidney|outside",
+  /// "liver|kidney".
   std::string of_pair(const LabelPair& pair) const;
 
  private:
   std::vector<std::string> names_;
 };
 
-/// The different pairs among the facets of a mesh, sorted; a pair's number is its position.
+/// The distinct pairs among the facets of a mesh, sorted; a pair's number is its position.
 class LabelPairs {
  public:
   explicit LabelPairs(const std::vector<LabelPair>& facet_labels);

@@ -10,13 +10,13 @@ namespace {
 
 using Triangle = std::array<std::uint32_t, 3>;
 
-// The face of a cell without its vertex `opposite`, the normal pointing out of the cell.
+// Returns the face of a cell without its vertex `opposite`; the normal points out of the cell.
 Triangle face_of(const std::array<std::uint32_t, 4>& cell, std::size_t opposite) {
   const auto& [a, b, c, d] = cell;
   return std::array<Triangle, 4>{{{b, c, d}, {a, d, c}, {a, b, d}, {a, c, b}}}[opposite];
 }
 
-// One of four faces of a cell, to be met by the same vertices.
+// One of the four faces of a cell, ordered by its sorted vertices.
 struct Face {
   Triangle sorted;
   std::uint32_t number;  // 4 * cell + opposite
@@ -30,7 +30,7 @@ class FacetCollector {
     mesh.facet_labels.clear();
   }
 
-  // `alike` are the faces of the same vertices: one or two.
+  // `alike` are the one or two faces with the same vertices.
   void add(std::span<const Face> alike) {
     std::uint32_t behind = alike[0].number;
     std::array<LabelIndex, 2> labels{kBackground, label(behind)};
@@ -63,7 +63,7 @@ std::optional<Triangle> find_labelled_facets(TetMesh& mesh) {
     return sorted_face(static_cast<std::uint32_t>(face))[0];
   });
   FacetCollector collector(mesh);
-  std::vector<Face> faces;  // of one lowest vertex
+  std::vector<Face> faces;  // faces with the same lowest vertex
   for (std::size_t lowest = 0; lowest < mesh.vertices.size(); ++lowest) {
     faces.clear();
     for (const std::uint32_t face : by_lowest[lowest]) faces.push_back({sorted_face(face), face});

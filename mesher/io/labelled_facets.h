@@ -1,4 +1,4 @@
-// The facets of a mesh that is known by its cells alone.
+// The facets of a mesh that is given by its cells alone.
 #pragma once
 
 #include <array>
@@ -9,9 +9,9 @@
 
 namespace podm {
 
-/// Replaces `facets` and `facet_labels` by all faces of cells that have another label, or nothing, on their
-/// other side. Cells must be positively oriented. Returns the vertices of a face that more than two cells
-/// have, if there is one. Takes 24 bytes a cell while it runs.
+/// Replaces `facets` and `facet_labels` by all faces of cells that have another label, or no cell, on their
+/// other side. Cells must be positively oriented. Returns the vertices of a face that belongs to more than
+/// two cells, if there is one. Takes 24 bytes per cell while it runs.
 std::optional<std::array<std::uint32_t, 3>> find_labelled_facets(TetMesh& mesh);
 
 }  // namespace podm

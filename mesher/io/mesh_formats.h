@@ -1,4 +1,4 @@
-// The mesh file formats, one function each, all behind write_mesh().
+// The mesh file formats, one function each. write_mesh() calls them.
 #pragma once
 
 #include <string>
@@ -13,10 +13,10 @@ using Losses = std::vector<std::string>;  ///< as write_mesh() returns them
 /// VTK XML, appended raw binary: `path` holds the cells, `<stem>_facets.vtu` beside it the facets.
 void write_vtu(const TetMesh& mesh, const std::string& path);
 
-/// XDMF, and the arrays in `<stem>.h5` beside it (io/write_xdmf.h).
+/// XDMF, with the arrays in `<stem>.h5` beside it (io/write_xdmf.h).
 void write_xdmf(const TetMesh& mesh, const std::string& path);
 
-/// Medit ascii, every coordinate in the fewest digits (at most 17) that read back to the same double.
+/// Medit ascii. Every coordinate has the fewest digits (at most 17) that read back to the same double.
 void write_medit(const TetMesh& mesh, const std::string& path);
 
 /// Gmsh MSH 4.1 binary.
@@ -25,7 +25,7 @@ void write_gmsh(const TetMesh& mesh, const std::string& path);
 /// Gmsh MSH 2.2 text.
 void write_gmsh_v2(const TetMesh& mesh, const std::string& path);
 
-/// Abaqus input, for CalculiX too.
+/// Abaqus input, which CalculiX reads, too.
 Losses write_abaqus(const TetMesh& mesh, const std::string& path);
 
 /// Exodus II, as netCDF of 64-bit offsets.

@@ -1,4 +1,4 @@
-// The order-free hash of a mesh. What it is, is in podm/mesh_io.h.
+// The order-independent hash of a mesh. podm/mesh_io.h defines it.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -12,7 +12,7 @@ namespace podm {
 namespace {
 
 constexpr std::size_t kChunk = 1 << 13;
-constexpr std::uint64_t kCell = 1, kFacet = 2;  // hashes of both begin with these
+constexpr std::uint64_t kCell = 1, kFacet = 2;  // first values of the hashes of cells and facets
 
 // The finalizer of SplitMix64. (Steele, Lea, Flood, OOPSLA 2014.)
 std::uint64_t mix(std::uint64_t x) {
@@ -21,17 +21,18 @@ std::uint64_t mix(std::uint64_t x) {
   return x ^ x >> 31;
 }
 
-// Where the numbers are random themselves this is enough, until the last is there.
+// Adds a number to a hash. The numbers are random themselves, so a final mix() after the last one suffices.
 std::uint64_t combine(std::uint64_t hash, std::uint64_t more) { return hash * 0x9e3779b97f4a7c15u + more; }
 
 std::uint64_t hash_of(const std::array<double, 3>& vertex) {
   std::uint64_t hash = 0;
   for (const double x : vertex)
-    hash = mix(combine(hash, std::bit_cast<std::uint64_t>(x + 0.0)));  // -0 becomes 0
+    hash = mix(combine(hash, std::bit_cast<std::uint64_t>(x + 0.0)));  // x + 0.0 replaces -0 by 0
   return hash;
 }
 
-// Not mixed yet. The same for simplices that are equal up to an even permutation of their vertices.
+// Returns a hash without the final mix(). It is the same for simplices that are equal up to an even
+// permutation of their vertices.
 template <std::size_t kVertices>
 std::uint64_t hash_of(std::uint64_t hash, const std::array<std::uint32_t, kVertices>& simplex,
                       const std::vector<std::uint64_t>& hash_of_vertex) {
@@ -39,7 +40,8 @@ std::uint64_t hash_of(std::uint64_t hash, const std::array<std::uint32_t, kVerti
   for (std::size_t i = 0; i < kVertices; ++i) sorted[i] = hash_of_vertex[simplex[i]];
   bool is_odd = false;
   for (std::size_t last = kVertices - 1; last > 0; --last) {
-    for (std::size_t i = 0; i < last; ++i) {  // without a branch, of which every other would be mispredicted
+    // Without a branch, because every second one would be mispredicted.
+    for (std::size_t i = 0; i < last; ++i) {
       const std::uint64_t a = sorted[i], b = sorted[i + 1];
       is_odd ^= b < a;
       sorted[i] = std::min(a, b);
@@ -50,7 +52,7 @@ std::uint64_t hash_of(std::uint64_t hash, const std::array<std::uint32_t, kVerti
   return combine(hash, is_odd ? 1 : 0);
 }
 
-// The sum of hash(i) for all i < count.
+// Returns the sum of hash(i) for all i < count.
 template <class Hash>
 std::uint64_t sum_of(std::size_t count, std::size_t threads, const Hash& hash) {
   std::atomic<std::uint64_t> sum = 0;

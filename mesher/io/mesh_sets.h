@@ -1,4 +1,4 @@
-// A mesh as the sets that solvers know by name: the cells of each label, the facets of each pair of labels.
+// A mesh as the named sets that solvers use: the cells of each label, the facets of each pair of labels.
 #pragma once
 
 #include <cstdint>
@@ -16,10 +16,11 @@ struct MeshSets {
   LabelNames names;
   LabelPairs pairs;
   Grouping cells_of_label, facets_of_pair;
-  std::vector<LabelIndex> volumes;        ///< the labels that have cells
-  std::vector<std::int32_t> volume_tags;  ///< by label: its value; its position, for all, unless all of
-                                          ///< `volumes` have values that are positive 32-bit integers
-  /// Pairs are numbered from 1.
+  std::vector<LabelIndex> volumes;  ///< the labels that have cells
+  /// The tag of each label: its value if the values of all `volumes` are positive 32-bit integers, otherwise
+  /// its position.
+  std::vector<std::int32_t> volume_tags;
+  /// Returns the tag of a pair; tags count from 1.
   static std::int32_t surface_tag(std::size_t pair) { return static_cast<std::int32_t>(pair) + 1; }
 };
 

@@ -5,7 +5,7 @@
 namespace podm {
 namespace {
 
-// Hashes the label values behind `indices` in blocks, so that no array of values is ever made.
+// Hashes the label values behind `indices` in blocks, without an array of all values.
 void update_with_values(Sha256& hash, std::span<const LabelIndex> indices, const std::vector<Label>& labels) {
   std::array<std::uint32_t, 4096> values;
   while (!indices.empty()) {
@@ -16,7 +16,7 @@ void update_with_values(Sha256& hash, std::span<const LabelIndex> indices, const
   }
 }
 
-// Four bytes a value.
+// Hashes four bytes per value.
 void update_with_label_values(Sha256& hash, const std::vector<Label>& labels) {
   for (const Label& label : labels) hash.update(std::span<const std::uint32_t>(&label.value, 1));
 }

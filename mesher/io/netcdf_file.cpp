@@ -34,7 +34,7 @@ std::string filled_up(std::string bytes) {
 
 std::string counted(const std::string& text) { return as_int(text.size()) + filled_up(text); }
 
-// A list of nothing has no tag.
+// An empty list has no tag.
 std::string list_head(std::int32_t tag, std::size_t size) {
   return as_int(size == 0 ? 0 : static_cast<std::uint64_t>(tag)) + as_int(size);
 }
@@ -100,7 +100,8 @@ std::string NetcdfFile::head(std::uint64_t first_byte) const {
   bytes += attribute_list(attributes_) + list_head(kVariableList, variables_.size());
   for (const Variable& variable : variables_) {
     bytes += counted(variable.name) + as_int(variable.dimensions.size());
-    std::uint64_t row_bytes = size_of(variable.type);  // of a record, where the first dimension has no limit
+    // Bytes of one record, if the first dimension has no limit.
+    std::uint64_t row_bytes = size_of(variable.type);
     for (const Dimension dimension : variable.dimensions) {
       bytes += as_int(dimension);
       row_bytes *= std::max<std::uint64_t>(dimensions_[dimension].size, 1);

@@ -1,7 +1,7 @@
-// A file of netCDF's classic format with 64-bit offsets: a head that declares arrays, then these one after
-// the other, big-endian. It is written here and not by the netCDF library, which wants a name for what
-// AtomicFile keeps nameless until it is whole, and brings a client of the Web with it. Format: NetCDF User's
-// Guide, "The NetCDF Classic Format Specification".
+// A file of netCDF's classic format with 64-bit offsets: a head that declares arrays, then the arrays one
+// after the other, big-endian. This code does not use the netCDF library, for two reasons. The library
+// requires a file name, but an AtomicFile has none until it is complete. The library also links a Web client.
+// Format: NetCDF User's Guide, "The NetCDF Classic Format Specification".
 #pragma once
 
 #include <cstdint>
@@ -29,17 +29,17 @@ class NetcdfFile {
     std::string bytes;
   };
 
-  /// The one of size 0 has no limit, in the format's words.
+  /// Adds a dimension. Size 0 means an unlimited dimension of the format.
   Dimension add_dimension(const std::string& name, std::uint64_t size);
   void add_attribute(Attribute attribute) { attributes_.push_back(std::move(attribute)); }
-  /// `put` writes the values, which fill the dimensions, big-endian. Variables of the dimension
-  /// without a limit have none, and come last.
+  /// `put` writes the values, which fill the dimensions, big-endian. Variables of the unlimited dimension
+  /// have no values, and must come last.
   void add_variable(const std::string& name, Type type, std::vector<Dimension> dimensions,
                     std::function<void(AtomicFile&)> put, std::vector<Attribute> attributes = {});
-  /// An array of ints.
+  /// Adds an array of ints.
   void add_ints(const std::string& name, Dimension dimension, std::vector<std::int32_t> values,
                 std::vector<Attribute> attributes = {});
-  /// One text a row, filled up with zero bytes.
+  /// Adds one text per row, padded with zero bytes.
   void add_texts(const std::string& name, Dimension rows, Dimension columns, std::vector<std::string> texts);
 
   void write(AtomicFile& file) const;

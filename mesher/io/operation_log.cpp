@@ -1,4 +1,4 @@
-// Writing and reading of linearization logs. The format is in podm/operation_log.h.
+// Writing and reading of linearization logs. podm/operation_log.h describes the format.
 #include "podm/operation_log.h"
 
 #include <fmt/format.h>
@@ -21,13 +21,14 @@ static_assert(std::endian::native == std::endian::little, "the format is little-
 
 constexpr std::string_view kMagic = "podmlog1";
 constexpr std::string_view kSchema = "podm-log/2";
-constexpr std::uint32_t kMaxBatch = 1u << 24;  // operations or removals; far above what the writer makes
+// Limit of operations and of removals; far above what the writer makes.
+constexpr std::uint32_t kMaxBatch = 1u << 24;
 
 struct BatchSizes {
   std::uint32_t operations = 0, removed = 0;
 };
 
-// Reads a log from front to back; every fault names the byte.
+// Reads a log from front to back. Every error names the byte.
 class Reader {
  public:
   explicit Reader(const std::string& path) : path_(path), stream_(path, std::ios::binary) {
@@ -57,7 +58,7 @@ class Reader {
     offset_ += size;
   }
 
-  // Reads in steps, so that a count that lies asks for no more memory than the file has bytes.
+  // Reads in steps, so that a wrong count cannot request more memory than the file has bytes.
   template <class T>
   void take_all(std::vector<T>& into, std::uint32_t count, const char* what) {
     constexpr std::uint32_t kStep = 1 << 12;
@@ -164,7 +165,7 @@ std::string operation_text(std::uint64_t sequence) {
 struct OperationLogWriter::File {
   explicit File(const std::string& log_path) : path(log_path) { open(); }
   void open() {
-    file.reset();  // the name of the temporary is free again
+    file.reset();  // frees the name of the temporary file
     file = std::make_unique<AtomicFile>(path);
     file->write(kMagic);
   }

@@ -1,6 +1,6 @@
-// What mesh files say of what a mesh keeps: of an optimised one, what it does not of what every other mesh
-// does; bounds on dihedral angles, where they were asked for and reached; and the width by which interfaces
-// were smoothed. Other files say nothing.
+// The promises of a mesh in its file: for an optimised mesh, the claim of all other meshes that it does not
+// keep; bounds on dihedral angles, if they were requested and reached; and the width by which interfaces were
+// smoothed. Other meshes have no such words.
 #pragma once
 
 #include <fmt/format.h>
@@ -12,7 +12,8 @@
 
 namespace podm {
 
-/// Words such as "unclaimed delaunay", "dihedral 8 165" and "smoothed 1.5", in the words of podm-verify.
+/// Returns texts such as "unclaimed delaunay", "dihedral 8 165" and "smoothed 1.5", in the words of
+/// podm-verify.
 inline std::vector<std::string> promises_of(const TetMesh& mesh) {
   std::vector<std::string> promises;
   if (mesh.is_optimized) promises.emplace_back("unclaimed delaunay");

@@ -1,4 +1,4 @@
-// SHA-256 of arrays as they lie in memory.
+// SHA-256 of arrays in their memory layout.
 #pragma once
 
 #include <fmt/format.h>

@@ -1,4 +1,4 @@
-// Text for a file, formatted in memory and handed over in large blocks.
+// Text for a file, formatted in memory and written in large blocks.
 #pragma once
 
 #include <fmt/compile.h>
@@ -23,7 +23,7 @@ class TextFile {
     block_.append(text.data(), text.data() + text.size());
     if (block_.size() >= kBlockBytes) flush();
   }
-  /// To be called at the end.
+  /// Writes the rest of the text. Must be called at the end.
   void flush() {
     file_.write(block_.data(), block_.size());
     block_.clear();

@@ -14,7 +14,7 @@ void VertexSubset::assign(const std::vector<std::array<std::uint32_t, 3>>& facet
       vertices_.push_back(vertex);
     }
   }
-  if (vertices_.size() > position_.size() / kSparse) {  // cheaper than sorting them
+  if (vertices_.size() > position_.size() / kSparse) {  // a scan is then cheaper than a sort
     vertices_.clear();
     for (std::size_t v = 0; v < position_.size(); ++v)
       if (position_[v] != kUnused) vertices_.push_back(static_cast<std::uint32_t>(v));

@@ -1,6 +1,6 @@
-// Abaqus input (.inp) for Abaqus and CalculiX: nodes, an element set of C3D4 a label, an element surface a
-// label pair. The surface "liver-kidney" is made of sides of liver cells. Numbers of nodes and elements are
-// positions plus one. Format: Abaqus Keywords Guide, *NODE, *ELEMENT, *SURFACE.
+// Abaqus input (.inp) for Abaqus and CalculiX: nodes, one element set of C3D4 per label, one element surface
+// per label pair. The surface "liver-kidney" consists of sides of liver cells. Numbers of nodes and elements
+// are positions plus one. Format: Abaqus Keywords Guide, *NODE, *ELEMENT, *SURFACE.
 #include <algorithm>
 #include <array>
 #include <charconv>
@@ -18,7 +18,7 @@ namespace {
 
 constexpr std::size_t kLongestName = 80, kLongestReal = 20;  // characters that Abaqus and CalculiX read
 
-// Names of sets: a letter, then letters, digits, '_' and '-'; no two alike but for case.
+// Names of sets: a letter, then letters, digits, '_' and '-'. All names differ even if case is ignored.
 class SetNames {
  public:
   const std::string& add(const std::string& wanted, std::int32_t number) {
@@ -45,7 +45,7 @@ class SetNames {
   std::vector<std::string> names_;
 };
 
-// A real in the fewest characters that read back to it, or rounded to as many digits as fit.
+// A real in the fewest characters that read back to it, or rounded to the digits that fit.
 struct RealText {
   std::array<char, 32> characters;
   std::size_t size;
@@ -86,7 +86,7 @@ class AbaqusWriter {
   }
 
  private:
-  // Comments tell the labels and pairs, which are more than names.
+  // Prints comments that list the labels and pairs, including values that names do not hold.
   void print_head() {
     text_.put("*HEADING\ntetrahedral mesh of labels\n");
     text_.print(FMT_COMPILE("** space {}\n"), to_string(mesh_.space));
@@ -102,10 +102,10 @@ class AbaqusWriter {
     }
   }
 
-  // Names of pairs are joined by a dash wherever they are whole.
+  // Reports changed names. A pair of unchanged names is joined by a dash.
   void tell_changed_names() {
     std::size_t labels = 0, surfaces = 0;
-    std::string of_label, of_surface;  // the last of them
+    std::string of_label, of_surface;  // the last changed name of each kind
     for (std::size_t i = 0; i < sets_.volumes.size(); ++i) {
       const std::string& name = sets_.names[sets_.volumes[i]];
       if (volume_names_[i] == name) continue;
@@ -149,8 +149,8 @@ class AbaqusWriter {
   }
 
   void print_surfaces() {
-    constexpr std::array<int, 4> kSideOpposite{3, 4, 2,
-                                               1};  // S1 has vertices 1 2 3, S2 1 4 2, S3 2 4 3, S4 3 4 1
+    // S1 has vertices 1 2 3, S2 1 4 2, S3 2 4 3, S4 3 4 1.
+    constexpr std::array<int, 4> kSideOpposite{3, 4, 2, 1};
     const std::vector<FacetSide> sides = find_facet_sides(mesh_);
     for (std::size_t i = 0; i < sets_.pairs.size(); ++i) {
       text_.print(FMT_COMPILE("*SURFACE, TYPE=ELEMENT, NAME={}\n"), surface_names_[i]);

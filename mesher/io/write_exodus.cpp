@@ -1,6 +1,6 @@
-// Exodus II: an element block a label, a side set a label pair, both with the names and numbers that Gmsh
-// files have. Elements are numbered block after block. Information records tell the space, labels and pairs.
-// The arrays are those that the Exodus library makes of a mesh without fields in a netCDF file. Format:
+// Exodus II: one element block per label, one side set per label pair, both with the names and numbers of
+// Gmsh files. Elements are numbered block after block. Information records list the space, labels and pairs.
+// The arrays are those that the Exodus library makes for a mesh without fields in a netCDF file. Format:
 // "EXODUS: A Finite Element Data Model", appendix "Implementation of EXODUS with netCDF".
 #include <fmt/format.h>
 
@@ -20,10 +20,11 @@
 namespace podm {
 namespace {
 
-constexpr std::size_t kShortName = 32, kMostNameBytes = 255;  // what all readers hold; what netCDF does
-constexpr std::size_t kLineBytes = 80;                        // of an information record
-constexpr std::array<std::int32_t, 4> kSideOpposite{2, 3, 1,
-                                                    4};  // side 1 has vertices 1 2 4, 2: 2 3 4, 3: 1 4 3
+// Lengths that all readers hold, and that netCDF holds.
+constexpr std::size_t kShortName = 32, kMostNameBytes = 255;
+constexpr std::size_t kLineBytes = 80;  // length of an information record
+// Side 1 has vertices 1 2 4, 2: 2 3 4, 3: 1 4 3.
+constexpr std::array<std::int32_t, 4> kSideOpposite{2, 3, 1, 4};
 
 class ExodusWriter {
  public:
@@ -38,7 +39,7 @@ class ExodusWriter {
       side_set_names_.push_back(cut(sets_.names.of_pair(sets_.pairs[i])));
   }
 
-  // What a 32-bit size of an array holds.
+  // Throws InputError if an array exceeds its 32-bit size.
   void check_size(const std::string& path) const {
     constexpr std::size_t kMostBytes = std::numeric_limits<std::uint32_t>::max() - 3;
     bool fits = mesh_.vertices.size() <= kMostBytes / sizeof(double);
@@ -75,7 +76,7 @@ class ExodusWriter {
     file_.add_attribute({"api_version", 5.0f});
     file_.add_attribute({"version", 5.0f});
     file_.add_attribute({"floating_point_word_size", 8});
-    file_.add_attribute({"file_size", 1});  // coordinates by axis
+    file_.add_attribute({"file_size", 1});  // one array of coordinates per axis
     file_.add_attribute({"maximum_name_length", static_cast<std::int32_t>(longest_name_)});
     file_.add_attribute({"int64_status", 0});
     file_.add_attribute({"title", "tetrahedral mesh of labels"});
@@ -93,7 +94,7 @@ class ExodusWriter {
     }
   }
 
-  // A record holds no long name, so that labels and pairs are told by the numbers of their sets.
+  // A record is too short for long names, so it lists labels and pairs by the numbers of their sets.
   void add_information() {
     std::vector<std::string> lines{"space " + to_string(mesh_.space)};
     for (const std::string& promise : promises_of(mesh_)) lines.push_back("promise " + promise);
@@ -154,7 +155,7 @@ class ExodusWriter {
     }
   }
 
-  // The number of a cell, from 1, when blocks follow one another.
+  // Returns the number of a cell, from 1, in the order of the blocks.
   std::uint32_t element_of(std::uint32_t cell) const {
     const auto block = static_cast<std::size_t>(
         std::lower_bound(sets_.volumes.begin(), sets_.volumes.end(), mesh_.cell_labels[cell]) -

@@ -1,9 +1,10 @@
-// Gmsh MSH 4.1, binary. Every label is a volume, every label pair a surface, each a discrete entity with a
-// physical group of its name; elements and nodes come in one block an entity.
+// Gmsh MSH 4.1, binary. Every label is a volume and every label pair a surface. Each is a discrete entity
+// with a physical group of the same name. Elements and nodes are stored in one block per entity.
 //
-// Tags: a volume entity is its position in TetMesh::labels, its physical group the label value (the position
-// again for all, should one value not be a positive int). A surface entity and its group number the pairs.
-// Node tags are vertex positions plus one. Format: Gmsh reference manual, "MSH file format".
+// Tags: the tag of a volume entity is its position in TetMesh::labels, and its physical group is the label
+// value (for all volumes the position, if one value is not a positive int). The tag of a surface entity and
+// of its group is the number of the pair. Node tags are vertex positions plus one. Format: Gmsh reference
+// manual, "MSH file format".
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -59,7 +60,7 @@ class GmshWriter {
 
   void write_format() {
     file_.write("$MeshFormat\n4.1 1 8\n");  // version, binary, bytes of a size
-    file_.put(std::int32_t{1});             // tells the byte order
+    file_.put(std::int32_t{1});             // shows the byte order
     file_.write("\n$EndMeshFormat\n");
   }
 
@@ -91,7 +92,7 @@ class GmshWriter {
     file_.write("$Entities\n");
     for (const std::size_t count : {std::size_t{0}, std::size_t{0}, sets_.pairs.size(), sets_.volumes.size()})
       put_size(count);
-    std::vector<Box> volume_boxes(mesh_.labels.size());  // of its surfaces: they close the volume
+    std::vector<Box> volume_boxes(mesh_.labels.size());  // boxes of its surfaces, which close the volume
     for (std::size_t i = 0; i < sets_.pairs.size(); ++i) {
       Box box;
       for (const std::uint32_t facet : sets_.facets_of_pair[i])
@@ -103,7 +104,7 @@ class GmshWriter {
       put_entity(surface_tag(i), box, surface_tag(i), {});
     }
     for (const LabelIndex label : sets_.volumes) {
-      std::vector<std::int32_t> signed_surfaces;  // positive where the normal points out of the volume
+      std::vector<std::int32_t> signed_surfaces;  // positive if the normal points out of the volume
       for (std::size_t i = 0; i < sets_.pairs.size(); ++i) {
         if (sets_.pairs[i][1] == label) signed_surfaces.push_back(surface_tag(i));
         if (sets_.pairs[i][0] == label) signed_surfaces.push_back(-surface_tag(i));
@@ -124,10 +125,10 @@ class GmshWriter {
     for (const std::int32_t surface : boundary) file_.put(surface);
   }
 
-  // A vertex belongs to the first surface through it, or else to the volume around it.
+  // Assigns a vertex to the first surface through it, otherwise to the volume around it.
   Grouping group_vertices() const {
-    const auto first_volume =
-        static_cast<std::uint32_t>(sets_.pairs.size());  // groups: surfaces, then labels
+    // Groups: surfaces, then labels.
+    const auto first_volume = static_cast<std::uint32_t>(sets_.pairs.size());
     std::vector<std::uint32_t> group(mesh_.vertices.size(), first_volume);
     for (std::size_t i = 0; i < mesh_.cells.size(); ++i)
       for (const std::uint32_t vertex : mesh_.cells[i]) group[vertex] = first_volume + mesh_.cell_labels[i];

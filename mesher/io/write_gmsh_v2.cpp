@@ -1,7 +1,7 @@
-// Gmsh MSH 2.2, text: what FreeFem++, SfePy, dolfin-convert and others read that know no 4.1. Every element
-// has two tags, its physical group and its entity, alike here; groups are those of the 4.1 file. Comments say
-// which pair of labels a group of triangles separates. Format: Gmsh reference manual, "MSH file format
-// version 2 (Legacy)".
+// Gmsh MSH 2.2, text, for FreeFem++, SfePy, dolfin-convert and other programs that cannot read 4.1. Every
+// element has two tags, its physical group and its entity, which are equal here. Groups are those of the 4.1
+// file. Comments list the pair of labels that each group of triangles separates. Format: Gmsh reference
+// manual, "MSH file format version 2 (Legacy)".
 #include "files/atomic_file.h"
 #include "io/mesh_formats.h"
 #include "io/mesh_sets.h"

@@ -1,6 +1,6 @@
-// Legacy VTK, version 3.0, binary: big-endian, a cell as the number of its vertices and these. Cells and
-// facets go to two files, as those of VTU do, with the same arrays. Format: "VTK file formats", simple legacy
-// formats.
+// Legacy VTK, version 3.0, binary, big-endian. A cell is the number of its vertices, followed by its
+// vertices. Cells and facets go to two files with the same arrays as in VTU. Format: "VTK file formats",
+// simple legacy formats.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -22,7 +22,7 @@ namespace {
 
 constexpr std::int32_t kVtkTriangle = 5, kVtkTetrahedron = 10;
 
-// VTK's own code for names of arrays, which end at a blank.
+// Encodes an array name as VTK does; an unencoded name would end at a blank.
 std::string percent_encoded(const std::string& name) {
   std::string text;
   for (const char c : name) {
@@ -32,7 +32,7 @@ std::string percent_encoded(const std::string& name) {
   return text;
 }
 
-// One number an array, the text in its name, as in VTU.
+// Writes one number per array, with the text in the array's name, as in VTU.
 void put_field_data(const TetMesh& mesh, AtomicFile& file) {
   const LabelNames names(mesh.labels);
   std::vector<std::pair<std::string, std::uint32_t>> arrays{{"space:" + to_string(mesh.space), 1}};

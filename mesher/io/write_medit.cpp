@@ -1,4 +1,5 @@
-// Medit (.mesh) ascii. References: a tetrahedron's is its label value, a triangle's numbers its label pair.
+// Medit (.mesh) ascii. The reference of a tetrahedron is its label value; that of a triangle numbers its
+// label pair.
 #include "files/atomic_file.h"
 #include "io/label_table.h"
 #include "io/mesh_formats.h"

@@ -15,14 +15,14 @@
 namespace podm {
 namespace {
 
-// Writers of formats that hold all of a mesh return nothing.
+// Formats that hold all of a mesh have no losses.
 template <void (*Write)(const TetMesh&, const std::string&)>
 Losses write_all(const TetMesh& mesh, const std::string& path) {
   Write(mesh, path);
   return {};
 }
 
-// Of the files that are written with the one of that path.
+// Returns the paths of the files that are written in addition to the file of that path.
 using Beside = std::vector<std::string> (*)(const std::string& path);
 std::vector<std::string> nothing(const std::string&) { return {}; }
 std::vector<std::string> facets(const std::string& path) { return {facets_path_of(path)}; }
@@ -75,7 +75,7 @@ void check_mesh_path(const std::string& path, const MeshFileOptions& options) {
   const MeshFormat& format = mesh_format_of(path);
   if (options.gmsh_version && format.extension != ".msh")
     throw InputError(fmt::format("cannot write {}: a version of Gmsh's format is for .msh alone", path));
-  const AtomicFile trial(path);  // what writing will do first; it leaves nothing behind
+  const AtomicFile trial(path);  // the first step of writing; leaves nothing behind
   for (const std::string& with_it : format.beside(path)) const AtomicFile trial_of_other(with_it);
 }
 

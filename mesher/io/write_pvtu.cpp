@@ -1,4 +1,4 @@
-// VTK's index of pieces: the arrays that all of them have, and where each piece is, beside the index.
+// VTK's index of pieces: the arrays that all pieces have, and the path of each piece relative to the index.
 #include "io/write_pvtu.h"
 
 #include <fmt/format.h>

@@ -1,4 +1,5 @@
-// One closed surface a label, as binary STL or PLY: the facets with the label on one side, turned outwards.
+// One closed surface per label, as binary STL or PLY: the facets with the label on one side, oriented
+// outwards.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -18,7 +19,7 @@ static_assert(std::endian::native == std::endian::little, "both formats are writ
 
 using Facet = std::array<std::uint32_t, 3>;
 
-// STL knows single precision only, and no shared vertices.
+// STL has only single precision, and no shared vertices.
 void write_stl(const TetMesh& mesh, const std::vector<Facet>& facets, const Label& label, VertexSubset&,
                AtomicFile& file) {
   std::string head = fmt::format("binary STL, space {}, label {}", to_string(mesh.space), label.value);
@@ -69,9 +70,10 @@ const SurfaceFormat& surface_format_of(const std::string& path) {
       fmt::format("cannot write {}: unknown surface extension '{}', expected .stl or .ply", path, extension));
 }
 
-// Letters, digits, dots and dashes; anything else may mean something to a file system or a shell.
+// Replaces every character except letters, digits, dots and dashes, because it may have a meaning for a file
+// system or a shell.
 std::string file_name_part(std::string name) {
-  constexpr std::size_t kLongest = 80;  // file systems stop at 255 bytes in all
+  constexpr std::size_t kLongest = 80;  // file systems limit the whole name to 255 bytes
   for (char& c : name) {
     const bool plain =
         (c >= '0' && c <= '9') || (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || c == '.' || c == '-';
@@ -87,7 +89,7 @@ std::string surface_path(const std::string& path, const Label& label) {
   return (whole.parent_path() / (name + whole.extension().string())).string();
 }
 
-// The facets of each label, turned so that their normals point out of it.
+// Returns the facets of each label, oriented so that their normals point out of the label.
 std::vector<std::vector<Facet>> outward_facets(const TetMesh& mesh) {
   std::vector<std::vector<Facet>> facets_of_label(mesh.labels.size());
   for (std::size_t i = 0; i < mesh.facets.size(); ++i) {
@@ -103,7 +105,7 @@ std::vector<std::vector<Facet>> outward_facets(const TetMesh& mesh) {
 
 void check_surface_path(const std::string& path) {
   surface_format_of(path);
-  const AtomicFile trial(path);  // the folder is what matters: the surfaces go to names beside this one
+  const AtomicFile trial(path);  // tests the folder; the surfaces have other names in it
 }
 
 void write_surfaces(const TetMesh& mesh, const std::string& path) {

@@ -1,6 +1,6 @@
-// TetGen's .node, .ele and .face, which are one mesh. The attribute of a tetrahedron is its label value, the
-// marker of a face numbers its label pair; comments at the ends of .ele and .face name them. Numbers count
-// from 1. Format: TetGen's manual, "File formats".
+// TetGen's .node, .ele and .face, which together are one mesh. The attribute of a tetrahedron is its label
+// value. The marker of a face numbers its label pair. Comments at the ends of .ele and .face name labels and
+// pairs. Numbers count from 1. Format: TetGen's manual, "File formats".
 #include <deque>
 #include <filesystem>
 

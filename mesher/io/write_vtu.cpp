@@ -1,8 +1,8 @@
 // VTK XML unstructured grids with appended raw binary data.
 //
-// An XML head declares the arrays and where each lies in the binary tail; there an array is its size in bytes
-// (UInt64) and its values. Cells and facets go to two files, because readers of tetrahedra (FEniCS, PyVista
-// filters, solvers) stumble over grids of mixed dimension.
+// An XML head declares the arrays and their places in the binary tail. An array in the tail is its size in
+// bytes (UInt64) and its values. Cells and facets go to two files, because readers of tetrahedra (FEniCS,
+// PyVista filters, solvers) fail on grids of mixed dimension.
 #include <fmt/format.h>
 
 #include <bit>
@@ -26,7 +26,7 @@ static_assert(std::endian::native == std::endian::little, "the files declare lit
 constexpr int kVtkTriangle = 5, kVtkTetrahedron = 10;
 
 struct VtuArray {
-  std::string declaration;  // attributes, all but the offset
+  std::string declaration;  // all attributes except the offset
   std::uint64_t bytes;
   std::function<void(AtomicFile&)> write;
 };
@@ -35,8 +35,8 @@ std::string declaration(const std::string& type, const std::string& name, int co
   return fmt::format(R"(type="{}" Name="{}" NumberOfComponents="{}")", type, name, components);
 }
 
-// `value_at(i)` for i in [0, count), as the C++ type Value; VTK sees `components` numbers of type `type` in
-// it.
+// Makes an array from `value_at(i)` for i in [0, count), of C++ type Value. VTK reads it as `components`
+// numbers of type `type`.
 template <class Value, class ValueAt>
 VtuArray make_array(const std::string& type, const std::string& name, std::size_t count, ValueAt value_at,
                     int components = 1) {
@@ -50,7 +50,7 @@ VtuArray make_array(const std::string& type, const std::string& name, std::size_
           }};
 }
 
-// Values that lie in memory as VTK wants them.
+// Makes an array from values that have VTK's layout in memory.
 template <class Value>
 VtuArray make_array_of(const std::string& type, const std::string& name, const std::vector<Value>& values,
                        int components = 1) {
@@ -58,7 +58,7 @@ VtuArray make_array_of(const std::string& type, const std::string& name, const s
           [&values](AtomicFile& file) { file.write(values.data(), values.size() * sizeof(Value)); }};
 }
 
-// Ids as Int32, half the file, unless some do not fit.
+// Returns true if ids need Int64. Int32 halves the file.
 bool is_wide(std::size_t largest) { return largest > std::numeric_limits<std::int32_t>::max(); }
 template <class ValueAt>
 VtuArray make_id_array(const std::string& name, std::size_t count, bool wide, ValueAt value_at) {
@@ -68,7 +68,7 @@ VtuArray make_id_array(const std::string& name, std::size_t count, bool wide, Va
 
 struct VtuGrid {
   std::size_t num_points = 0, num_cells = 0;
-  std::string point_attributes;                                // what VTK shall know of arrays of the points
+  std::string point_attributes;                                // attributes of point arrays for VTK
   std::vector<VtuArray> point_data, cell_data, points, cells;  // the sections, in the file's order
 };
 
@@ -83,7 +83,8 @@ void add_cells(std::size_t count, int vertices_a_cell, int cell_type, bool wide,
       make_array<std::uint8_t>("UInt8", "types", count, [cell_type](std::size_t) { return cell_type; }));
 }
 
-// One number an array, the text in its name: string arrays, which VTK knows, make meshio refuse the file.
+// Returns one number per array, with the text in the array's name. VTK also has string arrays, but meshio
+// refuses files with them.
 std::string field_data(const TetMesh& mesh) {
   const auto array = [](const std::string& name, std::uint32_t value) {
     return fmt::format(
@@ -171,7 +172,7 @@ VtuGrid facet_grid(const TetMesh& mesh, const VertexSubset& subset) {
   return grid;
 }
 
-// The number of each point in the whole mesh, as VTK's filters know it.
+// Adds the number of each point in the whole mesh, under the name that VTK's filters use.
 template <class IdAt>
 void add_global_ids(std::size_t num_points, IdAt id_at, VtuGrid& grid) {
   grid.point_attributes = fmt::format(" GlobalIds=\"{}\"", kGlobalIds);

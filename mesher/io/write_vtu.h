@@ -1,4 +1,4 @@
-// What the writers of one VTU file and of a mesh in pieces share.
+// Functions shared by the writers of a single VTU file and of a mesh in pieces.
 #pragma once
 
 #include <cstdint>
@@ -11,14 +11,15 @@
 
 namespace podm {
 
-/// The array of points' numbers in the whole mesh, by the name that VTK's own filters give it.
+/// The name that VTK's own filters give to the array of points' numbers in the whole mesh.
 inline constexpr const char* kGlobalIds = "GlobalNodeIds";
 
-/// "x_facets.vtu" for "x.vtu", and so for any extension.
+/// Returns "x_facets.vtu" for "x.vtu", and likewise for any extension.
 std::string facets_path_of(const std::string& path);
 
-/// The files of cells and of facets, which have no names until they are published. `vertex_ids`, unless null,
-/// has a number a vertex, for the points of both. Throws InputError as write_mesh() does.
+/// Writes the files of cells and of facets, which have no names until they are published. `vertex_ids`,
+/// unless null, has one number per vertex, for the points of both files. Throws InputError as write_mesh()
+/// does.
 std::deque<AtomicFile> write_vtu_aside(const TetMesh& mesh, const std::vector<std::uint64_t>* vertex_ids,
                                        const std::string& path);
 

@@ -19,13 +19,13 @@ constexpr std::uint64_t kMostInt32 = std::numeric_limits<std::int32_t>::max();
 
 bool is_wide(const XdmfPart& part) { return part.total_vertices > kMostInt32; }
 
-// By the table alone, which all pieces have: what labels a piece has must not matter.
+// Depends only on the table, which all pieces share. It must not depend on the labels that a piece contains.
 bool values_are_tags(const TetMesh& mesh) {
   return std::all_of(mesh.labels.begin(), mesh.labels.end(),
                      [](const Label& label) { return label.value <= kMostInt32; });
 }
 
-// Vertices that this part writes, by their numbers in the whole.
+// The vertices that this part writes, sorted by their numbers in the whole mesh.
 class WrittenVertices {
  public:
   explicit WrittenVertices(const XdmfPart& part) : part_(part) {
@@ -36,7 +36,7 @@ class WrittenVertices {
               [this](std::uint32_t a, std::uint32_t b) { return id_of(a) < id_of(b); });
   }
 
-  // Numbers that follow one another are one write, most often all.
+  // Writes each range of consecutive numbers at once; in most cases there is only one range.
   void write(Hdf5File& file) const {
     for (std::size_t begin = 0, end = 0; begin < vertices_.size(); begin = end) {
       const std::uint64_t first = id_of(vertices_[begin]);

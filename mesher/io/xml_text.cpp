@@ -9,7 +9,7 @@ std::string xml_escaped(const std::string& text) {
       escaped += "&amp;";
     else if (c == '<')
       escaped += "&lt;";
-    else if (c == '>')  // VTK takes a bare one for the end of the element
+    else if (c == '>')  // VTK takes a bare '>' as the end of the element
       escaped += "&gt;";
     else if (c == '"')
       escaped += "&quot;";

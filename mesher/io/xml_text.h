@@ -1,11 +1,11 @@
-// What XML files of every format need.
+// Functions for XML files of every format.
 #pragma once
 
 #include <string>
 
 namespace podm {
 
-/// `text` as it may stand in an attribute between double quotes.
+/// Returns `text` escaped for an attribute between double quotes.
 std::string xml_escaped(const std::string& text);
 
 }  // namespace podm

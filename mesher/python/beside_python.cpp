@@ -13,7 +13,7 @@ namespace py = pybind11;
 
 constexpr std::chrono::milliseconds kBetweenLooks{100};
 
-// What the working thread told last, until the other thread takes it.
+// The latest progress of the working thread, until the other thread takes it.
 class LatestProgress {
  public:
   void put(const Progress& progress) {
@@ -35,7 +35,7 @@ bool ends_soon(const std::future<void>& work) {
   return work.wait_for(kBetweenLooks) == std::future_status::ready;
 }
 
-// The exception that a signal's handler or the callback has raised, or None.
+// Returns the exception of a signal's handler or of the callback, or None.
 py::object ask_python(LatestProgress& latest, const py::object& callback) {
   try {
     if (PyErr_CheckSignals() != 0) throw py::error_already_set();
@@ -61,7 +61,7 @@ py::object run_beside_python(const Work& work, const py::object& callback) {
     has_ended = ends_soon(done);
     exception = ask_python(latest, callback);
   }
-  stop.request_stop();  // too late for work that has ended
+  stop.request_stop();  // has no effect on work that has ended
   while (!ends_soon(done)) {
   }
   try {

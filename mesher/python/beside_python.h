@@ -1,5 +1,4 @@
-// Work of minutes beside a Python interpreter that stays responsive: other Python threads run, Ctrl-C is
-// heeded.
+// Runs long work while the Python interpreter stays responsive: other Python threads run, and Ctrl-C works.
 #pragma once
 
 #include <pybind11/pybind11.h>
@@ -14,10 +13,10 @@ namespace podm::python {
 using Work = std::function<void(const ProgressCallback&, const std::stop_token&)>;
 
 /// Calls work(progress, stop) in a thread of its own, without the GIL, and returns when it has ended.
-/// Meanwhile the calling thread, which has the GIL, heeds Python's signals and tells `callback`, unless it is
-/// None, of the latest Progress, each some times a second. An exception of either requests a stop and is
-/// returned when the work has ended; None: there was none. What the work throws is thrown, unless there is
-/// such an exception.
+/// Meanwhile the calling thread, which has the GIL, handles Python's signals and passes the latest Progress
+/// to `callback`, unless it is None, several times per second. An exception of a signal handler or of the
+/// callback requests a stop, and is returned when the work has ended. Without such an exception, throws what
+/// the work throws, or returns None.
 pybind11::object run_beside_python(const Work& work, const pybind11::object& callback);
 
 }  // namespace podm::python

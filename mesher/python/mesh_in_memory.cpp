@@ -34,7 +34,7 @@ MeshInMemory::MeshInMemory(cli::MeshCommand command, const Input& input, const P
   MeshingResult result = mesh_image(image_, run_.options, progress, stop);
   mesh_ = std::move(result.mesh);
   run_.take(std::move(result.report), mesh_);
-  if (!command_.image.is_array && !command_.image.is_phantom()) image_.voxels = {};  // the file has them
+  if (!command_.image.is_array && !command_.image.is_phantom()) image_.voxels = {};  // the file holds them
   canonicalize(mesh_, loop_threads(command_.meshing.team));
   run_.peak_rss_bytes = cli::peak_resident_bytes();
 }

@@ -1,4 +1,4 @@
-// A run of the mesher whose image and mesh stay in memory: what a podm.Mesh of Python looks at.
+// A run of the mesher whose image and mesh stay in memory. A podm.Mesh of Python refers to it.
 #pragma once
 
 #include <cstdint>
@@ -17,34 +17,34 @@
 
 namespace podm::python {
 
-/// What is meshed: a file or a phantom by its name, or an array.
+/// The input: the name of a file or a phantom, or an array.
 struct Input {
-  std::string path;  ///< of an array what messages call it
+  std::string path;  ///< for an array, its name in messages
   std::optional<VoxelArray> array = {};
-  std::array<double, 12> voxel_to_ras{};  ///< the array's, row-major 3x4, mm
+  std::array<double, 12> voxel_to_ras{};  ///< of the array, row-major 3x4, mm
   std::map<std::uint32_t, std::string> names = {};
 };
 
-/// The image as `podm mesh` reads it with these options; `command` knows its path. Throws InputError.
+/// Reads the image as `podm mesh` does with these options. `command` holds the path. Throws InputError.
 LabelImage read_input(const Input& input, const cli::MeshCommand& command, std::uint64_t limit_bytes);
 
 class MeshInMemory {
  public:
-  /// Meshes as `podm mesh` does with these options, and throws what that throws.
+  /// Meshes as `podm mesh` does with these options. Throws as `podm mesh` does.
   MeshInMemory(cli::MeshCommand command, const Input& input, const ProgressCallback& progress,
                const std::stop_token& stop);
   MeshInMemory(const MeshInMemory&) = delete;
   MeshInMemory& operator=(const MeshInMemory&) = delete;
 
   const cli::MeshRun& run() const { return run_; }
-  /// In canonical order.
+  /// Returns the mesh in canonical order.
   const TetMesh& mesh() const { return mesh_; }
-  /// Of an array or a phantom; of a file all but the voxels.
+  /// Returns the image. For a file, the voxels are not kept.
   const LabelImage& image() const { return image_; }
 
-  /// The JSON that --record appends. The first call hashes image and mesh.
+  /// Returns the JSON that --record appends. The first call hashes image and mesh.
   std::string record();
-  /// What podm-verify is to be asked; see claims_to_verify().
+  /// Returns the options for podm-verify; see claims_to_verify().
   std::vector<std::string> claims(bool with_fidelity, const std::function<std::string()>& write_image);
 
  private:

@@ -1,4 +1,5 @@
-// The extension module podm._podm: arrays and text in, arrays and text out. What users see is in podm/*.py.
+// The extension module podm._podm, which takes and returns arrays and texts. The interface for users is in
+// podm/*.py.
 #include <pybind11/functional.h>
 #include <pybind11/numpy.h>
 #include <pybind11/pybind11.h>
@@ -31,7 +32,7 @@ namespace py = pybind11;
 
 using Names = std::map<std::uint32_t, std::string>;
 
-// Bytes that are not UTF-8, which file and label names may hold, are replaced, as in the record.
+// Replaces bytes that are not UTF-8, which file and label names may contain, as the record does.
 py::str text(const std::string& bytes) {
   PyObject* const decoded =
       PyUnicode_DecodeUTF8(bytes.data(), static_cast<Py_ssize_t>(bytes.size()), "replace");
@@ -122,7 +123,7 @@ py::array read_only(py::array array) {
   return array;
 }
 
-// A view that keeps `owner`, whose memory it is, alive.
+// Returns a view that keeps `owner`, whose memory it shows, alive.
 template <class Number, std::size_t kColumns>
 py::array rows(const std::vector<std::array<Number, kColumns>>& values, const py::object& owner) {
   static_assert(sizeof values[0] == kColumns * sizeof(Number));
@@ -135,7 +136,7 @@ py::array column(const std::vector<Number>& values, const py::object& owner) {
   return read_only(py::array_t<Number>(values.size(), values.data(), owner));
 }
 
-// An array that has taken over the memory.
+// Returns an array that owns the memory.
 py::array array_of(std::vector<double> values) {
   auto* const kept = new std::vector<double>(std::move(values));
   const py::capsule owner(kept, [](void* memory) { delete static_cast<std::vector<double>*>(memory); });
@@ -157,7 +158,7 @@ py::dict qualities(const MeshInMemory& made) {
   return arrays;
 }
 
-// Bytes, as file names are.
+// Returns bytes, because file names are bytes.
 std::vector<py::bytes> claims(MeshInMemory& made, bool with_fidelity,
                               const std::function<std::string()>& write_image) {
   std::vector<py::bytes> arguments;
@@ -166,7 +167,7 @@ std::vector<py::bytes> claims(MeshInMemory& made, bool with_fidelity,
   return arguments;
 }
 
-// The value and the name of every label, the background first.
+// Returns the value and the name of every label, the background first.
 std::vector<std::pair<std::uint32_t, py::str>> labels_of(const MeshInMemory& made) {
   std::vector<std::pair<std::uint32_t, py::str>> labels;
   for (const Label& label : made.mesh().labels)
@@ -237,9 +238,9 @@ void define_mesh(py::module_& module) {
       .def("save_surfaces", &save_surfaces, py::arg("path"), release);
 }
 
-// As exceptions of the package, in its terms.
+// Translates exceptions into those of the package, with messages in its terms.
 void translate(std::exception_ptr thrown) {
-  // Never released: the interpreter is gone when statics are.
+  // Never released, because the interpreter ends before statics are destroyed.
   static const py::handle package_errors = py::module_::import("podm.errors").release();
   const auto raise = [](const char* name, const std::string& message) {
     PyErr_SetObject(package_errors.attr(name).ptr(), text(message).ptr());

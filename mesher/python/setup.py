@@ -1,7 +1,7 @@
 """Lets pip install the package: `pip install --no-build-isolation ./mesher/python`, without a network.
 
-CMake builds the extension module and podm-verify, as `make python` does and in the same folder, build/; the variable
-PODM_BUILD names another.
+CMake builds the extension module and podm-verify, as `make python` does and in the same folder, build/. The variable
+PODM_BUILD names another folder.
 """
 
 import os
@@ -16,7 +16,7 @@ from setuptools.command.build_ext import build_ext
 
 ROOT = pathlib.Path(__file__).resolve().parents[2]
 BUILD = pathlib.Path(os.environ.get("PODM_BUILD", ROOT / "build")).absolute()
-SCRATCH = BUILD / "python-setup"  # nothing is left in the source tree
+SCRATCH = BUILD / "python-setup"  # keeps the source tree clean
 
 
 class BuildByCMake(build_ext):

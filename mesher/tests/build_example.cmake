@@ -1,11 +1,11 @@
-# Installs BUILD below SCRATCH, then configures, builds and runs EXAMPLE against what was installed.
+# Installs BUILD below SCRATCH, then configures, builds and runs EXAMPLE against the installation.
 file(REMOVE_RECURSE ${SCRATCH})
 
 function(run)
   execute_process(COMMAND ${ARGN} COMMAND_ECHO STDOUT COMMAND_ERROR_IS_FATAL ANY)
 endfunction()
 
-if(SANITIZE)  # what links sanitized libraries must be sanitized as well
+if(SANITIZE)  # a program that links sanitized libraries must be sanitized, too
   set(flags -D CMAKE_CXX_FLAGS=-fsanitize=${SANITIZE})
 endif()
 run(${CMAKE_COMMAND} --install ${BUILD} --prefix ${SCRATCH}/prefix)
@@ -15,7 +15,7 @@ run(${CMAKE_COMMAND} -S ${EXAMPLE} -B ${SCRATCH}/build -D CMAKE_PREFIX_PATH=${SC
 run(${CMAKE_COMMAND} --build ${SCRATCH}/build)
 run(${SCRATCH}/build/mesh_image phantom:spheres@24 5 ${SCRATCH}/example.vtu)
 run(${SCRATCH}/prefix/bin/podm mesh phantom:spheres@24 --radius 5 -o ${SCRATCH}/installed.vtu)
-if(EXISTS /usr/bin/Xvfb)  # without the sources: what is installed runs wherever it is put
+if(EXISTS /usr/bin/Xvfb)  # tests that a moved installation runs without the sources
   foreach(root ${SCRATCH}/prefix ${SCRATCH}/staged/usr)
     run(${root}/bin/podm view ${SCRATCH}/installed.vtu -o ${SCRATCH}/installed.png --size 64x48)
     run(${root}/bin/podm mesh phantom:spheres@24 --radius 5 --verify -o ${SCRATCH}/staged.vtu
@@ -23,7 +23,7 @@ if(EXISTS /usr/bin/Xvfb)  # without the sources: what is installed runs wherever
   endforeach()
 endif()
 
-# Nothing but the public headers is needed, so nothing else is installed.
+# The example needs only the public headers, so no other headers are installed.
 file(GLOB_RECURSE headers RELATIVE ${SCRATCH}/prefix/include ${SCRATCH}/prefix/include/*)
 foreach(header ${headers})
   if(NOT header MATCHES "^podm/[a-z_]+\\.h$")

@@ -1,4 +1,4 @@
-"""Ends podm by signals, and tells how it ended."""
+"""Ends podm by signals, and returns how it ended."""
 
 import collections
 import re
@@ -13,7 +13,7 @@ End = collections.namedtuple("End", "code stderr seconds")
 
 
 def end_of(process, first, *others, pause_s=0):
-    """How the process ends after these signals, and how long after the last."""
+    """Returns how the process ends after these signals, and the time since the last."""
     sent = time.monotonic()
     process.send_signal(first)
     for number in others:
@@ -23,7 +23,7 @@ def end_of(process, first, *others, pause_s=0):
     try:
         _, stderr = process.communicate(timeout=60)
     finally:
-        process.kill()  # nothing, where it has ended
+        process.kill()  # no effect if it has ended
     return End(process.returncode, stderr, time.monotonic() - sent)
 
 

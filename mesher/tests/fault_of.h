@@ -1,11 +1,11 @@
-// What a call that is refused says.
+// The message of a call that is refused.
 #pragma once
 
 #include <string>
 
 namespace podm {
 
-/// The message of the `Error` that `call()` throws, or "no error".
+/// Returns the message of the `Error` that `call()` throws, or "no error".
 template <class Error, class Call>
 std::string fault_of(const Call& call) {
   try {

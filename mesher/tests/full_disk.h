@@ -1,4 +1,4 @@
-// A disk that is full for as long as a test wants it.
+// A disk that is full during a test.
 #pragma once
 
 #include <signal.h>
@@ -6,7 +6,7 @@
 
 namespace podm {
 
-/// While it lives, no file of this process can grow past `bytes`.
+/// While the object lives, no file of this process can grow past `bytes`.
 class FullDisk {
  public:
   explicit FullDisk(rlim_t bytes) : handler_(::signal(SIGXFSZ, SIG_IGN)) {

@@ -1,4 +1,4 @@
-// Small images that a mesher meets in practice, and some that nobody should have to mesh.
+// Small images that are common in practice, and some extreme ones.
 #pragma once
 
 #include <cmath>
@@ -13,8 +13,8 @@
 
 namespace podm::test {
 
-/// An axis-aligned image whose voxel (i,j,k) gets label index `label(i,j,k)`; label values are 10 times the
-/// index.
+/// Returns an axis-aligned image whose voxel (i,j,k) gets label index `label(i,j,k)`. Label values are 10
+/// times the index.
 inline LabelImage make_image(std::array<int, 3> size, std::array<double, 3> spacing, int num_labels,
                              const std::function<int(int, int, int)>& label) {
   LabelImage image;

@@ -1,4 +1,4 @@
-"""Runs the podm program the way a user does, and reads what it wrote. The program's path is in $PODM_PROGRAM."""
+"""Runs the podm program as a user does, and reads its output. The program's path is in $PODM_PROGRAM."""
 
 import collections
 import json
@@ -14,13 +14,13 @@ TIMEOUT_S = 240
 
 
 def run_podm(*arguments, program=PROGRAM, **popen_options):
-    """The finished process, with text in stdout and stderr."""
+    """Returns the finished process, with text in stdout and stderr."""
     return subprocess.run([program, *map(str, arguments)], capture_output=True, text=True, timeout=TIMEOUT_S,
                           **popen_options)
 
 
 def start_podm(*arguments, program=PROGRAM, **popen_options):
-    """A running process with the default action for signals, whatever this process inherited."""
+    """Returns a running process with the default action for signals, independent of this process's settings."""
     def defaults():
         for number in signal.SIGINT, signal.SIGTERM, signal.SIGHUP, signal.SIGQUIT:
             signal.signal(number, signal.SIG_DFL)
@@ -29,7 +29,7 @@ def start_podm(*arguments, program=PROGRAM, **popen_options):
 
 
 class PodmTestCase(unittest.TestCase):
-    """A test with a folder of its own, and the assertions that commands share."""
+    """A test with a folder of its own, and the assertions that tests of all commands share."""
 
     def setUp(self):
         folder = tempfile.TemporaryDirectory()
@@ -40,7 +40,7 @@ class PodmTestCase(unittest.TestCase):
         self.assertEqual(process.returncode, code, process.stdout + process.stderr)
 
     def assert_refused(self, arguments, *words, **popen_options):
-        """Exit code 2, nothing on standard output, every word in the message, no file made or changed."""
+        """Checks for exit code 2, an empty standard output, every word in the message, and no new or changed file."""
         before = self.files()
         process = run_podm(*arguments, **popen_options)
         self.assert_exit(process, 2)
@@ -59,7 +59,8 @@ class PodmTestCase(unittest.TestCase):
         return json.loads(lines[0])
 
     def assert_valid_mesh(self, path):
-        """Non-empty, positive cells, at most two cells a facet, and tagged exactly where labels change."""
+        """Checks that cells exist and are positive, that at most two cells share a facet, and that exactly the facets
+        at changes of labels are tagged."""
         mesh = read_medit(path)
         self.assertGreater(len(mesh.cells), 0)
         around = collections.defaultdict(list)
@@ -78,7 +79,7 @@ Mesh = collections.namedtuple("Mesh", "vertices cells facets")
 
 
 def read_medit(path):
-    """Vertices by number from 1; cells and facets as vertex numbers with the reference last."""
+    """Returns vertices by number from 1, and cells and facets as vertex numbers with the reference last."""
     with open(path) as file:
         words = [word for line in file if not line.lstrip().startswith("#") for word in line.split()]
 

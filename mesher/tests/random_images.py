@@ -1,6 +1,6 @@
-"""Random small label images: phantoms and shapes as degenerate as voxels can make them, damaged, in any frame. Each is
-drawn from a random stream alone. An array is indexed [x, y, z]; 0 is background and other labels are small integers
-until `stored` gives them values.
+"""Random small label images: phantoms and extremely degenerate shapes, damaged, in any frame. A random stream alone
+determines each image. An array is indexed [x, y, z]; 0 is background and other labels are small integers until `stored`
+gives them values.
 """
 
 import dataclasses
@@ -20,7 +20,7 @@ TYPES = {small_images.UINT8: numpy.uint8, small_images.INT8: numpy.int8, small_i
 
 
 def grid(size):
-    """Voxel coordinates along each axis, shaped to be combined."""
+    """Returns voxel coordinates along each axis, shaped for broadcasting."""
     return numpy.ogrid[tuple(slice(0, n) for n in size)]
 
 
@@ -52,7 +52,7 @@ def voxels(rng, size):
 
 
 def sheet(rng, size):
-    """About a voxel thick, along voxels or oblique."""
+    """Returns a sheet about a voxel thick, along voxels or oblique."""
     normal = rng.normal(size=3) if rng.random() < 0.6 else numpy.eye(3)[rng.integers(0, 3)]
     normal = normal / numpy.linalg.norm(normal)
     point = random_point(rng, size)
@@ -77,13 +77,13 @@ def layers(rng, size):
 
 
 def contacts(rng, size):
-    """Solids that meet in edges and corners."""
+    """Returns solids that meet in edges and corners."""
     x, y, z = (at < rng.integers(0, n, endpoint=True) for at, n in zip(grid(size), size))
     return (x ^ y ^ (z if rng.random() < 0.5 else z | True)).astype(int)
 
 
 def tissue(rng, size):
-    """Many labels: what is nearest to one of random points."""
+    """Returns many labels: each voxel gets the label of the nearest of random points."""
     count = rng.integers(2, 40)
     nearest = numpy.argmin([distances(size, random_point(rng, size)) for _ in range(count)], axis=0)
     labels = nearest + rng.integers(0, 2)
@@ -113,7 +113,7 @@ def blobs(rng, size):
     return numpy.digitize(smooth, numpy.quantile(smooth, numpy.sort(rng.random(rng.integers(1, 4)))))
 
 
-# Family and the longest axis it is drawn with: those of many interfaces make many cells.
+# The families, and the longest axis of each. Families with many interfaces give many cells.
 FAMILIES = {balls: 16, shells: 14, voxels: 12, sheet: 14, full: 14, checkerboard: 7, layers: 9, contacts: 12,
             tissue: 10, noise: 6, tubes: 14, blobs: 12}
 
@@ -124,14 +124,14 @@ def flip_voxels(rng, labels):
 
 
 def fill_box(rng, labels):
-    """A hole, or an island of a label."""
+    """Fills a box with background or a label."""
     low = [rng.integers(0, n) for n in labels.shape]
     box = tuple(slice(a, a + rng.integers(1, 4)) for a in low)
     labels[box] = 0 if rng.random() < 0.5 else rng.integers(1, labels.max() + 2)
 
 
 def swap_labels(rng, labels):
-    """Two labels are exchanged from some slice on."""
+    """Exchanges two labels from some slice on."""
     a, b = rng.integers(0, labels.max() + 1, 2)
     part = labels[rng.integers(0, labels.shape[0]):]
     is_a, is_b = part == a, part == b
@@ -160,7 +160,7 @@ def nifti_voxels(path):
 
 
 class Phantoms:
-    """Drawn once by the program, held as arrays."""
+    """Phantoms drawn once by the program, kept as arrays."""
 
     def __init__(self, program, folder):
         self.arrays = {}
@@ -174,7 +174,7 @@ class Phantoms:
 
 
 def drawn_size(rng, longest):
-    """The size may be of any shape: a cube, a slice, a row, a voxel."""
+    """Returns a size of any shape: a cube, a slice, a row, a voxel."""
     size = [max(1, round(longest * rng.uniform(0.35, 1))) for _ in range(3)]
     for axis in rng.permutation(3)[:rng.integers(1, 4) if rng.random() < 0.08 else 0]:
         size[axis] = 1
@@ -182,7 +182,7 @@ def drawn_size(rng, longest):
 
 
 def drawn_spacing(rng):
-    """mm; anisotropic up to 10:1."""
+    """Returns a spacing in mm; anisotropic up to 10:1."""
     spacing = numpy.ones(3)
     if rng.random() < 0.5:
         spacing *= 10 ** rng.uniform(-0.7, 0.7)
@@ -192,7 +192,7 @@ def drawn_spacing(rng):
 
 
 def drawn_frame(rng, spacing):
-    """An affine of three rows: axes turned over and exchanged, or oblique."""
+    """Returns an affine of three rows: axes reversed and exchanged, or oblique."""
     axes = numpy.eye(3)
     if rng.random() < 0.5:
         axes = numpy.diag(rng.choice([-1.0, 1.0], 3))[rng.permutation(3)]
@@ -203,7 +203,8 @@ def drawn_frame(rng, spacing):
 
 
 def drawn_values(rng, count, datatype):
-    """The values that labels 0 to `count` - 1 have in a file: 0 stays 0, others are any that the type holds."""
+    """Returns the values of labels 0 to `count` - 1 in a file: 0 stays 0, the other values are any that the type holds.
+    """
     is_float = datatype == small_images.FLOAT32
     largest = 1 << 24 if is_float else min(int(numpy.iinfo(TYPES[datatype]).max), (1 << 32) - 1)
     if rng.random() < 0.5:
@@ -224,14 +225,14 @@ class RandomImage:
     spacing: numpy.ndarray
 
     def labels(self):
-        """Values in the file, without the background."""
+        """Returns the values in the file, without the background."""
         return [int(value) for value in numpy.unique(self.voxels) if value != 0]
 
     def voxel_mm(self):
         return float(numpy.prod(self.spacing) ** (1 / 3))
 
     def volume_and_area(self):
-        """mm^3 of foreground; mm^2 of the faces between labels, once for each label at them."""
+        """Returns mm^3 of foreground, and mm^2 of the faces between labels, counted once for each label at them."""
         padded = numpy.pad(self.voxels, 1)
         area = 0.0
         for axis in range(3):
@@ -241,14 +242,15 @@ class RandomImage:
         return float((self.voxels != 0).sum() * numpy.prod(self.spacing)), area
 
     def ball_inside_mm(self, foreground):
-        """Radius of a ball in the foreground: every voxel within a voxel's diagonal of its points is foreground."""
+        """Returns the radius of a ball in the foreground: every voxel within a voxel's diagonal of its points is
+        foreground."""
         padded = numpy.pad(foreground, 1)
         inside, outside = (numpy.argwhere(padded == is_inside) * self.spacing for is_inside in (True, False))
         deepest = max(((outside - point) ** 2).sum(axis=1).min() for point in inside)
         return float(numpy.sqrt(deepest) - numpy.linalg.norm(self.spacing))
 
     def write(self, path):
-        """A NIfTI file; compressed where the name says so."""
+        """Writes a NIfTI file, compressed if the name requires it."""
         values = self.voxels.astype(TYPES[self.datatype]).tobytes(order="F")
         data = small_images.nifti_bytes(values, self.voxels.shape, self.datatype, self.affine.tolist())
         with open(path, "wb") as file:

@@ -1,5 +1,7 @@
-"""Random runs of `podm mesh` on random images, each drawn from its seed alone. Whoever changes what is drawn changes
-what every seed means, those kept in stress_seeds.txt too: draw what is new after all that is old.
+"""Random runs of `podm mesh` on random images. A seed alone determines each run.
+
+A change of the draws changes the meaning of every seed, including those in stress_seeds.txt. Therefore put new draws
+after all old ones.
 """
 
 import dataclasses
@@ -13,7 +15,7 @@ MANAGERS = ["aggressive", "random", "global", "local"]
 TOPOLOGY = pathlib.Path(__file__).resolve().parents[2] / "experiments/machines/blacklight.toml"
 SHARE_ON_THREADS = 1 / 6
 MOST_THREADS = {"virtual": 256, "threads": 16}
-VOLUME_CELLS, SURFACE_CELLS = 4.82, 1.57  # of mesher/prediction/cost_model.h
+VOLUME_CELLS, SURFACE_CELLS = 4.82, 1.57  # constants of mesher/prediction/cost_model.h
 
 
 @dataclasses.dataclass
@@ -25,12 +27,12 @@ class Run:
     algorithm: str
     executor: str
     selection: list  # options that `podm replay` needs, too
-    options: list    # all but the selection and outputs
+    options: list    # all options except the selection and outputs
     limits: set      # reasons for which it may end early
-    optimizes: bool  # it is made once more, and optimised
+    optimizes: bool  # the mesh is made once more, with optimisation
 
     def foreground(self):
-        """Which voxels have a label that is selected."""
+        """Returns a mask of the voxels with a selected label."""
         voxels = self.image.voxels
         option, value = self.selection or ("", 0)
         if option == "--labels":
@@ -59,8 +61,8 @@ def divisor(rng, number):
 
 
 class Sizes:
-    """Radius and delta, mm, either of them 0 where it is left to the mesher; so large that no more cells are expected
-    than some hundreds to some thousands.
+    """Radius and delta, mm; 0 leaves either to the mesher. They are so large that at most some thousands of cells are
+    expected.
     """
 
     def __init__(self, rng, image):
@@ -75,7 +77,7 @@ class Sizes:
             if self.delta or not 0 < self.radius < 4 * self.voxel_mm:
                 self.delta = 1.1 * self.sampling()
         self.delta = min(self.delta, 0.5 * self.longest_mm)
-        self.largest_radius_mm = max(self.radius, self.sampling())  # of a label, or what goes for one
+        self.largest_radius_mm = max(self.radius, self.sampling())  # of a label; at least the sampling distance
 
     def sampling(self):
         default = min(2 * self.voxel_mm, self.radius / 2) if self.radius else self.voxel_mm
@@ -87,7 +89,7 @@ class Sizes:
 
 
 def drawn_selection(rng, labels):
-    """Options, and the labels that have cells of their own."""
+    """Returns options, and the labels that have cells of their own."""
     if len(labels) < 2 or not chance(rng, 0.12):
         return [], labels
     one, other = (int(label) for label in rng.choice(labels, 2, replace=False))
@@ -97,7 +99,7 @@ def drawn_selection(rng, labels):
 
 
 def size_options(rng, sizes, labels):
-    """And the reasons for which the run may end early."""
+    """Returns options, and the reasons for which the run may end early."""
     options = ["--radius", f"{sizes.radius:.6g}"] if sizes.radius else []
     options += ["--delta", f"{sizes.delta:.6g}"] if sizes.delta else []
     if chance(rng, 0.05):
@@ -116,7 +118,7 @@ def size_options(rng, sizes, labels):
 
 
 def worker_options(rng, algorithm, most):
-    """How many threads, in how many nodes."""
+    """Returns the numbers of threads and nodes."""
     threads = round(power_of_2(rng, 0, numpy.log2(most)))
     options = ["--threads", threads]
     if algorithm == "pdr-podm":
@@ -131,8 +133,8 @@ def worker_options(rng, algorithm, most):
 
 
 def leaf_options(rng, sizes):
-    """Leaves from the size of the image down to less than a voxel; at most some ten thousands of them, in a box that
-    reaches beyond the image.
+    """Returns leaf sizes from the size of the image to less than a voxel. There are at most some tens of thousands of
+    leaves in a box that reaches beyond the image.
     """
     ratio = pick(rng, [1, 1.5, 2, 4, 7.5])
     options = ["--initial-ratio", ratio] if ratio != 4 or chance(rng, 0.5) else []
@@ -150,8 +152,8 @@ def executor_options(rng, executor):
 
 
 def drawn_space(rng, image):
-    """Angles and radii in voxels are those in mm only where these are the same, and only whole numbers, as of an affine
-    that turns cubes of 1 mm by quarters about the origin, move no vertex on the way.
+    """Draws "voxel" only if angles and radii in voxels equal those in mm, and if the affine consists of 0, 1 and -1.
+    Such an affine turns cubes of 1 mm by quarters about the origin and moves no vertex by rounding.
     """
     spaces = ["RAS", "LPS", "voxel"] if numpy.isin(image.affine, [-1, 0, 1]).all() else ["RAS", "LPS"]
     return ["--space", pick(rng, spaces)] if chance(rng, 0.4) else []

@@ -1,4 +1,4 @@
-// Runs on made-up machines: hwloc's synthetic topologies.
+// Runs on synthetic machines: hwloc's synthetic topologies.
 #pragma once
 
 #include <cstdint>
@@ -18,7 +18,7 @@ inline std::uint64_t total(const std::vector<std::uint64_t>& counts) {
   return std::accumulate(counts.begin(), counts.end(), std::uint64_t{0});
 }
 
-/// One worker a core, node after node, of a run of this image on that machine.
+/// A run of this image on that machine, with one worker per core, node after node.
 struct RunOn {
   RunOn(const Topology& of_run, int num_workers)
       : machine(of_run),

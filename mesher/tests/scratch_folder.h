@@ -1,4 +1,4 @@
-// A folder of its own for each test, removed with all in it.
+// A folder for each test, removed with its contents.
 #pragma once
 
 #include <stdlib.h>
@@ -23,7 +23,7 @@ class ScratchFolder {
 
   std::string operator/(const std::string& name) const { return path_ + "/" + name; }
 
-  /// The path of the file that now holds `bytes`.
+  /// Writes `bytes` to the file and returns its path.
   std::string write(const std::string& name, const std::string& bytes) const {
     std::ofstream(*this / name, std::ios::binary) << bytes;
     return *this / name;

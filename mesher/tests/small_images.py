@@ -1,4 +1,4 @@
-"""Small image files written by hand, sound ones and faulty ones."""
+"""Small hand-written image files, valid and faulty."""
 
 import struct
 import zlib
@@ -9,18 +9,18 @@ _BYTES = {UINT8: 1, INT16: 2, INT32: 4, FLOAT32: 4, FLOAT64: 8, RGB24: 3, INT8: 
 
 
 def voxels_of(size, label_at):
-    """A cube of `size` voxels labelled by label_at(i, j, k), as bytes."""
+    """Returns a cube of `size` voxels labelled by label_at(i, j, k), as bytes."""
     return bytes(int(label_at(i, j, k)) for k in range(size) for j in range(size) for i in range(size))
 
 
 def ball_voxels(size):
-    """Label 1 in the middle of a cube of `size` voxels, as bytes."""
+    """Returns label 1 in the middle of a cube of `size` voxels, as bytes."""
     middle = (size - 1) / 2
     return voxels_of(size, lambda *ijk: sum((x - middle) ** 2 for x in ijk) <= (size / 3) ** 2)
 
 
 def nifti_bytes(voxels, dimensions=(12, 12, 12), datatype=UINT8, affine=None, magic=b"n+1\0"):
-    """The header of a NIfTI-1 file; `affine` is three rows of four numbers."""
+    """Returns the bytes of a NIfTI-1 file; `affine` is three rows of four numbers."""
     header = bytearray(352)
     struct.pack_into("<i", header, 0, 348)
     struct.pack_into("<8h", header, 40, len(dimensions), *dimensions, *([1] * (7 - len(dimensions))))
@@ -37,13 +37,13 @@ def nifti_bytes(voxels, dimensions=(12, 12, 12), datatype=UINT8, affine=None, ma
 
 
 def write_nifti(path, *arguments, **options):
-    """What nifti_bytes() makes, as a file."""
+    """Writes the result of nifti_bytes() to a file."""
     path.write_bytes(nifti_bytes(*arguments, **options))
     return path
 
 
 def write_metaimage(path, voxels, size=12, spacing="1 1 1", compressed_size=None):
-    """A MetaImage file; `spacing` is written as it stands, and so is the size of what is then a compressed stream."""
+    """Writes a MetaImage file. `spacing` is written as given, and so is the size of the compressed stream."""
     compression = ""
     if compressed_size is not None:
         voxels = zlib.compress(voxels)

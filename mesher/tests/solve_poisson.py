@@ -1,4 +1,4 @@
-"""Solves a Poisson equation on a mesh of labels with DOLFINx, and writes what it found as JSON.
+"""Solves a Poisson equation on a mesh of labels with DOLFINx, and writes the results as JSON.
 
 usage: mpirun -n RANKS python3 solve_poisson.py MESH.xdmf TAGS RESULT.json
 
@@ -18,7 +18,7 @@ OUTSIDE_TAGS = [int(tag) for tag in sys.argv[2].split(",")]
 
 
 def read(path):
-    """The mesh, the labels of its cells, and the tags of its facets."""
+    """Returns the mesh, the labels of its cells, and the tags of its facets."""
     with io.XDMFFile(MPI.COMM_WORLD, path, "r") as file:
         mesh = file.read_mesh(name="mesh")
         labels = file.read_meshtags(mesh, name="mesh")

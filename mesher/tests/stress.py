@@ -1,7 +1,8 @@
-"""Random runs of many workers on small and odd images: each must end as asked, verify, and equal its replay.
+"""Random runs of many workers on small and unusual images: each must end as requested, verify, and equal its replay.
 
-Every run is drawn from its seed alone. `--seed SEED` does one and keeps its files; a run on threads may need some tries
-to fail again. $PODM_PROGRAM is the podm program. Exits with 1 when a run fails, and names its seed and command.
+A seed alone determines each run. `--seed SEED` repeats one and keeps its files; a run on threads may need several
+attempts to fail again. $PODM_PROGRAM is the podm program. Exits with 1 when a run fails, and names its seed and
+command.
 """
 
 import argparse
@@ -27,14 +28,14 @@ import random_runs
 from podm_process import PROGRAM
 
 VERIFIER = os.path.join(os.path.dirname(PROGRAM), "podm-verify")
-TIMEOUT_S = 1200  # aggressive workers try 10^8 times now and then, which takes minutes
-# What holds of a mesh whenever its run ends.
+TIMEOUT_S = 1200  # aggressive workers sometimes make 10^8 attempts, which takes minutes
+# Claims that hold for a mesh even if its run ends early.
 ALWAYS = {"structure", "delaunay", "conformity", "surface", "labels"}
 IN_MEMORY = "/dev/shm" if os.access("/dev/shm", os.W_OK) else None
 
 
 class Failed(Exception):
-    """What is wrong with a run."""
+    """The fault of a run."""
 
 
 def call(*arguments, accepted=(0,)):
@@ -50,7 +51,7 @@ def call(*arguments, accepted=(0,)):
 
 
 def judge(run, record, process):
-    """Raises Failed unless the run ended as asked, with a mesh that is as sound as that lets it be."""
+    """Raises Failed unless the run ended as requested, with a mesh that is as valid as this end allows."""
     reason, verdicts = record["stop_reason"], record["verdicts"]
     always = ALWAYS - ({"delaunay"} if record["optimization"] else set())
     said = f": {process.stderr.strip()[-2000:]}"
@@ -65,18 +66,19 @@ def judge(run, record, process):
     is_whole = reason == "complete" and record["cells"] > 0
     unmet = {name: misses for name, misses in record["guarantees"].items() if misses} if reason == "complete" else {}
     if not record["cells"]:
-        unmet.pop("missing_labels", None)  # judge_empty knows whether there had to be a cell
+        unmet.pop("missing_labels", None)  # judge_empty decides if there had to be a cell
     if unmet or (process.returncode == 0) != is_whole:
         raise Failed(f"ended as {reason} with exit code {process.returncode} and misses {unmet}{said}")
 
 
 def judge_empty(run, delta_mm):
-    """Raises Failed if the object is thick enough for a cell whatever workers do.
+    """Raises Failed if the object is thick enough that every run must have a cell.
 
-    Let B be a ball of radius b inside, and c the circumcentre of the cell that holds B's centre. If no cell has a
-    label, c lies outside, so that the way from it into B meets the isosurface b deep in the circumball or deeper: so
-    does the nearest point z. By R1 a vertex lies within delta of z, and none is inside the circumball: b <= delta. The
-    z that is found is not always the nearest: it may be further by a part of a voxel (image/isosurface.h).
+    Let B be a ball of radius b inside, and c the circumcenter of the cell that holds B's center. If no cell has a
+    label, c lies outside. The line from c into B then meets the isosurface at a depth of at least b in the circumball.
+    So the nearest point z has at least this depth. By R1 a vertex lies within delta of z, and no vertex is inside the
+    circumball. Therefore b <= delta. The z that is found is not always the nearest: it may be farther by a part of a
+    voxel (isosurface/isosurface.h).
     """
     ball_mm = run.image.ball_inside_mm(run.foreground())
     if ball_mm > delta_mm + numpy.linalg.norm(run.image.spacing):
@@ -84,7 +86,7 @@ def judge_empty(run, delta_mm):
 
 
 def carry_out(run, folder):
-    """How the run ended; raises Failed."""
+    """Returns how the run ended; raises Failed."""
     image, mesh, log, record, schedule = (os.path.join(folder, name) for name in (
         run.image_name, run.mesh_name, "run.log", "run.jsonl", "leaves.jsonl"))
     run.image.write(image)
@@ -111,17 +113,18 @@ def carry_out(run, folder):
 
 
 def fault_of(run, folder):
-    """What is wrong with the run, or None, and how it ended. Whatever is raised is a fault: its seed must be told."""
+    """Returns the fault of the run (or None) and how it ended. Any exception is a fault, so that its seed is printed.
+    """
     try:
         return None, carry_out(run, folder)
     except Failed as error:
         return str(error), "failed"
-    except Exception:  # a record that is no record, a full disk, a mistake of these tests
+    except Exception:  # a malformed record, a full disk, an error in these tests
         return traceback.format_exc(), "failed"
 
 
 def kinds_of(run):
-    """What the summary counts."""
+    """Returns the properties of a run that the summary counts."""
     given = {option for option in run.options + run.selection if option.startswith("--")}
     kinds = {"algorithm": [run.algorithm], "executor": [run.executor], "image": [run.image.family],
              "damage": sorted(set(run.image.damages)) or ["none"],
@@ -132,7 +135,7 @@ def kinds_of(run):
 
 
 class Stress:
-    """Runs on all processors at once until a budget is spent, counted and told."""
+    """Runs on all processors at once until the budget is spent; counts and reports them."""
 
     def __init__(self, phantoms, seeds, seconds, keep):
         self.phantoms, self.seeds, self.keep = phantoms, seeds, keep
@@ -208,13 +211,13 @@ class Stress:
 
 
 def seeds_in(path):
-    """The first word of each line that is no comment."""
+    """Returns the first word of each line that is not a comment."""
     lines = (line.split("#")[0].split() for line in pathlib.Path(path).read_text().splitlines())
     return [int(words[0]) for words in lines if words]
 
 
 def repeat(seed, phantoms):
-    """One run, whose files stay; its exit code."""
+    """Repeats one run and keeps its files. Returns its exit code."""
     run = random_runs.draw(seed, phantoms)
     folder = tempfile.mkdtemp(prefix=f"podm-stress-{seed}-")
     print(f"{run.image.family} of {run.image.voxels.shape} voxels ({', '.join(run.image.damages) or 'sound'}) in "

@@ -1,8 +1,9 @@
-"""Meshes on ranks, each proved by podm-verify from its pieces, and made again by podm replay. ci/ranks.sh calls it.
+"""Meshes on ranks. podm-verify proves each from its pieces, and podm replay makes it again. ci/ranks.sh calls this
+script.
 
-`random` makes runs of podm-mpi with its ranks in one process: phantom, ranks, algorithm, threads, initial ratio and the
-cuts of blocks are drawn from a seed alone. `images` meshes every image of a folder on several numbers of ranks, in one
-process and over MPI, and prints a table. Both exit with 1 when a run fails, and name it. The programs are
+`random` makes runs of podm-mpi with its ranks in one process. A seed alone determines phantom, ranks, algorithm,
+threads, initial ratio and the cuts of blocks. `images` meshes every image of a folder on several numbers of ranks, in
+one process and over MPI, and prints a table. Both exit with 1 when a run fails, and name it. The programs are
 $PODM_PROGRAM, $PODM_MPI_PROGRAM and $PODM_MPIRUN.
 """
 
@@ -21,7 +22,7 @@ import tempfile
 PROGRAM, MPI_PROGRAM = os.environ["PODM_PROGRAM"], os.environ["PODM_MPI_PROGRAM"]
 MPIRUN = os.environ.get("PODM_MPIRUN", "mpirun")
 VERIFIER = os.path.join(os.path.dirname(PROGRAM), "podm-verify")
-# fidelity is left out: it is missed by meshes that are coarser than a structure, on one machine as on ranks.
+# fidelity is left out: meshes that are coarser than a structure miss it, on one machine and on ranks.
 CLAIMS = {"structure", "radius_edge", "boundary_angles", "size", "delaunay", "conformity", "surface", "labels",
           "surface_vertices"}
 PHANTOMS = [("spheres", 48), ("torus", 48), ("abdomen", 96)]
@@ -33,7 +34,7 @@ TIMEOUT_S = 3600
 
 
 class Failed(Exception):
-    """What is wrong with a run."""
+    """The fault of a run."""
 
 
 def call(command, accepted=(0,)):
@@ -51,11 +52,11 @@ def record_in(folder):
 
 @dataclasses.dataclass
 class Sample:
-    """An image, and the sizes at which one machine makes about as many cells of it as asked for."""
+    """An image, and the sizes at which one machine makes about the requested number of cells."""
     path: pathlib.Path
     radius_mm: float
     delta_mm: float
-    cells: int  # one machine's
+    cells: int  # on one machine
 
     @classmethod
     def of(cls, path, cells):
@@ -69,7 +70,7 @@ class Sample:
 
 @dataclasses.dataclass
 class OnRanks:
-    """Command of a run but for what all have, and what it is called."""
+    """The name of a run, and the part of its command that differs between runs."""
     sample: Sample
     name: str
     launcher: list
@@ -83,13 +84,13 @@ class OnRanks:
 
 @dataclasses.dataclass
 class Made:
-    """What is told of a run that is proved."""
+    """The results of a verified run."""
     cells: int
     rounds: int
-    deferred: float   # cells that wait after round 0, over cells
-    in_zones: float   # share of the insertions of rounds but of those later ones in which one rank alone refined
+    deferred: float   # cells that wait after round 0, relative to all cells
+    in_zones: float   # share of insertions, without later rounds in which only one rank refined
     imbalance: float
-    more_cells: float  # than one machine makes, over these
+    more_cells: float  # excess over one machine, relative to its cells
 
     @classmethod
     def of(cls, record, sample):
@@ -101,7 +102,7 @@ class Made:
 
 
 def prove(run, folder):
-    """Raises Failed unless the mesh is whole, proved, and what its logs make."""
+    """Raises Failed unless the mesh is complete, verified, and equal to the replay of its logs."""
     record = record_in(folder)
     if record["stop_reason"] != "complete" or any(record["guarantees"].values()):
         raise Failed(f"ended as {record['stop_reason']}, guarantees missed: {record['guarantees']}")
@@ -123,7 +124,7 @@ def prove(run, folder):
 
 
 def carry_out(run):
-    """What was made, or None after telling what is wrong."""
+    """Returns the results, or None after printing the fault."""
     with tempfile.TemporaryDirectory(prefix="podm-ranks-") as name:
         folder = pathlib.Path(name)
         try:

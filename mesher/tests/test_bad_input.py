@@ -1,5 +1,5 @@
-"""Faulty images, options that do not suit the image, and outputs that cannot be written: exit code 2, a message
-that names the file and the fault, and nothing left behind."""
+"""Faulty images, options that do not suit the image, and outputs that cannot be written give exit code 2 and a message
+that names the file and the fault, and leave no file behind."""
 
 import gzip
 import os

@@ -1,5 +1,4 @@
-// Runs with a target number of cells: that they meet it, and that a mesh made on the way counts in nothing
-// but calibration.
+// Runs with a target number of cells meet it, and a mesh made on the way only counts as calibration.
 #include "run/calibrate.h"
 
 #include <gtest/gtest.h>
@@ -48,7 +47,7 @@ TEST_P(Calibrated, MeetsTheTargetWithTheMeshOfTheRadiusThatItNames) {
 
 INSTANTIATE_TEST_SUITE_P(Targets, Calibrated, testing::Values(5000, 20000, 100000));
 
-// Within a thousandth, which a first mesh misses.
+// Returns a tolerance of a thousandth, which a first mesh misses.
 MeshingOptions exact_target(std::uint64_t cells) {
   MeshingOptions options = target(cells);
   options.sizes.target_tolerance_percent = 0.1;

@@ -1,4 +1,4 @@
-"""podm mesh in a control group with a limit on memory, nested in one without."""
+"""podm mesh in a control group with a memory limit, nested in a group without a limit."""
 
 import os
 import pathlib
@@ -13,7 +13,7 @@ LIMIT_BYTES = 100 * 2 ** 20
 
 
 def own_folder():
-    """The limit of this process's group for memory, in version 1 or 2; None where it cannot be found."""
+    """Returns the memory folder of this process's group, and True for version 1; None if it cannot be found."""
     for line in pathlib.Path("/proc/self/cgroup").read_text().splitlines():
         _, controllers, path = line.split(":", 2)
         for root, legacy in (("/sys/fs/cgroup/memory", True), ("/sys/fs/cgroup", False)):
@@ -45,7 +45,7 @@ class InAControlGroup(PodmTestCase):
     def test_the_limit_of_the_group_around_ends_the_run_before_the_kernel_does(self):
         self.check(small_images.ball_voxels(40), 40, "--verify")
 
-    # Its voxels and the transform take 56 MB of the 84 MB that are granted.
+    # The voxels and the transform of the image take 56 MB of the 84 MB that are granted.
     def test_an_image_is_counted_once(self):
         self.check(bytes([1]) * 210 ** 3, 210)
 

@@ -1,4 +1,4 @@
-"""Constants of virtual time taken times a factor, and the hash of the model that records have."""
+"""Constants of virtual time multiplied by a factor, and the hash of the model in records."""
 
 import json
 import os

@@ -11,8 +11,8 @@
 namespace podm::test {
 namespace {
 
-// Sides, with a label or of the background, of label changes between voxels `lag` apart along any axis, over
-// the lag: areas in voxel faces. Voxel by voxel, and outside all is background.
+// Areas, mm^2, of label changes between voxels `lag` apart along any axis, divided by the lag. Sides with a
+// label and sides of the background are summed separately, voxel by voxel. The outside is background.
 struct Sides {
   double labelled = 0, outside = 0;
 };
@@ -43,7 +43,7 @@ Sides sides_by_voxel(const LabelImage& image, int lag) {
 TEST(CostModel, CountsTheSidesOfInterfacesSeenFromADistance) {
   for (const NamedImage& named : images()) {
     LabelImage image = named.make();
-    image.spacing = {1, 1, 1};  // so that one distance is a whole number of voxels along all axes
+    image.spacing = {1, 1, 1};  // one distance is then a whole number of voxels along all axes
     const CostModel model(image, 1);
     double volume = 0;
     for (const LabelIndex label : image.voxels) volume += label != kBackground;
@@ -61,7 +61,7 @@ TEST(CostModel, CountsTheSidesOfInterfacesSeenFromADistance) {
   }
 }
 
-// A flat cell of a coarse mesh has next to no volume for its facets, or none.
+// A flat cell of a coarse mesh has almost no volume for its facets, or none.
 TEST(CostModel, CountsPartsOfNoVolume) {
   const double on_surface = CostModel::cells(0, 1, 2, 1);
   EXPECT_GT(on_surface, 0);
@@ -95,7 +95,7 @@ TEST(CostModel, FollowsVolumeAndRadiiOfLabels) {
   EXPECT_EQ(cells(1000, 0, 0.5), cells(0, 0, 0.5)) << "what is thinner than the radius has no core";
 }
 
-// Larger cells, or a coarser surface, are never more.
+// Larger cells, or a coarser surface, never give more cells.
 TEST(CostModel, FallsAsRadiusAndDeltaGrow) {
   for (const NamedImage& named : images()) {
     const LabelImage image = named.make();

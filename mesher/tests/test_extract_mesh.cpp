@@ -1,4 +1,4 @@
-// Extraction from the store: what the definition says, whoever writes it and whichever labels are known.
+// Extraction from the store gives the defined mesh, for any number of threads and any known labels.
 #include "run/extract_mesh.h"
 
 #include <gtest/gtest.h>
@@ -13,8 +13,8 @@
 namespace podm::test {
 namespace {
 
-// Three labels that meet, in the middle of refinement: cells that no worker has asked the label of. The image
-// is oblique.
+// Three labels that meet, in an oblique image, in the middle of refinement: no worker has requested the label
+// of some cells.
 class ExtractMesh : public testing::Test {
  protected:
   ExtractMesh() { refine(); }

@@ -1,4 +1,4 @@
-"""Every mesh format: what podm writes podm-verify proves, and podm convert carries from one to the other."""
+"""Every mesh format: podm-verify proves what podm writes, and podm convert converts one format to another."""
 
 import json
 import re
@@ -116,7 +116,7 @@ class FormatsTest(PodmTestCase):
 
 
 class OpenedByOthers(PodmTestCase):
-    """Programs that are not ours find all cells, sets and names."""
+    """Programs of other projects find all cells, sets and names."""
 
     def mesh(self, name, *options):
         path = self.folder / name

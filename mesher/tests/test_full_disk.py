@@ -1,5 +1,5 @@
-"""Outputs on a disk that fills: exit code 2, a message that names the file and the fault, the older files as they
-were, and nothing left behind."""
+"""Outputs on a disk that fills give exit code 2 and a message that names the file and the fault. Older files stay
+unchanged, and no new file is left behind."""
 
 import io
 import os
@@ -15,7 +15,7 @@ import small_images
 from podm_process import PROGRAM, TIMEOUT_S, PodmTestCase, run_podm
 
 BALL = small_images.ball_voxels(12)
-# Options that add an output to those of `podm mesh IMAGE`, and its name.
+# Options that add an output to those of `podm mesh IMAGE`, and the name of the output.
 OUTPUTS = [*((["-o", f"out.{extension}"], f"out.{extension}") for extension in ("vtu", "mesh", "msh")),
            (["-o", "out.xdmf"], "out.h5"),
            *((["--surface", f"s.{extension}"], f"s_1.{extension}") for extension in ("stl", "ply")),
@@ -29,7 +29,7 @@ def file_size_limit(size):
 
 
 class FileSizeLimit(PodmTestCase):
-    """No file grows past a limit of the process."""
+    """No file can grow past a limit of the process."""
 
     def setUp(self):
         super().setUp()
@@ -58,8 +58,8 @@ class FileSizeLimit(PodmTestCase):
             self.assertEqual(record.read_bytes(), before)
 
 
-# The working folder becomes, in a mount namespace of its own, a disk of 1 MiB with the older files $NAMES, of which
-# $ROOM bytes are free. Then the command runs; the exit code and an archive of the disk go to the folder ../told.
+# Makes the working folder, in a mount namespace of its own, a disk of 1 MiB with the older files $NAMES and $ROOM free
+# bytes. Then runs the command. The exit code and an archive of the disk go to a folder beside the disk.
 ON_A_SMALL_DISK = """
 mount -t tmpfs -o size=1m podm_test . && cd "$PWD" || exit 99
 for name in $NAMES; do printf "%4090s\\n" "older $name" > $name; done  # a page

@@ -1,4 +1,4 @@
-"""podm mesh --algorithm podm-home: computing nodes that keep to their own blocks of space."""
+"""podm mesh --algorithm podm-home: computing nodes that stay in their own blocks of space."""
 
 import json
 import os

@@ -1,4 +1,4 @@
-"""Accesses by kind and distance of virtual workers on a described machine, as the record tells them."""
+"""Accesses by kind and distance of virtual workers on a described machine, as the record lists them."""
 
 import json
 import os
@@ -67,8 +67,8 @@ class Hops(PodmTestCase):
         self.assertEqual(searched["virtual"]["refine_s"], alone["virtual"]["refine_s"])
 
     def test_counting_changes_no_mesh(self):
-        # Memory of an hwloc machine costs virtual workers nothing. Those that beg at random act alike wherever they
-        # stand, counted or not.
+        # Memory of an hwloc machine costs virtual workers nothing. Workers that beg at random act alike at any place,
+        # counted or not.
         machine = self.folder / "two_nodes.xml"
         machine.write_text(TWO_NODES)
         virtual = "--executor", "virtual", "--threads", 4, "--begging", "random"

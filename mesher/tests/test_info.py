@@ -1,4 +1,4 @@
-"""podm info and podm phantom: what they print adds up."""
+"""podm info and podm phantom: their output is consistent."""
 
 import json
 import unittest

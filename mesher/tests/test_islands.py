@@ -1,4 +1,4 @@
-"""--drop-islands: what is left equals what this test's own code leaves, and programs that are told of it agree."""
+"""--drop-islands: the result equals that of this test's own code, and programs with the same option agree."""
 
 import collections
 import json
@@ -14,7 +14,7 @@ FACE_MM2 = (1, 2, 0.5)
 
 
 def random_voxels(seed):
-    """Slabs of labels 1 and 2 in background, with specks in, on and beside each other; by voxel."""
+    """Returns slabs of labels 1 and 2 in background, with specks in, on and beside each other; by voxel."""
     rng = random.Random(seed)
     voxels = {(i, j, k): (1 + (i > 4)) * (1 < k < 8) for k in range(SIZE) for j in range(SIZE) for i in range(SIZE)}
     for _ in range(25):
@@ -33,7 +33,7 @@ def neighbours(voxel):
 
 
 def components(voxels):
-    """Sets of voxels of one label, not of the background."""
+    """Yields the sets of voxels of one label, without the background."""
     left = {voxel for voxel, label in voxels.items() if label != 0}
     while left:
         found, todo = set(), [left.pop()]

@@ -1,5 +1,5 @@
-"""What a run of podm that ends early leaves: nothing that the next does not remove, no process, and no output kept
-waiting."""
+"""A run of podm that ends early leaves no file that the next run does not remove, and no process. An output that waits
+does not delay the end."""
 
 import contextlib
 import fcntl
@@ -20,7 +20,8 @@ VERIFIER = os.path.join(os.path.dirname(PROGRAM), "podm-verify")
 
 
 class Killed(PodmTestCase):
-    """kill -9 leaves temporaries; the next run of the same name removes them, but none of a process that lives."""
+    """kill -9 leaves temporary files. The next run with the same name removes them, except those of a living process.
+    """
 
     def mesh(self):
         return run_podm("mesh", "phantom:spheres@24", "-o", self.folder / "out.vtu", "--log", self.folder / "run.log")
@@ -59,7 +60,7 @@ class Killed(PodmTestCase):
 
 
 def child_that_runs(process, program):
-    """The number of a process; None where there is none."""
+    """Returns the number of a process; None if there is none."""
     for entry in pathlib.Path("/proc").glob("[0-9]*"):
         try:
             parent = int((entry / "stat").read_text().rpartition(")")[2].split()[1])
@@ -71,7 +72,7 @@ def child_that_runs(process, program):
 
 
 def ends_within(process, seconds):
-    """Whether the process of this number is soon no more, or at least dead."""
+    """Returns true if the process with this number ends soon, or is at least a zombie."""
     end = time.monotonic() + seconds
     while time.monotonic() < end:
         try:
@@ -87,7 +88,7 @@ class Verification(PodmTestCase):
     MESH = {"out.vtu", "out_facets.vtu"}
 
     def start_verifying(self, image="phantom:abdomen@48"):
-        """A run, and the number of its podm-verify."""
+        """Returns a run, and the number of its podm-verify."""
         process = start_podm("mesh", image, "--radius", 8, "-o", self.folder / "out.vtu", "--verify")
         child = None
         while child is None:
@@ -112,7 +113,7 @@ class Verification(PodmTestCase):
         self.assert_exit(run_podm(self.folder / "out.vtu", "--claims", "structure,delaunay", program=VERIFIER), 0)
 
     def test_signals_that_end_at_once_end_the_verifier_too(self):
-        """The image is in a file: without that of a phantom the verifier would end by itself."""
+        """The image is in a file. With a phantom, whose image file is removed, the verifier would end by itself."""
         image = self.folder / "image.nii.gz"
         self.assert_exit(run_podm("phantom", "abdomen", "--size", 48, "-o", image), 0)
         for number in signal.SIGUSR1, signal.SIGRTMIN:
@@ -167,14 +168,14 @@ class Verification(PodmTestCase):
 
 
 class Record(PodmTestCase):
-    """Whatever keeps the record waiting keeps no signal waiting."""
+    """A record that waits does not delay signals."""
 
     def setUp(self):
         super().setUp()
         self.runs = self.folder / "runs.jsonl"
 
     def start(self):
-        """A run whose mesh is written, and which may wait to write the record."""
+        """Returns a run whose mesh is written, and which may wait to write the record."""
         process = start_podm("mesh", "phantom:spheres@16", "-o", self.folder / "out.vtu", "--record", self.runs)
         while not (self.folder / "out_facets.vtu").exists():
             time.sleep(0.01)
@@ -222,7 +223,7 @@ class Record(PodmTestCase):
         try:
             stdout, stderr = process.communicate(timeout=20)
         finally:
-            process.kill()  # nothing, where it has ended
+            process.kill()  # no effect if it has ended
         return subprocess.CompletedProcess(process.args, process.returncode, stdout, stderr)
 
     def test_a_pipe_without_a_reader_is_refused_before_there_is_a_mesh(self):

@@ -1,5 +1,4 @@
-// Measures of a mesh: what their definitions say, cell by cell, and the same to the bit on any number of
-// threads.
+// Measures of a mesh equal their definitions, cell by cell, and are bitwise equal on any number of threads.
 #include "run/measure_quality.h"
 
 #include <gtest/gtest.h>
@@ -31,7 +30,7 @@ double circumradius(const Corners& p) {
   return length(sum) / (2 * std::abs(six_volumes(p)));
 }
 
-// The angle between the planes through the edge's ends and either of the other two corners.
+// Returns the angle between the planes through the edge's ends and either of the other two corners.
 double dihedral_deg(const Corners& p, unsigned i, unsigned j, unsigned k, unsigned l) {
   const Vector edge = p[j] - p[i];
   return angle_deg(cross(edge, p[k] - p[i]), cross(edge, p[l] - p[i]));
@@ -45,8 +44,7 @@ struct Extremes {
   }
 };
 
-// Cells and facets anywhere, of the labels 1 to 3; about every other cell is turned over. Of label 4 there
-// are voxels alone.
+// Random cells and facets of labels 1 to 3; about every second cell is inverted. Label 4 has only voxels.
 class MeasureQuality : public testing::Test {
  protected:
   MeasureQuality() {
@@ -60,7 +58,7 @@ class MeasureQuality : public testing::Test {
   }
 
   double uniform() { return std::uniform_real_distribution(0.0, 9.0)(random_); }
-  // Vertices, no two of them the same.
+  // Returns distinct vertices.
   template <std::size_t N>
   std::array<std::uint32_t, N> draw() {
     std::set<std::uint32_t> drawn;
@@ -160,7 +158,8 @@ TEST_F(MeasureQuality, IsTheSameToTheBitOnAnyNumberOfThreads) {
     for (int repeat = 0; repeat < 5; ++repeat) EXPECT_EQ(numbers_of(measure(threads)), one) << threads;
 }
 
-// Grid points on a plane that doubles do not hold: the sign of a volume is that of what rounding left of it.
+// Grid points on a plane that doubles do not represent exactly: the sign of a volume is that of the rounded
+// points.
 TEST_F(MeasureQuality, SeesExactlyWhichFlatCellsArePositive) {
   for (auto& [x, y, z] : mesh_.vertices) {
     x = static_cast<double>(random_() % 8) / 10;
@@ -194,7 +193,7 @@ TEST_F(MeasureQuality, OfFewCellsOrNone) {
   }
 }
 
-// Whichever of its vertices are the same.
+// Tests all choices of equal vertices.
 TEST_F(MeasureQuality, FacetsWithoutAreaHaveAnAngleOfZero) {
   const auto [a, b, c] = draw<3>();
   for (const auto& facet : {std::array{a, a, b}, {a, b, a}, {b, a, a}, {c, c, c}}) {

@@ -1,4 +1,4 @@
-"""podm mesh within --max-memory-gib, where the estimate has let a run begin that its limit ends."""
+"""podm mesh with --max-memory-gib, when the estimate lets a run begin that the limit then ends."""
 
 import array
 import os
@@ -8,11 +8,11 @@ import small_images
 from podm_process import PodmTestCase, run_podm
 
 GIB = 2 ** 30
-# Interfaces alone take more cells than this target, which the estimate believes.
+# Interfaces alone take more cells than this target, but the estimate relies on the target.
 TOO_FEW = ["--target-elements", 1000, "--delta", 0.05]
 ALGORITHMS = (["podm", "--threads", 1], ["podm", "--threads", 2], ["pdr", "--threads", 2],
               ["pdr-podm", "--threads", 4, "--nodes", 2], ["pdr", "--threads", 16, "--executor", "virtual"])
-# Below the estimate, so that the run begins.
+# Values below the estimate, so that the run begins.
 LEAVES = ["--radius", 0.35, "--delta", 0.3, "--max-elements", 1_300_000, "--initial-ratio", 4, "--threads", 2,
           "--oversubscribe", "--leaf-size"]
 
@@ -26,7 +26,7 @@ class MemoryLimit(PodmTestCase):
                     self.check(image, gib, ["--algorithm", algorithm, *options, "--oversubscribe"])
 
     def full_image(self, size, **options):
-        """Label 1 everywhere, as the number 1 of an array type."""
+        """Returns an image of label 1 everywhere, as numbers 1 of an array type."""
         voxels = array.array(options.pop("type", "B"), [1]) * size ** 3
         return small_images.write_nifti(self.folder / "full.nii", voxels.tobytes(), (size,) * 3, **options)
 
@@ -55,7 +55,7 @@ class MemoryLimit(PodmTestCase):
         self.assertGreater(told["cells"], 150_000)
         self.assertLessEqual(told["peak_rss_bytes"] / GIB / 0.2, 1)
 
-    # Each has an arena of the allocator on machines of many processors.
+    # Each thread has an arena of the allocator on machines with many processors.
     def test_threads_are_charged_with_what_they_take(self):
         image = small_images.write_nifti(self.folder / "ball.nii", small_images.ball_voxels(40), (40, 40, 40))
         arenas = {**os.environ, "GLIBC_TUNABLES": "glibc.malloc.arena_max=1000"}
@@ -75,7 +75,7 @@ class MemoryLimit(PodmTestCase):
             with self.subTest(algorithm=algorithm):
                 self.check(image, 0.12, ["--algorithm", algorithm], [*LEAVES, 0.5])
 
-    # Eight bytes a voxel in the file, and two of its label.
+    # Each voxel takes eight bytes in the file, and two for its label.
     def test_an_image_that_cannot_be_read_within_the_limit_is_refused_before(self):
         image = self.full_image(180, type="d", datatype=small_images.FLOAT64)
         options = ["--target-elements", 1000, "--delta", 0.2]
@@ -106,7 +106,7 @@ class MemoryLimit(PodmTestCase):
     def test_more_cells_than_can_be_numbered_are_refused_before(self):
         image = small_images.write_nifti(self.folder / "ball.nii", small_images.ball_voxels(40), (40, 40, 40))
         for options in (["--radius", 0.01], ["--radius", 0.02, "--max-elements", 1_100_000_000],
-                        ["--target-elements", 1_000_000_000]):  # background comes on top
+                        ["--target-elements", 1_000_000_000]):  # background cells are additional
             with self.subTest(options=options):
                 self.assert_refused(["mesh", image, *options, "--max-memory-gib", 1e6, "-o", self.folder / "out.vtu"],
                                     image, "2^30")

@@ -1,4 +1,4 @@
-// Logs of ranks become one when they fit together, and are refused where they do not.
+// Logs of ranks are merged if they fit together, and refused otherwise.
 #include "replay/merge_logs.h"
 
 #include <gtest/gtest.h>
@@ -16,9 +16,9 @@ constexpr std::uint32_t kFree = 3;  // a VertexKind
 
 std::uint64_t at(std::uint64_t step, std::uint64_t number) { return (step << kBitsInStep) + number; }
 
-// Logs of three ranks: the first makes vertices 8, 9 and 10 at x = 1, 2, 3, which the others learn, and ranks
-// change them in two steps with an update between. What is at x = 1 goes and comes back on rank 0, and rank
-// 1, which does not notice, removes it then.
+// Logs of three ranks. The first rank makes vertices 8, 9 and 10 at x = 1, 2, 3, which the other ranks learn.
+// The ranks change them in two steps with an update between. Rank 0 removes the vertex at x = 1 and inserts
+// it again. Rank 1, which does not notice this, removes it then.
 class LogsOfRanks : public testing::Test {
  protected:
   LogsOfRanks() {
@@ -77,7 +77,7 @@ TEST_F(LogsOfRanks, NameVerticesByTheirPlaces) {
   EXPECT_NE(workers[4], workers[5]);
 }
 
-// What rank 2 called 11 and 9 it calls 7 and 11 from then on.
+// Rank 2 renames vertex 11 to 7, and vertex 9 to 11.
 TEST_F(LogsOfRanks, FollowVerticesThatMove) {
   add(2, at(5, 0), 5, 7, {11}, kMovedVertex);
   add(2, at(5, 1), 2, 11, {9}, kMovedVertex);
@@ -139,7 +139,8 @@ TEST_F(LogsOfRanks, LearnWhatIsSo) {
             "log.2: operation 0 of step 3: its vertex is there already");
   EXPECT_EQ(fault_after([](Operations all) { all[3].sequence = at(2, 0); }), "no error");  // after rank 1
   EXPECT_EQ(fault_after([](Operations all) { all[3].sequence = at(5, 0), std::swap(all[3], all[4]); }),
-            "log.2: operation 0 of step 5: learns of a vertex that nobody has made");  // not any more
+            // The vertex no longer exists.
+            "log.2: operation 0 of step 5: learns of a vertex that nobody has made");
   EXPECT_EQ(fault_after([](Operations all) { all[4].point[0] = 2; }),
             "log.2: operation 1 of step 3: forgets a vertex that is elsewhere");
 }

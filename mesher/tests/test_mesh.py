@@ -1,4 +1,4 @@
-"""podm mesh: what it writes, tells and records, and how it ends early."""
+"""podm mesh: its files, output and records, and early ends."""
 
 import json
 import os
@@ -64,7 +64,8 @@ class Mesh(PodmTestCase):
                     self.assertGreater(record["peak_rss_bytes"], 1 << 20)
 
     def test_phases_account_for_what_follows_refinement(self):
-        """What follows the line `extract`, so that nothing that takes longer with more cells is in no phase."""
+        """Measures the phases after the line `extract`: every operation whose time grows with the cells must be in a
+        phase."""
         def share_accounted_for():
             self.runs.unlink(missing_ok=True)
             process = start_podm("mesh", "phantom:abdomen@48", "--radius", 7, "--threads", 2, "--oversubscribe", "-o",
@@ -77,7 +78,7 @@ class Mesh(PodmTestCase):
             phases = self.read_record(self.runs)["phases_s"]
             return (phases["extract"] + phases["measure"] + phases["write"]) / whole_s
         shares = []
-        while len(shares) < 3 and max(shares, default=0) < 0.75:  # others may take the time between phases, not always
+        while len(shares) < 3 and max(shares, default=0) < 0.75:  # other processes may disturb a run, but not every run
             shares.append(share_accounted_for())
         self.assertGreater(shares[-1], 0.75)
 
@@ -113,7 +114,7 @@ class Mesh(PodmTestCase):
                     self.assertLessEqual({"labels", "surface", "size"}, set(verdicts))
 
     def test_fidelity_is_verified_within_what_the_sampling_distance_promises(self):
-        """The coarse mesh would fail if voxels alone set its size."""
+        """The coarse mesh would fail if voxels alone determined the tolerance."""
         coarse = ["--radius", "26", "--delta", "13"]
         for options, image in ((coarse, "phantom:torus@64"), (["--radius", "9", "--labels", "1,3", "--space", "LPS"],
                                                              "phantom:spheres@32")):
@@ -175,7 +176,7 @@ class Mesh(PodmTestCase):
             self.assertGreaterEqual(record["quality"]["min_dihedral_deg"], 8 * (1 - 1e-9))
             self.assertLessEqual(record["quality"]["max_dihedral_deg"], 165 * (1 + 1e-9))
         self.assertIn("dihedral   cells with an angle below 8 or above 165 deg", process.stderr)
-        # It is in no rate of the paper's.
+        # R7 is not part of the paper's rates.
         rated = sum(seconds for phase, seconds in record["phases_s"].items()
                     if phase not in {"calibrate", "draw", "measure", "perturb", "write"})
         self.assertAlmostEqual(record["cells_per_second"] * rated / record["cells"], 1)

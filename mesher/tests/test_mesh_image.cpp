@@ -49,14 +49,14 @@ TEST_P(MeshImage, MeetsEveryGuarantee) {
 
 TEST_P(MeshImage, BoundsEveryLabelByClosedSurfaces) {
   const MeshingResult result = mesh_image(GetParam().make(), radius(2));
-  // Around each label every directed facet edge meets its reverse as often.
+  // Around each label every directed facet edge occurs as often as its reverse.
   std::map<LabelIndex, std::map<std::pair<std::uint32_t, std::uint32_t>, int>> edges;
   for (std::size_t f = 0; f < result.mesh.facets.size(); ++f) {
     const auto& [low, high] = result.mesh.facet_labels[f];
     EXPECT_LT(low, high);
     for (unsigned i = 0; i < 3; ++i) {
       const auto a = result.mesh.facets[f][i], b = result.mesh.facets[f][(i + 1) % 3];
-      const int outwards = a < b ? 1 : -1;  // seen from the second label
+      const int outwards = a < b ? 1 : -1;  // as seen from the second label
       edges[high][{std::min(a, b), std::max(a, b)}] += outwards;
       edges[low][{std::min(a, b), std::max(a, b)}] -= outwards;
     }
@@ -193,7 +193,7 @@ TEST(MeshImageRuns, LimitsAndCancellationLeaveAMeshThatSaysSo) {
   for (std::size_t c = 0; c < cancelled.mesh.cells.size(); ++c) ASSERT_GT(volume_of(cancelled.mesh, c), 0);
 }
 
-// No check falls between two of a worker's.
+// The mesh is so small that the limit is passed between two checks of a worker.
 TEST(MeshImageRuns, ALimitThatASmallMeshPassesIsToldOf) {
   for (const int threads : {1, 3}) {
     MeshingOptions options = radius(9);
@@ -203,7 +203,7 @@ TEST(MeshImageRuns, ALimitThatASmallMeshPassesIsToldOf) {
   }
 }
 
-// An octree of so small leaves is refused, but only where it is asked for.
+// An octree with leaves of this size is refused, but only when the run reaches it.
 TEST(MeshImageRuns, ALimitPassedByTheInitialMeshIsNoFaultOfLeaves) {
   MeshingOptions options = radius(4e-7);
   options.sizes.delta_mm = 1;

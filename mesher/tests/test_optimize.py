@@ -1,4 +1,4 @@
-"""podm mesh --optimize: what it makes better and keeps, what its files promise, and what it refuses."""
+"""podm mesh --optimize: its improvements, the bounds that it keeps, the promises in its files, and its refusals."""
 
 import json
 import os
@@ -80,7 +80,7 @@ class Optimize(PodmTestCase):
                 self.assertEqual(report["mesh"]["promised_dihedral_deg"], [8, 165])
                 self.assertEqual(report["claims"]["dihedral"]["verdict"], "pass")
                 process, report = self.verdicts(name, "--claims", "delaunay")
-                self.assertEqual(report["claims"]["delaunay"]["verdict"], "fail")  # who asks is told
+                self.assertEqual(report["claims"]["delaunay"]["verdict"], "fail")  # an explicit claim is checked
         self.assert_exit(self.mesh("--radius", "6", image="phantom:spheres@32"), 0)
         self.assertEqual(self.verdicts("out.mesh")[1]["mesh"]["unclaimed"], [])
 

@@ -1,4 +1,4 @@
-"""podm info --plan: what it tells is of the run that follows, and of the image."""
+"""podm info --plan: its predictions fit the run that follows and the image."""
 
 import json
 import unittest
@@ -14,7 +14,7 @@ class Plan(PodmTestCase):
         return json.loads(process.stdout)
 
     def dumbbell(self):
-        """Two cubes of label 1 that a rod of one voxel joins, a speck of label 2 and voxels of 2 mm."""
+        """Writes two cubes of label 1 that a rod of one voxel joins, a speck of label 2 and voxels of 2 mm."""
         def label_at(i, j, k):
             if (i, j, k) == (20, 4, 4):
                 return 2

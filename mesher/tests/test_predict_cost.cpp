@@ -1,4 +1,4 @@
-// What is predicted of phantoms, against their meshes.
+// Predictions for phantoms, compared with their meshes.
 #include "prediction/predict_cost.h"
 
 #include <gtest/gtest.h>

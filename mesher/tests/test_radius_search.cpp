@@ -1,4 +1,4 @@
-// Radii for a target number of cells, and how they are corrected.
+// Radii for a target number of cells, and their corrections.
 #include "prediction/radius_search.h"
 
 #include <gtest/gtest.h>
@@ -13,7 +13,7 @@ namespace {
 
 const SizeOptions kAsked{.target_elements = 50000};
 
-// Meshes whose cells follow some power of the radius.
+// The number of cells of these meshes is a power of the radius.
 TEST(RadiusSearch, ComesWithinATwentiethInThreeMeshesWhateverTheModelErrs) {
   const LabelImage image = ball(40, 15);
   for (const double exponent : {-2.0, -2.5, -3.0}) {
@@ -27,7 +27,7 @@ TEST(RadiusSearch, ComesWithinATwentiethInThreeMeshesWhateverTheModelErrs) {
   }
 }
 
-// Sheets that vanish where the radius passes their thickness.
+// Sheets vanish where the radius passes their thickness.
 TEST(RadiusSearch, FindsATargetOnASteepSlope) {
   const LabelImage image = ball(40, 15);
   RadiusSearch search(image, kAsked, 1);
@@ -42,7 +42,7 @@ TEST(RadiusSearch, FindsATargetOnASteepSlope) {
   EXPECT_LE(num_meshes, 4);
 }
 
-// No radius of the other cells mends that, and to look for one would make ever larger meshes.
+// No radius of the other cells can meet such a target, and a search would make ever larger meshes.
 TEST(RadiusSearch, RefusesATargetBelowWhatFixedSizesAskFor) {
   const LabelImage image = ball(40, 15);
   SizeOptions sizes{.target_elements = 1000};
@@ -55,7 +55,7 @@ TEST(RadiusSearch, RefusesATargetBelowWhatFixedSizesAskFor) {
   EXPECT_THROW(RadiusSearch(image, sizes, 1), InputError);
 }
 
-// A mesh that all but missed the object tells nothing of the next.
+// A mesh that nearly missed the object gives no information on the next mesh.
 TEST(RadiusSearch, BelievesNoMeshThatIsFarOff) {
   RadiusSearch search(ball(40, 15), kAsked, 1);
   const double first = search.radius_mm();

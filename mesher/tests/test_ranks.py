@@ -1,5 +1,5 @@
-"""podm-mpi as a user runs it: its meshes on some ranks, what it refuses, and how a run ends whose ranks fail or are
-stopped. Needs $PODM_MPI_PROGRAM and $PODM_MPIRUN, which are empty where MPI is not."""
+"""podm-mpi as a user runs it: its meshes on several ranks, its refusals, and the end of a run whose ranks fail or are
+stopped. Needs $PODM_MPI_PROGRAM and $PODM_MPIRUN, which are empty without MPI."""
 
 import json
 import os
@@ -16,13 +16,13 @@ from small_images import ball_voxels, write_nifti
 MPI_PROGRAM, MPIRUN = os.environ["PODM_MPI_PROGRAM"], os.environ["PODM_MPIRUN"]
 VERIFIER = os.path.join(os.path.dirname(PROGRAM), "podm-verify")
 IMAGE = "phantom:spheres@32"
-ENDLESS = ["phantom:abdomen@64", "--radius", 2.0]  # some ten seconds and a GiB
+ENDLESS = ["phantom:abdomen@64", "--radius", 2.0]  # takes tens of seconds and about a GiB
 ENVIRONMENT = {**os.environ, "OMPI_ALLOW_RUN_AS_ROOT": "1", "OMPI_ALLOW_RUN_AS_ROOT_CONFIRM": "1",
                "OMPI_MCA_mpi_yield_when_idle": "1"}
 
 
 def on_ranks(*ranks):
-    """mpirun's arguments for some arguments of podm-mpi a rank."""
+    """Returns mpirun's arguments for the arguments of podm-mpi on each rank."""
     parts = []
     for arguments in ranks:
         parts += [":"] * bool(parts) + ["-n", 1, MPI_PROGRAM, *arguments]
@@ -196,7 +196,7 @@ class InProcess(OnRanks):
                 self.assertEqual(record["ranks"]["initial_ratio"], 1.5)
                 cells_of_ranks.add(tuple(rank["cells"] for rank in record["ranks"]["by_rank"]))
                 phases = [set(rank["phases_s"]) for rank in record["ranks"]["by_rank"]]
-                self.assertEqual(phases, 5 * phases[:1])  # of ranks, too, that have nothing to refine
+                self.assertEqual(phases, 5 * phases[:1])  # also ranks that have nothing to refine
         self.assertEqual(len(cells_of_ranks), 4)
 
     def test_a_seed_is_drawn_alike_by_processes(self):
@@ -218,7 +218,7 @@ class InProcess(OnRanks):
         self.assertEqual({rank["network_s"] for rank in free}, {0})
         sent = [rank["bytes"] for rank in slow]
         self.assertEqual(sent, [rank["bytes"] for rank in free])
-        for rank in slow:  # a MB/s, a ms a message
+        for rank in slow:  # one MB/s, one ms per message
             self.assertGreater(rank["network_s"], max(sent) / 1e6)
             self.assertGreater(rank["network_s"], rank["messages"] / 3 * 1e-3)
         self.assertEqual(self.last_record()["ranks"]["network"], {"latency_us": 1000, "gigabytes_per_s": 0.001})
@@ -280,7 +280,7 @@ class Logs(OnRanks):
                     log.unlink()
 
     def test_a_run_that_is_stopped_equals_its_replay(self):
-        for most in 6000, 60000:  # in the coarse mesh, and after
+        for most in 6000, 60000:  # in the coarse mesh, and after it
             self.assert_exit(self.mesh(3, "--radius", 1, "--log", self.log, "--max-elements", most), 1)
             self.assert_replays(self.logs(3))
 
@@ -363,7 +363,7 @@ class Refusals(OnRanks):
                 self.assert_all_refuse(on_ranks(mesh, arguments), word)
 
     def test_a_disk_that_is_full_for_one_rank(self):
-        """All tell why and leave, with what was there before."""
+        """All ranks report the reason and end; the earlier files stay."""
         self.assert_exit(self.mesh(2, "--radius", 6), 0)
         mesh = ["mesh", IMAGE, "-o", self.out, "--radius", 2, "--quiet"]
         full = "ulimit -f 16"
@@ -398,14 +398,14 @@ class EarlyEnds(OnRanks):
         self.addCleanup(process.kill)
         for line in process.stderr:
             share = re.match(r"refine +(\d+) %", line)
-            if share and int(share[1]) >= 10:  # beyond the coarse mesh: all ranks refine
+            if share and int(share[1]) >= 10:  # after the coarse mesh: all ranks refine
                 children = pathlib.Path(f"/proc/{process.pid}/task/{process.pid}/children").read_text().split()
                 self.assertEqual(len(children), number)
                 return process, [int(child) for child in children]
         self.fail(f"no refinement: exit {process.wait()}")
 
     def wait_for_end(self, process):
-        """Until it has ended, whether or not anybody has asked how."""
+        """Waits until the process has ended, also if no parent has collected its status."""
         stat = pathlib.Path(f"/proc/{process}/stat")
         for _ in range(100):
             if not stat.exists() or stat.read_text().rpartition(")")[2].split()[0] in "ZX":

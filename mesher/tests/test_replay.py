@@ -30,7 +30,7 @@ class Replay(PodmTestCase):
                           # The initial mesh moves to the nodes of its leaves.
                           ["--algorithm", "pdr-podm", "--threads", 32, "--cores-per-node", 16, "--pin", "compact",
                            "--topology", BLACKLIGHT, "--executor", "virtual"],
-                          # A leaf of this size has a corner of the virtual box, which stays where it is.
+                          # A leaf of this size has a corner of the virtual box, which is never moved.
                           ["--algorithm", "pdr-podm", "--threads", 64, "--cores-per-node", 16, "--pin", "compact",
                            "--topology", BLACKLIGHT, "--executor", "virtual", "--leaf-size", 425],
                           ["--algorithm", "pdr", "--threads", 4, "--pin", "scatter", "--topology", BLACKLIGHT],
@@ -73,7 +73,7 @@ class Replay(PodmTestCase):
         self.mesh()
         sound = self.log.read_bytes()
         operation = 16 + 48 * 1000  # after the magic and the counts of the first batch
-        for offset in range(8, 44, 5):  # its point, vertex, worker and kind
+        for offset in range(8, 44, 5):  # bytes of its point, vertex, worker and kind
             at = operation + offset
             self.log.write_bytes(sound[:at] + bytes([sound[at] ^ 0x21]) + sound[at + 1:])
             process = run_podm("replay", IMAGE, self.log)

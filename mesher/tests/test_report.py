@@ -1,4 +1,4 @@
-"""podm mesh --report: a page about a run, whole or not at all, with what holds and how good cells are."""
+"""podm mesh --report: a complete page about a run, or none, with the verdicts and the quality of cells."""
 
 import json
 import pathlib

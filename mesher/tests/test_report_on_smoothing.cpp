@@ -1,4 +1,4 @@
-// Components of smoothed labels, against those of a fine grid of points.
+// Components of smoothed labels, compared with those of a fine grid of points.
 #include "run/report_on_smoothing.h"
 
 #include <gtest/gtest.h>
@@ -21,7 +21,7 @@ SmoothingReport report_of(const LabelImage& image, double width_mm) {
   return report_on_smoothing(image, width_mm, smooth_interfaces(image, width_mm, 1), 1);
 }
 
-// Labels of so many points a voxel along each axis, centres of voxels among them.
+// Returns the labels at `times` points per voxel along each axis, including the centers of voxels.
 LabelImage refined(const LabelImage& image, double width_mm, int times) {
   const Isosurface isosurface(image, 1, smooth_interfaces(image, width_mm, 1).strengths);
   const auto count = [&](std::size_t axis) { return times * (image.size[axis] - 1) + 1; };
@@ -32,7 +32,7 @@ LabelImage refined(const LabelImage& image, double width_mm, int times) {
                     });
 }
 
-// Those with the centre of a voxel.
+// Returns the number of components that contain the center of a voxel.
 std::uint64_t num_components(const LabelImage& refined, int times, LabelIndex label) {
   const Components components(refined);
   std::set<Components::Id> found;
@@ -43,7 +43,7 @@ std::uint64_t num_components(const LabelImage& refined, int times, LabelIndex la
   return found.size();
 }
 
-// Two cubes that share but an edge, and two that are a voxel apart.
+// Two cubes that share only an edge, and two cubes that are a voxel apart.
 TEST(ReportOnSmoothing, TellsComponentsThatGrowTogether) {
   for (const int gap : {0, 1}) {
     const LabelImage image = make_image({20, 20, 12}, {1, 1, 1}, 1, [&](int i, int j, int k) {

@@ -1,5 +1,5 @@
-"""podm under signals: at any moment a whole mesh or none, older files kept, nothing left behind, and an end within a
-second and what extracting, measuring and writing take.
+"""podm under signals: at any moment there is a complete mesh or none, older files stay, and no file is left behind. The
+end comes within a second plus the time of extracting, measuring and writing.
 
 $PODM_SIGNAL_MOMENTS is the number of moments for each algorithm and signal, spread over a run by a seed.
 """
@@ -30,13 +30,13 @@ MESHES = {"out.vtu", "out_facets.vtu"}
 ALGORITHMS = {"podm": ["--threads", 2],
               "pdr": ["--algorithm", "pdr", "--threads", 2],
               "pdr-podm": ["--algorithm", "pdr-podm", "--nodes", 1, "--cores-per-node", 2]}
-# But those of crashes, all that end a program by default and are not told of.
+# All signals that end a program by default and that podm does not report, except those of crashes.
 ENDING = (signal.SIGQUIT, signal.SIGUSR1, signal.SIGUSR2, signal.SIGXCPU, signal.SIGALRM, signal.SIGVTALRM,
           signal.SIGPROF, signal.SIGPWR, signal.SIGIO, signal.SIGSTKFLT, signal.SIGRTMIN, signal.SIGRTMAX)
 
 
 def mesh_command(image, folder, algorithm):
-    """Every output there is; less than a second."""
+    """Returns a command with all outputs; takes less than a second."""
     leaves = [] if algorithm == "podm" else ["--schedule", folder / "leaves.jsonl"]
     return ["mesh", image, "--radius", 14, "--oversubscribe", *ALGORITHMS[algorithm], *leaves, "-o",
             folder / "out.vtu", "--surface", folder / "s.stl", "--log", folder / "run.log", "--record",
@@ -60,7 +60,7 @@ def is_whole(path):
 
 
 class AnyMoment(PodmTestCase):
-    """Every file of a run has an older one in its place but for the record, which is one line."""
+    """Every file of a run replaces an older file, except the record, which is one line."""
 
     def setUp(self):
         super().setUp()
@@ -68,14 +68,14 @@ class AnyMoment(PodmTestCase):
         self.assert_exit(run_podm("phantom", "abdomen", "--size", 96, "-o", self.image), 0)
 
     def undisturbed(self, algorithm):
-        """The names of the files, and the seconds."""
+        """Returns the names of the files, and the seconds."""
         with tempfile.TemporaryDirectory(dir=self.folder) as folder:
             start = time.monotonic()
             self.assert_exit(run_podm(*mesh_command(self.image, pathlib.Path(folder), algorithm)), 0)
             return set(os.listdir(folder)), time.monotonic() - start
 
     def assert_kept(self, folder, names, end, signals):
-        """What the README promises of a run that was ended so; tells how it ended."""
+        """Checks the promises of the README for a run that was ended in this way. Returns how it ended."""
         older = {name: f"older {name}".encode() for name in names - {"runs.jsonl"}}
         left = {path.name: path.read_bytes() for path in folder.iterdir()}
         self.assertLessEqual(set(left), names, end.stderr)
@@ -103,7 +103,8 @@ class AnyMoment(PodmTestCase):
         return {0: "whole mesh", 1: "mesh so far" if has_mesh else "no cell yet"}.get(end.code, "ended"), writing_s
 
     def disturb(self, algorithm, signals, moments, seed):
-        """Runs that get the signals at moments from start to end, in parts of which each has one."""
+        """Divides the run time into equal parts, and makes a run that gets the signals at a random moment of each part.
+        """
         names, whole_s = self.undisturbed(algorithm)
         rng = random.Random(f"{seed} {algorithm} {signals}")
         ends, worst_s, longest_writing_s = collections.Counter(), 0, 0
@@ -142,7 +143,7 @@ class Refinement(PodmTestCase):
         return [*ENDLESS, "-o", self.folder / "out.vtu", "--log", self.folder / "run.log", *more]
 
     def start(self, *more, **popen_options):
-        """A run that has made cells already, to judge by the first MiB of its log."""
+        """Returns a run that has made cells already: its log has reached 1 MiB."""
         process = start_refining(*self.mesh_command(*more), **popen_options)
         while not any(path.stat().st_size > 2 ** 20 for path in self.folder.glob("run.log.tmp*")):
             self.assertIsNone(process.poll())
@@ -193,7 +194,7 @@ class Refinement(PodmTestCase):
         self.assert_stopped(end_of(process, signal.SIGTERM))
 
     def test_a_node_that_never_has_a_leaf_keeps_nobody_waiting(self):
-        """One leaf holds the whole object, so that all nodes but one wait until that one is through."""
+        """One leaf holds the whole object, so all nodes except one wait until that node has finished."""
         with tempfile.TemporaryDirectory() as elsewhere:
             runs = pathlib.Path(elsewhere) / "runs.jsonl"
             process = self.start("--algorithm", "pdr", "--threads", 16, "--leaf-size", 1000, "--initial-ratio", 64,
@@ -204,7 +205,7 @@ class Refinement(PodmTestCase):
             self.assertLessEqual(end.seconds, LONGEST_S + seconds_of_writing(self.read_record(runs)))
 
     def test_leaves_in_the_making_keep_nobody_waiting(self):
-        """There are as many leaves as there may be: octree and queue take seconds to be made."""
+        """The number of leaves is the largest allowed: making the octree and the queue takes seconds."""
         for moment_s in 0.3, 0.8, 1.3, 1.8:
             with self.subTest(moment_s=moment_s), tempfile.TemporaryDirectory() as elsewhere:
                 image = write_nifti(pathlib.Path(elsewhere) / "full.nii", bytes([1]) * 24 ** 3, (24, 24, 24))
@@ -234,7 +235,7 @@ class Refinement(PodmTestCase):
 
 
 class DihedralPhases(PodmTestCase):
-    """The mesh that is refined already is written, as good as the phase has made it until then."""
+    """The refined mesh is written, with the improvements that the phase has made until then."""
 
     def ended_in(self, phase, *options):
         runs = self.folder / "runs.jsonl"
@@ -283,7 +284,7 @@ class OtherCommands(PodmTestCase):
             end = end_of(process, signal.SIGINT)
             self.assertLessEqual(end.seconds, LONGEST_S)
             self.assertIn(end.code, (0, -signal.SIGINT))
-            # A signal may come when the file is there already, and the process only has to say so.
+            # A signal may come when the file exists already, and the process only has to report this.
             self.assertIn(self.files(), [{image: whole}] + [{image: b"older"}] * (end.code != 0))
 
     def test_a_replay_ends_at_once(self):

@@ -1,4 +1,4 @@
-"""podm mesh --size-image, --size-near and --grade: what they bound, as podm-verify proves, and what they refuse."""
+"""podm mesh --size-image, --size-near and --grade: podm-verify proves the bounds; bad values are refused."""
 
 import hashlib
 import json
@@ -15,7 +15,7 @@ IMAGE = "phantom:spheres@48"
 
 
 def write_sizes(path, size_at, voxels=9, step=30.0, datatype=FLOAT32):
-    """Voxels `step` mm apart around the origin, of size_at(x, y, z) mm."""
+    """Writes voxels `step` mm apart around the origin, with values size_at(x, y, z) in mm."""
     start = -step * (voxels - 1) / 2
     places = [start + step * i for i in range(voxels)]
     values = [float(size_at(x, y, z)) for z in places for y in places for x in places]

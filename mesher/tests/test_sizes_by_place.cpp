@@ -1,4 +1,4 @@
-// Sizes by place: no cell is over its bound, which a search of all that bounds it finds; by every algorithm.
+// Local sizes: with every algorithm no cell exceeds its bound, which an exhaustive search computes.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -18,7 +18,8 @@ namespace {
 using test::ball;
 using test::make_image;
 
-/// A volume of `n` voxels an axis over the box of 1 mm voxels that test images have, and a little more.
+/// Returns a volume of `n` voxels per axis over the box of the test images, which have 1 mm voxels, and a
+/// little more.
 SizeImage sizes_over(int n, int num_voxels, const std::function<double(const Point&)>& radius_at) {
   const double step = (num_voxels + 4.0) / (n - 1);
   SizeImage sizes{.path = "sizes.nii",
@@ -32,7 +33,7 @@ SizeImage sizes_over(int n, int num_voxels, const std::function<double(const Poi
   return sizes;
 }
 
-/// What the documentation of SizeImage says of a point, word for word; 0: no bound.
+/// Computes the bound at a point as the documentation of SizeImage defines it; 0: no bound.
 double bound_by(const SizeImage& sizes, const Point& p) {
   const auto u = map(inverse(sizes.voxel_to_ras), std::array<double, 3>{p.x, p.y, p.z});
   double sum = 0, weights = 0;
@@ -226,7 +227,8 @@ TEST(SizesByPlace, ArePredictedWhereZonesAreNarrowerThanAVoxel) {
   }
 }
 
-// Samples where cells are large take no vertices from where they are small, which would be inserted again.
+// Samples in regions of large cells must not remove vertices from regions of small cells, which would be
+// inserted again.
 TEST(SizesByPlace, KeepWhatTheyAskForWhereTheyJump) {
   const SizeImage jump = sizes_over(41, 24, [](const Point& p) { return p.x < 2 ? 0.5 : 6; });
   MeshingOptions options = with(jump);

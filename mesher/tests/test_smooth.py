@@ -1,4 +1,5 @@
-"""podm mesh --smooth: interfaces where blurred labels tie, proved by podm-verify, told by record, file and summary."""
+"""podm mesh --smooth: interfaces where blurred labels tie. podm-verify proves them; record, file and summary list the
+width."""
 
 import json
 import os

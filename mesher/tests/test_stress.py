@@ -1,4 +1,4 @@
-"""What `make stress` draws, and what it takes for a failure. The runs themselves are podm.stress_runs."""
+"""The draws of `make stress`, and its criteria of failure. The test podm.stress_runs makes the runs themselves."""
 
 import collections
 import json
@@ -45,7 +45,7 @@ class Draws(unittest.TestCase):
         self.assertGreater(counts["threads"], len(self.runs) / 10)
 
     def test_the_runs_of_make_test_are_of_every_kind(self):
-        """Drawn otherwise, they would be others."""
+        """A change of the draws would change these runs."""
         def kinds(runs):
             return {(kind, name) for run in runs for kind, names in stress.kinds_of(run).items() for name in names}
         kept = stress.seeds_in(pathlib.Path(__file__).with_name("stress_seeds.txt"))
@@ -118,7 +118,7 @@ class Judge(unittest.TestCase):
 
 
 class Faults(PodmTestCase):
-    """Programs that break what podm promises are caught: a script stands in its place."""
+    """Detects programs that break the promises of podm: a script replaces the program."""
 
     def setUp(self):
         super().setUp()
@@ -153,7 +153,7 @@ class Faults(PodmTestCase):
             esac""")
 
     def test_no_cell_in_an_object_too_thick_for_that_is_one(self):
-        """The cube holds a ball of 6 mm, of which two diagonals of a voxel are not counted on."""
+        """The cube holds a ball of 6 mm; the check subtracts two diagonals of a voxel."""
         self.assertIn("holds a ball of 4.27 mm", self.fault_of_no_cell(2.5)[0])
         self.assertEqual(self.fault_of_no_cell(2.6), (None, "no cell"))
 

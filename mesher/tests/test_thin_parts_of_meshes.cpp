@@ -1,4 +1,4 @@
-// No component of a label that a mesh loses or cuts is one that no thin part was told of.
+// Every component of a label that a mesh loses or cuts was reported as a thin part.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -22,7 +22,7 @@ using Vector3 = std::array<double, 3>;
 
 double dot(const Vector3& a, const Vector3& b) { return a[0] * b[0] + a[1] * b[1] + a[2] * b[2]; }
 
-// Balls, plates, rods and dumb-bells of 1 to 6 voxels, of some labels, in any direction.
+// Returns balls, plates, rods and dumb-bells of 1 to 6 voxels, of several labels, in any direction.
 LabelImage shapes(unsigned seed) {
   std::mt19937 random(seed);
   const auto draw = [&](double low, double high) {
@@ -66,7 +66,7 @@ class Sets {
   std::vector<std::size_t> parent_;
 };
 
-// Cells of one label that share facets.
+// Returns sets of cells of one label that share facets.
 Sets joined_cells(const TetMesh& mesh) {
   Sets sets(mesh.cells.size());
   std::map<std::array<std::uint32_t, 3>, std::size_t> other_side;
@@ -100,7 +100,7 @@ Vector3 circumcenter(const TetMesh& mesh, std::size_t c) {
   return center;
 }
 
-// The component of the nearest voxel around a point, of eight, that has the label.
+// Returns the component of the nearest of the eight voxels around a point that has the label.
 std::optional<Components::Id> component_at(const LabelImage& image, const Components& components,
                                            const Vector3& point_mm, LabelIndex label) {
   std::optional<Components::Id> nearest;

@@ -1,4 +1,4 @@
-"""The command line itself: help, version, and what it refuses before it reads anything."""
+"""The command line itself: help, version, and refusals before any file is read."""
 
 import re
 import subprocess

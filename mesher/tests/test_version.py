@@ -1,4 +1,4 @@
-"""The version has one source, project() of CMakeLists.txt: all that tells it tells the same."""
+"""The version has one source, project() of CMakeLists.txt: all places that print it agree."""
 
 import pathlib
 import re

@@ -1,4 +1,4 @@
-"""podm view: pictures of meshes in every format that can be shown."""
+"""podm view: pictures of meshes in every format that it reads."""
 
 import pathlib
 import signal
@@ -21,7 +21,7 @@ def setUpModule():
 
 
 def processes_of_session(session):
-    """What runs still, zombies apart."""
+    """Returns the running processes of the session, without zombies."""
     told = subprocess.run(["ps", "-o", "stat=,comm=", "-s", str(session)], capture_output=True, text=True).stdout
     return [line for line in told.splitlines() if not line.startswith("Z")]
 

@@ -1,4 +1,4 @@
-"""A mesh as XDMF in the hands of a solver: DOLFINx reads it in parallel and solves a Poisson equation on it."""
+"""An XDMF mesh in a solver: DOLFINx reads it in parallel and solves a Poisson equation on it."""
 
 import json
 import os
@@ -20,7 +20,7 @@ def can_solve():
 
 
 def read_vtu(path):
-    """The volume of each label, and the box of the points, as VTK computes them."""
+    """Returns the volume of each label, and the box of the points, as VTK computes them."""
     import vtk
     from vtkmodules.util.numpy_support import vtk_to_numpy
     reader = vtk.vtkXMLUnstructuredGridReader()
@@ -60,10 +60,11 @@ class XdmfTest(PodmTestCase):
         self.assertEqual(found["volumes"].keys(), volumes.keys())
         for label, volume in volumes.items():
             self.assertAlmostEqual(found["volumes"][label] / volume, 1, delta=1e-9)
-        # The facets between labels have tags of their own: those to the outside are the whole of it.
+        # The facets between labels have tags of their own: the facets to the outside are the whole outer boundary.
         self.assertAlmostEqual(found["outer_area_by_tags"] / found["outer_area"], 1, delta=1e-9)
 
-        # In a ball of radius R around the object the solution is at most R^2 / 6, and within it no greater.
+        # In a ball of radius R around the object the solution is at most R^2 / 6, and the solution in the object is no
+        # greater.
         self.assertGreater(found["minimum"], -1e-3 * found["maximum"])
         self.assertLess(found["maximum"], (diagonal / 2) ** 2 / 6)
         self.assertGreater(found["maximum"], 0)

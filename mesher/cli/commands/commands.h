@@ -1,5 +1,5 @@
-// The commands of the program, one function each. They return the exit code: 0, or 1 when a guarantee, a
-// limit or a log's claim is unmet; faults are thrown.
+// The commands of the program, one function each. They return the exit code: 0, or 1 if the run misses a
+// guarantee, a limit or a log's claim. They throw on faults.
 #pragma once
 
 #include "cli/options/options.h"

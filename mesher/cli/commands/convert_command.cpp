@@ -1,4 +1,4 @@
-// podm convert: a mesh file of any format that podm-verify reads, written in one that podm writes.
+// podm convert: reads a mesh file of any format that podm-verify reads, and writes it in a format of podm.
 #include <fmt/format.h>
 
 #include <cstdio>
@@ -11,7 +11,7 @@
 namespace podm::cli {
 
 int run(const ConvertCommand& command) {
-  const SignalThread signals;  // leave no part of the mesh behind
+  const SignalThread signals;  // leaves no partial mesh behind
   check_mesh_path(command.output_path, command.mesh_file);
   ForeignMesh foreign = read_foreign_mesh(command.input_path);
   TetMesh& mesh = foreign.mesh;

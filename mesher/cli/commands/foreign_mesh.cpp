@@ -1,5 +1,5 @@
-// The verifier's readers state a file as it is; here it becomes a mesh such as the mesher makes: cells
-// positively oriented, labels numbered, and all facets between labels, found anew from the cells.
+// Converts the mesh of a file, as the verifier's readers return it, to a mesh like those of the mesher: cells
+// are positively oriented, labels are numbered, and all facets between labels are derived from the cells.
 #include "cli/commands/foreign_mesh.h"
 
 #include <fmt/format.h>
@@ -29,7 +29,8 @@ verify::Mesh read_file(const std::string& path) try {
   throw InputError(error.what());
 }
 
-// The sign of the determinant in doubles where its error, Shewchuk's bound for orient3d, cannot change it.
+// Returns the sign of the determinant in doubles if its error cannot change the sign (Shewchuk's bound for
+// orient3d).
 int side_of_cell(const std::array<double, 3>& a, const std::array<double, 3>& b,
                  const std::array<double, 3>& c, const std::array<double, 3>& d) {
   constexpr double kErrorBound = 7.8e-16;
@@ -80,7 +81,7 @@ class MeshBuilder {
           refuse(fmt::format("vertex {} has a coordinate that is not finite", i));
   }
 
-  // The outside gets the value that facets have there, else the smallest that no cell has.
+  // Returns the outside's value in the facets, otherwise the smallest value that no cell has.
   std::uint32_t value_of_outside(const std::set<std::int64_t>& values) const {
     for (const auto& pair : file_.facet_labels)
       for (const std::int64_t value : pair)
@@ -149,7 +150,7 @@ class MeshBuilder {
 
   using Facets = std::vector<std::array<std::uint32_t, 3>>;
 
-  // How many of `facets` are not in `all`, whatever their orientation.
+  // Returns the number of `facets` that are not in `all`, independent of their orientation.
   static std::size_t count_missing(Facets facets, Facets all) {
     for (Facets* list : {&facets, &all}) {
       for (auto& facet : *list) std::sort(facet.begin(), facet.end());

@@ -9,14 +9,14 @@
 namespace podm::cli {
 
 struct ForeignMesh {
-  std::string format;  ///< for people: "Gmsh 4.1, binary"
-  TetMesh mesh;        ///< with the facets that its cells' labels ask for
-  /// A sentence for each thing that the file has otherwise.
+  std::string format;  ///< for messages: "Gmsh 4.1, binary"
+  TetMesh mesh;        ///< with the facets that follow from its cells' labels
+  /// A sentence for each property in which the file differs.
   std::vector<std::string> warnings;
 };
 
-/// Throws InputError naming the file, the place and the fault: also for what is no mesh of tetrahedra that
-/// meet in faces, and for labels that are not in [0, 2^32).
+/// Throws InputError that names the file, the place and the fault. Tetrahedra that do not meet in faces, and
+/// labels that are not in [0, 2^32), are faults, too.
 ForeignMesh read_foreign_mesh(const std::string& path);
 
 }  // namespace podm::cli

@@ -1,4 +1,4 @@
-// podm info: what an image is, and how much of it each label fills.
+// podm info: prints the properties of an image and the volume of each label.
 #include <fmt/format.h>
 
 #include <nlohmann/json.hpp>
@@ -15,7 +15,7 @@
 namespace podm::cli {
 namespace {
 
-// All of such an image is meshed: rarely what its maker wanted.
+// The mesher would mesh the whole of such an image, which its maker rarely wants.
 std::string note_on_background(const LabelImage& image, const std::vector<std::uint64_t>& counts) {
   if (counts[kBackground] > 0) return "";
   return fmt::format(

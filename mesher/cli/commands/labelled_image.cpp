@@ -34,7 +34,7 @@ std::vector<std::uint32_t> values_called(const std::string& name_or_value, std::
 }  // namespace
 
 LabelImage read_labelled_image(const ImageArguments& arguments, int threads, std::uint64_t most_bytes) {
-  std::map<std::uint32_t, std::string> names;  // before the image: a fault shows at once
+  std::map<std::uint32_t, std::string> names;  // read before the image, so that a fault shows at once
   if (!arguments.label_names_path.empty()) names = read_label_names(arguments.label_names_path);
   LabelImage image = read_image(arguments.path, arguments.selection, threads, most_bytes);
   name_labels(image, names);

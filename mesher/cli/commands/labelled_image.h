@@ -1,4 +1,4 @@
-// An image as the command line asks for it: selected labels, named from a table.
+// An image as the command line specifies it: selected labels, named from a table.
 #pragma once
 
 #include <cstdint>
@@ -14,21 +14,21 @@
 
 namespace podm::cli {
 
-/// Reads the image and gives names from the table to labels that have none yet. `threads` and
-/// `most_bytes` are those of read_image().
+/// Reads the image and gives names from the table to labels without a name. `threads` and `most_bytes` are
+/// those of read_image().
 LabelImage read_labelled_image(const ImageArguments& arguments, int threads = 0,
                                std::uint64_t most_bytes = std::numeric_limits<std::uint64_t>::max());
 
-/// Gives names to labels that have none yet.
+/// Gives names to labels without a name.
 void name_labels(LabelImage& image, const std::map<std::uint32_t, std::string>& names);
 
-/// Lengths by label value. A name stands for every label that bears it. Throws InputError, naming
-/// `image_path`, where a label is absent.
+/// Returns lengths by label value. A name stands for every label with this name. Throws InputError that names
+/// `image_path` if a label is absent.
 std::map<std::uint32_t, double> lengths_by_value(
     const std::vector<std::pair<std::string, double>>& lengths_mm, const LabelImage& image,
     const std::string& image_path);
 
-/// Labels by value, the background among them. Throws as lengths_by_value() does.
+/// Returns the bounds with labels by value, including the background. Throws as lengths_by_value() does.
 std::vector<SizeNear> near_by_value(const std::vector<NearLabels>& near, const LabelImage& image,
                                     const std::string& image_path);
 
@@ -36,7 +36,7 @@ std::vector<SizeNear> near_by_value(const std::vector<NearLabels>& near, const L
 /// orthogonal.
 double voxel_volume_mm3(const LabelImage& image);
 
-/// The name of a label, or "label 7" by its value where it has none.
+/// Returns the name of a label, or "label 7" with its value if it has no name.
 std::string display_name(const Label& label);
 
 }  // namespace podm::cli

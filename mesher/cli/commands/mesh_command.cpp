@@ -1,4 +1,4 @@
-// podm mesh: outputs checked, image read, cost estimated, meshed, written, told.
+// podm mesh: checks the outputs, reads the image, estimates the cost, makes and writes the mesh, and reports.
 #include <fmt/format.h>
 
 #include <chrono>
@@ -25,7 +25,7 @@
 namespace podm::cli {
 namespace {
 
-// Seconds that `action` takes.
+// Returns the duration of `action` in seconds.
 template <class Action>
 double timed(const Action& action) {
   const auto start = std::chrono::steady_clock::now();
@@ -33,7 +33,7 @@ double timed(const Action& action) {
   return std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
 }
 
-// Hours of meshing must not end at a misspelt folder.
+// Checks the outputs before the run, because a misspelt folder must not waste hours of meshing.
 void check_outputs(const MeshCommand& command, const SignalThread& signals) {
   check_mesh_path(command.mesh_path, command.mesh_file);
   if (!command.surface_path.empty()) check_surface_path(command.surface_path);
@@ -48,7 +48,7 @@ void check_outputs(const MeshCommand& command, const SignalThread& signals) {
   if (!command.page_path.empty()) check_page(command, signals);
 }
 
-// Once refinement has begun there is a mesh to keep.
+// From the start of refinement on there is a mesh to keep, so the first signal only requests a stop.
 MeshingResult mesh_with_display(const LabelImage& image, const MeshingOptions& options, bool quiet,
                                 SignalThread& signals) {
   using Style = ProgressDisplay::Style;
@@ -71,7 +71,7 @@ void finish_log(OperationLogWriter& log, const MeshRun& run) {
 }
 
 void write_outputs(const MeshCommand& command, const TetMesh& mesh, std::vector<std::string>& warnings) {
-  if (mesh.cells.empty()) return;  // MeshRun::unmet() tells
+  if (mesh.cells.empty()) return;  // MeshRun::unmet() reports it
   for (const std::string& loss : write_mesh(mesh, command.mesh_path, command.mesh_file))
     warnings.push_back(command.mesh_path + ": " + loss);
   if (!command.surface_path.empty()) write_surfaces(mesh, command.surface_path);
@@ -106,7 +106,7 @@ int run(const MeshCommand& command) {
   run.write_s = timed([&] {
     const int threads = loop_threads(command.meshing.team);
     canonicalize(result.mesh, threads);
-    // Beside the writing where there are threads for both.
+    // Computes the hash during writing if there are threads for both.
     std::future<std::string> hash = std::async(threads == 1 ? std::launch::deferred : std::launch::async,
                                                [&] { return mesh_sha256(result.mesh); });
     write_outputs(command, result.mesh, run.report.warnings);

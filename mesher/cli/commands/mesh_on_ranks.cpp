@@ -61,7 +61,7 @@ class Run {
  private:
   bool is_in_process() const { return command_.ranks_in_process > 0; }
 
-  // All that may be refused before there is work to lose.
+  // Refuses everything that can be refused before the run has work to lose.
   void check() {
     TeamOptions& team = command_.meshing.team;
     if (team.threads == 0 && team.nodes == 0 && team.cores_per_node == 0)
@@ -80,7 +80,7 @@ class Run {
                      ranks_);
   }
 
-  // Each process has the image once, and its ranks share what is left.
+  // Each process holds the image once, and its ranks share the rest of the memory.
   MeshRun prepare() {
     const std::uint64_t ranks_here = is_in_process() ? static_cast<std::uint64_t>(ranks_.size()) : 1;
     std::uint64_t limit_bytes = memory_limit_bytes(command_);
@@ -114,7 +114,7 @@ class Run {
     return ranks_.size() == 1 ? command_.log_path : fmt::format("{}.{}", command_.log_path, ranks_.rank());
   }
 
-  // No rank's log gets its name before all are on the disks.
+  // No rank's log gets its name before all logs are on the disks.
   void write_log(const MeshRun& run, std::uint64_t mesh_hash) {
     const OperationLogHead head{.box = run.report.virtual_box,
                                 .image_sha256 = label_image_sha256(run.image),
@@ -128,14 +128,14 @@ class Run {
     if (ranks_.rank() == 0) remove_logs_of_more_ranks();
   }
 
-  // An earlier run's, which would be taken for this one's.
+  // Removes the logs of an earlier run on more ranks, which would look like logs of this run.
   void remove_logs_of_more_ranks() const {
     std::error_code error;
     for (int rank = ranks_.size() == 1 ? 0 : ranks_.size();; ++rank)
       if (!std::filesystem::remove(fmt::format("{}.{}", command_.log_path, rank), error)) return;
   }
 
-  // A process has one bar, and heeds signals once: by rank 0, where it has several.
+  // A process has one progress bar and one signal thread. Rank 0 serves both in a process with several ranks.
   MeshingOnRanks mesh(const MeshRun& run) {
     using Style = ProgressDisplay::Style;
     const bool is_silent = command_.quiet || ranks_.rank() != 0;
@@ -155,7 +155,7 @@ class Run {
   SharedByRanks& shared_;
   const RanksOfMachine machines_;
   std::shared_ptr<const LabelImage> image_;
-  std::optional<AppendedFile> records_;  // rank 0's
+  std::optional<AppendedFile> records_;  // only on rank 0
   std::optional<OperationLogWriter> log_;
 };
 
@@ -174,7 +174,7 @@ int mesh_in_process(const MeshCommand& command, SignalThread& signals) {
     try {
       const int own_code = mesh_on_ranks(command, ranks, signals, shared);
       if (ranks.rank() == 0) code = own_code;
-    } catch (const RefusedByAll& error) {  // all end, and none has failed
+    } catch (const RefusedByAll& error) {  // all ranks end in the regular way
       if (ranks.rank() == 0) refusal = error;
     }
   };

@@ -9,18 +9,18 @@
 
 namespace podm::cli {
 
-/// What the ranks of a process have in common.
+/// The objects that the ranks of a process share.
 struct SharedByRanks {
   MadeOnce<LabelImage> image;
   SharedIsosurface isosurface;
 };
 
-/// One rank's part. Collective. Returns the exit code, the same on all ranks: 0, or 1 when a guarantee or a
-/// limit is unmet. Throws as mesh_image_on_ranks() does; rank 0 alone prints.
+/// Runs one rank's part. Collective. Returns the exit code, the same on all ranks: 0, or 1 if the run misses
+/// a guarantee or a limit. Throws as mesh_image_on_ranks() does. Only rank 0 prints.
 int mesh_on_ranks(MeshCommand command, Communication& ranks, SignalThread& signals, SharedByRanks& shared);
 
-/// All of as many ranks as the command asks for in this process. Returns and throws as they do; what one rank
-/// alone throws, as run_ranks() does.
+/// Runs all ranks in this process, as many as the command asks for. Returns and throws as mesh_on_ranks()
+/// does; throws as run_ranks() does if only one rank throws.
 int mesh_in_process(const MeshCommand& command, SignalThread& signals);
 
 }  // namespace podm::cli

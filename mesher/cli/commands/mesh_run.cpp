@@ -30,7 +30,7 @@ double MeshRun::cells_per_second() const {
 
 double MeshRun::refine_cells_per_second() const {
   const double refine_s = report.phases_s.at("refine");
-  return refine_s > 0 ? static_cast<double>(mesh.cells) / refine_s : 0;  // 0: it ended before
+  return refine_s > 0 ? static_cast<double>(mesh.cells) / refine_s : 0;  // 0: the run ended before refinement
 }
 
 void MeshRun::take(MeshingReport&& finished, const TetMesh& made) {

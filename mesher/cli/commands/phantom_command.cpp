@@ -1,4 +1,4 @@
-// podm phantom: an analytic phantom as a label image.
+// podm phantom: writes an analytic phantom as a label image.
 #include <fmt/format.h>
 
 #include <cstdio>
@@ -10,7 +10,7 @@
 namespace podm::cli {
 
 int run(const PhantomCommand& command) {
-  const SignalThread signals;  // leave no part of the image behind
+  const SignalThread signals;  // leaves no partial image behind
   const LabelImage image = make_phantom(command.name, command.size);
   write_nifti(image, command.output_path);
   fmt::print(stderr, "{}: {} x {} x {} voxels of {:g} x {:g} x {:g} mm, {} labels\n", command.output_path,

@@ -1,4 +1,4 @@
-// podm replay: a run's operations carried out in their order on one thread, and the mesh compared.
+// podm replay: replays a run's operations in their order on one thread, and compares the mesh.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -33,7 +33,7 @@ TetMesh replay_log(const std::string& name, const LabelImage& image, const Opera
   throw InputError(name + ": " + error.what());
 }
 
-// A hash of the mesh as the run tells it, and as the replay makes it.
+// The mesh hashes of the run and of the replay.
 struct Hashes {
   const char* kind;
   std::string of_log, of_replay;

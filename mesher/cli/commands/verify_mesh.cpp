@@ -31,7 +31,7 @@ std::string text_of(const Ranges& ranges) {
   return fmt::format("{}", fmt::join(parts, ","));
 }
 
-// The image and what was meshed of it.
+// Returns the options for the image and the selection of its labels.
 std::vector<std::string> image_options(const MeshRun& run, const std::function<std::string()>& write_image) {
   const ImageArguments& image = run.command.image;
   const LabelSelection& selection = image.selection;
@@ -47,12 +47,13 @@ std::vector<std::string> image_options(const MeshRun& run, const std::function<s
   return options;
 }
 
-// The verifier calls the background 0, and a foreground label 0 by the background's value.
+// Returns the verifier's value of a label. The verifier uses 0 for the background, and the background's value
+// for a foreground label 0.
 std::uint32_t called_by_verifier(std::uint32_t label, std::uint32_t background) {
   return label == 0 ? background : label == background ? 0 : label;
 }
 
-// Returns the bounds on circumradii, nothing where there are none.
+// Returns the bounds on circumradii; empty if there are none.
 std::vector<std::string> size_options(const MeshRun& run) {
   std::vector<std::string> options;
   const auto add = [&](const char* name, const std::string& value) {
@@ -107,7 +108,7 @@ std::vector<std::string> verifier_options(const MeshRun& run,
 
 namespace {
 
-// A phantom is written to `scratch` with its labels selected.
+// Writes a phantom to `scratch`, with its labels selected.
 std::vector<std::string> verifier_command(const MeshRun& run, std::optional<TemporaryFolder>& scratch) {
   std::vector<std::string> command{verifier_path(), run.command.mesh_path, "--json", "-"};
   if (run.command.quiet) command.push_back("--quiet");

@@ -1,4 +1,5 @@
-// podm mesh --verify: the written mesh handed to podm-verify, a program that shares no code with the mesher.
+// podm mesh --verify: verification of the written mesh by podm-verify, a program that shares no code with the
+// mesher.
 #pragma once
 
 #include <functional>
@@ -11,7 +12,7 @@
 
 namespace podm::cli {
 
-/// Throws InputError where there is no podm-verify that can be run, or none that can judge what is asked for.
+/// Throws InputError if podm-verify cannot be run, or if it cannot verify the requested mesh.
 void check_verifier(const MeshCommand& command);
 
 /// The claims of podm-verify that the mesh of a run promises, and the options with their bounds: all that
@@ -28,11 +29,12 @@ Judging judging_of(const MeshRun& run);
 std::vector<std::string> verifier_options(const MeshRun& run,
                                           const std::function<std::string()>& write_image);
 
-/// Runs the podm-verify beside this program on the mesh that `run` wrote: all claims but fidelity, which is
-/// promised only for cells about as small as voxels. The image goes with it as it is in its file, with the
-/// options that selected its labels; a phantom as a file beside the mesh, written for the purpose. The report
-/// for people goes to standard error unless the run is quiet. Returns that of podm-verify --json, null where
-/// a signal has ended it or came before; throws InputError where the verifier is not there or tells nothing.
+/// Runs the podm-verify beside this program on the mesh that `run` wrote. It checks all claims; fidelity only
+/// on request, because fidelity is promised only for cells about as small as voxels. The verifier gets the
+/// image file with the options that selected its labels. A phantom is first written to a file beside the
+/// mesh. The readable report goes to standard error unless the run is quiet. Returns the report of
+/// podm-verify --json, or null if a signal ended the verifier or came before it. Throws InputError if the
+/// verifier is missing or reports nothing.
 nlohmann::ordered_json verify_mesh(const MeshRun& run, const SignalThread& signals);
 
 }  // namespace podm::cli

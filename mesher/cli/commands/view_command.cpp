@@ -1,4 +1,4 @@
-// podm view: a script draws, on a display of its own that nobody sees.
+// podm view: runs a script that draws off screen.
 #include <nlohmann/json.hpp>
 
 #include "cli/commands/commands.h"
@@ -18,7 +18,7 @@ bool is_of_vtk(const std::string& path) {
   return path.ends_with(".vtu") || path.ends_with(".pvtu") || path.ends_with(".vtk");
 }
 
-// What the script reads: the mesh itself, or a copy of it.
+// Returns a file that the script can read: the mesh itself, or a copy.
 std::string readable_mesh(const std::string& path, const TemporaryFolder& scratch) {
   if (is_of_vtk(path)) return path;
   ForeignMesh foreign = read_foreign_mesh(path);
@@ -50,7 +50,7 @@ nlohmann::ordered_json request(const ViewCommand& command, const std::string& me
 }  // namespace
 
 int run(const ViewCommand& command) {
-  const SignalThread signals;  // leave no process and no part of a picture behind
+  const SignalThread signals;  // leaves no process and no partial picture behind
   AtomicFile picture(command.output_path);
   const TemporaryFolder scratch(command.output_path);
   const std::string mesh = readable_mesh(command.mesh_path, scratch);

@@ -1,4 +1,4 @@
-// Any command line either parses or is refused with an InputError that says something.
+// Property: any command line either parses or is refused with an InputError that has a text.
 #include <cstddef>
 #include <cstdint>
 #include <cstdlib>
@@ -14,10 +14,10 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
   for (std::size_t i = 0; i < size; ++i) {
     if (data[i] == '\n')
       arguments.emplace_back();
-    else if (data[i] != 0)  // never part of an argument
+    else if (data[i] != 0)  // an argument never contains 0
       arguments.back() += static_cast<char>(data[i]);
   }
-  arguments.pop_back();  // what no newline ended
+  arguments.pop_back();  // a last argument without a newline
   try {
     podm::cli::parse_command_line(arguments);
   } catch (const podm::InputError& error) {

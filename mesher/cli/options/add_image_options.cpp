@@ -1,4 +1,5 @@
-// The image that commands read and what is kept of its labels; the options of all commands but mesh.
+// The options of the image that commands read and of its label selection; the options of all commands except
+// mesh.
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 

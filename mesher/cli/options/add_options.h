@@ -1,5 +1,5 @@
-// How options are declared: one line each, text in, a checked value stored. CLI11 itself is seen by
-// options.cpp alone: each source that includes it compiles for seconds.
+// Declaration of options: one line per option, which takes text and stores a checked value. Only options.cpp
+// includes CLI11, because each source that includes it takes seconds to compile.
 #pragma once
 
 #include <string>
@@ -14,18 +14,18 @@ class Option;
 
 namespace podm::cli {
 
-/// A command of the program. Its options come in groups: those that follow begin_group.
+/// Adds a command to the program. Options belong to the group of the last begin_group().
 CLI::App& add_command(CLI::App& program, const std::string& name, const std::string& description);
 void begin_group(CLI::App& app, const std::string& title);
 void end_help(CLI::App& app, const std::string& text);
 
-/// An option or argument taking one value, given once or, add_many, any number of times. Help ends with the
-/// target's default, if it has any.
+/// Adds an option or argument with one value, given once or, with add_many, any number of times. The help
+/// text ends with the target's default, if there is one.
 CLI::Option* add_one(CLI::App& app, const std::string& names, const std::string& type,
                      const std::string& description, const Target& target);
 CLI::Option* add_many(CLI::App& app, const std::string& names, const std::string& type,
                       const std::string& description, const Setter& set);
-/// An option that takes one of a choice's names.
+/// Adds an option that takes one of a choice's names.
 template <Named Choice>
 CLI::Option* add_choice(CLI::App& app, const std::string& names, const std::string& description,
                         Choice& choice) {
@@ -39,19 +39,20 @@ const char* title_of(OptionGroup group);
 /// An option that is known and refused, with this message.
 void add_refusal(CLI::App& app, const std::string& names, const std::string& message);
 void exclude(CLI::Option* option, CLI::Option* other);
-/// `option` may be given only with `other`.
+/// Allows `option` only together with `other`.
 void need(CLI::Option* option, CLI::Option* other);
 
-/// The same for all options of a group.
+/// Allows all options of a group only together with `other`.
 void need_in_group(CLI::App& app, const std::string& title, CLI::Option* other);
 
 void add_image_argument(CLI::App& app, ImageArguments& image);
 /// IMAGE and the labels that are kept.
 void add_image_options(CLI::App& app, ImageArguments& image);
+/// Adds only the options that select labels.
 void add_label_options(CLI::App& app, ImageArguments& image);
-/// How a mesh file is written, beside what its extension says.
+/// Adds the options for the format of a mesh file that its extension leaves open.
 void add_mesh_file_options(CLI::App& app, MeshFileOptions& options);
-/// Of `podm mesh`, what a plan depends on; all of these need `plan`.
+/// Adds the options of `podm mesh` that influence a plan; all of them need `plan`.
 void add_planned_options(CLI::App& app, MeshCommand& command, CLI::Option* plan);
 void add_mesh_command(CLI::App& program, MeshCommand& command, Program which);
 void add_replay_command(CLI::App& program, ReplayCommand& command);

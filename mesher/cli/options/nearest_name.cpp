@@ -6,7 +6,7 @@
 namespace podm::cli {
 namespace {
 
-// Levenshtein's distance, one row of the table at a time.
+// Returns Levenshtein's distance; keeps one row of the table at a time.
 std::size_t edit_distance(const std::string& a, const std::string& b) {
   std::vector<std::size_t> row(b.size() + 1);
   std::iota(row.begin(), row.end(), std::size_t{0});
@@ -25,9 +25,10 @@ std::size_t edit_distance(const std::string& a, const std::string& b) {
 }  // namespace
 
 std::string did_you_mean(const std::string& word, const std::vector<std::string>& candidates) {
-  constexpr std::size_t kLongestWord = 64;  // a longer one is no misspelling, and the table is quadratic
+  // A longer word is not a misspelling, and the table is quadratic.
+  constexpr std::size_t kLongestWord = 64;
   if (word.size() > kLongestWord) return "";
-  std::size_t best = word.size() / 2 + 1;  // farther than half the word is a different word
+  std::size_t best = word.size() / 2 + 1;  // a distance of more than half the word means a different word
   std::string nearest;
   for (const std::string& candidate : candidates) {
     const std::size_t distance = edit_distance(word, candidate);

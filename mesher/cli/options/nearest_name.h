@@ -6,7 +6,7 @@
 
 namespace podm::cli {
 
-/// ", did you mean 'NAME'?" for the candidate at the smallest edit distance, empty when none is near.
+/// Returns ", did you mean 'NAME'?" for the candidate with the smallest edit distance; empty if none is near.
 std::string did_you_mean(const std::string& word, const std::vector<std::string>& candidates);
 
 }  // namespace podm::cli

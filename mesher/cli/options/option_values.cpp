@@ -13,7 +13,8 @@
 namespace podm::cli {
 namespace {
 
-// The whole of `text` as a T, or false. Unlike strtod it knows no locale, no blanks and no leading '+'.
+// Parses the whole of `text` as a T; returns false on failure. Unlike strtod it ignores the locale, and it
+// refuses blanks and a leading '+'.
 template <class T>
 bool read_all(const std::string& text, T& value) {
   const char* end = text.data() + text.size();

@@ -20,7 +20,7 @@ namespace podm::cli {
 /// A finite number above zero; `quantity` says what it is, e.g. "length in mm".
 double parse_positive(const std::string& text, const std::string& option, const std::string& quantity);
 
-/// An integer in [low, high], decimal digits only.
+/// Parses an integer in [low, high]; decimal digits only.
 std::uint64_t parse_integer(const std::string& text, const std::string& option, std::uint64_t low,
                             std::uint64_t high);
 
@@ -122,7 +122,7 @@ std::string shown(const Other&) {
   return "";
 }
 
-/// Stores the text given to the option of this name, or refuses it with an InputError.
+/// Stores the text given to the option of this name, or throws InputError.
 using Setter = std::function<void(const std::string& text, const std::string& name)>;
 
 /// Stores the value of an option that is not declared beside its member, and its default as help shows it.

@@ -18,7 +18,7 @@ namespace {
 
 constexpr int kHelpColumn = 30;
 
-// What stands beside an option's name in the help: its type alone. The description tells the rest.
+// Prints only the type beside an option's name. The description contains the rest.
 class HelpFormatter : public CLI::Formatter {
  public:
   std::string make_option_opts(const CLI::Option* option) const override {
@@ -56,7 +56,7 @@ CLI::Option* add_one(CLI::App& app, const std::string& names, const std::string&
 CLI::Option* add_many(CLI::App& app, const std::string& names, const std::string& type,
                       const std::string& description, const Setter& set) {
   CLI::Option* option = add_value(app, names, type, description, set);
-  return option->get_positional() ? option->expected(-1) : option;  // an option takes one each time
+  return option->get_positional() ? option->expected(-1) : option;  // an option takes one value each time
 }
 
 CLI::Option* add_flag(CLI::App& app, const std::string& names, bool& target, const std::string& description) {
@@ -98,7 +98,7 @@ std::vector<std::string> names_of_commands(CLI::App& program) {
   throw InputError(fmt::format("{}\nSee '{} --help'.", fault, program));
 }
 
-// CLI11 leaves aside what it does not know, so that the message can name the nearest known word.
+// Refuses unknown words. CLI11 leaves them aside, so that the message can name the nearest known word.
 void refuse_unknown(CLI::App& program) {
   const auto commands = names_of_commands(program);
   const auto chosen = program.get_subcommands();
@@ -146,14 +146,14 @@ Command parse_command_line(std::vector<std::string> arguments, Program which) {
     add_options_command(program);
   }
   try {
-    std::reverse(arguments.begin(), arguments.end());  // CLI11 takes them from the back
+    std::reverse(arguments.begin(), arguments.end());  // CLI11 takes arguments from the back
     program.parse(std::move(arguments));
   } catch (const CLI::CallForHelp&) {
     return ShowText{program.help()};
   } catch (const CLI::CallForVersion& version) {
     return ShowText{version.what()};
   } catch (const CLI::Error& error) {
-    refuse_unknown(program);  // a misspelt option also looks like one that is missing
+    refuse_unknown(program);  // a misspelt option also looks like a missing option
     fail_usage(error.what(), name + " " + program.get_subcommands().front()->get_name());
   }
   refuse_unknown(program);

@@ -20,10 +20,10 @@
 
 namespace podm::cli {
 
-/// An image and what is kept of it.
+/// An image and the selection of its labels.
 struct ImageArguments {
-  std::string path;       ///< or "phantom:NAME[@SIZE]"; of an array what messages call it
-  bool is_array = false;  ///< in memory: see image_of_array()
+  std::string path;       ///< or "phantom:NAME[@SIZE]"; for an array, its name in messages
+  bool is_array = false;  ///< the image is in memory: see image_of_array()
   LabelSelection selection;
   std::string label_names_path;  ///< empty: none
 
@@ -217,7 +217,7 @@ struct ConvertCommand {
 struct InfoCommand {
   ImageArguments image;
   bool json = false;
-  bool plan = false;  ///< also tell of the run below, which has no image of its own
+  bool plan = false;  ///< also print the plan of the run below, which has no image of its own
   MeshCommand planned;
 };
 
@@ -228,24 +228,26 @@ struct PhantomCommand {
   std::string output_path;
 };
 
-/// What colours the cells of a picture.
+/// The quantity that colours the cells of a picture.
 enum class Colour { kLabel, kDihedral, kRatio, kSize };
 
-/// Where a picture cuts its mesh open: cells beyond, on the side that the normal points to, are left out.
+/// The plane at which a picture cuts its mesh open. Cells beyond it, on the side that the normal points to,
+/// are left out.
 struct CutPlane {
-  std::array<double, 3> normal{0, 1, 0};  ///< of any length but 0
-  double place = 0.5;                     ///< along the normal
-  bool is_fraction = true;                ///< of the mesh's extent; else mm from the origin
+  std::array<double, 3> normal{0, 1, 0};  ///< any length except 0
+  double place = 0.5;                     ///< position along the normal
+  bool is_fraction = true;                ///< true: fraction of the mesh's extent; false: mm from the origin
 };
 
 /// podm view
 struct ViewCommand {
   std::string mesh_path, output_path;
-  std::optional<CutPlane> cut = CutPlane();  ///< nothing: the mesh is whole
-  bool flip = false;                         ///< leave out the cells on the other side
-  std::vector<std::string> labels, hide;     ///< names or values; no labels: all
+  std::optional<CutPlane> cut = CutPlane();  ///< unset: the mesh is whole
+  bool flip = false;                         ///< leaves out the cells on the other side
+  std::vector<std::string> labels, hide;     ///< names or values; empty `labels`: all
   Colour colour = Colour::kLabel;
-  std::array<double, 2> camera_deg{20, 15};  ///< to the right of and above the direction that faces the cut
+  /// Degrees to the right of and above the direction that faces the cut.
+  std::array<double, 2> camera_deg{20, 15};
   double zoom = 1;
   std::array<int, 2> size{1600, 1200};  ///< pixels
   std::string background = "#ffffff";
@@ -263,7 +265,7 @@ using Command = std::variant<MeshCommand, ReplayCommand, ConvertCommand, InfoCom
 /// podm-mpi has the command mesh alone.
 enum class Program { kPodm, kPodmMpi };
 
-/// Parses the arguments after the program's name. Throws InputError naming the option and the fault.
+/// Parses the arguments after the program's name. Throws InputError that names the option and the fault.
 Command parse_command_line(std::vector<std::string> arguments, Program program = Program::kPodm);
 
 }  // namespace podm::cli

@@ -20,7 +20,7 @@ namespace {
 
 constexpr std::uint64_t kLeastBytesForMesh = 1 << 20;
 
-// Names the image in what is said of it.
+// Adds the name of the image to errors.
 template <class Ask>
 auto of_image(const std::string& path, const Ask& ask) {
   try {
@@ -39,7 +39,8 @@ void refuse_coarse_sampling(const MeshCommand& command, const LabelImage& image)
                                  spelled("delta"), command.meshing.sizes.delta_mm, longest_mm));
 }
 
-// An element limit below the estimate bounds memory instead, and what has to be numbered.
+// Throws InputError if the estimate exceeds the memory or the cell numbers. An element limit below the
+// estimate bounds both.
 void refuse_what_cannot_fit(const std::string& image_path, const LabelImage& image,
                             const MeshingOptions& options, std::uint64_t limit_bytes, int num_ranks) {
   const Estimate expected = of_image(image_path, [&] { return estimate(image, options); });
@@ -63,7 +64,7 @@ void refuse_what_cannot_fit(const std::string& image_path, const LabelImage& ima
         image_path, stored_cells, num_ranks > 1 ? " per rank" : "", spelled("max-elements")));
 }
 
-// What program, image, transform and sizes by place leave of the limit.
+// Returns the rest of the limit after program, image, transform and local sizes.
 std::uint64_t bytes_for_mesh(std::uint64_t limit_bytes, const std::string& image_path,
                              const LabelImage& image, const MeshingOptions& options) {
   std::uint64_t others = resident_bytes() + transform_bytes(image, limit_bytes, loop_threads(options.team)) +

@@ -1,4 +1,4 @@
-// The options of the library, from those of the command line, the image and the memory of the machine.
+// The options of the library, derived from the command line, the image and the memory of the machine.
 #pragma once
 
 #include <cstdint>
@@ -12,16 +12,16 @@ namespace podm::cli {
 /// What the process may take: as asked for, else that share of what is available now, before the image is
 /// read.
 std::uint64_t memory_limit_bytes(const MeshCommand& command);
-/// What of it the image may take while it is read.
+/// Returns the part of the limit that the image may take during reading.
 std::uint64_t bytes_for_image(std::uint64_t limit_bytes);
 
-/// The options as they were given, with labels by their values, and the size image read within the limit.
-/// Throws InputError, naming the image and the fault, where a label is absent or delta exceeds the image.
+/// Returns the options as given, with labels by value, and the size image read within the limit. Throws
+/// InputError that names the image and the fault if a label is absent or delta exceeds the image.
 MeshingOptions options_as_given(const MeshCommand& command, const LabelImage& image,
                                 std::uint64_t limit_bytes);
-/// The same within the memory that there is. Throws InputError, naming the image and the fault, where a label
-/// is absent, delta exceeds the image, or the run is expected to need more memory than allowed. The mesh is
-/// in as many processes as there are ranks, the image in each.
+/// Returns the options as given, with limits for the available memory. Throws InputError that names the image
+/// and the fault if a label is absent, if delta exceeds the image, or if the run is expected to need more
+/// memory than allowed. The mesh is distributed over `num_ranks` processes; each holds the image.
 MeshingOptions options_for_image(const MeshCommand& command, const LabelImage& image,
                                  std::uint64_t limit_bytes, int num_ranks = 1);
 

@@ -29,7 +29,7 @@ ChildProcess::ChildProcess(const std::vector<std::string>& command, const std::s
   throw InputError(fmt::format("{}: {} cannot be run", asked_by, command[0]));
 }
 
-// Keeps its number from other processes until it is no longer among the leftovers.
+// Keeps the process number reserved until it is no longer among the leftovers.
 ChildProcess::~ChildProcess() {
   ::close(output_);
   exit_code();

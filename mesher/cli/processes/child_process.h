@@ -1,4 +1,4 @@
-// A program that is started to tell something on its standard output, and that never outlives this one.
+// A program whose standard output is read, and that never outlives this program.
 #pragma once
 
 #include <sys/types.h>
@@ -10,21 +10,21 @@
 
 namespace podm::cli {
 
-/// It is among the leftovers until it is waited for.
+/// A child process. It is among the leftovers until it is waited for.
 class ChildProcess {
  public:
-  /// Starts the program named by the command's first word, with the signal mask that this one was started
-  /// with. Throws InputError, which begins with `asked_by`, where it cannot be run.
+  /// Starts the program named by the command's first word, with the signal mask with which this program was
+  /// started. Throws InputError, which begins with `asked_by`, if it cannot be run.
   ChildProcess(const std::vector<std::string>& command, const std::string& asked_by,
                const SignalThread& signals);
-  /// Waits for it.
+  /// Waits for the program.
   ~ChildProcess();
   ChildProcess(const ChildProcess&) = delete;
   ChildProcess& operator=(const ChildProcess&) = delete;
 
-  /// All of its standard output, until it ends, of itself or because a signal asks for that.
+  /// Returns all of its standard output. Kills the program if a signal requests a stop.
   std::string read(const SignalThread& signals);
-  /// Waits for it. Its exit code; 128 and more where a signal has ended it.
+  /// Waits for the program. Returns its exit code; 128 or more if a signal ended it.
   int exit_code();
 
  private:

@@ -10,7 +10,7 @@
 namespace podm::cli {
 namespace {
 
-// The value of a line "Key:   123 kB".
+// Returns the value of a line "Key:   123 kB".
 std::uint64_t read_kib_as_bytes(const std::string& path, const std::string& key) {
   std::ifstream file(path);
   std::string line;
@@ -27,8 +27,7 @@ std::uint64_t available_memory_bytes() {
 
 std::uint64_t resident_bytes() { return read_kib_as_bytes("/proc/self/status", "VmRSS"); }
 
-// getrusage does not serve: its maximum survives exec, so that a large parent would be charged to this
-// program.
+// Does not use getrusage: its maximum survives exec and would include the memory of a large parent.
 std::uint64_t peak_resident_bytes() { return read_kib_as_bytes("/proc/self/status", "VmHWM"); }
 
 }  // namespace podm::cli

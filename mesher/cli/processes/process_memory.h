@@ -5,11 +5,12 @@
 
 namespace podm::cli {
 
-/// What can be had without swapping: the machine's, or the control group's where that is less.
+/// Returns the memory available without swapping: that of the machine, or that of the control group if it is
+/// less.
 std::uint64_t available_memory_bytes();
 
 std::uint64_t resident_bytes();
-/// The largest value resident_bytes() has had.
+/// Returns the largest value that resident_bytes() has had.
 std::uint64_t peak_resident_bytes();
 
 }  // namespace podm::cli

@@ -12,7 +12,7 @@
 namespace podm::cli {
 namespace {
 
-constexpr const char* kPython = "/usr/bin/python3";  // Debian's modules belong to it
+constexpr const char* kPython = "/usr/bin/python3";  // the interpreter that finds Debian's modules
 
 std::vector<std::string> script_command(const std::string& script, const std::string& asked_by) {
   const auto folder = std::filesystem::read_symlink("/proc/self/exe").parent_path().parent_path();

@@ -13,7 +13,7 @@
 namespace podm::cli {
 namespace {
 
-// The same for all containers of a machine, whatever they call it.
+// Returns an id that is the same in all containers of a machine, independent of their host names.
 std::string boot_id() {
   std::ifstream file("/proc/sys/kernel/random/boot_id");
   std::string id;

@@ -1,4 +1,4 @@
-// Which ranks share a machine, and what of it each may take.
+// The ranks that share a machine, and the share of the machine that each rank may use.
 #pragma once
 
 #include <string>
@@ -10,17 +10,18 @@ namespace podm::cli {
 
 class RanksOfMachine {
  public:
-  /// Collective. Throws InternalError where the system does not tell.
+  /// Collective. Throws InternalError if the system does not report the machine.
   explicit RanksOfMachine(Communication& ranks);
 
   int num_machines() const { return static_cast<int>(machines_.size()); }
-  /// By rank.
+  /// Returns the host name of a rank.
   const std::string& host(std::size_t rank) const { return places_[rank].host; }
-  /// On the machine of this rank.
+  /// Returns the number of ranks on this rank's machine.
   int num_ranks_here() const { return here().num_ranks; }
-  /// An even share of the processors that its ranks may use, and no more than this one may.
+  /// Returns an even share of the processors that the machine's ranks may use, and at most the number that
+  /// this rank may use.
   int share_of_processors() const;
-  /// One line for each machine that has fewer processors than its ranks have threads. Collective.
+  /// Returns one line per machine that has fewer processors than its ranks have threads. Collective.
   std::vector<std::string> warnings(int threads) const;
 
  private:
@@ -31,7 +32,7 @@ class RanksOfMachine {
   };
   struct Machine {
     int num_ranks = 0;
-    std::vector<int> processors;  // of all its ranks, each once
+    std::vector<int> processors;  // those of all its ranks, each once
   };
   const Machine& here() const { return machines_[places_[own_].machine]; }
 

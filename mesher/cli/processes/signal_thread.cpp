@@ -20,18 +20,19 @@ struct StoppingSignal {
 constexpr std::array<StoppingSignal, 3> kStopping{
     {{SIGINT, "SIGINT"}, {SIGTERM, "SIGTERM"}, {SIGHUP, "SIGHUP"}}};
 
-// Null: the signal ends the program whenever it comes.
+// Returns null for a signal that always ends the program.
 const StoppingSignal* stopping(int number) {
   for (const StoppingSignal& signal : kStopping)
     if (signal.number == number) return &signal;
   return nullptr;
 }
 
-// Those that end no program by default, tell of a crash, or come to nobody.
+// Signals that end no program by default, report a crash, or cannot be received.
 constexpr std::array kLeftAlone{SIGCHLD, SIGCONT, SIGTSTP, SIGTTIN, SIGTTOU, SIGURG,  SIGWINCH, SIGABRT,
                                 SIGBUS,  SIGFPE,  SIGILL,  SIGSEGV, SIGSYS,  SIGTRAP, SIGKILL,  SIGSTOP};
 
-// Signals that would end the program: neither ignored, nor blocked, nor handled by what was loaded before it.
+// Returns true for signals that would end the program: neither ignored, nor blocked, nor handled by code that
+// was loaded before.
 bool is_awaited(int number, const sigset_t& blocked) {
   struct sigaction action;
   return std::find(kLeftAlone.begin(), kLeftAlone.end(), number) == kLeftAlone.end() &&
@@ -46,17 +47,17 @@ bool is_awaited(int number, const sigset_t& blocked) {
   sigaddset(&only, number);
   raise(number);
   pthread_sigmask(SIG_UNBLOCK, &only, nullptr);
-  _exit(128 + number);  // the first process of a container outlives its own signals
+  _exit(128 + number);  // the first process of a container survives its own signals
 }
 
-// Stays clear of stdio, whose lock a thread may hold that waits for the reader of a full pipe, and waits for
-// nobody itself.
+// Does not use stdio, because a thread that waits for the reader of a full pipe may hold its lock. Never
+// waits itself.
 void tell(const StoppingSignal& signal) {
   const std::string text = std::string(isatty(STDERR_FILENO) != 0 ? "\n" : "") + "podm: " + signal.name +
                            ": the run ends early, with what there is; another signal ends it at once\n";
   pollfd errors{STDERR_FILENO, POLLOUT, 0};
   if (poll(&errors, 1, 0) != 1 || (errors.revents & POLLOUT) == 0) return;
-  if (::write(STDERR_FILENO, text.data(), text.size()) < 0) return;  // nobody reads it
+  if (::write(STDERR_FILENO, text.data(), text.size()) < 0) return;  // there is no reader
 }
 
 }  // namespace

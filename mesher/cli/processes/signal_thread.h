@@ -1,5 +1,5 @@
-// A thread that alone receives the signals that would end the program, at any moment: no worker has to look
-// for them, and none ends the program with files half made.
+// A thread that receives all signals that would end the program, at any moment. Workers need not check for
+// signals, and no signal ends the program while it leaves incomplete files.
 #pragma once
 
 #include <signal.h>
@@ -10,23 +10,24 @@
 
 namespace podm::cli {
 
-/// There is at most one, made before any other thread: these inherit that the signals are blocked. A signal
-/// ends the program as it would without, but first removes the leftovers (files/leftovers.h). After
-/// heed_first() the first SIGINT, SIGTERM or SIGHUP only requests a stop, and the next one ends. Signals that
-/// were ignored, blocked or handled stay so, and crashes are left alone.
+/// At most one object exists, made before any other thread: later threads inherit the blocked signals. A
+/// signal ends the program as it would without this thread, but the thread first removes the leftovers
+/// (files/leftovers.h). After heed_first() the first SIGINT, SIGTERM or SIGHUP only requests a stop, and the
+/// next one ends the program. Signals that were ignored, blocked or handled stay so. Crashes are not
+/// affected.
 class SignalThread {
  public:
   SignalThread();
-  /// The signals stay blocked: one that comes when all is done changes nothing.
+  /// The signals stay blocked: a signal after the end of the work has no effect.
   ~SignalThread();
   SignalThread(const SignalThread&) = delete;
   SignalThread& operator=(const SignalThread&) = delete;
 
-  /// There is something worth keeping from now on. A quiet thread does not say that the signal has come. The
-  /// first call counts.
+  /// Declares that from now on there is a result to keep. A quiet thread does not report the signal. Only the
+  /// first call has an effect.
   void heed_first(bool is_quiet);
   std::stop_token token() const { return source_.get_token(); }
-  /// The mask that programs get which this one starts.
+  /// Returns the signal mask for programs that this program starts.
   const sigset_t& mask_before() const { return mask_before_; }
 
  private:

@@ -24,7 +24,7 @@ constexpr int kFlags = O_WRONLY | O_APPEND | O_NONBLOCK | O_NOCTTY | O_CLOEXEC;
 
 class LockedFile {
  public:
-  // Waits for the lock with no leftovers held: a signal ends the program meanwhile.
+  // Releases the held leftovers during the wait for the lock, so that a signal can end the program.
   LockedFile(const std::string& path, std::optional<HeldLeftovers>& held) {
     descriptor_ = ::open(path.c_str(), kFlags | O_CREAT | O_EXCL, 0666);
     is_new_ = descriptor_ >= 0;
@@ -46,7 +46,7 @@ class LockedFile {
   bool is_new_;
 };
 
-// 0 or the number of the error.
+// Returns 0 or the number of the error.
 int write_all(int descriptor, const std::string& text) {
   for (std::size_t done = 0; done < text.size();) {
     const ssize_t written = ::write(descriptor, text.data() + done, text.size() - done);
@@ -61,7 +61,7 @@ int open_stream(const std::string& path) {
   if (descriptor < 0 && errno == ENXIO)
     throw InputError(fmt::format("cannot write {}: nobody reads it", path));
   if (descriptor < 0) fail_to_write(path, errno);
-  ::fcntl(descriptor, F_SETFL, O_APPEND);  // waits for a slow reader
+  ::fcntl(descriptor, F_SETFL, O_APPEND);  // writes wait for a slow reader
   return descriptor;
 }
 
@@ -93,7 +93,7 @@ void AppendedFile::append(const std::string& line) {
   if (!S_ISREG(before.st_mode)) throw InputError(fmt::format("cannot write {}: not a regular file", path_));
   int error_number = write_all(file.descriptor(), line);
   if (error_number == 0) {
-    no_signal_ends_this_halfway.reset();  // it is whole, and a disk may take its time
+    no_signal_ends_this_halfway.reset();  // the line is complete, and fsync may take long
     if (::fsync(file.descriptor()) == 0 || errno == EINVAL) return;
     error_number = errno;
     no_signal_ends_this_halfway.emplace();

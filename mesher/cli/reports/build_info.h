@@ -1,10 +1,10 @@
-// How this program was built, told by cmake/PodmBuildInfo.cmake.
+// The build of this program, as cmake/PodmBuildInfo.cmake recorded it.
 #pragma once
 
 namespace podm::cli {
 
-/// Lines "key: value" of compiler, flags, commit, dirty and libraries, the last not ended. Commit and dirty,
-/// which is true where sources differ from their commit, are "unknown" outside a checkout.
+/// Returns lines "key: value" for compiler, flags, commit, dirty and libraries, without a newline at the end.
+/// dirty is true if sources differ from their commit. commit and dirty are "unknown" outside a checkout.
 const char* build_info();
 
 }  // namespace podm::cli

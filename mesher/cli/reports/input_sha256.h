@@ -1,4 +1,4 @@
-// Which input a run had, by hash.
+// Identifies the input of a run by a hash.
 #pragma once
 
 #include <string>
@@ -8,10 +8,10 @@
 
 namespace podm::cli {
 
-/// Lower-case hexadecimal SHA-256 of the file's bytes; of the voxels' label indices, in memory order, for a
-/// phantom or an array, which have no file.
+/// Returns the lower-case hexadecimal SHA-256 of the file's bytes. For a phantom or an array, which have no
+/// file, returns that of the voxels' label indices in memory order.
 std::string input_sha256(const ImageArguments& arguments, const LabelImage& image);
-/// Of a file's bytes. Throws InputError.
+/// Returns the SHA-256 of a file's bytes. Throws InputError.
 std::string file_sha256(const std::string& path);
 
 }  // namespace podm::cli

@@ -1,4 +1,4 @@
-// How the program writes JSON.
+// JSON output of the program.
 #pragma once
 
 #include <nlohmann/json.hpp>
@@ -8,10 +8,11 @@
 
 namespace podm::cli {
 
-/// One line, newline included. Bytes that are not UTF-8, which file and label names may hold, are replaced.
+/// Returns one line, newline included. Replaces bytes that are not UTF-8, which file and label names may
+/// contain.
 std::string json_line(const nlohmann::ordered_json& value);
 
-/// The affine from voxel indices to RAS mm: three rows of four numbers.
+/// Returns the affine from voxel indices to RAS mm: three rows of four numbers.
 nlohmann::ordered_json affine_rows(const LabelImage& image);
 
 }  // namespace podm::cli

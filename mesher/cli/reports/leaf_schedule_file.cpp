@@ -9,7 +9,7 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
-// The map from coordinates of the mesh file to those of the leaves' grid.
+// Returns the map from coordinates of the mesh file to those of the leaves' grid.
 Affine mesh_to_grid(const MeshRun& run, const LeafSchedule& schedule) {
   const bool is_voxel = run.options.space == Space::kVoxel;
   Affine grid = is_voxel ? voxels_to_working(run.image) : inverse(working_to_world(run.image));

@@ -8,7 +8,7 @@
 
 namespace podm::cli {
 
-/// Throws InputError when the file cannot be written.
+/// Throws InputError if the file cannot be written.
 void write_schedule(const MeshRun& run, const std::string& path);
 
 }  // namespace podm::cli

@@ -1,4 +1,4 @@
-// podm mesh --report: one page about a run and its mesh, made by a Python script from the files of both.
+// podm mesh --report: one page about a run and its mesh. A Python script makes it from the files of both.
 #pragma once
 
 #include "cli/commands/mesh_run.h"
@@ -6,11 +6,11 @@
 
 namespace podm::cli {
 
-/// Throws InputError where no page could be made, whatever the mesh: before hours of meshing.
+/// Throws InputError if no page could be made for any mesh. Called before hours of meshing.
 void check_page(const MeshCommand& command, const SignalThread& signals);
 
-/// Writes the page, whole or not at all, of a run whose mesh, canonical, is written and measured. Throws
-/// InputError where that fails or a signal asks for an end.
+/// Writes the page of a run whose canonical mesh is written and measured. No partial page appears. Throws
+/// InputError if that fails or a signal requests a stop.
 void write_page(const MeshRun& run, const TetMesh& mesh, const SignalThread& signals);
 
 }  // namespace podm::cli

@@ -21,9 +21,9 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
-constexpr std::size_t kMostPartsInText = 20;  // JSON holds them all
+constexpr std::size_t kMostPartsInText = 20;  // JSON holds all parts
 
-// Whole but where no integer holds it, as with absurdly small sizes.
+// Returns an integer, unless no integer holds the number, as with absurdly small sizes.
 Json whole(double number) {
   constexpr double kMostWhole = 9e15;
   return number < kMostWhole ? Json(std::llround(number)) : Json(number);
@@ -61,7 +61,8 @@ Plan make_plan(const MeshCommand& command, const LabelImage& image, double read_
       report_on_smoothing(image, options.smoothing_mm, smoothed, threads);
       strengths = smoothed.strengths;
     }
-    const Isosurface isosurface(image, threads, strengths);  // and what else is the phase's
+    // The transform phase includes the calls below, too.
+    const Isosurface isosurface(image, threads, strengths);
     foreground_bounds(image, threads);
     estimate(image, options);
     plan.transform_s = timer.seconds();
@@ -115,7 +116,7 @@ std::string cost_text(const Plan& plan) {
       sizes.target_elements > 0 ? ", and up to twice this to find the radius" : "");
 }
 
-// All labels, as above them.
+// Prints all labels, like the table of podm info above it.
 std::string labels_text(const Plan& plan, const LabelImage& image) {
   std::string text = fmt::format("{:>10} {:>12} {:>12} {:>14} {:>14}  name\n", "value", "cells", "components",
                                  "largest mm^3", "others mm^3");

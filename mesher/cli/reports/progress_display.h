@@ -1,4 +1,4 @@
-// Shows a run's progress: a bar on a terminal, now and then a line elsewhere.
+// Shows a run's progress: a bar on a terminal, occasional lines elsewhere.
 #pragma once
 
 #include <cstdio>
@@ -11,11 +11,11 @@ namespace podm::cli {
 class ProgressDisplay {
  public:
   enum class Style { kNone, kBar, kLines };
-  /// kBar if `stream` is a terminal that can redraw a line, else kLines.
+  /// Returns kBar if `stream` is a terminal that can redraw a line, otherwise kLines.
   static Style style_for(std::FILE* stream);
 
   ProgressDisplay(std::FILE* stream, Style style) : stream_(stream), style_(style) {}
-  /// Takes the bar off the screen.
+  /// Removes the bar from the screen.
   ~ProgressDisplay();
   ProgressDisplay(const ProgressDisplay&) = delete;
   ProgressDisplay& operator=(const ProgressDisplay&) = delete;
@@ -25,8 +25,8 @@ class ProgressDisplay {
  private:
   std::FILE* stream_;
   Style style_;
-  std::string phase_;       // the one that the last line told of
-  double next_line_s_ = 0;  // kLines: when the next one is due
+  std::string phase_;       // phase of the last line
+  double next_line_s_ = 0;  // kLines: time of the next line
 };
 
 }  // namespace podm::cli

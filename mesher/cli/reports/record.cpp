@@ -41,7 +41,7 @@ Json dropped_islands_of(const LabelImage& image) {
   return dropped;
 }
 
-// Of the bounds asked for; null: the mesh was left as it was.
+// Returns the requested bounds; null if optimisation was not requested.
 Json optimize_of(const OptimizeOptions& optimize) {
   if (!optimize.is_wanted) return nullptr;
   return {{"least_dihedral_deg", optimize.dihedral_bounds_deg[0]},
@@ -80,7 +80,8 @@ Json options_of(const MeshRun& run) {
 
 Json or_null(const std::optional<int>& value) { return value ? Json(*value) : Json(nullptr); }
 
-// The place of each worker; processors have the system's numbers, nodes and sockets are counted from 0.
+// Returns the place of each worker. Processors have the system's numbers; nodes and sockets are counted from
+// 0.
 Json placement_of(const MeshingReport& report) {
   Json places = Json::array();
   for (const WorkerReport& worker : report.workers)
@@ -93,7 +94,7 @@ Json placement_of(const MeshingReport& report) {
 
 Json unavailable(const std::string& why) { return "unavailable: " + why; }
 
-// Accesses by kind and distance; why there are none on a machine of one node.
+// Returns accesses by kind and distance, or the reason why a machine with one node has none.
 Json hops_by_kind(const HopsByKind& hops, const MeshingReport& report) {
   if (hops.mesh_reads.empty()) return unavailable("one NUMA node or one thread");
   Json kinds = {{"mesh_reads", hops.mesh_reads},
@@ -105,7 +106,7 @@ Json hops_by_kind(const HopsByKind& hops, const MeshingReport& report) {
   return kinds;
 }
 
-// What Table 2 counts.
+// Returns the accesses that Table 2 counts.
 Json hops_of(const MeshingReport& report) {
   const Json kinds = hops_by_kind(report.counters.hops, report);
   return kinds.is_object() ? kinds["mesh_reads"] : kinds;
@@ -182,7 +183,7 @@ std::string text_sha256(std::string_view text) {
   return digest.hexadecimal();
 }
 
-// What a virtual executor says of time is simulated: it stands apart from what was measured.
+// Times of a virtual executor are simulated, so they are stored apart from measured times.
 Json virtual_of(const MeshRun& run) {
   if (run.options.team.executor != Executor::kVirtual) return nullptr;
   double refine_s = 0;
@@ -209,7 +210,7 @@ Json calibration_of(const MeshingReport& report) {
           {"seconds", calibration.seconds}};
 }
 
-// Null where R7 was not asked for, or the run ended before it.
+// Returns null if R7 was not requested, or the run ended before it.
 Json perturbed_of(const MeshingReport& report) {
   if (!report.perturbed) return nullptr;
   const Perturbed& told = *report.perturbed;
@@ -236,7 +237,7 @@ Json counts_of(const std::map<Choice, std::uint64_t>& counts) {
   return json;
 }
 
-// Null where interfaces were left as they are.
+// Returns null if interfaces were not smoothed.
 Json smoothing_of(const MeshingReport& report) {
   if (!report.smoothing) return nullptr;
   Json labels = Json::array();
@@ -275,7 +276,7 @@ Json promised_dihedral_of(const MeshingReport& report) {
   return *report.promised_dihedral_deg;
 }
 
-// The claims of podm-verify that an optimised mesh keeps.
+// Returns the claims of podm-verify that an optimised mesh keeps.
 Json promises_of(const MeshingReport& report) {
   Json claims = {"structure", "radius_edge", "boundary_angles",  "size",    "conformity",
                  "surface",   "labels",      "surface_vertices", "fidelity"};
@@ -393,7 +394,7 @@ Json record(const MeshRun& run) {
       {"stop_reason", to_string(report.stop_reason)},
       {"warnings", report.warnings},
   };
-  if (report.optimization) record["promises"] = promises_of(report);  // others promise all
+  if (report.optimization) record["promises"] = promises_of(report);  // other meshes promise all claims
   return record;
 }
 

@@ -1,4 +1,4 @@
-// The JSON line that describes a run of podm mesh. Its names and meaning are those of the project's trial
+// The JSON line that describes a run of podm mesh. Its names have the same meaning as in the project's trial
 // records.
 #pragma once
 

@@ -1,4 +1,4 @@
-// Data for standard output, where a full disk or a closed pipe must not pass unseen.
+// Output of data to standard output. A full disk or a closed pipe must not pass unnoticed.
 #pragma once
 
 #include <string_view>

@@ -1,4 +1,4 @@
-// What a person reads at the end of podm mesh.
+// The summary that podm mesh prints at its end.
 #pragma once
 
 #include <string>
@@ -7,10 +7,11 @@
 
 namespace podm::cli {
 
-/// Several lines, each ended.
+/// Returns several lines, each with a newline.
 std::string summary(const MeshRun& run);
 
-/// One line a worker: operations by outcome, cells visited an operation, time lost, accesses by distance.
+/// Returns one line per worker: operations by outcome, cells visited per operation, time lost, accesses by
+/// distance.
 std::string statistics(const MeshRun& run);
 
 }  // namespace podm::cli

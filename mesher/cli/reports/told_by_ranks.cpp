@@ -15,7 +15,7 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
-// What a rank took, and its process, which has others if clocks are virtual.
+// The cost of a rank and its process. A process with virtual clocks has other ranks, too.
 struct Spent {
   std::uint64_t threads, peak_rss_bytes;
   bool is_virtual;
@@ -26,7 +26,7 @@ Spent spent_by(const Communication& ranks, int threads) {
   return {static_cast<std::uint64_t>(threads), peak_resident_bytes(), ranks.is_virtual(), ranks.report()};
 }
 
-// A round on all ranks: sums, and the seconds of the rank that took longest.
+// Returns one round on all ranks: sums, and the seconds of the slowest rank.
 RoundReport on_all(const std::vector<PartOfRank>& parts, std::size_t round) {
   RoundReport all;
   for (const PartOfRank& part : parts) {
@@ -43,7 +43,7 @@ RoundReport on_all(const std::vector<PartOfRank>& parts, std::size_t round) {
   return all;
 }
 
-// Most cells of a rank over the mean.
+// Returns the largest number of cells of a rank over the mean.
 double imbalance(const std::vector<PartOfRank>& parts) {
   std::uint64_t most = 0, sum = 0;
   for (const PartOfRank& part : parts) {
@@ -60,7 +60,8 @@ Json update_of(const Update& update) {
           {"removed", update.removed}};
 }
 
-// Where it is one in a late round, what waited was in one piece.
+// Returns the number of ranks that inserted vertices. If it is 1 in a late round, the deferred cells were one
+// connected part.
 std::size_t ranks_refining(const std::vector<PartOfRank>& parts, std::size_t round) {
   return static_cast<std::size_t>(std::count_if(
       parts.begin(), parts.end(), [&](const PartOfRank& part) { return part.rounds[round].insertions > 0; }));
@@ -94,7 +95,8 @@ Json spent_of(const PartOfRank& part) {
 
 Json memory_of(const Spent& spent) { return spent.is_virtual ? Json(nullptr) : Json(spent.peak_rss_bytes); }
 
-// The clock sees a rank's own thread, and no others that it starts.
+// Returns true if virtual times are complete: the clock measures a rank's own thread and no threads that it
+// starts.
 bool has_virtual_time(const Spent& spent) { return spent.is_virtual && spent.threads == 1; }
 
 Json virtual_time_of(const Spent& spent) {

@@ -1,4 +1,4 @@
-// What a run on ranks adds to its record and its summary.
+// Data that a run on ranks adds to its record and its summary.
 #pragma once
 
 #include "cli/commands/mesh_run.h"
@@ -7,8 +7,8 @@
 
 namespace podm::cli {
 
-/// Sums and lists over all ranks: facet pairs, the most memory of a process, `ranks` and `ranks_text`. The
-/// mesh is in `result`, and `threads` are this rank's. Collective.
+/// Gathers sums and lists over all ranks: facet pairs, the largest memory of a process, `ranks` and
+/// `ranks_text`. The mesh is in `result`, and `threads` are this rank's. Collective.
 void gather_from_ranks(const MeshingOnRanks& result, int threads, const RanksOfMachine& machines,
                        Communication& ranks, MeshRun& run);
 

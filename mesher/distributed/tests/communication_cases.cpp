@@ -30,7 +30,8 @@ std::mt19937_64 random_of(std::uint64_t seed, int step, int from, int to) {
   return std::mt19937_64(sequence);
 }
 
-// Of a collective by its number, from one rank to another: often empty, seldom long.
+// Returns the message of a collective, given by its number, from one rank to another: often empty, rarely
+// long.
 Bytes message_of(std::uint64_t seed, int step, int from, int to) {
   std::mt19937_64 random = random_of(seed, step, from, to);
   constexpr std::array<std::size_t, 5> kMostBytes{0, 1, 9, 300, 20'000};
@@ -129,7 +130,7 @@ void expect_one_message_a_rank(Communication& communication) {
 }
 
 void expect_barrier(Communication& communication) {
-  using Clock = std::chrono::steady_clock;  // one for all processes of a machine
+  using Clock = std::chrono::steady_clock;  // one clock for all processes of a machine
   std::mt19937_64 random = random_of(3, 4, communication.rank(), 0);
   for (int i = 0; i < 5; ++i) {
     std::this_thread::sleep_for(std::chrono::microseconds(random() % 3000));

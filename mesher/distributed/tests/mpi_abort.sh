@@ -1,6 +1,6 @@
 #!/bin/sh
 # Usage: mpi_abort.sh MPIRUN PROGRAM
-# A rank that throws while others wait ends them all, by its exit code, and tells which rank it was.
+# A rank that throws while others wait ends all ranks with its exit code and prints its number.
 set -u
 output=$("$1" --oversubscribe -n 3 "$2" --throw-on-rank 1 2>&1)
 code=$?

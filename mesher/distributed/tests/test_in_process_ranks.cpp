@@ -30,7 +30,7 @@ class InProcessRanks : public testing::TestWithParam<std::tuple<int, bool>> {
   }
 };
 
-using SeveralRanks = InProcessRanks;  // faults that one alone cannot make
+using SeveralRanks = InProcessRanks;  // faults that need more than one rank
 
 std::string name_of(const testing::TestParamInfo<std::tuple<int, bool>>& given) {
   return std::to_string(std::get<0>(given.param)) + (std::get<1>(given.param) ? "OneAtATime" : "AtOnce");
@@ -65,7 +65,7 @@ TEST_P(InProcessRanks, EachIsThereOnce) {
   for (const std::atomic<int>& n : times) EXPECT_EQ(n, 1);
 }
 
-// What run_ranks() throws, if that is of this type; "" otherwise.
+// Returns the text of the exception of run_ranks() if it has this type, otherwise "".
 template <class Error>
 std::string fault_of(const InProcessOptions& options, const Body& body) {
   try {
@@ -101,7 +101,7 @@ TEST_P(InProcessRanks, OthersAreToldWhoFailed) {
   const int last = options().num_ranks - 1;
   std::atomic<int> told = 0;
   const std::string fault = fault_of<InputError>(options(), [&](Communication& ranks) {
-    for (int i = 0; i < 3; ++i) {  // one that goes on all the same is told again
+    for (int i = 0; i < 3; ++i) {  // a rank that goes on anyway gets the exception again
       if (i == 1 && ranks.rank() == last) throw InputError("planted");
       try {
         ranks.barrier();
@@ -152,11 +152,11 @@ TEST_P(SeveralRanks, OneThatEndsEarlyIsAFault) {
                       testing::ContainsRegex("rank 1 of .*: it ended where rank [0-9]+ called all_gather")));
     ended_first.insert(fault.find("where rank 1 ended") != std::string::npos);
   }
-  // The seed draws either order.
+  // Different seeds draw both orders.
   EXPECT_TRUE(!options().one_at_a_time || options().num_ranks > 5 || ended_first.size() == 2);
 }
 
-// A random rank does something else at a random moment: the run ends, and knows the rank.
+// A random rank fails in a random way at a random moment. The run ends and names the rank.
 TEST_P(SeveralRanks, NoFaultMakesThemHang) {
   const std::uint64_t num_seeds = options().num_ranks > 8 ? 8 : 40;
   for (std::uint64_t seed = 0; seed < num_seeds; ++seed) {
@@ -191,9 +191,9 @@ TEST(OneRankAtATime, NoTwoCompute) {
   });
 }
 
-// The order in which ranks computed, `num_turns` times each.
+// Returns the order in which ranks computed, `num_turns` times each.
 std::vector<int> order_of(std::uint64_t seed, int num_turns) {
-  std::vector<int> order;  // only one rank at a time touches it
+  std::vector<int> order;  // only one rank at a time accesses it
   run_ranks({.num_ranks = 6, .one_at_a_time = true, .seed = seed}, [&](Communication& ranks) {
     for (int i = 0; i < num_turns; ++i) {
       order.push_back(ranks.rank());

@@ -1,5 +1,5 @@
-// The logs of all ranks, merged and replayed on one thread, make the mesh that the ranks made together; logs
-// that were changed do not.
+// The logs of all ranks, merged and replayed on one thread, make the mesh that the ranks made together.
+// Modified logs do not.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -24,7 +24,7 @@ struct LoggedCase {
   int threads = 1;
   Space space = Space::kRas;
   std::uint64_t most_cells = 0;  // 0: no limit
-  bool is_shared = true;         // there is enough for several ranks to do
+  bool is_shared = true;         // true if several ranks have work
   Algorithm algorithm = Algorithm::kPodm;
 };
 
@@ -33,7 +33,7 @@ struct LoggedRun {
   std::vector<LogOfRank> logs;
 };
 
-// A rank may be stopped before it begins, while others go on.
+// One rank may be stopped before it begins, while the other ranks go on.
 LoggedRun run(const LoggedCase& of, int stopped_rank = -1) {
   const ScratchFolder folder;
   MeshingOptions options;
@@ -68,7 +68,7 @@ LoggedRun run(const LoggedCase& of, int stopped_rank = -1) {
   return result;
 }
 
-// "equal", "differs", or why they are refused.
+// Returns "equal", "differs", or the reason why the logs are refused.
 std::string verdict(const std::vector<LogOfRank>& logs, const LoggedCase& of) try {
   const OperationLog whole = merge_logs(logs);
   const TetMesh mesh = replay_operations(of.image, whole, of.space);
@@ -128,7 +128,7 @@ std::vector<LoggedCase> logged_cases() {
 INSTANTIATE_TEST_SUITE_P(Ranks, LogsOfRanks, testing::ValuesIn(logged_cases()),
                          [](const auto& test) { return test.param.name; });
 
-// One run, of whose logs every test spoils its own copy.
+// Every test spoils its own copy of the logs of one run.
 class SpoiltLogs : public testing::Test {
  protected:
   static const std::vector<LogOfRank>& sound() {
@@ -142,7 +142,8 @@ class SpoiltLogs : public testing::Test {
 
   OperationBatch& log(std::size_t rank) { return logs_[rank].log.all; }
   std::string verdict() const { return test::verdict(logs_, of()); }
-  // Some entries of the kind, of isosurface points: the mesh has them all, and they stay.
+  // Returns some entries of this kind with isosurface points: the mesh contains all of them, because they are
+  // never removed.
   std::vector<std::size_t> some_entries(std::size_t rank, std::uint32_t added_to_kind) {
     const auto kind = added_to_kind + static_cast<std::uint32_t>(VertexKind::kIsosurface);
     std::vector<std::size_t> found, some;
@@ -201,7 +202,7 @@ TEST_F(SpoiltLogs, DoNotPassWithAnOperationElsewhere) {
   }
 }
 
-// The operations of a log with two steps swapped, and in the order that they have then.
+// Returns the operations of a log with two steps swapped, sorted by their new sequence.
 OperationBatch with_steps_swapped(const OperationBatch& all, std::uint64_t one, std::uint64_t other) {
   OperationBatch swapped;
   const auto take = [&](std::uint64_t step, std::uint64_t as) {
@@ -221,7 +222,8 @@ OperationBatch with_steps_swapped(const OperationBatch& all, std::uint64_t one, 
   return swapped;
 }
 
-// Rank 0 is the first in each step: it has learnt nothing in the first that another has made there.
+// Rank 0 is the first in each step. In step 1 it cannot have learnt any vertex that another rank makes in
+// this step.
 TEST_F(SpoiltLogs, AreRefusedWithTwoStepsSwapped) {
   int num_swapped = 0;
   for (std::uint64_t step = 2; step <= step_of(sound()[0].log.all.operations.back().sequence); ++step) {
@@ -259,7 +261,7 @@ TEST_F(SpoiltLogs, EndWithAVerdictWhateverIsInThem) {
     }
     num_equal += verdict() == "equal";
   }
-  EXPECT_LT(num_equal, 6);  // a vertex may have its number in a log by another one's right
+  EXPECT_LT(num_equal, 6);  // a vertex may by chance have the number of another vertex in a log
 }
 
 }  // namespace

@@ -1,4 +1,4 @@
-// A run on ranks: every rank tells of the same whole, and pieces add up to it.
+// A run on ranks: every rank reports the same whole mesh, and the pieces add up to it.
 #include "distributed/mesh_image_on_ranks.h"
 
 #include <gtest/gtest.h>
@@ -55,7 +55,8 @@ TEST_P(MeshImageOnRanks, PiecesAddUpToTheWholeThatAllRanksTellOf) {
   EXPECT_TRUE(std::all_of(owners.begin(), owners.end(), [](int count) { return count == 1; }));
 }
 
-// A network so slow that it is nearly all of the time: no phase may lose any.
+// The network is so slow that it takes nearly all of the time, so that no phase can lose a collective
+// unnoticed.
 TEST_P(MeshImageOnRanks, PhasesAddUpToWhatEachRankSpent) {
   const LabelImage image = ball(24, 9);
   std::vector<PartOfRank> parts;
@@ -74,7 +75,7 @@ TEST_P(MeshImageOnRanks, PhasesAddUpToWhatEachRankSpent) {
     }
     EXPECT_EQ(parts[rank].spent.count("later") > 0, parts[rank].rounds.size() > 1);
     EXPECT_GT(parts[rank].spent.at("refine").computing_s, 0);
-    // What ranks tell each other before the first phase and after the last.
+    // Time of the collectives before the first phase and after the last.
     const double told_s = GetParam() == 1 ? 0 : 100 * (6 * std::bit_width(parts.size() - 1));
     EXPECT_LE(sum_s, until_end_s[rank]);
     EXPECT_NEAR(sum_s, until_end_s[rank], told_s + 0.5);
@@ -118,7 +119,7 @@ TEST(MadeOnce, IsMadeOnceWhenThatFailsTheFirstTimeAndChargedToAll) {
   for (const RankReport& report : reports) EXPECT_GE(report.computing_s, 100);
 }
 
-// The words of what all ranks throw.
+// Returns the text of the exception that all ranks throw.
 std::string refusal_by_all(const std::function<void(Communication&)>& body) {
   std::vector<std::string> words(3);
   run_ranks({.num_ranks = 3}, [&](Communication& ranks) {

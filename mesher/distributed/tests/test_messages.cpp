@@ -31,7 +31,8 @@ TEST(Messages, NoReaderPassesTheEnd) {
   append(message, std::vector<std::uint32_t>{1, 2, 3});
   for (std::size_t size = 0; size < message.size(); ++size)
     EXPECT_THROW(MessageReader(std::span(message).first(size)).read<std::uint32_t>(), InternalError) << size;
-  EXPECT_THROW(MessageReader(message).read<std::uint64_t>(), InternalError);  // as many of a longer type
+  // The same number of values of a longer type.
+  EXPECT_THROW(MessageReader(message).read<std::uint64_t>(), InternalError);
 }
 
 TEST(Messages, ACountBeyondMemoryIsNotBelieved) {

@@ -1,5 +1,5 @@
-// The cases over MPI, all on each process of a run. With `--throw-on-rank R` that rank throws instead, while
-// others wait.
+// The test cases over MPI, all on each process of a run. With `--throw-on-rank R` rank R throws instead,
+// while the other ranks wait.
 #include <fmt/format.h>
 #include <gtest/gtest.h>
 
@@ -67,7 +67,7 @@ void throw_on_rank(int rank) {
 
 int main(int argc, char** argv) {
   testing::InitGoogleTest(&argc, argv);
-  testing::GTEST_FLAG(catch_exceptions) = false;  // others wait for this rank
+  testing::GTEST_FLAG(catch_exceptions) = false;  // the other ranks wait for this rank
   const podm::MpiSession session(argc, argv);
   const auto communication = podm::mpi_communication();
   try {

@@ -1,4 +1,4 @@
-// Ranks together make one Delaunay mesh in which no rule asks for anything: each has of it what it should.
+// The ranks together make one Delaunay mesh to which no rule applies. Each rank has its part of the mesh.
 #include "distributed/rounds.h"
 
 #include <gtest/gtest.h>
@@ -27,7 +27,7 @@ struct Case {
   std::uint64_t cut_seed = 0;
   bool at_once = false;  // ranks compute at the same time
   Algorithm algorithm = Algorithm::kPodm;
-  int nodes = 1;  // computing nodes of a rank
+  int nodes = 1;  // computing nodes per rank
   double leaf_size_mm = 0;
 };
 
@@ -56,7 +56,7 @@ class Ranks {
         });
   }
 
-  /// The mesh of all vertices that ranks have in their blocks, made anew.
+  /// Returns a new mesh of all vertices that ranks have in their blocks.
   std::unique_ptr<Mesh> whole() const {
     auto mesh = std::make_unique<Mesh>(refined[0]->refinement.mesh->box(), 1 << 22);
     Pool pool(*mesh);
@@ -79,7 +79,7 @@ class Ranks {
 
   int rank_of(const Point& p) const { return refined[0]->rank_of_cube[refined[0]->grid.cube_at(p)]; }
 
-  /// Cells with a vertex in the rank's block and those beside them, by their points.
+  /// Returns the cells with a vertex in the rank's block and their neighbours, by their points.
   std::vector<std::array<Point, 4>> cells_at_block(const Mesh& mesh, int rank) const {
     const auto is_at_block = [&](const Cell& cell) {
       return std::any_of(cell.vertices.begin(), cell.vertices.end(),
@@ -103,7 +103,7 @@ class Ranks {
     return cells;
   }
 
-  /// What rules still ask for in a mesh.
+  /// Returns the number of insertions that rules still require in a mesh.
   std::uint64_t insertions_left(Mesh& mesh) const {
     const TwoLevels levels = two_levels(*problem, case_.initial_ratio);
     Pool pool(mesh);
@@ -138,8 +138,8 @@ TEST_P(Rounds, EveryRankHasItsPartOfOneMeshThatIsDone) {
   EXPECT_EQ(ranks.insertions_left(*whole), 0u);
 }
 
-// On 2 computing nodes with 2 cores each, or on as many as cores. Leaves are short, so that some operations
-// need more than their regions.
+// Returns a case with 2 computing nodes of 2 cores each, or for kPdr with one node per core. Leaves are
+// short, so that some operations need more than their regions.
 Case by_leaves(const std::string& name, int num_ranks, Algorithm algorithm = Algorithm::kPdrPodm) {
   Case of{name, ball(24, 9), 1.2, 0, num_ranks, 4, 2};
   of.algorithm = algorithm;

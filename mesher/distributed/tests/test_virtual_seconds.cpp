@@ -1,4 +1,4 @@
-// The virtual clock of in-process ranks, and what the modelled network takes.
+// The virtual clock of in-process ranks, and the simulated time of the network.
 #include <gtest/gtest.h>
 
 #include <thread>
@@ -9,10 +9,10 @@
 namespace podm {
 namespace {
 
-constexpr double kLatency = 1e3, kBytesPerS = 1e-2;  // so slow that no processor time matters
+constexpr double kLatency = 1e3, kBytesPerS = 1e-2;  // so slow that processor time does not matter
 constexpr double kSecondsOfByte = 1 / kBytesPerS;
 
-// What the network took of each rank for one collective, on four ranks: two steps.
+// Returns each rank's report of one collective on four ranks, which takes two steps.
 template <class Body>
 std::vector<RankReport> reports_of(const Body& body) {
   return run_ranks({.num_ranks = 4, .one_at_a_time = true, .latency_s = kLatency, .bytes_per_s = kBytesPerS},
@@ -46,7 +46,7 @@ TEST(VirtualSeconds, AGatherTakesTheBytesOfAll) {
   EXPECT_EQ(reports[2].bytes_sent, 6);
 }
 
-// One rank sends 100 and 10 bytes, or gets them; what it tells itself is free.
+// One rank sends 100 and 10 bytes, or receives them; its message to itself is free.
 TEST(VirtualSeconds, AnExchangeTakesWhatTheBusiestRankSendsOrReceives) {
   const double lengths_s = 2 * (kLatency + 16 * kSecondsOfByte);
   const std::vector<RankReport> sending = reports_of([](Communication& ranks) {
@@ -86,7 +86,8 @@ TEST(VirtualSeconds, AllWaitForTheOneThatTakesLongest) {
   }
 }
 
-// Processor time counts, of the rank's own thread alone; sleep and the others' work do not.
+// The clock measures processor time of the rank's own thread. It does not measure sleep, nor the work of
+// other threads.
 TEST(VirtualSeconds, TheClockIsTheRanksProcessorTime) {
   const double busy_s = 0.2;
   const std::vector<RankReport> reports = run_ranks({.num_ranks = 3}, [&](Communication& ranks) {

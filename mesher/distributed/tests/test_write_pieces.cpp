@@ -1,4 +1,4 @@
-// What ranks write together: the same files as one rank's, complete or not there.
+// Ranks together write the same files as a single rank, complete or not at all.
 #include <gtest/gtest.h>
 #include <hdf5.h>
 
@@ -29,7 +29,7 @@ void write_in_pieces(const TetMesh& mesh, int num_pieces, const std::string& pat
   });
 }
 
-// All numbers of a dataset, row by row.
+// Returns all numbers of a dataset, row by row.
 template <class Value>
 std::vector<Value> read_dataset(const std::string& path, const std::string& name, hid_t type) {
   const hid_t file = H5Fopen(path.c_str(), H5F_ACC_RDONLY, H5P_DEFAULT);
@@ -46,7 +46,7 @@ std::vector<std::int64_t> read_integers(const std::string& path, const std::stri
   return read_dataset<std::int64_t>(path, name, H5T_NATIVE_INT64);
 }
 
-// The points of cells or facets, in the order of rows: equal whatever the numbers of vertices.
+// Returns the points of cells or facets, in the order of rows. They do not depend on the numbers of vertices.
 std::vector<double> corners_of(const std::string& path, const std::string& name) {
   const auto points = read_dataset<double>(path, "points", H5T_NATIVE_DOUBLE);
   std::vector<double> corners;
@@ -56,7 +56,7 @@ std::vector<double> corners_of(const std::string& path, const std::string& name)
   return corners;
 }
 
-// The mesh with its facets in the order in which the pieces have them.
+// Returns the mesh with its cells and facets in the order of the pieces.
 TetMesh in_order_of_pieces(const TetMesh& mesh, int num_pieces) {
   TetMesh ordered = mesh;
   std::vector<std::uint32_t> vertex_of(mesh.vertices.size());
@@ -91,7 +91,7 @@ TEST(WriteXdmf, RanksWriteWhatOneWouldToTheByte) {
 TEST(WriteXdmf, TheArraysHoldTheMesh) {
   const ScratchFolder folder;
   TetMesh mesh = make_test_mesh();
-  mesh.labels[2].value = 40;  // one that an int32 holds
+  mesh.labels[2].value = 40;  // a value that an int32 holds
   write_in_pieces(mesh, 3, folder / "a.xdmf", write_xdmf);
   const std::string path = folder / "a.h5";
   std::vector<double> corners;
@@ -142,7 +142,7 @@ TEST(WritePvtu, AnIndexOfOthersIsReplacedAndItsPiecesStay) {
 
 class NoSpace : public testing::TestWithParam<std::string> {};
 
-// As long as no piece has its name, the earlier mesh is untouched.
+// The earlier mesh is untouched until the first piece gets its name.
 TEST_P(NoSpace, KeepsTheEarlierMesh) {
   const ScratchFolder folder;
   const Write write = GetParam() == "a.pvtu" ? static_cast<Write>(write_pvtu) : write_xdmf;

@@ -1,4 +1,4 @@
-// Cubes and zones of cubes say of points and balls what each cube by itself says.
+// Cubes and zones of cubes give the same answers for points and balls as tests of each single cube.
 #include "distributed/zone.h"
 
 #include <gtest/gtest.h>
@@ -14,7 +14,7 @@ namespace {
 
 class Zones : public testing::Test {
  protected:
-  // Some boxes of cubes: more like zones than single cubes would be.
+  // Draws some boxes of cubes, which resemble zones more than single cubes do.
   CubeSet drawn_cubes() {
     CubeSet set(grid_);
     for (int i = 0; i < 3; ++i) {
@@ -92,7 +92,7 @@ TEST_F(Zones, InsertionsHaveRoomWhereTheBallAroundThemLiesInTheZone) {
   EXPECT_GT(std::min(count[0], count[1]), 100);
 }
 
-// Where a ball just touches a cube, too.
+// Also tests balls that just touch a cube.
 TEST_F(Zones, ABallIsKnownOnceItsCubesAre) {
   for (int i = 0; i < 20; ++i) {
     const CubeSet own = drawn_cubes();

@@ -1,5 +1,5 @@
-// An operation in a zone reads beyond it and changes nothing there, and the lock contract notices one that
-// does. Only builds with PODM_CHECK_LOCKS have it.
+// An operation in a zone reads beyond the zone and changes nothing there. The lock contract detects an
+// operation that does. Only builds with PODM_CHECK_LOCKS have the lock contract.
 #include <gtest/gtest.h>
 
 #include <map>
@@ -13,7 +13,7 @@
 namespace podm::test {
 namespace {
 
-// Cubes smaller than cells: none lies so deep in the zone that its radius says so.
+// The cubes are smaller than cells, so that no cell is so deep in the zone that its radius alone decides.
 template <class Inner>
 class ZoneContract : public testing::Test {
  protected:
@@ -23,7 +23,8 @@ class ZoneContract : public testing::Test {
   }
   void TearDown() override { plant_fault({}); }
 
-  // Inserts a point into every cell of the old mesh that still lives: how often it ended in which way.
+  // Inserts a point into every cell of the old mesh that is still alive. Returns the number of insertions by
+  // result.
   std::map<StepResult, int> refine_with(LocksTaken locks) {
     plant_fault(locks);
     std::map<StepResult, int> results;

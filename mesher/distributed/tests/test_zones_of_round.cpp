@@ -1,4 +1,4 @@
-// Blocks share what cubes weigh evenly, and the zones of later rounds keep their ranks apart.
+// Blocks divide the weight of cubes evenly, and the zones of later rounds keep their ranks apart.
 #include "distributed/zones_of_round.h"
 
 #include <gtest/gtest.h>
@@ -12,11 +12,11 @@
 namespace podm::test {
 namespace {
 
-constexpr int kRoundOfConnected = 9;  // the first without cuts
+constexpr int kRoundOfConnected = 9;  // the first round without cuts
 
 CubeGrid cubes_of_1_mm(double x, double y, double z) { return CubeGrid({{0, 0, 0}, {x, y, z}}, 1); }
 
-// Much in the middle, little outside, nothing in a corner.
+// Returns large weights in the middle, small ones outside, and none in a corner.
 std::vector<std::uint64_t> hill(const CubeGrid& grid) {
   std::vector<std::uint64_t> weights;
   for (CubeId cube = 0; cube < grid.num_cubes(); ++cube) {
@@ -62,7 +62,7 @@ TEST(WeighedBlocks, AreThereWithoutCubesWhereRanksAreMore) {
 
 class ZonesOfRound : public testing::TestWithParam<int> {
  protected:
-  // Cells wait along the faces of blocks, as they do.
+  // Returns the cubes along the faces of blocks, where cells wait in real runs.
   CubeSet along_faces() const { return along_faces_of(blocks_.ranks()); }
   CubeSet along_faces_of(const std::vector<int>& part_of_cube) const {
     CubeSet waiting(grid_);
@@ -76,7 +76,7 @@ class ZonesOfRound : public testing::TestWithParam<int> {
     });
     return waiting;
   }
-  // By cube: so many in each that waits.
+  // Returns the same number of cells for each cube of `waiting`.
   std::vector<std::uint32_t> cells_in(const CubeSet& waiting, std::uint32_t cells) const {
     std::vector<std::uint32_t> num_cells(grid_.num_cubes());
     for (const CubeId cube : waiting.cubes()) num_cells[cube] = cells;
@@ -87,7 +87,7 @@ class ZonesOfRound : public testing::TestWithParam<int> {
   }
 
   static constexpr int kRanks = 8;
-  static constexpr std::uint32_t kMany = 100;  // a cube: more than one rank is to end in all
+  static constexpr std::uint32_t kMany = 100;  // cells per cube, enough for several ranks to get zones
   const CubeGrid grid_ = cubes_of_1_mm(60, 60, 60);
   const Blocks blocks_{grid_, hill(grid_), kRanks};
   std::vector<std::uint64_t> load_ = std::vector<std::uint64_t>(kRanks);
@@ -116,7 +116,7 @@ TEST_P(ZonesOfRound, AddTheirCellsToTheLoadOfTheirRanks) {
   EXPECT_EQ(load_, expected);
 }
 
-// Ranks take only zones that their blocks are in, so not all have equally much.
+// Ranks take only zones that overlap their blocks, so the load is uneven.
 TEST_P(ZonesOfRound, AreForMostRanksWhereMuchWaits) {
   if (GetParam() >= kRoundOfConnected) return;
   const CubeSet waiting = along_faces();
@@ -126,7 +126,8 @@ TEST_P(ZonesOfRound, AreForMostRanksWhereMuchWaits) {
   EXPECT_LE(*std::max_element(load_.begin(), load_.end()), 2 * mean);
 }
 
-// What waits where zones meet is much less each time, or rounds would be many.
+// The number of waiting cells where zones meet decreases much in each round; otherwise there would be many
+// rounds.
 TEST_P(ZonesOfRound, MeetWhereLittleWaits) {
   CubeSet waiting = along_faces();
   const std::size_t before = waiting.cubes().size();
@@ -158,7 +159,8 @@ TEST_P(ZonesOfRound, AreNoneWhereNothingWaits) {
   EXPECT_TRUE(std::all_of(rank_of.begin(), rank_of.end(), [](int rank) { return rank == kNobody; }));
 }
 
-// However much waits in one place: every round has to get on. Where cuts are of no use zones are fewer.
+// Every round must make progress even if all cells wait in one place. Where cuts do not help, there are fewer
+// zones.
 TEST_P(ZonesOfRound, AreThereWhereAllWaitInFewCubes) {
   for (const std::vector<int>& places : {std::vector{29}, {2, 50}, {0, 1, 59}, {10, 11, 12, 40, 41}}) {
     CubeSet waiting(grid_);
@@ -202,7 +204,7 @@ TEST(Components, AreTheCubesThatChainsOfNeighboursJoin) {
       if (random() % 8 == 0) set.insert(cube);
     const std::vector<std::uint32_t> component = set.components();
     const std::vector<CubeId> cubes = set.cubes();
-    std::vector<std::uint32_t> least(grid.num_cubes());  // of those that chains have joined so far
+    std::vector<std::uint32_t> least(grid.num_cubes());  // least cube that chains have joined so far
     for (const CubeId cube : cubes) least[cube] = cube;
     for (std::size_t length = 0; length < cubes.size(); ++length)
       for (const CubeId a : cubes)

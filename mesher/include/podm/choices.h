@@ -1,5 +1,5 @@
-// The choices of a run. Each has one table of names, by which options are parsed, help is printed and records
-// are written.
+// The choices of a run. Each choice has one table of names, which parses options, prints help and writes
+// records.
 #pragma once
 
 #include <array>
@@ -10,8 +10,8 @@
 
 namespace podm {
 
-/// Specialised for each choice: kAll, an array of pairs of a value and its name, in the order in which help
-/// lists them.
+/// Is specialised for each choice. kAll is an array of pairs of a value and its name, in the order of the
+/// help.
 template <class Choice>
 struct Names;
 
@@ -20,7 +20,7 @@ concept Named = requires {
   Names<Choice>::kAll;
 };
 
-/// Throws InternalError for a value that no table has.
+/// Throws InternalError for a value that has no name.
 template <Named Choice>
 std::string to_string(Choice choice) {
   for (const auto& [value, name] : Names<Choice>::kAll)
@@ -28,10 +28,10 @@ std::string to_string(Choice choice) {
   throw InternalError("a choice without a name");
 }
 
-/// How the work is divided among threads. kPodm: anywhere, with locks. kPdrPodm: an initial mesh by PODM,
-/// then leaf by leaf of an octree, each by a computing node of several threads. kPdr: leaf by leaf, one
-/// thread each, without locks. kPodmHome: with locks, each computing node in its own block of space. kAuto:
-/// kPodm, or kPodmHome where threads are pinned to several NUMA nodes.
+/// The division of work among threads. kPodm: all threads work anywhere, with locks. kPdrPodm: PODM makes an
+/// initial mesh; computing nodes of several threads then refine it leaf by leaf of an octree. kPdr: one
+/// thread per leaf, without locks. kPodmHome: with locks, each computing node in its own block of space.
+/// kAuto: kPodm, or kPodmHome where threads are pinned to several NUMA nodes.
 enum class Algorithm { kAuto, kPodm, kPdr, kPdrPodm, kPodmHome };
 template <>
 struct Names<Algorithm> {
@@ -41,7 +41,7 @@ struct Names<Algorithm> {
                                    std::pair{Algorithm::kPodmHome, "podm-home"}};
 };
 
-/// What a worker does that finds a vertex locked by another; see workers/contention_manager.h.
+/// The reaction of a worker to a vertex that another worker has locked; see workers/contention_manager.h.
 enum class Contention { kAggressive, kRandom, kGlobal, kLocal };
 template <>
 struct Names<Contention> {
@@ -50,8 +50,8 @@ struct Names<Contention> {
       std::pair{Contention::kGlobal, "global"}, std::pair{Contention::kLocal, "local"}};
 };
 
-/// Whom a worker with cells to spare serves first: the one that has begged longest, or the nearest in the
-/// machine; see workers/begging_list.h.
+/// The begging worker that a worker with spare cells serves first: the one that has begged longest, or the
+/// nearest in the machine; see workers/begging_list.h.
 enum class Begging { kRandom, kHierarchical };
 template <>
 struct Names<Begging> {
@@ -59,7 +59,7 @@ struct Names<Begging> {
                                    std::pair{Begging::kHierarchical, "hierarchical"}};
 };
 
-/// Who runs the workers: threads, or one core that plays them in virtual time (workers/virtual_time.h).
+/// The executor of the workers: threads, or one core that runs them in virtual time (workers/virtual_time.h).
 enum class Executor { kThreads, kVirtual };
 template <>
 struct Names<Executor> {
@@ -67,8 +67,8 @@ struct Names<Executor> {
                                    std::pair{Executor::kVirtual, "virtual"}};
 };
 
-/// What an attempt lasts in virtual time: 1 us, or by its work, in the proportions of a measured run. Both
-/// are varied at random by half.
+/// The duration of an attempt in virtual time: 1 us, or a duration that depends on its work, in the
+/// proportions of a measured run. Both vary at random by half.
 enum class VirtualCost { kUnit, kMeasured };
 template <>
 struct Names<VirtualCost> {
@@ -76,7 +76,7 @@ struct Names<VirtualCost> {
                                    std::pair{VirtualCost::kMeasured, "measured"}};
 };
 
-/// The frame of vertex coordinates, all in mm but `voxel` (continuous voxel indices).
+/// The frame of vertex coordinates. All frames are in mm except `voxel` (continuous voxel indices).
 enum class Space { kRas, kLps, kVoxel };
 template <>
 struct Names<Space> {
@@ -84,16 +84,16 @@ struct Names<Space> {
                                    std::pair{Space::kVoxel, "voxel"}};
 };
 
-/// Of Gmsh's format: binary 4.1, or text 2.2, the newest that many solvers read.
+/// The version of Gmsh's format: binary 4.1, or text 2.2, the newest version that many solvers read.
 enum class GmshVersion { k4_1, k2_2 };
 template <>
 struct Names<GmshVersion> {
   static constexpr std::array kAll{std::pair{GmshVersion::k4_1, "4.1"}, std::pair{GmshVersion::k2_2, "2.2"}};
 };
 
-/// By what optimisation makes cells better: replacing the cells around an edge or on both sides of facets,
-/// moving a vertex, any cells that fill a cavity, the same with a new vertex, and giving a flat cell on an
-/// interface to another label.
+/// The operations of optimisation: replace the cells around an edge or on both sides of facets, move a
+/// vertex, fill a cavity with any cells, fill a cavity with any cells and a new vertex, and give a flat cell
+/// on an interface to another label.
 enum class OptimizationMeans { kFlips, kMoves, kSearches, kAddedVertices, kPeels };
 template <>
 struct Names<OptimizationMeans> {
@@ -104,8 +104,8 @@ struct Names<OptimizationMeans> {
                                    std::pair{OptimizationMeans::kPeels, "peels"}};
 };
 
-/// Why a cell stays beyond the bounds: two facets of the interface of two labels, or facets of two interfaces
-/// where three labels meet, make the angle; all its vertices are on the isosurface; or none of these.
+/// The reason why a cell stays beyond the bounds: two facets of one interface make the angle; facets of two
+/// interfaces make the angle where three labels meet; all vertices are on the isosurface; or none of these.
 enum class OptimizationObstacle { kFrozenFacets, kJunction, kFrozenVertices, kOther };
 template <>
 struct Names<OptimizationObstacle> {
@@ -115,7 +115,7 @@ struct Names<OptimizationObstacle> {
                                    std::pair{OptimizationObstacle::kOther, "other"}};
 };
 
-/// kNumberLimit: as many cells were made as have numbers, though memory was left.
+/// kNumberLimit: the run used all cell numbers, although memory was left.
 enum class StopReason { kComplete, kCancelled, kElementLimit, kTimeLimit, kMemoryLimit, kNumberLimit };
 template <>
 struct Names<StopReason> {

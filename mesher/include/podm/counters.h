@@ -1,5 +1,5 @@
-// What workers count. A new count is a member of Counters, a line of kCounts, by which counts are summed and
-// written to records, and the place where it is counted.
+// The counts of workers. A new count needs a member of Counters, a line of kCounts (which sums counts and
+// writes them to records), and the place that counts it.
 #pragma once
 
 #include <array>
@@ -9,39 +9,42 @@
 
 namespace podm {
 
-/// Seconds that workers did not bring the mesh on, by cause.
+/// Seconds in which workers made no progress on the mesh, by cause.
 struct Overhead {
   double contention_s = 0, begging_s = 0, rollback_s = 0;
 };
 
-/// Accesses to memory, by the hops from the worker's NUMA node to the one that owns the memory. Empty on one
-/// node.
+/// Memory accesses by the number of hops from the worker's NUMA node to the node that owns the memory. Empty
+/// on a machine with one node.
 struct HopsByKind {
-  std::vector<std::uint64_t> mesh_reads;   ///< cells tested, vertices locked; owned by whose worker made them
-  std::vector<std::uint64_t> mesh_writes;  ///< cells and vertices that filling and gluing wrote; likewise
-  std::vector<std::uint64_t> image_reads;  ///< labels of the image, one or some of a row at a time
+  /// Cells tested, vertices locked; the owner is the node whose worker made them.
+  std::vector<std::uint64_t> mesh_reads;
+  /// Cells and vertices that filling and gluing wrote; the owner is the same.
+  std::vector<std::uint64_t> mesh_writes;
+  /// Labels of the image, one or several per access, within one row of voxels.
+  std::vector<std::uint64_t> image_reads;
   std::vector<std::uint64_t> transform_reads;  ///< words of the feature transform
 };
 
-/// Operations by outcome and work done, exact counts, and what was lost.
+/// Exact counts of operations by outcome and of work done, and the time lost.
 struct Counters {
   std::array<std::uint64_t, 5> insertions_by_rule{};  ///< R1..R5
   std::uint64_t removals = 0;                         ///< vertices removed by R6
-  /// Insertions given up: a vertex lay nearer than the spacing floor, or a circumcentre outside its cell's
-  /// ball. Points of R1 and R3 that were refused while planned are not counted.
+  /// Insertions given up: a vertex was nearer than the spacing floor, or a circumcenter was outside its
+  /// cell's ball. Points of R1 and R3 that were refused during planning are not counted.
   std::uint64_t rejected = 0;
-  std::uint64_t stale_cells = 0;  ///< poor element list entries that had died
+  std::uint64_t stale_cells = 0;  ///< poor element list entries whose cell had died
   std::uint64_t classified_cells = 0;
-  std::uint64_t oracle_searches = 0;  ///< for the isosurface point nearest to a cell's circumcentre
+  std::uint64_t oracle_searches = 0;  ///< searches for the isosurface point nearest to a cell's circumcenter
   std::uint64_t conflict_tests = 0;
   std::uint64_t exact_decisions = 0;  ///< conflict tests that the cached sphere left undecided
   std::uint64_t cells_created = 0;
-  std::uint64_t lock_conflicts = 0;  ///< attempts rolled back
-  std::uint64_t out_of_leaf = 0;     ///< attempts that needed vertices outside a leaf's region, deferred
-  std::uint64_t region_cells = 0;    ///< cells that operations collected to replace, carried out or not
-  std::uint64_t moves = 0;           ///< vertices moved by R7
-  std::uint64_t points_tried = 0;    ///< for these, and in vain
-  std::uint64_t planned_cells = 0;   ///< cells that R7 planned, carried out or not
+  std::uint64_t lock_conflicts = 0;  ///< attempts that ended in a rollback
+  std::uint64_t out_of_leaf = 0;   ///< attempts deferred because they needed vertices outside a leaf's region
+  std::uint64_t region_cells = 0;  ///< cells that operations collected for replacement, committed or not
+  std::uint64_t moves = 0;         ///< vertices moved by R7
+  std::uint64_t points_tried = 0;  ///< points tried for R7 moves, including points that failed
+  std::uint64_t planned_cells = 0;  ///< cells that R7 planned, committed or not
   Overhead overhead;
   HopsByKind hops;
 
@@ -52,12 +55,13 @@ struct Counters {
   std::uint64_t num_committed() const { return num_insertions() + removals + moves; }
 };
 
-/// A count's name, and where a record tells of it.
+/// A count's name and its place in a record.
 struct Count {
   const char* name;
   std::uint64_t Counters::*member;
-  enum Kind { kOutcome, kWork } kind;  ///< among the outcomes of attempts, or the counters of work
-  bool by_worker;                      ///< also for each worker
+  /// Group in the record: the outcomes of attempts, or the counters of work.
+  enum Kind { kOutcome, kWork } kind;
+  bool by_worker;  ///< also recorded per worker
 };
 inline constexpr std::array kCounts{
     Count{"stale_cell", &Counters::stale_cells, Count::kOutcome, true},

@@ -1,4 +1,4 @@
-// The errors this library throws. It never prints and never exits.
+// The errors that this library throws. The library never prints and never exits.
 #pragma once
 
 #include <stdexcept>
@@ -6,13 +6,13 @@
 
 namespace podm {
 
-/// The input or an option is at fault; what() names the file or option and the fault. Exit code 2.
+/// The input or an option is wrong; what() names the file or option and the fault. Exit code 2.
 class InputError : public std::runtime_error {
  public:
   using std::runtime_error::runtime_error;
 };
 
-/// The library itself is at fault: a broken invariant, never the user's doing. Exit code 3.
+/// The library itself is wrong: an invariant is broken. The user never causes it. Exit code 3.
 class InternalError : public std::logic_error {
  public:
   using std::logic_error::logic_error;

@@ -1,4 +1,4 @@
-// Where label images come from: files, phantoms, arrays in memory, and what is kept of them.
+// Sources of label images: files, phantoms and arrays in memory; and the selection of labels.
 #pragma once
 
 #include <array>
@@ -15,17 +15,18 @@
 
 namespace podm {
 
-/// Which labels of an image are kept, and under which value. Values are those stored in the file.
+/// The labels of an image that are kept, and their values. Values are those stored in the file.
 struct LabelSelection {
   std::uint32_t background = 0;
   std::vector<std::pair<std::uint32_t, std::uint32_t>> keep;  ///< closed ranges; empty: all
   std::vector<std::pair<std::uint32_t, std::uint32_t>> drop;  ///< closed ranges
   struct Merge {
-    std::vector<std::uint32_t> values;  ///< become one label with the first of these values
+    std::vector<std::uint32_t> values;  ///< these values become one label with the first value
     std::string name;
   };
   std::vector<Merge> merges;
-  /// Components of what is then a label, joined by faces, are given to a neighbour if smaller; 0: none are.
+  /// Smaller components of a resulting label go to a neighbour, mm^3. Faces join the voxels of a component.
+  /// 0: all components stay.
   double drop_islands_mm3 = 0;
 
   static constexpr auto options() {
@@ -70,7 +71,7 @@ struct LabelSelection {
   }
 };
 
-/// Parses "1,3-7". Throws InputError naming `option` and the fault.
+/// Parses "1,3-7". Throws InputError that names `option` and the fault.
 std::vector<std::pair<std::uint32_t, std::uint32_t>> parse_label_ranges(const std::string& text,
                                                                         const std::string& option);
 /// Parses "2,3=kidney".
@@ -79,40 +80,40 @@ LabelSelection::Merge parse_merge(const std::string& text);
 /// Reads label names: ITK-SNAP tables, or lines "value name ..." as in aal.nii.txt.
 std::map<std::uint32_t, std::string> read_label_names(const std::string& path);
 
-/// Reads NIfTI, NRRD, MetaImage, INR (each .gz where usual), or "phantom:NAME[@SIZE]".
-/// Throws InputError naming the file and the fault. Labels are sorted by value. `threads`: 0 for all cores.
-/// `most_bytes`: what a file's voxels and their labels may take together while they are read.
+/// Reads NIfTI, NRRD, MetaImage, INR (each .gz where usual), or "phantom:NAME[@SIZE]". Throws InputError that
+/// names the file and the fault. Labels are sorted by value. `threads`: 0 for all cores. `most_bytes`: memory
+/// limit for a file's voxels and their labels together during reading.
 LabelImage read_image(const std::string& path, const LabelSelection& selection = {}, int threads = 0,
                       std::uint64_t most_bytes = std::numeric_limits<std::uint64_t>::max());
 
-/// Reads a size image, of the same formats and any type of voxel; values that are not above 0, or infinite,
-/// are no bounds. Throws InputError naming the file and the fault: it is not 3-D, a voxel is not a number,
-/// none has a bound.
+/// Reads a size image of the same formats and any voxel type. Values that are not above 0, or are infinite,
+/// give no bound. Throws InputError that names the file and the fault: it is not 3-D, a voxel is not a
+/// number, or no voxel has a bound.
 SizeImage read_size_image(const std::string& path,
                           std::uint64_t most_bytes = std::numeric_limits<std::uint64_t>::max());
 
 enum class VoxelType { kUint8, kInt8, kUint16, kInt16, kUint32, kInt32, kUint64, kInt64, kFloat, kDouble };
 
-/// Voxels in somebody's memory, in this machine's byte order. Along an axis voxels are `strides_bytes` apart,
-/// any number: also negative, or none.
+/// Voxels in the caller's memory, in this machine's byte order. `strides_bytes` is the distance between
+/// voxels along each axis. It may be negative or 0.
 struct VoxelArray {
   const void* first = nullptr;  ///< voxel (0,0,0)
   VoxelType type = VoxelType::kUint8;
-  std::vector<int> size;  ///< voxels per axis: three, or more of which the others are 1
+  std::vector<int> size;  ///< voxels per axis: three numbers, or more if the additional ones are 1
   std::array<std::ptrdiff_t, 3> strides_bytes{};
 };
 
-/// Makes a label image of an array, which is read and not kept. `voxel_to_ras`: row-major 3x4, mm. Throws
-/// InputError naming the array, `name`, and the fault; the rest is as for read_image().
+/// Makes a label image from an array, which is read and not kept. `voxel_to_ras`: row-major 3x4, mm. Throws
+/// InputError that names the array (`name`) and the fault. The other parameters are those of read_image().
 LabelImage image_of_array(const VoxelArray& array, std::array<double, 12> voxel_to_ras,
                           const std::string& name, const LabelSelection& selection = {}, int threads = 0,
                           std::uint64_t most_bytes = std::numeric_limits<std::uint64_t>::max());
 
-/// The analytic phantoms: "abdomen", "spheres", "torus"; `size` voxels along the longest axis.
+/// Makes an analytic phantom ("abdomen", "spheres" or "torus") with `size` voxels along the longest axis.
 LabelImage make_phantom(const std::string& name, int size, int threads = 0);
 std::vector<std::string> phantom_names();
 
-/// Writes a NIfTI-1 label image (.nii or .nii.gz), whole or not at all.
+/// Writes a NIfTI-1 label image (.nii or .nii.gz). On failure no file appears.
 void write_nifti(const LabelImage& image, const std::string& path);
 
 }  // namespace podm

@@ -1,4 +1,4 @@
-// A segmented 3-D image: one label a voxel, and where its voxels lie in the world.
+// A segmented 3-D image: one label per voxel, and the position of the voxels in the world.
 #pragma once
 
 #include <array>
@@ -13,25 +13,26 @@ namespace podm {
 using LabelIndex = std::uint16_t;
 inline constexpr LabelIndex kBackground = 0;
 inline constexpr std::size_t kMaxLabels = 65534;       ///< background included
-inline constexpr std::size_t kMaxVoxels = 0x7fffffff;  ///< their bricks are numbered in 31 bits
+inline constexpr std::size_t kMaxVoxels = 0x7fffffff;  ///< the bricks of an image are numbered in 31 bits
 
 struct Label {
   std::uint32_t value = 0;  ///< as stored in the image file
-  std::string name;         ///< from a label table, else empty
+  std::string name;         ///< from a label table; otherwise empty
 };
 
-/// What was dropped of a label as too small to mesh.
+/// The components of a label that were dropped because they are too small to mesh.
 struct DroppedIslands {
   Label label;
-  std::uint64_t number = 0;  ///< of components
-  double volume_mm3 = 0;     ///< of all of them
+  std::uint64_t number = 0;  ///< number of components
+  double volume_mm3 = 0;     ///< their total volume
   bool is_whole_label = false;
 };
 
-/// Voxels are stored by dense label index, x fastest. Outside the grid everything is background, so that
-/// structures touching the border are closed there. The *working frame*, in which geometry is computed, is
-/// the world, RAS; for an affine that shears, by more than rounding in doubles does, it is the image's own:
-/// the centre of voxel (i,j,k) lies at (i*spacing[0], j*spacing[1], k*spacing[2]) mm.
+/// An image of labelled voxels, stored by dense label index, x fastest. The outside of the grid is
+/// background, so structures that touch the border are closed there. Geometry is computed in the *working
+/// frame*. The working frame is the world (RAS), unless the affine shears by more than rounding in doubles
+/// explains. It is then the image's own frame: the center of voxel (i,j,k) is at (i*spacing[0], j*spacing[1],
+/// k*spacing[2]) mm.
 struct LabelImage {
   std::array<int, 3> size{};        ///< voxels per axis
   std::array<double, 3> spacing{};  ///< mm, positive: the column norms of `voxel_to_ras`
@@ -39,8 +40,8 @@ struct LabelImage {
   std::array<double, 12> voxel_to_ras{};
   std::vector<LabelIndex> voxels;                    ///< size[0]*size[1]*size[2]
   std::vector<Label> labels;                         ///< labels[0] is the background
-  std::vector<std::string> warnings = {};            ///< what is odd about the file that it was read from
-  std::vector<DroppedIslands> dropped_islands = {};  ///< by label, where any were
+  std::vector<std::string> warnings = {};            ///< unusual properties of the file that was read
+  std::vector<DroppedIslands> dropped_islands = {};  ///< one entry per label that lost components
 
   std::size_t num_voxels() const {
     return static_cast<std::size_t>(size[0]) * static_cast<std::size_t>(size[1]) *

@@ -1,4 +1,4 @@
-// What ends a run early.
+// The limits that end a run early.
 #pragma once
 
 #include <cstdint>
@@ -7,16 +7,15 @@
 
 namespace podm {
 
-/// The most cells of a mesh while it is made, those of the background among them: facets have numbers of 32
-/// bits.
+/// Largest number of cells of a mesh during the run, including background cells: facets have 32-bit numbers.
 inline constexpr std::uint64_t kMostStoredCells = (std::uint64_t{1} << 30) - 1;
 
-/// Each ends a run early, with a valid mesh, Delaunay unless it was being optimised, that says what is unmet.
-/// 0: no limit.
+/// Each limit ends a run early with a valid mesh, which is Delaunay unless it was being optimised. The report
+/// lists the guarantees that the mesh misses. 0: no limit.
 struct Limits {
   std::uint64_t max_elements = 0;
   double max_seconds = 0;
-  std::uint64_t max_memory_bytes = 0;  ///< image and transform come on top
+  std::uint64_t max_memory_bytes = 0;  ///< does not include the image and the transform
 
   static constexpr auto options() {
     using L = Limits;

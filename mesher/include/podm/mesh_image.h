@@ -1,4 +1,4 @@
-// The whole public API of the mesher: a label image in, a tetrahedral mesh with guarantees out.
+// The whole public API of the mesher: takes a label image and returns a tetrahedral mesh with guarantees.
 #pragma once
 
 #include <cstdint>
@@ -16,21 +16,21 @@ namespace podm {
 
 struct OperationLog;
 
-/// What a run is expected to cost, from the image and the options alone.
+/// The expected cost of a run, predicted from the image and the options alone.
 struct Estimate {
   double cells = 0;
-  double memory_bytes = 0;  ///< peak of the whole process
-  double delta_mm =
-      0;  ///< the surface sampling distance; 0 where it follows from a target number of elements
+  double memory_bytes = 0;  ///< peak memory of the whole process
+  /// Surface sampling distance; 0 if it depends on a target number of elements.
+  double delta_mm = 0;
 };
 
 struct Progress {
-  std::string phase;        ///< "transform", "refine", "optimize", "extract", "measure"
-  double fraction = 0;      ///< an estimate for the phase, in [0,1]
-  std::uint64_t cells = 0;  ///< so far
+  std::string phase;        ///< "transform", "smooth", "refine", "perturb", "optimize", "extract", "measure"
+  double fraction = 0;      ///< estimated fraction of the phase, in [0,1]
+  std::uint64_t cells = 0;  ///< current number
   double seconds = 0;       ///< since the start of the run
 };
-/// Called from the meshing thread a few times a second.
+/// The meshing thread calls it a few times per second.
 using ProgressCallback = std::function<void(const Progress&)>;
 
 struct MeshingResult {
@@ -38,20 +38,20 @@ struct MeshingResult {
   MeshingReport report;
 };
 
-/// Default surface sampling distance for an image and a radius (mm; radius 0: unbounded), mm.
+/// Returns the default surface sampling distance, mm, for an image and a radius (mm; 0: unbounded).
 double default_delta_mm(const LabelImage& image, double radius_mm);
 
-/// Expected cells and memory of mesh_image with these options (target_elements resolved).
+/// Returns the expected cells and memory of mesh_image() with these options; resolves target_elements.
 Estimate estimate(const LabelImage& image, const MeshingOptions& options);
 
-/// Meshes `image`. Throws InputError on bad options or an image without foreground, std::bad_alloc when
-/// memory runs out. A stop request or a limit ends the run early with a valid mesh; see stop_reason.
-/// Rules and proofs: Foteinos, Chernikov, Chrisochoides, CGTA 47 (2014) 539-562.
+/// Meshes `image`. Throws InputError on bad options or an image without foreground, and std::bad_alloc when
+/// memory runs out. A stop request or a limit ends the run early with a valid mesh; see stop_reason. Rules
+/// and proofs: Foteinos, Chernikov, Chrisochoides, CGTA 47 (2014) 539-562.
 MeshingResult mesh_image(const LabelImage& image, const MeshingOptions& options,
                          const ProgressCallback& progress = {}, std::stop_token stop = {});
 
-/// The mesh that the logged operations make one after the other: the serial run that a parallel run claims to
-/// equal. Throws InputError, naming the operation, when one cannot be carried out as logged.
+/// Returns the mesh that the logged operations make one after the other: the serial run that a parallel run
+/// claims to equal. Throws InputError that names the operation if an operation cannot be replayed as logged.
 TetMesh replay_operations(const LabelImage& image, const OperationLog& log, Space space);
 
 }  // namespace podm

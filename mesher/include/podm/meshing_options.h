@@ -21,36 +21,37 @@ class OperationLogWriter;
 
 inline constexpr int kMostThreads = 1024;
 
-/// A bound on cells whose circumcentre is within a width of the interface of some labels and others: of the
-/// faces between their voxels. Labels are given by value, the background by its own.
+/// A bound on the cells whose circumcenter is within a width of the interface between two sets of labels. The
+/// interface here consists of the faces between their voxels. Labels are given by value; the background has
+/// its own value.
 struct SizeNear {
-  std::array<std::vector<std::uint32_t>, 2> labels;  ///< on either side, one or more
+  std::array<std::vector<std::uint32_t>, 2> labels;  ///< one or more labels on either side
   double radius_mm = 0;                              ///< largest circumradius, mm
-  double width_mm = 0;                               ///< mm
+  double width_mm = 0;                               ///< largest distance from the interface, mm
 };
 
-/// How large cells are: what bounds a cell at its circumcentre is the least of all that follows.
+/// The sizes of cells. The least bound that applies at a cell's circumcenter limits the cell.
 struct SizeOptions {
-  /// Largest circumradius r_t of a cell, mm. 0: unbounded, the surface alone drives.
+  /// Largest circumradius r_t of a cell, mm. 0: unbounded, only the surface drives refinement.
   double radius_mm = 0;
-  /// r_t of single labels by label *value*, mm; these override `radius_mm`.
+  /// r_t of single labels by label *value*, mm; overrides `radius_mm`.
   std::map<std::uint32_t, double> radius_of_mm = {};
-  /// Radii by place; null: none.
+  /// Local radii; null: none.
   std::shared_ptr<const SizeImage> image = nullptr;
-  /// All of its radii are multiplied by this. With a target number of elements it follows from that.
+  /// Factor of all radii of the image. A target number of elements determines the factor itself.
   double image_factor = 1;
   std::vector<SizeNear> near = {};
-  /// By how much bounds may grow, mm a mm of the way. 0: at once. Distances are those of voxels: a bound is
-  /// the largest that grows no faster from voxel to voxel, or less by an eighth of the growth where voxels
-  /// are cubes (image/graded_grid.h).
+  /// Largest growth of bounds, mm per mm of distance. 0: unlimited. Distances are measured over voxels: a
+  /// bound is the largest that grows no faster from voxel to voxel, or up to an eighth of the growth less
+  /// where voxels are cubes (sizing/graded_grid.h).
   double grade = 0;
-  /// Surface sampling distance, mm. 0: default_delta_mm() of the least radius, that of places counting where
-  /// it is bounded everywhere, by its largest.
+  /// Surface sampling distance, mm. 0: default_delta_mm() of the least radius. Local sizes count with their
+  /// largest bound, if every place has one.
   double delta_mm = 0;
-  /// When positive: radius_mm, which must be 0, is chosen so that the mesh has about so many cells; and the
-  /// factor of the image so that its largest radius in the object is the same.
+  /// If positive, the mesher chooses radius_mm, which must be 0, for a mesh of about this number of cells.
+  /// The image's factor is then such that its largest radius in the object is the same.
   std::uint64_t target_elements = 0;
-  /// How far from the target the number of cells may be, in percent of it.
+  /// Largest deviation of the number of cells from the target, percent of the target.
   double target_tolerance_percent = 5;
 
   static constexpr auto options() {
@@ -102,24 +103,24 @@ struct SizeOptions {
   }
 };
 
-/// Who refines. Numbers that are 0 are left to the mesher.
+/// The workers of a run. The mesher chooses numbers that are 0.
 struct TeamOptions {
-  /// Threads of all phases. With one the same input makes the same mesh to the bit, with more one of the same
-  /// guarantees. Default: nodes times cores per node, where these are given, else one for refinement; all
-  /// cores for the other phases.
+  /// Threads of all phases. With one thread the same input gives a bitwise equal mesh; with more threads it
+  /// gives a mesh with the same guarantees. Default: nodes times cores per node if these are given, otherwise
+  /// one for refinement; all cores for the other phases.
   int threads = 0;
-  /// Computing nodes of kPdrPodm and kPodmHome; default: NUMA nodes in use, for kPdr one a thread.
+  /// Computing nodes of kPdrPodm and kPodmHome; default: NUMA nodes in use; for kPdr one per thread.
   int nodes = 0;
-  int cores_per_node = 0;   ///< threads of each computing node; default: threads over nodes
+  int cores_per_node = 0;   ///< threads of each computing node; default: threads / nodes
   int initial_threads = 0;  ///< threads of the initial mesh of kPdr and kPdrPodm; default: all
   Contention contention = Contention::kLocal;
   Begging begging = Begging::kHierarchical;
-  std::string pin = "none";    ///< compact, scatter, none, or processors: runtime/placement.h
-  bool oversubscribe = false;  ///< else more threads than processors are refused
-  /// The machine that the workers stand for, as hwloc XML or, with what it costs, as TOML (NAME.toml:
-  /// runtime/machine_model.h). Empty: this one.
+  std::string pin = "none";    ///< compact, scatter, none, or a list of processors: runtime/placement.h
+  bool oversubscribe = false;  ///< false: more threads than processors are refused
+  /// The machine that the workers represent, as hwloc XML, or as TOML with its costs (NAME.toml:
+  /// runtime/machine_model.h). Empty: this machine.
   std::string topology_path = {};
-  /// A constant of that machine in virtual time, times a factor, to see what hangs on it: "NAME=FACTOR",
+  /// Multiplies one constant of that machine in virtual time, to measure its influence: "NAME=FACTOR",
   /// runtime/cost_factor.h. Empty: none.
   std::string cost_factor = {};
   Executor executor = Executor::kThreads;
@@ -212,7 +213,7 @@ struct TeamOptions {
   }
 };
 
-/// How kPdr and kPdrPodm divide space.
+/// The division of space by kPdr and kPdrPodm.
 struct LeafOptions {
   double initial_ratio = 4;  ///< circumradius bound and delta of the initial mesh over those of the final one
   double size_mm = 0;        ///< side of the octree's leaves; 0: from the initial mesh's bound
@@ -236,8 +237,8 @@ struct LeafOptions {
   }
 };
 
-/// What happens to the finished mesh, which is no longer Delaunay then. A run that ends early is not
-/// optimised.
+/// The optimisation of the finished mesh, which is no longer Delaunay afterwards. A run that ends early skips
+/// it.
 struct OptimizeOptions {
   bool is_wanted = false;
   /// Least and largest dihedral angle, degrees. The aim is one and a half times as far from 0 and 180, where
@@ -270,12 +271,12 @@ struct OptimizeOptions {
 
 struct MeshingOptions {
   SizeOptions sizes = {};
-  /// Degrees. When positive: at the end vertices move so that fewer cells have a dihedral angle below it, or
-  /// above max_dihedral_deg() of it (rule R7). All guarantees are kept, and this is none: the report tells
-  /// what is left, and if nothing is the file promises it.
+  /// Degrees. If positive, vertices move at the end of the run, to reduce the number of cells with a dihedral
+  /// angle below it or above max_dihedral_deg() of it (rule R7). All guarantees are kept. The angle itself is
+  /// not guaranteed: the report counts the remaining cells; if there is none, the file promises the angle.
   double min_dihedral_deg = 0;
-  /// When positive: interfaces lie where labels tie that are blurred by a Gaussian of this width, mm, instead
-  /// of on the stairs of voxels. Voxels keep their labels.
+  /// If positive, labels are blurred by a Gaussian of this width, mm. Interfaces are then where blurred
+  /// labels tie, not on the stairs of voxels. Voxels keep their labels.
   double smoothing_mm = 0;
   Space space = Space::kRas;
   Algorithm algorithm = Algorithm::kPodm;
@@ -286,7 +287,7 @@ struct MeshingOptions {
   TeamOptions team = {};
   LeafOptions leaves = {};
   OptimizeOptions optimize = {};
-  std::uint64_t cut_seed = 0;  ///< on ranks: draws where blocks are cut; 0: by predicted work
+  std::uint64_t cut_seed = 0;  ///< on ranks: draws the cuts between blocks; 0: cuts follow the predicted work
   Limits limits = {};
   OperationLogWriter* log = nullptr;  ///< learns of every operation of the last run; not finished
 

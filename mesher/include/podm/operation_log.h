@@ -1,14 +1,14 @@
 // The linearization log: every committed operation with a sequence number taken while its locks were held.
-// Played in that order on one thread (podm replay), it must give the same mesh to the bit: the proof that a
-// run of many workers equals a serial one.
+// One thread that replays it in that order (podm replay) must get a bitwise equal mesh. This proves that a
+// run of many workers equals a serial run.
 //
-// On ranks that share no memory each has a log of its own, with the numbers of its own vertices. What it
-// learns of others' vertices is logged, too. Sequence numbers count steps, too, which all ranks take
-// together: so the logs of all ranks, step by step, are one serial run (merge_logs.h).
+// On ranks that share no memory each rank has its own log, with its own vertex numbers. The log also holds
+// the vertices that the rank learns from other ranks. Sequence numbers include the step; all ranks take steps
+// together. Therefore the logs of all ranks, step by step, are one serial run (merge_logs.h).
 //
-// The file: "podmlog1", then batches (two 32-bit counts, that many operations, that many vertices removed, in
-// the operations' order), in no order of sequence; two zero counts; then one JSON object to the end. Numbers
-// are little-endian.
+// The file: "podmlog1", then batches (two 32-bit counts, that many operations, that many removed vertices in
+// the order of the operations), not sorted by sequence; two zero counts; then one JSON object to the end.
+// Numbers are little-endian.
 #pragma once
 
 #include <array>
@@ -22,25 +22,26 @@
 
 namespace podm {
 
-/// The kind of an entry that is no operation: a vertex got another id.
+/// The kind of an entry that is not an operation: a vertex got another id.
 inline constexpr std::uint32_t kMovedVertex = 0;
 
-/// Kinds of entries that are no operations, but tell what a rank learns from others between its own: there is
-/// a vertex, whose VertexKind is added to the first, or one is gone, the one removed.
+/// Kinds of entries that are not operations. They log what a rank learns from other ranks between its own
+/// operations. kLearntVertex plus a VertexKind: a vertex exists. kForgottenVertex: the removed vertex is
+/// gone.
 inline constexpr std::uint32_t kLearntVertex = 1u << 8, kForgottenVertex = 1u << 9;
 
-/// The high bits of a sequence number are the step, from 0; the first is all of a run on one machine.
+/// The high bits of a sequence number are the step, from 0. A run on one machine has only step 0.
 inline constexpr unsigned kBitsInStep = 40;
 inline std::uint64_t step_of(std::uint64_t sequence) { return sequence >> kBitsInStep; }
-/// "operation 5", or "operation 5 of step 3" unless it is the first.
+/// Returns "operation 5", or "operation 5 of step 3" unless the step is the first.
 std::string operation_text(std::uint64_t sequence);
 
-/// An isosurface point or circumcentre inserted, together with the removal of vertices. Or a vertex that gets
-/// another id: the one removed is called `vertex` from now on.
+/// An inserted isosurface point or circumcenter together with the removed vertices. Or a new id of a vertex:
+/// the removed id is called `vertex` from now on.
 struct LoggedOperation {
   std::uint64_t sequence = 0;     ///< order of the commits of a run; gaps are allowed
   std::array<double, 3> point{};  ///< mm, working frame
-  std::uint32_t vertex = 0;       ///< id of the inserted vertex; ids of removed vertices are used again
+  std::uint32_t vertex = 0;       ///< id of the inserted vertex; ids of removed vertices are reused
   std::uint32_t worker = 0;
   std::uint32_t kind = 0;  ///< a VertexKind, or kMovedVertex
   std::uint32_t num_removed = 0;
@@ -49,58 +50,60 @@ static_assert(sizeof(LoggedOperation) == 48);
 
 struct OperationBatch {
   std::vector<LoggedOperation> operations;
-  std::vector<std::uint32_t> removed;  ///< vertex ids, num_removed for each operation
+  std::vector<std::uint32_t> removed;  ///< vertex ids, num_removed per operation
 };
 
-/// What a log tells of its run besides operations.
+/// The description of the run in a log.
 struct OperationLogHead {
-  std::array<double, 6> box{};  ///< low and high corner of the virtual box, as above
+  std::array<double, 6> box{};  ///< low and high corner of the virtual box, mm, working frame
   std::string image_sha256;     ///< label_image_sha256() of the image as meshed
-  std::string space;            ///< of the coordinates hashed: "RAS", "LPS" or "voxel"
-  std::string mesh_sha256;      ///< canonical, of the mesh as written; empty: see the next
-  std::string mesh_hash = {};   ///< of a mesh that ranks made, mesh_hash_text() of the whole; else empty
-  int rank = 0, num_ranks = 1;  ///< whose log of how many
-  double smoothing_mm = 0;      ///< by which interfaces were smoothed
+  std::string space;            ///< space of the hashed coordinates: "RAS", "LPS" or "voxel"
+  std::string mesh_sha256;      ///< canonical, of the mesh as written; empty if `mesh_hash` is set
+  std::string mesh_hash = {};   ///< mesh_hash_text() of the whole mesh, if ranks made it; otherwise empty
+  int rank = 0, num_ranks = 1;  ///< rank of this log, and number of ranks
+  double smoothing_mm = 0;      ///< width by which interfaces were smoothed
 };
 
 struct OperationLog {
   OperationLogHead head;
-  OperationBatch all;  ///< in sequence
+  OperationBatch all;  ///< sorted by sequence
 };
 
-/// Writes a log aside and gives it its name when it is finished; else nothing is left.
+/// Writes a log to a temporary file and renames the file when it is finished. Otherwise no file remains.
 class OperationLogWriter {
  public:
-  /// Throws InputError when the file cannot be made.
+  /// Throws InputError if the file cannot be created.
   explicit OperationLogWriter(const std::string& path);
   ~OperationLogWriter();
   OperationLogWriter(const OperationLogWriter&) = delete;
   OperationLogWriter& operator=(const OperationLogWriter&) = delete;
 
-  /// Between operations. What comes now comes after what any rank has done in earlier steps.
+  /// Must be called between operations. Later operations of this rank follow all operations of any rank in
+  /// earlier steps.
   void begin_step();
-  /// Any worker, any time.
+  /// Any worker may call it at any time.
   std::uint64_t next_sequence() { return sequence_.fetch_add(1, std::memory_order_relaxed); }
   void append(const OperationBatch& batch);
-  /// Forgets all operations, for a run that starts again.
+  /// Removes all operations, for a run that starts again.
   void restart();
-  /// Brings all to the disk, still aside. Throws InputError when the file cannot be written whole.
+  /// Writes everything to the disk, still under the temporary name. Throws InputError if the file cannot be
+  /// written completely.
   void finish(const OperationLogHead& head);
-  /// Gives a finished log its name. Throws InputError when it cannot have it.
+  /// Gives a finished log its name. Throws InputError if the file cannot be renamed.
   void publish();
 
  private:
   struct File;
   std::unique_ptr<File> file_;
-  // Relaxed: whoever takes the number of a later operation on the same vertices holds their locks, so it
-  // comes after the earlier holder's release, and fetch_add keeps that order.
+  // Relaxed order suffices. A worker that takes the number of a later operation on the same vertices holds
+  // their locks. It therefore comes after the release by the earlier holder, and fetch_add keeps that order.
   std::atomic<std::uint64_t> sequence_ = 0;
 };
 
-/// Hashes what a mesh depends on: the voxels of the selected labels, and the affine.
+/// Returns a hash of the voxels of the selected labels and of the affine, on which a mesh depends.
 std::string label_image_sha256(const LabelImage& image);
 
-/// Throws InputError with file, place and fault.
+/// Throws InputError that names file, place and fault.
 OperationLog read_operation_log(const std::string& path);
 
 }  // namespace podm

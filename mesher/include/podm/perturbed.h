@@ -1,4 +1,5 @@
-// What R7 did for dihedral angles (refine/perturbation.h): the best it could, which is counted.
+// The result of R7 for dihedral angles (refine/perturbation.h). R7 improves angles as far as it can; it
+// guarantees nothing.
 #pragma once
 
 #include <array>
@@ -9,10 +10,10 @@
 
 namespace podm {
 
-/// Why a cell keeps an angle out of bounds: what the point that came farthest met, of all to which one of its
-/// vertices could have moved. kSpacing: other vertices were too near. kShape: a cell there would have had no
-/// better angle, or too large a circumradius or radius-edge ratio. kSurface: one would have asked for a
-/// vertex on the isosurface or beside it.
+/// The reason why a cell keeps an angle out of bounds. One of its vertices could have moved to several
+/// points; the reason belongs to the point that passed the most checks. kSpacing: other vertices were too
+/// near. kShape: a cell there would have had no better angle, or too large a circumradius or radius-edge
+/// ratio. kSurface: a cell would have required a vertex on the isosurface or beside it.
 enum class Unmoved { kSpacing, kShape, kSurface };
 template <>
 struct Names<Unmoved> {
@@ -23,14 +24,14 @@ struct Names<Unmoved> {
 
 struct Perturbed {
   double min_dihedral_deg = 0, max_dihedral_deg = 0;  ///< the bounds
-  /// Cells with an angle out of bounds.
+  /// Numbers of cells with an angle out of bounds.
   struct Cells {
     std::uint64_t with_free_vertex = 0, without = 0;
     std::uint64_t number() const { return with_free_vertex + without; }
   };
   Cells before, after;
-  std::array<std::uint64_t, Names<Unmoved>::kAll.size()> unmoved{};  ///< of those after, by reason
-  std::uint64_t not_reached = 0;  ///< of those after, when the run ended early
+  std::array<std::uint64_t, Names<Unmoved>::kAll.size()> unmoved{};  ///< cells of `after`, by reason
+  std::uint64_t not_reached = 0;  ///< cells of `after` that were not tried because the run ended early
 };
 
 }  // namespace podm

@@ -1,4 +1,4 @@
-// A volume of the sizes that cells are to have, on a grid of its own.
+// A volume of requested cell sizes, on a grid of its own.
 #pragma once
 
 #include <array>
@@ -8,16 +8,15 @@
 
 namespace podm {
 
-/// Bounds on the circumradius, mm. Between the centres of voxels the bound is trilinear: the mean of those of
-/// the eight voxels around a point that have one, by their weights. The voxels at the border reach half a
-/// voxel beyond their centres, as voxels do; elsewhere, and where none of the eight has a bound, there is
-/// none.
+/// Bounds on the circumradius, mm. Between voxel centers the bound is trilinear: the weighted mean over those
+/// of the eight surrounding voxels that have a bound. Border voxels reach half a voxel beyond their centers.
+/// There is no bound elsewhere, nor where none of the eight voxels has one.
 struct SizeImage {
   std::string path;                        ///< for messages
   std::array<int, 3> size{};               ///< voxels per axis
   std::array<double, 12> voxel_to_ras{};   ///< row-major 3x4, voxel indices to world mm
   std::vector<float> radius_mm;            ///< x fastest; 0: the voxel has no bound
-  std::vector<std::string> warnings = {};  ///< what is odd about the file
+  std::vector<std::string> warnings = {};  ///< unusual properties of the file
 
   std::size_t num_voxels() const { return radius_mm.size(); }
 };

@@ -1,4 +1,4 @@
-// The mesh that leaves the library: cells with labels, boundary facets with label pairs.
+// The output mesh: cells with labels, boundary facets with label pairs.
 #pragma once
 
 #include <array>
@@ -15,19 +15,19 @@ namespace podm {
 /// Every cell is positively oriented: with vertices (a,b,c,d), dot(cross(b-a, c-a), d-a) > 0.
 struct TetMesh {
   std::vector<std::array<double, 3>> vertices;       ///< coordinates in `space`
-  std::vector<std::array<std::uint32_t, 4>> cells;   ///< vertex positions
-  std::vector<LabelIndex> cell_labels;               ///< one a cell, position in `labels`, never background
+  std::vector<std::array<std::uint32_t, 4>> cells;   ///< positions in `vertices`
+  std::vector<LabelIndex> cell_labels;               ///< one per cell, position in `labels`, never background
   std::vector<std::array<std::uint32_t, 3>> facets;  ///< boundary and interface facets, each once
-  /// One a facet: the labels on its two sides, smaller index first; 0 is outside. The facet's normal
+  /// One per facet: the labels on its two sides, smaller index first; 0 is outside. The facet's normal
   /// (right-hand rule) points out of the cell of the *second* label, towards the first.
   std::vector<std::array<LabelIndex, 2>> facet_labels;
   std::vector<Label> labels;  ///< labels[0] is the background
   Space space = Space::kRas;
-  /// The cells were optimised: they are no Delaunay triangulation.
+  /// True if the cells were optimised: they are then not a Delaunay triangulation.
   bool is_optimized = false;
-  /// The width, mm, by which the interfaces of the image were smoothed; 0: they were not.
+  /// The width, mm, by which the interfaces of the image were smoothed; 0: not smoothed.
   double smoothing_mm = 0;
-  /// Least and largest dihedral angle, degrees, that all cells keep, if that was asked for and reached.
+  /// Least and largest dihedral angle, degrees, that all cells keep, if bounds were requested and reached.
   std::optional<std::array<double, 2>> dihedral_bounds_deg = {};
 };
 

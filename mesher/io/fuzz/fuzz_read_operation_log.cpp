@@ -1,5 +1,5 @@
-// Linearization logs: a file either is one whose operations are in sequence, or is refused with an InputError
-// that begins with its path.
+// Property: a file either is a linearization log whose operations are in sequence, or is refused with an
+// InputError that begins with its path.
 #include "fuzz_scratch.h"
 #include "podm/errors.h"
 #include "podm/operation_log.h"

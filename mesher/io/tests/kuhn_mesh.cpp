@@ -9,9 +9,10 @@
 namespace podm {
 namespace {
 
-using Corner = std::array<int, 3>;  // of a cube, in grid steps
+using Corner = std::array<int, 3>;  // corner of a cube, in grid steps
 
-// The six cells of a cube: monotone paths from (0,0,0) to (1,1,1), turned to be positive.
+// Returns the six cells of a cube: monotone paths from (0,0,0) to (1,1,1), permuted to be positively
+// oriented.
 std::array<std::array<Corner, 4>, 6> cells_of_cube() {
   std::array<std::array<Corner, 4>, 6> cells;
   std::array<int, 3> axes{0, 1, 2};
@@ -74,12 +75,13 @@ class KuhnGrid {
     for (const auto& facet : kFacetVertices) {
       const LabelIndex beyond = label_beyond(cube, corners, facet);
       if (beyond >= label) continue;  // the cell of the greater label has the facet
-      mesh_.facets.push_back({cell[facet[0]], cell[facet[2]], cell[facet[1]]});  // seen from outside
+      // Orientation as seen from outside.
+      mesh_.facets.push_back({cell[facet[0]], cell[facet[2]], cell[facet[1]]});
       mesh_.facet_labels.push_back({beyond, label});
     }
   }
 
-  // The label across a facet: of the next cube where the facet lies in a side of this one.
+  // Returns the label across a facet: that of the next cube if the facet lies in a side of this one.
   LabelIndex label_beyond(const Corner& cube, const std::array<Corner, 4>& corners,
                           const std::array<int, 3>& facet) const {
     for (int axis = 0; axis < 3; ++axis) {
@@ -140,7 +142,7 @@ TetMesh shuffled(const TetMesh& mesh, std::uint64_t seed) {
   result.cell_labels = reordered(mesh.cell_labels, old_cell);
   for (auto& cell : result.cells) {
     for (auto& vertex : cell) vertex = new_vertex[vertex];
-    for (int turn = 0; turn < 4; ++turn) {  // three-cycles make every even permutation
+    for (int turn = 0; turn < 4; ++turn) {  // three-cycles generate every even permutation
       const auto begin = cell.begin() + random() % 2;
       std::rotate(begin, begin + random() % 3, begin + 3);
     }

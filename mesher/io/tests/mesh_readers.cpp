@@ -19,7 +19,7 @@ Space space_of(const std::string& word) {
   throw std::runtime_error("unknown space " + word);
 }
 
-// Binary values and text lines, one after the other.
+// Reads binary values and text lines one after the other.
 class Bytes {
  public:
   explicit Bytes(std::string bytes) : bytes_(std::move(bytes)) {}
@@ -68,7 +68,7 @@ class MeditReader {
   TetMesh take() { return std::move(mesh_); }
 
  private:
-  // The next line that is no comment; comments are taken in.
+  // Reads the next line that is not a comment. Evaluates comments on the way.
   bool next_line() {
     std::string line;
     while (std::getline(file_, line)) {

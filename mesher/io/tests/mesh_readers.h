@@ -1,5 +1,5 @@
 // Small readers of the written formats, made from the formats' descriptions alone. They throw
-// std::runtime_error on anything unexpected.
+// std::runtime_error on unexpected input.
 #pragma once
 
 #include <array>
@@ -13,18 +13,18 @@ namespace podm {
 
 std::string read_bytes(const std::string& path);
 
-/// The mesh that a file tells, with the label values and names of the file; background first.
+/// Returns the mesh of the file, with the label values and names of the file; background first.
 TetMesh read_medit(const std::string& path);
 
-/// Holds, beside the mesh, the signed surfaces around each volume, as pairs of labels: {first, second} where
-/// the file says that the surface's normal points out of the volume, {second, first} where it points in.
+/// A mesh and the signed surfaces around each volume. Surfaces are pairs of labels: {first, second} if the
+/// surface's normal in the file points out of the volume, {second, first} if it points inwards.
 struct GmshFile {
   TetMesh mesh;
   std::map<LabelIndex, std::vector<std::array<LabelIndex, 2>>> surfaces_of_volume;
 };
 GmshFile read_gmsh(const std::string& path);
 
-/// Triangles of a surface, each three points.
+/// Triangles of a surface, three points each.
 using Triangles = std::vector<std::array<std::array<double, 3>, 3>>;
 Triangles read_stl(const std::string& path);
 Triangles read_ply(const std::string& path);

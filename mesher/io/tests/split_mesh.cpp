@@ -16,7 +16,7 @@ Facet sorted(Facet facet) {
   return facet;
 }
 
-// Which cell each facet of the mesh is the side of, that of the greater label where there are two.
+// Returns the cell behind each facet of the mesh: the cell of the greater label if there are two cells.
 std::map<Facet, std::size_t> cells_of_facets(const TetMesh& mesh) {
   std::map<Facet, std::size_t> cell_of;
   for (std::size_t c = 0; c < mesh.cells.size(); ++c) {
@@ -32,7 +32,7 @@ std::map<Facet, std::size_t> cells_of_facets(const TetMesh& mesh) {
   return cell_of;
 }
 
-// Vertices of the whole mesh become those of a piece, in the order in which they are asked for.
+// Renumbers vertices of the whole mesh for a piece, in the order in which they are requested.
 class PieceVertices {
  public:
   PieceVertices(const TetMesh& whole, MeshPiece& piece)
@@ -58,7 +58,7 @@ class PieceVertices {
   std::vector<std::uint32_t> position_;
 };
 
-// Numbers those vertices of the piece that no piece before it uses.
+// Numbers the vertices of the piece that no earlier piece uses.
 void number_vertices(const std::vector<std::uint32_t>& whole_vertices, std::vector<std::uint64_t>& id_of,
                      std::uint64_t& next_id, MeshPiece& piece) {
   for (const std::uint32_t vertex : whole_vertices) {

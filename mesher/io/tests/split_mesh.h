@@ -7,9 +7,9 @@
 
 namespace podm {
 
-/// Pieces of about as many cells, in their order; fewer cells than pieces leave some without any. A facet is
-/// in the piece of the cell that its normal points out of. A vertex is owned by the first piece that uses it;
-/// numbers run through the owners' pieces.
+/// Returns pieces with about equal numbers of cells, in the order of the cells. If there are fewer cells than
+/// pieces, some pieces are empty. A facet is in the piece of the cell that its normal points out of. A vertex
+/// is owned by the first piece that uses it; numbers ascend through the owners' pieces.
 std::vector<MeshPiece> split_into_pieces(const TetMesh& mesh, int num_pieces);
 
 }  // namespace podm

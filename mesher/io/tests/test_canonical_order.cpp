@@ -27,7 +27,7 @@ TEST(CanonicalOrder, DoesNotDependOnTheOrderOfTheInput) {
   }
 }
 
-// Enough vertices for several to share a bucket of the radix pass.
+// The mesh has enough vertices that several share a bucket of the radix pass.
 TEST(CanonicalOrder, HoldsBeyondOneVertexABucket) {
   const TetMesh mesh = make_test_mesh(18, 5);
   ASSERT_GT(mesh.vertices.size(), 4096u);
@@ -36,7 +36,7 @@ TEST(CanonicalOrder, HoldsBeyondOneVertexABucket) {
   EXPECT_TRUE(std::is_sorted(expected.cells.begin(), expected.cells.end()));
 }
 
-// The first of all the ways to write a simplex that leave it its orientation.
+// Returns the lexicographically first permutation of a simplex that keeps its orientation.
 std::array<std::uint32_t, 4> first_way(const std::array<std::uint32_t, 4>& cell) {
   std::array<unsigned, 4> order{0, 1, 2, 3};
   std::array<std::uint32_t, 4> first = cell;
@@ -80,8 +80,8 @@ TetMesh sorted_plainly(TetMesh mesh) {
   return mesh;
 }
 
-// Simplices of any vertices, twice the same too: of some vertices there are hundreds, of others none. Many
-// vertices share an x, one is far away.
+// The simplices have arbitrary vertices and repeat: some vertices have hundreds of simplices, others none.
+// Many vertices share an x, one is far away.
 TEST(CanonicalOrder, IsThatOfAPlainSort) {
   std::mt19937_64 random(3);
   TetMesh mesh;

@@ -1,4 +1,5 @@
-// The order-free hash: the same for the same mesh in any order and in any pieces, another for any change.
+// The order-independent hash is the same for the same mesh in any order and in any pieces, and differs after
+// any change.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -17,7 +18,7 @@ TEST(MeshHash, IgnoresOrderNamesAndTheNumberingOfLabels) {
   EXPECT_EQ(mesh_hash(other), mesh_hash(mesh));
   canonicalize(other);
   EXPECT_EQ(mesh_hash(other, 2), mesh_hash(mesh, 1));
-  other.labels.push_back(other.labels[3]);  // the same value behind another index
+  other.labels.push_back(other.labels[3]);  // the same value at another index
   for (LabelIndex& label : other.cell_labels)
     if (label == 3) label = 4;
   EXPECT_EQ(mesh_hash(other), mesh_hash(mesh));

@@ -47,7 +47,7 @@ TEST(MeshSha256, IgnoresOrderNamesAndTheNumberingOfLabels) {
   other.labels[1].name = "hepar";
   EXPECT_EQ(mesh_sha256(other), mesh_sha256(mesh));
 
-  other.labels.push_back(other.labels[3]);  // the same value behind another index
+  other.labels.push_back(other.labels[3]);  // the same value at another index
   for (LabelIndex& label : other.cell_labels)
     if (label == 3) label = 4;
   EXPECT_EQ(mesh_sha256(other), mesh_sha256(mesh));

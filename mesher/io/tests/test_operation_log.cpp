@@ -1,5 +1,5 @@
-// Linearization logs: what is written reads back in sequence, whatever the order of the batches; damaged
-// files are refused and unfinished ones leave nothing.
+// Linearization logs read back in sequence, in whatever order batches were written. Damaged files are
+// refused, and unfinished logs leave no file.
 #include "podm/operation_log.h"
 
 #include <gtest/gtest.h>
@@ -20,7 +20,7 @@ class OperationLogFile : public testing::Test {
   std::string path_ = folder_ / "run.log";
   const OperationLogHead head_{{0, -1, 2.5, 1. / 3, 1e-9, 7}, "ab12", "LPS", "cd34"};
 
-  // Batches of several workers as they come, sequence numbers with gaps.
+  // Writes batches of several workers in arbitrary order; sequence numbers have gaps.
   void write(std::size_t count, unsigned seed) {
     OperationLogWriter writer(path_);
     std::mt19937 random(seed);
@@ -134,7 +134,7 @@ TEST_F(OperationLogFile, EveryTruncationIsRefused) {
   write(60, 6);
   const std::string whole = bytes();
   for (std::size_t size = 0; size + 2 < whole.size();
-       size += 1 + size / 40) {  // without the last line end it is whole
+       size += 1 + size / 40) {  // without the last newline the file is still complete
     overwrite(whole.substr(0, size));
     EXPECT_THROW(read_operation_log(path_), InputError) << size << " of " << whole.size() << " bytes";
   }

@@ -9,7 +9,7 @@
 namespace podm {
 namespace {
 
-// Few facets and many, one subset after the other.
+// Assigns subsets of few and many facets one after the other.
 TEST(VertexSubset, HasTheVerticesOfTheFacetsInTheOrderOfTheMesh) {
   constexpr std::uint32_t kVertices = 1000;
   std::mt19937_64 random(1);

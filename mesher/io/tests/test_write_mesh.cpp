@@ -1,5 +1,5 @@
-// Medit and Gmsh files read back give the mesh that was written; what cannot be written is refused and leaves
-// nothing.
+// Medit and Gmsh files read back to the mesh that was written. A mesh that cannot be written is refused and
+// leaves no file.
 #include <gtest/gtest.h>
 
 #include <cctype>
@@ -56,7 +56,7 @@ TEST_P(EverySpace, GmshRoundTrip) {
 INSTANTIATE_TEST_SUITE_P(Spaces, EverySpace, testing::Values(Space::kRas, Space::kLps, Space::kVoxel),
                          [](const auto& instance) { return to_string(instance.param); });
 
-// Each volume is bounded by exactly the surfaces that hold its label, signed by the side it is on.
+// Exactly the surfaces that hold a volume's label bound it, with the sign of its side.
 TEST(GmshFile, SurfacesOfVolumesAreSignedByTheirSide) {
   const ScratchFolder folder;
   const TetMesh mesh = make_test_mesh();
@@ -79,7 +79,7 @@ TEST(GmshFile, SurfacesOfVolumesAreSignedByTheirSide) {
   EXPECT_EQ(num_surfaces, pairs.size());
 }
 
-// Gmsh's tags are positive ints; physical groups carry the values where they can.
+// Gmsh's tags are positive ints; physical groups have the label values if these fit.
 TEST(GmshFile, PhysicalGroupsAreTheLabelValuesWhereTheyFit) {
   const ScratchFolder folder;
   TetMesh mesh = make_test_mesh();
@@ -104,11 +104,12 @@ TEST(MeshFiles, LabelNamesAreMadePrintableAndDistinct) {
     EXPECT_EQ(names_of(read_medit(folder / "a.mesh").labels), names);
   };
   expect_names({"a \"b\"|\nc", "outside", "a 'b'/ c"}, {"a 'b'/ c", "outside 3000000000", "a 'b'/ c 2"});
-  expect_names({"b\xc3\xb8rn", "\xe8\x82\x9d", "\xf0\x9f\xab\x80"},  // UTF-8 stays
+  expect_names({"b\xc3\xb8rn", "\xe8\x82\x9d", "\xf0\x9f\xab\x80"},  // valid UTF-8 is kept
                {"b\xc3\xb8rn", "\xe8\x82\x9d", "\xf0\x9f\xab\x80"});
   expect_names({"m\xf8r", "cut \xe8\x82", "over\xc1\xa1long"},  // Latin-1, truncated, overlong
                {"m?r", "cut ??", "over??long"});
-  expect_names({"low \xed\xa0\x80", "non \xef\xbf\xbf", "big \xf4\x90\x80\x80"},  // no characters
+  // Code points that are not characters.
+  expect_names({"low \xed\xa0\x80", "non \xef\xbf\xbf", "big \xf4\x90\x80\x80"},
                {"low ???", "non ???", "big ????"});
 }
 
@@ -193,7 +194,7 @@ TEST(CheckPath, AVersionOfGmshIsForItsFilesAlone) {
   EXPECT_THROW(check_mesh_path(folder / "a.vtu", options), InputError);
 }
 
-// Sets of Abaqus have names of letters, digits, '_' and '-', of at most 80 characters, whatever their case.
+// Names of Abaqus sets consist of letters, digits, '_' and '-', have at most 80 characters, and ignore case.
 TEST(AbaqusFile, NamesOfSetsAreMadeSafeAndDistinctAndToldOf) {
   const ScratchFolder folder;
   TetMesh mesh = make_test_mesh();
@@ -221,7 +222,7 @@ TEST(AbaqusFile, NamesOfSetsAreMadeSafeAndDistinctAndToldOf) {
   EXPECT_EQ(names.size(), 3u);
 }
 
-// CalculiX reads 20 characters of a number: more would lose an exponent.
+// CalculiX reads 20 characters of a number: a longer number would lose its exponent.
 TEST(AbaqusFile, RealsHaveAtMostTwentyCharactersAndThatIsTold) {
   const ScratchFolder folder;
   TetMesh mesh = make_test_mesh();

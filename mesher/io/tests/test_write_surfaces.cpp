@@ -60,7 +60,7 @@ TEST(Surfaces, StlNormalsAgreeWithTheVertices) {
   const ScratchFolder folder;
   write_surfaces(make_test_mesh(), folder / "s.stl");
   const std::string bytes = read_bytes(folder / "s_7_liver.stl");
-  EXPECT_NE(bytes.substr(0, 5), "solid");  // that word announces an ascii file
+  EXPECT_NE(bytes.substr(0, 5), "solid");  // this word would announce an ascii file
   const Triangles triangles = read_stl(folder / "s_7_liver.stl");
   for (std::size_t i = 0; i < triangles.size(); ++i) {
     std::array<float, 3> normal;

@@ -1,4 +1,4 @@
-// VTU files as VTK's own reader sees them, through a script for the system's Python.
+// VTU files as VTK's own reader reads them, through a script for the system's Python.
 #include <gtest/gtest.h>
 
 #include <cstdio>
@@ -18,9 +18,9 @@ namespace {
 struct VtuContent {
   std::vector<std::array<double, 3>> points;
   std::vector<std::vector<std::uint32_t>> cells;           // VTK's type of the cell, then its points
-  std::map<std::string, std::vector<std::string>> arrays;  // "cell label"
+  std::map<std::string, std::vector<std::string>> arrays;  // keys such as "cell label"
   std::map<std::string, std::string> field;
-  std::string global_ids;  // the array that VTK takes for them
+  std::string global_ids;  // the array that VTK uses as global ids
   double area = 0, volume = 0;
 };
 
@@ -149,7 +149,7 @@ class PvtuFile : public VtuFile {
   }
 };
 
-// Points of the same number, in however many pieces, are one vertex.
+// Points with the same number, in any pieces, are one vertex.
 std::map<std::uint64_t, std::array<double, 3>> points_by_id(const VtuContent& content) {
   std::map<std::uint64_t, std::array<double, 3>> points;
   const auto& ids = content.arrays.at("point GlobalNodeIds");

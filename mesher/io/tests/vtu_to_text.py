@@ -1,5 +1,5 @@
 #!/usr/bin/python3
-"""Reads a VTU file, or an index of pieces, with VTK and prints what VTK found in it, one item a line, doubles exactly.
+"""Reads a VTU file, or an index of pieces, with VTK and prints its contents, one item per line, doubles exactly.
 
 usage: vtu_to_text.py FILE.vtu|FILE.pvtu
 """

@@ -1,10 +1,10 @@
-"""podm.mesh against podm mesh, on the same image: seconds in turns, and the peak of memory of each.
+"""Compares podm.mesh with podm mesh on the same image: seconds of alternating runs, and peak memory of each.
 
     PYTHONPATH=build/python /usr/bin/python3 mesher/python/benchmarks/bench_against_program.py build/bin/podm
 
-Both read the same voxels, mesh and write a .vtu: the program from a .nii file, Python from an array that it
-has in memory, in a process of its own. Prints the ratio of the medians of seconds, of each order, and exits with 1
-where one is above the bound. Peak memory of Python is told above what it has with its array before.
+Both read the same voxels, mesh and write a .vtu: the program from a .nii file, Python from an array in memory, each in
+a process of its own. Prints the ratio of the medians of seconds for each order, and exits with 1 if one is above the
+bound. The peak memory of Python is the increase over its memory with the array.
 """
 
 import argparse
@@ -54,7 +54,7 @@ def run_program(folder, arguments):
 
 
 def make_image(folder, program, size):
-    """The phantom, as the program's file and as numpy's."""
+    """Makes the phantom, as a file for the program and as a file of numpy."""
     path = folder / "image.nii"
     subprocess.run([program, "phantom", "abdomen", "--size", str(size), "-o", path], check=True, capture_output=True)
     image = nibabel.load(path)

@@ -1,6 +1,6 @@
 """Tetrahedral meshes with guarantees from segmented 3-D images.
 
-A segmentation in, as a numpy array, a nibabel image or a file name, and a mesh for finite elements out::
+The input is a segmentation: a numpy array, a nibabel image or a file name. The output is a mesh for finite elements::
 
     import nibabel, podm
 
@@ -12,8 +12,9 @@ A segmentation in, as a numpy array, a nibabel image or a file name, and a mesh 
 Every mesh of a finished run keeps the bounds of the program `podm`: cells have a radius-edge ratio below 1.93 and are
 Delaunay; boundary and interface facets have angles above 30 degrees and vertices on the surface between the labels.
 
-`plan` tells what a mesh will cost and lose, `mesh` is the mesher, `Mesh` what it returns, `Verification` what proves
-it; `Error`, `InternalError` and `Interrupted` are raised, and `Progress` is what a callback is told.
+`plan` predicts the cost of a mesh and the parts that it loses. `mesh` runs the mesher and returns a `Mesh`.
+`Verification` is the report of the proofs. The exceptions are `Error`, `InternalError` and `Interrupted`. A callback
+gets a `Progress`.
 """
 
 from ._podm import Progress, __version__

@@ -1,4 +1,4 @@
-"""The extension module: what podm/*.py is written with, and not for others."""
+"""The extension module, for podm/*.py only."""
 
 from collections.abc import Callable, Mapping, Sequence
 
@@ -8,19 +8,19 @@ import numpy.typing as npt
 __version__: str
 
 class Progress:
-    """How far a run of the mesher is."""
+    """Progress of a run of the mesher."""
     @property
     def phase(self) -> str:
-        """"transform", "refine", "perturb", "optimize", "extract" or "measure"."""
+        """"transform", "smooth", "refine", "perturb", "optimize", "extract" or "measure"."""
     @property
     def fraction(self) -> float:
-        """Of the phase, an estimate from 0 to 1."""
+        """Estimated fraction of the phase, from 0 to 1."""
     @property
     def cells(self) -> int:
-        """So far."""
+        """Current number of cells."""
     @property
     def seconds(self) -> float:
-        """Since the run began."""
+        """Seconds since the run began."""
 
 class MeshInMemory:
     @property

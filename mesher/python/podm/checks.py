@@ -1,4 +1,4 @@
-"""What a value is, and what is said of one that is not what was expected."""
+"""Checks of values, and the messages about unexpected values."""
 
 from __future__ import annotations
 
@@ -30,17 +30,17 @@ def is_label_value(value: Any) -> bool:
 
 
 def path_bytes(keyword: str, path: Any) -> bytes:
-    """The name of a file as the system has it, which need not be UTF-8."""
+    """Returns the name of a file in the system's encoding, which need not be UTF-8."""
     return _encoded(keyword, "the name of a file", path, os.fsencode)
 
 
 def text_bytes(keyword: str, text: Any) -> bytes:
-    """In UTF-8."""
+    """Returns the text in UTF-8."""
     return _encoded(keyword, "a text", text, str.encode)
 
 
 def _encoded(keyword: str, expected: str, text: Any, encode: Callable[[Any], bytes]) -> bytes:
-    """C++ takes bytes of any kind, but its libraries end at a NUL, and would write or read another file."""
+    """Refuses NUL: C++ takes any bytes, but its libraries end at a NUL and would write or read another file."""
     try:
         encoded = encode(text)
     except (TypeError, UnicodeEncodeError):

@@ -1,4 +1,4 @@
-"""What podm raises."""
+"""The exceptions of podm."""
 
 from __future__ import annotations
 
@@ -9,15 +9,15 @@ if typing.TYPE_CHECKING:
 
 
 class Error(ValueError):
-    """An image, an argument or a file is at fault; the text says which, and what was expected."""
+    """An image, an argument or a file is wrong; the text names it and the expected value."""
 
 
 class InternalError(RuntimeError):
-    """The mesher itself is at fault: a broken invariant, never the caller's doing."""
+    """The mesher itself is wrong: an invariant is broken. The caller never causes it."""
 
 
 class Interrupted(KeyboardInterrupt):
-    """Ctrl-C came while there was a mesh to keep. Whoever wants it catches this exception::
+    """Ctrl-C ended the run while there was a mesh to keep. A caller that wants the mesh catches this exception::
 
         try:
             mesh = podm.mesh(labels, radius=0.5)

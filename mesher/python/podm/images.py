@@ -1,4 +1,4 @@
-"""What may be meshed: an array, an image of nibabel, a file. They become voxels and a place in the world."""
+"""Conversion of input images (arrays, images of nibabel, files) to voxels and a place in the world."""
 
 from __future__ import annotations
 
@@ -18,7 +18,7 @@ def is_file(labels: Any) -> bool:
 
 
 def voxels_and_affine(labels: Any, affine: Any, spacing: Any) -> tuple[np.ndarray, list[float]]:
-    """The voxels, copied only where a byte order is another machine's, and 3x4 numbers that map indices to mm."""
+    """Returns the voxels, copied only if their byte order is foreign, and the 3x4 numbers that map indices to mm."""
     if affine is not None and spacing is not None:
         raise Error("affine and spacing: one of them is expected, not both")
     if hasattr(labels, "dataobj") and hasattr(labels, "affine"):
@@ -30,7 +30,7 @@ def voxels_and_affine(labels: Any, affine: Any, spacing: Any) -> tuple[np.ndarra
 
 
 def _affine_of_nibabel(image: Any) -> np.ndarray:
-    """In mm: nibabel leaves the unit of the header as it is."""
+    """Returns the affine in mm: nibabel leaves the unit of the header as it is."""
     units = getattr(image.header, "get_xyzt_units", lambda: ("mm", None))()
     affine = np.eye(4) if image.affine is None else np.array(image.affine, dtype=float)
     affine[:3] *= _MM_OF_UNIT.get(units[0], 1.0)

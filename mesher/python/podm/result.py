@@ -1,4 +1,4 @@
-"""podm.Mesh: what podm.mesh returns."""
+"""podm.Mesh, the result of podm.mesh."""
 
 from __future__ import annotations
 
@@ -24,24 +24,24 @@ class Mesh:
     """A tetrahedral mesh with labels.
 
     Its arrays are read-only. `points`, `cells` and `facets` are views of the mesher's memory and keep it alive;
-    `labels` and `facet_labels` are made once, when first asked for. Points, cells and facets are in the canonical order
+    `labels` and `facet_labels` are made once, at the first access. Points, cells and facets are in the canonical order
     of the program, so that the same mesh has the same arrays.
     """
 
     def __init__(self, made: _podm.MeshInMemory) -> None:
-        """Not for callers: podm.mesh makes meshes."""
+        """Not for users: podm.mesh makes meshes."""
         self._made = made
 
     @property
     def points(self) -> npt.NDArray[np.float64]:
-        """Coordinates of the vertices in mm (of `space`), shape (n, 3)."""
+        """Coordinates of the vertices in mm (in the frame `space`), shape (n, 3)."""
         return self._made.points
 
     @property
     def cells(self) -> npt.NDArray[np.uint32]:
         """The four vertices of each cell, as positions in `points`, shape (m, 4).
 
-        Of (a, b, c, d) the determinant of (b - a, c - a, d - a) is positive."""
+        For a cell (a, b, c, d) the determinant of (b - a, c - a, d - a) is positive."""
         return self._made.cells
 
     @functools.cached_property
@@ -65,12 +65,12 @@ class Mesh:
 
     @functools.cached_property
     def names(self) -> dict[int, str]:
-        """The name of each label by its value, "label 3" where it was given none; without the background."""
+        """The name of each label by its value, "label 3" for a label without a name; without the background."""
         return dict(self._made.labels[1:])
 
     @property
     def background(self) -> int:
-        """The value of the image that stands for no label."""
+        """The value of the background in the image."""
         return self._made.labels[0][0]
 
     @property
@@ -80,37 +80,38 @@ class Mesh:
 
     @property
     def stop_reason(self) -> str:
-        """"complete", or why the run ended early: "time limit", "element limit", "memory limit", "cancelled"."""
+        """"complete", or the reason why the run ended early: "time limit", "element limit", "memory limit",
+        "cancelled", "limit of 2^30 cells in the store"."""
         return self._made.stop_reason
 
     @property
     def is_complete(self) -> bool:
-        """Whether the run was ended by nothing but the mesh that was asked for."""
+        """True if the run was not ended early."""
         return self.stop_reason == "complete"
 
     @property
     def unmet(self) -> list[str]:
-        """A sentence for each guarantee that is missed and each limit that was met; empty if all is well."""
+        """A sentence for each guarantee that is missed and each limit that was met; empty for a complete mesh."""
         return self._made.unmet
 
     @functools.cached_property
     def record(self) -> dict[str, Any]:
-        """All there is to tell of the run, as `podm mesh --record` does: options, times, counts, quality, hashes."""
+        """The record of the run, as `podm mesh --record` writes it: options, times, counts, quality, hashes."""
         return json.loads(self._made.record())
 
     def quality(self) -> dict[str, npt.NDArray[np.float64]]:
-        """How good each cell is: arrays of shape (m,).
+        """Returns the quality of each cell: arrays of shape (m,).
 
-        "radius_edge" (circumradius over shortest edge), "circumradius" (mm), "min_dihedral_deg", "max_dihedral_deg"
-        and "volume" (mm^3). They are measured on `points`: of the space "voxel" in units of voxels. The extremes of
-        all cells and facets in mm are in record["quality"]."""
+        "radius_edge" (circumradius over shortest edge), "circumradius" (mm), "min_dihedral_deg", "max_dihedral_deg" and
+        "volume" (mm^3). They are measured on `points`: in the space "voxel" in units of voxels. The extremes of all
+        cells and facets in mm are in record["quality"]."""
         return self._made.qualities()
 
     def verify(self, *, fidelity: bool = False) -> Verification:
-        """Has podm-verify, a program that shares no code with the mesher, check what this mesh promises.
+        """Runs podm-verify, a program that shares no code with the mesher, to check the promises of this mesh.
 
-        Mesh and image go to it as temporary files. `fidelity`: also that the surfaces of mesh and image are within a
-        voxel or 2 delta of each other, which a mesh much coarser than a structure may miss."""
+        It gets mesh and image as temporary files. `fidelity`: also checks that the surfaces of mesh and image are
+        within a voxel or 2 delta of each other; a mesh much coarser than a structure may fail this check."""
         return verification.verify(self, self._made, fidelity)
 
     def save(self, path: str | os.PathLike[str], *, gmsh_version: str | float | None = None) -> None:
@@ -127,19 +128,19 @@ class Mesh:
         self._made.save_surfaces(path_bytes("path", path))
 
     def to_meshio(self) -> meshio.Mesh:
-        """A meshio.Mesh with blocks of cells and of facets, which needs the package meshio.
+        """Returns a meshio.Mesh with blocks of cells and of facets. Needs the package meshio.
 
-        Cell data: "label" of cells (the second label of facets), "label_a" and "label_b" of facets (a cell has its
-        own on both sides)."""
+        Cell data: "label" of cells (the second label of facets), "label_a" and "label_b" of facets (a cell has its own
+        label on both sides)."""
         import meshio
         first, second = self.facet_labels.T
         return meshio.Mesh(self.points, [("tetra", self.cells), ("triangle", self.facets)], cell_data={
             "label": [self.labels, second], "label_a": [self.labels, first], "label_b": [self.labels, second]})
 
     def to_vtk(self) -> vtk.vtkUnstructuredGrid:
-        """A vtkUnstructuredGrid of the cells, with the cell array `label`, which needs the package vtk.
+        """Returns a vtkUnstructuredGrid of the cells, with the cell array `label`. Needs the package vtk.
 
-        Points and labels are the memory of this mesh. Cells are a copy: VTK 9.1 keeps no others alive."""
+        Points and labels share the memory of this mesh. Cells are a copy: VTK 9.1 keeps no other cells alive."""
         import vtk
         from vtk.util.numpy_support import numpy_to_vtk
         points, labels = numpy_to_vtk(self.points), numpy_to_vtk(self.labels)
@@ -155,7 +156,7 @@ class Mesh:
         return grid
 
     def _values_of(self, labels: npt.NDArray[np.uint16]) -> npt.NDArray[np.uint32]:
-        """The image's values of labels that the mesher has numbered, read-only."""
+        """Returns the image's values of labels that the mesher has numbered, read-only."""
         values = np.array([value for value, _ in self._made.labels], dtype=np.uint32)[labels]
         values.setflags(write=False)
         return values

@@ -1,4 +1,4 @@
-"""Meshes proved by podm-verify, a process of its own that knows them by their files alone."""
+"""Verification of meshes by podm-verify, a separate process that reads only their files."""
 
 from __future__ import annotations
 
@@ -24,7 +24,7 @@ _CLAIM_FAILED = 1
 
 @dataclasses.dataclass(frozen=True)
 class Verification:
-    """What podm-verify says of a mesh."""
+    """The report of podm-verify on a mesh."""
 
     verdicts: dict[str, str]
     """By claim: "pass", "fail", or why it is not decided."""
@@ -35,7 +35,7 @@ class Verification:
 
     @property
     def holds(self) -> bool:
-        """Whether every claim passes."""
+        """True if every claim passes."""
         return bool(self.verdicts) and set(self.verdicts.values()) == {"pass"}
 
     def __bool__(self) -> bool:
@@ -69,7 +69,7 @@ def _verifier() -> str:
 
 
 def _write_image(made: MeshInMemory, path: str) -> bytes:
-    """As NRRD, whose header holds the affine to the last bit. Returns the file's name."""
+    """Writes the image as NRRD, whose header holds the affine to the last bit. Returns the file's name."""
     values = np.array([value for value, _ in made.labels], dtype="<u4")
     rows = np.reshape(made.voxel_to_ras, (3, 4))
     vectors = ["(" + ",".join(map(repr, column.tolist())) + ")" for column in rows.T]

@@ -1,4 +1,4 @@
-"""Small images that the tests mesh, and the program to compare with."""
+"""Small images for the tests, and the program for comparison."""
 
 import json
 import os
@@ -13,12 +13,12 @@ import numpy as np
 import podm
 
 PROGRAM = os.environ["PODM_PROGRAM"]
-# Axes turned and exchanged; a NIfTI header holds it exactly.
+# The axes are reversed and exchanged; a NIfTI header holds the matrix exactly.
 AFFINE = np.array([[-0.75, 0, 0, 12], [0, 0, 1.5, -20], [0, 1, 0, 7.25], [0, 0, 0, 1]])
 
 
 def balls(dtype=np.uint8, order="C"):
-    """Two balls that touch, of values 3 and 7, in an image whose axes all differ; shape (20, 24, 14)."""
+    """Returns two balls that touch, with values 3 and 7, in an image whose axes all differ; shape (20, 24, 14)."""
     i, j, k = np.ogrid[:20, :24, :14]
     image = np.zeros((20, 24, 14), dtype=dtype, order=order)
     image[(i - 8) ** 2 + (j - 8) ** 2 + (k - 7) ** 2 <= 25] = 3
@@ -44,14 +44,15 @@ class TestCase(unittest.TestCase):
         return path
 
     def record_of_program(self, image, *options):
-        """What the program tells of a run on the file, also of one that misses guarantees."""
+        """Returns the record of a run of the program on the file, also if the run misses guarantees."""
         record = self.folder / "record.jsonl"
         subprocess.run([PROGRAM, "mesh", image, "-o", self.folder / "by_program.vtu", "--record", record, "--quiet",
                         *map(str, options)], capture_output=True, check=False)
         return json.loads(record.read_text())
 
     def assert_valid(self, mesh):
-        """Cells are positive, at most two share a facet, and facets are listed where labels change."""
+        """Checks that cells are positive, that at most two cells share a facet, and that facets are listed where labels
+        change."""
         corners = mesh.points[mesh.cells]
         determinants = np.linalg.det(corners[:, 1:] - corners[:, :1])
         self.assertGreater(determinants.min(), 0)

@@ -1,4 +1,4 @@
-"""What help(podm) says is what there is."""
+"""help(podm) describes the actual interface."""
 
 import ast
 import inspect
@@ -14,7 +14,7 @@ import numpy.typing
 import podm
 from podm import _podm, arguments
 
-OF_THE_IMAGE = {"labels", "affine", "spacing", "progress"}  # no option of the program
+OF_THE_IMAGE = {"labels", "affine", "spacing", "progress"}  # not options of the program
 
 
 def option_keywords():
@@ -23,12 +23,12 @@ def option_keywords():
 
 
 def signature_told(function):
-    """The definition that the first line of pybind11's docstring is."""
+    """Returns the definition in the first line of pybind11's docstring."""
     return ast.parse(f"def {function.__doc__.splitlines()[0]}: ...").body[0]
 
 
 def signature_of(definition):
-    """Names of parameters, the number of defaults, and the outermost type that is returned: list of List[str]."""
+    """Returns the names of parameters, the number of defaults, and the outermost return type: list for List[str]."""
     given = definition.args
     names = [parameter.arg for parameter in given.posonlyargs + given.args + given.kwonlyargs]
     return names, len(given.defaults), ast.unparse(definition.returns).partition("[")[0].lower()
@@ -39,7 +39,7 @@ class DocumentationTest(unittest.TestCase):
         self.assertEqual(set(inspect.signature(podm.mesh).parameters) - OF_THE_IMAGE, option_keywords())
 
     def test_no_default_is_told_twice(self):
-        """They are the program's: a keyword's own default only says that it was not given."""
+        """The program has the defaults: a keyword's own default only means that it was not given."""
         defaults = {parameter.default for parameter in inspect.signature(podm.mesh).parameters.values()}
         self.assertEqual(defaults, {inspect.Parameter.empty, None, False})
 
@@ -78,7 +78,7 @@ class DocumentationTest(unittest.TestCase):
         self.assert_declared(stub, _podm)
 
     def assert_declared(self, tree, owner):
-        """Names, signatures and what is a property are those of the module or class."""
+        """Checks that names, signatures and properties are those of the module or class."""
         declared = {node.name: node for node in tree.body if isinstance(node, (ast.ClassDef, ast.FunctionDef))}
         members = {name: member for name, member in vars(owner).items() if not name.startswith("_")}
         self.assertEqual(set(declared), set(members))

@@ -1,4 +1,4 @@
-"""What may be meshed: arrays of any integer type and memory order, files, images of nibabel."""
+"""Input images: arrays of any integer type and memory order, files, images of nibabel."""
 
 import unittest
 import warnings
@@ -44,7 +44,7 @@ class ImagesTest(TestCase):
         image = np.random.default_rng(1).integers(0, 5, (70, 33, 101)).astype(np.int32)
         for labels in (image, np.asfortranarray(image)):
             with warnings.catch_warnings():
-                warnings.simplefilter("ignore")  # of the limit
+                warnings.simplefilter("ignore")  # a warning about the limit
                 voxels = podm.mesh(labels, max_elements=50_000, threads=2)._made.voxels
             np.testing.assert_array_equal(voxels, image.ravel(order="F"))
 

@@ -1,4 +1,4 @@
-"""podm.plan: what podm.mesh will make."""
+"""podm.plan predicts what podm.mesh makes."""
 
 import unittest
 import warnings

@@ -1,4 +1,4 @@
-"""Bad input is an exception that says what was expected."""
+"""Bad input raises an exception that names what was expected."""
 
 import unittest
 

@@ -1,4 +1,4 @@
-"""The mesh in hand: arrays that are views, files, quality, proofs, and what other packages make of it."""
+"""The returned mesh: arrays that are views, files, quality, proofs, and conversion to other packages."""
 
 import gc
 import json
@@ -49,7 +49,7 @@ class ResultTest(TestCase):
         points, expected = mesh.points, mesh.points.copy()
         del mesh
         gc.collect()
-        podm.mesh(balls(), radius=1)  # would take the memory
+        podm.mesh(balls(), radius=1)  # would reuse the memory
         np.testing.assert_array_equal(points, expected)
 
     def test_labels_are_made_once_and_read_only(self):
@@ -60,7 +60,7 @@ class ResultTest(TestCase):
                 array[:] = 77
 
     def converted(self, name):
-        """The file as .vtu, by the program: those cells and the facets beside them."""
+        """Converts the file to .vtu with the program; returns its cells and the facets beside them."""
         path = self.folder / "converted.vtu"
         subprocess.run([PROGRAM, "convert", self.folder / name, path], capture_output=True, check=True)
         return self.files_of(path)
@@ -249,7 +249,7 @@ class OtherPackagesTest(TestCase):
         for array, values in zip(data, expected):
             np.testing.assert_array_equal(vtk_to_numpy(array), values)
         del grid, data, array
-        self.mesh.to_vtk()  # then VTK forgets what it no longer needs
+        self.mesh.to_vtk()  # makes VTK release what it no longer needs
         gc.collect()
         self.assertIsNone(memory())
 

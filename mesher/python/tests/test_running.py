@@ -1,4 +1,4 @@
-"""While the mesher runs: progress, Ctrl-C, other Python threads, several meshers at once."""
+"""Behaviour during a run: progress, Ctrl-C, other Python threads, several meshers at once."""
 
 import os
 import signal
@@ -13,8 +13,8 @@ import numpy as np
 
 from balls import AFFINE, TestCase, balls, hash_of, podm
 
-LONG = {"labels": "phantom:abdomen@64", "radius": 8}  # a second or some
-ENDLESS = {"labels": "phantom:abdomen@64", "radius": 1, "max_memory_gib": 100}  # unless somebody ends it
+LONG = {"labels": "phantom:abdomen@64", "radius": 8}  # takes a few seconds
+ENDLESS = {"labels": "phantom:abdomen@64", "radius": 1, "max_memory_gib": 100}  # runs until the test ends it
 
 
 class Stop(Exception):
@@ -64,11 +64,11 @@ class ProgressTest(TestCase):
 
 
 class InterruptTest(TestCase):
-    """Signals go to this process, from a callback and so at a moment that is known."""
+    """A callback sends signals to this process, and so at a known moment."""
 
     def interrupt_refinement(self, **options):
         def progress(now):
-            if now.phase == "refine" and now.cells > 10000:  # of fewer, none may lie in the image yet
+            if now.phase == "refine" and now.cells > 10000:  # a smaller mesh may have no cell in the image yet
                 os.kill(os.getpid(), signal.SIGINT)
 
         return podm.mesh(**ENDLESS, progress=progress, **options)
@@ -154,7 +154,7 @@ class ThreadsTest(TestCase):
         self.assertEqual(found, [expected] * 3)
 
     def test_meshers_of_several_threads_each_do_not_meet(self):
-        """Their locks are their own, and each mesh is proved."""
+        """Each mesher has its own locks, and each mesh is verified."""
         meshes = []
 
         def make():
@@ -170,7 +170,7 @@ class ThreadsTest(TestCase):
             self.assertTrue(mesh.verify(), mesh.verify().text)
 
     def test_a_signal_is_the_main_threads(self):
-        """Ctrl-C in the main thread leaves meshers of other threads alone."""
+        """Ctrl-C in the main thread does not affect meshers of other threads."""
         meshes = []
         thread = threading.Thread(target=lambda: meshes.append(podm.mesh(**LONG)))
         thread.start()

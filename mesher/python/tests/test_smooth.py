@@ -30,7 +30,7 @@ def outward_normals(depth, points):
 
 
 def made(depth, **options):
-    """Root mean square error of the facets' normals, degrees, and the mesh's volume."""
+    """Returns the root mean square error of the facets' normals, degrees, and the mesh's volume."""
     index = np.stack(np.meshgrid(*[np.arange(64)] * 3, indexing="ij"), axis=-1)
     mesh = podm.mesh((depth(SIDE * index) > 0).astype(np.uint8), spacing=[SIDE] * 3, radius=2, delta=SIDE, **options)
     corners = mesh.points[mesh.facets]
