@@ -11,19 +11,13 @@
 namespace podm {
 namespace {
 
-// The number of voxels of each label.
-struct VoxelCounts {
-  std::vector<std::uint64_t> of_label;
-  void add_row(const LabelIndex* row, int size) {
-    for (int i = 0, end = 0; i < size; i = end) {
-      while (end < size && row[end] == row[i]) ++end;
-      of_label[row[i]] += static_cast<std::uint64_t>(end - i);
-    }
+// Adds the voxels of a row.
+void add_row(const LabelIndex* row, int size, LabelCounts& counts) {
+  for (int i = 0, end = 0; i < size; i = end) {
+    while (end < size && row[end] == row[i]) ++end;
+    counts.of_label[row[i]] += static_cast<std::uint64_t>(end - i);
   }
-  void operator+=(const VoxelCounts& b) {
-    for (std::size_t label = 0; label < of_label.size(); ++label) of_label[label] += b.of_label[label];
-  }
-};
+}
 
 // The bounds of the foreground that one thread has visited.
 struct alignas(64) VoxelBounds {
@@ -51,11 +45,11 @@ struct alignas(64) VoxelBounds {
 }  // namespace
 
 std::vector<std::uint64_t> count_voxels(const LabelImage& image, int threads) {
-  const VoxelCounts none{std::vector<std::uint64_t>(image.labels.size())};
-  const auto add_row = [&](VoxelCounts& counts, int j, int k) {
-    counts.add_row(&image.voxels[image.index(0, j, k)], image.size[0]);
+  const LabelCounts none{std::vector<std::uint64_t>(image.labels.size())};
+  const auto add = [&](LabelCounts& counts, int j, int k) {
+    add_row(&image.voxels[image.index(0, j, k)], image.size[0], counts);
   };
-  return sum_over_rows(image, threads, none, add_row).of_label;
+  return sum_over_rows(image, threads, none, add).of_label;
 }
 
 Box foreground_bounds(const LabelImage& image, int threads) {

@@ -1,6 +1,7 @@
 // Sums over the rows of an image, on several threads.
 #pragma once
 
+#include <cstdint>
 #include <utility>
 #include <vector>
 
@@ -8,6 +9,14 @@
 #include "runtime/parallel_for.h"
 
 namespace podm {
+
+/// One count per label.
+struct LabelCounts {
+  std::vector<std::uint64_t> of_label;
+  void operator+=(const LabelCounts& b) {
+    for (std::size_t label = 0; label < of_label.size(); ++label) of_label[label] += b.of_label[label];
+  }
+};
 
 /// Sums over all rows along x. `count(counts, j, k)` adds one row. `none` is the sum of no rows.
 template <class Counts, class Count>

@@ -122,8 +122,8 @@ double CostModel::area_mm2(double distance_mm) const {
 }
 
 std::vector<double> CostModel::areas_along_mm2(std::size_t axis, std::size_t lag) const {
-  const VoxelCounts none{std::vector<std::uint64_t>(image_.labels.size())};
-  const auto sides = sum_over_rows(image_, threads_, none, [&](VoxelCounts& counts, int j, int k) {
+  const LabelCounts none{std::vector<std::uint64_t>(image_.labels.size())};
+  const auto sides = sum_over_rows(image_, threads_, none, [&](LabelCounts& counts, int j, int k) {
     add_sides(image_, axis, kLags[lag], j, k, counts.of_label);
   });
   const double face_mm2 = image_.spacing[(axis + 1) % 3] * image_.spacing[(axis + 2) % 3];
