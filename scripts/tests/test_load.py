@@ -1,4 +1,4 @@
-"""Which rows are read, which give a number, and what is said of the others."""
+"""Tests which rows are read, which give a number, and the reasons given for the others."""
 import json
 import tempfile
 import unittest
