@@ -55,7 +55,7 @@ def extrapolated(table):
 
 
 def _line(ranks, threads, many, base):
-    """Ranks alone may have been simulated at further sizes."""
+    """A single rank may have been simulated at further sizes."""
     def efficiencies(left_out=()):
         ours, alone = (_parts_at(NODE_CELLS, one.drop(index=left_out, errors="ignore")) for one in (many, base))
         return numpy.array([_sum(alone, parts, threads) / _sum(ours, parts, threads)
