@@ -1,4 +1,4 @@
-# Thin rules over CMake, the programs in build/bin/ and scripts/. `make` alone lists them.
+# Thin rules over CMake, the programs in build/bin/ and scripts/. `make` without a target lists them.
 
 MARCH = $(if $(NATIVE),native,x86-64-v3)
 CMAKE_FLAGS ?=
@@ -15,30 +15,30 @@ SECONDS ?= 600
 .PHONY: help setup build install python peers test stress kill-matrix audit kick-tires experiments figures clean
 
 help:
-	@echo "make kick-tires    the smallest runs of every experiment, in some minutes; tables and results/runs/"
-	@echo "make experiments   the experiments at the size of a laptop (TIER=full: of the whole machine); a second call"
-	@echo "                   goes on where the first ended"
-	@echo "make test          all tests"
-	@echo "make stress        random runs of up to 256 workers on random images for SECONDS=600, each verified and"
-	@echo "                   replayed; SEED=N repeats one"
-	@echo "make kill-matrix   every mutant of a mesh and the claim of podm-verify that rejects it"
-	@echo "make audit         every figure and table of the documentation, recomputed from the rows in results/reference/"
-	@echo "make figures       tables and figures of results/runs/ beside the paper's, a mesh cut open: $(FIGURES)/,"
-	@echo "                   and one page of it all: results/runs/report.html"
+	@echo "make kick-tires    run every experiment at its smallest size, in a few minutes; tables and results/runs/"
+	@echo "make experiments   run the experiments at laptop size (TIER=full: for the whole machine); a second call"
+	@echo "                   continues where the first stopped"
+	@echo "make test          run all tests"
+	@echo "make stress        random runs with up to 256 workers on random images for SECONDS=600, each verified and"
+	@echo "                   replayed; SEED=N repeats one of them"
+	@echo "make kill-matrix   list every mutant of a mesh and the claim of podm-verify that rejects it"
+	@echo "make audit         recompute every figure and table of the documentation from the rows in results/reference/"
+	@echo "make figures       tables and figures of results/runs/ beside the paper's, a cut through a mesh: $(FIGURES)/,"
+	@echo "                   and one page with all of them: results/runs/report.html"
 	@echo "make build         the programs, in build/bin/"
 	@echo "make python        the Python package podm, in build/python/"
-	@echo "make install       programs, what they run and the library, in PREFIX=/usr/local (DESTDIR=FOLDER: below that)"
-	@echo "make peers         what \`make experiments\` compares and counts with: TetGen, Gmsh and likwid as packages, and"
-	@echo "                   CGAL's mesher (GPL, compiles for some 3 minutes, stays in build/bin/); CGAL6=FOLDER: also"
-	@echo "                   that of the CGAL 6 whose headers are in FOLDER/include"
-	@echo "make setup         install the Debian 12 packages of all of these (root or sudo; otherwise says what to run)"
-	@echo "make clean         remove build folders; results stay"
+	@echo "make install       the programs, their scripts and the library, in PREFIX=/usr/local (DESTDIR=FOLDER: under it)"
+	@echo "make peers         the other programs that \`make experiments\` uses: TetGen, Gmsh and likwid as packages, and"
+	@echo "                   CGAL's mesher (GPL, compiles for about 3 minutes, stays in build/bin/); CGAL6=FOLDER: also"
+	@echo "                   the mesher of the CGAL 6 whose headers are in FOLDER/include"
+	@echo "make setup         install the Debian 12 packages for all of these (root or sudo; otherwise prints what to run)"
+	@echo "make clean         remove the build folders; results stay"
 	@echo
-	@echo "Each makes what it needs, setup and build included."
-	@echo "  NATIVE=1         compile for this machine's processor instead of any x86-64-v3 one"
-	@echo "  IMAGE=FILE       (make experiments) on your own segmentation"
+	@echo "Each target makes its prerequisites, including setup and build."
+	@echo "  NATIVE=1         compile for this machine's processor instead of any x86-64-v3 processor"
+	@echo "  IMAGE=FILE       (make experiments) use your own segmentation"
 	@echo "  DATA=FOLDER      (make test) also run the tests on the real images in FOLDER"
-	@echo "  CMAKE_FLAGS=...  more flags for CMake"
+	@echo "  CMAKE_FLAGS=...  further flags for CMake"
 
 setup:
 	@scripts/setup
@@ -53,11 +53,11 @@ python:
 	$(CONFIGURE)
 	cmake --build build --target podm_python_package
 
-# DESTDIR, of the environment or the command line, stands before PREFIX.
+# DESTDIR, from the environment or the command line, is put before PREFIX.
 install: build
 	$(if $(DESTDIR),DESTDIR="$(abspath $(DESTDIR))") cmake --install build --prefix "$(PREFIX)"
 
-# Configured anew: the packages that it looks for may have come since.
+# CMake runs again because packages that it looks for may have been installed since the last time.
 peers: build
 	@scripts/setup peers
 	$(CONFIGURE) $(if $(CGAL6),-DPODM_CGAL6="$(abspath $(CGAL6))")
@@ -70,7 +70,7 @@ test:
 	$(if $(DATA),PODM_TEST_IMAGES="$(abspath $(DATA))") ctest --test-dir build -j4 --output-on-failure
 	@grep -ho 'skipped: .*' build/Testing/Temporary/LastTest.log | sort | uniq -c || true
 
-# A failing seed joins those that `make test` repeats.
+# A failing seed is added to the seeds that `make test` repeats.
 stress: build
 	@scripts/setup run
 	cd mesher/tests && PODM_PROGRAM=$(CURDIR)/build/bin/podm /usr/bin/python3 -B stress.py \
@@ -81,7 +81,7 @@ kill-matrix: build
 	@scripts/setup run
 	/usr/bin/python3 -B verifiers/tests/kill_matrix.py build/bin/podm build/bin/podm-verify
 
-# A figure that is meant to change: scripts/update_docs --figures.
+# To change a figure on purpose, run scripts/update_docs --figures.
 audit:
 	@scripts/setup run
 	scripts/audit
@@ -89,13 +89,14 @@ audit:
 kick-tires:
 	$(MAKE) experiments TIER=kick-tires
 
-# The least of the experiments goes without the meshers that it would compare with: their trials are skipped.
+# The kick-tires tier builds no peers. Trials of meshers that are missing are skipped.
 experiments: build $(if $(filter kick-tires,$(TIER)),,peers)
 	@scripts/setup run $(if $(filter kick-tires,$(TIER)),,solvers)
 	build/bin/podm-bench run --tier $(TIER) $(if $(IMAGE),--image "$(IMAGE)") experiments/*.toml
 
-# Tables and figures of the records in results/runs/, the phantom cut open, and one page of it all. The phantom is
-# meshed leaf by leaf by two nodes: its mesh and schedule make figure 2b too. The page shows at most 200 000 cells.
+# Makes the tables and figures of the records in results/runs/, a view of the cut phantom, and one page with all of
+# them. Two nodes mesh the phantom leaf by leaf, therefore its mesh and schedule also give figure 2b. The page shows
+# at most 200 000 cells.
 figures: build
 	@scripts/setup run
 	mkdir -p $(FIGURES)

@@ -1,6 +1,6 @@
 #!/bin/sh
-# Every tracked C++ file is as clang-format makes it (mend with: clang-format -i FILES); lines of Markdown, but for
-# tables, of Python and of scripts have 120 columns at most.
+# Checks that clang-format would not change any tracked C++ file (to repair: clang-format -i FILES), and that lines of
+# Markdown (except tables), Python and scripts have at most 120 columns.
 set -eu
 cd "$(dirname "$0")/.."
 git ls-files -z -- '*.h' '*.cpp' | xargs -0 -r clang-format --dry-run -Werror

@@ -1,20 +1,21 @@
 #!/bin/sh
 # Usage: ci/fuzz.sh [--merge] [TARGET...]
-# Builds the libFuzzer targets and runs each (all, or those named) for FUZZ_SECONDS (15), or with FUZZ_RUNS for so many
-# executions, from the folder corpus/TARGET beside its source: inputs that between them take every branch ever taken.
-# Ends with a table of executions. A finding exits 1; the input that shows it stays in build-fuzz/findings/. What is
-# tried is drawn from FUZZ_SEED (1): a change that finds nothing new finds it again tomorrow. 0 draws anew each time.
+# Builds the libFuzzer targets and runs each target (all, or those given) for FUZZ_SECONDS (15), or for FUZZ_RUNS
+# executions. A run starts from the folder corpus/TARGET beside the target's source. This corpus takes every branch
+# that was ever taken. Prints a table of executions at the end. On a finding the script exits with 1; the input stays in
+# build-fuzz/findings/. FUZZ_SEED (1) seeds the inputs, therefore a change that finds nothing new gives the same result
+# tomorrow. FUZZ_SEED=0 draws a new seed each time.
 #
-# What is learnt stays in build-fuzz/corpus/. With --merge nothing is fuzzed: the corpora of the tree are made anew, of
-# theirs and of what was learnt the fewest and shortest inputs that take all branches. Inputs with names stay, others
-# are named by their hash.
+# New inputs that take new branches stay in build-fuzz/corpus/. With --merge nothing is fuzzed: the corpora of the tree
+# are rebuilt from their own inputs and from build-fuzz/corpus/, as the fewest and shortest inputs that take all
+# branches. Named inputs stay, the other inputs are named by their hash.
 set -eu
 cd "$(dirname "$0")/.."
 is_merge=""
 [ "${1-}" != --merge ] || { is_merge=1; shift; }
 
 build="build-fuzz"
-longest=4096  # bytes of an input
+longest=4096  # largest input, bytes
 sources=$(git ls-files -- '*/fuzz_*.cpp')
 targets=$(for source in $sources; do basename "$source" .cpp; done)
 for asked; do
@@ -29,7 +30,7 @@ cmake -S . -B $build -G Ninja -DCMAKE_C_COMPILER=clang -DCMAKE_CXX_COMPILER=clan
   -DPODM_BUILD_FUZZERS=ON -DPODM_UNITE=ON -DPODM_SANITIZE=address,undefined
 cmake --build $build --target "$@"
 
-# Files of the readers in memory; allocations are told with few frames, which is faster.
+# The readers' files are kept in memory. Allocation stacks keep few frames, which is faster.
 TMPDIR=$(mktemp -d "$([ -w /dev/shm ] && echo /dev/shm || echo "${TMPDIR:-/tmp}")/podm-fuzz-XXXXXX")
 trap 'rm -rf "$TMPDIR"' EXIT
 trap 'exit 130' INT TERM
@@ -42,7 +43,7 @@ files_in() { find "$1" -type f | wc -l; }
 bytes_in() { find "$1" -type f -printf '%s\n' | awk '{ sum += $1 } END { print sum + 0 }'; }
 told() { sed -n "s/^stat::$1: *//p" "$2"; }
 
-# Inputs of a hash for a name compete anew with what was learnt.
+# Inputs named by their hash are removed from the seeds and compete again with the learnt inputs.
 merge() {
   target=$1 seeds=$(corpus_of "$1") learnt=$build/corpus/$1
   mkdir -p "$seeds" "$learnt"

@@ -1,4 +1,5 @@
-// What fuzz targets share: a folder for the files that a reader is given, and how a broken promise is told.
+// Shared by fuzz targets: a folder for the files that a reader is given, and a check that reports a broken
+// promise.
 #pragma once
 
 #include <fcntl.h>
@@ -18,12 +19,12 @@ inline std::string_view text_of(const std::uint8_t* data, std::size_t size) {
   return {reinterpret_cast<const char*>(data), size};
 }
 
-/// A promise of the reader; libFuzzer takes an abort for a finding.
+/// Checks a promise of the reader. libFuzzer reports an abort as a finding.
 inline void check(bool holds) {
   if (!holds) std::abort();
 }
 
-/// A folder in $TMPDIR, for which ci/fuzz.sh takes memory. It is gone when the process ends.
+/// A folder in $TMPDIR, which ci/fuzz.sh places in memory. It is removed when the process ends.
 class ScratchFolder {
  public:
   ScratchFolder() : path_(std::filesystem::temp_directory_path() / "podm-fuzz-XXXXXX") {
@@ -38,7 +39,8 @@ class ScratchFolder {
 
   std::string operator/(const char* name) const { return path_ + "/" + name; }
 
-  /// Its path; an older file of the name is lost. Without a stream: a hundred thousand files a second.
+  /// Writes the file and returns its path. An existing file of that name is overwritten. No stream is used,
+  /// because targets write a hundred thousand files per second.
   std::string write(const char* name, std::string_view bytes) const {
     std::string path = *this / name;
     const int file = ::open(path.c_str(), O_WRONLY | O_CREAT | O_TRUNC | O_CLOEXEC, 0600);

@@ -1,6 +1,6 @@
 #!/bin/sh
-# The performance gate: the mesher of the working tree against that of the commit where it left the branch or commit $1
-# (main). Exits with 1 when the change may not go in. Both are built side by side in build-gate/.
+# The performance gate: compares the mesher of the working tree with the mesher of the commit where the tree left the
+# branch or commit $1 (main). Exits with 1 if the change may not be merged. Both are built in build-gate/.
 set -eu
 cd "$(dirname "$0")/.."
 

@@ -1,7 +1,8 @@
 #!/bin/sh
-# How often the gate's answer about seconds errs on this machine: records $1 (300) more rounds of the mesher of build
-# folder $2 (build) with planted slowdowns, and tries the gate's own rule on all recorded rounds. Prints the counts and
-# keeps rounds and counts in folder $3 (results/runs/gate). $1 = 0 tries the rule again on the rounds that are there.
+# Measures how often the gate's answer about seconds is wrong on this machine. Records $1 (300) more rounds of the
+# mesher in build folder $2 (build) with planted slowdowns, then applies the gate's own rule to all recorded rounds.
+# Prints the counts and keeps rounds and counts in folder $3 (results/runs/gate). $1 = 0 only applies the rule to the
+# rounds recorded so far.
 set -eu
 cd "$(dirname "$0")/.."
 rounds=${1:-300}

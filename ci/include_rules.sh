@@ -1,10 +1,10 @@
 #!/bin/sh
-# Keeps the arrows between the rooms of the tree: prints file:line of each include that breaks one; exits 1 then.
-set -euf  # no file name patterns: those of may_include are for `case`
+# Checks which folders of the tree may include which. Prints file:line of each forbidden include and exits with 1 then.
+set -euf  # no expansion of file names: the patterns of may_include are for `case`
 cd "$(dirname "$0")/.."
 
-# Rooms whose files a file of room $1 may include besides its own. include/ holds podm/*.h; those of a whole run are a
-# room of their own, podm: the rooms below the algorithms need small headers of the public API alone.
+# Prints the rooms (folders) that a file of room $1 may include besides its own. include/ holds podm/*.h. Its headers
+# about a whole run form the room podm, because the rooms below the algorithms need only the small public headers.
 ground="mesher/geometry mesher/runtime mesher/include"
 label_function="mesher/smoothing mesher/isosurface mesher/image $ground"
 store="mesher/workers mesher/refine mesher/delaunay mesher/octree mesher/sizing $label_function podm"
@@ -24,9 +24,9 @@ may_include() {
     mesher/run) echo mesher/prediction mesher/replay mesher/optimize mesher/algorithms mesher/io mesher/files "$store" ;;
     mesher/distributed) echo mesher/run mesher/prediction mesher/replay mesher/algorithms mesher/io mesher/files "$store" ;;
     mesher/cli/foreign_mesh) echo mesher/cli mesher/io mesher/geometry mesher/include verifiers ;;  # podm convert
-    mesher/*) echo "mesher/* podm" ;;  # the command line, whole-mesher tests
+    mesher/*) echo "mesher/* podm" ;;  # the command line, tests of the whole mesher
     examples/*) echo mesher/include podm ;;
-    harness/ground) echo mesher/runtime ;;  # it asks the system as the mesher does, whom it knows as a program
+    harness/ground) echo mesher/runtime ;;  # it queries the system with the mesher's code
     harness/process) echo harness/ground mesher/runtime ;;
     harness/options) echo harness/process harness/ground mesher/runtime ;;
     harness/rows) echo harness/options harness/process harness/ground ;;
@@ -35,36 +35,37 @@ may_include() {
     harness/experiments | harness/gate) echo harness/trials harness/machine harness/rows harness/options harness/process \
       harness/ground mesher/runtime ;;
     harness/*) echo "harness/* mesher/runtime" ;;  # the program, tests
-    verifiers) ;;  # they know the mesher by its files alone
+    verifiers) ;;  # the verifiers know the mesher only by its files
   esac
 }
 
-# Sets `part` to the room of a file. Tests and benchmarks see all of their program.
+# Sets `part` to the room of a file. Tests and benchmarks may include all of their program.
 set_part_of() {
   part=${1#*/}
-  part=${1%%/*}/${part%%/*}  # its first two folders
+  part=${1%%/*}/${part%%/*}  # the first two folders
   case $1 in
     mesher/include/podm/mesh_image.h | mesher/include/podm/meshing_*.h) part=podm ;;
     mesher/*/tests/*) part=mesher/tests ;;
     harness/*/tests/*) part=harness/tests ;;
     mesher/main*.cpp) part=mesher/cli ;;
-    mesher/cli/commands/foreign_mesh.cpp) part=mesher/cli/foreign_mesh ;;  # alone reads with the verifier's readers
+    mesher/cli/commands/foreign_mesh.cpp) part=mesher/cli/foreign_mesh ;;  # it alone uses the verifier's readers
     harness/errors.h) part=harness/ground ;;
     mesher/*/* | harness/* | examples/*) ;;
     *) part=${1%%/*} ;;
   esac
 }
 
-# Sets `target` to the file of ours that `#include "$2"` or <$2> in file $1 means; to nothing when it is not ours.
+# Sets `target` to the project's file that `#include "$2"` or <$2> in file $1 means, or to "" if it is not the
+# project's.
 set_target_of() {
-  for folder in "${1%/*}" "${1%%/*}" mesher mesher/include verifiers harness; do  # its own part's first
+  for folder in "${1%/*}" "${1%%/*}" mesher mesher/include verifiers harness; do  # the file's own part first
     target=$folder/$2
     [ ! -f "$target" ] || return 0
   done
   target=""
 }
 
-is_allowed() {  # $1 includes $2, both rooms
+is_allowed() {  # $1 may include $2; both are rooms
   [ "$1" != "$2" ] || return 0
   for pattern in $(may_include "$1"); do
     # shellcheck disable=SC2254  # a pattern

@@ -1,5 +1,6 @@
-// Included first in builds with clang: Debian's ITK headers accept GCC alone, and what they derive from the
-// version of GCC holds for clang as well. So clang poses as Debian's GCC while they look.
+// Included first in builds with clang. Debian's ITK headers accept only GCC, and what they derive from the
+// version of GCC also holds for clang. Clang therefore claims to be Debian's GCC while ITK's compiler
+// detection runs.
 #pragma once
 #if defined(__cplusplus) && defined(__clang__)
 #pragma clang diagnostic push

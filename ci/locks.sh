@@ -1,9 +1,10 @@
 #!/bin/sh
 # Usage: ci/locks.sh [FOLDER]
-# Builds the parallel tests of the mesher in FOLDER/build-locks (FOLDER: here) with the lock contract asserted at every
-# access to a cell (mesher/delaunay/lock_contract.h), and runs them: the kernel, workers, meshes by podm, pdr and
-# pdr-podm on threads and in virtual time, optimised meshes, and meshes on ranks. The contract's own tests are among
-# them, and faults planted in the protocol, which it must notice. The first test that fails ends it, with exit code 1.
+# Builds the parallel tests of the mesher in FOLDER/build-locks (default: ./build-locks) and runs them. The lock
+# contract is asserted at every access to a cell (mesher/delaunay/lock_contract.h). The tests cover the kernel, workers,
+# meshes by podm, pdr and pdr-podm on threads and in virtual time, optimised meshes, and meshes on ranks. They include
+# the contract's own tests and planted faults of the protocol, which the contract must detect. Stops at the first test
+# that fails, with exit code 1.
 set -eu
 cd "$(dirname "$0")/.."
 build=${1:-.}/build-locks

@@ -1,12 +1,12 @@
 #!/bin/sh
 # Usage: ci/race.sh [FOLDER]
-# Builds podm, and the tests of ranks that are threads, in FOLDER/build-race (FOLDER: here) with the thread sanitizer
-# and with threads that yield in the middle of operations (mesher/delaunay/step.h). The tests run, and then four threads
-# mesh phantoms for RACE_SECONDS (120), by podm, pdr, pdr-podm and podm-home in turn: the first finding ends it with
-# exit code 1, and so does a mesh that podm-verify rejects or that differs from the replay of its log. Each is made
-# once more and optimised. In the same program each planted fault of the lock protocol, one lock instead of two or none
-# to read a cell, and three instead of four to replace it, by refinement or by optimisation, must be found within two
-# minutes; else it would not see a broken protocol, and exits with 1.
+# Builds podm and the tests of in-process ranks in FOLDER/build-race (default: ./build-race) with the thread sanitizer
+# and with threads that yield in the middle of operations (mesher/delaunay/step.h). Runs the tests. Four threads then
+# mesh phantoms for RACE_SECONDS (120), by podm, pdr, pdr-podm and podm-home in turn. Stops with exit code 1 at the
+# first finding, at a mesh that podm-verify rejects, or at a mesh that differs from the replay of its log. Each mesh is
+# made once more and optimised. The same program must also find each planted fault of the lock protocol within two
+# minutes: one lock instead of two or no lock to read a cell, and three locks instead of four to replace it, by
+# refinement or by optimisation. If it does not, it would not detect a broken protocol; the script then exits with 1.
 set -eu
 cd "$(dirname "$0")/.."
 build=${1:-.}/build-race
@@ -15,18 +15,18 @@ most_seconds_to_find=120
 finding=66
 export TSAN_OPTIONS="halt_on_error=1:exitcode=$finding"
 
-make build  # what verifies and replays needs no sanitizer
+make build  # verification and replay need no sanitizer
 cmake --preset race -B "$build" -G Ninja
 cmake --build "$build" --target podm communication_tests rounds_tests
-cp build/bin/podm-verify "$build/bin/"  # where podm looks for it
+cp build/bin/podm-verify "$build/bin/"  # podm looks for it here
 
-"$build/bin/communication_tests" --gtest_brief=1 --gtest_filter="-*/64*:*Hundreds*"  # few ranks race as well
-# Ranks of one thread that compute one at a time have nothing to race for.
+"$build/bin/communication_tests" --gtest_brief=1 --gtest_filter="-*/64*:*Hundreds*"  # races also show with few ranks
+# One-thread ranks that compute one at a time cannot race.
 "$build/bin/rounds_tests" --gtest_brief=1 --gtest_filter='*at_once*:*leaves_on_3*:RanksOfOneProcess*'
 
 seconds_since() { echo $(($(date +%s) - $1)); }
 
-# The n-th of the runs that are taken in turn; more arguments of `podm mesh` may follow.
+# Makes the mesh of run number $1; the settings cycle with the number. Further arguments go to `podm mesh`.
 mesh() {
   run=$1
   shift

@@ -1,8 +1,9 @@
 #!/bin/sh
 # Usage: ci/sanitize.sh [FOLDER]
-# Builds the mesher and its unit tests in FOLDER/build-asan with the address and undefined-behaviour sanitizers and
-# in FOLDER/build-tsan with the thread sanitizer (FOLDER: here). Under each the tests run, then four threads mesh a
-# phantom and their log must replay to the same mesh. The first program with a finding ends it, with exit code 1.
+# Builds the mesher and its unit tests in FOLDER/build-asan with the address and undefined-behaviour sanitizers and in
+# FOLDER/build-tsan with the thread sanitizer (FOLDER: the repository). Under each, the tests run, then four threads
+# mesh a phantom and their log must replay to the same mesh. Stops at the first program with a finding, with exit code
+# 1.
 set -eu
 cd "$(dirname "$0")/.."
 folder=${1:-.}

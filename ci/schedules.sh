@@ -1,8 +1,8 @@
 #!/bin/sh
 # Usage: ci/schedules.sh [NUMBER]
-# Runs NUMBER (10000) seeded schedules that interleave workers inside of operations (schedule_tests), and as many with
-# each planted fault of the lock protocol, which it counts. Exits with 1 when a mesh is wrong or a fault never shows.
-# A seed alone: PODM_SCHEDULE=SEED build/bin/schedule_tests --gtest_filter='*AllMake*'
+# Runs NUMBER (10000) seeded schedules that interleave workers within operations (schedule_tests). Runs as many with
+# each planted fault of the lock protocol and counts how often it shows. Exits with 1 if a mesh is wrong or a fault
+# never shows. To run one seed: PODM_SCHEDULE=SEED build/bin/schedule_tests --gtest_filter='*AllMake*'
 set -eu
 cd "$(dirname "$0")/.."
 cmake -S . -B build -G Ninja -DPODM_BUILD_TESTS=ON

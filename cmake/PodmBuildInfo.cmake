@@ -1,6 +1,6 @@
-# What `PROGRAM --version` says of its build: compiler, flags, commit of its sources, versions of its libraries.
+# The build information of `PROGRAM --version`: compiler, flags, commit of its sources, versions of its libraries.
 
-# podm_note_library(PROGRAM NAME [VERSION]): a library that PROGRAM links. Without a version pkg-config is asked.
+# podm_note_library(PROGRAM NAME [VERSION]): a library that PROGRAM links. Without VERSION, pkg-config is asked.
 function(podm_note_library program name)
   set(version "${ARGN}")
   if(NOT version)
@@ -14,7 +14,7 @@ function(podm_note_library program name)
   set_property(GLOBAL APPEND PROPERTY podm_libraries_of_${program} "${name} ${version}")
 endfunction()
 
-# Those of podm_flags included; warnings change no program.
+# Returns all compile flags, those of podm_flags included, without warnings, which change no program.
 function(_podm_flags result)
   string(TOUPPER "${CMAKE_BUILD_TYPE}" type)
   get_target_property(options podm_flags INTERFACE_COMPILE_OPTIONS)
@@ -27,8 +27,8 @@ function(_podm_flags result)
 endfunction()
 
 # podm_build_info(TARGET PROGRAM NAMESPACE FOLDER): TARGET defines NAMESPACE::build_info(), as declared in its
-# build_info.h. Comes after all podm_note_library(PROGRAM ...). FOLDER holds the sources of PROGRAM alone: the commit is
-# the last one that changed it, so that a program changes with its sources and not with every commit.
+# build_info.h. Call it after all podm_note_library(PROGRAM ...). FOLDER holds the sources of PROGRAM only. The commit
+# is the last one that changed FOLDER; a program therefore changes with its sources and not with every commit.
 function(podm_build_info target program namespace folder)
   get_property(libraries GLOBAL PROPERTY podm_libraries_of_${program})
   list(REMOVE_DUPLICATES libraries)
@@ -36,7 +36,7 @@ function(podm_build_info target program namespace folder)
   string(JOIN ", " libraries ${libraries})
   _podm_flags(flags)
   set(source ${CMAKE_CURRENT_BINARY_DIR}/build_info.cpp)
-  # Looks at every build, writes only what differs.
+  # Runs at every build, but writes the file only if it changes.
   add_custom_target(${target}_build_info BYPRODUCTS ${source} VERBATIM COMMENT "Commit of ${program}" COMMAND ${CMAKE_COMMAND}
     "-DOUTPUT=${source}" "-DNAMESPACE=${namespace}" "-DROOT=${PROJECT_SOURCE_DIR}"
     "-DPATHS=${folder} cmake CMakeLists.txt" "-DCOMPILER=${CMAKE_CXX_COMPILER_ID} ${CMAKE_CXX_COMPILER_VERSION}"

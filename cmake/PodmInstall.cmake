@@ -1,5 +1,5 @@
-# What `cmake --install` puts in place: the programs that mesh, the scripts that they run, the library and what
-# find_package(podm) needs. podm-verify installs itself; podm-bench stays with its experiments.
+# Installs the programs that mesh, the scripts that they run, the library, and the files that find_package(podm) needs.
+# podm-verify installs itself; podm-bench stays with its experiments.
 include(CMakePackageConfigHelpers)
 
 set_target_properties(podm_library PROPERTIES EXPORT_NAME podm)

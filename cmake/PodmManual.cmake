@@ -1,5 +1,5 @@
-# podm_manual(PROGRAMS...): their manual pages and shell completions, in share/ of the build folder, made of what they
-# print for --help; and installed, but those of podm-bench, which stays with its experiments.
+# podm_manual(PROGRAMS...): makes their manual pages and shell completions in share/ of the build folder from their
+# --help output, and installs them. Those of podm-bench are not installed, as it stays with its experiments.
 function(podm_manual)
   find_program(PODM_SYSTEM_PYTHON python3 PATHS /usr/bin NO_DEFAULT_PATH REQUIRED)
   set(share ${PROJECT_BINARY_DIR}/${CMAKE_INSTALL_DATADIR})

@@ -1,12 +1,12 @@
-# How every target of this project is compiled, and the ways to declare a test and a fuzzer.
+# Compile options of all targets, and functions that declare a test and a fuzzer.
 
 find_package(Threads REQUIRED)
 
 add_library(podm_flags INTERFACE)
 target_compile_options(podm_flags INTERFACE -march=${PODM_MARCH} -ffp-contract=off -fno-math-errno -Wall -Wextra
                                             -Wshadow -Werror
-                                            -Wno-psabi)  # vectors are passed inside of a file alone
-target_compile_definitions(podm_flags INTERFACE CGAL_LICENSE_ERROR=1)  # no GPL part of CGAL slips in
+                                            -Wno-psabi)  # vectors are passed only within a file
+target_compile_definitions(podm_flags INTERFACE CGAL_LICENSE_ERROR=1)  # keeps the GPL parts of CGAL out
 if(PODM_INTERLEAVING)
   add_compile_definitions(PODM_INTERLEAVING)
 endif()
@@ -18,9 +18,9 @@ if(PODM_SANITIZE)
   add_link_options(-fsanitize=${PODM_SANITIZE})
 endif()
 
-# podm_sources(TARGET sources... [UNITED sources...]...): those of a target. The sources after each UNITED may be compiled as
-# one: none has another's private names or needs a speed that another's code could change. The templates that they share
-# are then compiled once.
+# podm_sources(TARGET sources... [UNITED sources...]...): adds sources to a target. The sources after each UNITED may be
+# compiled as one: none uses a private name of another, and none needs a speed that the other code could change. The
+# templates that they share are then compiled once.
 function(podm_sources target)
   set(group 0)
   foreach(source ${ARGN})
@@ -36,7 +36,8 @@ function(podm_sources target)
   endforeach()
 endfunction()
 
-# A test that cannot run here says `skipped: why` and runs nothing, which ctest calls skipped: it neither passes nor fails.
+# A test that cannot run here prints `skipped: why` and runs nothing. ctest lists it as skipped, not as passed or
+# failed.
 set(PODM_SKIPPED "Ran 0 tests in [^\n]*\n\n(OK|NO TESTS RAN) \\(skipped=")
 
 # podm_add_test(NAME SOURCES... LIBS targets...): a GoogleTest program, built by `tests`; each TEST is a ctest case.
@@ -48,13 +49,13 @@ function(podm_add_test name)
   add_executable(${name} EXCLUDE_FROM_ALL ${ARG_SOURCES})
   add_dependencies(tests ${name})
   target_link_libraries(${name} PRIVATE ${ARG_LIBS} podm_flags GTest::gtest_main)
-  # Most of the time to compile a test goes to headers that others have, too.
+  # Most of the time to compile a test goes to headers that the other tests also include.
   set_target_properties(${name} PROPERTIES UNITY_BUILD ${PODM_UNITE} UNITY_BUILD_BATCH_SIZE 8)
   include(GoogleTest)
   gtest_discover_tests(${name} PROPERTIES TIMEOUT 300 DISCOVERY_TIMEOUT 60)
 endfunction()
 
-# podm_add_python_test(NAME COMMAND Python's arguments... [TIMEOUT seconds] [ENVIRONMENT NAME=value...]): Python in
+# podm_add_python_test(NAME COMMAND Python's arguments... [TIMEOUT seconds] [ENVIRONMENT NAME=value...]): runs Python in
 # this folder as a ctest case. Debian's modules belong to the system's Python, which need not be first on the path.
 function(podm_add_python_test name)
   cmake_parse_arguments(ARG "" "TIMEOUT" "COMMAND;ENVIRONMENT" ${ARGN})
@@ -64,13 +65,13 @@ function(podm_add_python_test name)
   find_program(PODM_SYSTEM_PYTHON python3 PATHS /usr/bin NO_DEFAULT_PATH REQUIRED)
   add_test(NAME ${name} COMMAND ${PODM_SYSTEM_PYTHON} -B ${ARG_COMMAND}
            WORKING_DIRECTORY ${CMAKE_CURRENT_SOURCE_DIR})
-  # The longest tests: they start first, so that none is left for the end.
+  # These are the longest tests. They start first, so that none runs alone at the end.
   set_tests_properties(${name} PROPERTIES TIMEOUT ${ARG_TIMEOUT} COST 100 ENVIRONMENT "${ARG_ENVIRONMENT}"
                                           SKIP_REGULAR_EXPRESSION "${PODM_SKIPPED}")
 endfunction()
 
-# podm_add_fuzzer(NAME [SOURCES...] LIBS targets... [LEARN targets...]): the libFuzzer program of fuzz/NAME.cpp and other
-# sources. It is guided by the branches taken in its own sources and in the libraries LEARN.
+# podm_add_fuzzer(NAME [SOURCES...] LIBS targets... [LEARN targets...]): the libFuzzer program of fuzz/NAME.cpp and
+# SOURCES. It is guided by the branches taken in its own sources and in the libraries LEARN.
 function(podm_add_fuzzer name)
   if(NOT PODM_BUILD_FUZZERS)
     return()

@@ -1,4 +1,4 @@
-# Run by podm_build_info at every build: writes OUTPUT when it differs.
+# Run by podm_build_info at every build. Writes OUTPUT if it changes.
 separate_arguments(PATHS)
 find_package(Git QUIET)
 
@@ -12,7 +12,7 @@ function(ask_git result output)
   endif()
 endfunction()
 
-# Sources unpacked within some other checkout have no commit.
+# Sources that were unpacked inside another checkout have no commit.
 set(COMMIT unknown)
 set(DIRTY unknown)
 ask_git(fault prefix rev-parse --show-prefix)

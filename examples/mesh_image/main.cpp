@@ -1,4 +1,4 @@
-// mesh_image IMAGE RADIUS_MM MESH: from a label image to a mesh file, with the library alone.
+// mesh_image IMAGE RADIUS_MM MESH: makes a mesh file from a label image, with the library only.
 #include <cstdlib>
 #include <iostream>
 

@@ -1,10 +1,10 @@
-"""From a segmentation to a mesh, its proof and its pictures, cell by cell: as a script, or in an editor that runs # %%.
+"""Makes a mesh from a segmentation, verifies it and draws it, cell by cell: as a script, or in an editor for # %%.
 
 Needs the package podm (`make python`, or pip install --no-build-isolation ./mesher/python) and Debian's
 python3-matplotlib and python3-vtk9.
 """
 
-# %% What is meshed: a phantom here; the name of a segmentation, an array or an image of nibabel serves as well.
+# %% The input: here a phantom; the name of a segmentation, an array or a nibabel image also works.
 import matplotlib
 import numpy as np
 import vtk
@@ -18,20 +18,20 @@ import matplotlib.pyplot as plt  # noqa: E402  (after the choice of what draws)
 
 IMAGE = "phantom:abdomen@64"
 
-# %% Meshed: cells of up to 20 mm, in the liver of up to 8, surfaces sampled every 6.
+# %% Makes a mesh: cells up to 20 mm, in the liver up to 8 mm, surfaces sampled every 6 mm.
 mesh = podm.mesh(IMAGE, radius=20, radius_of={"liver": 8}, delta=6, optimize=True, threads=1)
 print(repr(mesh))
 print(mesh)
 
-# %% Proved: a program that knows the mesh by its file alone checks all that it promises.
+# %% Proves the mesh: a program that knows only its file checks all its guarantees.
 report = mesh.verify()
 print(report)
 assert report.holds
 
-# %% For ParaView or a solver.
+# %% Saves the mesh for ParaView or a solver.
 mesh.save("mesh.vtu")
 
-# %% How good are the cells of each label?
+# %% Draws the quality of the cells of each label.
 colours = plt.get_cmap("tab20")
 BESIDE = {"loc": "center left", "bbox_to_anchor": (1, 0.5), "ncols": 2, "fontsize": "small"}
 quality = mesh.quality()["min_dihedral_deg"]
@@ -43,7 +43,7 @@ axes.set(xlabel="least dihedral angle of the cell, degrees", ylabel="cells")
 axes.legend(**BESIDE)
 figure.savefig("quality.png", dpi=120, bbox_inches="tight")
 
-# %% The mesh cut by a plane: each polygon is a cell, its colour the label.
+# %% Cuts the mesh by a plane: each polygon is a cell, coloured by label.
 center = (mesh.points.min(axis=0) + mesh.points.max(axis=0)) / 2
 plane = vtk.vtkPlane()
 plane.SetOrigin(center)

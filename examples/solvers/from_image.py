@@ -1,4 +1,4 @@
-"""What the examples share: a mesh by podm, what a solver has read of it against podm's record, and a picture."""
+"""Common parts of the examples: meshing by podm, a check of the mesh that the solver read, and a picture."""
 
 import argparse
 import json
@@ -11,7 +11,7 @@ LIVER = 14  # its label in the phantom
 
 
 def arguments(description):
-    """IMAGE and FOLDER of the command line; the folder is made."""
+    """Returns IMAGE and FOLDER of the command line, and creates the folder."""
     parser = argparse.ArgumentParser(description=description)
     parser.add_argument("folder", type=pathlib.Path, help="where mesh, solution and picture go")
     parser.add_argument("image", nargs="?", default="phantom:abdomen@40", help="segmentation with a liver, label 14")
@@ -30,12 +30,12 @@ def make_mesh(parsed, name, *options):
 
 
 def names_of(record):
-    """Name by label value, as podm writes it."""
+    """Returns names by label value, as podm writes them."""
     return {0: "outside", **{label["value"]: label["name"] or f"label {label['value']}" for label in record["labels"]}}
 
 
 def check(record, cells, volumes, facets, tolerance=1e-9):
-    """Cells in all, volume (mm^3) by name of label, facets by name of pair: as podm recorded them."""
+    """Checks the number of cells, volumes (mm^3) by label name, and facets by pair name against podm's record."""
     names = names_of(record)
     expected_facets = {f"{names[b]}|{names[a]}": pair["facets"] for pair in record["facet_pairs"]
                        for a, b in [pair["labels"]]}
@@ -50,12 +50,12 @@ def check(record, cells, volumes, facets, tolerance=1e-9):
 
 
 def draw_cut(points, cells, values, quantity, path):
-    """A picture of values at the points, in the axial plane through the largest of them."""
+    """Draws the values at the points, in the axial plane through the point of the largest value."""
     import matplotlib
     matplotlib.use("Agg")
     import matplotlib.pyplot as plt
     import numpy as np
-    height = points[np.argmax(values)][2] + 1e-3  # through no point
+    height = points[np.argmax(values)][2] + 1e-3  # the plane contains no point
     above = points[cells][:, :, 2] > height
     edges = np.array([(0, 1), (0, 2), (0, 3), (1, 2), (1, 3), (2, 3)])
     xy, colour, triangles = [], [], []

@@ -1,4 +1,5 @@
-"""Each example goes from a segmentation to a picture, and its solver reads the mesh that podm recorded."""
+"""Tests that each example makes a picture from a segmentation, and that its solver reads the mesh that podm
+recorded."""
 
 import importlib.util
 import pathlib
@@ -12,7 +13,8 @@ HERE = pathlib.Path(__file__).parent
 
 
 def is_installed(module):
-    """Whether it is there; a folder of that name beside this file, which Python takes for one, has no origin."""
+    """True if the module is installed. A folder of that name beside this file looks like a module, but has no
+    origin."""
     spec = importlib.util.find_spec(module)
     return spec is not None and spec.origin is not None
 

@@ -1,1 +1,1 @@
-"""How the claims of experiments/*.toml changed over the commits that a repository has."""
+"""The changes of the claims of experiments/*.toml over the commits of a repository."""

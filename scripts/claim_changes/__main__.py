@@ -1,4 +1,4 @@
-"""The history of the claims of experiments, as a page and as a check."""
+"""Writes the history of the experiments' claims as a page, or checks it."""
 import argparse
 import sys
 import tomllib

@@ -1,16 +1,17 @@
-"""Faults of the claims as they stand against what they once were."""
+"""Checks the current claims against earlier claims."""
 from .history import by_id
 from .table import PENDING, page
 from .weakened import weakened
 
 
 def faults(history, repository, committed_page):
-    """One text each, with the claim's name. `committed_page`: None where there is none."""
+    """Returns one text per fault, with the claim's name. `committed_page`: None if there is no page."""
     return (_lost(history, repository) + _weakened(history) + _unknown(history) + _page_fault(history, committed_page))
 
 
 def _lost(history, repository):
-    """With a release, its claims have to be there; before the first, all that ever stood."""
+    """After a release, the claims of that release must exist. Before the first release, all earlier claims must
+    exist."""
     tag = repository.last_tag()
     needed = by_id(repository.state(tag), history.shared_names) if tag else history.lives
     since = f"stood in {tag}" if tag else "once stood"
@@ -36,7 +37,7 @@ def _weakened(history):
 
 
 def _unknown(history):
-    """Names of claims that never stood, or do not stand."""
+    """Finds names of claims that never existed, or do not exist now."""
     named = [(claim.name, name) for claim in history.current.claims.values() for name in claim.supersedes]
     found = [f"claim '{by}' supersedes '{name}', which never stood" for by, name in named if name not in history.lives]
     names = {name for _, name in history.current.claims}
@@ -56,7 +57,8 @@ def _page_fault(history, committed_page):
 
 
 def _agree(line, expected):
-    """A change that was committed together with the page has its commit's name only in what is made later."""
+    """True if the lines are equal. A change committed together with the page has no commit name in it yet; the name is
+    then ignored."""
     cells, made = line.split(" | "), expected.split(" | ")
     is_pending = len(cells) > 3 and len(made) > 3 and cells[1] == PENDING
     return line == expected or (is_pending and cells[:1] + cells[3:] == made[:1] + made[3:])

@@ -1,4 +1,4 @@
-"""What a file of an experiment claims, and how two definitions of one claim differ."""
+"""The claims in a file of an experiment, and the differences between two definitions of one claim."""
 import tomllib
 from dataclasses import dataclass, field
 
@@ -6,12 +6,12 @@ AT_LEAST, AT_MOST, FACTOR = "at_least", "at_most", "factor_per_doubling"
 BOUNDS = (AT_LEAST, AT_MOST, FACTOR)
 SERIES = ("of", "over", "above", "below", "across", "along", "direction")
 FIELDS = ("statement", "basis", "kind", "value", *BOUNDS, "where", "trials", "extent", "needs_cores", *SERIES)
-WHAT_IS_JUDGED = ("kind", "value", "along", "direction")  # a bound of another of these is another bound
+WHAT_IS_JUDGED = ("kind", "value", "along", "direction")  # bounds are comparable only if these are equal
 
 
 @dataclass(frozen=True)
 class Claim:
-    """`definition`: the fields that stand in the file. `supersedes`: claims whose place it takes."""
+    """`definition`: the fields given in the file. `supersedes`: the claims that this claim replaces."""
 
     experiment: str
     name: str
@@ -22,7 +22,7 @@ class Claim:
 
 @dataclass(frozen=True)
 class Withdrawn:
-    """`name` may be that of a claim of another experiment, as "experiment:name"."""
+    """`name` may name a claim of another experiment, as "experiment:name"."""
 
     experiment: str
     name: str
@@ -32,7 +32,7 @@ class Withdrawn:
 
 
 def read(text, experiment):
-    """The claims of a file and those that it withdraws."""
+    """Returns the claims of a file and the claims that it withdraws."""
     document = tomllib.loads(text)
     claims = [Claim(experiment, entry["name"], {key: entry[key] for key in FIELDS if key in entry},
                     tuple(_listed(entry.get("supersedes", []))), entry.get("reason", ""))
@@ -43,19 +43,19 @@ def read(text, experiment):
 
 
 def differences(before, after):
-    """(field, old, new) of each field in which two claims differ; None stands for an absent one."""
+    """Returns (field, old, new) for each field in which two claims differ; None stands for an absent field."""
     found = [("experiment", before.experiment, after.experiment)] if before.experiment != after.experiment else []
     return found + [(key, before.definition.get(key), after.definition.get(key)) for key in FIELDS
                     if before.definition.get(key) != after.definition.get(key)]
 
 
 def is_comparable(one, other):
-    """Whether a bound of the one means the same for the other."""
+    """True if a bound of one claim means the same for the other."""
     return all(one.definition.get(key) == other.definition.get(key) for key in WHAT_IS_JUDGED)
 
 
 def loosened(before, after):
-    """The bounds of `after` that ask for less than those of `before`: (field, old, new)."""
+    """Returns (field, old, new) for each bound of `after` that is weaker than the bound of `before`."""
     if not is_comparable(before, after):
         return []
     pairs = [(key, before.definition.get(key), after.definition.get(key)) for key in BOUNDS]
@@ -64,7 +64,7 @@ def loosened(before, after):
 
 
 def narrowed(before, after):
-    """The listed values and the patterns of trials that `before` was judged on and `after` is not: (field, lost)."""
+    """Returns (field, lost): the listed values and trial patterns on which `before` was judged and `after` is not."""
     found = [("trials", set(_listed(before.definition.get("trials", []))) -
               set(_listed(after.definition.get("trials", []))))] if "trials" in after.definition else []
     old, new = before.definition.get("where", {}), after.definition.get("where", {})
@@ -73,7 +73,7 @@ def narrowed(before, after):
 
 
 def changed_measure(before, after):
-    """The fields of what is judged in which they differ: (field, old, new)."""
+    """Returns (field, old, new) for each judged field in which the two claims differ."""
     return [one for one in differences(before, after) if one[0] in WHAT_IS_JUDGED]
 
 
@@ -83,7 +83,7 @@ def bound_in_words(claim):
 
 
 def _values(condition):
-    """The values that a condition lists; none of a range."""
+    """Returns the values that a condition lists; an empty list for a range."""
     return [] if isinstance(condition, dict) else _listed(condition)
 
 

@@ -1,4 +1,4 @@
-"""The life of each claim: how its definition changed, and what became of it."""
+"""The history of each claim: the changes of its definition, and its end."""
 from dataclasses import dataclass, field
 
 from . import definitions
@@ -6,7 +6,7 @@ from . import definitions
 
 @dataclass(frozen=True)
 class Change:
-    """`commit` is empty for what is not committed yet. `before` or `after` is None where the claim began or ended."""
+    """`commit` is empty for an uncommitted change. `before` or `after` is None where the claim began or ended."""
 
     commit: str
     date: str
@@ -16,13 +16,13 @@ class Change:
 
 @dataclass
 class Life:
-    """`id`: the claim's name, or "experiment:name" where several experiments had one of this name at one time."""
+    """`id`: the claim's name, or "experiment:name" if several experiments had a claim of this name at the same time."""
 
     id: str
     changes: list = field(default_factory=list)
 
     def definitions(self):
-        """All that it ever was, oldest first."""
+        """Returns all definitions that the claim ever had, oldest first."""
         return [change.after for change in self.changes if change.after]
 
     def last(self):
@@ -31,7 +31,7 @@ class Life:
 
 @dataclass(frozen=True)
 class History:
-    """`lives` by id. `current`: the state of the working tree."""
+    """`lives`: by id. `current`: the state of the working tree."""
 
     lives: dict
     current: object
@@ -44,15 +44,15 @@ class History:
         return any(self.id_of(claim) == life.id for claim in self.current.claims.values())
 
     def claim_of(self, life):
-        """The claim as it stands; None where it does not."""
+        """Returns the current claim, or None if it no longer exists."""
         return next((claim for claim in self.current.claims.values() if self.id_of(claim) == life.id), None)
 
     def successor(self, life):
-        """The claim that supersedes it; None where none does."""
+        """Returns the claim that supersedes it, or None."""
         return next((claim for claim in self.current.claims.values() if life.id in claim.supersedes), None)
 
     def withdrawal(self, life):
-        """The entry that withdraws it; None where none does."""
+        """Returns the entry that withdraws it, or None."""
         return next((entry for entry in self.current.withdrawn if self.id_of_withdrawn(entry) == life.id), None)
 
     def id_of_withdrawn(self, entry):
@@ -70,7 +70,7 @@ def history_of(repository):
 
 
 def _shared_names(state):
-    """Names that several experiments have at one time."""
+    """Returns the names that several experiments have at the same time."""
     names = [name for _, name in state.claims]
     return {name for name in names if names.count(name) > 1}
 
@@ -84,7 +84,8 @@ def by_id(state, shared):
 
 
 def _changes(commit, shared):
-    """(id, before, after) of what differs from every parent: a merge brings what its branches had before it."""
+    """Yields (id, before, after) of the claims that differ from every parent. In a merge, these exclude the changes
+    that its branches made before."""
     after = by_id(commit.state, shared)
     parents = [by_id(parent, shared) for parent in commit.parents] or [{}]
     for id_ in sorted(set(after).union(*parents)):

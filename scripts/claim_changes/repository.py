@@ -7,16 +7,16 @@ from pathlib import Path
 from . import definitions
 
 FOLDER = "experiments"
-SHORT = 7  # letters of a commit's hash
+SHORT = 7  # digits of a commit's hash
 
 
 class NoHistory(Exception):
-    """There are no commits to read; the text says why."""
+    """There are no commits to read; the text gives the reason."""
 
 
 @dataclass(frozen=True)
 class State:
-    """The claims of one commit by (experiment, name), and those that it withdraws."""
+    """The claims of one commit by (experiment, name), and the claims that it withdraws."""
 
     claims: dict
     withdrawn: tuple
@@ -24,7 +24,7 @@ class State:
 
 @dataclass(frozen=True)
 class Commit:
-    """`name` and `date` are empty for the working tree. `parents`: their states."""
+    """`name` and `date` are empty for the working tree. `parents`: the states of the parents."""
 
     name: str
     date: str
@@ -33,7 +33,7 @@ class Commit:
 
 
 class Repository:
-    """Raises NoHistory where `root` is no full repository."""
+    """Raises NoHistory if `root` is not a complete repository."""
 
     def __init__(self, root):
         self.root = Path(root)
@@ -47,7 +47,7 @@ class Repository:
             raise NoHistory("the repository is a shallow clone, without its older commits")
 
     def commits(self):
-        """All that touch experiments, parents first, then the working tree."""
+        """Yields all commits that touch experiments, parents first, then the working tree."""
         log = self._git("log", "--full-history", "--topo-order", "--reverse", "--format=%H %cs %P", "HEAD", "--",
                         FOLDER)
         for line in log.splitlines():
@@ -56,7 +56,7 @@ class Repository:
         yield Commit("", "", self.working_tree(), (self.state("HEAD"),))
 
     def last_tag(self):
-        """The newest tag before HEAD; None without any."""
+        """Returns the newest tag before HEAD, or None."""
         return self._git("describe", "--tags", "--abbrev=0", may_fail=True) or None
 
     def state(self, commit):
@@ -75,7 +75,7 @@ class Repository:
         return definitions.read(self._git("cat-file", "blob", blob), name.removesuffix(".toml"))
 
     def _git(self, *arguments, may_fail=False):
-        """What git prints; None where it fails and may."""
+        """Returns the output of git; None if git fails and may_fail is set."""
         try:
             done = subprocess.run(["git", "-C", str(self.root), *arguments], capture_output=True, text=True,
                                   check=False)

@@ -1,8 +1,8 @@
-"""experiments/claims-history.md: what became of each claim, and each change of one."""
+"""Writes experiments/claims-history.md: the fate of each claim, and each change of a claim."""
 from . import definitions
 from .weakened import was_loosened
 
-PENDING = "this commit"  # of a change that is committed together with the table
+PENDING = "this commit"  # for a change that is committed together with the table
 TITLE = """# History of the claims
 
 <!--not measured page: statements and bounds of claims-->
@@ -34,7 +34,7 @@ def page(history):
 
 
 def _fate(history, life):
-    """The line of a claim that is no longer what it was published as; None of any other."""
+    """Returns the line of a claim that differs from its first publication; None for any other claim."""
     claim, successor, withdrawal = history.claim_of(life), history.successor(life), history.withdrawal(life)
     if claim is None:
         what = (f"superseded by `{successor.name}`" if successor else

@@ -1,9 +1,9 @@
-"""Where a claim asks for less than it once did."""
+"""Finds where a claim asks for less than an earlier definition did."""
 from . import definitions
 
 
 def weakened(life, claim):
-    """In words, each way in which the claim as it stands asks for less than an earlier definition of its life."""
+    """Returns, in words, each way in which the current claim asks for less than an earlier definition of it."""
     found = []
     for before in life.definitions():
         found += [_bound_in_words(*one) for one in definitions.loosened(before, claim)]
@@ -14,7 +14,8 @@ def weakened(life, claim):
 
 
 def was_loosened(life):
-    """(before, after) of the first change that loosened a bound, whatever came later; None without one."""
+    """Returns (before, after) of the first change that loosened a bound, even if it was restored later; None without
+    one."""
     for change in life.changes:
         if change.before and change.after and definitions.loosened(change.before, change.after):
             return change.before, change.after

@@ -1,1 +1,1 @@
-"""Figures of the documentation: each is recomputed from the rows that its query names (README.md here)."""
+"""Recomputes each figure of the documentation from the rows that its query names (see README.md in this folder)."""

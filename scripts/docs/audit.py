@@ -19,7 +19,7 @@ from .tables import generate
 
 @dataclass
 class Report:
-    """`faults`: "file:line: words". `folders`: RELEASE/WHAT of the rows behind figures and tables."""
+    """`faults`: "file:line: words". `folders`: RELEASE/WHAT of the rows that the figures and tables use."""
 
     faults: list
     folders: set
@@ -29,7 +29,7 @@ class Report:
 
 
 def pages_of(root):
-    """Every Markdown file that git tracks or would; without git, every one outside build folders."""
+    """Returns every Markdown file that git tracks or would track; without git, every one outside build folders."""
     listed = subprocess.run(["git", "-C", root, "ls-files", "-z", "--cached", "--others", "--exclude-standard", "*.md"],
                             capture_output=True, text=True, check=False)
     if listed.returncode == 0 and listed.stdout:

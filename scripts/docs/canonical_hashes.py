@@ -1,5 +1,5 @@
-"""Hashes of a fixed set of meshes, on one thread and by 64 workers in virtual time: they say whether a program still
-makes the meshes that it made.
+"""Computes the hashes of a fixed set of meshes, made on one thread and by 64 workers in virtual time. The hashes show
+whether a program still makes the same meshes.
 
 Exit codes: 0 written or equal, 1 a hash differs, 2 bad usage or input.
 """
@@ -34,11 +34,11 @@ MESHES = {
 
 
 class HashesError(Exception):
-    """A mesh that was not made, or hashes that cannot be read; the text says which and why."""
+    """A mesh that was not made, or hashes that cannot be read; the text gives the name and the reason."""
 
 
 def compute(program):
-    """{name: {"arguments": [...], "mesh_sha256": ...}} of MESHES."""
+    """Returns {name: {"arguments": [...], "mesh_sha256": ...}} of MESHES."""
     with tempfile.TemporaryDirectory() as folder:
         return {name: {"arguments": arguments, "mesh_sha256": _hash_of(program, name, arguments, Path(folder))}
                 for name, arguments in MESHES.items()}
@@ -54,7 +54,7 @@ def _hash_of(program, name, arguments, folder):
 
 
 def read(path):
-    """Raises HashesError."""
+    """Reads the hashes of a file. Raises HashesError."""
     try:
         found = json.loads(path.read_text())
     except (OSError, ValueError) as error:
@@ -65,7 +65,7 @@ def read(path):
 
 
 def differences(ours, theirs):
-    """Names of the meshes of which only one is known, or which differ."""
+    """Returns the names of the meshes that differ, or that only one side has."""
     return [name for name in sorted({*ours, *theirs}) if ours.get(name) != theirs.get(name)]
 
 

@@ -12,7 +12,7 @@ CONDITION = re.compile(r"([\w.\[\]]+)(!=|>=|<=|=|>|<)(.*)", re.DOTALL)
 
 
 class Filter:
-    """`=` compares numbers by value and words by the pattern, in which * and ? match any; a value that a row lacks is
+    """`=` compares numbers by value and words by pattern, with the wildcards * and ?. A value that a row lacks is
     `none`."""
 
     def __init__(self, conditions):
@@ -22,11 +22,11 @@ class Filter:
         return all(_holds(_value(path, row), sign, wanted) for path, sign, wanted in self._conditions)
 
     def unknown_to(self, rows):
-        """Paths that no row has: a slip of the pen in most cases."""
+        """Returns the paths that no row has, which are most often typing errors."""
         return [path for path, *_ in self._conditions if all(_value(path, row) is None for row in rows)]
 
     def changed(self, other):
-        """This one, but for what `other` says of the same paths."""
+        """Returns this filter with the conditions of `other` in place of its own conditions on the same paths."""
         theirs = {path for path, *_ in other._conditions}
         return Filter([one for one in self._conditions if one[0] not in theirs] + other._conditions)
 

@@ -1,5 +1,5 @@
-"""The one exception of this package."""
+"""The exception of this package."""
 
 
 class DocsError(Exception):
-    """A query, a table or a file that cannot be read; the text says which and why."""
+    """A query, a table or a file that cannot be read; the text gives its name and the reason."""

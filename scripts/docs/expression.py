@@ -1,7 +1,7 @@
-"""Values of rows: dotted paths, and arithmetic of them.
+"""Values of rows: dotted paths, and arithmetic on them.
 
-`phases_s.refine`, `cells / seconds`, `sum(labels.cells)`, `ranks.rounds[0].deferred`. A path through a list takes the
-rest of the path of every entry.
+Examples: `phases_s.refine`, `cells / seconds`, `sum(labels.cells)`, `ranks.rounds[0].deferred`. A path through a list
+applies the rest of the path to every entry.
 """
 import ast
 import operator
@@ -14,7 +14,7 @@ FUNCTIONS = {"sum": sum, "len": len, "min": min, "max": max, "abs": abs}
 
 
 class Missing(DocsError):
-    """A row does not have the value."""
+    """A row lacks the value."""
 
 
 class Expression:

@@ -1,12 +1,12 @@
-"""Whether rows are of today's program: a folder of reference rows holds the canonical hashes of the program that made
-them, and today's are in results/reference/canonical_hashes.json."""
+"""Checks that rows come from a program that makes the same meshes as today's. A folder of reference rows holds the
+canonical hashes of the program that made them; today's hashes are in results/reference/canonical_hashes.json."""
 import subprocess
 
 from .canonical_hashes import HASHES, HashesError, differences, read
 
 
 def stale_folders(root, folders):
-    """(warnings, faults): a stale folder of a release is a fault, and before the release a warning."""
+    """Returns (warnings, faults). A stale folder is a fault if its release is tagged, otherwise a warning."""
     warnings, faults = [], []
     reference = root / "results" / "reference"
     for folder in sorted(folders):

@@ -1,9 +1,9 @@
-"""Which numbers of a text could be measurements, and so need a query or a mark.
+"""Finds the numbers of a text that could be measurements and therefore need a query or a mark.
 
-These do: numbers with a decimal point or an exponent, with a unit or a word of UNITS behind them, and of 1000 and more;
-in the body of a table every cell that is a number. These do not: code, links, headings, numbers of list items, versions
-(`0.1.0`, `Gmsh 4.1`), years, parts of names (`C3D4`), powers of small whole numbers (`2^31`), and smaller whole numbers
-without a unit, which count things of the text.
+These numbers do: numbers with a decimal point or an exponent, with a unit or a word of UNITS after them, and numbers of
+1000 or more; in the body of a table every cell that is a number. These do not: code, links, headings, numbers of list
+items, versions (`0.1.0`, `Gmsh 4.1`), years, parts of names (`C3D4`), powers of small whole numbers (`2^31`), and
+smaller whole numbers without a unit, which count things of the text.
 """
 import re
 from dataclasses import dataclass
@@ -17,14 +17,14 @@ VERSIONED = ("Gmsh", "CGAL", "Debian", "VTK", "likwid", "Python", "FEniCS", "hwl
 NUMBER = re.compile(r"(?<![\w.^/#§])(?<![A-Za-z]-)(?<!\d[,:-])(?P<sign>[-+](?=\d))?"
                     r"(?P<digits>\d+(?:,\d{3})*(?:\.\d+)?(?:e[-+]?\d+)?)"
                     r"(?!\.\d)(?![A-Za-z_]*\d*\()")
-NOTHING = "\0"  # in place of comments, which nobody sees: a unit may stand behind one
+NOTHING = "\0"  # replaces comments, which the page does not show: a unit may follow a comment
 AFTER = re.compile(rf"\0*[\s-]?(?:{'|'.join(map(re.escape, UNITS))})(?![\w/-]*\w\()(?!\w)")
 CELL = re.compile(r"[*~<> \u25cb\u25c7]*[-+]?\d[\d,.]*(?:e[-+]?\d+)?[\s\0]*(?:%|[A-Za-z/]{0,4})?[* \0]*")
 
 
 @dataclass(frozen=True)
 class Number:
-    """`start` and `end`: its place in the text of the page."""
+    """`start` and `end`: the place in the text of the page."""
 
     start: int
     end: int
@@ -32,7 +32,8 @@ class Number:
 
 
 def numbers_to_cover(text, body_cells):
-    """Of a text in which everything that is no prose is blank. `body_cells`: (start, end) of the cells of tables."""
+    """Yields the numbers of `text`, in which all that is not prose is blank. `body_cells`: (start, end) of table
+    cells."""
     whole_cells = {place for start, end in body_cells if CELL.fullmatch(text[start:end]) for place in range(start, end)}
     for found in NUMBER.finditer(text):
         if found.start("digits") in whole_cells or _is_suspect(text, found):

@@ -1,13 +1,13 @@
 """A page of Markdown: its figures with their queries, its generated tables, and the numbers that have neither a query
 nor a mark.
 
-    0.62<!--q NAME; cells_per_second; median; /1e6 .2f-->   a figure; the comment is behind its last digit
-    <!--rows NAME = FILES; FILTER-->                          rows by a name, for queries of this page
-    1.93<!--not measured-->                                    that number; its unit may stand between
-    <!--not measured: WHY-->                                   its line; alone on a line the block that follows
-    <!--not measured below: WHY-->                             up to a heading of the same or a higher level
-    <!--not measured page: WHY-->                              the page
-    <!-- table NAME ARGUMENTS --> ... <!-- end table -->       what scripts/update_docs generates
+    0.62<!--q NAME; cells_per_second; median; /1e6 .2f-->   a figure; the comment follows its last digit
+    <!--rows NAME = FILES; FILTER-->                          names rows for the queries of this page
+    1.93<!--not measured-->                                    marks the number; its unit may stand between
+    <!--not measured: WHY-->                                   marks its line; alone on a line, the next block
+    <!--not measured below: WHY-->                             marks all up to a heading of the same or a higher level
+    <!--not measured page: WHY-->                              marks the page
+    <!-- table NAME ARGUMENTS --> ... <!-- end table -->       encloses the output of scripts/update_docs
 """
 import re
 from dataclasses import dataclass
@@ -51,7 +51,7 @@ class Table:
 
 
 class Page:
-    """`figures`, `tables`, `uncovered`, `num_marked` and `faults` of `text`; faults are (place, words)."""
+    """Holds `figures`, `tables`, `uncovered`, `num_marked` and `faults` of `text`; faults are (place, words)."""
 
     def __init__(self, text):
         self.text, self.faults, self.rows, self.figures = text, [], {}, []
@@ -113,7 +113,7 @@ class Page:
             self._covered.append(self._extent(scope, comment))
 
     def _extent(self, scope, comment):
-        """(start, end) of what a mark with a reason covers."""
+        """Returns (start, end) of the text that a mark with a reason covers."""
         line_start = self.text.rfind("\n", 0, comment.start()) + 1
         line_end = (self.text + "\n").index("\n", comment.end())
         if scope == "page":
@@ -145,7 +145,7 @@ class Page:
 
 
 def _body_cells(text):
-    """(start, end) of the cells of rows below the first of each table, whose second line is blank by now."""
+    """Yields (start, end) of the cells below the heading of each table. The line below the heading is already blank."""
     last_end = None
     for row in ROW.finditer(text):
         is_body = last_end is not None and re.fullmatch(r"\n( +\n)?", text[last_end:row.start()])

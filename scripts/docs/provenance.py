@@ -1,23 +1,23 @@
-"""What a row must be to stand behind a figure: written by programs whose sources were committed, and, where the value
-depends on the machine, by one machine that is known."""
+"""Checks that a row may give a figure: committed sources must have made its programs, and if the value depends on the
+machine, all rows must come from one known machine."""
 import re
 from functools import lru_cache
 
 from .errors import DocsError
 
-# What a mesh is, or what a machine only plays: equal on every machine. Everything else of a row depends on it.
+# Properties of a mesh or of a simulated machine are equal on every machine. All other values depend on the machine.
 FACTS = {"cells", "vertices", "boundary_facets", "labels", "facet_pairs", "quality", "dihedral_deg", "counters",
          "outcomes", "guarantees", "verdicts", "status", "replay", "mesh_sha256", "perturbed", "optimization",
          "smoothing", "promised_dihedral_deg", "used", "asked", "options", "resolved", "repeat", "trial", "input",
          "image", "leaves", "threads", "cores", "mesh_bytes", "algorithm", "mesher"}
-# Of files that are no rows of trials: random runs, plans beside runs.
+# Such values in files that hold no rows of trials: random runs, plans beside runs.
 FACTS_ELSEWHERE = {"cells", "planned_cells", "components", "lost", "cut", "missed", "lost_not_said_whole",
                    "cut_by_details", "runs", "counts", "failed_seeds", "first_seed", "last_seed"}
 FACTS_OF_RANKS = re.compile(r"on_ranks\.(number|cells_per_rank|rounds|deferred_share|imbalance"
                             r"|cells_over_one_machine)\b"
                             r"|ranks\.(number|rounds\[\d+\]\.(deferred|entries|insertions)|imbalance)\b")
 FACTS_OF_SOLVERS = re.compile(r"solve\.\w+\.(unknowns|\w+\.(iterations|smallest_eigenvalue|largest_eigenvalue))\b")
-# Of workers in virtual time these are virtual seconds and counts, too.
+# For workers in virtual time these are virtual seconds and counts, which do not depend on the machine either.
 OF_VIRTUAL_TIME = {"virtual", "seconds", "whole_s", "refining_s", "timed", "overhead_s", "hops", "hops_by_kind",
                    "workers"}
 IDENTITY = ("CPUVendor", "CPUFamilyNumber", "CPUModelNumber", "CPUStepping")
@@ -31,7 +31,7 @@ class Provenance:
         self._identity_of = lru_cache(maxsize=None)(self._read_identity)
 
     def fault_of(self, rows, expression):
-        """Empty, or why `rows` may not give a value of `expression`."""
+        """Returns the reason why `rows` may not give a value of `expression`; empty if they may."""
         for row in rows:
             if dirty := dirty_programs(row):
                 return f"row {key_of(row)} is of {' and '.join(dirty)} with sources that were not committed"
@@ -48,7 +48,8 @@ class Provenance:
         return ""
 
     def machine_of(self, row):
-        """What tells machines apart: the processor by CPUID and its caches; None where the row names none."""
+        """Returns what identifies a machine: the processor by CPUID, and its caches; None if the row names no
+        machine."""
         environment = row.get("environment") or {}
         identity = environment.get("identity")
         if isinstance(identity, dict):
@@ -70,7 +71,7 @@ class Provenance:
 
 
 def _text(caches):
-    """Data caches by level."""
+    """Returns the data caches by level."""
     return " ".join(f"{level}:{size}" for level, size in sorted(caches.items()))
 
 
@@ -83,7 +84,7 @@ def depends_on_machine(row, expression):
 
 
 def dirty_programs(row):
-    """Names of the programs that wrote the row and whose sources were changed since the commit that they name."""
+    """Returns the names of the programs that made the row from sources with uncommitted changes."""
     programs = {name: (program or {}).get("build") or {} for name, program in (row.get("programs") or {}).items()}
     sources = (row.get("environment") or {}).get("sources")
     programs["podm-bench"] = sources if isinstance(sources, dict) else {}

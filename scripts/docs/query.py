@@ -1,4 +1,4 @@
-"""The query behind a figure: SOURCES; FILTER; VALUE; STATISTIC; FORMAT, as scripts/docs/README.md tells."""
+"""The query of a figure: SOURCES; FILTER; VALUE; STATISTIC; FORMAT (see scripts/docs/README.md)."""
 import re
 import statistics
 from dataclasses import dataclass
@@ -21,7 +21,7 @@ FORMAT = re.compile(r"(?:([*/])\s*([\d.e+-]+)\s+)?(\S+)")
 
 @dataclass(frozen=True)
 class Rows:
-    """Files and a filter: what `<!--rows NAME = ...-->` names."""
+    """Files and a filter, as named by `<!--rows NAME = ...-->`."""
 
     names: tuple
     filter: Filter
@@ -29,7 +29,7 @@ class Rows:
 
 @dataclass(frozen=True)
 class Query:
-    """`base`: of a statistic of two sides the rows that are divided by; else None."""
+    """`base`: for a statistic of two sides, the filter of the rows to divide by; otherwise None."""
 
     rows: Rows
     value: Expression
@@ -40,7 +40,7 @@ class Query:
 
 
 def parse_rows(text, known):
-    """`FILE...; FILTER`, or `NAME; FILTER` of rows that the page has named."""
+    """Parses `FILE...; FILTER`, or `NAME; FILTER` for rows that the page has named."""
     names, _, conditions = text.partition(";")
     names, condition = tuple(names.split()), parse_filter(conditions)
     if len(names) == 1 and names[0] in known:
@@ -51,7 +51,7 @@ def parse_rows(text, known):
 
 
 def parse_query(text, known):
-    """Raises DocsError. `known`: rows by the names that the page gave them."""
+    """Parses a query. `known`: the rows that the page has named. Raises DocsError."""
     parts = [part.strip() for part in text.split(";")]
     if len(parts) not in (4, 5):
         raise DocsError(f"'{text}' is no query: SOURCES; FILTER; VALUE; STATISTIC; FORMAT")
@@ -71,7 +71,7 @@ def parse_query(text, known):
 
 
 def answer(query, sources, provenance):
-    """(the text that the figure must be, the rows behind it). Raises DocsError."""
+    """Returns (the text that the figure must be, the rows behind it). Raises DocsError."""
     every = [row for name in query.rows.names for row in sources.rows(name) if not row.get("warmup")]
     is_published = all(name.startswith("paper/") for name in query.rows.names)
     rows = [row for row in every if query.rows.filter.matches(row)]
@@ -135,7 +135,7 @@ def _ratios_within_rounds(query, rows, base):
 def _by_round(value, rows):
     found = {}
     for row in rows:
-        if row.get("probe_moved"):  # the machine changed its speed meanwhile
+        if row.get("probe_moved"):  # the machine's speed changed during the round
             continue
         if row.get("repeat") in found:
             raise DocsError(f"two rows of one side in round {row.get('repeat')}")

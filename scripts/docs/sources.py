@@ -1,7 +1,7 @@
-"""Rows that queries name, and where they come from.
+"""The rows that queries name, and their files.
 
-A source is a file below results/reference (or `paper/...`: below results/): JSON lines, JSON or CSV. A row of a trial
-has, beside its own keys, the values that tables and figures take of it (`figures.load.derived`): no measure is defined
+A source is a file below results/reference (`paper/...`: below results/) with JSON lines, JSON or CSV. A row of a trial
+also has the values that tables and figures derive from it (`figures.load.derived`), so that no measure is defined
 twice.
 """
 import csv
@@ -27,25 +27,25 @@ class Sources:
         self.frame = lru_cache(maxsize=None)(self._frame)
 
     def path(self, name):
-        """Of a file or folder that a query or table names. Raises DocsError where there is none."""
+        """Returns the path of a file or folder that a query or table names. Raises DocsError if it does not exist."""
         place = (self.results if name.startswith("paper/") else self.reference) / name
         if not place.exists():
             raise DocsError(f"{place.relative_to(self.root)}: no such file")
         return place
 
     def files(self, name):
-        """Names of the files of rows that `name`, a file or a folder, stands for."""
+        """Returns the names of the row files that `name`, a file or a folder, stands for."""
         place = self.path(name)
         found = sorted(place.rglob("*.jsonl")) if place.is_dir() else [place]
         return [str(one.relative_to(self.reference)) for one in found if one.name != "radii.jsonl"]
 
     def release_folder(self, name):
-        """RELEASE/WHAT of a file of reference rows; None of a published one."""
+        """Returns RELEASE/WHAT of a file of reference rows; None for published values."""
         parts = Path(name).parts
         return None if parts[0] == "paper" or len(parts) < 3 else Path(*parts[:2])
 
     def _frame(self, names):
-        """The table that figures are made of, of the rows of files or folders."""
+        """Returns the table from which figures are made, with the rows of files or folders."""
         return load.load([self.path(name) for name in names]).frame
 
     def _rows(self, name):

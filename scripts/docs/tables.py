@@ -1,5 +1,5 @@
 """Tables that scripts/update_docs generates: `<!-- table NAME ARGUMENTS -->`. Each function takes the sources and the
-arguments and returns lines of Markdown; another table is a function and a line in TABLES."""
+arguments and returns lines of Markdown. To add a table, add a function and a line in TABLES."""
 import pandas
 
 from figures import distributed, experiment_verdicts
@@ -23,13 +23,13 @@ def _lines(table):
 
 
 def solvers(sources, folder):
-    """Iterations by image and variant, without the angles of the meshes: README."""
+    """Iterations by image and variant, without the angles of the meshes, for the README."""
     shown = solving.readable(solving.solvers(sources.frame((folder,))))
     return _lines(shown.drop(columns=["dihedral angles", *(one for one in shown if "eigenvalue" in one)]))
 
 
 def solvers_in_full(sources, folder):
-    """The same with all that was found of the meshes."""
+    """Iterations by image and variant, with all measures of the meshes."""
     return _lines(solving.readable(solving.solvers(sources.frame((folder,)))))
 
 
@@ -53,7 +53,7 @@ def slivers(sources, file):
 
 
 def costs(sources, folder):
-    """Minutes and memory that each experiment took, all its rows together, by the clock."""
+    """Wall time in minutes, and memory, of each experiment over all its rows."""
     lines = []
     for name in sources.files(folder):
         rows = sources.rows(name)
@@ -67,7 +67,7 @@ def costs(sources, folder):
 
 
 def gate(sources, file):
-    """Answers of the performance gate by noise and planted slowdown, of `podm-bench gate-simulation --json`."""
+    """Answers of the performance gate by noise and planted slowdown, from `podm-bench gate-simulation --json`."""
     return _lines(pandas.DataFrame([
         {"noise of a process": f"{row['noise_percent']:g} %", "planted": f"{row['planted_percent']:g} %",
          **{answer.replace("_", " "): f"{row[answer]} of {row['tries']}"
@@ -76,7 +76,7 @@ def gate(sources, file):
 
 
 def gate_tries(sources, file):
-    """Answers of the performance gate on recorded rounds by clock, kind of starts and planted slowdown."""
+    """Answers of the performance gate on recorded rounds, by clock, kind of starts and planted slowdown."""
     return _lines(pandas.DataFrame([
         {"clock": row["clock"], "tries": row["starts"], "planted": f"{row['planted_percent']:g} %",
          "number": row["tries"], **{answer.replace("_", " "): row[answer]
@@ -85,7 +85,7 @@ def gate_tries(sources, file):
 
 
 def machines(sources, folder):
-    """The machines that rows name, by the hash of the topology: the processor by CPUID, or that it is not known."""
+    """Machines of the rows by hash of the topology: the processor by CPUID, or "not known"."""
     by_hash = {}
     for name in sources.files(folder):
         for row in sources.rows(name):
@@ -100,12 +100,12 @@ def machines(sources, folder):
 
 
 def peers(sources, folder):
-    """Speed of podm and other meshers by one clock, beside what they made: README."""
+    """Speed of podm and other meshers by one clock, with the sizes of their meshes, for the README."""
     return _lines(_peers(sources, folder).drop(columns=["version", "n", "bounds met", "coverage"]))
 
 
 def peers_in_full(sources, folder):
-    """The same with versions, numbers of rounds, bounds met and the coverage of intervals."""
+    """The table `peers` with versions, numbers of rounds, bounds met and the coverage of intervals."""
     return _lines(_peers(sources, folder))
 
 
@@ -114,7 +114,7 @@ def _peers(sources, folder):
 
 
 def ranks(sources, folder):
-    """What meshes on ranks are, whoever made them when: no second among it."""
+    """Properties of meshes on ranks that do not depend on the machine; no seconds."""
     table = distributed.distributed(sources.frame((folder,)))
     table = table[table["ranks"] > 1].sort_values(["cells_per_rank", "ranks"])
     return _lines(pandas.DataFrame({
@@ -127,18 +127,19 @@ def ranks(sources, folder):
 
 
 def simulated_speedups(sources, folder):
-    """Speed-ups over PODM on one core by algorithm and cells a core, beside the paper's."""
+    """Speed-ups over PODM on one core by algorithm and cells per core, beside the paper's."""
     return _lines(speedups(scaling.weak_series(sources.frame((folder,)))))
 
 
 def verdicts(sources, file):
-    """Claims of experiments, of a file of `podm-bench verdicts --json`."""
+    """Claims of experiments, from a file of `podm-bench verdicts --json`."""
     found = experiment_verdicts.read_experiment_verdicts(sources.path(file))
     return _lines(experiment_verdicts.table(found)[["experiment", "claim", "basis", "verdict", "value", "bound", "n"]])
 
 
 def paper_claims(sources, *names):
-    """The paper's claims beside ours, of folders of rows and, last, of the verdicts of podm-bench on them."""
+    """The paper's claims beside the project's results. `names`: folders of rows, then the file of podm-bench's
+    verdicts."""
     *folders, file = names
     found = experiment_verdicts.read_experiment_verdicts(sources.path(file))
     return papers.markdown_lines(papers.rows(found, sources.frame(tuple(folders))))
@@ -147,13 +148,13 @@ def paper_claims(sources, *names):
 TABLES = {table.__name__: table
           for table in (costs, gate, gate_tries, machines, paper_claims, peers, peers_in_full, ranks,
                         simulated_speedups, slivers, solvers, solvers_in_full, verdicts)}
-# Tables with seconds of the machine: their rows must be of one that is known.
+# Tables with seconds of the machine. Their rows must come from a known machine.
 TIMED = {"costs": Expression("process"), "peers": Expression("phases_s"), "peers_in_full": Expression("phases_s"),
          "slivers": Expression("phases_s")}
 
 
 def generate(name, arguments, sources, provenance):
-    """Raises DocsError, also where rows may not give the table."""
+    """Returns the table's text. Raises DocsError, also if the rows may not give the table."""
     if name not in TABLES:
         raise DocsError(f"no table '{name}': {', '.join(TABLES)}")
     rows = [row for one in arguments for file in sources.files(one) for row in sources.rows(file)]

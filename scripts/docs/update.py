@@ -1,6 +1,6 @@
-"""Writes the generated tables of the documentation, and with --figures every figure, as their rows have them.
+"""Writes the generated tables of the documentation, and with --figures every figure, from their rows.
 
-Exit codes: 0 written, 1 something could not be computed and is as it was, 2 bad usage or input.
+Exit codes: 0 written, 1 something could not be computed and was left unchanged, 2 bad usage or input.
 """
 import argparse
 import sys
@@ -18,7 +18,7 @@ from .tables import generate
 
 
 def updated(page, sources, provenance, has_figures):
-    """(the text of the page as its rows have it, faults as (place, words))."""
+    """Returns (the new text of the page, faults as (place, words))."""
     changes, faults = [], list(page.faults)
     for table in page.tables:
         _try(lambda: generate(table.name, table.arguments, sources, provenance), table, changes, faults)  # noqa: B023

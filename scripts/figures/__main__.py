@@ -1,6 +1,6 @@
 """Makes the paper's tables and figures from records: CSV, Markdown, PDF and PNG, and a verdict for each cell.
 
-Published, measured and simulated values stay apart, and no row gives a number unless its mesh verified.
+Published, measured and simulated values stay apart. Only rows whose mesh was verified give numbers.
 Exit codes: 0 made, 2 bad usage or input.
 """
 import argparse
@@ -19,7 +19,7 @@ from .write import markdown, write_figure, write_json, write_text
 
 
 class ReportError(Exception):
-    """A report of podm-verify that cannot be read; the text names file and fault."""
+    """A report of podm-verify that cannot be read; the text names the file and the fault."""
 
 
 def parse_arguments(arguments):
@@ -46,7 +46,8 @@ def add_inputs(parser):
 
 
 def read_inputs(arguments):
-    """The records, and what `make` takes beside them, None where not asked for. Raises what INPUT_ERRORS lists."""
+    """Returns the records and the other inputs of `make`, which are None if not given. Raises the errors in
+    INPUT_ERRORS."""
     def given(path, read):
         return read(path) if path else None
 
@@ -88,7 +89,7 @@ def write(outcome, frame, folder):
 
 
 def print_experiments(found):
-    """A line for each claim of our experiments."""
+    """Prints a line for each claim of the experiments."""
     if found is None:
         print(HOW)
         return

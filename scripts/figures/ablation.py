@@ -1,5 +1,5 @@
-"""Which finding of the simulated machine hangs on which constant: each is switched off and doubled, one at a time
-(experiments/simulated_ablation.toml), and the findings are judged anew."""
+"""Finds out which result of the simulated machine depends on which constant. Each constant is switched off and doubled,
+one at a time (experiments/simulated_ablation.toml), and the findings are judged again."""
 from dataclasses import dataclass
 from typing import Callable
 
@@ -15,7 +15,7 @@ HOLDS, FAILS, NOT_PLAYED = "holds", "does not hold", "not played"
 
 @dataclass(frozen=True)
 class Finding:
-    """`holds`: of the rates and zero-hop shares by (algorithm, cores); it needs all of `needs`."""
+    """`holds`: a function of the rates and zero-hop shares by (algorithm, cores). It needs all entries of `needs`."""
 
     statement: str
     needs: tuple
@@ -45,8 +45,8 @@ FINDINGS = (
 
 
 def ablation(frame):
-    """One line a constant and factor, the constants as they are first: whether each finding `holds`, `does not hold`
-    or was `not played`. Rows are those of the newest program, which two models never share."""
+    """One line per constant and factor, first the line with unchanged constants: each finding `holds`, `does not hold`
+    or was `not played`. Only rows of the newest program count; two models never share a program."""
     rows = _rows(frame)
     if rows.empty:
         return pandas.DataFrame()
@@ -81,8 +81,8 @@ def _verdict(finding, rate, hops):
 
 
 def readable(table):
-    """The constants as they are, then one line a constant: a finding survives, or falls with the factors named. One
-    that does not hold as they are may hold with another constant."""
+    """The unchanged constants, then one line per constant: a finding survives, or falls with the factors that are
+    listed. A finding that does not hold with unchanged constants may hold with another value of a constant."""
     as_they_are = table[table["constant"] == UNCHANGED[0]]
     lines = []
     for constant, group in table.groupby("constant", sort=False):
@@ -95,7 +95,7 @@ def readable(table):
 
 
 def _words(verdicts, usual):
-    """`usual`: the verdict with the constants as they are."""
+    """`usual`: the verdict with unchanged constants."""
     played = verdicts[verdicts != NOT_PLAYED]
     if played.empty or usual == NOT_PLAYED:
         return NOT_PLAYED

@@ -1,4 +1,4 @@
-"""Cache behaviour: what a further insertion costs, counted by the processor or by a simulation of its caches."""
+"""Cache behaviour: the counts per further insertion, from the processor or from a simulation of its caches."""
 import pandas
 
 from . import load
@@ -7,14 +7,14 @@ SERIES = ["basis", "source", "machine", "build", "image", "algorithm", "cores", 
 SIZE = ["used.radius_mm"]
 PREFIX = "process.counters."
 COLUMNS = ["basis", "source", "algorithm", "cores", "cells", "counter", "per_insertion", "n", "reason"]
-# The kernel counts these: they say nothing of caches.
+# Counted by the operating system's kernel; they do not describe caches.
 NO_CACHE = {"task_clock_ns", "page_faults", "context_switches", "cpu_migrations"}
 
 
 def cache(frame):
-    """One line a series and size: counts beyond those of the next smaller mesh of the series, by insertions beyond its.
-    Both meshes pay alike for reading their image, which so falls out. Then a line, with the reason, for each counter
-    that could not be read."""
+    """One line per series and size: the counts beyond those of the next smaller mesh of the series, divided by the
+    insertions beyond its insertions. Both meshes pay the same to read their image, therefore this cost cancels. Then
+    one line, with the reason, for each counter that could not be read."""
     rows = frame[frame["doubt"].isin(["", load.SIMULATED_CACHES]) & frame["cores"].notna()] if len(frame) else frame
     lines = [line for counter in _counters(rows) for line in _lines_of(rows, counter)]
     lines += _reasons(rows[rows["basis"] == "measured"]) if len(rows) else []
@@ -36,7 +36,7 @@ def _counters(rows):
 
 
 def _reasons(rows):
-    """A line for each counter that is text in a row and a number in none; the newest text."""
+    """Yields a line for each counter that is text in some row and a number in none, with the newest text."""
     for name in rows:
         counter = name.removeprefix(PREFIX)
         is_text = rows[name].map(lambda value: isinstance(value, str))

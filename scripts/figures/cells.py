@@ -2,9 +2,9 @@
 from . import paper, resolution, scaling
 from .reasons import why_missing
 
-RATIO_TOLERANCE = 0.15  # of a ratio to one core
-# A share agrees within this factor of the paper's (where no hop is counted, of the remote share, so that half a percent
-# tells), or within one unit of the last digit that the paper prints.
+RATIO_TOLERANCE = 0.15  # for a ratio to one core
+# A share agrees within this factor of the paper's share, or within one unit of the last digit that the paper prints.
+# For zero hops the remote share is compared, so that half a percent makes a difference.
 SHARE_FACTOR, SHARE_DIGIT = 2.0, 1e-4
 COLUMNS = ("cells", "seconds", "rate", "speedup", "efficiency")
 
@@ -18,7 +18,8 @@ def cells(frame, series, hops):
 
 
 def near_share(published):
-    """(least, most) that agrees with a share of all accesses, or of those that leave their node."""
+    """Returns (least, most) of the values that agree with a share of all accesses, or of accesses that leave their
+    node."""
     return (min(published / SHARE_FACTOR, published - SHARE_DIGIT),
             max(published * SHARE_FACTOR, published + SHARE_DIGIT))
 
@@ -47,7 +48,7 @@ def _cell(table, basis, algorithm, cores, column, published):
 
 
 def _judge_ratio(cell, ours, paper_ratio, our_base):
-    """`deviation`: ours over the paper's value, less 1. The verdict compares the ratios to PODM on one core."""
+    """`deviation`: our value over the paper's, minus 1. The verdict compares the ratios to PODM on one core."""
     value = float(ours[cell["column"]])
     ratio = value / our_base
     cell.update(value=value, n=int(ours["n"]), deviation=value / cell["paper"] - 1, ratio_to_one_core=ratio,
@@ -67,7 +68,8 @@ def _judge_ratio(cell, ours, paper_ratio, our_base):
 
 
 def _interval_of_ratio(cell, ours, ratio):
-    """Each column's ratio to one core is the speed-up, or its inverse, times what does not vary."""
+    """Returns the interval of a ratio. Each column's ratio to one core is the speed-up, or its inverse, times a
+    constant."""
     interval = resolution.of_line(ours, "speedup", cell["basis"])
     if interval is resolution.EXACT:
         return interval
@@ -94,7 +96,8 @@ def _cells_of_table2(frame, hops, basis):
 
 
 def _judge_share(cell, ours, hop):
-    """`deviation`: of the shares. Without hops the shares that remain are compared, as they are the small ones."""
+    """`deviation`: the difference of the shares. For zero hops the remaining shares are compared, as they are the small
+    ones."""
     share = float(ours["share"])
     compared = [1 - one if hop == 0 else one for one in (share, cell["paper"])]
     what = "leave their node" if hop == 0 else f"take {hop} hops"

@@ -1,4 +1,4 @@
-"""A verdict for each finding of the paper: statements on shapes, each with the mirror that would refute it."""
+"""A verdict for each finding of the paper: statements on shapes, each with the opposite that would refute it."""
 import math
 
 from . import paper, resolution, scaling, table2, table3
@@ -8,8 +8,8 @@ from .style import NAMES
 
 CROSSOVER = (128, 160)  # the paper's: PODM ahead on the first, PDR.PODM on the second
 ABOVE_ONE = math.nextafter(1, 2)
-TURNING = 128  # cores from which on PODM's speed-up falls
-# Mean absolute deviation of speed-ups from the paper's; in simulations PODM's column is fitted, the other is not.
+TURNING = 128  # PODM's speed-up falls from this number of cores on
+# Bound on the mean absolute deviation of speed-ups from the paper's. Simulations are fitted to PODM's column only.
 DEVIATIONS = {"podm": 0.08, "pdr-podm": 0.15}
 
 
@@ -26,7 +26,7 @@ def claims(frame, series, hops):
 
 
 def _with_size(claim, series):
-    """Each size has a verdict of its own."""
+    """Adds the size to the claim; each size has its own verdict."""
     size = f", {scaling.short(series.cells_per_core)} cells a core"
     return {**claim, "claim": claim["claim"] + size, "statement": claim["statement"] + size}
 
@@ -41,15 +41,15 @@ def _decide(claim, agrees, value, reason):
 
 
 def _conclude(claim, word, value, reason, *intervals):
-    """The doubts are told of what is not resolved."""
+    """Sets the verdict. The doubts are added to the reason of a claim that is not resolved."""
     doubts = [resolution.doubt(one) for one in intervals] if word == resolution.NOT_RESOLVED else []
     claim.update(value=value, verdict=word, reason=reason + next(filter(None, doubts), ""))
     return claim
 
 
 def crossover(table):
-    """(most cores with PODM ahead, fewest from which on PDR.PODM makes more elements per second): 0 or None where there
-    is no such number."""
+    """Returns (the most cores with PODM ahead, the fewest cores from which on PDR.PODM makes more elements per second).
+    Without such a number the first is 0 and the second None."""
     both = table["rate"].unstack("algorithm").reindex(columns=list(paper.ALGORITHMS)).dropna()
     ahead = both["pdr-podm"] > both["podm"]
     behind = max(both.index[~ahead], default=0)
@@ -57,8 +57,8 @@ def crossover(table):
 
 
 def _crossover(frame, series, basis):
-    """Decided where the bracket lies apart from the paper's, within it, or holds it without being wider than one
-    doubling."""
+    """The claim is decided if our bracket is disjoint from the paper's or lies within it, or if it contains the paper's
+    and is at most one doubling wide."""
     last, first = CROSSOVER
     claim = _claim("crossover", f"PDR.PODM overtakes PODM between {last} and {first} cores", list(CROSSOVER), basis)
     both = _common_cores(series.table) if series is not None else []
@@ -84,7 +84,7 @@ def _crossover(frame, series, basis):
 
 
 def _unresolved_orders(series, basis):
-    """The numbers of cores beyond one on which the intervals do not tell which algorithm is ahead."""
+    """Returns the numbers of cores beyond one on which the intervals do not show which algorithm is ahead."""
     def order(cores):
         lines = [series.table.loc[algorithm, cores] for algorithm in ("pdr-podm", "podm")]
         one, other = (resolution.of_line(line, "speedup", basis) for line in lines)
@@ -100,7 +100,7 @@ def _common_cores(table):
 
 
 def _trends(frame, series, basis):
-    """Efficiency at the most cores over that at the fewest beyond one core: what is kept of it."""
+    """The efficiency at the most cores over the efficiency at the fewest cores beyond one core."""
     for algorithm, statement in (("podm", "PODM's efficiency collapses: 106.6 % on 32 cores, 17.5 % on 256"),
                                  ("pdr-podm", "PDR.PODM keeps most: 90.7 % on 32 cores, 64.0 % on 256")):
         published = paper.table1().loc[algorithm]["efficiency"]
@@ -139,14 +139,14 @@ def _turns(frame, series, basis):
 
 
 def deviations(table, algorithm):
-    """By number of cores beyond one: the speed-up over the paper's, less 1."""
+    """Returns our speed-up over the paper's, minus 1, by number of cores beyond one."""
     published = paper.corrected_table1().loc[algorithm]["speedup"]
     ours = table.loc[algorithm]["speedup"] if algorithm in table.index else published.iloc[:0]
     return (ours / published - 1).drop(index=1, errors="ignore").dropna()
 
 
 def _deviations(frame, series, basis):
-    """The mean of their sizes over the numbers of cores beyond one, of which the most has to be there."""
+    """The mean absolute deviation over the numbers of cores beyond one. The largest number of cores must be present."""
     for algorithm, most in DEVIATIONS.items():
         claim = _claim(f"deviation of {algorithm}",
                        f"{NAMES[algorithm]}'s speed-ups deviate from the paper's by at most {100 * most:.0f} % in the "
@@ -169,7 +169,8 @@ def _steps(speedup):
 
 
 def _interval_of_mean(series, algorithm, counts, basis):
-    """Of the mean of the sizes of deviations: each is the least and the greatest that its interval has."""
+    """The interval of the mean absolute deviation: the means of the least and of the greatest absolute deviations that
+    the intervals of the speed-ups allow."""
     if basis != "measured":
         return resolution.EXACT
     published = paper.corrected_table1().loc[algorithm]["speedup"]
@@ -184,7 +185,7 @@ def _interval_of_mean(series, algorithm, counts, basis):
 
 
 def _quotient(above, below, column, basis):
-    """(the quotient of two lines' numbers, its interval)."""
+    """Returns (the quotient of two lines' numbers, its interval)."""
     intervals = [resolution.of_line(line, column, basis) for line in (above, below)]
     exact = resolution.EXACT in intervals
     return float(above[column] / below[column]), resolution.EXACT if exact else intervals[0].over(intervals[1])
@@ -215,7 +216,7 @@ def _zero_hops(hops, frame, basis):
 
 
 def _zero_hop_cells(hops, frame, basis):
-    """Table 2 number of cores by number of cores, by the rule of its cells; all of them have to agree."""
+    """Judges Table 2 for each number of cores by the rule of its cells; all of them must agree."""
     published = paper.table2().loc[0]
     published = published[published < 1]  # on one blade no access can leave it
     claim = _claim("zero-hop share by number of cores",
@@ -239,7 +240,7 @@ def _zero_hop_cells(hops, frame, basis):
 
 
 def _latencies(frame):
-    """The order of Table 3's cycles is compared, which are a machine's own. Measured, or not at all."""
+    """Compares the order of Table 3's cycles, as the values belong to each machine. Only for measured rows."""
     costs = table3.costs(frame)
     own, another = costs[~costs["is_another"]], costs[costs["is_another"]]
     within = _claim("latency within a node", "each level of memory costs more than the one before it: 4, 11, 40 and "

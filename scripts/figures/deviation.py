@@ -1,5 +1,5 @@
-"""Simulated speed-ups, efficiencies and zero-hop shares beside the paper's: what the constants of the machine were
-fitted to, PODM's column, and what they were not, PDR.PODM's and Table 2."""
+"""Simulated speed-ups, efficiencies and zero-hop shares beside the paper's. The constants of the machine were fitted to
+PODM's column; PDR.PODM's column and Table 2 were not fitted."""
 import itertools
 
 import pandas
@@ -12,8 +12,8 @@ ROLES = {"podm": "fitted", "pdr-podm": "not fitted"}
 
 
 def deviation(series):
-    """One line an algorithm, number of cores beyond one, and size simulated: speed-up and efficiency beside
-    the paper's, and the `deviation` of the speed-up, ours over the paper's less 1."""
+    """One line per algorithm, number of cores beyond one, and simulated size: speed-up and efficiency beside the
+    paper's, and the `deviation` of the speed-up, ours over the paper's minus 1."""
     published = paper.corrected_table1()
     lines = []
     for algorithm in paper.ALGORITHMS:
@@ -29,7 +29,7 @@ def deviation(series):
 
 
 def readable(table):
-    """Numbers of cores downwards within an algorithm, the one fitted to first; sizes across."""
+    """One row per algorithm and number of cores, the fitted algorithm first; one column per size."""
     lines = []
     for (algorithm, cores), group in table.groupby(["algorithm", "cores"], sort=False):
         first = group.iloc[0]
@@ -43,8 +43,7 @@ def readable(table):
 
 
 def means(table):
-    """One line an algorithm and size, the mean absolute deviation over its `n` numbers of cores beside what was asked
-    for."""
+    """One line per algorithm and size: the mean absolute deviation over its `n` numbers of cores, beside its bound."""
     lines = [{"algorithm": algorithm, "speed-up was": group["role"].iloc[0], "basis": kind,
               "mean absolute deviation %": f"{100 * group['deviation'].abs().mean():.1f}",
               "numbers of cores": len(group), "asked %": f"below {100 * DEVIATIONS[algorithm]:.0f}"}
@@ -53,7 +52,7 @@ def means(table):
 
 
 def figure(series):
-    """Deviations of speed-ups against cores, a panel an algorithm; None without simulated ones."""
+    """Draws the deviations of speed-ups against cores, one panel per algorithm; None without simulated speed-ups."""
     shown = scaling.simulated_sizes(series)
     if deviation(series).empty:
         return None
@@ -77,8 +76,8 @@ def figure(series):
 
 
 def efficiency_and_hops(series, hops):
-    """One line a number of cores of the paper's tables: each algorithm's efficiency, and the zero-hop share of all but
-    PODM, as in Table 2; published and simulated, as text."""
+    """One line per number of cores in the paper's tables: each algorithm's efficiency, and the zero-hop share of all
+    algorithms except PODM, as in Table 2; published and simulated, as text."""
     published = paper.corrected_table1()["efficiency"]
     zero = hops[hops["hops"] == 0].set_index(["algorithm", "basis", "cores"])
     lines = []

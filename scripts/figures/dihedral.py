@@ -7,7 +7,8 @@ SHOWN = (solvers.NONE, solvers.MOVED, solvers.BOTH)
 
 
 def figure(frame):
-    """Angles by image, a degree a step. None unless an image has rows with no option and after a stage."""
+    """Draws the angles by image, in bins of one degree. None unless an image has rows without options and after a
+    stage."""
     found = {}
     for image, groups in solvers.rows_by_variant(frame, "dihedral_deg.least").items():
         rows = {variant: group.iloc[-1] for variant, group in groups.items() if variant in SHOWN}

@@ -1,8 +1,9 @@
-"""Weak scaling on ranks that share no memory: rows of podm-mpi, by cells a rank.
+"""Weak scaling on ranks that share no memory: rows of podm-mpi, by cells per rank.
 
-Simulated ranks compute one after the other in virtual time: their efficiency is the cells a second and rank over those
-of one rank of as many cells. Ranks over MPI on one machine have to share its processors: of them the processor seconds
-outside of collectives are told, and the cells a processor second over those of one rank; what waits does not count.
+Simulated ranks compute one after the other in virtual time. Their efficiency is the cells per second and rank over
+those of one rank with the same number of cells. Ranks over MPI on one machine must share its processors. For them the
+table has the processor seconds outside of collectives, and the cells per processor second over those of one rank;
+waiting does not count.
 """
 import math
 
@@ -12,8 +13,8 @@ import pandas
 from . import scaling
 
 REFINING = ("initial", "refine", "later", "exchange")
-# What the mean rank spends its time on, in the order of the stack. Waiting and network are those of refinement but for
-# the coarse mesh, which the first rank makes while the others wait, to learn it then.
+# Where the mean rank spends its time, in the order of the stack. Waiting and network are those of refinement without
+# the coarse mesh: the first rank makes it while the other ranks wait, and then sends it to them.
 PARTS = {"transform": "image transform", "initial": "coarse mesh", "learn": "learning it", "refine": "round 0",
          "later": "later rounds", "exchange": "updates", "waiting": "waiting", "network": "network",
          "extract": "pieces"}
@@ -23,7 +24,7 @@ COLUMNS = ["basis", "kind", "cells_per_rank", "ranks", "n", "cells", "rounds", *
 
 
 def of_row(row):
-    """What the parts of a row on ranks are, seconds of the mean rank; None of another."""
+    """Returns the derived values of a row on ranks; the parts are seconds of the mean rank. None for other rows."""
     told = row.get("ranks")
     if not told:
         return None
@@ -47,7 +48,7 @@ def of_row(row):
         "deferred_share": rounds[0]["deferred"] / cells if rounds and cells else None, "imbalance": told["imbalance"],
         "cells_over_one_machine": cells / resolved if resolved else None,
         "rank_bytes_per_cell": (row.get("process") or {}).get("bytes_per_cell_beyond_image") if is_measured else None,
-        # Of the rank that comes last in virtual time; of the mean one in processor time.
+        # In virtual time the seconds of the rank that ends last; in processor time those of the mean rank.
         "refining_s": _whole(spent, REFINING, every, is_measured),
         "whole_s": _whole(spent, ("transform", *REFINING, "extract"), every, is_measured), "part": made}
 
@@ -62,8 +63,8 @@ def _whole(spent, phases, kinds, is_measured):
 
 
 def distributed(frame):
-    """One line a basis, cells a rank and number of ranks, medians over repeats: microseconds a cell of the mean rank by
-    part. Rows are those of the newest program and machine; they have to be proved."""
+    """One line per basis, cells per rank and number of ranks, medians over repeats; the parts are microseconds per cell
+    of the mean rank. Rows must be verified and come from the newest program and machine."""
     if "on_ranks.number" not in frame:
         return pandas.DataFrame(columns=COLUMNS)
     rows = frame[frame["on_ranks.number"].notna() & (frame["unproved"] == "") & ~frame["moved"]]
@@ -77,7 +78,7 @@ def distributed(frame):
 
 
 def _base(group, per_rank):
-    """The rows of one rank of as many cells."""
+    """Returns the rows of one rank with the same number of cells."""
     return group[(group["on_ranks.number"] == 1) & (group["on_ranks.cells_per_rank"] == per_rank)]
 
 
@@ -102,7 +103,7 @@ def _median(column):
 
 
 def readable(table):
-    """Percent, and microseconds a cell with three digits."""
+    """Percent, and microseconds per cell with three digits."""
     shown = table[["kind", "ranks", "n"]].rename(columns={"kind": "basis", "n": "runs"}).copy()
     shown["M cells"] = [f"{1e-6 * cells:.3g}" for cells in table["cells"]]
     shown["rounds"] = table["rounds"].astype(int)

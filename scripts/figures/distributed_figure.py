@@ -1,4 +1,4 @@
-"""Weak scaling on ranks, drawn: simulated and measured efficiencies apart, and where the time goes."""
+"""Draws weak scaling on ranks: simulated and measured efficiencies in separate panels, and the parts of the time."""
 import numpy
 import pandas
 
@@ -10,13 +10,13 @@ COLOURS = dict(zip(PARTS, ["#8fb996", "#e8a33d", "#e6d5e8", "#d1495b", "#8f575c"
                            "#6d9dc5"]))
 
 
-# On no line: nobody simulated them.
+# Drawn without a line, because these points were not simulated.
 EXTRAPOLATED = {"linestyle": "none", "marker": "D", "markersize": 4, "markerfacecolor": "none"}
 
 
 def figure(table, extrapolated):
-    """Efficiencies against ranks, simulated ones with what they extrapolate to, and measured ones apart; parts of the
-    simulated. None without rows on more than one rank."""
+    """Draws efficiencies against ranks: simulated with their extrapolation, and measured in a panel of their own; then
+    the parts of the simulated time. None without rows on more than one rank."""
     if not (table["ranks"] > 1).any():
         return None
     titles = {"simulated": "weak efficiency of refining, simulated",
@@ -59,7 +59,7 @@ def _extrapolations(axes, table):
 
 
 def _parts(axes, table, extrapolated):
-    """A bar a size and number of ranks; extrapolated ones hatched, with one thread."""
+    """Draws a bar per size and number of ranks; extrapolated bars are hatched, and have one thread."""
     bars = [(scaling.short(line["cells_per_rank"]), line, hatch)
             for lines, hatch in ((table, ""), (extrapolated[extrapolated["threads"] == 1], "////"))
             for _, line in lines.iterrows()]

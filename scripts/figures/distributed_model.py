@@ -1,9 +1,10 @@
-"""What simulated ranks of few cells say of nodes of 20 million: a model of each part of the time, fitted over sizes.
+"""Extrapolates from simulated ranks of few cells to nodes of 20 million, with a model of each part of the time, fitted
+over sizes.
 
-Microseconds a cell of a rank are, part by part, a sum of what goes with the cells (1), with the surface of a rank's
-share (cells^(-1/3)), along which round 0 defers, with its edges (cells^(-2/3)), along which later rounds do, and of
-what is there once a rank (1 / cells), none of them negative, at each number of ranks. The parts of one rank, whose sum
-is the base, are fitted alike.
+At each number of ranks, each part of the microseconds per cell of a rank is a sum of four terms, none of them negative:
+one for the cells (1), one for the surface of a rank's share (cells^(-1/3)), along which round 0 defers, one for its
+edges (cells^(-2/3)), along which later rounds defer, and one for costs that occur once per rank (1 / cells). The parts
+of one rank, whose sum is the base, are fitted in the same way.
 """
 import numpy
 import pandas
@@ -14,16 +15,16 @@ from .distributed import PARTS, REFINING
 
 NODE_CELLS = 20e6
 LEAST_SIZES = 3
-LEAST_CELLS_PER_RANK = 100e3  # of fewer most cells lie along the borders of blocks
+LEAST_CELLS_PER_RANK = 100e3  # with fewer cells most cells lie along the borders of blocks
 NODES = (8, 64)
 THREADS = (1, 16)
 TERMS = {"volume": lambda n: numpy.ones_like(n), "surface": lambda n: n ** (-1 / 3), "edges": lambda n: n ** (-2 / 3),
          "once": lambda n: 1 / n}
-# Of which terms each part is. The image is the same whatever the size.
+# The terms of each part. The image does not depend on the size.
 MODEL = {"transform": ("once",), "initial": ("volume", "surface"), "learn": ("volume", "surface"),
          "refine": ("volume", "surface"), "later": ("surface", "edges"), "exchange": ("volume", "surface"),
          "waiting": ("volume", "surface", "edges"), "network": ("surface", "once"), "extract": ("volume", "surface")}
-# The others are of one thread today, whatever a node has.
+# The other parts run on one thread today, whatever the number of threads of a node.
 THREADED = ("transform", "initial", "refine", "later", "waiting", "extract")
 REFINING_PARTS = (*REFINING, "learn", "waiting", "network")
 COLUMNS = ["basis", "ranks", "threads", "cells_per_rank", "n", "sizes", "refining_efficiency",
@@ -40,9 +41,9 @@ ASSUMPTIONS = (
 
 
 def extrapolated(table):
-    """One line a number of nodes and threads of a node, of which three sizes or more were simulated: two would leave
-    nothing over that says how good the model is. `worst_miss`: of the microseconds a cell that sizes left out have, the
-    greatest deviation of what the others say."""
+    """One line per number of nodes and threads per node with three simulated sizes or more. With two sizes nothing
+    would be left to check the model. `worst_miss`: each size is predicted from the other sizes; the greatest relative
+    error in microseconds per cell."""
     simulated = table[(table["basis"] == "simulated") & (table["cells_per_rank"] >= LEAST_CELLS_PER_RANK)]
     by_size = simulated.fillna({part: 0.0 for part in PARTS}).set_index("cells_per_rank")
     base, lines = by_size[by_size["ranks"] == 1], []
@@ -54,7 +55,7 @@ def extrapolated(table):
 
 
 def _line(ranks, threads, many, base):
-    """One rank may have been simulated at other sizes, too."""
+    """A single rank may have been simulated at further sizes."""
     def efficiencies(left_out=()):
         ours, alone = (_parts_at(NODE_CELLS, one.drop(index=left_out, errors="ignore")) for one in (many, base))
         return numpy.array([_sum(alone, parts, threads) / _sum(ours, parts, threads)
@@ -70,13 +71,13 @@ def _line(ranks, threads, many, base):
 
 
 def _parts_at(cells, table):
-    """Microseconds a cell by part, fitted to the lines of `table`, whose index is the cells a rank."""
+    """Returns the microseconds per cell by part, fitted to the lines of `table`, whose index is the cells per rank."""
     sizes = table.index.to_numpy(dtype=float)
     return {part: _fitted(sizes, table[part].to_numpy(dtype=float), MODEL[part], cells) for part in PARTS}
 
 
 def _fitted(sizes, values, terms, cells):
-    """By least squares of what the model misses, relative to the mean."""
+    """Minimises the sum of squared errors with coefficients of at least zero."""
     if not values.any():
         return 0.0
     columns = numpy.column_stack([TERMS[term](sizes) for term in terms])

@@ -1,11 +1,11 @@
-"""Verdicts on the claims of our experiments, as `podm-bench verdicts --json` writes them."""
+"""Verdicts on the claims of the project's experiments, as written by `podm-bench verdicts --json`."""
 import json
 
 import pandas
 
 SCHEMA = "podm-bench-verdicts/2"
 WORDS = {"does_not_hold": "do not", "not_resolved": "not resolved", "holds": "hold",
-         "cannot_be_decided": "cannot be decided here"}  # what claims of each verdict do, those to see first first
+         "cannot_be_decided": "cannot be decided here"}  # the words for each verdict, in the order of display
 WITHDRAWN = "withdrawn"
 HOW = ("No verdicts of experiments were given. `build/bin/podm-bench verdicts --json FILE experiments/*.toml` makes "
        "them, `--experiment-verdicts FILE` shows them.")
@@ -13,11 +13,11 @@ COLUMNS = ["experiment", "claim", "basis", "verdict", "value", "interval", "boun
 
 
 class VerdictsError(Exception):
-    """Verdicts that cannot be read; the text names file, place and fault."""
+    """Verdicts that cannot be read; the text names the file, the place and the fault."""
 
 
 def read_experiment_verdicts(path):
-    """Raises VerdictsError."""
+    """Reads and checks a file of verdicts. Raises VerdictsError."""
     try:
         found = json.loads(path.read_text())
     except (OSError, ValueError) as error:
@@ -33,8 +33,8 @@ def read_experiment_verdicts(path):
 
 
 def table(found):
-    """One line a claim: those that do not hold first, then those of the other verdicts, then what is no longer claimed;
-    `found` may be None."""
+    """One line per claim: first those that do not hold, then those of the other verdicts, then claims that were
+    withdrawn. `found` may be None."""
     lines = [{**claim, "claim": claim["name"], "experiment": experiment["experiment"], "interval": _interval(claim),
               "reason": _reason(claim)}
              for experiment in (found or {"experiments": []})["experiments"]
@@ -45,7 +45,7 @@ def table(found):
 
 
 def counts(found):
-    """"12 hold, 3 do not, 1 not resolved, 5 cannot be decided here"; empty without verdicts."""
+    """Returns "12 hold, 3 do not, 1 not resolved, 5 cannot be decided here"; empty without verdicts."""
     verdicts = list(table(found)["verdict"])
     told = [f"{verdicts.count(word)} {WORDS[word]}" for word in ("holds", "does_not_hold", "not_resolved",
                                                                  "cannot_be_decided")]
@@ -54,7 +54,7 @@ def counts(found):
 
 
 def _interval(claim):
-    """"0.98 to 1.14, 96.9 % of 6 rounds"; empty without one."""
+    """Returns "0.98 to 1.14, 96.9 % of 6 rounds"; empty without an interval."""
     interval = claim.get("interval")
     if not interval or interval["rounds"] < 2:
         return ""

@@ -1,12 +1,12 @@
-"""Figure 1: quality. Histograms from reports of podm-verify (`--json`); without one, the extremes that rows hold.
+"""Figure 1: quality. Histograms from reports of podm-verify (`--json`); without a report, the extremes in the rows.
 
-The rendering of the mesh is made by `podm view`.
+`podm view` renders the mesh.
 """
 import numpy
 
 from . import scaling, style
 
-RADIUS_EDGE, ANGLE_DEG = 1.93, 30.0  # guarantees: less, and more
+RADIUS_EDGE, ANGLE_DEG = 1.93, 30.0  # guarantees: below the first, above the second
 PANELS = [  # name of the histogram, title, axis, guarantee
     ("radius_edge_ratio", "radius-edge ratio of cells", "circumradius / shortest edge", RADIUS_EDGE),
     ("boundary_facet_angle", "angles of boundary facets", "degrees", ANGLE_DEG),
@@ -15,7 +15,7 @@ PANELS = [  # name of the histogram, title, axis, guarantee
 
 
 def fig1(report):
-    """`report`: a report of podm-verify. None when it holds no histogram."""
+    """Draws the histograms of a report of podm-verify; None if it holds no histogram."""
     histograms = {one["name"]: one for claim in report["claims"].values() for one in claim["histograms"]}
     panels = [panel for panel in PANELS if panel[0] in histograms]
     if not panels:
@@ -37,7 +37,7 @@ def fig1(report):
 
 
 def fig1_extremes(frame):
-    """The worst cell and boundary facet of each verified row against the guarantees. None without such rows."""
+    """Draws the worst cell and boundary facet of each verified row against the guarantees; None without such rows."""
     rows = scaling.headline_rows(frame)
     if rows.empty or "quality.max_radius_edge" not in rows:
         return None

@@ -1,4 +1,4 @@
-"""Figure 2 (b): two leaves refined at one time, with their first and second rings, over a cut through the mesh."""
+"""Figure 2 (b): two leaves refined at the same time, with their first and second rings, over a cut through the mesh."""
 import numpy
 from matplotlib.collections import PolyCollection
 from matplotlib.patches import Patch, Rectangle
@@ -7,14 +7,14 @@ from . import style
 from .plane_cut import plane_cut
 from .schedule import active_pair, rings
 
-# Leaf, first ring, second ring of each of the two, as in the paper: green and red, paler outwards.
+# Leaf, first ring and second ring of each of the two leaves, as in the paper: green and red, paler outwards.
 SHADES = [("#1b6e3c", "#58a773", "#b5dcc0"), ("#9b2335", "#d1495b", "#efb8be")]
 LEAF, FIRST, SECOND = range(3)
 MARGIN = 0.08  # around the grid, in leaves
 
 
 def fig2b(schedule, mesh):
-    """None when no two leaves of different nodes were active at one time."""
+    """Draws the figure; None if no two leaves of different nodes were active at the same time."""
     pair = active_pair(schedule)
     if pair is None:
         return None
@@ -37,13 +37,14 @@ def fig2b(schedule, mesh):
 
 
 def _zones(leaves, leaf):
-    """LEAF, FIRST or SECOND by leaf."""
+    """Returns LEAF, FIRST or SECOND by leaf."""
     first, second = rings(leaves, leaf)
     return {leaf: LEAF, **dict.fromkeys(first, FIRST), **dict.fromkeys(second, SECOND)}
 
 
 def _draw_leaves(axes, leaves, zones, height):
-    """Each in the colour of the nearer of the two; hatched in the other's where it lies in the rings of both."""
+    """Draws each leaf in the colour of the nearer active leaf; hatched in the other colour if it is in the rings of
+    both."""
     for one in numpy.flatnonzero((leaves[:, 2] <= height) & (height < leaves[:, 2] + leaves[:, 3])):
         i, j, _, side = leaves[one]
         here = [(zone[one], shades) for zone, shades in zip(zones, SHADES) if one in zone]
@@ -56,7 +57,7 @@ def _draw_leaves(axes, leaves, zones, height):
 
 
 def _frame(schedule):
-    """Corners of the plane's leaves, and how much longer a step of j is than one of i in mm."""
+    """Returns the corners of the plane's leaves, and the length in mm of a step of j over that of a step of i."""
     leaves = schedule.leaves
     step_mm = numpy.linalg.norm(numpy.linalg.inv(schedule.mesh_to_grid[:, :3]), axis=0)
     return leaves[:, :2].min(axis=0), (leaves[:, :2] + leaves[:, 3:]).max(axis=0), step_mm[1] / step_mm[0]

@@ -1,4 +1,4 @@
-"""Figure 4 (a): weak-scaling speed-up, and the efficiency that follows, against cores."""
+"""Figure 4 (a): weak-scaling speed-up and efficiency against cores."""
 from . import paper, scaling, style
 
 WHY_ABOVE = ("Equation 1 also counts reading and transforming one image, whose work does not grow with the cells and "
@@ -6,7 +6,7 @@ WHY_ABOVE = ("Equation 1 also counts reading and transforming one image, whose w
 
 
 def fig4a(series):
-    """The paper's curves and the first series of each basis; the efficiency of refining alone beside that of
+    """Draws the paper's curves and the first series of each basis, and the efficiency of refining alone beside that of
     equation 1."""
     figure, (speedup, efficiency) = style.new_figure(columns=2, width=12.0, height=4.2)
     published = paper.table1()
@@ -33,7 +33,8 @@ def fig4a(series):
 
 
 def reading(series):
-    """Why the efficiency of equation 1 lies above that of refining alone, with both where they were measured."""
+    """Explains why the efficiency of equation 1 exceeds that of refining alone, with both values if they were
+    measured."""
     one = scaling.first_of(series, "measured")
     many = max(scaling.core_counts([one.table]), default=1) if one else 1
     if many == 1 or ("podm", many) not in one.table.index:

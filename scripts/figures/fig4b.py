@@ -1,15 +1,15 @@
-"""Figure 4 (b): seconds by phase, and elements per second, against cores. Simulated seconds have axes of their own."""
+"""Figure 4 (b): seconds by phase, and elements per second, against cores. Simulated seconds have separate axes."""
 import numpy
 from matplotlib.patches import Patch
 
 from . import paper, scaling, style
 
-SIDES = ["pdr-podm", "podm", "podm-home"]  # of the bars of one number of cores, from left to right
+SIDES = ["pdr-podm", "podm", "podm-home"]  # bars of one number of cores, from left to right
 
 
 def fig4b(series):
-    """Bars: the median seconds of each phase, virtual ones of simulated rows; beside the measured the paper's totals,
-    whose parts are not printed."""
+    """Draws the median seconds of each phase as bars, virtual seconds for simulated rows. The paper's totals, whose
+    parts are not printed, are beside the measured bars."""
     measured, simulated = scaling.first_of(series, "measured"), scaling.first_of(series, "simulated")
     figure, axes = style.new_figure(columns=2, rows=2 if simulated else 1, width=11.0, height=8.0 if simulated else 4.2)
     seconds, rate, beside_rate = (axes[0], axes[2], axes[3]) if simulated else (*axes, axes[1])
@@ -38,7 +38,7 @@ def fig4b(series):
 
 
 def _bars(axes, series, cores, published=None):
-    """Stacks of a series, if there is one, before the paper's totals, if they are given."""
+    """Draws stacks of a series, if given, in front of the paper's totals, if given."""
     handles = [Patch(color=colour, label=style.PHASE_NAMES.get(phase, phase))
                for phase, colour in style.PHASE_COLOURS.items() if series and (series.table[phase] > 0).any()]
     if published is not None:
@@ -53,13 +53,13 @@ def _bars(axes, series, cores, published=None):
 
 
 def _sides(series):
-    """The algorithms of a group of bars: the paper's two, and what else the series has."""
+    """Returns the algorithms of a group of bars: the paper's two, and the other algorithms of the series."""
     beyond = SIDES[len(paper.ALGORITHMS):]
     return SIDES[:len(paper.ALGORITHMS)] + [one for one in beyond if series and one in series.table.index]
 
 
 def _place(algorithm, sides):
-    """(middle from that of the group, width)."""
+    """Returns (offset of the middle from that of the group, width)."""
     width = 0.72 / len(sides)
     return (sides.index(algorithm) - (len(sides) - 1) / 2) * width, width
 

@@ -1,13 +1,14 @@
-"""Fits the constants of the paper's machine that nobody measures to PODM's speed-ups in the paper's Table 1.
+"""Fits the unmeasured constants of the paper's machine to PODM's speed-ups in the paper's Table 1.
 
-Playing 256 workers takes minutes, a fit hundreds of trials: so the fit plays their queueing alone. Each of the workers
-computes for as long as its rows say that an attempt's work and way to other memory take, then asks both routers for as
-many accesses as they say that an insertion makes; routers serve as in mesher/workers/remote_memory.h. Those who lose
-their time to each other, in contention and begging, are left out, as many as in the row. So rows should be of constants
-that are near: a second fit to rows of the first one's. Played in full they tell how good the surrogate was:
-scripts/report shows them beside the paper's.
+A simulation of 256 workers takes minutes, and a fit needs hundreds of trials. The fit therefore simulates only their
+queueing. Each worker computes for as long as its rows give for the work of an attempt and its way to other memory. It
+then asks both routers for as many accesses as the rows give per insertion; routers serve as in
+mesher/workers/remote_memory.h. Workers that lose their time to each other, in contention and begging, are left out, as
+many as in the row. Rows should therefore come from constants that are near: fit a second time to rows simulated with
+the constants of the first fit. Full simulations with the fitted constants show how good the surrogate was:
+scripts/report prints them beside the paper's.
 
-Nothing of PDR.PODM, of efficiencies or of Table 2 is looked at.
+The fit uses no value of PDR.PODM, no efficiency and nothing of Table 2.
 """
 import argparse
 import heapq
@@ -25,21 +26,21 @@ from scipy.optimize import minimize
 from . import paper, scaling, style
 from .load import RecordError, load
 
-CELLS_PER_INSERTION = 22  # made by one, of which 16 take the place of others
+CELLS_PER_INSERTION = 22  # made by one insertion; 16 of them replace other cells
 CONSTANTS = ("miss_share", "router_accesses_per_s", "retries")
 STARTS = ((0.04, 4e6, 0.0125), (0.02, 2e6, 0.02), (0.1, 1e7, 0.004))
 SIMPLEX = (1.5, 1.4, 1.6)  # first steps, factors
 ATTEMPTS_PER_WORKER, MOST_ATTEMPTS = 120, 60_000
 SECONDS = [f"virtual.worker_s.{name}" for name in ("compute", "memory_remote", "network_queue")]
 ACCESSES = ["hops_by_kind.mesh_reads", "hops_by_kind.mesh_writes"]
-# What a row has to tell beside its hops, of which there are none on one node.
+# Columns that a row must have beside its hops. Rows on one node have no hops.
 NEEDED = [*SECONDS, "virtual.refine_s", "virtual.machine.constants.core_speed", "counters.cells_created"]
 
 
 @dataclass(frozen=True)
 class Run:
-    """What a row of PODM says of `cores` workers: seconds of computing on the reference core, remote accesses and the
-    links on their ways, insertions, and how much longer all took than attempts alone."""
+    """The values of a row of PODM on `cores` workers: seconds of computing on the reference core, remote accesses and
+    the links on their ways, insertions, and `loss`, the whole time over the time of attempts."""
 
     cores: int
     cells: float
@@ -51,8 +52,8 @@ class Run:
 
 
 def runs_of(frame):
-    """(runs, series): the newest row of PODM for each number of cores of Table 1, by it, of the simulated series that
-    figures show first. Raises RecordError where they are too few for a fit, and says which rows lack."""
+    """Returns (runs, series): for each number of cores in Table 1 the newest row of PODM, of the simulated series that
+    figures show first. Raises RecordError, which lists the missing rows, if there are too few rows for a fit."""
     series = scaling.first_of(scaling.weak_series(frame), "simulated")
     if series is None:
         raise RecordError(f"no verified simulated row of podm on one core{_doubts(frame)}")
@@ -71,7 +72,7 @@ def runs_of(frame):
 
 
 def missing(runs):
-    """The numbers of cores of Table 1 without a run."""
+    """Returns the numbers of cores of Table 1 that have no run."""
     return [cores for cores in _published() if cores not in runs]
 
 
@@ -84,7 +85,7 @@ def _words(counts):
 
 
 def _doubts(frame):
-    """": why" of the simulated rows that count nowhere, a failed one tells no algorithm; empty without one."""
+    """Returns ": why" for the simulated rows that do not count, or an empty text. A failed row names no algorithm."""
     if frame.empty:
         return ""
     doubts = sorted(set(frame[(frame["basis"] == "simulated") & ~frame["headline"]]["doubt"]))
@@ -104,7 +105,7 @@ def _run(row):
 
 
 def refining_seconds(run, machine, constants):
-    """Simulated seconds that PODM refines, by the surrogate. `constants`: by name."""
+    """Returns the simulated seconds that PODM refines, by the surrogate. `constants`: by name."""
     link_s = machine["memory"]["cycles_per_hop"] / machine["processor"]["clock_ghz"] / 1e9
     busy_s = run.reference_s / machine["processor"]["core_speed"] + constants["miss_share"] * run.links * link_s
     accesses = constants["miss_share"] * run.routed / run.insertions
@@ -115,7 +116,7 @@ def refining_seconds(run, machine, constants):
 
 
 def _seconds_between_attempts(num_workers, busy_s, accesses, constants):
-    """Of all workers, once they have got into step."""
+    """Returns the mean time between attempts of all workers, after a warm-up of a third of the attempts."""
     draw = random.Random(1)
     service_s = 1 / constants["router_accesses_per_s"]
     ready = [(busy_s * draw.random(), worker) for worker in range(num_workers)]
@@ -140,20 +141,20 @@ def _seconds_between_attempts(num_workers, busy_s, accesses, constants):
 
 
 def speedups(runs, machine, constants):
-    """By number of cores, over one core."""
+    """Returns the speed-ups over one core by number of cores."""
     rates = {cores: run.cells / refining_seconds(run, machine, constants) for cores, run in runs.items()}
     return {cores: rate / rates[1] for cores, rate in rates.items()}
 
 
 def deviations(runs, machine, constants):
-    """Ours over the paper's, less 1, by number of cores above one."""
+    """Returns our speed-up over the paper's, minus 1, by number of cores above one."""
     published = paper.corrected_table1().loc["podm"]["speedup"]
     return {cores: ours / published[cores] - 1 for cores, ours in speedups(runs, machine, constants).items()
             if cores > 1}
 
 
 def fit(runs, machine):
-    """The constants with the least mean absolute deviation, and that."""
+    """Returns the constants with the least mean absolute deviation, and this deviation."""
     def mean(logarithms):
         constants = dict(zip(CONSTANTS, numpy.exp(logarithms)))
         if constants["miss_share"] > 1:
@@ -171,7 +172,7 @@ def fit(runs, machine):
 
 
 def leaving_one_out(runs, machine):
-    """By number of cores: its deviation by constants that were fitted to the others."""
+    """Returns by number of cores its deviation with constants that were fitted to the other numbers of cores."""
     missed = {}
     for cores in [cores for cores in runs if cores > 1]:
         constants, _ = fit({other: run for other, run in runs.items() if other != cores}, machine)
@@ -181,7 +182,7 @@ def leaving_one_out(runs, machine):
 
 
 def sensitivity_figure(runs, machine, constants):
-    """PODM's speed-ups with each constant halved and doubled, a panel each."""
+    """Draws PODM's speed-ups with each constant halved and doubled, one panel each."""
     published = paper.corrected_table1().loc["podm"]["speedup"]
     shown = ("core_speed", *CONSTANTS)
     drawn, panels = style.new_figure(columns=len(shown), width=14.0, height=3.6)
@@ -202,7 +203,7 @@ def sensitivity_figure(runs, machine, constants):
 
 
 def read_machine(path):
-    """The description, with all that the surrogate takes of it. Raises RecordError."""
+    """Reads the machine's description and checks the values that the surrogate uses. Raises RecordError."""
     try:
         machine = tomllib.loads(path.read_text(encoding="utf-8"))
     except (OSError, ValueError) as error:

@@ -1,4 +1,5 @@
-"""How many meshes each claim of podm-verify was decided for: of ours, and of other meshers apart."""
+"""Counts the meshes for which each claim of podm-verify was decided: meshes of podm, and those of other meshers
+apart."""
 import pandas
 
 PREFIX = "verdicts."
@@ -6,14 +7,14 @@ WORDS = ("pass", "fail", "not_run")
 
 
 def ours(frame):
-    """One line a claim: numbers of our meshes by verdict."""
+    """One line per claim: the number of podm's meshes by verdict."""
     rows = frame[frame["mesher"] == "podm"] if len(frame) else frame
     return pandas.DataFrame([{"claim": claim, **_counts(rows, claim)} for claim in _claims(rows)],
                             columns=["claim", *WORDS])
 
 
 def of_others(frame):
-    """One line a mesher and claim, and whether the mesher promises it."""
+    """One line per mesher and claim, with a flag for claims that the mesher promises."""
     rows = frame[frame["mesher"] != "podm"] if len(frame) else frame
     lines = [{"mesher": mesher, "claim": claim, "promised": _promises(group, claim), **_counts(group, claim)}
              for mesher, group in rows.groupby("mesher") for claim in _claims(group)] if len(rows) else []
@@ -21,7 +22,7 @@ def of_others(frame):
 
 
 def readable(table):
-    """Ours with the verdict of each claim; others beside each other, a line a claim."""
+    """podm's claims with their verdicts; for other meshers one line per claim and one column per mesher."""
     if "mesher" not in table:
         shown = table.rename(columns={"not_run": "not run"})
         shown.insert(1, "verdict", [verdict_of(line) for line in table.to_dict("records")])
@@ -39,7 +40,7 @@ def _text(line):
 
 
 def verdict_of(line):
-    """One failure is a failure; a claim that was never run holds for nothing."""
+    """Returns "fail" if any mesh failed, and "not_run" if no mesh was judged."""
     return "fail" if line["fail"] else "pass" if line["pass"] else "not_run"
 
 

@@ -9,18 +9,18 @@ import pandas
 from . import distributed, machine_state
 
 SCHEMA = 4
-# A mesh counts as verified when these pass and no other claim fails; the rest may lack an input, such as the image.
+# A mesh is verified if these claims pass and no other claim fails. Other claims may lack an input, such as the image.
 NEEDED_CLAIMS = ("structure", "delaunay", "radius_edge", "boundary_angles")
 SIMULATED_CACHES = "its seconds are those of a simulation of caches"
 UNDESCRIBED = "no machine described"
 ALTERED = "a constant of its model is another"
 OF_RANKS = "its ranks have tables and figures of their own"
 LONG_LISTS = ["labels", "facet_pairs", "command", "workers", "ranks.rounds", "ranks.by_rank"]
-# Phases in no second of equation 1: bettering angles, measuring and writing the mesh, finding the radius for a number
-# of cells, drawing a phantom.
+# Phases that equation 1 does not count: improving angles, measuring and writing the mesh, searching the radius for a
+# number of cells, drawing a phantom.
 UNTIMED = ("perturb", "optimize", "exude", "measure", "write", "calibrate", "draw")
 REFINING = ("octree", "initial", "refine", "closing")
-# What a series varies; any other choice in a trial's name makes another series.
+# The choices that vary within a series; any other choice in a trial's name makes another series.
 VARIED = ("algorithm", "threads", "seed", "mesher", "input")
 GROWING = "-growing"  # ends the name of trials whose image grows with the cores
 BOUNDS_OF = re.compile(r"-bounds-of-\w+$")  # ends the names of trials of one series whose meshers have their own bounds
@@ -28,12 +28,12 @@ ON_CORES = re.compile(r"-on-\d+$")  # ends the names of trials of one series, ea
 
 
 class RecordError(Exception):
-    """Records that cannot be read; the text names file, line and fault."""
+    """Records that cannot be read; the text names the file, the line and the fault."""
 
 
 @dataclass(frozen=True)
 class Records:
-    """`frame`: one line a trial, nested keys joined by dots, and the columns of `derived`. `problems`: what was
+    """`frame`: one line per trial, nested keys joined by dots, and the columns of `derived`. `problems`: what was
     skipped."""
 
     frame: pandas.DataFrame
@@ -41,7 +41,7 @@ class Records:
 
 
 def load(paths):
-    """Rows of the JSON-lines files in `paths` (files, or folders and those within). Raises RecordError."""
+    """Reads rows from the JSON-lines files in `paths` (files, or folders with all files below). Raises RecordError."""
     rows, problems = [], []
     for path, is_named in _files(paths):
         rows += _read_file(path, is_named, problems)
@@ -50,7 +50,7 @@ def load(paths):
 
 
 def derived(row):
-    """What tables and figures need of a row; None where the trial made no mesh."""
+    """Returns the values of a row that tables and figures need; None if the trial made no mesh."""
     timed = timed_phases(row)
     doubt = doubt_of(row)
     return {
@@ -77,8 +77,8 @@ def derived(row):
 
 
 def timed_phases(row):
-    """Seconds by phase that equation 1 counts: virtual ones of a simulated row, whose others ran on the machine at
-    hand."""
+    """Returns the seconds of the phases that equation 1 counts. For a simulated row these are virtual seconds; its
+    other phases ran on the present machine."""
     phases = row["virtual"]["phases_s"] if row.get("virtual") else row.get("phases_s") or {}
     return {phase: seconds for phase, seconds in phases.items() if phase not in UNTIMED}
 
@@ -88,20 +88,20 @@ def is_virtual(row):
 
 
 def simulates_caches(row):
-    """Whether valgrind ran the mesher: its counts are simulated, its times mean nothing."""
+    """True if valgrind ran the mesher: its counts are then simulated, and its times mean nothing."""
     counters = (row.get("process") or {}).get("counters", {})
     return any("simulated" in counter["source"] for counter in counters.values() if isinstance(counter, dict))
 
 
 def mesher_of(row):
-    """`podm`, or the name of another mesher."""
+    """Returns `podm` or the name of another mesher."""
     return (row.get("programs", {}).get("peer") or {}).get("name", "podm")
 
 
 def machine_of(row):
-    """Of measured rows the one that measured them. Of simulated rows the described machine, if any, and the model that
-    played it, so that neither two descriptions nor two models share a number; the machine that simulates does not
-    matter. Rows of before the model had a hash name none."""
+    """Returns the name of the machine. For measured rows this is the machine that measured them. For simulated rows it
+    is the described machine, if any, with the model that simulated it, so that two descriptions or two models never
+    share a number; the machine that runs the simulation does not matter. Older rows have no hash of the model."""
     virtual = row.get("virtual") or {}
     described = virtual.get("machine")
     if not described:
@@ -112,7 +112,7 @@ def machine_of(row):
 
 
 def setting_of(row):
-    """The trial's name without the choices that a series varies."""
+    """Returns the trial's name without the choices that vary within a series."""
     base, *choices = row.get("trial", "").split(",")
     base = base.partition(GROWING)[0] + GROWING if is_growing(row) else ON_CORES.sub("", BOUNDS_OF.sub("", base))
     return ",".join([base, *(one for one in choices if one.partition("=")[0] not in VARIED)])
@@ -123,18 +123,18 @@ def is_growing(row):
 
 
 def image_of(row):
-    """Empty where each number of cores has an image of its own."""
+    """Returns the image's name; empty if each number of cores has its own image."""
     given = row.get("input", {})
     return "" if is_growing(row) else Path(given.get("name") or given.get("path") or "").name
 
 
 def usable_cores(environment):
-    """What a row says of its machine; None where it says nothing."""
+    """Returns the number of usable processors; None if the row does not give it."""
     return environment.get("usable_processors")
 
 
 def build_of(row):
-    """Tells programs apart: the mesher's hash, or the commit it was built from, or its version."""
+    """Returns a name that distinguishes programs: the mesher's hash, or the commit of its sources, or its version."""
     programs = row.get("programs", {})
     hashed = (programs.get("podm_mpi") or programs.get("podm", {})).get("sha256")
     if hashed:
@@ -146,7 +146,7 @@ def build_of(row):
 
 
 def doubt_of(row):
-    """Empty when the row may give a headline number; otherwise the reason why not."""
+    """Returns an empty text if the row may give a headline number, otherwise the reason why not."""
     if row.get("ranks"):
         return OF_RANKS
     threads, cores = row.get("threads", {}).get("used", 0), usable_cores(row.get("environment", {}))
@@ -159,7 +159,7 @@ def doubt_of(row):
 
 
 def unproved_of(row):
-    """Empty when the row's mesh was made in its turn and verified; otherwise the reason why not."""
+    """Returns an empty text if the row's mesh was made in its turn and verified, otherwise the reason why not."""
     if row.get("warmup"):
         return "a warm-up"
     status = row.get("status", "ok")
@@ -175,21 +175,21 @@ def unproved_of(row):
 
 
 def _newest_of_each_turn(rows):
-    """A measurement that an experiment made again counts once, as of its newest row."""
+    """Keeps only the newest row of a measurement that an experiment repeated."""
     newest = {turn_of(row): number for number, row in enumerate(rows)}
     return [rows[number] for number in sorted(newest.values())]
 
 
 def turn_of(row):
-    """What a later row replaces. A trial that could not be prepared, or whose options or radius changed since, has
-    another key."""
+    """Returns the key under which a later row replaces an earlier row. The trial's own key does not serve: it changes
+    if the trial could not be prepared, or if its options or radius changed."""
     return (machine_of(row), mesher_of(row), build_of(row), row.get("experiment"), row.get("trial"), row.get("repeat"),
             row.get("warmup"), row.get("input", {}).get("name"))
 
 
 def _files(paths):
-    """Each file and whether it was named itself, for a folder also holds files of another kind; none below folders
-    that begin with a dot."""
+    """Yields each file, and True if the file itself was named. A folder may also hold other kinds of files. Folders
+    below it whose names begin with a dot are skipped."""
     for path in map(Path, paths):
         if path.is_dir():
             inside = sorted(path.rglob("*.jsonl"))
@@ -210,7 +210,7 @@ def _read_file(path, is_named, problems):
         try:
             row = json.loads(line)
         except json.JSONDecodeError as error:
-            if number == len(lines):  # a run that was killed while it wrote
+            if number == len(lines):  # the run was killed during the write
                 problems.append(f"{path}:{number}: last line is broken and was skipped: {error.msg}")
                 break
             raise RecordError(f"{path}:{number}: not JSON: {error.msg} in column {error.colno}") from None

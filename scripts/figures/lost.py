@@ -1,11 +1,11 @@
-"""Where the time of simulated workers goes: worker seconds by cause, against cores, for each cell made. Were nothing
-lost to others, all bars would be as high as that of one core."""
+"""Shows where the time of simulated workers goes: worker seconds per cell by cause, against cores. If workers lost no
+time to each other, all bars would be as high as the bar of one core."""
 import pandas
 
 from . import scaling, style
 
 PREFIX = "virtual.worker_s."
-# From work to what others cost, in the order of the stack; causes of other names stand before the last.
+# From work to losses to other workers, in the order of the stack. Unknown causes are inserted before the last.
 CAUSES = {"compute": "computing", "memory_remote": "memory of other nodes", "network_queue": "queueing in the network",
           "between_attempts": "lists, gifts, leaves", "locks": "waiting for locks",
           "contention": "waiting after conflicts", "rollback": "rolling back", "begging": "begging, waiting for leaves",
@@ -17,8 +17,8 @@ COLUMNS = ["basis", "kind", "algorithm", "cores", "n"]
 
 
 def lost(frame, series):
-    """One line an algorithm and number of cores of the simulated series to show: worker microseconds a cell by cause,
-    medians. `outside`: what the causes leave of all cores for all of equation 1. Empty where rows tell no causes."""
+    """One line per algorithm and number of cores of the simulated series to show: median worker microseconds per cell
+    by cause. `outside`: the time of all cores in equation 1 that no cause has. Empty if rows have no causes."""
     shown = scaling.first_of(series, "simulated")
     told = sorted((name.removeprefix(PREFIX) for name in frame if name.startswith(PREFIX)),
                   key=lambda cause: list(CAUSES).index(cause) if cause in CAUSES else len(CAUSES))
@@ -30,19 +30,19 @@ def lost(frame, series):
         by_cause = group[[PREFIX + cause for cause in told]].div(group["cells"], axis=0)
         whole = group["seconds"] * cores / group["cells"]
         outside = (whole - by_cause.sum(axis=1)).clip(lower=0)
-        seconds = {**dict(zip(told, by_cause.median())), "outside": outside.median()}  # of a cell
+        seconds = {**dict(zip(told, by_cause.median())), "outside": outside.median()}  # per cell
         lines.append({"basis": "simulated", "kind": shown.kind(), "algorithm": algorithm, "cores": cores,
                       "n": len(group), **{cause: 1e6 * one for cause, one in seconds.items()}})
     return pandas.DataFrame(lines)
 
 
 def _causes(table):
-    """(cause, what people call it) in the order of the stack."""
+    """Returns (cause, readable name) in the order of the stack."""
     return [(cause, CAUSES.get(cause, cause.replace("_", " "))) for cause in table.columns[len(COLUMNS):]]
 
 
 def readable(table):
-    """Worker microseconds a cell, three digits."""
+    """Worker microseconds per cell, with three digits."""
     shown = table[["algorithm", "cores", "kind"]].rename(columns={"kind": "basis"})
     for cause, words in _causes(table):
         shown[words] = ["" if pandas.isna(value) else f"{value:.3g}" for value in table[cause]]
@@ -50,7 +50,7 @@ def readable(table):
 
 
 def figure(frame, series):
-    """Stacked bars, a panel an algorithm with one scale; None where rows tell no causes."""
+    """Draws stacked bars, one panel per algorithm with one scale; None if rows have no causes."""
     table = lost(frame, series)
     if table.empty:
         return None

@@ -6,7 +6,7 @@ COLUMNS = ["name", "path", "sha256", "constants", "rows"]
 
 
 def machine(frame):
-    """One line a machine; `constants` as text. Empty where no row tells its machine."""
+    """One line per machine; `constants` as text. Empty if no row has its machine."""
     if PREFIX + "sha256" not in frame:
         return pandas.DataFrame(columns=COLUMNS)
     lines = []

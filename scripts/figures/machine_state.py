@@ -1,5 +1,5 @@
-"""The machine that a row was measured on: which one it was, and whether it was quiet and steady meanwhile. As
-harness/rows/machine_state.h decides."""
+"""The machine on which a row was measured: its name, and whether it was quiet and steady meanwhile. Decides as
+harness/rows/machine_state.h does."""
 import hashlib
 import json
 
@@ -9,8 +9,8 @@ MOVED = "the machine's speed moved during the round"
 
 
 def name_of(environment):
-    """One name for rows of the same machine, another for each other machine. Rows without an identity are also told
-    apart by their topology, which has the processor's model."""
+    """Returns the same name for rows of the same machine, and different names for different machines. Rows without an
+    identity are also distinguished by their topology, which has the processor's model."""
     cpu, identity = environment.get("cpu", "unknown machine"), environment.get("identity")
     if not identity:
         topology = environment.get("topology_sha256", "")
@@ -25,7 +25,7 @@ def has_moved(row):
 
 
 def is_disturbed(row):
-    """False for simulated rows and where the load is unknown."""
+    """False for simulated rows and if the load is unknown."""
     environment = row.get("environment", {})
     busy = environment.get("busy_elsewhere")
     return (row.get("basis") == "measured" and isinstance(busy, (int, float))
@@ -33,7 +33,7 @@ def is_disturbed(row):
 
 
 def remarks(frame):
-    """Sentences on the measured rows of a frame of load.py, none where their machine was quiet and steady."""
+    """Returns sentences on the measured rows of a frame of load.py; none if their machine was quiet and steady."""
     if frame.empty:
         return []
     measured = frame[frame["basis"] == "measured"]

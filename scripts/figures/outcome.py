@@ -8,15 +8,15 @@ from . import (ablation, cache, deviation, dihedral, distributed, distributed_fi
                peers, scaling, simulated, simulated_sizes, solvers, table1, table2, table3, validation, verdicts)
 
 
-# Tables with times that this machine took: they say in which state it was.
+# Tables with times that this machine measured. They also state the machine's condition.
 MEASURED_TABLES = ("table1", "table3", "peers", "validation", "distributed")
 
 
 @dataclass(frozen=True)
 class Outcome:
-    """`tables`: by name, as data and readable. `figures`: by name. `missing`: reason by name of what cannot be made.
-    `series`: of weak scaling; `experiments`: verdicts of podm-bench, or None; `paper`: what they say of the paper's
-    claims, of paper_claims.rows. `remarks`: on the state of the machine while rows were measured."""
+    """`tables`: by name, as data and readable. `figures`: by name. `missing`: the reason by name for what cannot be
+    made. `series`: of weak scaling. `experiments`: verdicts of podm-bench, or None. `paper`: the paper's claims with
+    these verdicts, from paper_claims.rows. `remarks`: on the state of the machine while rows were measured."""
 
     tables: dict
     figures: dict
@@ -29,7 +29,7 @@ class Outcome:
 
 
 def make(frame, report=None, schedule=None, mesh=None, experiments=None):
-    """`report`: of podm-verify, or None; `schedule` and `mesh`: for figure 2 (b), or None."""
+    """`report`: a report of podm-verify, or None. `schedule` and `mesh`: for figure 2 (b), or None."""
     series = scaling.weak_series(frame)
     hops = table2.table2(frame)
     ranks = distributed.distributed(frame)
@@ -47,7 +47,7 @@ def make(frame, report=None, schedule=None, mesh=None, experiments=None):
 
 
 def _tables(frame, series, hops, ranks, nodes):
-    """The paper's tables are there always, others where rows fill them."""
+    """Returns the paper's tables always, and the other tables if rows fill them."""
     always = {"table1": (table1.table1(series), table1), "table2": (hops, table2),
               "table3": (table3.table3(frame), table3)}
     others = {"simulated_sizes": (simulated_sizes.speedups(series), simulated_sizes),
@@ -97,7 +97,7 @@ def _figures(frame, series, distributed_tables, report, schedule, mesh):
 
 
 def readable_verdicts(found):
-    """Claims, then cells, each as one table for people."""
+    """Returns the claims and the cells, each as one readable table."""
     claim_columns = ["claim", "basis", "verdict", "value", "paper", "reason", "statement"]
     cell_columns = ["table", "cores", "algorithm", "column", "basis", "verdict", "value", "paper", "deviation",
                     "reason"]
@@ -111,7 +111,7 @@ def readable_experiments(found):
 
 
 def _numbers(value):
-    """A list as people write it."""
+    """Formats a list as readable text."""
     if not isinstance(value, list):
         return value
     return ", ".join("none" if one is None else f"{one:.3g}" for one in value)

@@ -28,7 +28,7 @@ def table1():
 
 
 def corrected_table1():
-    """The values as printed, but for misprints: what ours are compared with."""
+    """Returns Table 1 with misprints corrected. Our values are compared with it."""
     table = table1()
     for (algorithm, cores, column), value in CORRECTED.items():
         table.loc[(algorithm, cores), column] = value
@@ -36,12 +36,13 @@ def corrected_table1():
 
 
 def table2():
-    """Shares of memory accesses, indexed by hops, one column a number of cores (PDR.PODM)."""
+    """Returns shares of memory accesses, indexed by hops, one column per number of cores (PDR.PODM)."""
     table = pandas.read_csv(FOLDER / "table2.csv", index_col="hops") / 100
     table.columns = table.columns.astype(int)
     return table
 
 
 def table3():
-    """The values as printed, indexed by level; clock cycles are text, `O(n)` being an order of magnitude."""
+    """Returns the values as printed, indexed by level. Clock cycles are text, because `O(n)` is an order of
+    magnitude."""
     return pandas.read_csv(FOLDER / "table3.csv", index_col="level", dtype={"access_clock_cycles": str})

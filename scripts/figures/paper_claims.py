@@ -1,6 +1,6 @@
-"""The table of what the paper claims, what was measured here, what was simulated, and the verdicts on both.
+"""The table of the paper's claims, our measured values, our simulated values, and the verdicts on both.
 
-results/paper/claims.toml has the lines. A verdict is made of those of podm-bench on the claims that the line names,
+results/paper/claims.toml has the lines. A verdict combines podm-bench's verdicts on the claims that the line names,
 measured and simulated apart.
 """
 import re
@@ -12,21 +12,21 @@ import pandas
 from . import paper, paper_figures
 
 LINES = paper.FOLDER / "claims.toml"
-NAME = "paper_claims"  # of the table
+NAME = "paper_claims"  # name of the table
 SIDES = ("measured", "simulated")
 AGREES, CONTRADICTED, NOT_RESOLVED, NOT_JUDGED = "agrees", "contradicted", "not resolved", "not judged"
 IN_PART = " in part"
 TITLES = ["the paper says", "measured here (cells a core)", "simulated (cells a core)", "verdict", "more"]
 PLACEHOLDER = re.compile(r"\{([^}]*)\}")
-WIDTH = 120  # of a line of text
+WIDTH = 120  # columns per line of text
 
 
 class PaperClaimsError(Exception):
-    """Lines that cannot be judged as they are written; the text names file, line and fault."""
+    """Lines that cannot be judged as they are written; the text names the file, the line and the fault."""
 
 
 def read_lines(path=LINES):
-    """(lines of the table, what the paper says besides). Raises PaperClaimsError."""
+    """Returns (lines of the table, other statements of the paper). Raises PaperClaimsError."""
     try:
         found = tomllib.loads(path.read_text(encoding="utf-8"))
     except (OSError, ValueError) as error:
@@ -39,7 +39,7 @@ def read_lines(path=LINES):
 
 
 def published(text):
-    """The text with the values of the paper's tables in place of {FILE COLUMN KEY}, as printed."""
+    """Replaces each {FILE COLUMN KEY} in the text by the value in the paper's tables, as printed."""
     return PLACEHOLDER.sub(lambda found: _printed(*found.group(1).split()), text)
 
 
@@ -50,7 +50,7 @@ def _printed(file, column, key):
 
 
 def derived(verdicts):
-    """One verdict of those on several claims. What is withdrawn judges nothing."""
+    """Combines the verdicts on several claims into one. A withdrawn claim does not count."""
     holds, fails, open_ones = (verdicts.count(word) for word in ("holds", "does_not_hold", "not_resolved"))
     if fails:
         return CONTRADICTED + (IN_PART if holds else "")
@@ -62,8 +62,8 @@ def derived(verdicts):
 
 
 def rows(verdicts, frame, lines=None):
-    """A dictionary a line: `says`, `place`, and of each side its `text`, `verdict`, and `claims`, (experiment, verdict)
-    by name. `verdicts`: of podm-bench; `frame`: of load(). Raises PaperClaimsError."""
+    """Returns one dictionary per line: `says`, `place`, and for each side its `text`, `verdict`, and `claims`,
+    (experiment, verdict) by name. `verdicts`: from podm-bench. `frame`: from load(). Raises PaperClaimsError."""
     lines = lines if lines is not None else read_lines()[0]
     claims = _by_name(verdicts)
     values = {name: one[0][1].get("value") for name, one in claims.items() if len(one) == 1}
@@ -73,7 +73,8 @@ def rows(verdicts, frame, lines=None):
 
 
 def _by_name(verdicts):
-    """(experiment, claim) by the claim's name: one, but of an experiment that has rows in several folders."""
+    """Returns lists of (experiment, claim) by the claim's name. A list has one entry, or one for each folder with rows
+    of the experiment."""
     found = {}
     for experiment in verdicts["experiments"]:
         for claim in [*experiment["claims"], *experiment.get("withdrawn", [])]:
@@ -104,7 +105,7 @@ def _claim(line, name, claims, basis):
 
 
 def _shown(parts, ours):
-    """Parts whose figures rows have. One without figures only goes with others."""
+    """Joins the parts whose figures have rows. Parts without figures are only added to parts with figures."""
     texts = [(_filled(part, ours), "{" in part) for part in parts]
     has_figure = any(text and is_figure for text, is_figure in texts)
     return "; ".join(text for text, _ in texts if text) if has_figure else ""
@@ -118,7 +119,7 @@ def _filled(part, ours):
 
 
 def verdict_text(row):
-    """"measured: agrees; simulated: contradicted in part, 1 of 3 claims hold"."""
+    """Returns "measured: agrees; simulated: contradicted in part, 1 of 3 claims hold"."""
     return "; ".join(f"{side}: {row[side]['verdict']}{_counts(row[side])}" for side in SIDES
                      if row[side]["verdict"] != NOT_JUDGED) or NOT_JUDGED
 
@@ -129,26 +130,26 @@ def _counts(side):
 
 
 def experiments(row):
-    """Names of those that judge the line, in its order."""
+    """Returns the names of the experiments that judge the line, in its order."""
     return list(dict.fromkeys(experiment for side in SIDES for experiment, _ in row[side]["claims"].values()))
 
 
 def table(found):
-    """The rows as a table for people."""
+    """Returns the rows as a readable table."""
     return pandas.DataFrame([[f"{row['says']} ({row['place']})", *(row[side]["text"] for side in SIDES),
                               verdict_text(row), ", ".join(f"{name}.toml" for name in experiments(row))]
                              for row in found], columns=TITLES)
 
 
 def besides():
-    """What the paper says besides, and why nothing judges it, a sentence."""
+    """Returns a sentence on the paper's other statements, with the reasons why they are not judged."""
     _, unjudged = read_lines()
     return "Not judged: " + "; ".join(f"{published(one['says'])} ({one['place']}): {one['reason']}"
                                       for one in unjudged) + "."
 
 
 def markdown_lines(found):
-    """The table and what stands below it, with links from the repository's root."""
+    """Returns the table and the text below it, with links from the repository's root."""
     shown = table(found)
     shown["verdict"] = shown["verdict"].str.replace(CONTRADICTED, f"**{CONTRADICTED}**")
     shown["more"] = [", ".join(f"[{name}](experiments/{name}.toml)" for name in experiments(row)) for row in found]

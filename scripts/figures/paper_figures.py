@@ -1,6 +1,6 @@
-"""Figures of ours for the table of the paper's claims: text by a query, NAME ARGUMENT..., on rows of one basis.
+"""Our figures in the table of the paper's claims: a query, NAME ARGUMENT..., on rows of one basis returns a text.
 
-Each states the number of cores and, in brackets, the cells a core; simulated ones of all sizes that there are.
+Each text states the number of cores and, in brackets, the cells per core. A simulated figure lists all sizes.
 """
 import inspect
 from dataclasses import dataclass
@@ -15,19 +15,19 @@ WEAK = {"measured": "weak_scaling", "simulated": "simulated_weak"}
 
 
 class QueryError(Exception):
-    """A query that names no figure, or one that has other arguments."""
+    """A query that names no figure, or has wrong arguments."""
 
 
 @dataclass
 class Ours:
-    """Rows of one basis; `values`: of claims by name."""
+    """Rows of one basis. `values`: values of claims by name."""
 
     frame: pandas.DataFrame
     basis: str
     values: dict
 
     def of(self, experiment):
-        """Rows of the experiment that made a mesh in their turn, whatever the verifier said of it."""
+        """Returns the rows of the experiment that made a mesh in their turn, whatever the verifier's verdict."""
         if not {"basis", "experiment", "cells", "warmup"} <= set(self.frame.columns):
             return self.frame.iloc[:0]
         rows = self.frame[(self.frame["basis"] == self.basis) & (self.frame["experiment"] == experiment)]
@@ -40,7 +40,7 @@ class Ours:
 
     @cached_property
     def sizes(self):
-        """Series of weak scaling by cells a core, fewest first; of measured ones that to show alone."""
+        """Series of weak scaling by cells per core, fewest first; if measured, only the series to show."""
         found = [one for one in scaling.weak_series(self.weak) if one.key["basis"] == self.basis and not one.grows]
         if self.basis == "measured":
             return found[:1]
@@ -53,7 +53,7 @@ class Ours:
 
 
 def figure(query, ours):
-    """The text, or None where no row has what it needs."""
+    """Returns the figure's text; None if no row has its values."""
     name, *arguments = query.split()
     if name not in FIGURES:
         raise QueryError(f"no figure is called {name!r}; there are {', '.join(FIGURES)}")
@@ -65,7 +65,7 @@ def figure(query, ours):
 
 
 def rounded(value):
-    """Whole numbers from 10 on, three digits below."""
+    """Returns whole numbers from 10 on, three digits below."""
     return f"{value:.0f}" if abs(value) >= 10 else f"{value:.3g}"
 
 
@@ -74,8 +74,8 @@ def percent(value):
 
 
 def by_size(ours, cores, value_of, write=rounded):
-    """`value_of` (size, cores), None where there is none, of each size, whose cells a core stand in brackets. Without
-    numbers of cores: of all beyond one."""
+    """Returns the text of `value_of` (size, cores) for each size, with its cells per core in brackets. `value_of`
+    returns None for a missing value. If `cores` is empty, all numbers of cores beyond one are used."""
     counts = [int(count) for count in cores] or [
         count for count in scaling.core_counts([one.table for one in ours.sizes]) if count > 1]
     found = [(size, [value_of(size, count) for count in counts]) for size in ours.sizes]
@@ -90,7 +90,7 @@ def in_brackets(cells_per_core):
 
 
 def speedups(ours, algorithm, *cores):
-    """Cells a second over those of PODM on one core, equation 1."""
+    """Cells per second over those of PODM on one core, equation 1."""
     return by_size(ours, cores, lambda size, count: _of_table(size, algorithm, count, "speedup"))
 
 
@@ -99,14 +99,14 @@ def _of_table(size, algorithm, count, column):
 
 
 def crossover(ours):
-    """Between which numbers of cores PDR.PODM overtakes."""
+    """The numbers of cores between which PDR.PODM overtakes."""
     found = [(in_brackets(size.cells_per_core), *claims.crossover(size.table)) for size in ours.sizes]
     words = [f"{behind} and {ahead}{size}" for size, behind, ahead in found if behind and ahead]
     return f"between {', '.join(words)} cores" if words else None
 
 
 def _medians(ours, algorithm, of_rows):
-    """The median of what `of_rows` makes of each row of a size and number of cores; None without any."""
+    """Returns a function of (size, count): the median of `of_rows` of their rows, or None without rows."""
     def value_of(size, count):
         rows = ours.rows_at(size, algorithm, count)
         values = of_rows(rows).dropna() if len(rows) else rows
@@ -116,7 +116,7 @@ def _medians(ours, algorithm, of_rows):
 
 
 def _refining(rows):
-    """Seconds of refinement and of what comes before it, virtual or of the clock, a cell."""
+    """Seconds per cell of refinement and the phases before it, virtual or of the clock."""
     seconds = rows["virtual.refine_s"] if rows["basis"].iloc[0] == "simulated" else rows["refining_s"]
     return seconds / rows["cells"]
 
@@ -128,7 +128,7 @@ def _worker_seconds(rows, is_counted):
 
 
 def _is_distributing(cause):
-    """As the measure `distributing_share` counts (harness/rows/measure.cpp)."""
+    """True for the causes that the measure `distributing_share` counts (harness/rows/measure.cpp)."""
     return cause in ("between_attempts", "locks")
 
 
@@ -143,7 +143,7 @@ def _pdr_over_podm(ours, of_rows):
 
 
 def meshing_ratio(ours, *cores):
-    """Meshing seconds a cell of PDR.PODM over PODM's."""
+    """Meshing seconds per cell of PDR.PODM over PODM's."""
     return by_size(ours, cores, _pdr_over_podm(ours, _refining), "{:.2f}".format)
 
 
@@ -155,21 +155,21 @@ def part(ours, phases, *cores):
 
 
 def distributing(ours, *cores):
-    """PDR.PODM's worker seconds for lists, gifts, leaves and their queue over all."""
+    """PDR.PODM's worker seconds for lists, gifts, leaves and their queue over all worker seconds."""
     of_rows = _medians(ours, "pdr-podm", lambda rows: _worker_seconds(rows, _is_distributing)
                        / _worker_seconds(rows, lambda cause: True))
     return by_size(ours, cores, of_rows, percent)
 
 
 def undistributing_ratio(ours, *cores):
-    """All other worker seconds a cell, PDR.PODM's over PODM's."""
+    """All other worker seconds per cell, PDR.PODM's over PODM's."""
     of_rows = _pdr_over_podm(ours, lambda rows: _worker_seconds(rows, lambda cause: not _is_distributing(cause))
                              / rows["cells"])
     return by_size(ours, cores, of_rows, "{:.2f}".format)
 
 
 def zero_hops(ours, *cores):
-    """Percent of PDR.PODM's accesses."""
+    """Percent of PDR.PODM's accesses that take no hop."""
     def of_rows(rows):
         shares = rows["hops"].map(table2.zero_hop_share) if "hops" in rows else pandas.Series(dtype=float)
         return pandas.to_numeric(shares, errors="coerce")
@@ -178,7 +178,7 @@ def zero_hops(ours, *cores):
 
 
 def latencies(ours):
-    """Cycles by level of the machine at hand."""
+    """Cycles by level of memory on the present machine."""
     costs = table3.costs(of_basis(ours.frame, ours.basis))
     costs = costs[costs["cycles"].notna()]
     own = f"{', '.join(costs.loc[~costs['is_another'], 'text'])} cycles, the last from memory" if len(costs) else None
@@ -187,7 +187,7 @@ def latencies(ours):
 
 
 def initial_cores(ours):
-    """Cells a second by the cores of the initial mesh, of the largest mesh."""
+    """Cells per second by the number of cores that make the initial mesh, for the largest mesh."""
     rows = scaling.headline_rows(ours.of("simulated_initial_mesh"))
     if rows.empty:
         return None
@@ -200,7 +200,7 @@ def initial_cores(ours):
 
 
 def _proved(rows, claim):
-    """(proved, asked)."""
+    """Returns (number of rows that passed, number of rows asked)."""
     name = f"verdicts.{claim}"
     asked = rows[name].dropna() if name in rows else []
     return sum(asked == "pass") if len(asked) else 0, len(asked)
@@ -213,7 +213,7 @@ def kept_apart(ours):
 
 
 def shapes(ours):
-    """The worst of all meshes of the experiment on quality."""
+    """The worst values of all meshes of the experiment on quality."""
     rows = ours.of("quality")
     names = ["quality.max_radius_edge", "quality.min_facet_angle_deg"]
     if rows.empty or not set(names) <= set(rows.columns):
@@ -228,7 +228,7 @@ def proofs(ours, claim):
 
 
 def topology(ours):
-    """Of the meshes that were asked for fidelity: labels with the image's components, and with its Euler number."""
+    """For the meshes that were asked for fidelity: labels with the image's components, and with its Euler number."""
     rows = ours.of("quality")
     names = ["topology.labels", "topology.components_as_image", "topology.euler_as_image"]
     if rows.empty or not {*names, "asked.fidelity"} <= set(rows.columns):
@@ -238,7 +238,7 @@ def topology(ours):
 
 
 def waiting_by_leaf_size(ours):
-    """Waiting share by side of the leaves, of the largest mesh."""
+    """Share of waiting by side of the leaves, for the largest mesh."""
     rows = scaling.headline_rows(ours.of("simulated_leaf_size"))
     if rows.empty:
         return None
@@ -251,7 +251,7 @@ def waiting_by_leaf_size(ours):
 
 
 def one_core(ours, algorithm):
-    """Of the largest mesh."""
+    """Cells per second of the largest mesh on one core."""
     rows = scaling.headline_rows(ours.of("single_core"))
     rows = rows[rows["algorithm"] == algorithm] if len(rows) else rows
     if rows.empty:
@@ -262,7 +262,7 @@ def one_core(ours, algorithm):
 
 
 def size(ours, experiment, cores=None):
-    """Cores and cells a core of an experiment; of its rows on that many cores alone."""
+    """Cores and cells per core of an experiment; if `cores` is given, only of its rows on this number of cores."""
     rows = ours.of(experiment)
     if len(rows) and cores:
         rows = rows[rows["cores"] == int(cores)]
@@ -276,7 +276,7 @@ def _extent(rows):
 
 
 def value(ours, claim):
-    """What podm-bench found of a claim: that of the group nearest to breaking it."""
+    """podm-bench's value of a claim: that of the group nearest to breaking it."""
     found = ours.values.get(claim)
     return None if found is None else f"{found:.2f}"
 

@@ -1,7 +1,8 @@
-"""Cells per second of PODM and of other meshers, where an experiment gave all of them the same image.
+"""Cells per second of PODM and of other meshers, for experiments that gave all of them the same image.
 
-The whole is all that turns the image in memory into a mesh in memory; for meshers that begin with a finished surface
-the making of that surface counts, and a column of its own has their volume part beside PODM's."""
+The whole is all work between the image in memory and the mesh in memory. For meshers that begin with a finished surface
+this includes making that surface; a separate column compares their volume part with PODM's.
+"""
 import re
 
 import pandas
@@ -16,7 +17,7 @@ COLUMNS = ["experiment", "setting", "image", "machine", "mesher", "version", "co
            "misses", "size_rank"]
 GROUP = ["machine", "build", "experiment", "setting", "image"]
 OWN, OWN_VOLUME = "podm", "podm_volume"
-FIRST_SURFACE = "surface"  # the phase of meshers that begin with a finished surface
+FIRST_SURFACE = "surface"  # phase of meshers that begin with a finished surface
 LEFT_OUT = ("Refining leaves out the feature transform, allocation and extraction of PODM, the domain that CGAL "
             "prepares, and the surface that TetGen and HXT are given.")
 COVERAGE = ("In brackets: from one order statistic to another; within rounds, so that a machine that grows slower does "
@@ -24,9 +25,11 @@ COVERAGE = ("In brackets: from one order statistic to another; within rounds, so
 
 
 def peers(frame):
-    """One line a mesher of each trial that other meshers ran too; on one core first, then largest meshes of PODM first.
+    """One line per mesher of each trial that other meshers also ran; first on one core, then by size of PODM's mesh,
+    largest first.
 
-    Ratios are PODM's rate over the mesher's. `misses`: claims that failed, promised or not."""
+    Ratios are PODM's rate over the mesher's. `misses`: claims that failed, promised or not.
+    """
     rows = _comparable(frame)
     lines = []
     for values, group in rows.groupby(GROUP, sort=False) if len(rows) else ():
@@ -57,7 +60,8 @@ def readable(table):
 
 
 def speed_table(frame):
-    """What a page says of speed: mesher, version, cores, cells, facets, the rate of the whole and PODM's over it."""
+    """The table of speed for a page: mesher, version, cores, cells, facets, the rate of the whole and PODM's ratio to
+    it."""
     table = peers(frame)
     shown = readable(table[table["mesher"] != OWN_VOLUME])
     return shown[["setting", "cores", "mesher", "version", "n", "M cells", "facets", "bounds met", "whole, M cells/s",
@@ -76,7 +80,7 @@ def _bounds_met(line):
 
 
 def _comparable(frame):
-    """Verified rows; of others also those that miss claims which they do not promise."""
+    """Returns verified rows of PODM, and rows of other meshers even if they miss claims that they do not promise."""
     if frame.empty or not (frame["mesher"] != OWN).any():
         return frame.iloc[:0]
     is_theirs = (frame["mesher"] != OWN) & (frame["status"] == "ok") & (frame["warmup"] != True)  # noqa: E712
@@ -106,7 +110,8 @@ def _whole_rate(rows):
 
 
 def _volume_rate(rows):
-    """Of meshers that begin with a finished surface, nan for others. Cells that came with it are not counted."""
+    """Returns the rate of meshers that begin with a finished surface, nan for others. Cells made with the surface do
+    not count."""
     if "timed." + FIRST_SURFACE not in rows:
         return pandas.Series(float("nan"), rows.index)
     before = rows["surface_cells"].fillna(0) if "surface_cells" in rows else 0
@@ -119,20 +124,20 @@ def _bounds(name, values):
 
 
 def _median(values):
-    """nan without any."""
+    """Returns the median; nan without values."""
     values = values.dropna()
     return values.median() if len(values) else float("nan")
 
 
 def _ratio(name, rate_of, own, others):
-    """PODM's rate over the other's in each round that both have."""
+    """Computes PODM's rate over the other's in each round that both have."""
     by_round = [rate_of(rows).groupby(rows["repeat"]).last() for rows in (own, others)]
     ratios = (by_round[0] / by_round[1]).dropna()
     return {**_bounds(name, ratios), **({"coverage": order_interval(ratios)[2]} if len(ratios) else {})}
 
 
 def version_of(row):
-    """"CGAL 5.5.1" of all that a mesher says of its version."""
+    """Returns "CGAL 5.5.1" from a mesher's full version text."""
     told = row.get("programs.peer.version")
     told = told if isinstance(told, str) else row.get("programs.podm.version", "")
     found = re.match(r"\S+ [\d.]*\d", told)
@@ -140,7 +145,7 @@ def version_of(row):
 
 
 def _promises(rows):
-    """How many claims the mesher promises, how many of these passed for all of the rows, and how many were not run."""
+    """Counts the claims that the mesher promises, the promised claims that passed for all rows, and those not run."""
     names = [name for name in rows if name.startswith("verdicts.") and rows[name].notna().any()]
     promised = rows["promises"].iloc[-1] if "promises" in rows else None
     if not isinstance(promised, list):
@@ -151,6 +156,6 @@ def _promises(rows):
 
 
 def misses_of(group):
-    """Claims that failed for one of the rows, promised or not."""
+    """Returns the claims that failed for one of the rows, promised or not."""
     names = [name for name in group if name.startswith("verdicts.")]
     return sorted(name.removeprefix("verdicts.") for name in names if (group[name] == "fail").any())

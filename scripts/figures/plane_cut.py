@@ -3,8 +3,8 @@ import numpy
 
 
 def plane_cut(points, cells, height):
-    """Polygons (k x 4 x 2: x and y; triangles repeat their last corner) in which z = `height` cuts the cells, and the
-    index of the cell of each. Vertices on the plane count as above it."""
+    """Returns the polygons in which z = `height` cuts the cells, and the index of the cell of each. Polygons are k x 4
+    x 2 (x and y); triangles repeat their last corner. Vertices on the plane count as above it."""
     above = points[cells, 2] >= height
     triangles = _cut_by(points, cells, above, height, 1) + _cut_by(points, cells, ~above, height, 1)
     quads = _cut_by(points, cells, above, height, 2)
@@ -13,13 +13,13 @@ def plane_cut(points, cells, height):
 
 
 def _cut_by(points, cells, chosen, height, count):
-    """Cells with `count` chosen vertices: the cut runs over the edges from these to the others."""
+    """Cuts the cells with `count` chosen vertices: the cut crosses the edges from these to the other vertices."""
     found = numpy.flatnonzero(chosen.sum(axis=1) == count)
     if found.size == 0:
         return [(numpy.empty((0, 4, 2)), found)]
     order = numpy.argsort(~chosen[found], axis=1, kind="stable")  # chosen vertices first
     corners = points[numpy.take_along_axis(cells[found], order, axis=1)]
-    # Around the cut, edges in turn share a vertex of the cell.
+    # Around the cut, consecutive edges share a vertex of the cell.
     edges = [(0, 1), (0, 2), (0, 3), (0, 3)] if count == 1 else [(0, 2), (0, 3), (1, 3), (1, 2)]
     polygon = [_cross(corners[:, a], corners[:, b], height) for a, b in edges]
     return [(numpy.stack(polygon, axis=1), found)]

@@ -1,11 +1,11 @@
-"""Why a value of ours is missing."""
+"""Gives the reason why a value of ours is missing."""
 import pandas
 
 from . import table2
 
 
 def why_missing(frame, series, basis, algorithm, cores, needs_hops=False):
-    """The machine, the lack of a run, or runs that did not verify."""
+    """The reason may be the machine, the lack of a run, or runs that did not verify."""
     wanted = frame
     for column, value in (("basis", basis), ("algorithm", algorithm), ("cores", cores)):
         wanted = wanted[wanted[column] == value] if column in wanted else wanted.iloc[:0]
@@ -22,7 +22,8 @@ def why_missing(frame, series, basis, algorithm, cores, needs_hops=False):
 
 
 def lack_of_cores(frame, basis, cores):
-    """"needs 32 cores, has 2" where no machine of the rows has as many; empty otherwise. Simulations need none."""
+    """Returns "needs 32 cores, has 2" if no machine of the rows has enough cores, otherwise an empty text. Simulations
+    do not need the cores."""
     usable = frame["usable_cores"].dropna() if "usable_cores" in frame else pandas.Series(dtype=float)
     if basis != "measured" or usable.empty or usable.max() >= cores:
         return ""
@@ -30,5 +31,4 @@ def lack_of_cores(frame, basis, cores):
 
 
 def of_basis(frame, basis):
-    """The rows of one basis."""
     return frame[frame["basis"] == basis] if len(frame) else frame

@@ -1,8 +1,8 @@
-"""Judges the claims of all experiments by the rows in a folder and those within, such as results/reference/0.1.0, and
+"""Judges the claims of all experiments by the rows in a folder and its subfolders, such as results/reference/0.1.0, and
 writes the verdicts into one file.
 
-An experiment is judged by each folder that has rows of it, as rows of two folders are not of one run. Exit codes: 0
-written, 2 bad usage or input.
+Each folder with rows of an experiment judges it separately, as rows of two folders do not come from one run. Exit
+codes: 0 written, 2 bad usage or input.
 """
 import argparse
 import json
@@ -29,12 +29,13 @@ def parse_arguments(arguments):
 
 
 def folders_of(name, folder):
-    """Those with rows of the experiment; of one that has none the folder itself, so that its claims are undecided."""
+    """Returns the folders with rows of the experiment. Without rows it returns `folder`, so that its claims are
+    undecided."""
     return sorted({path.parent for path in folder.rglob(f"{name}.jsonl")}) or [folder]
 
 
 def judge(bench, experiment, folder):
-    """The entry of podm-bench's verdicts. Raises VerdictsError."""
+    """Returns the entry of podm-bench's verdicts. Raises VerdictsError."""
     with tempfile.TemporaryDirectory() as aside:
         made = Path(aside) / "verdicts.json"
         done = subprocess.run([bench, "verdicts", "--results", folder, "--json", made, experiment],
@@ -46,7 +47,7 @@ def judge(bench, experiment, folder):
 
 
 def verdicts(bench, folder):
-    """All experiments in the order of their names; `rows` is the folder within. Raises VerdictsError."""
+    """Judges all experiments in the order of their names. `rows` is the folder below `folder`. Raises VerdictsError."""
     entries = [{**judge(bench, experiment, rows), "rows": str(rows.relative_to(folder))}
                for experiment in sorted(EXPERIMENTS.glob("*.toml")) for rows in folders_of(experiment.stem, folder)]
     return {"schema": SCHEMA, "experiments": entries}

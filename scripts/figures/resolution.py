@@ -1,4 +1,4 @@
-"""Whether a number agrees with a published one, as far as its interval resolves it."""
+"""Decides whether a number agrees with a published number, as far as its interval resolves it."""
 import math
 from dataclasses import dataclass
 
@@ -9,23 +9,23 @@ AGREES, DIFFERS, NOT_RESOLVED = "agrees", "differs", "not_resolved"
 
 @dataclass(frozen=True)
 class Interval:
-    """Holds the median of what was measured with the probability `coverage`; nan where one value has no interval."""
+    """Holds the median of the measured values with the probability `coverage`; nan if one value has no interval."""
 
     low: float
     high: float
     coverage: float
 
     def over(self, other):
-        """Of this number over another; the lesser coverage."""
+        """Returns the interval of this number over another, with the lesser coverage."""
         ends = sorted((self.low / other.high, self.high / other.low))
         return Interval(*ends, min(self.coverage, other.coverage))
 
     def map(self, function):
-        """Of a monotone function of the number."""
+        """Returns the interval of a monotone function of the number."""
         return Interval(*sorted((function(self.low), function(self.high))), self.coverage)
 
 
-EXACT = None  # the interval of what is the same in each run
+EXACT = None  # the interval of a value that is the same in each run
 
 
 def of_values(values):
@@ -33,18 +33,18 @@ def of_values(values):
 
 
 def of_line(line, name, basis):
-    """The interval of a line's speed-up or what follows from it; only what is measured varies."""
+    """Returns the interval of a line's speed-up or a value that follows from it. Only measured values vary."""
     if basis != "measured":
         return EXACT
     return Interval(line[f"{name}_low"], line[f"{name}_high"], line["coverage"])
 
 
 def verdict(value, interval, least=-math.inf, most=math.inf):
-    """By the value where it is the same in each run; else by its interval, which has to lie on one side of each
-    bound and to have the coverage LEVEL."""
+    """Judges by the value if it is the same in each run. Otherwise judges by the interval, which must lie on one side
+    of each bound and have a coverage of at least LEVEL."""
     if interval is EXACT:
         return AGREES if least <= value <= most else DIFFERS
-    if not interval.coverage >= LEVEL:  # nor where it is nan
+    if not interval.coverage >= LEVEL:  # also for nan
         return NOT_RESOLVED
     if least <= interval.low and interval.high <= most:
         return AGREES
@@ -52,12 +52,13 @@ def verdict(value, interval, least=-math.inf, most=math.inf):
 
 
 def together(verdicts):
-    """Of several that all have to agree: one that differs decides, one that is not resolved leaves it open."""
+    """Combines verdicts that all must agree: one that differs decides, one that is not resolved leaves the result
+    open."""
     return next((word for word in (DIFFERS, NOT_RESOLVED) if word in verdicts), AGREES)
 
 
 def doubt(interval):
-    """Why it is not resolved, in words to put behind a reason."""
+    """Returns the reason why the number is not resolved, as text to append to a reason."""
     if interval is EXACT:
         return ""
     if not interval.coverage >= LEVEL:

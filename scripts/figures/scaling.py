@@ -1,12 +1,13 @@
 """Weak-scaling series: verified rows of one machine, program, trial and image whose cells grow in step with the cores.
 
-Speed-up follows equation 1 of the paper: cells per second over those of PODM on one core; efficiency is speed-up
-over cores. Seconds are the phases that load.py times. `refining` leaves all but the making of the mesh out: its
-efficiency is the median of ratios to PODM on one core in the same round, so that a machine that grows slower from
-round to round does not show.
+Speed-up follows equation 1 of the paper: cells per second over those of PODM on one core; efficiency is speed-up over
+cores. Seconds are the phases that load.py times. `refining` counts only the phases that make the mesh. Its efficiency
+is the median of ratios to PODM on one core in the same round, so that a machine that becomes slower from round to round
+does not affect it.
 
-Series have one of two bases, which no line of a table or figure joins: measured and simulated. The base is a run of
-as many cells a core; no series has another's. What was not run at the paper's cells a core is not told of them.
+A series has one of two bases, measured or simulated; no line of a table or figure joins them. The base of a series is a
+run with the same number of cells per core; no series uses another's base. There are no values for the paper's cells per
+core if these were not run.
 """
 import math
 from dataclasses import dataclass
@@ -17,11 +18,11 @@ import pandas
 from .spread import median_interval, order_interval
 
 KEY = ["basis", "machine", "build", "experiment", "setting", "image"]
-# Cells per core may stray this far from one core's; the paper's own stray by 3 %, a radius for a target by 5 %.
+# Cells per core may deviate this much from those on one core. The paper's deviate by 3 %, a radius for a target by 5 %.
 SIZE_TOLERANCE = 0.10
 BASES = ("measured", "simulated")
 PAPER_CELLS_PER_CORE = 3e6
-# What simulations of several sizes share; each size has an image of its own, NAME@SIZE, with as many voxels a cell.
+# Keys that simulations of several sizes share. Each size has its own image, NAME@SIZE, with as many voxels per cell.
 FAMILY = ["basis", "machine", "build", "experiment"]
 PHASES = ["allocate", "read", "transform", "octree", "initial", "refine", "closing", "extract", "other"]
 
@@ -29,7 +30,7 @@ PHASES = ["allocate", "read", "transform", "octree", "initial", "refine", "closi
 @dataclass(frozen=True)
 class Series:
     """`key`: values of KEY by name. `table`: indexed by (algorithm, cores), medians with their bounds and n. `grows`:
-    whether each number of cores has an image of its own."""
+    True if each number of cores has its own image."""
 
     key: dict
     cells_per_core: float
@@ -37,32 +38,32 @@ class Series:
     grows: bool = False
 
     def label(self):
-        """What was run where."""
+        """Returns a description of the trial, the image and the machine."""
         key = self.key
         image = "an image that grows with the cores" if self.grows else key["image"]
         size = f"{short(self.cells_per_core)} cells a core"
         return ", ".join(part for part in (key["experiment"], key["setting"], image, size, key["machine"]) if part)
 
     def kind(self):
-        """What legends and tables say of its numbers. The basis is the first word."""
+        """Returns the description in legends and tables. The basis is the first word."""
         basis = self.key["basis"]
         size = f", {short(self.cells_per_core)} cells a core" if basis == "simulated" else ""
         return basis + size + (", image grows" if self.grows else "")
 
 
 def short(cells):
-    """Two digits: "40 k", "3 M"."""
+    """Returns two digits: "40 k", "3 M"."""
     scale, unit = (1e3, "k") if cells < 999_500 else (1e6, "M")
     return f"{float(f'{cells / scale:.2g}'):g}\N{NO-BREAK SPACE}{unit}"
 
 
 def headline_rows(frame):
-    """The only rows that may give a number of a table or figure: `doubt_of` of load.py finds nothing."""
+    """Returns the only rows that may give a number of a table or figure: `doubt_of` of load.py finds no doubt."""
     return with_keys(frame[frame["headline"] & frame["cores"].notna()]) if len(frame) else frame
 
 
 def with_keys(rows):
-    """Rows with every column that groups them, empty where a row says nothing."""
+    """Returns the rows with every column that groups them, empty if a row lacks it."""
     rows = rows.copy()
     for name in [*KEY, "algorithm"]:
         rows[name] = rows[name].fillna("") if name in rows else ""
@@ -71,13 +72,13 @@ def with_keys(rows):
 
 
 def of_one_size(rows):
-    """Those with about as many cells as the newest: sizes are never mixed in one number."""
+    """Returns the rows with about as many cells as the newest row. Sizes are never mixed in one number."""
     return rows[abs(rows["cells"] / rows["cells"].iloc[-1] - 1) <= SIZE_TOLERANCE]
 
 
 def weak_series(frame):
-    """All series that have a run of PODM on one core. First comes the one to show: of most core counts, then nearest to
-    the paper's cells per core, then the newest."""
+    """Returns all series that have a run of PODM on one core. The series to show comes first: most core counts, then
+    nearest to the paper's cells per core, then newest."""
     found = []
     rows = headline_rows(frame)
     if rows.empty:
@@ -92,14 +93,14 @@ def weak_series(frame):
 
 
 def rows_of(frame, series):
-    """The rows of a series."""
     rows = headline_rows(frame)
     rows = rows[(rows[list(series.key)] == pandas.Series(series.key)).all(axis=1)]
     return rows[abs(rows["cells"] / rows["cores"] / series.cells_per_core - 1) <= SIZE_TOLERANCE]
 
 
 def simulated_sizes(series):
-    """The simulated series to show and those of its experiment and machine with other cells a core, fewest first."""
+    """Returns the simulated series to show and those of its experiment and machine with other cells per core, fewest
+    first."""
     shown = first_of(series, "simulated")
     if shown is None:
         return []
@@ -112,19 +113,19 @@ def _family(series):
 
 
 def first_of(series, basis, grows=False):
-    """The series of that basis to show, or None."""
+    """Returns the series of that basis to show, or None."""
     return next((one for one in series if one.key["basis"] == basis and one.grows == grows), None)
 
 
 def shown_of(series, bases=BASES):
-    """The series to show: of each basis one whose image is the same for all cores and one whose image grows, as far as
-    there are. One core alone shows no growth."""
+    """Returns the series to show: for each basis one with the same image for all cores and one with a growing image, as
+    far as they exist. One core alone shows no growth."""
     chosen = [first_of(series, basis, grows) for basis in bases for grows in (False, True)]
     return [one for one in chosen if one is not None and not (one.grows and len(core_counts([one.table])) < 2)]
 
 
 def core_counts(tables):
-    """All numbers of cores in tables indexed by (algorithm, cores), sorted."""
+    """Returns all numbers of cores in tables indexed by (algorithm, cores), sorted."""
     return sorted({int(cores) for table in tables for cores in table.index.get_level_values("cores")})
 
 
@@ -133,7 +134,7 @@ def _octaves_from_paper(cells_per_core):
 
 
 def _clusters(cells):
-    """Medians of groups of sizes that lie within the tolerance of the smallest of the group."""
+    """Yields the medians of groups of sizes within the tolerance of the smallest size of the group."""
     rest = numpy.sort(cells.to_numpy(dtype=float))
     while rest.size:
         near = rest <= rest[0] * (1 + SIZE_TOLERANCE)
@@ -165,15 +166,15 @@ def _table(members):
 
 
 def _pairs(members):
-    """The key of rows that may form a ratio: the round of measured ones, which share its disturbance; the seed of
-    simulated ones, which no clock disturbs."""
+    """Returns the key by which rows are paired for a ratio: for measured rows the round, in which they share
+    disturbances; for simulated rows the seed, as no clock disturbs them."""
     key = "seed" if members["basis"].iloc[0] == "simulated" and "seed" in members else "repeat"
     return members.get(key, pandas.Series(index=members.index, dtype=float))
 
 
 def _speedup(rates, pairs, base_rates, base_pairs):
-    """((speed-up, low, high), coverage): the median of the ratios within pairs; without common pairs the ratio of the
-    medians, which has no interval."""
+    """Returns ((speed-up, low, high), coverage): the median of the ratios within pairs. Without common pairs it is the
+    ratio of the medians, which has no interval."""
     ratios = (rates / pairs.map(base_rates.groupby(base_pairs).last())).dropna()
     if ratios.empty:
         return (float(rates.median() / base_rates.median()), numpy.nan, numpy.nan), numpy.nan
@@ -187,7 +188,7 @@ def _indexed(lines):
 
 
 def _phases(group):
-    """Median seconds of each phase; `other` is what the phases known here leave of the whole."""
+    """Returns the median seconds of each phase; `other` is the rest of the whole."""
     columns = {f"timed.{phase}": phase for phase in PHASES[:-1]}
     phases = group.reindex(columns=columns).rename(columns=columns).astype(float).fillna(0.0)
     phases["other"] = (group["seconds"] - phases.sum(axis=1)).clip(lower=0)

@@ -1,4 +1,4 @@
-"""The leaf grid and the schedule of a run (verifiers/schedule.h states the format)."""
+"""The leaf grid and the schedule of a run; verifiers/schedule.h describes the format."""
 import json
 from dataclasses import dataclass
 
@@ -8,7 +8,7 @@ SCHEMA = "podm-schedule/1"
 
 
 class ScheduleError(Exception):
-    """A schedule that cannot be read; the text names file, line and fault."""
+    """A schedule that cannot be read; the text names the file, the line and the fault."""
 
 
 @dataclass(frozen=True)
@@ -19,7 +19,7 @@ class Schedule:
 
 
 def read_schedule(path):
-    """Raises ScheduleError."""
+    """Reads a schedule. Raises ScheduleError."""
     try:
         with open(path) as file:
             lines = [(number, line) for number, line in enumerate(file, start=1) if line.strip()]
@@ -39,7 +39,8 @@ def read_schedule(path):
 
 
 def rings(leaves, leaf):
-    """Indices of the first ring, all leaves that touch `leaf`, and of the second, those that touch the first."""
+    """Returns the indices of the first ring, all leaves that touch `leaf`, and of the second, leaves that touch the
+    first."""
     first = _touching(leaves, [leaf])
     second = _touching(leaves, [leaf, *numpy.flatnonzero(first)]) & ~first
     first[leaf] = second[leaf] = False
@@ -55,8 +56,8 @@ def _touching(leaves, some):
 
 
 def active_pair(schedule):
-    """Activations of two leaves at one time on different nodes, cut both by a plane of constant k, and that k: the two
-    with the most operations. None when the run had no such pair."""
+    """Returns two activations of leaves on different nodes at the same time, both cut by a plane of constant k, and
+    that k. Chooses the two with the most operations. None if the run had no such pair."""
     by_work = sorted(schedule.activations, key=lambda one: -one.get("operations", 0))[:500]
     best = None
     for position, one in enumerate(by_work):

@@ -1,5 +1,5 @@
-"""What virtual workers did, by trial: virtual seconds, what they lost, and hops. The wall time is that of playing them
-on the machine at hand; it is no time of theirs."""
+"""The results of virtual workers by trial: virtual seconds, lost time, and hops. The wall time is the time to simulate
+them on the present machine, not a time of the simulated machine."""
 import pandas
 
 from . import scaling
@@ -15,7 +15,7 @@ SCALES = {"cells": 1e-6, "rate": 1e-6}
 
 
 def simulated(frame):
-    """One line a trial, algorithm and number of workers: medians over its rows of one size."""
+    """One line per trial, algorithm and number of workers: medians over its rows of one size."""
     rows = scaling.headline_rows(frame)
     rows = rows[rows["basis"] == "simulated"] if len(rows) else rows
     lines = []
@@ -47,7 +47,7 @@ def _median(group, column):
 
 
 def _zero_hops(group):
-    """What its rows say together, or the reason why there is none."""
+    """Returns the zero-hop share of all rows together, or the reason why there is none."""
     counts = list(group["hops"]) if "hops" in group else []
     lists = [one for one in counts if isinstance(one, list)]
     if not lists:

@@ -1,5 +1,5 @@
-"""Simulated speed-ups of every size beside the paper's, side by side: how far a column depends on the cells a core, and
-how much of the workers' time the fitted constants decide."""
+"""Simulated speed-ups of every size beside the paper's: how far a column depends on the cells per core, and how much of
+the workers' time the fitted constants decide."""
 import pandas
 
 from . import paper, scaling, style
@@ -7,17 +7,17 @@ from .deviation import ROLES
 from .table1 import with_bounds
 
 NOT_PLAYED = "not played"
-# Of worker time: what the network's constants and those of memory behind it decide.
+# Causes of worker time that the constants of the network and of remote memory decide.
 FITTED_CAUSES = ("memory_remote", "network_queue")
-BLADE = 16  # cores of a blade of the paper's machine, which share a memory
+BLADE = 16  # cores that share a memory on the paper's machine
 NOTE = (f"Each size is over PODM on one core of as many cells. Brackets: over seeds, by order statistics; of five the "
         f"least and the greatest, which hold the median with 94 %. The paper's {scaling.short(3e6)} cells a core were "
         f"{NOT_PLAYED}, and no value here is continued to them.")
 
 
 def speedups(series):
-    """One line a number of cores beyond one, as text: by algorithm the speed-up over PODM on one core that the paper
-    has, those simulated by cells a core, and the greatest of these over the least."""
+    """One line per number of cores beyond one, as text. For each algorithm: the paper's speed-up over PODM on one core,
+    the simulated speed-ups by cells per core, and the greatest of these over the least."""
     published, sizes = paper.corrected_table1()["speedup"], scaling.simulated_sizes(series)
     lines = []
     for cores in (count for count in scaling.core_counts([one.table for one in sizes]) if count > 1):
@@ -31,7 +31,7 @@ def speedups(series):
 
 
 def _plays(series, algorithm):
-    """Whether it has more than the base."""
+    """True if the series has rows of the algorithm on more than one core."""
     return any(name == algorithm and cores > 1 for name, cores in series.table.index)
 
 
@@ -57,7 +57,7 @@ def _of_algorithm(algorithm, cores, sizes, published):
 
 
 def depends_on_size(series, cores=256):
-    """A sentence on PDR.PODM's column where two sizes or more were played on so many cores; empty otherwise."""
+    """Returns a sentence on PDR.PODM's column if two sizes or more were simulated on `cores` cores; empty otherwise."""
     found = {scaling.short(one.cells_per_core): one.table.loc["pdr-podm", cores]["speedup"]
              for one in scaling.simulated_sizes(series) if ("pdr-podm", cores) in one.table.index}
     if len(found) < 2:
@@ -70,8 +70,8 @@ def depends_on_size(series, cores=256):
 
 
 def fitted_shares(frame, series):
-    """One line an algorithm and size: on more than one blade the greatest shares of worker time, over numbers of cores,
-    that go into memory of other blades and into queueing in the network. Empty where rows tell no causes."""
+    """One line per algorithm and size, for more than one blade: the greatest shares of worker time, over numbers of
+    cores, for memory of other blades and for queueing in the network. Empty if rows have no causes."""
     lines = []
     for one in scaling.simulated_sizes(series):
         rows = scaling.rows_of(frame, one)

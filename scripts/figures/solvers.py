@@ -1,11 +1,11 @@
-"""What meshes with and without slivers cost a solver: iterations of conjugate gradients (solvers.toml)."""
+"""The cost of meshes with and without slivers for a solver: iterations of conjugate gradients (solvers.toml)."""
 import numpy
 import pandas
 
 from . import style
 from .peers import misses_of
 
-# What made a mesh, in the order of tables and legends; the first three are podm's.
+# The program or options that made a mesh, in the order of tables and legends; the first four are podm's.
 NONE, MOVED, BOTH, OPTIMIZED = "no option", "R7", "both stages", "stage 2 alone"
 PEERS = {"tetgen": "TetGen", "gmsh": "Gmsh's HXT", "cgal_exuded": "CGAL, perturbed and exuded"}
 VARIANTS = (NONE, MOVED, OPTIMIZED, BOTH, *PEERS.values())
@@ -20,8 +20,8 @@ COLUMNS = ["image", "variant", "n", "cells", "least_deg", "largest_deg", "small_
 
 
 def rows_by_variant(frame, needed):
-    """Finished rows with the column `needed`: by image the rows of each variant's largest mesh, in the order of
-    VARIANTS. Of other meshers also those that do not keep what they promise."""
+    """Returns finished rows with the column `needed`: by image the rows of each variant's largest mesh, in the order of
+    VARIANTS. Rows of other meshers count even if they miss a promised claim."""
     if needed not in frame:
         return {}
     is_finished = (frame["status"] == "ok") | (frame["mesher"] != "podm") & (frame["status"] == "unmet")
@@ -41,7 +41,7 @@ def rows_by_variant(frame, needed):
 
 
 def solvers(frame):
-    """A line an image and variant; of repeats medians, which are all the same on one machine."""
+    """One line per image and variant. Values are medians of repeats, which are all equal on one machine."""
     lines = []
     for image, groups in rows_by_variant(frame, "solve.poisson.jacobi.iterations").items():
         for variant, group in groups.items():
@@ -66,7 +66,7 @@ def readable(table):
 
 
 def figure(frame):
-    """Iterations by image, system and preconditioner. None without rows that were solved."""
+    """Draws the iterations by image, system and preconditioner. None without rows that were solved."""
     table = solvers(frame)
     if table.empty:
         return None

@@ -1,11 +1,11 @@
-"""How every figure looks, and the words of legends and captions."""
+"""The common look of all figures, and the words of legends and captions."""
 import numpy
 from matplotlib.figure import Figure
 
-# Text and axes are this colour and nothing else is: the report turns it into the page's own.
+# Colour of text, axes and outlines. The report replaces it by the page's text colour.
 INK = "#1f2430"
 GHOST = "#8c8c8c"
-# The paper's two algorithms, then what goes beyond it.
+# The paper's two algorithms, then further algorithms.
 NAMES = {"podm": "PODM", "pdr-podm": "PDR.PODM", "podm-home": "PODM at home"}
 COLOURS = {"podm": "#2b7bba", "pdr-podm": "#d1495b", "podm-home": "#3d8b5f"}
 MARKERS = {"podm": "o", "pdr-podm": "s", "podm-home": "^"}
@@ -16,14 +16,14 @@ PHASE_COLOURS = {"allocate": "#4c6a5b", "read": "#c9b458", "transform": "#8fb996
 PHASE_NAMES = {"allocate": "allocation", "initial": "initial mesh", "refine": "refinement"}
 LINES = {"measured": {"linestyle": "-"},
          "simulated": {"linestyle": (0, (4, 2)), "linewidth": 1.2, "markersize": 5, "markerfacecolor": "none"}}
-# Of a legend on the right of its axes, where it hides no lines.
+# Position of a legend to the right of its axes, where it hides no lines.
 BESIDE = {"loc": "upper left", "bbox_to_anchor": (1, 1)}
 GROWING = {"linewidth": 1.0, "markersize": 4}
 REFINING = {"linestyle": "-.", "linewidth": 1.0, "markersize": 4}
 
 
 def new_figure(columns=1, rows=1, width=9.0, height=3.8):
-    """A figure and its axes in a flat list; no global state of pyplot."""
+    """Returns a figure and its axes in a flat list. Uses no global state of pyplot."""
     figure = Figure(figsize=(width, height), layout="constrained")
     figure.patch.set_alpha(0)
     axes = list(numpy.ravel(figure.subplots(rows, columns)))
@@ -44,7 +44,7 @@ def dress(axes):
 
 
 def cores_axis(axes, cores):
-    """Logarithmic, with a tick at each power of two."""
+    """Makes the axis logarithmic, with a tick at each power of two."""
     axes.set_xscale("log", base=2)
     top = int(numpy.ceil(numpy.log2(max([2, *cores]))))
     ticks = 2 ** numpy.arange(top + 1)
@@ -54,20 +54,20 @@ def cores_axis(axes, cores):
 
 
 def by_algorithm(table):
-    """The parts of a table by algorithm, in the order of NAMES; other meshers have none."""
+    """Returns the parts of a table by algorithm, in the order of NAMES. Other meshers have no part."""
     return [(name, table.loc[[name]]) for name in NAMES if name in table.index]
 
 
 def ghost(axes, table, column, scale=1.0):
-    """The paper's series: grey and dashed, behind everything else."""
+    """Draws the paper's series grey and dashed, behind everything else."""
     for algorithm, part in by_algorithm(table):
         axes.plot(part.index.get_level_values("cores"), part[column] * scale, color=GHOST, linestyle="--",
                   linewidth=1.2, marker=MARKERS[algorithm], markersize=4, label=f"{NAMES[algorithm]}, paper", zorder=1)
 
 
 def plot_series(axes, series, column, scale=1.0, of="", **options):
-    """Our medians with their intervals; measured filled and solid, simulated hollow and dashed, thin where the
-    image grows. `of` ends the words of the legend, `options` change the line."""
+    """Draws our medians with their intervals: measured filled and solid, simulated hollow and dashed, thin if the image
+    grows. `of` ends the words of the legend, `options` change the line."""
     options = {"linewidth": 1.8, "markersize": 6, "capsize": 3, **LINES[series.key["basis"]],
                **(GROWING if series.grows else {}), **options}
     for algorithm, part in by_algorithm(series.table):
@@ -87,7 +87,7 @@ def legend(axes, **options):
 
 
 def finish(figure, caption):
-    """Sizes and colours of what was written since; the caption becomes the figure's label, shown by write.py."""
+    """Sets sizes and colours of the labels. The caption becomes the figure's label, shown by write.py."""
     for axes in figure.axes:
         for text in (axes.title, axes.xaxis.label, axes.yaxis.label):
             text.set_color(INK)
@@ -96,7 +96,7 @@ def finish(figure, caption):
 
 
 def caption_of(series, has_paper=True):
-    """What was run, how often, and, beside the paper's series, what the bars are."""
+    """Returns the description of the trials, their number, and, beside the paper's series, the meaning of the bars."""
     parts = []
     for one in series:
         counts = sorted(set(one.table["n"].astype(int)))

@@ -1,5 +1,5 @@
-"""Table 1: weak scaling. Published, measured and simulated values in separate lines of one table; numbers that no
-clock told carry a mark."""
+"""Table 1: weak scaling. Published, measured and simulated values are separate lines of one table. Numbers that were
+not measured by a clock have a mark."""
 import pandas
 
 from . import paper, scaling, style
@@ -11,12 +11,12 @@ SCALES = {"cells": (1e-6, 2), "seconds": (1, 2), "rate": (1e-6, 2), "speedup": (
           "refining_efficiency": (100, 1)}
 TITLES = {"cells": "M elements", "seconds": "seconds", "rate": "M elements/s", "speedup": "speed-up",
           "efficiency": "efficiency %", "refining_efficiency": "refining, efficiency %"}
-# Before numbers of virtual workers: hollow, as their markers in figures.
+# Put before numbers of virtual workers: hollow, as their markers in figures.
 MARKS = {"simulated": "\N{WHITE CIRCLE} "}
 
 
 def table1(series):
-    """One line a number of cores, algorithm, basis and image. Published values tell no `n`."""
+    """One line per number of cores, algorithm, basis and image. Published values have no `n`."""
     published = paper.table1().reset_index().assign(basis="published", kind="published", n=pandas.NA, images="one",
                                                     series="Table 1 of the paper")
     ours = [one.table.reset_index().assign(basis=one.key["basis"], kind=one.kind(), series=one.label(),
@@ -27,7 +27,7 @@ def table1(series):
 
 
 def in_order(table):
-    """Rows are ordered by cores, then as people compare: PODM first, the published value before ours."""
+    """Orders rows by cores, then for comparison: PODM first, the published value before ours."""
     others = sorted(set(table["algorithm"]) - set(style.NAMES))
     ranks = {"basis": ["published", *scaling.BASES], "algorithm": [*style.NAMES, *others],
              "images": ["one", "growing"]}
@@ -40,8 +40,8 @@ def in_order(table):
 
 
 def readable(table):
-    """The number as the paper prints it: millions, two digits; an interval in brackets where there is one; the mark of
-    its basis."""
+    """Formats numbers as in the paper: millions, two digits. Adds the interval in brackets, if any, and the mark of the
+    basis."""
     shown = table[["cores", "algorithm", "kind", "images", "n"]].rename(columns={"kind": "basis"})
     for name, title in TITLES.items():
         scale, digits = SCALES[name]
@@ -52,12 +52,12 @@ def readable(table):
 
 
 def marked(text, basis):
-    """A number with the mark of its basis."""
+    """Returns a number with the mark of its basis."""
     return MARKS.get(basis, "") + text if text else ""
 
 
 def with_bounds(value, low, high, digits):
-    """"1.23 [1.20, 1.26]"; empty without a value."""
+    """Returns "1.23 [1.20, 1.26]"; empty without a value."""
     if pandas.isna(value):
         return ""
     bounds = "" if pandas.isna(low) else f" [{low:.{digits}f}, {high:.{digits}f}]"

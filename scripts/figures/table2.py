@@ -1,7 +1,7 @@
-"""Table 2: shares of accesses by hops between the node that accesses and the one that owns what is accessed.
+"""Table 2: shares of accesses by hops between the accessing node and the node that owns the accessed memory.
 
-As in the paper reads of the mesh are counted, visits of its cells and vertices; beside them stands the share when the
-kinds that it leaves out count too: writes of the mesh, reads of the image and of its transform.
+As in the paper, reads of the mesh are counted: visits of its cells and vertices. Beside them is the share with the
+other kinds included: writes of the mesh, reads of the image and of its transform.
 """
 import numpy
 import pandas
@@ -12,13 +12,13 @@ from .table1 import in_order, marked
 
 COLUMNS = ["basis", "kind", "algorithm", "cores", "nodes", "hops", "share", "share_low", "share_high", "coverage",
            "share_all_kinds", "visits", "n", "series"]
-PAPER_NODE = 16  # cores of a blade of the paper's machine
+PAPER_NODE = 16  # cores per blade of the paper's machine
 KINDS = "hops_by_kind."
 
 
 def table2(frame):
-    """One line a basis, algorithm, number of cores and hops. A cell is of one trial's rows of one size: counts of its
-    repeats and seeds are added up."""
+    """One line per basis, algorithm, number of cores and hops. A cell uses the rows of one trial and size; counts of
+    its repeats and seeds are added."""
     published = paper.table2().melt(ignore_index=False, var_name="cores", value_name="share").reset_index()
     blocks = [published.assign(basis="published", kind="published", algorithm="pdr-podm",
                                nodes=-(-published["cores"] // PAPER_NODE), series="Table 2 of the paper")]
@@ -29,7 +29,8 @@ def table2(frame):
 
 
 def readable(table):
-    """One line a number of cores, algorithm and basis; hops across, in percent, with the mark of the basis."""
+    """One line per number of cores, algorithm and basis; one column per hops, in percent, with the mark of the
+    basis."""
     lines = []
     for (cores, algorithm, basis), group in table.groupby(["cores", "algorithm", "basis"]):
         shares = {row["hops"]: marked(_percent(row["share"], row["share_low"], row["share_high"]), basis)
@@ -43,26 +44,26 @@ def readable(table):
 
 
 def why_no_hops(frame):
-    """What rows say in place of counts, or that there is no row."""
+    """Returns the text that rows have in place of counts, or that there is no row."""
     rows = scaling.headline_rows(frame)
     said = [] if rows.empty or "hops" not in rows else [hops for hops in rows["hops"] if isinstance(hops, str)]
     return said[-1] if said else "no verified row counts hops"
 
 
 def zero_hop_share(counts):
-    """The share that one row's counts make, or the reason why there is none."""
+    """Returns the zero-hop share of one row's counts, or the reason why there is none."""
     return counts[0] / sum(counts) if isinstance(counts, list) and sum(counts) else counts
 
 
 def _percent(share, low=numpy.nan, high=numpy.nan):
-    """"99.12 %", with its interval in brackets where there is one."""
+    """Returns "99.12 %", with its interval in brackets if there is one."""
     if pandas.isna(share):
         return ""
     return f"{100 * share:.2f} %" + ("" if pandas.isna(low) else f" [{100 * low:.2f}, {100 * high:.2f}]")
 
 
 def _blocks_of(rows):
-    """A block a number of cores and algorithm."""
+    """Yields a block per number of cores and algorithm."""
     size = scaling.short((rows["cells"] / rows["cores"]).median())
     for (algorithm, cores), group in rows.groupby(["algorithm", "cores"]):
         group = scaling.of_one_size(group)
@@ -72,7 +73,7 @@ def _blocks_of(rows):
 
 
 def _grows(rows):
-    """Whether cells grow with the cores."""
+    """True if the cells grow with the cores."""
     per_core = rows["cells"] / rows["cores"]
     return per_core.max() / per_core.min() <= (1 + scaling.SIZE_TOLERANCE) ** 2
 
@@ -87,7 +88,7 @@ def _block(group):
 
 
 def _bounds_of_shares(group, length):
-    """The interval of each share over the rows; virtual workers do the same in each run."""
+    """Returns the interval of each share over the rows. Virtual workers give the same shares in each run."""
     if group["basis"].iloc[0] != "measured":
         return {}
     shares = [[*counts, *[0] * (length - len(counts))] / numpy.sum(counts) for counts in group["hops"]]
@@ -95,7 +96,7 @@ def _bounds_of_shares(group, length):
 
 
 def _shares_of_all_kinds(group, length):
-    """nan where a row does not tell every kind."""
+    """Returns nan if a row lacks some kind."""
     kinds = [name for name in group if name.startswith(KINDS)]
     lists = [counts for name in kinds for counts in group[name]]
     if not lists or not all(isinstance(counts, list) for counts in lists):
@@ -110,8 +111,8 @@ def _label(row):
 
 
 def _shown(frame):
-    """The rows of each basis, of one machine, program, trial and image: those with the most core counts, then the most
-    cells, then the newest."""
+    """Returns for each basis the rows of one machine, program, trial and image: those with the most core counts, then
+    the most cells, then the newest."""
     rows = scaling.headline_rows(frame)
     if rows.empty or "hops" not in rows:
         return []

@@ -1,4 +1,5 @@
-"""Table 3: memory levels and what an access costs. Ours come from `memory_levels` of rows that measured the machine."""
+"""Table 3: memory levels and the cost of an access. Our values are `memory_levels` of rows that measured the
+machine."""
 import pandas
 
 from . import paper
@@ -8,8 +9,8 @@ COLUMNS = ["basis", "level", "memory_module", "size", "access_clock_cycles"]
 
 
 def table3(frame):
-    """One line a basis and level. Cycles are text: as printed, or medians of the newest machine's, or why there are
-    none."""
+    """One line per basis and level. Cycles are text: as printed, or medians of the newest machine's, or the reason why
+    they are missing."""
     published = paper.table3().reset_index().assign(basis="published")
     lines = [{"basis": "measured", "level": row["level"], "memory_module": row["module"],
               "size": _size(row["size_bytes"]), "access_clock_cycles": row["text"]}
@@ -23,8 +24,8 @@ def readable(table):
 
 
 def costs(frame):
-    """One line a level: median `cycles`, nan where they could not be measured, and as `text`, and whether it is memory
-    of another node."""
+    """One line per level: median `cycles`, nan if they could not be measured, their `text`, and `is_another`, True for
+    memory of another node."""
     levels = _levels(frame)
     lines = []
     for (level, module), group in levels.groupby(["level", "module"]) if len(levels) else ():
@@ -39,7 +40,7 @@ def costs(frame):
 
 
 def _levels(frame):
-    """All rows of the machine that the newest one measured."""
+    """Returns all rows of the machine that the newest row measured."""
     if "memory_levels" not in frame:
         return pandas.DataFrame()
     rows = frame[[isinstance(levels, list) for levels in frame["memory_levels"]]]

@@ -1,9 +1,9 @@
-"""Simulated beside measured: the same mesh by virtual workers and by threads of the machine that was described."""
+"""Compares simulated with measured runs: the same mesh by virtual workers and by threads of the described machine."""
 import pandas
 
 from . import scaling
 
-# What tells one mesh, of which there are rows of both bases.
+# The columns that identify a mesh; rows of both bases share them.
 MESH = ["experiment", "build", "image", "used.radius_mm", "used.delta_mm"]
 STAGES = {"transform": "transform", "initial": "initial mesh", "refine": "refinement", "extract": "extract"}
 LOSSES = ("contention", "begging", "rollback")
@@ -12,9 +12,9 @@ COLUMNS = [*MESH, "algorithm", "cores", "cells", "n", "seconds", *STAGES, "speed
 
 
 def validation(frame):
-    """One line a mesh, algorithm and number of cores. `seconds` (equation 1) and stages: simulated over measured, less
-    1. `speedup`: over the same algorithm on one core. `lost`: share of worker seconds of refinement lost to LOSSES.
-    `conflicts`: operations rolled back over those committed. Medians; empty without rows of both bases."""
+    """One line per mesh, algorithm and number of cores. `seconds` (equation 1) and stages: simulated over measured,
+    minus 1. `speedup`: over the same algorithm on one core. `lost`: share of worker seconds of refinement lost to
+    LOSSES. `conflicts`: operations rolled back over those committed. Medians; empty without rows of both bases."""
     rows = scaling.headline_rows(frame)
     if rows.empty or not set(MESH) <= set(rows):
         return pandas.DataFrame(columns=COLUMNS)
@@ -29,7 +29,7 @@ def validation(frame):
 
 
 def readable(table):
-    """In percent and with signs what deviates."""
+    """Deviations in percent, with their signs."""
     shown = table[["image", "algorithm", "cores", "n"]].copy()
     shown.insert(1, "M cells", [f"{cells / 1e6:.2g}" for cells in table["cells"]])
     for name, title in {"seconds": "seconds of equation 1", **STAGES}.items():

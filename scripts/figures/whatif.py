@@ -1,9 +1,9 @@
-"""Which algorithm to use on a machine that a file describes, and from how many cores on: runs PODM, PDR.PODM and PODM
-at home in virtual time on one to all of its cores, draws their rates and efficiencies, and prints the answer.
+"""Finds the best algorithm for a machine that a file describes, and its range of cores: runs PODM, PDR.PODM and PODM at
+home in virtual time on one to all of its cores, draws their rates and efficiencies, and prints the answer.
 
-The trials are an experiment of podm-bench, written beside the picture: meshes are verified, a second call goes on where
-the first ended, rows and radii stay in the output folder. Times are simulated; results/README.md tells the limits.
-Exit codes: 0 made, 2 bad usage or input, or trials that failed.
+The trials are an experiment of podm-bench, written beside the picture: meshes are verified, a second call continues
+where the first stopped, rows and radii stay in the output folder. Times are simulated; results/README.md states the
+limits. Exit codes: 0 made, 2 bad usage or input, or trials that failed.
 """
 import argparse
 import re
@@ -21,7 +21,7 @@ STEPS = 8
 
 
 class MachineError(Exception):
-    """A description that cannot be read; the text names file and fault."""
+    """A description that cannot be read; the text names the file and the fault."""
 
 
 def main(arguments=None):
@@ -67,7 +67,7 @@ def answer(arguments):
 
 
 def read_size(path):
-    """(nodes, cores of a node). What else the description holds the mesher reads, and refuses. Raises MachineError."""
+    """Returns (nodes, cores per node). The mesher reads and checks the rest of the description. Raises MachineError."""
     try:
         with open(path, "rb") as file:
             described = tomllib.load(file)
@@ -84,13 +84,15 @@ def read_size(path):
 
 
 def core_counts(num_nodes, cores_per_node):
-    """One, and each eighth of the machine; beyond a node whole nodes, as all have to have the same number of cores."""
+    """Returns one, and each eighth of the machine; beyond one node only whole nodes, as all must have the same number
+    of cores."""
     eighths = [max(1, num_nodes * cores_per_node * step // STEPS) for step in range(1, STEPS + 1)]
     return sorted({1, *(count if count <= cores_per_node else count - count % cores_per_node for count in eighths)})
 
 
 def experiment_text(arguments, counts, cores_per_node):
-    """A trial each number of cores: a node in part has no number of cores of its own to ask for."""
+    """Returns an experiment with one trial per number of cores. A partial node does not ask for a number of cores per
+    node."""
     image = str(Path(arguments.image).resolve()) if Path(arguments.image).exists() else arguments.image
     lines = [f'title = "What if: {arguments.machine.stem}"', 'claim = "All algorithms run in virtual time."',
              "timeout_s = 7200", "", "[inputs.image]", f"image = {_quoted(image)}"]
@@ -107,7 +109,7 @@ def experiment_text(arguments, counts, cores_per_node):
 
 
 def algorithms_on(count):
-    """Of one core PODM at home is PODM."""
+    """Returns the algorithms to run; on one core PODM at home equals PODM."""
     return [name for name in style.NAMES if count > 1 or name != "podm-home"]
 
 
@@ -117,7 +119,7 @@ def _quoted(text):
 
 
 def run_trials(bench, experiment, folder):
-    """Its table and progress go to standard error: the answer alone is on standard output."""
+    """Runs podm-bench. Its output goes to standard error; only the answer goes to standard output."""
     try:
         done = subprocess.run([bench, "run", experiment, "--results", folder], stdout=sys.stderr)
     except OSError as error:
@@ -127,7 +129,7 @@ def run_trials(bench, experiment, folder):
 
 
 def _of_size(series, cells_per_core):
-    """The simulated series of those cells a core; None unless two algorithms can be compared on some cores."""
+    """Returns the simulated series of this size; None unless two algorithms can be compared on some number of cores."""
     for one in series:
         is_near = abs(one.cells_per_core / cells_per_core - 1) <= scaling.SIZE_TOLERANCE
         if one.key["basis"] == "simulated" and is_near and fastest(one.table):
@@ -136,8 +138,8 @@ def _of_size(series, cells_per_core):
 
 
 def fastest(table):
-    """(algorithm, fewest cores, most cores) of each stretch of numbers of cores on which it makes the most cells a
-    second, of equals the first of NAMES. Numbers on which fewer than two ran are left out."""
+    """Returns (algorithm, fewest cores, most cores) for each range of core counts where it makes the most cells per
+    second; among equal ones the first of NAMES. Numbers of cores with fewer than two algorithms are left out."""
     stretches = []
     for cores, rates in table["rate"].unstack("algorithm").reindex(columns=list(style.NAMES)).iterrows():
         rates = rates.dropna()
@@ -152,7 +154,7 @@ def fastest(table):
 
 
 def advice(series, name):
-    """Which algorithm is the fastest, from which number of cores on, what each makes on the most, and what lacks."""
+    """Returns the fastest algorithm by range of cores, the rates on the most cores, and missing runs."""
     where = f"{name}, {scaling.short(series.cells_per_core)} cells a core, {series.key['image']}, simulated"
     counts = scaling.core_counts([series.table])
     lines = [f"{where}: {_told(fastest(series.table), counts[-1])}."]
@@ -171,7 +173,7 @@ def advice(series, name):
 
 
 def _told(stretches, most):
-    """"podm on one core, pdr-podm from 32 to 64 cores, podm-home from 96 cores on"."""
+    """Returns "podm on one core, pdr-podm from 32 to 64 cores, podm-home from 96 cores on"."""
     if len(stretches) == 1 and stretches[0][2] == most:
         return f"{stretches[0][0]} on all numbers of cores up to {most}"
     told = []
@@ -190,7 +192,7 @@ def _cores(count):
 
 
 def picture(series, name):
-    """Rate and efficiency of all algorithms, and where one overtakes the fastest."""
+    """Draws the rate and efficiency of all algorithms, and marks where the fastest one changes."""
     figure, (rate, efficiency) = style.new_figure(columns=2, height=4.2)
     stretches = fastest(series.table)
     for axes, column, scale in ((rate, "rate", 1e-6), (efficiency, "efficiency", 100)):

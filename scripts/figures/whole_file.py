@@ -1,9 +1,9 @@
-"""Files that appear whole or not at all."""
+"""Writes a file completely or not at all."""
 import os
 
 
 def write_whole(path, data):
-    """Until all bytes are written an older file of that name stays as it was. Raises OSError."""
+    """Keeps an existing file of that name unchanged until all bytes are written. Raises OSError."""
     aside = path.with_name(f"{path.name}.{os.getpid()}.part")
     try:
         aside.write_bytes(data)

@@ -1,4 +1,4 @@
-"""Files from tables and figures, whole or not at all."""
+"""Writes tables and figures to files, completely or not at all."""
 import io
 import json
 import re
@@ -20,7 +20,7 @@ def write_json(path, value):
 
 
 def write_figure(figure, folder, name):
-    """NAME.pdf and NAME.png, the latter on white, with the caption below."""
+    """Writes NAME.pdf and NAME.png, the PNG on white, with the caption below."""
     figure.supxlabel(textwrap.fill(figure.get_label(), 150), fontsize=7, color=style.INK)
     figure.get_layout_engine().set(h_pad=0.1)
     for suffix, options in (("pdf", {"metadata": {"CreationDate": None}}), ("png", {"dpi": 160, "facecolor": "white"})):
@@ -30,7 +30,8 @@ def write_figure(figure, folder, name):
 
 
 def svg_of(figure, name):
-    """Inline SVG whose ink is the page's text colour; ids start with `name`, so that figures share a page."""
+    """Returns inline SVG whose ink is the page's text colour. Ids start with `name`, so that figures can share a
+    page."""
     made = io.StringIO()
     with matplotlib.rc_context({"svg.fonttype": "none", "svg.hashsalt": name}):
         figure.savefig(made, format="svg", metadata={"Date": None})
@@ -42,7 +43,7 @@ def svg_of(figure, name):
 
 
 def markdown(table):
-    """A pandas table, without its index, as Markdown."""
+    """Returns a pandas table, without its index, as Markdown."""
     lines = [list(map(str, table.columns)), ["---"] * len(table.columns)]
     lines += [[_plain(value) for value in row] for row in table.itertuples(index=False)]
     return "\n".join("| " + " | ".join(line) + " |" for line in lines) + "\n"

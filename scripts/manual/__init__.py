@@ -1,1 +1,1 @@
-"""Manual pages and shell completion, made of what programs print for --help: their own tables of options."""
+"""Makes manual pages and shell completion from the --help output of programs."""

@@ -1,4 +1,4 @@
-"""Completion for bash, and for zsh by its bashcompinit: commands, options, and what an option takes."""
+"""Completion for bash, and for zsh by its bashcompinit: commands, options, and the values of options."""
 
 import shlex
 
@@ -32,11 +32,11 @@ FIND_COMMAND = """\
 def action_of(entry):
     if entry.choices:
         return f"offered={shlex.quote(' '.join(entry.choices))}"
-    return "files=yes" if entry.type in FILES else ":"  # a number or a name: nothing to complete
+    return "files=yes" if entry.type in FILES else ":"  # no completion for a number or a name
 
 
 def value_cases(helps):
-    """What may follow the options that take a value, those that take the same together."""
+    """Returns the cases of the values of options; options with the same values share a case."""
     patterns = {}
     for command, told in helps.items():
         for entry in told.entries:
@@ -47,7 +47,7 @@ def value_cases(helps):
 
 
 def word_case(command, help_text, commands=()):
-    """What may stand elsewhere: commands, options, and arguments."""
+    """Returns the case of the other words: commands, options, and arguments."""
     words = [*commands, *(name for entry in help_text.entries if entry.is_option for name in entry.names)]
     arguments = help_text.group("Positionals").entries
     words += [word for entry in arguments for word in entry.choices]
@@ -56,7 +56,7 @@ def word_case(command, help_text, commands=()):
 
 
 def script(program):
-    """The text of the file that bash reads for the program."""
+    """Returns the text of the file that bash reads for the program."""
     helps = {"": program.help, **program.commands}
     return SCRIPT.format(
         name=program.name, function="_" + program.name.replace("-", "_"),

@@ -1,4 +1,4 @@
-"""What --help prints, taken apart. Its form is CLI11's:
+"""Parses the output of --help, in CLI11's format:
 
     what the program does
     Usage: podm mesh [OPTIONS] IMAGE
@@ -16,14 +16,14 @@
 import dataclasses
 import re
 
-# An entry stands two columns in, what is said of it further.
+# An entry is indented by two columns, its text further.
 ENTRY = re.compile(r"^  (?P<names>\S+)(?: (?P<type>\S+))?(?:  +(?P<text>.*))?$")
 MORE = re.compile(r"^ {3,}(?P<text>\S.*)$")
 TITLE = re.compile(r"^(?P<title>\S.*):$")
 
 
 class HelpError(Exception):
-    """What a program printed is not of that form."""
+    """The output of a program does not have that format."""
 
 
 @dataclasses.dataclass
@@ -39,7 +39,7 @@ class Entry:
 
     @property
     def choices(self):
-        """The words that it takes, if it takes only these."""
+        """Returns the words that it takes, if it takes only these."""
         words = self.type.split("|")
         return words if len(words) > 1 and "FILE" not in words else []
 
@@ -66,7 +66,7 @@ class HelpText:
 
 
 def parse(text):
-    """The HelpText of what was printed; HelpError names the line that is not understood."""
+    """Returns the parsed HelpText. Raises HelpError, which names the line that does not fit."""
     lines = text.rstrip("\n").split("\n")
     if len(lines) < 2 or not lines[1].startswith("Usage: "):
         raise HelpError(f"not the help of a program: {lines[0]!r}")

@@ -8,7 +8,7 @@ EXIT_CODES = "Exit codes: "
 
 
 def escaped(text):
-    """Text as groff shows it: no command in it, a hyphen as typed."""
+    """Returns the text escaped for groff: no commands, hyphens as typed."""
     text = text.replace("\\", r"\e").replace("-", r"\-")
     return r"\&" + text if text[:1] in ("'", ".") else text
 
@@ -25,7 +25,7 @@ def entry_lines(entry):
 
 
 def entries_lines(help_text):
-    """The groups of arguments and options, each under its title."""
+    """Returns the groups of arguments and options, each under its title."""
     lines = []
     for group in help_text.groups:
         if group.title != COMMANDS and group.entries:
@@ -52,7 +52,7 @@ def synopsis(program):
 
 
 def exit_codes(program):
-    """"0 success, 1 ..." as a list."""
+    """Returns "0 success, 1 ..." as a list."""
     text = next((text for text in program.help.end if text.startswith(EXIT_CODES)), None)
     if text is None:
         return []
@@ -64,7 +64,7 @@ def exit_codes(program):
 
 
 def page(program, all_names):
-    """The page; `all_names` are the programs that it refers to, its own left out."""
+    """Returns the page. `all_names`: the programs to refer to; its own name is left out."""
     about = program.help.description.rstrip(".")
     lines = [f'.TH {program.name.upper()} 1 "" "podm {program.version}" "User Commands"',
              heading("SH", "NAME"),

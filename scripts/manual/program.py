@@ -1,4 +1,4 @@
-"""A program as its help tells of it."""
+"""A program as described by its help."""
 
 import dataclasses
 import subprocess
@@ -21,11 +21,11 @@ class Program:
     name: str
     version: str    # "0.1.0"
     help: help_text.HelpText
-    commands: dict  # their names and HelpTexts; none of a program without commands
+    commands: dict  # HelpText by name; empty for a program without commands
 
     @classmethod
     def asked(cls, path):
-        """Asks the program at `path`; HelpError if it does not answer as expected."""
+        """Asks the program at `path`. Raises HelpError if it does not answer as expected."""
         told = help_text.parse(printed_by(path, "--help"))
         names = [entry.names[0] for entry in told.group(COMMANDS).entries]
         return cls(name=path.name,

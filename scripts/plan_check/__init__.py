@@ -1,1 +1,1 @@
-"""Predictions of podm info --plan compared with runs of podm mesh."""
+"""Compares predictions of podm info --plan with runs of podm mesh."""

@@ -1,4 +1,5 @@
-"""Plans and runs of images at several sizes: a JSON line each on standard output, a table on standard error."""
+"""Plans and runs images at several sizes. Prints one JSON line per run on standard output, a table on standard
+error."""
 import argparse
 import json
 import os
@@ -16,25 +17,26 @@ from .volume import read_volume
 
 
 def plan_of(program, image, options):
-    """What podm info --plan tells of the image and of the run."""
+    """Returns the output of podm info --plan: the image and the planned run."""
     command = [program, "info", image, "--json", "--plan", *options]
     return json.loads(subprocess.run(command, check=True, stdout=subprocess.PIPE).stdout)
 
 
 def processor_seconds(command):
-    """Of a process, and its exit code."""
+    """Returns the processor seconds of a process, and its exit code."""
     _, status, usage = os.wait4(subprocess.Popen(command, stdout=subprocess.DEVNULL).pid, 0)
     return usage.ru_utime + usage.ru_stime, os.waitstatus_to_exitcode(status)
 
 
 def run(program, image, options, mesh, repeats):
-    """The record of a run, with the least processor seconds of some, less what the program takes to start."""
+    """Returns the record of the run with the least processor seconds, minus the time that the program takes to
+    start."""
     best = None
     for _ in range(repeats):
         with tempfile.NamedTemporaryFile() as record:
             command = [program, "mesh", image, "-o", mesh, *options, "--quiet", "--record", record.name]
             seconds, exit_code = processor_seconds(command)
-            if exit_code not in (0, 1):  # 1: a label that the sizes are too coarse for
+            if exit_code not in (0, 1):  # 1: the sizes are too coarse for some label
                 raise RuntimeError(f"{' '.join(command)} ended with {exit_code}")
             row = json.loads(Path(record.name).read_text())
         row["processor_s"] = seconds - processor_seconds([program, "--version"])[0]
@@ -44,7 +46,8 @@ def run(program, image, options, mesh, repeats):
 
 
 def lost_row(info, image, mesh_path):
-    """Components that the mesh lost or cut, and those of them that no thin part was told of, or nothing but details."""
+    """Counts the components that the mesh lost or cut, and those of them for which the plan has no thin part, or only
+    details."""
     volume, affine = read_volume(image), numpy.array(info["affine"])
     number, labels = image_components(volume)
     pieces = pieces_of_components(volume, number, len(labels), affine, read_mesh(mesh_path))
@@ -63,7 +66,7 @@ def lost_row(info, image, mesh_path):
 
 
 def options_of_sizes(program, image, cells, radii):
-    """Targets and radii, which are in sides of a cube of a voxel's volume, as options of podm."""
+    """Returns targets and radii as options of podm. Radii are given in sides of a cube of a voxel's volume."""
     command = [program, "info", image, "--json"]
     info = json.loads(subprocess.run(command, check=True, stdout=subprocess.PIPE).stdout)
     side_mm = info["voxel_volume_mm3"] ** (1 / 3)
@@ -73,7 +76,7 @@ def options_of_sizes(program, image, cells, radii):
 def compare(program, image, options, threads, repeats):
     info = plan_of(program, image, options)
     plan = info["plan"]
-    # A run of the sizes that were planned: to look for others is not part of it.
+    # Runs the planned sizes, so that the search for sizes is not part of the run.
     fixed = ["--radius", repr(plan["radius_mm"])] if plan["radius_mm"] > 0 else []
     fixed += ["--delta", repr(plan["delta_mm"]), "--threads", str(threads)]
     with tempfile.TemporaryDirectory() as folder:

@@ -1,4 +1,4 @@
-"""Components of an image's labels, by voxels that share faces, and what became of them in a mesh."""
+"""Components of an image's labels (voxels that share faces), and their fate in a mesh."""
 import itertools
 
 import numpy
@@ -8,7 +8,7 @@ from scipy.sparse.csgraph import connected_components
 
 
 def image_components(volume, background=0):
-    """The number of each voxel's component, -1 in the background, and the label of each component."""
+    """Returns the number of each voxel's component, -1 in the background, and the label of each component."""
     number = numpy.full(volume.shape, -1)
     labels = []
     values, dense = numpy.unique(volume, return_inverse=True)
@@ -22,7 +22,7 @@ def image_components(volume, background=0):
 
 
 def mesh_components(cells, labels):
-    """The number of each cell's component: cells of one label that share facets."""
+    """Returns the number of each cell's component: cells of one label that share facets."""
     facets = numpy.concatenate([numpy.sort(numpy.delete(cells, corner, 1), 1) for corner in range(4)])
     owner = numpy.tile(numpy.arange(len(cells)), 4)
     order = numpy.lexsort(facets.T)
@@ -41,7 +41,8 @@ def circumcenters(points, cells):
 
 
 def component_of_cells(volume, number, affine, centers, labels):
-    """Of the nearest of the eight voxels around a cell's circumcentre that has the cell's label: it has it of them."""
+    """Returns the component of the nearest of the eight voxels around a cell's circumcenter that have the cell's
+    label."""
     at = centers @ numpy.linalg.inv(affine[:, :3]).T - numpy.linalg.solve(affine[:, :3], affine[:, 3])
     low = numpy.floor(at).astype(int)
     found, nearest = numpy.full(len(at), -1), numpy.full(len(at), numpy.inf)
@@ -56,7 +57,7 @@ def component_of_cells(volume, number, affine, centers, labels):
 
 
 def pieces_of_components(volume, number, num_components, affine, mesh):
-    """In how many pieces each component of the image is in the mesh; 0: it is lost."""
+    """Returns the number of pieces of each component of the image in the mesh; 0 if it is lost."""
     of_image = component_of_cells(volume, number, affine, circumcenters(mesh.points, mesh.cells), mesh.labels)
     pairs = numpy.unique(numpy.stack([of_image, mesh_components(mesh.cells, mesh.labels)], 1), axis=0)
     return numpy.bincount(pairs[pairs[:, 0] >= 0, 0], minlength=num_components)

@@ -1,4 +1,4 @@
-"""Label values of an image file, by voxel [x, y, z]. Where they lie is told by podm info."""
+"""Reads the label values of an image file, by voxel [x, y, z]. podm info gives their positions."""
 import gzip
 import math
 
@@ -10,7 +10,7 @@ _NRRD = {"uint8": "u1", "unsigned char": "u1", "uchar": "u1", "short": "<i2", "i
 
 
 def read_volume(path):
-    """Raises ValueError for formats and byte orders that it does not know."""
+    """Raises ValueError for unknown formats and byte orders."""
     with (gzip.open if str(path).endswith(".gz") else open)(path, "rb") as file:
         data = file.read()
     for ending, read in ((".nii", _nifti), (".nrrd", _nrrd), (".inr", _inr)):

@@ -1,1 +1,1 @@
-"""One HTML page of claims, tables, figures, environment and a mesh, which needs nothing but a browser."""
+"""Makes an HTML page of claims, tables, figures, environment and a mesh, which needs only a browser."""

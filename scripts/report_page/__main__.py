@@ -1,5 +1,5 @@
-"""Makes one HTML page from records: does it work, how fast, how does it scale, what of the paper holds; then all that
-these answers rest on: verdicts, tables, figures, a mesh to turn and cut, the environment.
+"""Makes one HTML page from records. It answers four questions: does it work, how fast is it, how does it scale, which
+claims of the paper hold. The details follow: verdicts, tables, figures, a mesh to turn and cut, the environment.
 
 It needs no network. Exit codes: 0 made, 2 bad usage or input.
 """

@@ -1,4 +1,4 @@
-"""What the page says first: four questions, each answered in a sentence and a picture."""
+"""The top of the page: four questions, each answered by a sentence and a picture."""
 from html import escape
 
 from figures import experiment_verdicts, guarantees, peers, scaling, simulated_sizes, style
@@ -8,7 +8,7 @@ from figures.paper_claims import NAME
 from .html import Bar, bars, findings, fold, remarks_html
 from .paper_table import paper_table, said
 
-MOST_COUNTS = 4  # numbers of cores in the picture of scaling
+MOST_COUNTS = 4  # greatest number of core counts in the picture of scaling
 FAULTS = {"unmet": "missed a guarantee", "failed": "failed", "timed_out": "timed out", "interrupted": "interrupted"}
 NAMES = {**style.NAMES, "cgal": "CGAL, parallel", "cgal_sequential": "CGAL", "cgal_unsorted": "CGAL, unsorted queue",
          "cgal6": "CGAL 6, parallel", "cgal6_unsorted": "CGAL 6, unsorted queue", "gmsh": "Gmsh's HXT",
@@ -35,12 +35,12 @@ def _aside(text):
 
 
 def works(frame, outcome):
-    """Our meshes alone are counted; other meshers have a table of their own."""
+    """Counts only podm's meshes; other meshers have their own table."""
     if "guarantees" not in outcome.tables:
         return _answer("Not known: no mesh of ours was verified.")
     table = outcome.tables["guarantees"][0]
     lines = table.to_dict("records")
-    asked = [line["pass"] + line["fail"] + line["not_run"] for line in lines]  # fidelity is asked of few
+    asked = [line["pass"] + line["fail"] + line["not_run"] for line in lines]  # fidelity is asked for few meshes
     meshes = max(asked)
     proved, refuted = int(table["pass"].sum()), int(table["fail"].sum())
     faults = _faults(frame)
@@ -60,14 +60,14 @@ def works(frame, outcome):
 
 
 def _faults(frame):
-    """"3 timed out, 1 failed" among our trials; empty without any."""
+    """Returns "3 timed out, 1 failed" for podm's trials; empty without faults."""
     ours = frame[frame["mesher"] == "podm"] if len(frame) else frame
     counts = ours["status"].value_counts() if "status" in ours else {}
     return ", ".join(f"{counts[status]} {words}" for status, words in FAULTS.items() if status in counts)
 
 
 def fast(outcome):
-    """Beside other meshers where an experiment ran them, by the largest of its meshes; else alone."""
+    """Compares with other meshers on their largest mesh, if an experiment ran them; otherwise shows podm alone."""
     on_all = _rates_of_ours(outcome)
     if "peers" not in outcome.tables:
         if not on_all:
@@ -117,7 +117,7 @@ def _runs(rows):
 
 
 def _rates_of_ours(outcome):
-    """(what, cells per second, colour) of PODM on one core and on the most, by refining and by equation 1."""
+    """Returns (name, cells per second, colour) of PODM on one core and on the most, by refining and by equation 1."""
     one = scaling.first_of(outcome.series, "measured")
     if one is None:
         return []
@@ -133,7 +133,7 @@ def _own_rates(rates):
 
 
 def scales(outcome):
-    """Measured rows; of simulated ones what a reader has to know before any number of them."""
+    """Shows measured rows. For simulated rows it only gives the note that a reader needs before their numbers."""
     simulated = _aside(simulated_sizes.depends_on_size(outcome.series))
     shown = scaling.shown_of(outcome.series, ["measured"])
     counts = [count for count in scaling.core_counts([one.table for one in shown]) if count > 1]
@@ -148,7 +148,7 @@ def scales(outcome):
 
 
 def _some(counts):
-    """Takes at most MOST_COUNTS of them, the most cores among these."""
+    """Returns at most MOST_COUNTS of them, including the most cores."""
     step = -(-len(counts) // MOST_COUNTS)
     return counts[::-1][::step][::-1]
 
@@ -180,7 +180,7 @@ def _scaling_said(series, count):
 
 
 def holds(outcome):
-    """The table of the paper's claims, then those of our own experiments."""
+    """Shows the table of the paper's claims, then the claims of the project's experiments."""
     if outcome.experiments is None:
         return _answer("Not judged.") + _aside(experiment_verdicts.HOW)
     if NAME in outcome.missing:
@@ -189,7 +189,7 @@ def holds(outcome):
 
 
 def _experiments(outcome):
-    """Verdicts of podm-bench: what does not hold is told as plainly as what does."""
+    """Shows podm-bench's verdicts: claims that do not hold are as visible as those that hold."""
     lines = experiment_verdicts.table(outcome.experiments).to_dict("records")
     parts = {word: [(word, f"{line['experiment']}: {line['statement']} ({line['basis']})", line["reason"])
                     for line in lines if line["verdict"] == word] for word in experiment_verdicts.WORDS}

@@ -1,4 +1,4 @@
-"""How good the cells of each label are: a histogram a label and measure."""
+"""Quality of the cells of each label: a histogram per label and measure."""
 import numpy
 from figures import style
 from views.colours import colours_of_labels
@@ -10,13 +10,13 @@ ALL_CELLS = "all cells"
 
 
 def quality_of(mesh):
-    """Numbers of the cells, by measure."""
+    """Returns the values of the cells, by measure."""
     return {name: measured(mesh, name) for name in MEASURES}
 
 
 def histograms(mesh, quality):
-    """A row for all cells and one for each label, that of the greatest volume first; a column a measure. Heights are
-    shares of the row's cells, the highest of a row as high as any other's."""
+    """Draws a row for all cells and one for each label, the greatest volume first, with a column per measure. Heights
+    are shares of the row's cells; the highest bars of all rows have the same height."""
     ranked, colours = mesh.labels_by_volume(), colours_of_labels(mesh)
     rows = [(ALL_CELLS, style.INK, numpy.ones(len(mesh.labels), bool))]
     rows += [(mesh.name_of(value), colours[value], mesh.labels == value) for value in ranked[:MOST_LABELS]]

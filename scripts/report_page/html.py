@@ -1,4 +1,4 @@
-"""A page and its pieces: tables, bars, folds. Every text is escaped here."""
+"""HTML of a page and its parts: tables, bars, folds. All texts are escaped here."""
 from dataclasses import dataclass
 from html import escape
 from pathlib import Path
@@ -12,7 +12,7 @@ STYLE = Path(__file__).with_name("page.css")
 
 
 def document(title, header, main, script):
-    """The whole page. Everything is inlined: it needs nothing but a browser."""
+    """Returns the whole page. Everything is inlined: the page needs only a browser."""
     return f"""<!doctype html>
 <html lang="en">
 <head>
@@ -36,7 +36,7 @@ def document(title, header, main, script):
 
 
 def remarks_html(remarks):
-    """Sentences that a reader has to see before the numbers."""
+    """Returns sentences that must be shown before the numbers."""
     return "".join(f'<p class="remark">{escape(remark)}</p>\n' for remark in remarks)
 
 
@@ -47,7 +47,7 @@ def section(name, title, content):
 
 @dataclass(frozen=True)
 class Bar:
-    """`value` of what the longest bar shows; `text` says it in words; `kind` is the class that colours it."""
+    """`value`: compared with the longest bar. `text`: the value in words. `kind`: the class that colours the bar."""
 
     name: str
     value: float
@@ -57,8 +57,8 @@ class Bar:
 
 
 def bars(title, lines, full=None, mark=None):
-    """A picture of numbers that is read aloud as a list. `full`: the value that fills the width; `mark`: one to draw a
-    line at."""
+    """Draws numbers as bars; screen readers read them as a list. `full`: the value that fills the width. `mark`: a
+    value at which a line is drawn."""
     full = full or max((line.value for line in lines), default=1) or 1
     line_at = f'<b style="left:{_share(mark, full)}"></b>' if mark else ""
     items = "".join(
@@ -74,7 +74,7 @@ def _share(value, full):
 
 
 def box(title, content):
-    """A box that scrolls sideways where the page is narrower than its content."""
+    """Returns a box that scrolls sideways if the page is narrower than its content."""
     return f'<div class="wide" tabindex="0" role="region" aria-label="{escape(title, quote=True)}">{content}</div>'
 
 
@@ -83,7 +83,7 @@ def fold(summary, content, is_open=False):
 
 
 def responsive(svg, title):
-    """The size comes from the page, the shape from the view box."""
+    """Removes the size, which the page sets; the view box keeps the shape."""
     head, rest = svg.split(">", 1)
     kept = [part for part in head.replace("\n", " ").split(" ") if not part.startswith(("width=", "height="))]
     return f'{" ".join(kept)} role="img" aria-label="{escape(title, quote=True)}">{rest}'
@@ -94,14 +94,14 @@ def verdict_span(verdict):
 
 
 def findings(lines):
-    """A list of (verdict, statement, reason)."""
+    """Returns an HTML list of `lines`: (verdict, statement, reason)."""
     items = "".join(f'<li>{verdict_span(verdict)}: {escape(statement)}<small>{escape(reason)}</small></li>'
                     for verdict, statement, reason in lines)
     return f'<ul class="findings">{items}</ul>' if lines else ""
 
 
 def table_html(table, title, row_classes=None):
-    """A table in a box; a column `verdict` is marked, the first column heads its row."""
+    """Returns a table in a box. A column `verdict` is marked, the first column heads its row."""
     head = "".join(f'<th scope="col">{escape(str(name))}</th>' for name in table.columns)
     lines = []
     for position, row in enumerate(table.itertuples(index=False)):

@@ -1,5 +1,5 @@
-"""The page about one run of `podm mesh` and its mesh: does it hold what was promised, how good are its cells, what was
-asked. From the mesh's file, the run's record and, with --verify, the report of podm-verify."""
+"""Makes the page about one run of `podm mesh` and its mesh: are the guarantees met, how good are the cells, what were
+the settings. Uses the mesh's file, the run's record and, with --verify, the report of podm-verify."""
 import json
 import sys
 from html import escape
@@ -18,7 +18,7 @@ from .viewer import MAX_CELLS, pack, script, viewer_html
 
 SECTIONS = {"quality": "Quality by label", "mesh": "The mesh", "labels": "Labels", "claims": "Claims", "run": "The run"}
 BOUND_RATIO, BOUND_ANGLE_DEG = 1.93, 30
-# What the mesher counts itself, by the record's name of it.
+# Guarantees that the mesher itself checks, by their names in the record.
 GUARANTEES = {"radius_edge": f"cells have a radius-edge ratio below {BOUND_RATIO}",
               "facet_angle": f"boundary facets have angles above {BOUND_ANGLE_DEG} degrees",
               "radius": "cells have a circumradius within what was asked for",
@@ -28,8 +28,8 @@ GUARANTEES = {"radius_edge": f"cells have a radius-edge ratio below {BOUND_RATIO
 
 
 def page(request):
-    """`request`: mesh (the path of a VTK file), name (of the mesh's own file), record, verification (null or
-    podm-verify's report), unmet (sentences). Raises MeshError."""
+    """Returns the page. `request`: mesh (the path of a VTK file), name (of the mesh's own file), record, verification
+    (null or podm-verify's report), unmet (sentences). Raises MeshError."""
     record, verification = request["record"], request["verification"]
     mesh = read_mesh(request["mesh"])
     quality = quality_of(mesh)
@@ -73,7 +73,7 @@ def _holds(record, verification, unmet):
 
 
 def _findings(record, verification):
-    """(verdict, statement, reason) of podm-verify, or of the mesher."""
+    """Returns (verdict, statement, reason) from podm-verify, or from the mesher."""
     if verification is None:
         return [(verdict, f"all {statement}", f"misses: {misses}") for statement, misses, verdict in _counted(record)]
     return [(claim["verdict"], name.replace("_", " "), claim["reason"])
@@ -113,7 +113,7 @@ def _mesh(mesh, packed):
 
 
 def _labels(mesh, quality, record):
-    """A line a label, that of the greatest volume first."""
+    """Returns a table with a line per label, the greatest volume first."""
     volumes = {label["value"]: label["volume_mm3"] for label in record["labels"]}
     lines = []
     for value in mesh.labels_by_volume():
@@ -163,10 +163,10 @@ def _run(record):
 
 
 def main(arguments):
-    """The exit code: 0 the page is on standard output, 2 bad input."""
+    """Returns the exit code: 0 if the page is on standard output, 2 for bad input."""
     try:
         text = page(json.loads(Path(arguments[0]).read_text(encoding="utf-8")))
-        sys.stdout.buffer.write(text.encode())  # whatever the locale is: VTK's reader may have changed it
+        sys.stdout.buffer.write(text.encode())  # independent of the locale, which VTK's reader may have changed
     except (MeshError, OSError) as error:
         print(f"podm: {error}", file=sys.stderr)
         return 2

@@ -1,4 +1,4 @@
-"""The page's HTML from an Outcome: four answers first, then everything they rest on. Everything is inlined."""
+"""Makes the page's HTML from an Outcome: four answers, then the details. Everything is inlined."""
 from html import escape
 
 from figures import experiment_verdicts, peers, simulated_sizes
@@ -44,7 +44,8 @@ NOTES = {
 }
 INTERVALS = ("In brackets: an interval of order statistics, which holds the median with 75 % of three rounds, 93.75 % "
              "of five and 95 % or more from six on.")
-# In the order of the section: what depends on the cells a core, on the fit and on single constants, then the rest.
+# The tables by their order in the section: dependence on cells per core, on the fit and on single constants, then
+# others.
 MACHINE_TABLES = {"simulated_sizes": "Speed-ups by cells a core, fitted and not fitted",
                   "fitted_shares": "What the fitted constants decide: shares of worker time on several blades",
                   "ablation": "Findings with each constant switched off and doubled",
@@ -58,7 +59,7 @@ MACHINE_FIGURES = ("deviation", "lost")
 
 
 def page(records, outcome, mesh=None, mesh_fault="No mesh was given."):
-    """`mesh`: of viewer.pack; without one, `mesh_fault` says why."""
+    """Returns the page. `mesh`: from viewer.pack; without it `mesh_fault` gives the reason."""
     parts = {"claims": _claims(outcome), "guarantees": _guarantees(outcome), "tables": _tables(outcome),
              "figures": _figures(outcome, [name for name in FIGURE_TITLES if name not in MACHINE_FIGURES]),
              "simulated": _machine(outcome), "mesh": viewer_html(mesh, mesh_fault),
@@ -97,7 +98,7 @@ def _experiments(outcome):
 
 
 def _split(table, title, undecided, is_open=True):
-    """What is judged, then what is not, folded: claims that were withdrawn among it."""
+    """Shows decided claims, then a fold with undecided and withdrawn claims."""
     is_decided = ~table["verdict"].isin([undecided, experiment_verdicts.WITHDRAWN])
     made = []
     for part, words, shown in ((table[is_decided], "decided", is_open),
@@ -108,7 +109,7 @@ def _split(table, title, undecided, is_open=True):
 
 
 def _guarantees(outcome):
-    """How many meshes each claim of podm-verify was decided for."""
+    """Shows the number of meshes for which podm-verify decided each claim."""
     made = ["<p>Claims about meshes, decided exactly by <code>podm-verify</code> after the clock stopped: numbers of "
             "meshes.</p>"]
     for name, title in (("guarantees", "Our meshes"), ("guarantees_of_others", "Meshes of other meshers")):
@@ -150,7 +151,7 @@ def _figures(outcome, names):
 
 
 def _machine(outcome):
-    """The limits of the model come first, before any number of it."""
+    """Shows the limits of the model before any number."""
     notes = {"simulated_sizes": f'\n<p class="faint">{escape(simulated_sizes.NOTE)}</p>'}
     tables = [fold(title, table_html(outcome.tables[name][1], title) + notes.get(name, ""), name != "lost")
               for name, title in MACHINE_TABLES.items() if name in outcome.tables]
@@ -171,6 +172,6 @@ def _environment(records):
 
 
 def _distinct(column):
-    """Values that rows give; of many, how many and the first."""
+    """Returns the distinct values of the rows; if there are many, their number and the first value."""
     values = list(dict.fromkeys(str(value) for value in column if text_of(value)))
     return ", ".join(values) if len(values) <= 2 else f"{values[0]} ({len(values)} values)"

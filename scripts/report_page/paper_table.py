@@ -1,4 +1,4 @@
-"""The table of the paper's claims as HTML: a line a claim, on narrow pages a block."""
+"""Makes the table of the paper's claims in HTML: one line per claim, on narrow pages one block."""
 from html import escape
 
 from figures import paper_claims
@@ -10,7 +10,7 @@ ORDER = [AGREES, AGREES + IN_PART, CONTRADICTED + IN_PART, CONTRADICTED, NOT_RES
 
 
 def said(rows):
-    """How many lines have which verdict: measured, then simulated."""
+    """Returns the number of lines by verdict: measured, then simulated."""
     return "; ".join(f"{side}: {_counts(rows, side)}" for side in SIDES)
 
 
@@ -35,7 +35,7 @@ def _line(row):
 
 
 def _verdicts(row):
-    """Of each side that is judged, and where it is told in full."""
+    """Returns the verdict of each judged side, and the experiments with the details."""
     judged = [side for side in SIDES if row[side]["verdict"] != NOT_JUDGED]
     if not judged:
         return verdict_span(NOT_JUDGED)

@@ -1,4 +1,4 @@
-"""Flat cuts through a mesh, for one of too many cells to be turned in a page."""
+"""Flat cuts through a mesh that has too many cells to be turned in a page."""
 import base64
 import io
 
@@ -12,13 +12,13 @@ AXES = "xyz"
 
 
 def sections_html(mesh):
-    """Three pictures: cells cut by planes through the middle of the mesh."""
+    """Draws three pictures: cells cut by planes through the middle of the mesh."""
     figure, axes = style.new_figure(columns=3, width=12, height=4.4)
     colours = colours_of_labels(mesh)
     for one, across in zip(axes, (2, 1, 0)):
         _draw(one, mesh, across, colours)
     style.finish(figure, "")
-    figure.patch.set(alpha=1, facecolor="white")  # its ink is dark in a dark page, too
+    figure.patch.set(alpha=1, facecolor="white")  # the ink stays dark in a dark page
     made = io.BytesIO()
     figure.savefig(made, format="png", dpi=150)
     data = base64.b64encode(made.getvalue()).decode()

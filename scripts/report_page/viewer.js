@@ -1,6 +1,6 @@
-// Draws the cells of a mesh whose centres lie on the near side of a plane, each whole, facets coloured by label.
-// Every cell draws its four facets; those inside the object are behind the others. Nothing is stored per facet:
-// the vertex shader looks corners up in textures by its own number.
+// Draws the cells of a mesh whose centres are on the near side of a plane. Cells are drawn whole, coloured by label.
+// Every cell draws its four facets; outer facets hide the inner ones. Nothing is stored per facet: the vertex shader
+// looks up corners in textures by the vertex number.
 "use strict";
 
 const vertexShader = `#version 300 es
@@ -64,7 +64,7 @@ function compile(gl) {
   return program;
 }
 
-// A texture of 2048 texels a row that holds `count` texels of `channels` numbers.
+// Uploads a texture of 2048 texels per row that holds `count` texels of `channels` numbers.
 function upload(gl, unit, values, channels, count, [internal, format, type]) {
   const rows = Math.ceil(count / 2048), Kind = values.constructor;
   const padded = new Kind(2048 * rows * channels);
@@ -78,14 +78,14 @@ function upload(gl, unit, values, channels, count, [internal, format, type]) {
   gl.texParameteri(gl.TEXTURE_2D, gl.TEXTURE_MAG_FILTER, gl.NEAREST);
 }
 
-// The camera: looking along -z of its own axes; yaw about the object's z, then pitch.
+// The camera looks along -z of its own axes. It turns by yaw about the object's z, then by pitch.
 function turning(yaw, pitch) {
   const [c, s, d, t] = [Math.cos(yaw), Math.sin(yaw), Math.cos(pitch), Math.sin(pitch)];
   const rows = [[c, s, 0], [-s * t, c * t, d], [s * d, -c * d, t]];
   return [0, 1, 2].flatMap((column) => rows.map((row) => row[column]));
 }
 
-// Width and height on the screen of a turned box.
+// Returns the width and height on the screen of a turned box.
 function extent(size, turn) {
   return [0, 1].map((row) => size.reduce((sum, length, column) => sum + length * Math.abs(turn[3 * column + row]), 0));
 }
@@ -161,7 +161,7 @@ async function show(root, mesh) {
   axis.dispatchEvent(new Event("input"));
 }
 
-// Drag or arrow keys turn; wheel, two fingers, + and - zoom.
+// Dragging or arrow keys turn; wheel, two fingers, + and - zoom.
 function steer(canvas, move) {
   const fingers = new Map();
   const gap = () => { const [a, b] = [...fingers.values()]; return Math.hypot(a.x - b.x, a.y - b.y); };
@@ -193,7 +193,7 @@ function steer(canvas, move) {
   });
 }
 
-// A switch for each label, of most cells first.
+// Adds a switch for each label, the label with the most cells first.
 function list(place, labels, toggle) {
   for (const { value, name, colour, cells } of [...labels].sort((a, b) => b.cells - a.cells)) {
     const [line, box, patch] = ["label", "input", "i"].map((name) => document.createElement(name));

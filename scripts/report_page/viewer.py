@@ -1,4 +1,4 @@
-"""A mesh packed for viewer.js: zlib of points, cells and labels, in base64; and what stands around it in a page."""
+"""Packs a mesh for viewer.js: zlib of points, cells and labels, in base64. Also makes the HTML around it."""
 import base64
 import json
 import zlib
@@ -13,11 +13,11 @@ SCRIPT = Path(__file__).with_name("viewer.js")
 
 
 class TooManyCells(Exception):
-    """The text says how many a page can hold."""
+    """The mesh is too large; the text gives the greatest number of cells for a page."""
 
 
 def pack(mesh):
-    """What viewer.js reads. Points lose all but 16 bits a coordinate. Raises TooManyCells."""
+    """Returns the data for viewer.js. Points keep 16 bits per coordinate. Raises TooManyCells."""
     if len(mesh.cells) > MAX_CELLS:
         raise TooManyCells(f"{len(mesh.cells):,} cells are too many for a page; give it a mesh of at most "
                            f"{MAX_CELLS:,}, for example of `podm mesh --target-elements 100000`")
@@ -43,14 +43,14 @@ def _quantized(points):
 
 
 def _outward(mesh, cells):
-    """Cells of positive volume, so that their facets face outwards."""
+    """Orders the vertices so that volumes are positive and facets face outwards."""
     mirrored = mesh.volumes_mm3() < 0
     cells[mirrored] = cells[mirrored][:, [1, 0, 2, 3]]
     return cells
 
 
 def viewer_html(packed, fault):
-    """`packed`: of pack(), or None, where `fault` says why. Needs script() at the end of the page."""
+    """`packed`: from pack(), or None; `fault` then gives the reason. Needs script() at the end of the page."""
     if packed is None:
         return f'<p class="faint">{escape(fault)}</p>'
     data = json.dumps(packed).replace("<", "\\u003c")

@@ -1,4 +1,4 @@
-"""A headless Chromium, spoken to over the DevTools protocol on a pipe: no driver, no network, no other package."""
+"""A headless Chromium, controlled by the DevTools protocol on a pipe: no driver, no network, no other package."""
 import base64
 import json
 import os
@@ -13,12 +13,12 @@ FLAGS = ["--headless=new", "--no-sandbox", "--remote-debugging-pipe", "--disable
 
 
 def find_chromium():
-    """The browser's path, or None."""
+    """Returns the browser's path, or None."""
     return shutil.which("chromium") or shutil.which("chromium-browser") or shutil.which("google-chrome")
 
 
 class Browser:
-    """One tab. `errors` holds what the console complained about since the last `open`."""
+    """One tab. `errors` holds the console's errors and warnings since the last `open`."""
 
     def __init__(self):
         self.errors = []
@@ -50,7 +50,7 @@ class Browser:
         self._profile.cleanup()
 
     def open(self, path, width, height=900, scheme="light"):
-        """Loads a file as on a screen of that width, and waits until it is drawn."""
+        """Loads a file on a screen of that width, and waits until it is drawn."""
         self.errors.clear()
         self._send("Emulation.setDeviceMetricsOverride", width=width, height=height, deviceScaleFactor=1,
                    mobile=width < 600)
@@ -67,7 +67,7 @@ class Browser:
         return answer["result"].get("value")
 
     def screenshot(self, selector="html"):
-        """PNG of the first element that matches; by default of the whole page."""
+        """Returns a PNG of the first element that matches; by default of the whole page."""
         box = self.evaluate(f"""(() => {{
             const box = document.querySelector('{selector}').getBoundingClientRect();
             return [box.x + scrollX, box.y + scrollY, box.width, box.height]; }})()""")

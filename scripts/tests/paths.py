@@ -1,4 +1,4 @@
-"""Makes the packages beside this folder importable, and says where the tree is."""
+"""Makes the packages beside this folder importable, and gives the paths of the tree."""
 import sys
 from pathlib import Path
 

@@ -1,4 +1,4 @@
-"""Rows, schedules and meshes made up for tests. Never results."""
+"""Synthetic rows, schedules and meshes for tests; never results."""
 import copy
 import itertools
 import random
@@ -19,7 +19,7 @@ BIG_MACHINE = ROW["environment"] | {"usable_processors": 256}
 
 
 def row(algorithm="podm", cores=1, **changes):
-    """The seconds of a run in virtual time are virtual; those of the machine at hand mean nothing then."""
+    """Makes a row. A run in virtual time has virtual seconds; the present machine's seconds then have no meaning."""
     made = copy.deepcopy(ROW)
     made.update(algorithm=algorithm, threads={"asked": cores, "used": cores}, cells=3_000_000 * cores,
                 trial=f"made-up,algorithm={algorithm},threads={cores},seed={next(SEEDS)}")
@@ -37,7 +37,7 @@ def row(algorithm="podm", cores=1, **changes):
 
 
 def like_the_paper(published, repeats=5, spread=0.02, **changes):
-    """Rows with the seconds of a table of `figures.paper.table1`, times a random factor, of a machine of 256 cores."""
+    """Yields rows with the seconds of `figures.paper.table1`, times a random factor, for a machine of 256 cores."""
     changes.setdefault("environment", BIG_MACHINE)
     noise = random.Random(1)
     for (algorithm, cores), line in published.iterrows():
@@ -51,7 +51,7 @@ def like_the_paper(published, repeats=5, spread=0.02, **changes):
 
 
 def with_hops(rows, shares):
-    """Counts by hops for each row of PDR.PODM: `shares` of each number of cores, 16 cores a node."""
+    """Adds counts by hops to each row of PDR.PODM: `shares` of each number of cores, 16 cores per node."""
     for one in rows:
         cores = one["threads"]["used"]
         if one["algorithm"] == "pdr-podm" and cores in shares:
@@ -62,8 +62,8 @@ def with_hops(rows, shares):
 
 def simulated_size(cells_per_core, speedup_of, counts=(1, 32, 256), zero_hops=None, algorithms=("podm", "pdr-podm"),
                    **changes):
-    """Rows of one size of a simulated weak scaling: 0.1 M cells/s on one core, beyond it the speed-ups that
-    `speedup_of` tells of (algorithm, cores)."""
+    """Yields rows of one size of a simulated weak scaling: 0.1 M cells/s on one core; beyond one core the speed-ups are
+    those of `speedup_of` (algorithm, cores)."""
     name = f"{cells_per_core // 1000}k"
     for algorithm, cores in itertools.product(algorithms, counts):
         speedup = 1 if cores == 1 else speedup_of(algorithm, cores)
@@ -77,7 +77,7 @@ def simulated_size(cells_per_core, speedup_of, counts=(1, 32, 256), zero_hops=No
 
 
 def with_losses(rows, **shares):
-    """Worker seconds by cause for each row in virtual time: these shares of all its cores' seconds."""
+    """Adds worker seconds by cause to each row in virtual time: these shares of all its cores' seconds."""
     for one in rows:
         whole = sum(one["virtual"]["phases_s"].values()) * one["threads"]["used"]
         one["virtual"]["worker_s"] = {cause: share * whole for cause, share in shares.items()}
@@ -85,14 +85,14 @@ def with_losses(rows, **shares):
 
 
 def with_levels(cycles):
-    """A row that measured memory levels: caches, the own node's memory, another node's."""
+    """Returns a row that measured memory levels: caches, the own node's memory, another node's."""
     modules = ["L1 cache", "L2 cache", "L3 cache", "memory of the own node 0", "memory of another node 1"]
     return row(memory_levels=[{"level": level, "module": module, "size_bytes": 2**20, "cycles": cost}
                               for level, (module, cost) in enumerate(zip(modules, cycles), start=1)])
 
 
 def peer(name, cells=1_000_000, **changes):
-    """A row of another mesher, which begins with a surface, promises one claim and misses another."""
+    """Returns a row of another mesher, which begins with a surface, promises one claim and misses another."""
     changes = {"phases_s": {"surface": 4.0, "refine": 10.0, "write": 3.0}, **changes}
     made = row(name, cells=cells, promises=["structure"], verdicts={**PASSED, "delaunay": "fail"}, **changes)
     made["programs"]["peer"] = {"name": name, "version": "made up"}
@@ -100,7 +100,7 @@ def peer(name, cells=1_000_000, **changes):
 
 
 def solved(iterations, image="made-up", optimize=None, min_dihedral=None, mesher=None, angles=(5, 170), **changes):
-    """A row whose mesh was handed to a solver; all dihedral angles are `angles`, as many of each."""
+    """Returns a row whose mesh was given to a solver. Its dihedral angles are `angles`, in equal numbers."""
     made = peer(mesher) if mesher else row()
     name = mesher or f"{'both' if optimize else 'r7' if min_dihedral else 'none'}"
     one = {"iterations": iterations, "smallest_eigenvalue": 0.1, "largest_eigenvalue": 2.5, "seconds": 1.0}
@@ -117,7 +117,7 @@ def solved(iterations, image="made-up", optimize=None, min_dihedral=None, mesher
 
 
 def experiment_verdicts(**verdicts):
-    """What podm-bench writes: a claim by name and verdict, all of one experiment."""
+    """Returns verdicts as podm-bench writes them: claims by name and verdict, all of one experiment."""
     interval = {"low": 1.25, "high": 1.75, "coverage": 0.75, "rounds": 3}
     claims = [{"name": name, "statement": f"{name} is so", "basis": "measured", "verdict": verdict,
                "reason": f"because of <{name}>", "value": 1.5, "interval": interval, "rounds_needed": None,
@@ -131,8 +131,8 @@ def experiment_verdicts(**verdicts):
 
 
 def paper_verdicts(lines, verdict="holds", **of_claims):
-    """What podm-bench writes of the claims that judge lines of results/paper/claims.toml; `of_claims`: other verdicts
-    by name."""
+    """Returns podm-bench's verdicts on the claims that judge lines of results/paper/claims.toml. `of_claims`: other
+    verdicts by name."""
     claims = {}
     for side in ("measured", "simulated"):
         for line in lines:
@@ -147,7 +147,7 @@ def paper_verdicts(lines, verdict="holds", **of_claims):
 
 
 def schedule(side=9):
-    """A flat grid of leaves, two of which are active at one time, with rings that do not meet."""
+    """Returns a flat grid of leaves, two of which are active at the same time, with disjoint rings."""
     leaves = [[i, j, 0, 1] for j in range(side) for i in range(side)]
     head = {"schema": "podm-schedule/1", "algorithm": "pdr-podm", "leaves": leaves,
             "mesh_to_grid": [0.1, 0, 0, 0, 0, 0.1, 0, 0, 0, 0, 0.1, 0]}
@@ -157,7 +157,7 @@ def schedule(side=9):
 
 
 def report():
-    """What podm-verify writes, as far as figure 1 reads it."""
+    """Returns a report of podm-verify with the parts that figure 1 reads."""
     def histogram(name, low, high, minimum, maximum):
         return {"name": name, "unit": "", "low": low, "high": high, "minimum": minimum, "maximum": maximum,
                 "counts": [0, 3, 9, 20, 11, 5, 1, 0]}
@@ -169,14 +169,14 @@ def report():
 
 
 def box_mesh(side=4):
-    """A cube of side^3 unit cubes of six tetrahedra each: points, cells and labels, two of these."""
+    """Returns a cube of side^3 unit cubes of six tetrahedra each: points, cells and labels; there are two labels."""
     import numpy
 
     steps = numpy.stack(numpy.meshgrid(*[range(side + 1)] * 3, indexing="ij"), axis=-1).reshape(-1, 3)
     number = {tuple(point): index for index, point in enumerate(steps)}
     cells, labels = [], []
     for corner in numpy.ndindex(side, side, side):
-        for order in itertools.permutations(range(3)):  # Kuhn: a path along the axes for each order of them
+        for order in itertools.permutations(range(3)):  # Kuhn: one path along the axes per order of the axes
             path = [numpy.array(corner)]
             for axis in order:
                 path.append(path[-1] + numpy.eye(3, dtype=int)[axis])
@@ -186,7 +186,7 @@ def box_mesh(side=4):
 
 
 def write_vtu(path, points, cells, labels):
-    """An ASCII .vtu file, such as no mesher of ours writes."""
+    """Writes an ASCII .vtu file, a form that podm does not write."""
     def array(name, kind, values, extra=""):
         return f'<DataArray type="{kind}" Name="{name}" format="ascii"{extra}>{" ".join(map(str, values))}</DataArray>'
 

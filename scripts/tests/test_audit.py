@@ -1,4 +1,4 @@
-"""A figure, a table or a number of the documentation that its rows do not give fails the audit; a clean page passes."""
+"""Tests that the audit passes a clean page and fails if a figure, table or number does not follow from its rows."""
 import json
 import shutil
 import subprocess
@@ -251,7 +251,7 @@ class Freshness(Tree):
 
 
 class ThisTree(unittest.TestCase):
-    """The documentation as it is: every figure on it, once changed, is found."""
+    """Tests the present documentation: the audit finds every figure that is changed."""
 
     def test_each_figure_with_its_first_digit_changed_is_found(self):
         root = paths.SCRIPTS.parent

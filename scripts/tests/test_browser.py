@@ -1,4 +1,4 @@
-"""The page of scripts/report as a browser shows it."""
+"""Tests the page of scripts/report in a browser."""
 import io
 import sys
 import tempfile
@@ -34,7 +34,8 @@ class InBrowser(unittest.TestCase):
                 self.assertGreater(self.colours_on_canvas(), 10)
 
     def check_answers(self):
-        """All four are seen, none wider than its card or the page, its bars as long as their numbers say."""
+        """Checks that all four answers are visible, none wider than its card or the page, with bars as long as their
+        numbers."""
         overflowing = self.browser.evaluate("""[...document.querySelectorAll('.answer, .answer *')].filter(one =>
             one.checkVisibility() && one.getBoundingClientRect().right > one.closest('.answer')
             .getBoundingClientRect().right + 0.5).map(one => one.outerHTML)""")
@@ -53,14 +54,14 @@ class InBrowser(unittest.TestCase):
         self.assertNotEqual(whole, cut)
         for box in range(2):
             self.browser.evaluate(f"document.querySelectorAll('[data-labels] input')[{box}].click()")
-        self.assertLess(self.colours_on_canvas(), 10)  # no label, no cell
+        self.assertLess(self.colours_on_canvas(), 10)  # no label, no cells
 
     def set(self, selector, name, value):
         self.browser.evaluate(f"""(() => {{ const one = document.querySelector('{selector}'); one.{name} = {value};
             one.dispatchEvent(new Event('input')); return new Promise(done => setTimeout(done, 500)); }})()""")
 
     def colours_on_canvas(self):
-        """Colours inside its border."""
+        """Returns the number of colours inside the canvas's border."""
         self.browser.evaluate("new Promise(done => setTimeout(done, 500))")
         picture = matplotlib.image.imread(io.BytesIO(self.browser.screenshot("canvas")))
         return len(numpy.unique(picture[20:-20, 20:-20].reshape(-1, picture.shape[2]), axis=0))

@@ -1,4 +1,4 @@
-"""Hashes of a fixed set of meshes, by a program that is made up."""
+"""Tests the hashes of a fixed set of meshes, with a synthetic program."""
 import json
 import tempfile
 import unittest

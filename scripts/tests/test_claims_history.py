@@ -1,4 +1,4 @@
-"""scripts/claims_history on repositories made up for it: what is lost, loosened or renamed is told, or refused."""
+"""Tests scripts/claims_history on synthetic repositories: lost, loosened or renamed claims are reported or refused."""
 import subprocess
 import tempfile
 import unittest
@@ -34,7 +34,7 @@ def withdrawn(name="fast", reason="It was refuted.", more=""):
 
 
 class Repository(unittest.TestCase):
-    """A repository of its own for each test."""
+    """A separate repository for each test."""
 
     def setUp(self):
         folder = tempfile.TemporaryDirectory()
@@ -52,7 +52,7 @@ class Repository(unittest.TestCase):
         (self.root / "experiments" / f"{experiment}.toml").write_text("".join(claims))
 
     def commit(self, *claims, experiment="a"):
-        """Returns the commit's name as the page has it."""
+        """Returns the commit's name as the page shows it."""
         self.write(*claims, experiment=experiment)
         self.git("add", "experiments")
         self.git("commit", "--quiet", "--allow-empty", "-m", "change")
@@ -68,7 +68,7 @@ class Repository(unittest.TestCase):
         return (self.root / "experiments" / "claims-history.md").read_text()
 
     def check_fails(self, *words):
-        """With a page that is up to date, so that it is the claims that are at fault."""
+        """Uses an up-to-date page, so that the fault can only be in the claims."""
         self.page()
         done = self.call("--check")
         self.assertEqual(done.returncode, 1, done.stdout)

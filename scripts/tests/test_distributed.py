@@ -1,4 +1,4 @@
-"""Ranks that share no memory: tables, the extrapolation and the figure, from made-up rows."""
+"""Tests ranks that share no memory: tables, the extrapolation and the figure, from synthetic rows."""
 import math
 import unittest
 
@@ -13,13 +13,13 @@ SIZES = (100_000, 300_000, 1_000_000)
 
 
 def spent(**seconds):
-    """Phases of a rank: computing seconds, or (computing, waiting, network)."""
+    """Returns the phases of a rank: computing seconds, or (computing, waiting, network)."""
     every = {phase: one if isinstance(one, tuple) else (one, 0.0, 0.0) for phase, one in seconds.items()}
     return {phase: dict(zip(("computing_s", "waiting_s", "network_s"), one)) for phase, one in every.items()}
 
 
 def row(ranks, per_rank=100_000, by_rank=None, basis="simulated", cells=None, **changes):
-    """Of ranks that all spend the same, a microsecond a cell of refining, unless told."""
+    """Returns a row of ranks. By default all ranks spend the same, one microsecond of refining per cell."""
     cells = cells or per_rank * ranks
     even = spent(transform=0.0, refine=1e-6 * per_rank, extract=0.0, measure=5.0)
     told = {"number": ranks, "imbalance": 1.1, "rounds": [{"deferred": cells // 50}, {"deferred": 0}][:ranks],
@@ -31,7 +31,8 @@ def row(ranks, per_rank=100_000, by_rank=None, basis="simulated", cells=None, **
 
 
 def modelled(ranks, per_rank, volume=1.0, surface=20.0, once=0.0):
-    """Of ranks whose refining costs microseconds a cell by volume, later rounds by surface, the transform once."""
+    """Returns a row of ranks whose refining costs microseconds per cell by volume, later rounds by surface, the
+    transform once."""
     x = per_rank ** (-1 / 3)
     phases = {"transform": once, "refine": 1e-6 * per_rank * volume, "extract": 0.0}
     if ranks > 1:

@@ -1,4 +1,4 @@
-"""Tables, figures and verdicts from made-up rows."""
+"""Tests tables, figures and verdicts from synthetic rows."""
 import math
 import unittest
 
@@ -70,7 +70,7 @@ class Scaling(unittest.TestCase):
         self.assertEqual([series.cells_per_core for series in scaling.weak_series(frame_of(rows))], [3e6, 1e6, 3e5])
 
     def test_refining_alone_is_a_median_of_ratios_within_rounds(self):
-        """The machine's speed drifts from round to round; each has its own. The cores share the transform."""
+        """The machine's speed drifts between rounds; each round has its own speed. The cores share the transform."""
         rows = [synthetic.row(cores=cores, repeat=repeat, cells=3_000_000 * cores,
                               phases_s={"read": 1.0, "transform": 5.0 / cores, "calibrate": 99.0,
                                         "refine": speed * 10.0 / efficiency})
@@ -225,7 +225,7 @@ class Others(unittest.TestCase):
         self.assertEqual((table.loc["podm", "promised"], table.loc["podm", "kept"]), (6, 6))
 
     def test_ratios_are_within_rounds(self):
-        slow = [1.0, 3.0, 1.0, 1.0, 10.0, 1.0]  # how much slower the machine is in each round
+        slow = [1.0, 3.0, 1.0, 1.0, 10.0, 1.0]  # slowdown of the machine in each round
         ours = [synthetic.row(repeat=number, phases_s={"read": 9.0, "refine": 2.0 * factor})
                 for number, factor in enumerate(slow)]
         theirs = [synthetic.peer("cgal", repeat=number, cells=3_000_000,
@@ -320,7 +320,7 @@ class Cache(unittest.TestCase):
                                                    "page_faults": {"value": 7, "source": "perf_event"}}}, **changes)
 
     def test_only_what_a_further_insertion_costs_counts(self):
-        # 1000 misses of the image, 20 an insertion.
+        # 1000 misses for the image, 20 per insertion.
         table = cache.cache(frame_of([self.counted(number, 1000 + 20 * number, "perf_event")
                                       for number in (500, 200, 900)]))
         self.assertEqual(list(table["per_insertion"]), [20, 20])

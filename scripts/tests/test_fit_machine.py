@@ -1,4 +1,4 @@
-"""scripts/fit_machine: which rows it takes, what it says of those it lacks, and what it writes."""
+"""Tests scripts/fit_machine: the rows that it uses, its messages on missing rows, and its output."""
 import json
 import math
 import tempfile
@@ -17,7 +17,7 @@ MACHINE = ("name = 'Made-up'\n[processor]\nclock_ghz = 2.0\ncore_speed = 0.2\n[m
 
 
 def row_of(one, hops=(60, 30, 10)):
-    """What virtual workers tell that find a share of what they read two links away."""
+    """Adds the values of virtual workers that find a share of their reads two links away."""
     cores, cells = one["threads"]["used"], one["cells"]
     whole = cells * 1e-5
     one["virtual"].update(worker_s={"compute": whole, "memory_remote": 0.1 * whole, "network_queue": 0.0},

@@ -1,4 +1,4 @@
-"""Which rows are read, which give a number, and what is said of the others."""
+"""Tests which rows are read, which give a number, and the reasons given for the others."""
 import json
 import tempfile
 import unittest
@@ -23,7 +23,7 @@ class Load(unittest.TestCase):
         self.load(synthetic.row(), synthetic.row(cores=2))
         records = load([self.file.parent])
         self.assertEqual(list(records.frame["cores"]), [1, 2])
-        self.assertAlmostEqual(records.frame["seconds"][0], 27.18)  # all phases but write, calibrate and draw
+        self.assertAlmostEqual(records.frame["seconds"][0], 27.18)  # all except write, calibrate, draw
         self.assertEqual(records.frame["environment.kernel"][0], "Linux")
         self.assertEqual(records.problems, [])
 

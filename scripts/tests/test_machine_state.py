@@ -1,4 +1,4 @@
-"""Which machine rows are of, and what is said of one that was busy or changed its speed."""
+"""Tests the machine of rows, and the remarks on a machine that was busy or changed its speed."""
 import copy
 import unittest
 

@@ -1,4 +1,4 @@
-"""Manual pages and shell completions of the built programs say what their --help says, and shells can use them."""
+"""Tests that manual pages and shell completions of the built programs match --help, and that shells can use them."""
 import os
 import re
 import subprocess
@@ -13,7 +13,7 @@ BUILD = Path(os.environ["PODM_BUILD"])
 PROGRAMS = [path for path in (BUILD / "bin" / name for name in ("podm", "podm-mpi", "podm-verify", "podm-bench"))
             if path.exists()]
 
-# Calls the function that the shell calls, for the words given, the last one as far as it is typed.
+# Calls the shell's completion function with the given words; the last word may be incomplete.
 COMPLETED_BY = {
     "bash": ["bash", "-c", 'source "$1"; shift; function=$1; shift; COMP_WORDS=("$@"); COMP_CWORD=$(($# - 1)); '
                            '$function; printf "%s\\n" "${COMPREPLY[@]}"', "bash"],
@@ -29,7 +29,7 @@ def printed_by(*command):
 
 
 def helps_of(program):
-    """Of the program and each of its commands, the words that call it and what --help prints."""
+    """Returns for the program and each of its commands the words that call it and the output of --help."""
     told = printed_by(program, "--help")
     commands = re.findall(r"^  (\w+)  ", told.partition("Subcommands:")[2], re.MULTILINE)
     return [([], told), *(([command], printed_by(program, command, "--help")) for command in commands)]
@@ -40,7 +40,7 @@ def options_in(told):
 
 
 def plain(page):
-    """The text of a page, without the escapes of groff."""
+    """Returns the text of a page without groff's escapes."""
     return re.sub(r"\\f.|\\&", "", page).replace(r"\-", "-")
 
 

@@ -1,4 +1,4 @@
-"""Cuts, leaf grids and schedules, and the mesh that a page holds."""
+"""Tests cuts, leaf grids and schedules, and the mesh in a page."""
 import base64
 import json
 import tempfile

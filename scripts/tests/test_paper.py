@@ -1,4 +1,4 @@
-"""The published values against each other, as results/paper/errata.md tells."""
+"""Tests the consistency of the published values, as described in results/paper/errata.md."""
 import unittest
 
 import paths  # noqa: F401

@@ -1,4 +1,5 @@
-"""The table of the paper's claims: verdicts are made of others' alone, figures of rows alone, and no claim is lost."""
+"""Tests the table of the paper's claims: verdicts come only from podm-bench, figures only from rows; no claim is
+lost."""
 import csv
 import json
 import stat
@@ -28,7 +29,8 @@ def line(measured, simulated=None, says="it is so"):
 
 
 def judged(measured, simulated=None, frame=None, **verdicts):
-    """The row of one line, by made-up verdicts of claims that are measured, or simulated where their name says so."""
+    """Returns the row of one line, by synthetic verdicts. Claims are measured, or simulated if their name begins with
+    "sim"."""
     claims = [{"name": name, "statement": "so", "basis": "simulated" if name.startswith("sim") else "measured",
                "verdict": verdict, "reason": f"why {name}", "value": 1.5} for name, verdict in verdicts.items()]
     found = {"experiments": [{"experiment": "made_up", "claims": claims}]}
@@ -89,7 +91,7 @@ class Verdicts(unittest.TestCase):
 
 
 class Lines(unittest.TestCase):
-    """results/paper/claims.toml as it stands."""
+    """Tests the present results/paper/claims.toml."""
 
     def test_are_those_that_are_asked_for(self):
         self.assertEqual([one["id"] for one in LINES], IDS)
@@ -125,7 +127,7 @@ class Lines(unittest.TestCase):
 
 
 def simulated(**changes):
-    """Two sizes, on the larger of which PDR.PODM is twice as fast, and ahead from 256 cores on."""
+    """Yields two sizes. On the larger size PDR.PODM is twice as fast, and ahead from 256 cores on."""
     def speedup_of(factor):
         return lambda algorithm, cores: factor * cores / 4 if algorithm == "pdr-podm" else 30
 

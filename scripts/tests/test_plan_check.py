@@ -1,4 +1,4 @@
-"""Components of an image and of a mesh that scripts/check_plan compares."""
+"""Tests the components of an image and of a mesh that scripts/check_plan compares."""
 import tempfile
 import unittest
 from pathlib import Path
@@ -10,7 +10,7 @@ from plan_check.lost import circumcenters, image_components, mesh_components, pi
 from plan_check.volume import read_volume
 from views.mesh import Mesh
 
-# Two regular tetrahedra on a facet, one in the other label's place, and a third apart.
+# Two regular tetrahedra that share a facet, one of them in the other label's region, and a separate third one.
 POINTS = numpy.array([[0, 0, 0], [2, 2, 0], [2, 0, 2], [0, 2, 2], [8 / 3, 8 / 3, 8 / 3], [10, 10, 10], [12, 12, 10],
                       [12, 10, 12], [10, 12, 12]])
 CELLS = numpy.array([[0, 1, 2, 3], [1, 2, 3, 4], [5, 6, 7, 8]])

@@ -1,4 +1,4 @@
-"""scripts/make_figures and scripts/report as people call them, and the text of the page."""
+"""Tests scripts/make_figures and scripts/report from the command line, and the text of the page."""
 import json
 import re
 import subprocess
@@ -28,7 +28,7 @@ class Programs(unittest.TestCase):
         self.folder = Path(folder.name)
 
     def check_all_made(self, records):
-        """A folder of records gives every table and figure that needs no other file; returns what is said."""
+        """A folder of records gives every table and figure that needs no other file. Returns the finished process."""
         done = call("make_figures", "--records", records, "-o", self.folder / "out")
         self.assertEqual(done.returncode, 0, done.stderr)
         made = {path.name for path in (self.folder / "out").iterdir()}
@@ -107,7 +107,7 @@ class Programs(unittest.TestCase):
 
 
 def make_page(folder, *more):
-    """A page with everything in it, and rows of `more`."""
+    """Makes a page with all parts, and with the rows of `more`."""
     rows = [*(synthetic.row(cores=cores, repeat=repeat) for cores in (1, 2) for repeat in (1, 2)),
             synthetic.row(trial="<script>alert(1)</script>", status="failed", reason="<b>&"), synthetic.peer("tetgen"),
             synthetic.with_levels([4, 11, 40, 200, 1500]),
@@ -138,7 +138,7 @@ class Page(unittest.TestCase):
         cls.text = cls.path.read_text()
 
     def answers(self, text=None):
-        """The four answers by name."""
+        """Returns the four answers by name."""
         cards = re.findall(r'<section class="answer" id="(\w+)".*?</section>', text or self.text, re.DOTALL)
         texts = re.findall(r'<section class="answer".*?</section>', text or self.text, re.DOTALL)
         return dict(zip(cards, texts))

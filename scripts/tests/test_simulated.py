@@ -1,4 +1,4 @@
-"""Simulated sizes side by side, and the section on the simulated machine, from made-up rows."""
+"""Tests simulated sizes side by side, and the section on the simulated machine, from synthetic rows."""
 import re
 import unittest
 
@@ -14,7 +14,7 @@ SIZES = (40_000, 160_000, 640_000)
 
 
 def rows_of(sizes=SIZES, **changes):
-    """Speed-ups on the line 0.6 cores - 10 x of x = (cells a core)^(-1/3), and 1 - x / 2 of accesses on the node."""
+    """Yields speed-ups 0.6 cores - 10 x with x = (cells per core)^(-1/3); 1 - x / 2 of accesses stay on the node."""
     for size in sizes:
         x = size ** (-1 / 3)
         yield from synthetic.simulated_size(size, lambda algorithm, cores: 0.6 * cores - 10 * x, zero_hops=1 - x / 2,
@@ -127,7 +127,7 @@ class Ablation(unittest.TestCase):
              ("podm", 256): 4.47, ("pdr-podm", 256): 8.0, ("podm-home", 256): 20.0}
 
     def rows(self, factor=None, rates=None, zero_hops=None):
-        """Million cells a second by algorithm and cores."""
+        """Yields rows with these rates, million cells per second by algorithm and cores."""
         for (algorithm, cores), rate in {**self.RATES, **(rates or {})}.items():
             made = synthetic.row(algorithm, cores, experiment="simulated_ablation", executor="virtual", cells=1_000_000,
                                  phases_s={"refine": 1 / rate}, asked={"cost_factor": factor} if factor else {})
@@ -234,7 +234,7 @@ class Machine(unittest.TestCase):
 
 
 class AtHome(unittest.TestCase):
-    """PODM at home, which the paper does not have, beside its two."""
+    """Tests PODM at home, which the paper does not have, beside the paper's two algorithms."""
     ALL = ("podm", "pdr-podm", "podm-home")
     SPEEDUPS = {"podm": 0.2, "pdr-podm": 0.6, "podm-home": 0.8}
 
@@ -245,7 +245,7 @@ class AtHome(unittest.TestCase):
         return outcome.make(frame_of(synthetic.with_losses(rows, compute=0.5, contention=0.25)))
 
     def told(self, made):
-        """All that figures and tables say, by name; a name of both is the figure's."""
+        """Returns all text of figures and tables by name; if both have a name, the figure's text."""
         figures = {name: [one.get_label(), *(axes.get_title() + axes.get_xlabel() for axes in one.axes),
                           *(text.get_text() for axes in one.axes if axes.get_legend()
                             for text in axes.get_legend().get_texts())] for name, one in made.figures.items()}

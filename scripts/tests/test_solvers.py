@@ -1,4 +1,4 @@
-"""What meshes cost a solver, and their dihedral angles, from made-up rows."""
+"""Tests the cost of meshes for a solver, and their dihedral angles, from synthetic rows."""
 import unittest
 
 import paths  # noqa: F401
@@ -62,7 +62,7 @@ class Solvers(unittest.TestCase):
 class Dihedral(unittest.TestCase):
     def test_an_image_shows_the_angles_before_and_after(self):
         figure = dihedral.figure(frame_of(ROWS))
-        (axes,) = figure.axes  # the other image has nothing to compare
+        (axes,) = figure.axes  # the other image has no second variant
         words = [text.get_text() for text in axes.get_legend().get_texts()]
         self.assertEqual(words, ["no option: 5.00 to 170.00", "R7: 7.50 to 160.00", "both stages: 12.00 to 160.00"])
         self.assertEqual(axes.get_yscale(), "log")

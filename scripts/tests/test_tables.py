@@ -1,4 +1,4 @@
-"""Tables that scripts/update_docs generates, of rows that are made up."""
+"""Tests the tables that scripts/update_docs generates, from synthetic rows."""
 import json
 import shutil
 import tempfile
@@ -24,7 +24,7 @@ class Tables(unittest.TestCase):
             (self.folder / f"topology-{topology}.xml").write_text(TOPOLOGY.format(model=model))
 
     def lines(self, name, rows, argument="0.1.0/what"):
-        """Cells of the table of `rows`, a list for each line below the head."""
+        """Returns the cells of the table of `rows`, a list for each line below the head."""
         (self.folder / "rows.jsonl").write_text("".join(json.dumps(row) + "\n" for row in rows))
         sources = Sources(self.root)
         made = generate(name, [argument], sources, Provenance(sources)).splitlines()

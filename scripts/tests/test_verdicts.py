@@ -1,4 +1,5 @@
-"""Verdicts: the paper's own tables agree with themselves, their mirrors do not, and nothing missing is a verdict."""
+"""Tests verdicts: the paper's own tables agree with themselves, their mirrors do not, and missing rows give no
+verdict."""
 import unittest
 
 import paths  # noqa: F401
@@ -6,7 +7,7 @@ import synthetic
 from figures import cells, claims, paper, resolution, scaling, table2, verdicts
 from test_figures import frame_of
 
-ROUNDS = 6  # the fewest that resolve what is measured
+ROUNDS = 6  # the fewest rounds that resolve measured values
 POWERS_OF_TWO = (1, 16, 32, 64, 128, 256)
 CYCLES = [4, 11, 40, 200, 1500]
 CLAIMS = ["crossover", "efficiency of podm", "efficiency of pdr-podm", "speed-up of podm beyond 128 cores",
@@ -30,7 +31,7 @@ def claim_of(found, name, basis="measured"):
 
 
 def fed(weak, shares, cycles, **changes):
-    """Verdicts on tables as if they were ours; on Tables 1 and 2 of either basis."""
+    """Returns verdicts on the given tables as if they were ours; Tables 1 and 2 may be of either basis."""
     rows = synthetic.like_the_paper(weak, repeats=ROUNDS, spread=0.005, **changes)
     wide = {cores: list(shares[cores]) for cores in shares}
     extra = [synthetic.row("pdr-podm", 16, repeat=repeat, environment=synthetic.BIG_MACHINE, **changes)
@@ -43,7 +44,7 @@ def levels(cycles):
 
 
 def swapped(weak):
-    """PODM's numbers called PDR.PODM's and the other way round."""
+    """Exchanges the numbers of PODM and PDR.PODM."""
     other = dict(zip(paper.ALGORITHMS, reversed(paper.ALGORITHMS)))
     made = weak.copy()
     made.index = made.index.map(lambda index: (other[index[0]], index[1]))
@@ -51,7 +52,7 @@ def swapped(weak):
 
 
 def with_speedups(weak, speedup_of):
-    """Beyond one core the seconds that `speedup_of` asks for: of an algorithm's (cores, speed-ups) the new ones."""
+    """Sets the seconds beyond one core to those that `speedup_of` (cores, speed-ups) of an algorithm gives."""
     made = weak.copy()
     base = made.loc[("podm", 1), "cells"] / made.loc[("podm", 1), "seconds"]
     for algorithm in paper.ALGORITHMS:
@@ -62,32 +63,33 @@ def with_speedups(weak, speedup_of):
 
 
 def efficiencies_reversed(weak):
-    """That of the most cores on the fewest: what declined rises."""
+    """Puts the efficiency of the most cores on the fewest, so that declines become rises."""
     return with_speedups(weak, lambda cores, speedups: (speedups / cores)[::-1].to_numpy() * cores)
 
 
 def speedups_turned(weak):
-    """What falls from 128 cores on rises, and the other way round."""
+    """Turns falls from 128 cores on into rises, and rises into falls."""
     return with_speedups(weak, lambda cores, speedups: speedups[128] ** 2 / speedups)
 
 
 def times(weak, factor, but=("podm", 1)):
-    """All seconds but those that ratios refer to, times a factor."""
+    """Multiplies all seconds by a factor, except those to which ratios refer."""
     made = weak.copy()
     made.loc[[index for index in made.index if index != but], "seconds"] *= factor
     return made
 
 
 def of_basis(found, basis):
-    """The verdicts on one basis, and Table 3's, which are measured alone."""
+    """Returns the verdicts on one basis, and Table 3's, which are only measured."""
     return [one for one in found if one["basis"] == basis or "latency" in one.get("claim", "")]
 
 
 class Published(unittest.TestCase):
-    """Tables 1 to 3 through the verdicts as if they were ours."""
+    """Judges Tables 1 to 3 of the paper as if they were ours."""
 
     def feeds(self):
-        """(Table 1, Table 2, basis, what rows of it have), whole and on powers of two alone."""
+        """Yields (Table 1, Table 2, basis, changes of its rows), for all numbers of cores and for powers of two
+        only."""
         for counts in (None, POWERS_OF_TWO):
             for basis, changes in (("measured", {}), ("simulated", {"executor": "virtual"})):
                 weak, shares = paper.corrected_table1(), paper.table2()
@@ -115,7 +117,7 @@ class Published(unittest.TestCase):
                     self.assertEqual(cell["verdict"], expected, cell)
 
     def check_mirrored(self, weak, shares, cycles, names):
-        """All claims named differ on mirrored tables, fed as ours; returns the cells of each feed."""
+        """Checks that all claims named differ on mirrored tables, judged as ours; yields the cells of each feed."""
         for their_weak, their_shares, basis, changes in self.feeds():
             with self.subTest(counts=list(their_shares), basis=basis):
                 found = fed(weak(their_weak), shares(their_shares), cycles, **changes)
@@ -147,7 +149,7 @@ class Published(unittest.TestCase):
             self.assertEqual({one["verdict"] for one in own}, {"differs"})
 
     def test_each_cell_of_table_2_can_fail(self):
-        """Half a percent too: the shares that leave their node, times three."""
+        """A difference of half a percent must count: the shares that leave their node are multiplied by three."""
         remote = paper.table2().drop(index=0) * 3 + 5e-4
         shares = remote.copy()
         shares.loc[0] = 1 - remote.sum()
@@ -160,7 +162,7 @@ class Published(unittest.TestCase):
 
 class Crossover(unittest.TestCase):
     def claim(self, counts, ahead_from):
-        """Rows on those numbers of cores, where PDR.PODM is ahead from one of them on."""
+        """Judges rows on those numbers of cores, where PDR.PODM is ahead from one of them on."""
         rows = [synthetic.row(algorithm, cores, repeat=repeat, environment=synthetic.BIG_MACHINE,
                               phases_s={"refine": 9.0 if ahead else 10.0})
                 for repeat in range(1, ROUNDS + 1) for cores in counts for algorithm in paper.ALGORITHMS
@@ -240,7 +242,7 @@ class Missing(unittest.TestCase):
 
 
 class NotResolved(unittest.TestCase):
-    """What is measured in few rounds, or on both sides of a bound, neither agrees nor differs."""
+    """Values measured in few rounds, or on both sides of a bound, neither agree nor differ."""
 
     def test_nothing_measured_is_decided_by_three_rounds(self):
         rows = synthetic.like_the_paper(paper.corrected_table1(), repeats=3, spread=0.005)

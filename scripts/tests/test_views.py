@@ -1,4 +1,4 @@
-"""Meshes to look at: what is read, measured and drawn of them."""
+"""Tests the reading, measuring and drawing of meshes."""
 import io
 import json
 import subprocess
@@ -24,7 +24,7 @@ def box(side=3):
 
 
 def labels_of_cells(mesh):
-    """By the cells' corners, in whatever order these come."""
+    """Returns labels by the cells' corners, in any order."""
     return {tuple(sorted(map(tuple, corners))): label for corners, label in zip(mesh.corners(), mesh.labels)}
 
 
@@ -153,7 +153,7 @@ class Picture(InFolder):
                "legend": False}
 
     def draw(self, **changes):
-        """The picture, height x width x 3, from 0 to 255."""
+        """Returns the picture, height x width x 3, from 0 to 255."""
         request = {**self.REQUEST, "mesh": str(self.write(box())), **changes}
         done = subprocess.run(["/usr/bin/python3", "-E", "-s", "-B", paths.SCRIPTS / "view", json.dumps(request)],
                               capture_output=True)
@@ -161,7 +161,7 @@ class Picture(InFolder):
         return numpy.round(255 * matplotlib.image.imread(io.BytesIO(done.stdout))[..., :3]).astype(int)
 
     def share_of(self, picture, hue):
-        """Of pixels whose greatest channel is that one, by a margin."""
+        """Returns the share of pixels whose greatest channel is `hue`, by a margin."""
         others = [channel for channel in range(3) if channel != hue]
         return (picture[..., hue] > picture[..., others].max(axis=2) + 20).mean()
 
@@ -178,8 +178,8 @@ class Picture(InFolder):
         self.assertEqual(picture[0, 0].tolist(), [0x10, 0x20, 0x30])
         with_legend = self.draw(colour="ratio", background="#102030", legend=True, size=[640, 480])
         strip = with_legend[:, 520:].reshape(-1, 3)
-        self.assertGreater((strip.min(axis=1) > 150).sum(), 10)  # its text
-        self.assertGreater(len(numpy.unique(strip, axis=0)), 30)  # its ramp
+        self.assertGreater((strip.min(axis=1) > 150).sum(), 10)  # pixels of its text
+        self.assertGreater(len(numpy.unique(strip, axis=0)), 30)  # colours of its ramp
 
 
 if __name__ == "__main__":

@@ -1,4 +1,4 @@
-"""scripts/whatif with a podm-bench that makes up its rows: what it asks for, what it answers, what it refuses."""
+"""Tests scripts/whatif with a podm-bench that makes synthetic rows: its trials, its answers, its errors."""
 import tempfile
 import tomllib
 import unittest
@@ -9,8 +9,8 @@ from figures import whatif
 from test_programs import call
 
 MACHINE = "name = 'Made-up'\n[processor]\nsockets_per_node = 2\ncores_per_socket = 8\n[network]\nnodes = 16\n"
-# Of 256 cores: PDR.PODM keeps 70 %, PODM 90 % up to LAST cores and no more cells a second beyond, PODM at home HOME of
-# them. LACKING, an (algorithm, cores), has no row.
+# On 256 cores PDR.PODM keeps 70 % efficiency. PODM keeps 90 % up to LAST cores, with no more cells per second beyond.
+# PODM at home has the efficiency HOME. LACKING, an (algorithm, cores), has no row.
 BENCH = """#!/usr/bin/python3
 import json, sys, tomllib
 sys.path.insert(0, "{tests}")

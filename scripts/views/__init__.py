@@ -1,1 +1,1 @@
-"""Meshes to look at: read from files, measured by cell, drawn as a picture."""
+"""Reads meshes from files, measures their cells, and draws them as a picture."""

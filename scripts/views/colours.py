@@ -1,16 +1,16 @@
 """Colours of labels and of quality, the same in pictures and pages."""
 
-# The label of the greatest volume, as a background.
+# For the label of the greatest volume, as a background.
 PALE = "#ede3d1"
-# Told apart at a glance, also side by side; muted, so that the edges stay visible on them.
+# Easy to distinguish side by side; muted, so that edges stay visible on them.
 PALETTE = ["#cc5c54", "#4582b5", "#f2b854", "#6ba36b", "#9473b3", "#e88c66", "#5cadb0", "#db8fad", "#9e8c59", "#8c9ed1",
            "#b5c769", "#8f575c", "#4d6b78", "#d4c28c", "#b89cc9"]
-# Viridis, of matplotlib, at equal steps.
+# Viridis, from matplotlib, at equal steps.
 RAMP = ["#440154", "#46327e", "#365c8d", "#277f8e", "#1fa187", "#4ac16d", "#a0da39", "#fde725"]
 
 
 def colours_of_labels(mesh):
-    """A colour a label value, by rank of volume."""
+    """Returns a colour per label value, by rank of volume."""
     ranked = mesh.labels_by_volume()
     if len(ranked) == 1:
         return {ranked[0]: PALETTE[0]}
@@ -18,7 +18,7 @@ def colours_of_labels(mesh):
 
 
 def _colour(number):
-    """Once all of the palette are taken they come again lighter, then darker; after that they repeat."""
+    """After the last colour the palette repeats lighter, then darker, then from the start."""
     turn, index = divmod(number, len(PALETTE))
     towards, share = ((0, 0), (1, 0.45), (0, 0.4))[turn % 3]
     mixed = (round(255 * ((1 - share) * one + share * towards)) for one in rgb(PALETTE[index]))
@@ -26,5 +26,5 @@ def _colour(number):
 
 
 def rgb(colour):
-    """Three numbers from 0 to 1 of "#rrggbb"."""
+    """Returns three numbers from 0 to 1 for "#rrggbb"."""
     return tuple(int(colour[at:at + 2], 16) / 255 for at in (1, 3, 5))

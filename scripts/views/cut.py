@@ -1,4 +1,4 @@
-"""Which cells of a mesh are shown: those of some labels, on one side of a plane."""
+"""Chooses the cells of a mesh to show: those of some labels, on one side of a plane."""
 import difflib
 from dataclasses import dataclass
 
@@ -9,15 +9,15 @@ from .mesh import MeshError
 
 @dataclass(frozen=True)
 class Plane:
-    """Cells whose centres lie beyond it, on the side that the normal points to, are left out."""
+    """Cells whose centres lie beyond the plane, on the side that the normal points to, are left out."""
 
     normal: numpy.ndarray  # of length 1
     place: float
-    is_fraction: bool = False  # of the mesh's extent along the normal; else `place` is in mm from the origin
+    is_fraction: bool = False  # of the mesh's extent along the normal; otherwise `place` is in mm from the origin
 
 
 def shown_cells(mesh, plane, names, hidden):
-    """Positions of the cells to draw. `names`: of labels, or values; none: all. Raises MeshError."""
+    """Returns positions of the cells to draw. `names`: names or values of labels; empty: all. Raises MeshError."""
     kept = numpy.ones(len(mesh.cells), bool)
     if names:
         kept &= numpy.isin(mesh.labels, label_values(mesh, names, "--labels"))
@@ -32,7 +32,7 @@ def shown_cells(mesh, plane, names, hidden):
 
 
 def place_mm(mesh, plane):
-    """Along the normal, from the origin."""
+    """Returns the plane's distance from the origin along the normal."""
     if not plane.is_fraction:
         return plane.place
     along = mesh.points[numpy.unique(mesh.cells)] @ plane.normal
@@ -40,7 +40,7 @@ def place_mm(mesh, plane):
 
 
 def label_values(mesh, words, option):
-    """Values of labels given by name or value; a name stands for every label that bears it."""
+    """Returns the values of labels given by name or value. A name stands for every label that has it."""
     values = [int(value) for value in numpy.unique(mesh.labels)]
     found = []
     for word in words:

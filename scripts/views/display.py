@@ -1,4 +1,4 @@
-"""A display that nobody sees: VTK, as Debian builds it, draws through X alone."""
+"""A hidden display. Debian's build of VTK draws only through X."""
 import contextlib
 import ctypes
 import os
@@ -12,14 +12,14 @@ from pathlib import Path
 from .mesh import MeshError
 
 SERVER = "/usr/bin/Xvfb"
-PR_SET_PDEATHSIG = 1  # of linux/prctl.h
-FAMILY_WILD = 0xFFFF  # of any display
+PR_SET_PDEATHSIG = 1  # from linux/prctl.h
+FAMILY_WILD = 0xFFFF  # matches any display
 
 
 @contextlib.contextmanager
 def hidden_display():
-    """Programs of this process draw there, and those of nobody else: it asks for a cookie. It ends with this process,
-    however that ends. Raises MeshError where there is no such server."""
+    """Starts a display for this process only: it requires a cookie. The display ends with this process, even if the
+    process is killed. Raises MeshError if the server is missing."""
     if not os.access(SERVER, os.X_OK):
         raise MeshError(f"view: {SERVER} is not there; install Debian's xvfb")
     with tempfile.TemporaryDirectory() as folder:
@@ -31,7 +31,7 @@ def hidden_display():
             pass_fds=[tells], stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL, preexec_fn=_end_with_parent)
         os.close(tells)
         try:
-            with open(told) as pipe:  # it chooses a number that is free
+            with open(told) as pipe:  # the server chooses a free number
                 number = pipe.readline().strip()
             if not number:
                 raise MeshError(f"view: {SERVER} does not start")
@@ -43,7 +43,7 @@ def hidden_display():
 
 
 def _authority(cookie):
-    """An entry of an Xauthority file: family, then address, number, name and data, each after its length."""
+    """Returns an entry of an Xauthority file: family, then address, number, name and data, each after its length."""
     fields = (b"", b"", b"MIT-MAGIC-COOKIE-1", cookie)
     return struct.pack(">H", FAMILY_WILD) + b"".join(struct.pack(">H", len(field)) + field for field in fields)
 

@@ -1,4 +1,4 @@
-"""What the colours of a picture mean, in a strip at its right."""
+"""The legend of a picture's colours, in a strip on its right."""
 import numpy
 import vtk
 from vtk.util.numpy_support import numpy_to_vtk
@@ -10,9 +10,9 @@ RAMP_STEPS = 96
 
 
 class Legend:
-    """Rectangles and texts, placed by lines of text from the top and by heights of a line from the left."""
+    """Rectangles and texts, placed in lines of text from the top and in line heights from the left."""
 
-    width = 0.22  # of the picture
+    width = 0.22  # fraction of the picture
 
     def __init__(self, num_lines):
         self._num_lines = num_lines
@@ -21,7 +21,7 @@ class Legend:
 
     @classmethod
     def of_labels(cls, labels):
-        """Pairs of name and colour, in the order to list them."""
+        """Makes a legend from pairs of name and colour, in the order of listing."""
         shown = labels[:MOST_LABELS]
         legend = cls(max(24, len(shown) + 1))
         for line, (name, colour) in enumerate(shown):
@@ -33,7 +33,7 @@ class Legend:
 
     @classmethod
     def of_ramp(cls, title, low, high, colours):
-        """The lowest value, of the first colour, is at the bottom."""
+        """Makes a ramp with the lowest value, in the first colour, at the bottom."""
         legend, height = cls(24), 14
         words = title.split(", ")
         legend._texts += [(0, line, text) for line, text in enumerate(words)]
@@ -63,14 +63,14 @@ class Legend:
 
 
 def _round_numbers(low, high):
-    """Four to ten multiples of 1, 2 or 5 times a power of ten."""
+    """Returns four to ten multiples of 1, 2 or 5 times a power of ten."""
     power = 10.0 ** numpy.floor(numpy.log10((high - low) / 4))
     step = power * max(factor for factor in (1, 2, 5) if factor * power <= (high - low) / 4)
     return step * numpy.arange(numpy.ceil(low / step), numpy.floor(high / step * (1 + 1e-9)) + 1)
 
 
 def _boxes(boxes):
-    """(left, bottom, right, top, colour) in pixels."""
+    """Draws boxes given as (left, bottom, right, top, colour) in pixels."""
     corners = [(x, y, 0) for left, bottom, right, top, _ in boxes
                for x, y in ((left, bottom), (right, bottom), (right, top), (left, top))]
     points, quads = vtk.vtkPoints(), vtk.vtkCellArray()

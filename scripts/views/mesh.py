@@ -1,4 +1,4 @@
-"""A tetrahedral mesh with labels, as a file holds it."""
+"""A tetrahedral mesh with labels, as read from a file."""
 from dataclasses import dataclass, field
 
 import numpy
@@ -13,22 +13,22 @@ class Mesh:
     points: numpy.ndarray  # n x 3, mm
     cells: numpy.ndarray  # m x 4, indices of points
     labels: numpy.ndarray  # m, values
-    names: dict = field(default_factory=dict)  # of label values; those of an unnamed label are missing
+    names: dict = field(default_factory=dict)  # by label value; unnamed labels are missing
 
     def name_of(self, value):
         return self.names.get(int(value), f"label {value}")
 
     def corners(self):
-        """m x 4 x 3."""
+        """Returns the cells' vertices, m x 4 x 3."""
         return self.points[self.cells]
 
     def volumes_mm3(self):
-        """Signed: positive where the fourth vertex is above the first three, counterclockwise."""
+        """Returns signed volumes: positive if the fourth vertex is above the first three, counterclockwise."""
         a, b, c, d = numpy.moveaxis(self.corners(), 1, 0)
         return numpy.einsum("ij,ij->i", numpy.cross(b - a, c - a), d - a) / 6
 
     def labels_by_volume(self):
-        """Label values, that of the greatest volume first."""
+        """Returns label values, the greatest volume first."""
         values, positions = numpy.unique(self.labels, return_inverse=True)
         volumes = numpy.bincount(positions, numpy.abs(self.volumes_mm3()), len(values))
         return [int(value) for value in values[numpy.argsort(-volumes, kind="stable")]]

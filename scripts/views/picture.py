@@ -1,4 +1,4 @@
-"""Draws cells of a mesh by VTK, each whole: the cut is a landscape of tetrahedra."""
+"""Draws cells of a mesh by VTK. Cells are drawn whole, so that the cut shows tetrahedra."""
 from dataclasses import dataclass
 
 import numpy
@@ -9,13 +9,13 @@ from .colours import RAMP, colours_of_labels, rgb
 from .legend import Legend
 from .quality import MEASURES, measured
 
-SUPERSAMPLING = 2  # drawn larger and averaged: smooth edges whatever the driver can do
+SUPERSAMPLING = 2  # drawn larger and averaged: smooth edges with any driver
 FACETS_SEEN_AS_LINES_PX = 4  # shorter edges would cover the colours
 
 
 @dataclass(frozen=True)
 class Look:
-    """How to draw. Azimuth and elevation are degrees away from the direction that faces the cut."""
+    """Settings of the picture. Azimuth and elevation are degrees from the direction that faces the cut."""
 
     towards: numpy.ndarray  # from the mesh to the viewer who faces the cut, of length 1
     colour: str  # "label" or one of quality.MEASURES
@@ -27,9 +27,9 @@ class Look:
 
 
 def png_of(mesh, cells, look):
-    """The bytes of a picture of some cells of the mesh."""
+    """Returns the bytes of a picture of some cells of the mesh."""
     surface = _surface(mesh, cells)
-    drawn = cells[vtk_to_numpy(surface.GetCellData().GetArray("cell"))]  # one a facet
+    drawn = cells[vtk_to_numpy(surface.GetCellData().GetArray("cell"))]  # one entry per facet
     colours, legend = _colours(mesh, drawn, look)
     surface.GetCellData().SetScalars(numpy_to_vtk(colours, deep=True))
     window = vtk.vtkRenderWindow()
@@ -53,7 +53,7 @@ def png_of(mesh, cells, look):
 
 
 def _colours(mesh, cells, look):
-    """Red, green and blue of each of `cells`, 0 to 255, and the legend, None where none is asked for."""
+    """Returns red, green and blue of each of `cells`, 0 to 255, and the legend, or None if it was not requested."""
     if look.colour == "label":
         table = colours_of_labels(mesh)
         values, positions = numpy.unique(mesh.labels[cells], return_inverse=True)
@@ -67,7 +67,7 @@ def _colours(mesh, cells, look):
 
 
 def _colours_of_quality(mesh, cells, measure, values):
-    """Bad cells are bright. A flat cell, which has no number, is as bad as the worst."""
+    """Gives bad cells bright colours. A flat cell, which has no number, counts as the worst."""
     low = numpy.nanmin(values) if measure.low is None else measure.low
     high = numpy.nanmax(values) if measure.high is None else measure.high
     high = high if high > low else low + 1
@@ -80,7 +80,7 @@ def _colours_of_quality(mesh, cells, measure, values):
 
 
 def _surface(mesh, cells):
-    """The outer facets of the cells; the array `cell` is the position of each one's cell among them."""
+    """Returns the outer facets of the cells. The array `cell` has the position of each facet's cell in `cells`."""
     used, corners = numpy.unique(mesh.cells[cells], return_inverse=True)
     corners = corners.reshape(-1, 4)
     points = vtk.vtkPoints()
@@ -126,7 +126,8 @@ def _typical_edge_mm(surface):
 
 
 def _aim(camera, surface, look, share):
-    """As near as the whole surface fits, times the zoom. Pixels of the picture a mm, where the surface is nearest."""
+    """Moves the camera as near as the whole surface fits, times the zoom. Returns pixels per mm at the surface's
+    nearest point."""
     right, up, backward = axes = camera_axes(look.towards, *look.camera_deg)
     half_angle = numpy.radians(10)
     slopes = 0.94 * numpy.tan(half_angle) * numpy.array([share * look.size[0] / look.size[1], 1.0])
@@ -144,8 +145,8 @@ def _aim(camera, surface, look, share):
 
 
 def camera_axes(towards, azimuth_deg, elevation_deg):
-    """Rows: the viewer's right, up and backward axes in the world. Up is world z, or y where the viewer faces along z;
-    azimuth turns to the viewer's right about it, elevation goes up."""
+    """Returns as rows the viewer's right, up and backward axes in the world. Up is world z, or y if the viewer faces
+    along z. Azimuth turns to the viewer's right about it, elevation goes up."""
     world_up = numpy.eye(3)[1 if abs(towards[2]) > 0.9 else 2]
     right = _unit(numpy.cross(world_up, towards))
     level_up = numpy.cross(towards, right)
@@ -161,7 +162,8 @@ def _unit(vector):
 
 
 def _lights():
-    """Light comes from the viewer's upper left and, weaker, from the right: facets of a flat cut differ in shade."""
+    """Yields a light from the viewer's upper left and a weaker one from the right. Facets of a flat cut then differ in
+    shade."""
     for place, intensity in ((-0.6, 0.8, 1.0), 0.75), ((0.9, -0.1, 0.6), 0.35):
         light = vtk.vtkLight()
         light.SetLightTypeToCameraLight()

@@ -1,16 +1,16 @@
-"""How good each cell of a mesh is. In floating point, to look at: bounds are proved by podm-verify."""
+"""Quality of each cell of a mesh in floating point, for display only; podm-verify proves the bounds."""
 from dataclasses import dataclass
 from itertools import combinations
 from typing import Callable
 
 import numpy
 
-BLOCK = 1 << 17  # cells measured at a time: the memory that this takes does not grow with the mesh
+BLOCK = 1 << 17  # cells measured at a time, so that the memory needed does not grow with the mesh
 
 
 @dataclass(frozen=True)
 class Measure:
-    """A number a cell. `low` and `high`: the range that is worth colours, None: that of the mesh."""
+    """One number per cell. `low` and `high`: the range of the colours; None: the mesh's own range."""
 
     title: str
     of_corners: Callable  # corners, m x 4 x 3 in mm, to m numbers
@@ -20,7 +20,7 @@ class Measure:
 
 
 def measured(mesh, name):
-    """One number a cell of the measure of that name; NaN where a flat cell has none."""
+    """Returns one number per cell for the named measure; NaN where a flat cell has none."""
     measure = MEASURES[name].of_corners
     with numpy.errstate(divide="ignore", invalid="ignore"):
         parts = [measure(mesh.points[mesh.cells[at:at + BLOCK]]) for at in range(0, len(mesh.cells), BLOCK)]
@@ -30,12 +30,12 @@ def measured(mesh, name):
 
 
 def dihedral_angles_deg(corners):
-    """m x 6: between the two facets at each edge."""
+    """Returns m x 6 angles, between the two facets at each edge."""
     return numpy.stack([_angle_at(corners, edge) for edge in combinations(range(4), 2)], axis=1)
 
 
 def _angle_at(corners, edge):
-    """Between the other two vertices, seen along the edge."""
+    """Returns the angle between the other two vertices, seen along the edge."""
     a, b = (corners[:, vertex] for vertex in edge)
     c, d = (corners[:, vertex] - a for vertex in range(4) if vertex not in edge)
     along = (b - a) / numpy.linalg.norm(b - a, axis=1, keepdims=True)
@@ -61,7 +61,7 @@ def _dot(a, b):
     return numpy.einsum("ij,ij->i", a, b)
 
 
-# In the words of `podm view --colour`. Those of a regular tetrahedron are 70.5 degrees and 0.61.
+# The names are those of `podm view --colour`. A regular tetrahedron has 70.5 degrees and a ratio of 0.61.
 MEASURES = {
     "dihedral": Measure("smallest dihedral angle, degrees", lambda corners: dihedral_angles_deg(corners).min(axis=1),
                         0, 70.53, is_low_bad=True),

@@ -1,4 +1,4 @@
-"""Tetrahedra, their labels and the names of these from VTK's mesh files. podm makes these of others."""
+"""Reads tetrahedra, their labels and the labels' names from VTK's mesh files. podm converts other formats to these."""
 from pathlib import Path
 
 import numpy
@@ -7,7 +7,7 @@ from .mesh import Mesh, MeshError
 
 
 def read_mesh(path):
-    """Raises MeshError."""
+    """Reads a mesh file. Raises MeshError."""
     path = Path(path)
     reader = READERS.get(path.suffix.lower())
     if reader is None:
@@ -28,13 +28,13 @@ def read_mesh(path):
 
 
 def _read_vtk(path):
-    """Needs Debian's python3-vtk9."""
-    import vtk  # slow to load: only where a mesh is drawn
+    """Reads a file by VTK. Needs Debian's python3-vtk9."""
+    import vtk  # slow to load, therefore only if a mesh is drawn
     from vtk.util.numpy_support import vtk_to_numpy
 
     kinds = {".vtu": vtk.vtkXMLUnstructuredGridReader, ".pvtu": vtk.vtkXMLPUnstructuredGridReader,
              ".vtk": vtk.vtkUnstructuredGridReader}
-    vtk.vtkObject.GlobalWarningDisplayOff()  # failures are told in one line each
+    vtk.vtkObject.GlobalWarningDisplayOff()  # each failure is reported in one line instead
     reader = kinds[path.suffix.lower()]()
     reader.SetFileName(str(path))
     reader.Update()
@@ -49,7 +49,8 @@ def _read_vtk(path):
 
 
 def _names_of_fields(fields):
-    """Of the arrays "label:NAME" that podm writes, each with one value. The first is what is outside."""
+    """Returns the names in the arrays "label:NAME" that podm writes, each with one value. The first names the
+    outside."""
     arrays = [fields.GetAbstractArray(index) for index in range(fields.GetNumberOfArrays())]
     named = [array for array in arrays if array.GetName().startswith("label:") and array.GetNumberOfValues() == 1]
     return {int(array.GetVariantValue(0).ToDouble()): array.GetName().removeprefix("label:") for array in named[1:]}

@@ -1,4 +1,4 @@
-"""What `podm view` runs: a request, which podm has checked, into a picture."""
+"""Draws a picture for `podm view`, from a request that podm has checked."""
 import json
 import sys
 
@@ -13,8 +13,8 @@ DEFAULT_TOWARDS = (0.0, 1.0, 0.0)  # without a cut: from the front, in RAS
 
 
 def picture_of(request):
-    """The bytes of a PNG file. Raises MeshError. `request` holds, in the words of `podm view --help`: mesh (a VTK
-    file), cut (null, or normal and place with is_fraction), flip, labels, hide, colour, camera_deg, zoom, size,
+    """Returns the bytes of a PNG file. Raises MeshError. `request` holds, with the names of `podm view --help`: mesh (a
+    VTK file), cut (null, or normal and place with is_fraction), flip, labels, hide, colour, camera_deg, zoom, size,
     background, legend."""
     from .picture import Look, png_of  # VTK is slow to load
 
@@ -40,7 +40,7 @@ def plane_of(cut, is_flipped):
 
 
 def main(arguments):
-    """The exit code: 0 the picture is on standard output, 2 bad input."""
+    """Returns the exit code: 0 if the picture is on standard output, 2 for bad input."""
     try:
         sys.stdout.buffer.write(picture_of(json.loads(arguments[0])))
     except MeshError as error:

@@ -12,12 +12,12 @@ import numpy as np
 sys.path.insert(0, str(pathlib.Path(__file__).parents[1]))
 import from_image  # noqa: E402
 
-KILOPASCALS = {"vertebra": 1e5, "rib": 1e5, "hip_bone": 1e5, "disc": 1e3}  # and of all soft tissue
-SOFT, POISSON, PRESSURE = 10, 0.4, 1  # kPa, kPa on the skin in front
+KILOPASCALS = {"vertebra": 1e5, "rib": 1e5, "hip_bone": 1e5, "disc": 1e3}  # all soft tissue has SOFT
+SOFT, POISSON, PRESSURE = 10, 0.4, 1  # kPa, a ratio, and kPa on the skin in front
 
 
 def read_mesh(path):
-    """Points, cells with the name of their set, and the sides of each surface, as the input file lists them."""
+    """Returns points, cells with the name of their set, and the sides of each surface, as listed in the input file."""
     sections = re.split(r"^\*(?!\*)", path.read_text(), flags=re.MULTILINE)[1:]
     points, cells, surfaces = None, {}, {}
     for section in sections:
@@ -46,7 +46,7 @@ def write_job(path, mesh, cells, surfaces, points):
 
 
 def front_surface(cells, surfaces, points):
-    """The sides to the outside whose normal points to the front, as a surface of their own."""
+    """Returns a separate surface: the outer sides whose normal points to the front."""
     corners = {int(row[0]): row[1:] - 1 for rows in cells.values() for row in rows}
     vertices = {"S1": (0, 2, 1), "S2": (0, 1, 3), "S3": (1, 2, 3), "S4": (2, 0, 3)}  # the normal points out
     lines = []
@@ -59,7 +59,7 @@ def front_surface(cells, surfaces, points):
 
 
 def read_results(path):
-    """Volume by set in capitals, and displacements in the order of the nodes."""
+    """Returns the volume by name of set in capitals, and displacements in the order of the nodes."""
     text = path.read_text()
     volumes = {name: float(volume) for name, volume in
                re.findall(r"total volume for set (\S+) and time.*\n\s*\n?\s*(\S+)", text)}

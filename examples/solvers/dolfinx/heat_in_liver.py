@@ -16,8 +16,8 @@ sys.path.insert(0, str(pathlib.Path(__file__).parents[1]))
 import from_image  # noqa: E402
 
 CONDUCTIVITY = 5e-4        # W/(mm K), of soft tissue
-PERFUSION = 2e-6           # W/(mm^3 K), less than in life: the cells here are larger than that blood reaches
-SOURCE, RADIUS = 5e-5, 25  # W/mm^3 in a ball of so many mm around the centre of the liver
+PERFUSION = 2e-6           # W/(mm^3 K), lower than in life: the cells here are larger than the reach of blood
+SOURCE, RADIUS = 5e-5, 25  # W/mm^3 in a ball of this radius (mm) around the centre of the liver
 
 
 def read(path):

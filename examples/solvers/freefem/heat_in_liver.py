@@ -1,4 +1,4 @@
-"""Heat in the liver with FreeFem++, as heat_in_liver.edp has it, from the segmentation to the picture.
+"""Heat in the liver with FreeFem++ (heat_in_liver.edp), from the segmentation to the picture.
 
 usage: heat_in_liver.py FOLDER [IMAGE]    (packages freefem++, python3-meshio, python3-matplotlib)
 """
@@ -17,7 +17,7 @@ SCRIPT = pathlib.Path(__file__).with_suffix(".edp")
 
 
 def names_in(path):
-    """Name by kind, label or pair, and reference: podm's comments in a Medit file."""
+    """Returns names by kind, label or pair, and reference, from podm's comments in a Medit file."""
     head = path.read_text().split("Dimension")[0]
     comments = re.findall(r"^# (label|pair) (\d+)(?: \d+ \d+)? (.*)$", head, re.MULTILINE)
     return {(kind, int(number)): name for kind, number, name in comments}

@@ -18,18 +18,18 @@ from sfepy.solvers.ls import ScipyDirect  # noqa: E402
 from sfepy.solvers.nls import Newton  # noqa: E402
 from sfepy.terms import Term  # noqa: E402
 
-CONDUCTIVITY, PERFUSION, SOURCE = 5e-4, 2e-6, 5e-6  # W/(mm K), W/(mm^3 K), W/mm^3 in all of the liver
+CONDUCTIVITY, PERFUSION, SOURCE = 5e-4, 2e-6, 5e-6  # W/(mm K), W/(mm^3 K), W/mm^3 in the whole liver
 
 
 def read_mesh(path):
-    """SfePy's own readers do not know labels of VTK: meshio reads them."""
+    """Reads a VTK file by meshio, because SfePy's own reader ignores its labels."""
     read = meshio.read(path)
     return Mesh.from_data("abdomen", read.points, None, [read.cells[0].data], [read.cell_data["label"][0].astype(int)],
                           ["3_4"])
 
 
 def sizes_of(domain, regions, names):
-    """Volume by name of label, and number of facets by name of pair, as SfePy's regions have them."""
+    """Returns volumes by label name, and numbers of facets by pair name, from SfePy's regions."""
     volumes = {names[value]: domain.cmesh.get_volumes(3)[region.cells].sum() for value, region in regions.items()}
     facets = {}
     outer = domain.create_region("outer", "vertices of surface", "facet")
