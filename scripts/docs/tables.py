@@ -118,7 +118,7 @@ def ranks(sources, folder):
     table = distributed.distributed(sources.frame((folder,)))
     table = table[table["ranks"] > 1].sort_values(["cells_per_rank", "ranks"])
     return _lines(pandas.DataFrame({
-        "M cells a rank": [f"{value / 1e6:g}" for value in table["cells_per_rank"]], "ranks": table["ranks"],
+        "M cells per rank": [f"{value / 1e6:g}" for value in table["cells_per_rank"]], "ranks": table["ranks"],
         "M cells": [f"{value / 1e6:.2f}" for value in table["cells"]],
         "rounds": [f"{value:.0f}" for value in table["rounds"]],
         "deferred in round 0, of the cells": [f"{100 * value:.1f} %" for value in table["deferred_share"]],
