@@ -162,7 +162,8 @@ class Meshes(OnRanks):
         process = self.mpirun("-n", 1, MPI_PROGRAM, "mesh", "--help")
         self.assert_exit(process, 0)
         self.assertLessEqual(max(map(len, process.stdout.splitlines())), 110)
-        self.assertIn("refused: --target-elements", process.stdout)
+        self.assertIn("Not available on ranks", process.stdout)
+        self.assertRegex(process.stdout, r"\n +--target-elements: \w")
 
 
 class InProcess(OnRanks):
@@ -328,14 +329,14 @@ class Refusals(OnRanks):
         self.assertEqual(self.files(), before)
 
     def test_what_ranks_do_not_have_yet(self):
-        for option, *words in (["--target-elements", 1000, "target"], ["--executor", "virtual", "virtual"],
+        for option, *words in (["--target-elements", 1000, "--target-elements"], ["--executor", "virtual", "virtual"],
                                ["--algorithm", "podm-home", "algorithm podm-home"],
                                ["--surface", self.folder / "s.stl", "--surface"],
                                ["--schedule", self.folder / "leaves.jsonl", "--schedule"]):
             *values, word = words
             with self.subTest(option=option):
                 self.assert_all_refuse(["--oversubscribe", "-n", 2, MPI_PROGRAM, "mesh", IMAGE, "-o", self.out, option,
-                                        *values], word, "on ranks yet")
+                                        *values], word, "not available on ranks")
 
     def test_faults_that_every_rank_sees_are_told_once(self):
         mesh = ["--oversubscribe", "-n", 3, MPI_PROGRAM, "mesh"]

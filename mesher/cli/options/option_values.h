@@ -28,15 +28,22 @@ std::uint64_t parse_integer(const std::string& text, const std::string& option, 
 std::vector<double> parse_numbers(const std::string& text, const std::string& option, std::size_t count,
                                   const std::string& form);
 
-/// The choice of that name.
+/// "aggressive, random, global or local".
+template <Named Choice>
+std::string names_of_choices() {
+  const auto& all = Names<Choice>::kAll;
+  std::string names;
+  for (std::size_t i = 0; i < all.size(); ++i)
+    names += (i == 0 ? "" : i + 1 < all.size() ? ", " : " or ") + std::string(all[i].second);
+  return names;
+}
+
+/// Returns the choice of that name.
 template <Named Choice>
 Choice parse_choice(const std::string& text, const std::string& option) {
-  std::string names;
-  for (const auto& [value, name] : Names<Choice>::kAll) {
+  for (const auto& [value, name] : Names<Choice>::kAll)
     if (text == name) return value;
-    names.append(names.empty() ? "" : ", ").append(name);
-  }
-  throw InputError(option + ": '" + text + "' is not one of " + names);
+  throw InputError(option + ": '" + text + "' is not one of " + names_of_choices<Choice>());
 }
 
 /// "aggressive|random|global|local": as help writes the values of an option, which shells complete.

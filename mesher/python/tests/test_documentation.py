@@ -2,9 +2,9 @@
 
 import ast
 import inspect
+import json
 import pathlib
 import pydoc
-import re
 import typing
 import unittest
 
@@ -12,14 +12,16 @@ import numpy as np
 import numpy.typing
 
 import podm
-from podm import _podm, arguments
+from podm import _podm
 
 OF_THE_IMAGE = {"labels", "affine", "spacing", "progress"}  # not options of the program
 
 
+OPTIONS = [option for option in json.loads(_podm.options()) if "python" in option["uses"]]
+
+
 def option_keywords():
-    options = set(re.findall(r"^  --([a-z-]+)", _podm.options_help(), re.MULTILINE))
-    return {_podm.in_python_terms("--" + option) for option in options}
+    return {option["keyword"] for option in OPTIONS}
 
 
 def signature_told(function):
@@ -43,11 +45,16 @@ class DocumentationTest(unittest.TestCase):
         defaults = {parameter.default for parameter in inspect.signature(podm.mesh).parameters.values()}
         self.assertEqual(defaults, {inspect.Parameter.empty, None, False})
 
-    def test_flags_are_the_options_without_a_value(self):
-        flags = re.findall(r"^  --([a-z-]+)(?:  |$)", _podm.options_help(), re.MULTILINE)
-        self.assertEqual({_podm.in_python_terms("--" + flag) for flag in flags} - {"help"}, arguments.FLAGS)
+    def test_flags_default_to_false_and_nothing_else_does(self):
+        flags = {option["keyword"] for option in OPTIONS if option["kind"] == "flag"}
+        self.assertTrue(flags)
         parameters = inspect.signature(podm.mesh).parameters.values()
-        self.assertEqual({parameter.name for parameter in parameters if parameter.default is False}, arguments.FLAGS)
+        self.assertEqual({parameter.name for parameter in parameters if parameter.default is False}, flags)
+
+    def test_plan_has_the_options_that_a_plan_depends_on(self):
+        keywords = set(inspect.signature(podm.plan).parameters) - OF_THE_IMAGE
+        of_plan = {option["keyword"] for option in OPTIONS if "plan" in option["uses"] or option["group"] == "Labels"}
+        self.assertEqual(keywords, of_plan)
 
     def test_help_tells_of_every_option_with_its_default(self):
         text = podm.mesh.__doc__
@@ -70,7 +77,7 @@ class DocumentationTest(unittest.TestCase):
         self.assertEqual(podm.Mesh.__module__, "podm")
 
     def test_hints_name_types_that_there_are(self):
-        names = {"npt": numpy.typing, "StrPath": str, "LabelValues": int}
+        names = {"npt": numpy.typing, "StrPath": str}
         self.assertEqual(typing.get_type_hints(podm.mesh, localns=names)["return"], podm.Mesh)
 
     def test_the_stub_declares_what_the_extension_module_has(self):
@@ -91,6 +98,13 @@ class DocumentationTest(unittest.TestCase):
             else:
                 self.assertEqual(signature_of(node), signature_of(signature_told(members[name])), name)
 
+    def test_the_generated_stub_has_the_keywords_of_both_functions(self):
+        stub = ast.parse(pathlib.Path(podm.__file__).with_name("meshing.pyi").read_text())
+        declared = {node.name: node for node in stub.body if isinstance(node, ast.FunctionDef)}
+        for function in podm.mesh, podm.plan:
+            names = {parameter.arg for parameter in declared[function.__name__].args.kwonlyargs}
+            self.assertEqual(names | {"labels"}, set(inspect.signature(function).parameters))
+
     def test_properties_have_the_types_that_the_stub_tells(self):
         stub = ast.parse(pathlib.Path(podm.__file__).with_name("_podm.pyi").read_text())
         made = podm.mesh("phantom:spheres@24", radius=5)._made
@@ -103,13 +117,6 @@ class DocumentationTest(unittest.TestCase):
                 self.assertIsInstance(value, typing.get_origin(declared) or declared, node.name)
                 if isinstance(value, np.ndarray):
                     self.assertEqual(np.dtype(typing.get_args(typing.get_args(declared)[1])[0]), value.dtype, node.name)
-
-    def test_options_in_messages_are_keywords(self):
-        for message, expected in (("--radius-of liver: '0'", "radius_of liver: '0'"),
-                                  ("use --max-memory-gib\nSee 'podm mesh --help'.", "use max_memory_gib"),
-                                  ("--labels and --label-names", "keep and names"),
-                                  ("a--b.nii: no, and a/--c.nii", "a--b.nii: no, and a/--c.nii")):
-            self.assertEqual(_podm.in_python_terms(message), expected)
 
 
 if __name__ == "__main__":
