@@ -213,8 +213,7 @@ struct TopologyRecord {
   }
 };
 
-/// What podm-verify needs to judge a mesh, beside the mesh and the image: claims, and options with their
-/// bounds.
+/// The claims that podm-verify checks for a mesh, and the options with their bounds.
 struct JudgingRecord {
   std::vector<std::string> claims, options;
   static constexpr auto fields() {

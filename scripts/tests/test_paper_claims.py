@@ -20,7 +20,7 @@ LINES, UNJUDGED = paper_claims.read_lines()
 EXPERIMENTS = paths.SCRIPTS.parent / "experiments"
 IDS = ["podm-weak-scaling", "pdr-podm-weak-scaling", "podm-falls-behind", "crossover", "best-speedup",
        "parts-of-the-time", "hops", "latencies", "initial-mesh", "buffer-zones", "quality", "cost-of-distributing",
-       "over-decomposition", "single-core"]
+       "threshold", "over-decomposition", "single-core"]
 
 
 def line(measured, simulated=None, says="it is so"):

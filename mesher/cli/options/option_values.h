@@ -142,7 +142,7 @@ struct Target {
 };
 
 Target into(std::string& text);
-/// `quantity`: as for parse_positive.
+/// `quantity` describes the number: see parse_positive().
 Target into_positive(double& value, const std::string& quantity);
 template <Named Choice>
 Target into_choice(Choice& choice) {

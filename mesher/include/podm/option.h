@@ -1,4 +1,4 @@
-// How an option of a run is declared: once, beside the member that holds its value.
+// Declarations of the options of a run. An option is declared once, beside the member that holds its value.
 //
 // The declarations are the source of the command line and its help, of refusals, of the options in records,
 // of the keywords of the Python package, of the keys of experiments, of manual pages and of the page of
@@ -108,7 +108,7 @@ void for_each_option(Struct&& of, const Visit& visit) {
   std::apply([&](const auto&... each) { (visit_each(each), ...); }, std::remove_cvref_t<Struct>::options());
 }
 
-/// How messages spell options: "--leaf-size" for the programs, "leaf_size" for the Python package, which sets
+/// Messages spell options in two ways: "--leaf-size" for the programs, "leaf_size" for the Python package, which sets
 /// this.
 inline std::atomic<bool> messages_are_for_python = false;
 
