@@ -125,6 +125,7 @@ std::string shown(Choice value) {
   return to_string(value);
 }
 template <class Other>
+  requires(!std::integral<Other> && !Named<Other>)
 std::string shown(const Other&) {
   return "";
 }

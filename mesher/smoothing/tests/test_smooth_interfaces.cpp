@@ -5,7 +5,7 @@
 #include <numbers>
 
 #include "isosurface/isosurface.h"
-#include "isosurface_reference.h"
+#include "isosurface/tests/isosurface_reference.h"
 #include "podm/errors.h"
 #include "smoothing/smooth_interfaces.h"
 
