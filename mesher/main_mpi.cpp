@@ -10,9 +10,9 @@
 
 #include "cli/commands/commands.h"
 #include "cli/commands/mesh_on_ranks.h"
+#include "distributed/collective_errors.h"
 #include "distributed/mpi_communication.h"
 #include "distributed/rank_failure.h"
-#include "distributed/together.h"
 
 namespace {
 
@@ -52,7 +52,7 @@ podm::cli::Command parse(int argc, char** argv, const podm::Communication& ranks
 int run(int argc, char** argv, podm::Communication& ranks, podm::cli::SignalThread& signals) {
   namespace cli = podm::cli;
   cli::Command command;
-  podm::do_together([&] { command = parse(argc, argv, ranks); }, ranks);
+  podm::do_collectively([&] { command = parse(argc, argv, ranks); }, ranks);
   const bool is_mesh = std::holds_alternative<cli::MeshCommand>(command);
   podm::expect_agreement({{"command", is_mesh ? "mesh" : "a text to show"}}, ranks);
   if (const auto* text = std::get_if<cli::ShowText>(&command)) return ranks.rank() == 0 ? cli::run(*text) : 0;

@@ -87,7 +87,7 @@ void check_optimization(const MeshingOptions& options) {
   const auto [least, largest] = optimize.dihedral_bounds_deg;
   if (!(least > 0 && least <= 15) || !(largest >= 150 && largest < 180))
     throw InputError(
-        "bounds on dihedral angles must be more than 0 and at most 15, and at least 150 and less than 180");
+        "the least dihedral angle must be above 0 and at most 15, the largest at least 150 and below 180");
   if (options.log != nullptr)
     throw InputError("an optimised mesh has no log of operations: those of optimisation are not logged");
 }

@@ -7,9 +7,9 @@
 #include <string_view>
 
 #include "algorithms/check_options.h"
+#include "distributed/collective_errors.h"
 #include "distributed/pieces.h"
 #include "distributed/report_of_ranks.h"
-#include "distributed/together.h"
 #include "io/sha256.h"
 #include "podm/mesh_io.h"
 #include "run/extract_mesh.h"
@@ -199,7 +199,7 @@ MeshingOnRanks mesh_image_on_ranks(const LabelImage& image, const MeshingOptions
                                    Communication& ranks, const ProgressCallback& progress,
                                    std::stop_token stop, SharedIsosurface* isosurface) {
   std::optional<RunOnRank> run;
-  do_together(
+  do_collectively(
       [&] {
         check_options(image, options);
         check_options_on_ranks(options);

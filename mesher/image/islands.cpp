@@ -105,7 +105,8 @@ void remove_empty_labels(LabelImage& image, const std::string& path) {
 std::string warning_of(const DroppedIslands& dropped, double below_mm3) {
   const Label& label = dropped.label;
   return fmt::format(
-      "label {}{} is dropped whole, {:g} mm^3: none of its {} components has the {:g} mm^3 of --drop-islands",
+      "label {}{} is dropped entirely, {:g} mm^3: none of its {} components has the {:g} mm^3 of "
+      "--drop-islands",
       label.value, label.name.empty() ? "" : fmt::format(" ({})", label.name), dropped.volume_mm3,
       dropped.number, below_mm3);
 }

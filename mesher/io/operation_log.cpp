@@ -115,7 +115,7 @@ class Reader {
     json.at("rank").get_to(head.rank);
     json.at("mesh_hash").get_to(head.mesh_hash);
     if (head.rank < 0 || head.rank >= head.num_ranks)
-      fail(fmt::format("there is no rank {} of {}", head.rank, head.num_ranks));
+      fail(fmt::format("rank {} of {} ranks does not exist", head.rank, head.num_ranks));
   }
 
   void take_smoothing(const nlohmann::ordered_json& json, OperationLogHead& head) const {

@@ -77,7 +77,7 @@ class AbaqusWriter {
 
   Losses write() {
     print_head();
-    tell_changed_names();
+    warn_of_changed_names();
     print_nodes();
     for (std::size_t i = 0; i < sets_.volumes.size(); ++i) print_elements(i);
     print_surfaces();
@@ -103,7 +103,7 @@ class AbaqusWriter {
   }
 
   // Reports changed names. A pair of unchanged names is joined by a dash.
-  void tell_changed_names() {
+  void warn_of_changed_names() {
     std::size_t labels = 0, surfaces = 0;
     std::string of_label, of_surface;  // the last changed name of each kind
     for (std::size_t i = 0; i < sets_.volumes.size(); ++i) {

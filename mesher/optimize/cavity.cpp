@@ -103,7 +103,7 @@ StepResult Cavity<Locks>::add_ball(VertexId v, CellId seed, LabelIndex label) {
 }
 
 template <class Locks>
-double Cavity<Locks>::worst(const CellQuality& quality) const {
+double Cavity<Locks>::worst(const OptimizationQuality& quality) const {
   double worst = std::numeric_limits<double>::infinity();
   for (const LocalCell& cell : vertices_) worst = std::min(worst, quality.of(points_of(cell)));
   return worst;

@@ -41,7 +41,7 @@ std::string bytes_of(const std::string& keyword, const py::handle& value, bool i
   const auto refuse = [&] {
     fail(keyword,
          is_file ? "the name of a file, without NUL or lone surrogates,"
-                 : "a text, without NUL or lone surrogates,",
+                 : "text, without NUL or lone surrogates,",
          value);
   };
   try {

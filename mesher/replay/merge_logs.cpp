@@ -32,7 +32,7 @@ class Reader {
   std::span<const std::uint32_t> removed() const {
     return {all_.removed.data() + next_removed_, next().num_removed};
   }
-  void go_on() {
+  void advance() {
     next_removed_ += next().num_removed;
     ++next_;
   }
@@ -58,7 +58,7 @@ class Merge {
   OperationBatch operator()() {
     while (const std::optional<std::uint64_t> step = next_step())
       for (Reader& rank : ranks_)
-        for (; rank.is_in(*step); rank.go_on()) carry_out(rank);
+        for (; rank.is_in(*step); rank.advance()) carry_out(rank);
     return std::move(whole_);
   }
 
@@ -80,18 +80,18 @@ class Merge {
 
   void carry_out(Reader& rank) {
     const LoggedOperation& logged = rank.next();
-    if (logged.kind == kForgottenVertex) {
-      forget(rank);
+    if (logged.kind == kReceivedRemoval) {
+      remove_received(rank);
     } else if (logged.kind == kMovedVertex) {
       move(rank);
-    } else if (logged.kind >= kLearntVertex && logged.kind < kForgottenVertex) {
-      learn(rank);
+    } else if (logged.kind >= kReceivedInsertion && logged.kind < kReceivedRemoval) {
+      insert_received(rank);
     } else {
       apply(rank);
     }
   }
 
-  void forget(Reader& rank) {
+  void remove_received(Reader& rank) {
     rank.expect(rank.removed().size() == 1, "forgets other than one vertex");
     const Point p = take_removed(rank, rank.removed().front());
     rank.expect(p == point_of(rank.next()), "forgets a vertex that is elsewhere");
@@ -106,11 +106,11 @@ class Merge {
     give_number(rank);
   }
 
-  void learn(Reader& rank) {
+  void insert_received(Reader& rank) {
     const LoggedOperation& logged = rank.next();
     const auto found = vertices_.find(point_of(logged));
     rank.expect(found != vertices_.end(), "learns of a vertex that nobody has made");
-    rank.expect(found->second.kind == logged.kind - kLearntVertex, "learns of a vertex of another kind");
+    rank.expect(found->second.kind == logged.kind - kReceivedInsertion, "learns of a vertex of another kind");
     give_number(rank);
   }
 

@@ -9,7 +9,7 @@
 #include <limits>
 #include <string_view>
 
-#include "runtime/shortest_ways.h"
+#include "runtime/shortest_paths.h"
 #include "runtime/toml_section.h"
 
 namespace podm {
@@ -45,7 +45,7 @@ void read_cache(TomlSection& section, Processors& processors) {
   if (caches.size() == 1) return;
   const MachineModel::Cache &inner = *(caches.end() - 2), &outer = caches.back();
   if (outer.level <= inner.level || outer.latency_s <= inner.latency_s)
-    section.fail(section.place(), "caches are told from the fastest to the slowest, by level");
+    section.fail(section.place(), "caches are told from the fastest to the slowest, by level, by level");
 }
 
 Processors read_processors(TomlSection section) {
@@ -184,7 +184,7 @@ MachineModel MachineModel::from_file(const std::filesystem::path& path) try {
   file.done();
   if (network.num_nodes * processors.sockets * processors.cores_per_socket > kMostProcessors)
     file.fail(file.place(), fmt::format("a machine of more than {} cores", kMostProcessors));
-  const std::vector<std::vector<int>> routes = shortest_ways(network.neighbours, network.num_nodes);
+  const std::vector<std::vector<int>> routes = shortest_paths(network.neighbours, network.num_nodes);
   return {.name = name,
           .sources = sources,
           .topology = topology_of(processors, memory, network.num_nodes, routes),

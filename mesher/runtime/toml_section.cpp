@@ -52,15 +52,15 @@ toml::table parse_ascii_toml(const std::string& path) {
   return parsed(path, [&] { return toml::parse(text.str(), path); });
 }
 
-std::string TomlSection::told(const toml::source_region& place) const {
+std::string TomlSection::location(const toml::source_region& place) const {
   return fmt::format("{}:{}:{}", path_, place.begin.line, place.begin.column);
 }
 
 void TomlSection::fail(const toml::source_region& place, const std::string& fault) const {
-  throw TomlError(told(place) + ": " + fault);
+  throw TomlError(location(place) + ": " + fault);
 }
 
-std::string TomlSection::where(std::string_view key) const { return told(place(key)); }
+std::string TomlSection::where(std::string_view key) const { return location(place(key)); }
 
 std::string TomlSection::text_of(const toml::node& node, std::string_view key) const {
   const auto value = node.value_exact<std::string>();

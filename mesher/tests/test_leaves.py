@@ -72,7 +72,7 @@ class Leaves(PodmTestCase):
 
     def test_options_that_do_not_go_together_are_refused(self):
         for arguments, word in ((["--algorithm", "pdr", "--cores-per-node", "2"], "pdr"),
-                                (["--algorithm", "pdr-podm", "--nodes", "3", "--threads", "4"], "evenly"),
+                                (["--algorithm", "pdr-podm", "--nodes", "3", "--threads", "4"], "divide"),
                                 (["--algorithm", "pdr-podm", "--nodes", "2", "--cores-per-node", "3", "--threads", "4"],
                                  "threads"),
                                 (["--algorithm", "pdr", "--initial-ratio", "0.5"], "ratio"),

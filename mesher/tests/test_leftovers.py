@@ -145,7 +145,7 @@ class Verification(PodmTestCase):
         self.assertEqual(set(self.read_record(runs)["verdicts"].values()), {"pass"})
         self.assertEqual(self.names(), self.MESH | {"runs.jsonl"})
 
-    def test_a_verifier_that_is_not_there_is_told_of_before_there_is_a_mesh(self):
+    def test_a_missing_verifier_is_reported_before_there_is_a_mesh(self):
         alone = self.folder / "podm"
         shutil.copy(PROGRAM, alone)
         process = run_podm("mesh", "phantom:spheres@24", "-o", self.folder / "out.vtu", "--verify", program=alone)

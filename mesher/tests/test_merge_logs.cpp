@@ -27,14 +27,14 @@ class LogsOfRanks : public testing::Test {
       logs_.back().log.head = {{0, 0, 0, 9, 9, 9}, "image", "RAS", "", "cafe", rank, 3};
       for (std::uint32_t i = 0; i < 3; ++i) {
         if (rank == 0) add(rank, at(0, i), 1 + i, 8 + i);
-        if (rank > 0) learn(rank, at(1, i), 1 + i, 8 + i);
+        if (rank > 0) receive_insertion(rank, at(1, i), 1 + i, 8 + i);
       }
     }
     add(0, at(2, 0), 4, 8, {8});
     add(0, at(2, 1), 1, 11);
     add(1, at(2, 0), 5, 11, {10});
-    learn(2, at(3, 0), 5, 11);
-    forget(2, at(3, 1), 3, 10);
+    receive_insertion(2, at(3, 0), 5, 11);
+    receive_removal(2, at(3, 1), 3, 10);
     add(1, at(4, 0), 6, 12, {8, 11});
   }
 
@@ -45,11 +45,12 @@ class LogsOfRanks : public testing::Test {
         {sequence, {x, 0.5, 0.5}, vertex, 1, kind, static_cast<std::uint32_t>(removed.size())});
     all.removed.insert(all.removed.end(), removed.begin(), removed.end());
   }
-  void learn(int rank, std::uint64_t sequence, double x, std::uint32_t vertex, std::uint32_t kind = kFree) {
-    add(rank, sequence, x, vertex, {}, kLearntVertex + kind);
+  void receive_insertion(int rank, std::uint64_t sequence, double x, std::uint32_t vertex,
+                         std::uint32_t kind = kFree) {
+    add(rank, sequence, x, vertex, {}, kReceivedInsertion + kind);
   }
-  void forget(int rank, std::uint64_t sequence, double x, std::uint32_t vertex) {
-    add(rank, sequence, x, vertex, {vertex}, kForgottenVertex);
+  void receive_removal(int rank, std::uint64_t sequence, double x, std::uint32_t vertex) {
+    add(rank, sequence, x, vertex, {vertex}, kReceivedRemoval);
   }
   OperationBatch& log(int rank) { return logs_[static_cast<std::size_t>(rank)].log.all; }
 
@@ -147,7 +148,7 @@ TEST_F(LogsOfRanks, LearnWhatIsSo) {
 
 TEST_F(LogsOfRanks, ForgetAndRemoveWhatIsSo) {
   const std::vector<LogOfRank> logs = logs_;
-  forget(0, at(5, 0), 2, 9);
+  receive_removal(0, at(5, 0), 2, 9);
   EXPECT_EQ(fault(), "log.0: operation 0 of step 5: forgets a vertex that nobody has removed");
   logs_ = logs;
   add(2, at(5, 0), 7, 12, {8});

@@ -54,7 +54,7 @@ class SizesByPlace(PodmTestCase):
                 smaller = self.verdict_on_size("--size-image", self.ramp, "--size-factor", 0.8)
                 self.assertGreater(smaller["num_violations"], 0)
 
-    def test_the_record_tells_of_them(self):
+    def test_the_record_has_them(self):
         record = self.record_of("--size-image", self.ramp, "--size-near", "shell,0=2", "--size-near", "2,1=1.5:3",
                                 "--grade", 0.5)
         self.assertEqual(record["options"]["size_image"],

@@ -46,7 +46,7 @@ void VirtualTime::run(const std::function<void(WorkerId)>& work) try {
     const Event event = events_.top();
     events_.pop();
     now_s_ = event.time_s;
-    go_on(event.worker);
+    advance(event.worker);
     if (num_events_ % StopControl::kAttemptsBetweenChecks != 0) continue;
     stop_.observe();
     stop_.check_limits();
@@ -80,7 +80,7 @@ void VirtualTime::finish_all() {
   if (failure) std::rethrow_exception(failure);
 }
 
-void VirtualTime::go_on(WorkerId worker) {
+void VirtualTime::advance(WorkerId worker) {
   WorkerState& state = states_[worker];
   if (state.most_steps > 0) allow_part(state);
   if (state.fibre->resume() != Fibre::State::kOutOfSteps) return;

@@ -56,7 +56,7 @@ nlohmann::ordered_json as_json(const std::string& path, const LabelImage& image,
                       {"name", image.labels[i].name},
                       {"voxels", counts[i]},
                       {"volume_mm3", static_cast<double>(counts[i]) * voxel_mm3}});
-  nlohmann::ordered_json told = {
+  nlohmann::ordered_json info = {
       {"path", path},
       {"size", image.size},
       {"spacing_mm", image.spacing},
@@ -65,8 +65,8 @@ nlohmann::ordered_json as_json(const std::string& path, const LabelImage& image,
       {"background", {{"value", image.labels[kBackground].value}, {"voxels", counts[kBackground]}}},
       {"labels", labels},
       {"warnings", image.warnings}};
-  if (plan) told["plan"] = plan_json(*plan, image);
-  return told;
+  if (plan) info["plan"] = plan_json(*plan, image);
+  return info;
 }
 
 }  // namespace

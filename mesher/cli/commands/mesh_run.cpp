@@ -102,7 +102,7 @@ MeshNumbers numbers_of(const TetMesh& mesh) {
           .facet_pairs = most_first(by_pair)};
 }
 
-int tell(const MeshRun& run, std::optional<AppendedFile>& records) {
+int report(const MeshRun& run, std::optional<AppendedFile>& records) {
   if (records) records->append(json_line(record(run)));
   if (!run.command.quiet) fmt::print(stderr, "{}", summary(run));
   if (run.command.stats) fmt::print(stderr, "{}", statistics(run));

@@ -43,7 +43,7 @@ void add_info_command(CLI::App& program, InfoCommand& command) {
   add_flag(app, "--json", command.json, "print one JSON object [default: text]");
   CLI::Option* plan =
       add_flag(app, "--plan", command.plan,
-               "also what podm mesh will cost and lose with the options below: cells by\n"
+               "also predict what podm mesh costs and loses with the options below: cells by\n"
                "label, memory, seconds, what delta is too coarse for, components [default: no]");
   add_planned_options(app, command.planned, plan);
 }

@@ -11,7 +11,8 @@ namespace {
 
 constexpr int kLeastPixels = 16, kMostPixels = 16384;
 constexpr const char* kPlaneForm =
-    "AXIS=PLACE or none: x, y, z or a normal as 1,1,0; a fraction as 0.5, or as -20mm";
+    "AXIS=PLACE or none: AXIS is x, y, z or a normal such as 1,1,0; "
+    "PLACE is a fraction such as 0.5, or -20mm";
 
 std::array<double, 3> parse_normal(const std::string& text, const std::string& option) {
   if (text == "x") return {1, 0, 0};
@@ -97,7 +98,8 @@ void add_look_options(CLI::App& app, ViewCommand& command) {
              "ratio (circumradius over shortest edge) or size (circumradius)",
              command.colour);
   add_one(app, "--camera", "DEG,DEG",
-          "look from this far to the right of where one faces the cut, and from this\nfar above it, degrees",
+          "direction of view: degrees to the right of the direction that faces the cut,\n"
+          "and degrees above it",
           {[&command](const std::string& text, const std::string& name) {
              const auto angles = parse_numbers(text, name, 2, "two angles in degrees, as in 20,15");
              command.camera_deg = {angles[0], angles[1]};

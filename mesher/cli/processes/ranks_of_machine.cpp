@@ -46,8 +46,8 @@ RanksOfMachine::RanksOfMachine(Communication& ranks)
   append(message, std::span<const char>(host_name()));
   append(message, usable_processors());
   std::vector<std::string> ids;
-  for (const Bytes& told : ranks.all_gather(std::move(message))) {
-    MessageReader reader(told);
+  for (const Bytes& received : ranks.all_gather(std::move(message))) {
+    MessageReader reader(received);
     const auto id = reader.read<char>(), host = reader.read<char>();
     Place place{{id.begin(), id.end()}, {host.begin(), host.end()}, reader.read<int>()};
     const auto known = std::find(ids.begin(), ids.end(), place.boot_id);

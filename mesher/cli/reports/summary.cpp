@@ -58,19 +58,21 @@ std::string quality_text(const Quality& quality) {
       quality.shortest_edge_mm);
 }
 
-std::string perturbed_text(const MeshingReport& report) {
-  if (!report.perturbed) return "";
-  const Perturbed& told = *report.perturbed;
+std::string perturbation_text(const MeshingReport& report) {
+  if (!report.perturbation) return "";
+  const PerturbationReport& perturbation = *report.perturbation;
   std::string text = fmt::format(
       "dihedral   cells with an angle below {:g} or above {:g} deg: {} ({} with a free vertex), before {} "
       "({})\n",
-      told.min_dihedral_deg, told.max_dihedral_deg, told.after.number(), told.after.with_free_vertex,
-      told.before.number(), told.before.with_free_vertex);
+      perturbation.min_dihedral_deg, perturbation.max_dihedral_deg, perturbation.after.number(),
+      perturbation.after.with_free_vertex, perturbation.before.number(),
+      perturbation.before.with_free_vertex);
   std::string why;
   for (const auto& [reason, name] : Names<Unmoved>::kAll)
-    if (const std::uint64_t cells = told.unmoved[static_cast<std::size_t>(reason)]; cells > 0)
+    if (const std::uint64_t cells = perturbation.unmoved[static_cast<std::size_t>(reason)]; cells > 0)
       why += fmt::format("{} {} {}", why.empty() ? "" : ",", name, cells);
-  if (told.not_reached > 0) why += fmt::format("{} not reached {}", why.empty() ? "" : ",", told.not_reached);
+  if (perturbation.not_reached > 0)
+    why += fmt::format("{} not reached {}", why.empty() ? "" : ",", perturbation.not_reached);
   return why.empty() ? text : text + "           these stay for" + why + "\n";
 }
 
@@ -166,7 +168,7 @@ std::string summary(const MeshRun& run) {
       fmt::format("{}{} cells, {} vertices, {} boundary facets; {} space\n", place, run.mesh.cells,
                   run.mesh.vertices, run.mesh.boundary_facets, to_string(run.options.space));
   text += labels_text(run) + smoothing_text(run) + facets_text(run) + quality_text(report.quality) +
-          perturbed_text(report) + optimization_text(report);
+          perturbation_text(report) + optimization_text(report);
   text += fmt::format("sizes      radius {}, delta {:.4g} mm\n",
                       report.radius_mm > 0 ? fmt::format("{:.4g} mm", report.radius_mm) : "unbounded",
                       report.delta_mm);

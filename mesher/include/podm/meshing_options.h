@@ -217,7 +217,7 @@ struct TeamOptions {
 struct LeafOptions {
   double initial_ratio = 4;  ///< circumradius bound and delta of the initial mesh over those of the final one
   double size_mm = 0;        ///< side of the octree's leaves; 0: from the initial mesh's bound
-  bool with_schedule = false;  ///< the report tells when which leaf was refined
+  bool with_schedule = false;  ///< the report lists when each leaf was refined
 
   static constexpr auto options() {
     using L = LeafOptions;

@@ -117,9 +117,9 @@ class Mesh:
     def save(self, path: str | os.PathLike[str], *, gmsh_version: str | float | None = None) -> None:
         """Writes the mesh, in the format of the name's extension: those of `podm mesh --output`.
 
-        The file appears whole or not at all: podm.Error says what is in the way. What the format does not hold of the
-        mesh, as characters of names in .inp, is told by warnings.warn(). `gmsh_version`: of a .msh file alone, "4.1" or
-        "2.2", as `podm mesh --gmsh-version`; None is the program's default."""
+        The file appears whole or not at all: podm.Error names the obstacle. What the format does not hold of the
+        mesh, such as characters of names in .inp, is reported by warnings.warn(). `gmsh_version`: only for .msh files,
+        "4.1" or "2.2", as `podm mesh --gmsh-version`; None is the program's default."""
         for loss in self._made.save(path_bytes("path", path), gmsh_version):
             warnings.warn(f"{os.fsdecode(path)}: {loss}", stacklevel=2)
 
@@ -169,5 +169,5 @@ class Mesh:
                 f"{state}>")
 
     def __str__(self) -> str:
-        """What the program tells of a run."""
+        """Returns the summary of the program for a run."""
         return self._made.summary()

@@ -72,8 +72,8 @@ class RefusedTest(TestCase):
                 self.assert_refused(f"{keyword}: the name of a file, without NUL", repr(text), **{keyword: text})
             for keyword, value in (("names", {3: text}), ("radius_of", {text: 2}), ("merge", {text: [3]}),
                                    ("keep", text), ("algorithm", text)):
-                self.assert_refused(f"{keyword}: a text, without NUL", **{keyword: value})
-        self.assert_refused("names: a text, without NUL", names={3: "\udcff"})
+                self.assert_refused(f"{keyword}: text, without NUL", **{keyword: value})
+        self.assert_refused("names: text, without NUL", names={3: "\udcff"})
 
     def test_names_of_no_label(self):
         self.assert_refused("labels: no label 'livr'", "did you mean 'liver'", names={3: "liver"},

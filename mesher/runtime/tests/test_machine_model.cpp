@@ -56,12 +56,12 @@ std::string replaced(std::string text, const std::string& old, const std::string
   return text.replace(place, old.size(), by);
 }
 
-// Returns the number of ways through each station, without the ways that end there.
-std::vector<int> ways_through(const MachineModel& model) {
-  std::vector<int> ways(model.stations.size());
+// Returns the number of paths through each station, without the paths that end there.
+std::vector<int> paths_through(const MachineModel& model) {
+  std::vector<int> paths(model.stations.size());
   for (const std::vector<int>& route : model.routes)
-    for (std::size_t i = 1; i + 1 < route.size(); ++i) ++ways[route[i]];
-  return ways;
+    for (std::size_t i = 1; i + 1 < route.size(); ++i) ++paths[route[i]];
+  return paths;
 }
 
 void expect_consistent(const MachineModel& model) {
@@ -120,10 +120,11 @@ TEST(MachineModel, OfBlacklightIsAsDocumented) {
 }
 
 TEST(MachineModel, EqualWaysShareTheLoad) {
-  const std::vector<int> ways = ways_through(MachineModel::from_file(kMachines + "/blacklight.toml"));
-  EXPECT_EQ(ways[16], ways[17]) << "routers";
-  EXPECT_EQ(std::set<int>(ways.begin(), ways.begin() + 16).size(), 1u) << "hubs of 16 blades that are alike";
-  const std::vector<int> around = ways_through(model_of(kRing));
+  const std::vector<int> paths = paths_through(MachineModel::from_file(kMachines + "/blacklight.toml"));
+  EXPECT_EQ(paths[16], paths[17]) << "routers";
+  EXPECT_EQ(std::set<int>(paths.begin(), paths.begin() + 16).size(), 1u)
+      << "hubs of 16 blades that are alike";
+  const std::vector<int> around = paths_through(model_of(kRing));
   EXPECT_EQ(std::accumulate(around.begin(), around.end(), 0), 4) << "each node to the opposite one";
   EXPECT_EQ(*std::max_element(around.begin(), around.end()), 1);
 }

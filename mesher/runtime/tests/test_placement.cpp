@@ -80,7 +80,7 @@ TEST_P(Order, ScatterKeepsNodesBalancedAndSiblingsLast) {
   }
 }
 
-TEST_P(Order, NoneSpreadsNodesAndBindsNobody) {
+TEST_P(Order, NoneSpreadsNodesAndBindsNoThread) {
   const auto bound = places_on(machine_, "scatter"), free = places_on(machine_, "none");
   ASSERT_EQ(bound.size(), free.size());
   for (std::size_t worker = 0; worker < free.size(); ++worker) {

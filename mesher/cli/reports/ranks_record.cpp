@@ -1,4 +1,4 @@
-#include "cli/reports/told_by_ranks.h"
+#include "cli/reports/ranks_record.h"
 
 #include <fmt/format.h>
 
@@ -55,7 +55,7 @@ double imbalance(const std::vector<PartOfRank>& parts) {
 
 Json update_of(const Update& update) {
   return {{"cubes", update.cubes},
-          {"vertices_told", update.vertices_told},
+          {"vertices_told", update.vertices_received},
           {"inserted", update.inserted},
           {"removed", update.removed}};
 }
@@ -177,11 +177,11 @@ std::string text_of(const std::vector<PartOfRank>& parts, const std::vector<Spen
       is_virtual ? virtual_time_text(spent) : memory_text(spent));
   if (parts[0].rounds.empty()) return text;
   text += fmt::format("{:>10} {:>11} {:>11} {:>11} {:>14} {:>17} {:>9}\n", "round", "entries", "insertions",
-                      "deferred", "vertices told", "seconds: exchange", "refine");
+                      "deferred", "vertices received", "seconds: exchange", "refine");
   for (std::size_t i = 0; i < parts[0].rounds.size(); ++i) {
     const RoundReport round = on_all(parts, i);
     text += fmt::format("{:>10} {:>11} {:>11} {:>11} {:>14} {:>17.2f} {:>9.2f}\n", i, round.entries,
-                        round.insertions, round.deferred, round.update.vertices_told, round.update_s,
+                        round.insertions, round.deferred, round.update.vertices_received, round.update_s,
                         round.refine_s);
   }
   return text;
@@ -197,8 +197,8 @@ void gather_from_ranks(const MeshingOnRanks& result, int threads, const RanksOfM
   append(message, numbers_of(result.piece.mesh).facet_pairs);
   std::vector<Spent> spent;
   std::vector<FacetCount> pairs;
-  for (const Bytes& told : ranks.all_gather(std::move(message))) {
-    MessageReader reader(told);
+  for (const Bytes& received : ranks.all_gather(std::move(message))) {
+    MessageReader reader(received);
     spent.push_back(reader.read<Spent>().at(0));
     run.peak_rss_bytes = std::max(run.peak_rss_bytes, spent.back().peak_rss_bytes);
     const auto more = reader.read<FacetCount>();
