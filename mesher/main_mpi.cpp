@@ -44,8 +44,8 @@ podm::cli::Command parse(int argc, char** argv, const podm::Communication& ranks
   auto command = podm::cli::parse_command_line({argv + 1, argv + argc}, podm::cli::Program::kPodmMpi);
   const auto* mesh = std::get_if<podm::cli::MeshCommand>(&command);
   if (mesh != nullptr && mesh->ranks_in_process > 0 && ranks.size() > 1)
-    throw podm::InputError(fmt::format(
-        "--in-process: MPI has started {} processes, and one is to have all ranks", ranks.size()));
+    throw podm::InputError(
+        fmt::format("--in-process: MPI has started {} processes; ranks in process need one", ranks.size()));
   return command;
 }
 

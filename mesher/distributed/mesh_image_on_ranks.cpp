@@ -41,7 +41,7 @@ void check_options_on_ranks(const MeshingOptions& options) {
   refuse(options.algorithm == Algorithm::kPodmHome, "algorithm " + to_string(options.algorithm));
   refuse(options.team.executor == Executor::kVirtual, "virtual time");
   refuse(options.leaves.with_schedule, "a schedule of leaves");
-  refuse(options.sizes.image || !options.sizes.near.empty(), "a size by place");
+  refuse(options.sizes.image || !options.sizes.near.empty(), "a local size");
   for_each_option(options, [](const Declaration& of, const auto& value) {
     refuse(of.not_on_ranks && !is_default(of.name, value), spelled(of));
   });

@@ -191,7 +191,7 @@ MpiSession::MpiSession(int& argc, char**& argv) {
   int provided = MPI_THREAD_SINGLE;
   check(MPI_Init_thread(&argc, &argv, MPI_THREAD_FUNNELED, &provided), "MPI_Init_thread");
   if (provided < MPI_THREAD_FUNNELED)
-    throw std::runtime_error("this MPI does not serve programs of several threads (MPI_THREAD_FUNNELED)");
+    throw std::runtime_error("this MPI does not support programs with several threads (MPI_THREAD_FUNNELED)");
 }
 
 MpiSession::~MpiSession() { MPI_Finalize(); }

@@ -162,7 +162,7 @@ class PieceOfMesh {
     }
     for (const auto& number : number_of)
       if (number.second.id == kNoNumber)
-        throw InternalError("another rank has a vertex that its own rank has not");
+        throw InternalError("another rank uses a vertex that the rank of its part of space lacks");
     return number_of;
   }
 

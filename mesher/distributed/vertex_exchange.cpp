@@ -170,13 +170,14 @@ void VertexExchange::apply(std::vector<Change>& changes, std::vector<CellId>* ma
   }
   std::sort(order.begin(), order.end());
   const auto check = [](StepResult result) {
-    if (result != StepResult::kDone) throw InternalError("what another rank tells does not fit in the mesh");
+    if (result != StepResult::kDone)
+      throw InternalError("vertices received from another rank do not fit in the mesh");
   };
   for (const auto& place : order) {
     const auto& [point, kind] = changes[place.change];
     if (kind == VertexKind::kUnused) {
       const std::optional<Found> found = find_vertex(point);
-      if (!found) throw InternalError("a vertex to be taken away is not there");
+      if (!found) throw InternalError("a vertex to be removed does not exist");
       check(operation_.plan_removal(found->vertex, found->cell));
       check(operation_.commit_removals());
       note(changes[place.change], found->vertex);

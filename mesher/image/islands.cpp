@@ -97,7 +97,7 @@ void remove_empty_labels(LabelImage& image, const std::string& path) {
     if (has_voxels[i]) labels.push_back(image.labels[i]);
   }
   if (labels.size() == image.labels.size()) return;
-  if (labels.size() == 1) refuse(path, "--drop-islands: no label has a component that is as large");
+  if (labels.size() == 1) refuse(path, "--drop-islands: no label has a component of this volume");
   for (LabelIndex& voxel : image.voxels) voxel = becomes[voxel];
   image.labels = std::move(labels);
 }

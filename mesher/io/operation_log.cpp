@@ -86,7 +86,8 @@ class Reader {
         if (!std::isfinite(x))
           fail(fmt::format("{}: not a finite point", operation_text(operation.sequence)));
     }
-    if (num_removed != sizes.removed) fail("a batch whose operations remove another number of vertices");
+    if (num_removed != sizes.removed)
+      fail("the number of vertices that a batch removes differs from the sum over its operations");
     return true;
   }
 

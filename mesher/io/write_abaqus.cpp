@@ -120,10 +120,10 @@ class AbaqusWriter {
       of_surface = fmt::format("'{}' is {}", name, surface_names_[i]);
     }
     if (labels > 0)
-      losses_.push_back(fmt::format("sets hold no such names as {} labels have: {}", labels, of_label));
+      losses_.push_back(fmt::format("the names of {} labels were changed for sets: {}", labels, of_label));
     if (surfaces > 0)
       losses_.push_back(
-          fmt::format("surfaces hold no such names as {} pairs of labels have: {}", surfaces, of_surface));
+          fmt::format("the names of {} pairs of labels were changed for surfaces: {}", surfaces, of_surface));
   }
 
   void print_nodes() {
@@ -136,7 +136,7 @@ class AbaqusWriter {
       text_.print(FMT_COMPILE("{}, {}, {}, {}\n"), i + 1, reals[0].view(), reals[1].view(), reals[2].view());
     }
     if (num_rounded > 0)
-      losses_.push_back(fmt::format("{} coordinates are rounded to {} characters, the most that is read",
+      losses_.push_back(fmt::format("{} coordinates are rounded to {} characters, the format's limit",
                                     num_rounded, kLongestReal));
   }
 

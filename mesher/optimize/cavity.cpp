@@ -154,7 +154,7 @@ void Cavity<Locks>::match(const std::vector<LocalCell>& cells) {
     is_matched = sides_[i].key == sides_[i + 1].key && !(sides_[i].is_outer && sides_[i + 1].is_outer) &&
                  (i + 2 == sides_.size() || sides_[i + 1].key != sides_[i + 2].key);
   }
-  if (!is_matched) throw InternalError("a cavity was to be filled by cells of another boundary");
+  if (!is_matched) throw InternalError("the cells for a cavity have another boundary than the cavity");
 }
 
 template <class Locks>

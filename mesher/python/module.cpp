@@ -182,7 +182,7 @@ std::vector<py::str> save(const MeshInMemory& made, const std::string& path, con
   {
     const py::gil_scoped_release others_run;
     check_mesh_path(path, options);
-    if (made.mesh().cells.empty()) throw InputError(path + ": the mesh has no cell, so that none is written");
+    if (made.mesh().cells.empty()) throw InputError(path + ": the mesh has no cell; no file is written");
     losses = write_mesh(made.mesh(), path, options);
   }
   return texts(losses);
@@ -194,7 +194,7 @@ void save_surfaces(const MeshInMemory& made, const std::string& path) {
 }
 
 void define_progress(py::module_& module) {
-  py::class_<Progress>(module, "Progress", "How far a run of the mesher is.")
+  py::class_<Progress>(module, "Progress", "Progress of a run of the mesher.")
       .def_readonly("phase", &Progress::phase,
                     "\"transform\", \"refine\", \"perturb\", \"optimize\", \"extract\" or \"measure\"")
       .def_readonly("fraction", &Progress::fraction, "of the phase, an estimate from 0 to 1")

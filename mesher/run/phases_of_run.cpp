@@ -89,7 +89,7 @@ std::shared_ptr<const VoxelWeights> PhasesOfRun::smooth(MeshingReport& report) c
   report.smoothing = report_on_smoothing(image_, options_.smoothing_mm, smoothed, loop_threads_);
   if (keeps_all_stairs(image_, options_.smoothing_mm))
     report.warnings.push_back(
-        fmt::format("a blur of {:g} mm, less than half a voxel, smooths nothing", options_.smoothing_mm));
+        fmt::format("a blur of {:g} mm, below half a voxel, smooths nothing", options_.smoothing_mm));
   for (const SmoothingReport::OfLabel& label : report.smoothing->labels)
     if (label.is_thin)
       report.warnings.push_back(fmt::format(

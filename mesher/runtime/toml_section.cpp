@@ -23,7 +23,7 @@ void refuse_other_letters(const std::string& text, const std::string& path) {
   const auto other = std::find_if(text.begin(), text.end(), is_other);
   if (other == text.end()) return;
   const auto line_start = std::find(std::reverse_iterator(other), text.rend(), '\n').base();
-  throw TomlError(fmt::format("{}:{}:{}: a letter that is not ASCII's", path,
+  throw TomlError(fmt::format("{}:{}:{}: a character that is not ASCII", path,
                               1 + std::count(text.begin(), other, '\n'), 1 + (other - line_start)));
 }
 

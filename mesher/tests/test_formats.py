@@ -54,7 +54,7 @@ class FormatsTest(PodmTestCase):
         process = self.convert(self.mesh("a.vtu", "--merge", "1,2=big sphere"), "a.inp")
         self.assertIn("'big sphere' is big_sphere", process.stderr)
         self.assertRegex(process.stderr,
-                         "surfaces hold no such names as 2 pairs of labels have: '.*' is .*big_sphere")
+                         "the names of 2 pairs of labels were changed for surfaces: '.*' is .*big_sphere")
         self.convert(self.folder / "a.inp", "b.msh")
         text = (self.folder / "b.msh").read_bytes()
         self.assertIn(b'"big sphere|', text)
@@ -64,7 +64,7 @@ class FormatsTest(PodmTestCase):
         path.write_text(TWO_CELLS.format(7, 0))
         process = self.convert(path, "two.msh", "--gmsh-version", "2.2")
         self.assertIn("2 cells of 2 labels, 5 vertices, 7 facets", process.stderr)
-        self.assertIn("RAS is taken", process.stderr)
+        self.assertIn("RAS is assumed", process.stderr)
         path.write_text(TWO_CELLS.format(7, 7).replace("2 3 4 5", "3 2 4 5"))
         process = self.convert(path, "two.inp")
         self.assertIn("1 cells were negatively oriented", process.stderr)

@@ -88,7 +88,7 @@ class Islands(PodmTestCase):
                 gone = set(voxels.values()) - set(expected.values()) - {0}
                 self.assertEqual(len(warnings), len(gone))
                 for label in gone:
-                    self.assertTrue(any(f"label {label} is dropped whole" in text for text in warnings))
+                    self.assertTrue(any(f"label {label} is dropped entirely" in text for text in warnings))
                 again = self.volumes(self.image(expected, "b.nii"), "--drop-islands", below_mm3)
                 self.assertEqual(again, (dict(counts), []))
 

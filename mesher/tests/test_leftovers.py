@@ -230,7 +230,7 @@ class Record(PodmTestCase):
         os.mkfifo(self.runs)
         process = self.mesh(self.runs)
         self.assert_exit(process, 2)
-        self.assertIn(f"cannot write {self.runs}: nobody reads it", process.stderr)
+        self.assertIn(f"cannot write {self.runs}: the pipe has no reader", process.stderr)
         self.assertEqual(list(self.folder.iterdir()), [self.runs])
 
     def test_a_pipe_with_a_reader_standard_output_and_the_null_device(self):

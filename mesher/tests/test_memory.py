@@ -81,7 +81,7 @@ class MemoryLimit(PodmTestCase):
         options = ["--target-elements", 1000, "--delta", 0.2]
         for gib in 0.055, 0.065:
             self.assert_refused(["mesh", image, *options, "--max-memory-gib", gib, "-o", self.folder / "out.vtu"],
-                                image, "while they are read", "no room", "GiB")
+                                image, "during reading", "room for only", "GiB")
         self.check(image, 0.08, [], options)
 
     def test_readers_of_all_formats_look_at_the_limit_before_they_read(self):
@@ -96,12 +96,12 @@ class MemoryLimit(PodmTestCase):
         for name in "a.inr", "a.nrrd", "a.mha", "zipped.mha", "a.nii":
             with self.subTest(name=name):
                 self.assert_refused(["mesh", self.folder / name, *TOO_FEW, "--max-memory-gib", 0.018,
-                                     "-o", self.folder / "out.vtu"], name, "while they are read")
+                                     "-o", self.folder / "out.vtu"], name, "during reading")
 
     def test_a_limit_that_the_image_itself_takes_is_refused(self):
         image = small_images.write_nifti(self.folder / "ball.nii", small_images.ball_voxels(40), (40, 40, 40))
         self.assert_refused(["mesh", image, *TOO_FEW, "--max-memory-gib", 0.01, "-o", self.folder / "out.vtu"],
-                            image, "GiB", "no room")
+                            image, "GiB", "room for only")
 
     def test_more_cells_than_can_be_numbered_are_refused_before(self):
         image = small_images.write_nifti(self.folder / "ball.nii", small_images.ball_voxels(40), (40, 40, 40))

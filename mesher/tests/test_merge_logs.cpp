@@ -91,7 +91,7 @@ TEST_F(LogsOfRanks, FollowVerticesThatMove) {
 
 TEST_F(LogsOfRanks, AreRefusedWithAVertexThatMovesFromElsewhere) {
   add(2, at(5, 0), 3, 7, {9}, kMovedVertex);
-  EXPECT_EQ(fault(), "log.2: operation 0 of step 5: moves a vertex that is elsewhere");
+  EXPECT_EQ(fault(), "log.2: operation 0 of step 5: moves a vertex that is at another point");
 }
 
 TEST_F(LogsOfRanks, AreOneMachinesAsTheyAre) {
@@ -113,7 +113,7 @@ TEST_F(LogsOfRanks, AreAllNeededOnce) {
   EXPECT_EQ(fault(), "copy: of rank 1 of 3, as log.1 is");
   logs_ = all;
   logs_[1].log.head.mesh_hash = "f00d";
-  EXPECT_EQ(fault(), "log.1: of another run than log.0");
+  EXPECT_EQ(fault(), "log.1: the log is of another run than log.0");
 }
 
 TEST_F(LogsOfRanks, MayLackAMeshThatWasNotFinished) {
@@ -133,29 +133,30 @@ TEST_F(LogsOfRanks, LearnWhatIsSo) {
   using Operations = std::vector<LoggedOperation>&;
   EXPECT_EQ(fault_after([](Operations) {}), "no error");
   EXPECT_EQ(fault_after([](Operations all) { all[3].point[0] = std::nextafter(5, 6); }),
-            "log.2: operation 0 of step 3: learns of a vertex that nobody has made");
+            "log.2: operation 0 of step 3: receives a vertex that no rank has inserted");
   EXPECT_EQ(fault_after([](Operations all) { all[3].kind -= 1; }),
-            "log.2: operation 0 of step 3: learns of a vertex of another kind");
+            "log.2: operation 0 of step 3: receives a vertex of another kind than the inserted one");
   EXPECT_EQ(fault_after([](Operations all) { all[3].vertex = 9; }),
-            "log.2: operation 0 of step 3: its vertex is there already");
+            "log.2: operation 0 of step 3: its vertex exists already");
   EXPECT_EQ(fault_after([](Operations all) { all[3].sequence = at(2, 0); }), "no error");  // after rank 1
   EXPECT_EQ(fault_after([](Operations all) { all[3].sequence = at(5, 0), std::swap(all[3], all[4]); }),
             // The vertex no longer exists.
-            "log.2: operation 0 of step 5: learns of a vertex that nobody has made");
+            "log.2: operation 0 of step 5: receives a vertex that no rank has inserted");
   EXPECT_EQ(fault_after([](Operations all) { all[4].point[0] = 2; }),
-            "log.2: operation 1 of step 3: forgets a vertex that is elsewhere");
+            "log.2: operation 1 of step 3: a received removal names a vertex at another point");
 }
 
 TEST_F(LogsOfRanks, ForgetAndRemoveWhatIsSo) {
   const std::vector<LogOfRank> logs = logs_;
   receive_removal(0, at(5, 0), 2, 9);
-  EXPECT_EQ(fault(), "log.0: operation 0 of step 5: forgets a vertex that nobody has removed");
+  EXPECT_EQ(fault(),
+            "log.0: operation 0 of step 5: a received removal names a vertex that no rank has removed");
   logs_ = logs;
   add(2, at(5, 0), 7, 12, {8});
   EXPECT_EQ(fault(), "log.2: operation 0 of step 5: removes a vertex that another rank has removed");
   logs_ = logs;
   add(2, at(5, 0), 7, 12, {10});
-  EXPECT_EQ(fault(), "log.2: operation 0 of step 5: removes a vertex that is not there");
+  EXPECT_EQ(fault(), "log.2: operation 0 of step 5: removes a vertex that does not exist");
   logs_ = logs;
   add(2, at(5, 0), 2, 12);
   EXPECT_EQ(fault(), "log.2: operation 0 of step 5: its point is a vertex already");

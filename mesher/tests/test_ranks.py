@@ -148,14 +148,14 @@ class Meshes(OnRanks):
 
     def test_the_summary_is_printed_once(self):
         process = self.mesh(2, "--radius", 4)
-        for words in ("guarantees all met", "deferred", "memory of one"):
+        for words in ("guarantees all met", "deferred", "memory per rank"):
             self.assertEqual(process.stderr.count(words), 1, words)
 
     def test_ranks_that_ask_for_more_threads_than_there_are_are_warned(self):
         processors = len(os.sched_getaffinity(0))
         process = self.mesh(processors + 1, "--radius", 6)
         self.assert_exit(process, 0)
-        self.assertRegex(process.stderr, f"warning: .*: {processors + 1} ranks ask for {processors + 1} threads")
+        self.assertRegex(process.stderr, f"warning: .*: {processors + 1} ranks request {processors + 1} threads")
 
 
     def test_help_fits_a_terminal_and_names_what_is_refused(self):

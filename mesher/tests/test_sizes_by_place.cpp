@@ -261,7 +261,7 @@ TEST(SizesByPlace, AreRefusedWhereTheyAreSenseless) {
   });
   EXPECT_NE(fault_of<InputError>([&] {
               mesh_image(separate, apart);
-            }).find("labels 10 and 20: no voxels of theirs touch"),
+            }).find("labels 10 and 20: they have no voxels that touch"),
             std::string::npos);
   apart.sizes.near[0].labels[1] = {10};
   EXPECT_NE(refusal(apart).find("10 is on both sides"), std::string::npos);

@@ -16,7 +16,7 @@ Coordination::Coordination(const CoordinationOptions& options, std::function<voi
       resume_(std::move(resume)),
       first_id_(first_id) {
   if (workers_per_home_ != 0 && members_.size() % workers_per_home_ != 0)
-    throw InternalError("homes must divide the workers evenly");
+    throw InternalError("the number of homes must divide the number of workers");
 }
 
 Coordination::Answer Coordination::conflict(WorkerId self, WorkerId holder) {

@@ -52,7 +52,7 @@ void VirtualTime::run(const std::function<void(WorkerId)>& work) try {
     stop_.check_limits();
   }
   if (!is_over() && std::any_of(states_.begin(), states_.end(), is_at_work))
-    throw InternalError("virtual time stands still: every worker waits");
+    throw InternalError("virtual time cannot advance: every worker waits");
   finish_all();
 } catch (const std::bad_alloc&) {
   stop_.end(StopReason::kMemoryLimit);

@@ -19,8 +19,8 @@ namespace {
 std::string note_on_background(const LabelImage& image, const std::vector<std::uint64_t>& counts) {
   if (counts[kBackground] > 0) return "";
   return fmt::format(
-      "note       no background: no voxel has the value {}, so that all of the image is foreground\n"
-      "           (--background VALUE takes another for it)\n",
+      "note       no background: no voxel has the value {}, so the whole image is foreground\n"
+      "           (--background VALUE selects another value)\n",
       image.labels[kBackground].value);
 }
 

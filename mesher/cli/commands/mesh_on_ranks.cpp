@@ -76,7 +76,7 @@ class Run {
     expect_agreement({{"program", "SHA-256 " + file_sha256("/proc/self/exe")},
                       {"output", command_.mesh_path},
                       {"--log", command_.log_path},
-                      {"--verify", command_.verify ? "asked for" : "not asked for"}},
+                      {"--verify", command_.verify ? "requested" : "not requested"}},
                      ranks_);
   }
 

@@ -32,8 +32,8 @@ void add_replay_command(CLI::App& program, ReplayCommand& command) {
   add_image_options(app, command.image);
   require(add_many(
       app, "LOG", "",
-      "what podm mesh --log wrote, with the same image and label options; of\n"
-      "podm-mpi mesh --log FILE the logs of all ranks: FILE.0 FILE.1 ...",
+      "log of podm mesh --log, with the same image and label options; for\n"
+      "podm-mpi mesh --log FILE, the logs of all ranks: FILE.0 FILE.1 ...",
       [&command](const std::string& text, const std::string&) { command.log_paths.push_back(text); }));
 }
 
@@ -44,7 +44,7 @@ void add_info_command(CLI::App& program, InfoCommand& command) {
   CLI::Option* plan =
       add_flag(app, "--plan", command.plan,
                "also predict what podm mesh costs and loses with the options below: cells by\n"
-               "label, memory, seconds, what delta is too coarse for, components [default: no]");
+               "label, memory, seconds, parts too thin for delta, components [default: no]");
   add_planned_options(app, command.planned, plan);
 }
 

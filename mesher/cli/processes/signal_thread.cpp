@@ -54,7 +54,7 @@ bool is_awaited(int number, const sigset_t& blocked) {
 // waits itself.
 void report(const StoppingSignal& signal) {
   const std::string text = std::string(isatty(STDERR_FILENO) != 0 ? "\n" : "") + "podm: " + signal.name +
-                           ": the run ends early, with what there is; another signal ends it at once\n";
+                           ": the run ends early with a partial result; another signal ends it at once\n";
   pollfd errors{STDERR_FILENO, POLLOUT, 0};
   if (poll(&errors, 1, 0) != 1 || (errors.revents & POLLOUT) == 0) return;
   if (::write(STDERR_FILENO, text.data(), text.size()) < 0) return;  // there is no reader

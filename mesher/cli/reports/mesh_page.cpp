@@ -20,8 +20,8 @@ constexpr const char* kAskedBy = "--report";
 
 std::string output_of_script(const std::string& request, const SignalThread& signals) {
   ScriptResult result = run_script(kScript, request, kAskedBy, signals);
-  if (signals.token().stop_requested()) throw InputError("--report: left out, as a signal asked for the end");
-  if (result.exit_code != 0) throw InputError("--report: no page can be made");
+  if (signals.token().stop_requested()) throw InputError("--report: omitted, because a signal ended the run");
+  if (result.exit_code != 0) throw InputError("--report: the page could not be made");
   return std::move(result.output);
 }
 

@@ -137,7 +137,7 @@ TEST_P(SeveralRanks, SumsOfDifferentLengthsAreAFault) {
     std::vector<std::uint64_t> values(ranks.rank() == 1 ? 4 : 3);
     ranks.sum(values);
   });
-  EXPECT_THAT(fault, AnyOf(HasSubstr("of 3 values and not 4"), HasSubstr("of 4 values and not 3")));
+  EXPECT_THAT(fault, AnyOf(HasSubstr("with 3 values, not 4"), HasSubstr("with 4 values, not 3")));
 }
 
 TEST_P(SeveralRanks, OneThatEndsEarlyIsAFault) {

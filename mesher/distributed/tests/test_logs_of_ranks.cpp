@@ -176,7 +176,7 @@ TEST_F(SpoiltLogs, AreRefusedWithAReceivedVertexThatIsElsewhere) {
       logs_ = sound();
       move(rank, entry);
       EXPECT_EQ(verdict(), logs_[rank].path + ": " + operation_text(log(rank).operations[entry].sequence) +
-                               ": learns of a vertex that nobody has made");
+                               ": receives a vertex that no rank has inserted");
       ++num_received;
     }
   }

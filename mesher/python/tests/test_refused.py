@@ -85,9 +85,9 @@ class RefusedTest(TestCase):
         self.assert_refused("keep", "label 5", keep=[5])
         self.assert_refused("keep", "label values", keep=2.5)
         for values in ([], (), np.array([], int), [-1], -1, [2**32], [True], True, np.True_, ["3"]):
-            self.assert_refused("keep: one or some label values", keep=values)
-            self.assert_refused("drop: one or some label values", drop=values)
-            self.assert_refused("merge: one or some label values", merge={"both": values})
+            self.assert_refused("keep: one or several label values", keep=values)
+            self.assert_refused("drop: one or several label values", drop=values)
+            self.assert_refused("merge: one or several label values", merge={"both": values})
         self.assert_refused("merge", merge=[3, 7])
         self.assert_refused("merge: a name is expected, not 5", merge={5: [3, 7]})
         self.assert_refused("radius_of", "name or value", radius_of={-1: 2})

@@ -100,7 +100,7 @@ class ResultTest(TestCase):
 
     def test_what_a_format_loses_is_reported(self):
         named = podm.mesh(balls(), names={3: "Leber (links)"})
-        for mesh, name, loss in ((named, "loss.inp", "sets hold no such names"),
+        for mesh, name, loss in ((named, "loss.inp", "were changed for sets"),
                                  (podm.mesh(balls(), names={3: "l" * 256}), "loss.exo", "cut to 255 bytes")):
             with self.assertWarnsRegex(UserWarning, rf"{name}: .*{loss}") as warned:
                 mesh.save(self.folder / name)
