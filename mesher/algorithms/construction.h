@@ -108,7 +108,7 @@ class Construction {
   /// Every cell of the store.
   Entries all_cells() const;
 
-  /// Keeps `bytes` of memory free of the store, instead of the amount withheld before. Ends the run if the
+  /// Keeps `bytes` of memory free of the store, instead of the amount kept before. Ends the run if the
   /// store already uses them.
   void reduce_capacity(std::uint64_t bytes);
   /// Makes the first `num_workers` workers of the team, with their pools. The workers keep a reference to the

@@ -93,7 +93,7 @@ class IdArena {
     nodes_[node].end = first + size;
   }
 
-  std::size_t num_ids_, capacity_;  // the ids between them are withheld
+  std::size_t num_ids_, capacity_;  // the ids between them may not be taken
   unsigned run_bits_;
   std::mutex mutex_;
   std::vector<OfNode> nodes_;

@@ -340,7 +340,7 @@ class InProcessRank final : public Communication {
   int rank() const override { return rank_; }
   int size() const override { return place_.size(); }
   std::vector<Bytes> all_to_all(std::vector<Bytes> messages) override {
-    check_one_a_rank(messages);
+    check_one_per_rank(messages);
     return take_part({Collective::kAllToAll, std::move(messages)});
   }
   std::vector<Bytes> all_gather(Bytes message) override {

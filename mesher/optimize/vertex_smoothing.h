@@ -1,4 +1,4 @@
-// VertexSmoothing by non-smooth optimisation: moves a vertex to where the worst of the cells around it is
+// Smoothing by non-smooth optimisation: moves a vertex to where the worst of the cells around it is
 // best. The worst cells change on the way, so the worst quality has no gradient. The direction of ascent is
 // the point nearest to the origin among the convex combinations of the gradients of all nearly worst cells
 // (Freitag, Jones, Plassmann, "An efficient parallel algorithm for mesh smoothing", 1995).

@@ -1,4 +1,4 @@
-// The shortest paths between the nodes of a network, one for each pair. Ways of equal length are chosen to
+// The shortest paths between the nodes of a network, one for each pair. Paths of equal length are chosen to
 // share the load.
 #pragma once
 
@@ -6,7 +6,7 @@
 
 namespace podm {
 
-/// For each vertex, the vertices that one link leads to. A link leads both paths.
+/// For each vertex, the vertices that one link leads to. A link leads both ways.
 using Neighbours = std::vector<std::vector<int>>;
 
 /// Returns the number of links on the shortest path from `start` to each vertex; -1 if there is no path.

@@ -56,7 +56,7 @@ def judge(run, record, process):
     always = ALWAYS - ({"delaunay"} if record["optimization"] else set())
     said = f": {process.stderr.strip()[-2000:]}"
     if reason != "complete" and reason not in run.limits:
-        raise Failed(f"ended early by the {reason}, which nobody asked for{said}")
+        raise Failed(f"ended early by the {reason}, which was not requested{said}")
     if record["cells"] and not always <= set(verdicts):
         raise Failed(f"was verified for {sorted(verdicts)} only{said}")
     due = verdicts if reason == "complete" else always & set(verdicts)

@@ -123,7 +123,7 @@ void expect_lengths(Communication& communication, std::size_t most_bytes) {
             std::vector<std::uint64_t>(values.size(), static_cast<std::uint64_t>(size * (size - 1) / 2)));
 }
 
-void expect_one_message_a_rank(Communication& communication) {
+void expect_one_message_per_rank(Communication& communication) {
   const auto size = static_cast<std::size_t>(communication.size());
   EXPECT_THROW(communication.all_to_all(std::vector<Bytes>(size - 1)), InternalError);
   EXPECT_THROW(communication.all_to_all(std::vector<Bytes>(size + 1)), InternalError);

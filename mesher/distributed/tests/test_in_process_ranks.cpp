@@ -52,7 +52,7 @@ TEST_P(InProcessRanks, CarryMessagesOfAllLengths) {
   run_ranks(options(), [](Communication& ranks) { test::expect_lengths(ranks, 50); });
 }
 
-TEST_P(InProcessRanks, WantOneMessageARank) { run_ranks(options(), test::expect_one_message_a_rank); }
+TEST_P(InProcessRanks, WantOneMessagePerRank) { run_ranks(options(), test::expect_one_message_per_rank); }
 
 TEST_P(InProcessRanks, NoneLeavesABarrierBeforeAllHaveCome) { run_ranks(options(), test::expect_barrier); }
 

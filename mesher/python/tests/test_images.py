@@ -92,7 +92,7 @@ class ImagesTest(TestCase):
         volume = podm.mesh(balls(), affine=AFFINE, radius=2).quality()["volume"].sum()
         np.testing.assert_allclose(mesh.quality()["volume"].sum(), volume, rtol=0.05)
 
-    def test_nibabels_unit_is_heeded(self):
+    def test_nibabels_unit_is_respected(self):
         image = nibabel.Nifti1Image(balls(), AFFINE)
         image.header.set_xyzt_units("micron")
         in_mm = podm.mesh(balls(), affine=AFFINE).points
