@@ -78,7 +78,7 @@ class Leaves(PodmTestCase):
                                 (["--algorithm", "pdr", "--initial-ratio", "0.5"], "ratio"),
                                 (["--algorithm", "pdr", "--initial-threads", "9"], "initial"),
                                 (["--algorithm", "pdr", "--leaf-size", "-1"], "--leaf-size"),
-                                (["--algorithm", "pdr", "--leaf-size", "0.5"], "leaf size of 0.5 mm makes"),
+                                (["--algorithm", "pdr", "--leaf-size", "0.5"], "leaf size of 0.5 mm gives"),
                                 (["--schedule", self.schedule], "podm has no leaves"),
                                 (["--algorithm", "podm-home", "--schedule", self.schedule], "podm-home has no leaves"),
                                 (["--algorithm", "auto", "--schedule", self.schedule], "auto has no leaves"),

@@ -110,7 +110,7 @@ TEST_F(LogsOfRanks, AreAllNeededOnce) {
   EXPECT_EQ(fault(), "log.0: the log of rank 2 of 3 is missing");
   logs_ = {all[0], all[1], all[2], all[1]};
   logs_.back().path = "copy";
-  EXPECT_EQ(fault(), "copy: of rank 1 of 3, as log.1 is");
+  EXPECT_EQ(fault(), "copy: a second log of rank 1 of 3; the first is log.1");
   logs_ = all;
   logs_[1].log.head.mesh_hash = "f00d";
   EXPECT_EQ(fault(), "log.1: the log is of another run than log.0");

@@ -245,7 +245,7 @@ TEST(SizesByPlace, AreRefusedWhereTheyAreSenseless) {
   };
   SizeImage far = sizes_over(3, 20, ramp);
   far.voxel_to_ras[3] = 1000;
-  EXPECT_NE(refusal(with(far)).find("sizes.nii: the size image and the object have no point in common"),
+  EXPECT_NE(refusal(with(far)).find("sizes.nii: the size image and the object do not overlap"),
             std::string::npos);
   EXPECT_NE(
       refusal(with(sizes_over(30, 60, [](const Point& p) { return p.x > 40 ? 1 : 0; }))).find("sizes.nii"),

@@ -152,7 +152,7 @@ TEST(RanksThatDiffer, AreRefusedByAllWhereLeavesDoNotFitInTheMemoryOfOne) {
               options.leaves.size_mm = 0.3;
               options.limits.max_memory_bytes = ranks.rank() == 1 ? 64 << 20 : 1 << 30;
               mesh_image_on_ranks(image, options, ranks);
-            }).find("rank 1 of 3: a leaf size of 0.3 mm makes"),
+            }).find("rank 1 of 3: a leaf size of 0.3 mm gives"),
             std::string::npos);
 }
 
