@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "podm/choices.h"
+#include "podm/option.h"
 #include "podm/tet_mesh.h"
 
 namespace podm {
